@@ -40,11 +40,11 @@ def measured(outline: Outline, plane: Any, goal: Goal = FINE) -> Measured:
 
 
 def wide(scheme: str, h: Any, steps: int, of: Hamiltonian = OSCILLATOR, digits: int = 33) -> Any:
-    return WideCarrier(of, scheme, Fraction(h), steps, "fixed", digits)
+    return WideCarrier(of, scheme, Fraction(h), steps, Fraction(0), "fixed", digits)
 
 
 def floats(scheme: str, h: Any, steps: int, of: Hamiltonian = OSCILLATOR) -> FloatCarrier:
-    return FloatCarrier(of, scheme, Fraction(h), steps)
+    return FloatCarrier(of, scheme, Fraction(h), steps, Fraction(0))
 
 
 def polygon(*corners: tuple[Any, Any]) -> Outline:

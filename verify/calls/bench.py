@@ -18,6 +18,7 @@ def bench(
     p: Exact,
     step_sizes: Any,
     time: Exact,
+    t0: Exact = 0,
     parameters: GivenParameters = None,
     repeats: int = 5,
     peers: bool = False,
@@ -40,7 +41,7 @@ def bench(
         "repeats": repeats,
         "peers": None if peers else False,
     }
-    scene = scene_of(system, scheme, parameters, work_precision=section)
+    scene = scene_of(system, scheme, parameters, t0=t0, work_precision=section)
     assert scene.work_precision is not None  # noqa: S101 - it was just given
     task = work_precision_task(scene, scene.work_precision)
     points = len(task.schemes) * len(task.step_sizes)

@@ -18,6 +18,7 @@ def flow(
     step_size: Exact,
     steps: Any = None,
     times: Any = None,
+    t0: Exact = 0,
     parameters: GivenParameters = None,
     shape: str | None = None,
     polygon: Sequence[tuple[Exact, Exact]] | None = None,
@@ -35,6 +36,7 @@ def flow(
     ----------
     system, scheme, step_size, parameters: as in `verify.run`; `scheme` may be a list.
     steps, times: one of the two, a number or a list; of a time N = T/h, rounded down.
+    t0: when it begins, for an H that depends on t.
     shape: a name, circle, square or cat; or `polygon`, corners (q, p); or `path`, as SVG has it.
         Without any of them a circle.
     centre: (q, p) of where it is put; `scale`: how many times as large.
@@ -66,5 +68,5 @@ def flow(
         "mean_lambda": mean_lambda,
         "digits": digits,
     }
-    scene = scene_of(system, scheme, parameters, flow=[section])
+    scene = scene_of(system, scheme, parameters, t0=t0, flow=[section])
     return flows_of(scene, performed(scene, need_flows, workers))[0]

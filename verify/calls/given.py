@@ -70,7 +70,7 @@ def hamiltonian_from(
 
 def _allowed(hamiltonian: Hamiltonian, time: bool) -> Hamiltonian:
     if hamiltonian.time_dependent and not time:
-        problem = "depends on t, which is taken by prove, run, separate, export and check alone"
+        problem = "depends on t, which this call does not take as yet"
         raise InputError("hamiltonian", hamiltonian.formula, problem)
     return hamiltonian
 
@@ -148,19 +148,22 @@ def scene_of(
     scheme: object,
     parameters: GivenParameters,
     *,
+    t0: Exact | None = None,
     name: str = "",
     known_as: str | None = None,
     **sections: Any,
 ) -> Scene:
     """A scene of the system and one scheme or several with these sections, and a name to show.
 
-    `known_as`: the name of the system, where it has one.
+    `t0`: when its runs start, which an H without t does not look at. `known_as`: the name of the
+    system, where it has one.
     """
-    exact = hamiltonian_from(system, parameters)
+    exact = hamiltonian_from(system, parameters, time=True)
     data = {
         **({"system": known_as} if known_as else {"hamiltonian": exact.formula}),
         "parameters": dict[str, Fraction](exact.values),
         "schemes": schemes_from(scheme, exact),
+        **({"t0": plain(t0)} if t0 is not None and exact.time_dependent else {}),
     }
     sections = {key: plain(_without_none(given)) for key, given in sections.items()}
     try:

@@ -92,7 +92,8 @@ def _print_flow(name: str, result: "FlowResult") -> None:
     q, p = result.centre
     title = f"{name}: " + (f"{result.source}, " if result.source else "")
     where = f"{result.shape} at (q, p) = ({q}, {p}), scale {short(Fraction(result.scale))}"
-    click.echo(f"{title}{where}, h = {result.step_size}")
+    begins = "" if result.t0 is None else f", from t0 = {result.t0}"
+    click.echo(f"{title}{where}, h = {result.step_size}{begins}")
     rows = [_HEAD, *map(_row, result.images)]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row, image in zip(rows, (None, *result.images), strict=True):

@@ -3,6 +3,7 @@
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +11,14 @@ import click
 
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering
-from verify.commands.shared.input import PATH, check_ours, keepable, target, writable
+from verify.commands.shared.input import (
+    PATH,
+    check_ours,
+    hamiltonian_of,
+    keepable,
+    target,
+    writable,
+)
 from verify.commands.shared.one_line import (
     goes_alone,
     line_of,
@@ -105,7 +113,9 @@ class _Asked:
 
 def _asked(scene: str | None, given: Mapping[str, Any]) -> _Asked:
     if scene is None:
-        scenes = scenes_of(None, given, ("q", "p"), _sections)
+        exact = hamiltonian_of(given["system"], given["hamiltonian"], given["params"], time=True)
+        sections = partial(_sections, growth=not exact.time_dependent)
+        scenes = scenes_of(None, given, ("q", "p"), sections)
         name = given["system"] or "hamiltonian"
         return _Asked(line_of(given), name, f"{', '.join(given['schemes'])} on {name}", scenes)
     goes_alone(given)
@@ -113,12 +123,15 @@ def _asked(scene: str | None, given: Mapping[str, Any]) -> _Asked:
     return _Asked(scene, scenes[0].name if len(scenes) == 1 else scene, title, scenes, file)
 
 
-def _sections(*, q: str, p: str, step_sizes: Sequence[str], **length: Any) -> dict[str, Any]:
+def _sections(
+    *, growth: bool, q: str, p: str, step_sizes: Sequence[str], **length: Any
+) -> dict[str, Any]:
     """All that is known of a scheme on one orbit, its largest step over time, and for every H."""
     from verify.arithmetic.exact import positive
 
     start = {"q": q, "p": p}
-    grid = {"step_sizes": step_sizes, "initial_values": [start], "separate": True, "growth": True}
+    grid = {"step_sizes": step_sizes, "initial_values": [start], "separate": True}
+    grid |= {"growth": True} if growth else {}
     largest = max(positive(h, "step_size") for h in step_sizes)
     return {
         "criteria": [1, 2, 3, 4],

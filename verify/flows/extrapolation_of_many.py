@@ -19,7 +19,8 @@ from verify.flows.extrapolation import LOST, NoFlowError, functions_at
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
 Array = Any  # numpy.ndarray, which is imported where it is used
-Slopes = Callable[[Array, Array], tuple[Array, ...]]
+Slopes = Callable[..., tuple[Array, ...]]  # of p, q and t
+_ZERO = Fraction(0)
 
 _TOLERANCE = 4096  # roundings: of the last two extrapolated values, relative to the orbit so far
 _EASY = 1e-2  # of the tolerance, below which a longer step is tried
@@ -30,9 +31,15 @@ _STEP_BITS = 12  # of a step, so that times are sums without rounding
 
 
 def follow(
-    hamiltonian: Hamiltonian, p: Array, q: Array, times: Sequence[Fraction], columns: int
+    hamiltonian: Hamiltonian,
+    p: Array,
+    q: Array,
+    times: Sequence[Fraction],
+    columns: int,
+    t0: Fraction = _ZERO,
 ) -> Array:
-    """φ_t of all points: an array (p or q, time, point). Times may have either sign.
+    """φ_t of all points: an array (p or q, time, point). Times may have either sign, and are those
+    since t0, where H depends on time.
 
     `columns` of the extrapolation: two different numbers of them give independent errors. Raises
     NoFlowError, naming a point, where one cannot be followed.
@@ -44,7 +51,7 @@ def follow(
     with np.errstate(all="ignore"):
         slopes = _slopes(hamiltonian)
         for sign in (1, -1):
-            walk = _CommonSteps(slopes, start, sign, columns)
+            walk = _CommonSteps(slopes, start, sign, columns, WIDE.rational(t0))
             order = sorted((t for t in set(times) if sign * t > 0 or t == 0), key=abs)
             for time in order:
                 walk.to(WIDE.rational(abs(time)))
@@ -54,9 +61,13 @@ def follow(
 
 
 def _slopes(hamiltonian: Hamiltonian) -> Slopes:
+    """f at p, q and a t, which an H without time does not look at."""
     field, _ = hamiltonian.field()
     elements = [(field.ring, -field.h_q), (field.ring, field.h_p)]
-    return functions_at(arrays(), elements)
+    if field.timed:
+        return functions_at(arrays(), elements, ("p", "q", "t"))
+    still = functions_at(arrays(), elements)
+    return lambda p, q, _: still(p, q)
 
 
 def arrays() -> Arithmetic:
@@ -88,17 +99,19 @@ def _short(step: float) -> float:
 class _CommonSteps:
     """All points on their way, by common steps."""
 
-    def __init__(self, slopes: Slopes, start: Array, sign: int, columns: int) -> None:
+    def __init__(self, slopes: Slopes, start: Array, sign: int, columns: int, t0: Any) -> None:
         import numpy as np
 
-        self.z = start
+        self.z, self._t0 = start, t0
         self._slopes = slopes
         self._sign = sign
         self._columns = columns
         self._done = WIDE.mpf(0)
         self._tolerance = _TOLERANCE * float(WIDE.eps)
         self._scale = np.max(np.abs(start), axis=0)  # of each orbit, as far as it is known
-        speed = np.max(np.abs(np.array(np.broadcast_arrays(*slopes(*start), start[0])[:2])), axis=0)
+        speed = np.max(
+            abs(np.array(np.broadcast_arrays(*slopes(*start, t0), start[0])[:2])), axis=0
+        )
         size = np.where(self._scale > 0, self._scale, 1.0)
         fastest = float(np.max(speed / size, initial=0.0))
         self._step = _short(1.0 / (1.0 + fastest)) if np.isfinite(fastest) else 1.0
@@ -150,14 +163,14 @@ class _CommonSteps:
         import numpy as np
 
         h = WIDE.mpf(time) / count
-        slopes, z = self._slopes, self.z
+        slopes, z, t = self._slopes, self.z, self._t0 + self._sign * self._done
         before = np.zeros_like(z)
         at = np.empty_like(z)
-        at[0], at[1] = slopes(*z)
+        at[0], at[1] = slopes(*z, t)
         at *= h
         change = np.empty_like(z)
-        for _ in range(count - 1):
-            change[0], change[1] = slopes(*(z + at))
+        for k in range(1, count):
+            change[0], change[1] = slopes(*(z + at), t + k * h)
             before, at = at, before + 2 * h * change
-        change[0], change[1] = slopes(*(z + at))
+        change[0], change[1] = slopes(*(z + at), t + time)
         return (at + before + h * change) / 2

@@ -30,6 +30,7 @@ from verify.hamiltonians.motion import Motion, exactly
 from verify.prose import read_prose
 
 Array = Any  # numpy.ndarray, which is imported where it is used
+_ZERO = Fraction(0)
 _UNIT = 2.0**-53  # the rounding of a result, relative to it
 _UPWARDS = 1 + 2.0**-50  # for a bound that is itself rounded
 _SAFETY = 4  # an error is at most so many times what it is estimated to be by another evaluation
@@ -56,14 +57,17 @@ class Points:
     alone: tuple[int, ...] = ()
 
 
-def exact_points(hamiltonian: Hamiltonian, p: Array, q: Array, times: Sequence[Fraction]) -> Points:
-    """φ_t of the points (p, q), two arrays of float64 of one length, for each time t.
+def exact_points(
+    hamiltonian: Hamiltonian, p: Array, q: Array, times: Sequence[Fraction], t0: Fraction = _ZERO
+) -> Points:
+    """φ_t of the points (p, q), two arrays of float64 of one length, for each time t, from t0 on
+    where H depends on time.
 
     Raises InputError for a parameter without a value and for points that are not such arrays, and
     NoFlowError, naming the point, where one blows up before the last of the times or cannot be
     followed so far, and where a numerical flow fails the check at the sample.
     """
-    work = _Work.of(hamiltonian, p, q, times)
+    work = _Work.of(hamiltonian, p, q, times, t0)
     if len(work.p) and work.motion(0) is not None:
         return work.in_closed_form()
     work.numerically()
@@ -118,12 +122,15 @@ class _Work:
     p: Array
     q: Array
     times: tuple[Fraction, ...]
+    t0: Fraction
     found: Array  # (2, times, points)
     error: Array  # (times, points)
     alone: set[int] = field(default_factory=set)
 
     @classmethod
-    def of(cls, hamiltonian: Hamiltonian, p: Array, q: Array, times: Sequence[Fraction]) -> "_Work":
+    def of(
+        cls, hamiltonian: Hamiltonian, p: Array, q: Array, times: Sequence[Fraction], t0: Fraction
+    ) -> "_Work":
         import numpy as np
 
         if hamiltonian.symbols:
@@ -134,7 +141,7 @@ class _Work:
         if not (np.isfinite(p).all() and np.isfinite(q).all()):
             raise InputError("points", "nan", "must be finite")
         shape = len(times), len(p)
-        return cls(hamiltonian, p, q, tuple(times), np.zeros((2, *shape)), np.zeros(shape))
+        return cls(hamiltonian, p, q, tuple(times), t0, np.zeros((2, *shape)), np.zeros(shape))
 
     # -- in closed form -----------------------------------------------------------------------
 
@@ -179,7 +186,8 @@ class _Work:
         """All points twice, by extrapolations of two orders."""
         import numpy as np
 
-        fine, rough = (follow(self.hamiltonian, self.p, self.q, self.times, n) for n in (8, 7))
+        given = self.hamiltonian, self.p, self.q, self.times
+        fine, rough = (follow(*given, columns, self.t0) for columns in (8, 7))
         self.found[:] = fine
         every = np.arange(len(self.p))
         for k in range(len(self.times)):
@@ -204,7 +212,9 @@ class _Work:
 
     def _exact(self, i: int, k: int) -> tuple[tuple[float, float], float]:
         def solved(p: Fraction, q: Fraction, time: Fraction) -> tuple[tuple[float, float], float]:
-            found = exact_solution(self.hamiltonian, p=p, q=q, time=time, digits=_DIGITS)
+            found = exact_solution(
+                self.hamiltonian, p=p, q=q, time=time, digits=_DIGITS, t0=self.t0
+            )
             return (float(found.p), float(found.q)), float(found.bound)
 
         found: tuple[tuple[float, float], float] = self._told(

@@ -21,10 +21,12 @@ from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.clock import clock_inputs, first_rest
 from verify.kernels.kernel import LOOP, Kernel, kernel_for
 from verify.kernels.reach import limits
 from verify.kernels.stepping import KernelRun
 
+_ZERO = Fraction(0)
 _LANES = 64  # points whose states stay in the nearest cache
 _SHARE = 256  # points that a thread takes at a time: some milliseconds and more
 _WIDE_SHARE = 32  # the same in fixed point
@@ -47,12 +49,16 @@ class PointMap:
         step_size: Fraction,
         steps: int,
         arithmetic: Arithmetic,
+        t0: Fraction = _ZERO,
         observables: frozenset[str] = frozenset(),
         compensated: bool = False,
     ) -> None:
-        """Raises UnsupportedError where the arithmetic lacks what the scheme needs."""
+        """From t0 on, where H depends on time.
+
+        Raises UnsupportedError where the arithmetic lacks what the scheme needs.
+        """
         self.arithmetic, self.steps = arithmetic, steps
-        start = {"h": step_size, "p": Fraction(0), "q": Fraction(0)}
+        start = {"h": step_size, "p": _ZERO, "q": _ZERO, "t": t0}
         self.kernel_run = KernelRun(hamiltonian, scheme, start, steps, observables, 0)
         self.kernel = kernel_for(
             self.kernel_run.hamiltonian, scheme, arithmetic, observables, compensated
@@ -74,13 +80,24 @@ class PointMap:
 
     def _inputs(self, extra: Sequence[Fraction] = ()) -> list[Number]:
         given = [*self.kernel_run.inputs(self.kernel, 0).values(), *extra]
+        if self.kernel.timed:
+            given += clock_inputs(self.arithmetic, self.kernel_run.start).values()
         return [self.arithmetic.number(x) for x in given]
+
+    @property
+    def _rest(self) -> list[Number]:
+        """What is carried beside p and q, at the start."""
+        start = self.kernel_run.start
+        if self.kernel.timed:
+            start = start | first_rest(self.arithmetic, start)
+        exact = (start[x] if isinstance(x, str) else Fraction(x) for x in self.kernel.start)
+        return [self.arithmetic.number(x) for x in exact]
 
     def _in_lanes(self, p: np.ndarray, q: np.ndarray) -> list[np.ndarray]:
         run, share = _stepper(self.kernel)
         inputs = np.array(self._inputs(), dtype=np.float64)
         spare = -len(p) % share  # a point more than once, where a call takes so many
-        rest = [np.full(len(p) + spare, float(x)) for x in self.kernel.start]
+        rest = [np.full(len(p) + spare, x, dtype=np.float64) for x in self._rest]
         carried = np.array([*(np.pad(z, (0, spare), "edge") for z in (p, q)), *rest])
 
         def advance(first: int) -> None:
@@ -97,7 +114,7 @@ class PointMap:
     def _one_by_one(self, p: Sequence[Number], q: Sequence[Number]) -> list[list[Number]]:
         made = self.arithmetic
         inputs = self._inputs(self._limits(p, q))
-        rest = [made.number(Fraction(x)) for x in self.kernel.start]
+        rest = self._rest
         points = [(*z, *rest) for z in zip(p, q, strict=True)]
         found: list[Sequence[Number]] = []
         for z, states in zip(points, self._last_states(inputs, points), strict=True):
@@ -132,9 +149,8 @@ class PointMap:
             return ()
         exact = self.arithmetic.exact
         far = {"p": max(abs(exact(x)) for x in p), "q": max(abs(exact(x)) for x in q)}
-        found = limits(
-            self.kernel, self.kernel_run.inputs(self.kernel, 0), self.kernel_run.start | far
-        )
+        run = self.kernel_run
+        found = limits(self.kernel, run.inputs(self.kernel, 0), run.start | far, run.times)
         if found is None:
             raise UnsupportedError(f"no box around the points is safe in {self.arithmetic.name}")
         return found

@@ -21,16 +21,18 @@ H = {
     "pendulum": ("p**2/2 - cos(q)", {}),
     "well": ("p**2/2 + exp(q) - q + sqrt(2 + q**2)/(1 + q**2)", {}),
     "escapes": ("p**2/2 - q**4/4", {}),
+    "driven": ("p**2/2 - (1 + cos(2*t)/2)*cos(q)", {}),
 }
 
 
 def runs(name: str, points: int = 0, scheme: str = "lie2") -> list[KernelRun]:
     """Eleven, of which no two are alike: the last ones have other steps."""
     text, values = H[name]
-    hamiltonian = Hamiltonian.parse(text, values)
+    hamiltonian = Hamiltonian.parse(text, values, time=True)
     found = []
     for k in range(11):
         start = {"q": Fraction(k - 4, 7), "p": Fraction(3 - k, 11), "h": Fraction(1, 50 + k // 6)}
+        start |= {"t": Fraction(k, 3)} if name == "driven" else {}
         steps = 300 + k // 4
         observables = OBSERVABLES | ({"extremes"} if points else set())
         found.append(KernelRun(hamiltonian, scheme, start, steps, observables, points))

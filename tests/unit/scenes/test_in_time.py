@@ -87,8 +87,6 @@ def test_a_scene_in_time_comes_back_from_its_text(tmp_path: Path) -> None:
         (GRID + "growth = true\n", "[grid] with growth = true"),
         (f"[work_precision]\ntime = 1\nstep_sizes = [0.1, 0.2]\npeers = true\n{AT}\n",
          "[work_precision] with peers = true"),
-        ('[[flow]]\nshape = "circle"\ncentre = { q = 1, p = 0 }\nscale = 0.1\nstep_size = 0.1\n'
-         "steps = [5]\n", "[flow]"),
         ("[[stability]]\nstep_sizes = [0.1]\nsteps = 9\ninitial_values = [{ q = 1, p = 0 }]\n",
          "[stability]"),
     ],

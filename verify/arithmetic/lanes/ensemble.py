@@ -303,7 +303,9 @@ class Ensemble:
         if name == "approx":
             return [self.numbers.to_double(b, x)]
         if name == "shifted":
-            return [self.numbers.shifted(b, x, values[1])]
+            by = values[1]  # a literal is one word for all lanes
+            by = vectors.same(b, by, WORDS) if by.type == I64 else by
+            return [self.numbers.shifted(b, x, by)]
         if name == "wide":
             return [self._wide(x)]
         if not isinstance(x, Number):

@@ -36,6 +36,7 @@ _STEPS = (
     click.option(
         "--step-size", "step_sizes", multiple=True, metavar="H", help="Greater than 0; repeatable."
     ),
+    click.option("--t0", metavar="T", help="When it starts, of an H(p, q, t).  [default: 0]"),
 )
 
 
@@ -80,17 +81,18 @@ def scenes_of(
         raise InputError(
             "SCENE", NOT_GIVEN, "is missing; or give --system, --scheme, --step-size, …"
         )
-    exact = hamiltonian_of(*(given[name] for name in _SYSTEM))
+    exact = hamiltonian_of(*(given[name] for name in _SYSTEM), time=True)
     for name in (*_NEEDED, *needed):
         if name not in asked:
             raise InputError(name, NOT_GIVEN, "is missing")
     from verify.calls.given import scene_of
 
-    own = {n: x for n, x in asked.items() if n not in (*_SYSTEM, "schemes")}
+    own = {n: x for n, x in asked.items() if n not in (*_SYSTEM, "schemes", "t0")}
     name = given["system"] or exact.formula
     made = scene_of(
-        exact, asked["schemes"], None, name=name, known_as=given["system"], **sections(**own)
-    )
+        exact, asked["schemes"], None, t0=asked.get("t0"), name=name, known_as=given["system"],
+        **sections(**own),
+    )  # fmt: skip
     return [made]
 
 

@@ -62,8 +62,8 @@ class FlowImage(WithProse):
 class FlowResult(Frozen):
     """A shape carried by maps: its outlines before, and its images by map, then by steps.
 
-    `centre` (q, p) and `scale`: where the shape was put, and how large. `source`: what of a paper
-    it repeats (`Figure 4`).
+    `centre` (q, p) and `scale`: where the shape was put, and how large; `t0`: when, where H depends
+    on time. `source`: what of a paper it repeats (`Figure 4`).
     """
 
     shape: str
@@ -73,3 +73,4 @@ class FlowResult(Frozen):
     before: tuple[DrawnOutline, ...]
     images: tuple[FlowImage, ...]
     source: str = ""
+    t0: str | None = None

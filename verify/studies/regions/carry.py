@@ -73,6 +73,7 @@ class _Carrying:
     map: str
     step_size: Fraction
     steps: int
+    t0: Fraction
 
     @property
     def time(self) -> Fraction:
@@ -95,14 +96,16 @@ def carry(
     digits: int,
     mean_lambda: bool,
     distance: bool,
+    t0: Fraction | None = None,
 ) -> FlowImage:
-    """The image of the shape by so many steps of a scheme, or by the exact flow (EXACT_FLOW).
+    """The image of the shape by so many steps of a scheme, or by the exact flow (EXACT_FLOW), from
+    t0 on where H depends on time.
 
     At least so many digits are worked with. `mean_lambda`: the mean of Λ over the region, too;
     `distance`: how far its outlines are from the exact ones. `problem` says why there is no image.
     """
     begun = time.perf_counter()
-    by = _Carrying(hamiltonian, map_name, step_size, steps)
+    by = _Carrying(hamiltonian, map_name, step_size, steps, t0 or Fraction(0))
     preserves = by.preserves_area
     found: dict[str, Any] = {}
     try:
@@ -113,7 +116,7 @@ def carry(
                 found |= _mean(by, carried[0])
             if distance:
                 with contextlib.suppress(NoFlowError):  # the area is known all the same
-                    found |= _distance(hamiltonian, by.time, carried)
+                    found |= _distance(by, carried)
     except (LeftRangeError, NoFlowError, NoAreaError) as error:
         found = {"problem": error.said if isinstance(error, NoFlowError) else prose(str(error))}
     return FlowImage(
@@ -135,9 +138,9 @@ def _measured(
     """All outlines, in the arithmetic that tells the region's change from the probe's error."""
     smaller, preserves = smaller_than_one(shape.outlines[0]), by.preserves_area
     if by.map == EXACT_FLOW:
-        exact = ExactFlowCarrier(by.hamiltonian, by.time, smaller)
+        exact = ExactFlowCarrier(by.hamiltonian, by.time, by.t0, smaller)
         return _all(shape, exact, _UNCHANGED), exact
-    given = by.hamiltonian, by.map, by.step_size, by.steps
+    given = by.hamiltonian, by.map, by.step_size, by.steps, by.t0
     if digits <= _FLOAT_DIGITS:
         with contextlib.suppress(NoAreaError):  # its points may all be one in float64
             floats = FloatCarrier(*given, smaller)
@@ -240,7 +243,7 @@ def _mean(by: _Carrying, region: _OutlineImage) -> dict[str, Any]:
     """The mean of Λ over the region; nothing where the map is not defined on all rays to it."""
     # Amid the points of the outline: rays from elsewhere may leave the region, and there the map.
     x, y = np.mean(np.concatenate(region.before, axis=1), axis=1)
-    given = by.hamiltonian, by.map, by.step_size, by.steps
+    given = by.hamiltonian, by.map, by.step_size, by.steps, by.t0
     try:
         found = mean_over(region.outline, (float(x), float(y)), *given)
     except LeftRangeError:
@@ -253,9 +256,7 @@ def _mean(by: _Carrying, region: _OutlineImage) -> dict[str, Any]:
     return {"mean_lambda": shown, "mean_lambda_error": bound, "agree": agree}
 
 
-def _distance(
-    hamiltonian: Hamiltonian, span: Fraction, carried: Sequence[_OutlineImage]
-) -> dict[str, Any]:
+def _distance(by: _Carrying, carried: Sequence[_OutlineImage]) -> dict[str, Any]:
     """The greatest Hausdorff distance of an outline from its image by the exact flow.
 
     Nothing where an image is too far away for it, or where too few points of the region's are known
@@ -266,7 +267,7 @@ def _distance(
         return {}
     if any(np.abs(z).max() > FARTHEST for each in carried for z in each.after):
         return {}
-    plane = ExactFlowCarrier(hamiltonian, span)
+    plane = ExactFlowCarrier(by.hamiltonian, by.time, by.t0)
     panels = [z for each in carried for z in each.before]
     q, p = plane.images(*(np.concatenate([z[i] for z in panels]) for i in (0, 1)))
     images = iter(zip(np.split(q, len(panels)), np.split(p, len(panels)), strict=True))

@@ -27,6 +27,7 @@ def _flow(scene: Scene, flow: Flow, results: Results) -> FlowResult:
         before=_outlines_to_draw(flow),
         images=tuple(known_results(FlowImage, flow_tasks(scene, flow), results)),
         source=flow.source,
+        t0=text(scene.t0) if scene.exact_hamiltonian().time_dependent else None,
     )
 
 

@@ -22,6 +22,7 @@ from verify.kernels.many_points import PointMap
 from verify.scenes.shapes.outline import Outline
 from verify.studies.regions.panels import NODES, rule
 
+_FROM_START = Fraction(0)
 _FIRST = 8  # cells along the curve, at least
 _MOST_POINTS = 60_000
 _AGREED = 3e-3  # of the mean: an error of the cells that is good enough; the quarters' is far less
@@ -44,15 +45,17 @@ def mean_over(
     scheme: str,
     step_size: Fraction,
     steps: int,
+    t0: Fraction = _FROM_START,
 ) -> Mean:
-    """The mean of Λ after N steps of a scheme, over the region inside the outline, in float64.
+    """The mean of Λ after N steps of a scheme, over the region inside the outline, in float64; from
+    t0 on, where H depends on time.
 
     By rays from the centre (q, p). Raises LeftRangeError.
     """
     arithmetic, asked = number_systems.get(float64.NAME, 17), frozenset({"lambda"})
     carried = PointMap(
         hamiltonian, scheme,
-        step_size=step_size, steps=steps, arithmetic=arithmetic, observables=asked,
+        step_size=step_size, steps=steps, t0=t0, arithmetic=arithmetic, observables=asked,
     )  # fmt: skip
     region = _Region(outline, centre, carried)
     count = -(-_FIRST // len(outline.arcs))

@@ -41,6 +41,7 @@ def flow_tasks(scene: Scene, flow: Flow) -> Iterator[FlowTask]:
                 map=name,
                 shape=shape,
                 step_size=flow.step_size,
+                t0=scene.t0 if exact.time_dependent else None,
                 steps=steps,
                 digits=flow.digits,
                 mean_lambda=flow.mean_lambda and not preserves,

@@ -1,7 +1,8 @@
 """Points of outlines in one number system, and the maps that carry them.
 
-A scheme's map in float64 is held against the same steps with compensated sums, in wider number
-systems against a still wider one. The exact flow comes with its own bound.
+A scheme's map in float64 is held against the same steps with compensated sums. These see nothing of
+a clock's rounding: where H depends on time, and in wider number systems, it is held against a wider
+one. The exact flow comes with its own bound.
 """
 
 from collections.abc import Sequence
@@ -67,18 +68,32 @@ class FloatCarrier(_Floats):
     method = "float64; its rounding by the same steps with compensated sums"
 
     def __init__(
-        self, hamiltonian: Hamiltonian, scheme: str, h: Fraction, steps: int, smaller: int = 0
-    ) -> None:
+        self, hamiltonian: Hamiltonian, scheme: str, h: Fraction, steps: int, t0: Fraction,
+        smaller: int = 0,
+    ) -> None:  # fmt: skip
         self.grid += smaller
         arithmetic = number_systems.get(self.name, self.digits)
-        steps_of = partial(PointMap, hamiltonian, scheme, step_size=h, steps=steps)
-        self._maps = [steps_of(arithmetic=arithmetic, compensated=x) for x in (False, True)]
+        steps_of = partial(PointMap, hamiltonian, scheme, step_size=h, steps=steps, t0=t0)
+        self._map = steps_of(arithmetic=arithmetic)
+        if hamiltonian.time_dependent:
+            wide = number_systems.automatic()[-1].make(self.digits + _WIDER)
+            self._finer = steps_of(arithmetic=wide)
+            self.sampled = _SAMPLED
+            self.method = f"float64; its rounding by {_SAMPLED} panels in {wide.name}"
+        else:
+            self._finer = steps_of(arithmetic=arithmetic, compensated=True)
 
     def images(self, x: Any, y: Any) -> tuple[Any, Any]:
-        return _image(self._maps[0], x, y)
+        return _image(self._map, x, y)
 
     def finer(self, x: Any, y: Any) -> tuple[Any, Any]:
-        return _image(self._maps[1], x, y)
+        own = self._finer.arithmetic
+        if own.name == self.name:
+            return _image(self._finer, x, y)
+        given = ([own.number(Fraction(v)) for v in z.tolist()] for z in (x, y))
+        found = _image(self._finer, *given)
+        q, p = (np.array([float(own.exact(v)) for v in z]) for z in found)
+        return q, p
 
 
 class ExactFlowCarrier(_Floats):
@@ -87,14 +102,16 @@ class ExactFlowCarrier(_Floats):
     sampled = 0
     name, digits = float64.NAME, 17
 
-    def __init__(self, hamiltonian: Hamiltonian, time: Fraction, smaller: int = 0) -> None:
+    def __init__(
+        self, hamiltonian: Hamiltonian, time: Fraction, t0: Fraction, smaller: int = 0
+    ) -> None:
         self.grid += smaller
-        self._hamiltonian, self._time = hamiltonian, time
+        self._hamiltonian, self._time, self._t0 = hamiltonian, time, t0
         self.radius: Fraction | None = Fraction(0)
         self.method = ""
 
     def images(self, x: Any, y: Any) -> tuple[Any, Any]:
-        found = exact_points(self._hamiltonian, y, x, [self._time])
+        found = exact_points(self._hamiltonian, y, x, [self._time], self._t0)
         self.radius = max(self.radius or Fraction(0), Fraction(found.bound))
         self.method = found.method
         return found.q[0], found.p[0]
@@ -110,11 +127,11 @@ class WideCarrier:
     radius: Fraction | None = None
 
     def __init__(
-        self, hamiltonian: Hamiltonian, scheme: str, h: Fraction, steps: int, name: str,
-        digits: int, smaller: int = 0,
+        self, hamiltonian: Hamiltonian, scheme: str, h: Fraction, steps: int, t0: Fraction,
+        name: str, digits: int, smaller: int = 0,
     ) -> None:  # fmt: skip
         """`digits` of the outline's size, `smaller` bits below 1. Raises UnsupportedError."""
-        self._steps = partial(PointMap, hamiltonian, scheme, step_size=h, steps=steps)
+        self._steps = partial(PointMap, hamiltonian, scheme, step_size=h, steps=steps, t0=t0)
         self.name, self.digits = name, digits
         self._places = digits + -(-smaller * 3 // 10)
         self.method = f"{name}; its rounding by {_SAMPLED} panels with {digits + _WIDER} digits"

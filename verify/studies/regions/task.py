@@ -6,7 +6,7 @@ from verify.execution.keeping import Keeper
 from verify.execution.task import HamiltonianTask
 from verify.scenes.region_sections import PlacedShape
 from verify.scenes.results.regions import FlowImage
-from verify.scenes.values import StepSize
+from verify.scenes.values import Number, StepSize
 
 _COST, _POINTS = 40_000_000, 40_000  # of a region, and how many points of it are carried
 
@@ -20,6 +20,7 @@ class FlowTask(HamiltonianTask):
     map: str
     shape: PlacedShape
     step_size: StepSize
+    t0: Number | None = None
     steps: int
     digits: int
     mean_lambda: bool
@@ -33,7 +34,8 @@ class FlowTask(HamiltonianTask):
     @property
     def ensemble(self) -> str | None:
         """Maps of one region until one time, which are held against the same exact points."""
-        return f"{self.kind} {self.hamiltonian} {self.shape} {self.step_size * self.steps}"
+        until = f"{self.step_size * self.steps} from {self.t0 or 0}"
+        return f"{self.kind} {self.hamiltonian} {self.shape} {until}"
 
     def compute(self, keeper: Keeper) -> FlowImage:
         """The images of the outline, as a result."""

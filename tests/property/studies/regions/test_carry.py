@@ -40,7 +40,7 @@ def test_the_change_of_area_is_the_mean_of_lambda(
     h = Fraction(1, 50)
     assume(not get(scheme).step_map(hamiltonian).preserves_area)
     try:
-        area = measured(outline, FloatCarrier(hamiltonian, scheme, h, steps), GOAL)
+        area = measured(outline, FloatCarrier(hamiltonian, scheme, h, steps, Fraction(0)), GOAL)
         mean = mean_over(outline, centre, hamiltonian, scheme, h, steps)
     except LeftRangeError:
         assume(False)

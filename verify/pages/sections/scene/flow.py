@@ -67,7 +67,8 @@ def _title(flow: FlowResult) -> str:
 
 def _the(flow: FlowResult) -> str:
     q, p = map(number, flow.centre)
-    return f"{flow.shape} at (q, p) = ({q}, {p}), scale {number(flow.scale)}"
+    begins = "" if flow.t0 is None else f", from t₀{IS}{number(flow.t0)}"
+    return f"{flow.shape} at (q, p) = ({q}, {p}), scale {number(flow.scale)}{begins}"
 
 
 # -- numbers --------------------------------------------------------------------------------------
