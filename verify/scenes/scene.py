@@ -39,6 +39,12 @@
     step_size = 0.01
     steps = [5000, 20000]
 
+    [[stroboscopic]]                       # states at multiples of a period of H
+    period = 1
+    step_size = 0.01
+    periods = 500
+    initial_values = [{ q = 1, p = 0 }]
+
     [[reference]]                          # numbers to test against; see verify.scenes.sections
     step_sizes = [0.01]
     initial_values = [{ q = 1.5, p = 0 }]
@@ -68,6 +74,7 @@ from verify.scenes.region_sections import Flow
 from verify.scenes.run_sections import Grid, SeparationOver, Series
 from verify.scenes.sections import Reference, WorkPrecision
 from verify.scenes.stability_sections import LargestStepOver, Stability, StabilityMap
+from verify.scenes.stroboscopic_section import Stroboscopic
 from verify.scenes.values import (
     Number,
     SchemeName,
@@ -112,6 +119,8 @@ class Scene(Frozen):
     """Error against run time."""
     flow: tuple[Flow, ...] = ()
     """Regions that maps carry, and their areas."""
+    stroboscopic: tuple[Stroboscopic, ...] = ()
+    """Orbits looked at once in each period of H."""
     stability: tuple[Stability, ...] = ()
     """Runs, judged: stable or not, and whose fault it is."""
     largest_step: tuple[LargestStepOver, ...] = ()
@@ -132,6 +141,8 @@ class Scene(Frozen):
             scheme_catalogue.get(name).step_map(exact)
         if exact.time_dependent:
             self._check_takes_time(exact)
+            for strobed in self.stroboscopic:
+                strobed.check_hamiltonian(exact)
         free = set(exact.symbols)
         if all(isinstance(section, StabilityMap) for section in sections):
             free -= {over.parameter for over in self.stability_map}

@@ -20,6 +20,7 @@ from verify.scenes.results import regions as flow_results
 from verify.scenes.results import report as scene_results
 from verify.scenes.results import run as run_results
 from verify.scenes.results import stability as stability_results
+from verify.scenes.results import stroboscopic as stroboscopic_results
 from verify.scenes.results import work_precision as work_precision_results
 from verify.scenes.results.exploration import GalleryScene
 from verify.scenes.results.proof import Formulas
@@ -193,6 +194,7 @@ RESULTS = (
     run_results,
     scene_results,
     stability_results,
+    stroboscopic_results,
     work_precision_results,
     flow_results,
 )
@@ -294,7 +296,7 @@ def test_the_scenes_of_the_paper_survive_json_too(name: str) -> None:
 
 DRIVEN = """
 name = "driven"
-hamiltonian = "p**2/2 - cos(t)*cos(q)"
+hamiltonian = "p**2/2 - cos(2*pi*t)*cos(q)"
 schemes = ["lie2"]
 
 [grid]
@@ -302,6 +304,12 @@ steps = 9
 step_sizes = [0.1]
 initial_values = [{ q = 1, p = 0 }]
 separate = true
+
+[[stroboscopic]]
+period = 1
+step_size = 0.1
+periods = 3
+initial_values = [{ q = 1, p = 0 }]
 """
 
 

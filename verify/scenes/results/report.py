@@ -19,6 +19,7 @@ from verify.scenes.results.run import RunResult
 from verify.scenes.results.separation import SeparationGrid
 from verify.scenes.results.stability import LargestStepResult, StabilityMapResult, StabilityResult
 from verify.scenes.results.statement import StatementResult
+from verify.scenes.results.stroboscopic import StroboscopicResult
 from verify.scenes.results.work_precision import WorkPrecisionResult
 from verify.verdict import Verdict
 
@@ -34,7 +35,7 @@ class SceneResult(Frozen):
     scene asks for beside it. `growth_laws` hold the grid's runs against the growth law of Λ;
     `growth_explains` is what of a paper the scene says that the law explains. `every` holds what is
     proved of its schemes for every H, `work_precision` error against run time,
-    `flows` what maps do to regions;
+    `flows` what maps do to regions, `stroboscopic` orbits once in each period;
     `stability`, `largest_steps` and `stability_maps` how stable they are.
     """
 
@@ -56,6 +57,7 @@ class SceneResult(Frozen):
     every: tuple[EveryResult, ...] = ()
     work_precision: WorkPrecisionResult | None = None
     flows: tuple[FlowResult, ...] = ()
+    stroboscopic: tuple[StroboscopicResult, ...] = ()
     stability: tuple[StabilityResult, ...] = ()
     largest_steps: tuple[LargestStepResult, ...] = ()
     stability_maps: tuple[StabilityMapResult, ...] = ()

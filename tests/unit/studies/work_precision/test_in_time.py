@@ -14,7 +14,8 @@ from verify.studies.work_precision.plan import work_precision_task
 from verify.studies.work_precision.runs import Ladder, Problem, reference
 
 DRIVEN = ROOT / "reports" / "driven"
-SCENES = {path.stem: load_scene(path) for path in sorted(DRIVEN.glob("*.toml"))}
+FILES = {path.stem: load_scene(path) for path in sorted(DRIVEN.glob("*.toml"))}
+SCENES = {name: scene for name, scene in FILES.items() if scene.work_precision}
 SLOPES = {"stormer-verlet": 2, "forest-ruth": 4, "triple-jump6": 6, "gauss4": 4, "rk4": 4}
 
 

@@ -1,0 +1,1 @@
+"""Orbits of a scheme at multiples of a period of H."""
