@@ -11,7 +11,7 @@ from verify.integrators.step import State, Step
 from verify.integrators.tracing.dual import Dual, Duals
 from verify.integrators.tracing.functions import copied
 from verify.integrators.tracing.number import UntraceableError
-from verify.integrators.tracing.trace import Node, in_order, through
+from verify.integrators.tracing.trace import Node, in_order, replayed, through
 from verify.prose import read_prose
 
 Lifted = Callable[[Dual, Dual, Dual, Dual], Sequence[Dual]]  # (p, q, h, t) ↦ p', q'
@@ -26,24 +26,7 @@ def by_graph(kind: Duals, p_next: Node, q_next: Node) -> Lifted:
     nodes = in_order(p_next, q_next)
 
     def at(p: Dual, q: Dual, h: Dual, t: Dual) -> tuple[Dual, Dual]:
-        start = {"p": p, "q": q, "h": h, "t": t}
-
-        def number(node: Node, x: list[Dual]) -> Dual:
-            match node.operation:
-                case "symbol":
-                    return start[node.value]
-                case "number":
-                    return kind.rational(node.value)
-                case "pi":
-                    return kind.pi()
-                case "power":
-                    return x[0].raised(node.value)
-                case "add" | "subtract" | "multiply" | "divide" as name:
-                    return x[0].combined(name, x[1])
-                case name:
-                    return x[0].applied(name)
-
-        made = through(nodes, number)
+        made = through(nodes, replayed(kind, {"p": p, "q": q, "h": h, "t": t}))
         return made[p_next.number], made[q_next.number]
 
     return at

@@ -9,6 +9,7 @@ from fractions import Fraction
 from verify.algebra.formula import symbol
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.integrators.tracing.misread import misread
 from verify.integrators.tracing.trace import Node, expressions, in_order, sizes
 from verify.proof.order import convergence_of
 from verify.schemes.step_map import StepMap
@@ -21,9 +22,15 @@ _STILL = symbol("still")
 def clock_mistakes(
     hamiltonian: Hamiltonian, p_next: Node, q_next: Node, order: int | None
 ) -> list[str]:
-    """One sentence, where the step has a higher order than `order` with the force held still."""
+    """One sentence, where the step has a higher order than `order` with the force held still, or
+    with H read at other times."""
     if order is None or not hamiltonian.time_dependent or "still" in hamiltonian.parameters:
         return []
+    still = _still(hamiltonian, p_next, q_next, order)
+    return still or misread(hamiltonian, p_next, q_next, order)
+
+
+def _still(hamiltonian: Hamiltonian, p_next: Node, q_next: Node, order: int) -> list[str]:
     nodes = in_order(p_next, q_next)
     size = sizes(nodes)
     if size[p_next.number] + size[q_next.number] > _MOST_WRITTEN:

@@ -78,6 +78,18 @@ class Scalars:
     def linear(self, node: Node) -> Linear:
         return self._linear[node.number] if node.number != ONE else {ONE: self.one}
 
+    def clock(self, node: Node) -> tuple[Fraction, Fraction] | None:
+        """a and c of a node a (t + c h), a not 0; None of any other."""
+        terms = self._scalar.get(node.number, {})
+        named = {(("t", 1),): Fraction(0), (("h", 1),): Fraction(0)}
+        for monomial, value in terms.items():
+            key = tuple((self.nodes[number].value, power) for number, power in monomial)
+            if key not in named:
+                return None
+            named[key] = value
+        a, b = named.values()
+        return (a, b / a) if a else None
+
     def sum(self, terms: Sequence[tuple[Scalar, Node]]) -> Linear:
         total: Linear = {}
         for coefficient, node in terms:

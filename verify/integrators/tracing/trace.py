@@ -154,6 +154,27 @@ def through(
     return made
 
 
+def replayed(kind: Kind, symbols: Mapping[str, Any]) -> Callable[[Node, list[Any]], Any]:
+    """What makes a node again in numbers of that kind, from its inputs; see `through`."""
+
+    def made(node: Node, x: list[Any]) -> Any:
+        match node.operation:
+            case "symbol":
+                return symbols[node.value]
+            case "number":
+                return kind.rational(node.value)
+            case "pi":
+                return kind.pi()
+            case "power":
+                return x[0].raised(node.value)
+            case "add" | "subtract" | "multiply" | "divide" as name:
+                return x[0].combined(name, x[1])
+            case name:
+                return x[0].applied(name)
+
+    return made
+
+
 def expressions(
     nodes: Iterable[Node],
     put: Mapping[str, sympy.Expr],

@@ -42,7 +42,7 @@ def mistakes_of_splitting(splitting: TimedSplitting, within: Fraction = Fraction
     `within`: how far two times may differ, 0 for exactly; as for clocks that were measured. Empty
     where the clocks are right, or wrong in no way that has a name.
     """
-    found = (_named(reading, within) for reading in _of_parts(splitting))
+    found = (name_of(reading, within) for reading in _of_parts(splitting))
     return [name for name in found if name is not None]
 
 
@@ -54,7 +54,7 @@ def mistakes_of_tableau(tableau: TimedTableau, within: Fraction = Fraction(0)) -
     right = [ring.reduce(sum(row, ring.zero)) for row in numbers.matrices[-1]]
     weights = numbers.weights[-1]
     own, ones = _before(ring, weights), [ring.one] * len(right)
-    name = _named(Reading(ring, "force", "stage", numbers.clock, right, own, ones), within)
+    name = name_of(Reading(ring, "force", "stage", numbers.clock, right, own, ones), within)
     return [] if name is None else [name]
 
 
@@ -73,7 +73,8 @@ def _before(ring: Ring, sizes: Sequence[Poly]) -> list[Poly]:
     return [ring.reduce(x) for x in accumulate(sizes, initial=ring.zero)][:-1]
 
 
-def _named(reading: Reading, within: Fraction) -> str | None:
+def name_of(reading: Reading, within: Fraction) -> str | None:
+    """What mistake the times look like; None where they are right, or wrong in no way known."""
     ring = reading.ring
     read = [k for k, size in enumerate(reading.sizes) if not size.is_zero()]
 

@@ -1,0 +1,95 @@
+"""Which mistake the times of a traced step's readings look like; and what order it has without."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+from verify.algebra.ring import Ring
+from verify.errors import InputError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.integrators.rounded_order import rounded_orders
+from verify.integrators.tracing.number import UntraceableError
+from verify.integrators.tracing.readings import NoReadingsError, Read, Readings
+from verify.integrators.tracing.step_map import traced_map
+from verify.integrators.tracing.trace import Node, in_order
+from verify.proof.order import convergence_of
+from verify.schemes.timed.mistakes import Reading, name_of
+
+_MOST_NODES = 2000
+_SAME = Fraction(1, 2**40)  # two times whose parts are added in floats
+_MOST_TOLD = 4
+_SIMPLE = 1000  # the largest denominator that is shown
+
+
+def misread(hamiltonian: Hamiltonian, p_next: Node, q_next: Node, order: int) -> list[str]:
+    """One sentence, where the step is proved to have a higher order than `order` with each reading
+    at the time when it is due."""
+    if len(in_order(p_next, q_next)) > _MOST_NODES:
+        return []
+    try:
+        readings = Readings(hamiltonian, p_next, q_next)
+        reads = _alike(readings.reads)
+        wrong = [read for read in reads if abs(read.time - read.due) >= _SAME]
+        mended = _order(hamiltonian, *readings.mended()) if wrong else order
+    except (ArithmeticError, ValueError, NoReadingsError, UntraceableError, InputError):
+        return []
+    if mended is not None and mended <= order:
+        return []
+    reached = "exact" if mended is None else f"of order {mended}"
+    pairs = list(dict.fromkeys((read.due, read.time) for read in wrong))
+    told = ", ".join(
+        f"{moment(due)} in place of {moment(time)}" for due, time in pairs[:_MOST_TOLD]
+    )
+    more = ", …" * (len(pairs) > _MOST_TOLD)
+    name = _name(reads)
+    return [f"{name}: " * bool(name) + f"it is {reached} with H read at {told}{more}"]
+
+
+def _order(hamiltonian: Hamiltonian, p_next: Node, q_next: Node) -> int | None:
+    """The order of that map but for the rounding of its coefficients; None where it is exact."""
+    traced = traced_map(hamiltonian, p_next, q_next)
+    found = convergence_of(traced.step_map).order
+    if found is None or traced.series is None:
+        return found
+    rounded = rounded_orders(*traced.series).convergence
+    return found if rounded is None else max(found, rounded)
+
+
+def _alike(reads: Sequence[Read]) -> list[Read]:
+    """Those of the same times as one, at the place of the first."""
+    sizes: dict[tuple[Fraction, Fraction, bool], Fraction] = {}
+    for read in reads:
+        key = read.time, read.due, read.of_p
+        sizes[key] = sizes.get(key, Fraction(0)) + read.size
+    return [Read(time, due, size, of_p) for (time, due, of_p), size in sizes.items()]
+
+
+def _name(reads: Sequence[Read]) -> str | None:
+    """Of the mistake in what is read for p', or for q', where it has one."""
+    ring = Ring((), 0)
+    for of_p, what in ((True, "force"), (False, "velocity")):
+        own = [read for read in reads if read.of_p is of_p and read.size]
+        before = [sum((x.size for x in own[:k]), Fraction(0)) for k in range(len(own))]
+        numbers = [
+            [ring.constant(x) for x in column]
+            for column in ([x.time for x in own], [x.due for x in own], before,
+                           [x.size for x in own])
+        ]  # fmt: skip
+        found = name_of(Reading(ring, what, "stage", *numbers), _SAME) if own else None
+        if found:
+            return found
+    return None
+
+
+def moment(time: Fraction) -> str:
+    """
+    >>> [moment(Fraction(x)) for x in ("0", "1", "-1/2", "3/4", "0.3512071919596578")]
+    ['t', 't + h', 't - h/2', 't + 3h/4', 't + 0.35120719h']
+    """
+    simple = time.limit_denominator(_SIMPLE)
+    if simple == 0:
+        return "t"
+    sign, size = ("-", -simple) if time < 0 else ("+", simple)
+    if abs(simple - time) >= _SAME:
+        return f"t {sign} {abs(float(time)):.8g}h"
+    many = "" if size.numerator == 1 else str(size.numerator)
+    return f"t {sign} {many}h" + (f"/{size.denominator}" if size.denominator > 1 else "")

@@ -1,0 +1,185 @@
+"""At which times a traced step reads H, and when each reading is due.
+
+A reading is an operation in which what moves with p and q meets what is a function of t, as the sum
+in −q³ + cos t. It is due at t + c h where what moves there has gone, to first order in h, c of the
+way that the exact flow goes: so c = A 1 for the stages of a Runge–Kutta method, and for a kick what
+the drifts before it add up to. It is a guess, from 600 bits at one point: whoever uses it proves
+what follows from it.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import gmpy2
+import sympy
+
+from verify.algebra.formula import symbol
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.integrators.tracing.dual import Dual, Duals
+from verify.integrators.tracing.linear_sums import Scalars
+from verify.integrators.tracing.trace import Node, Tape, in_order, replayed, through
+
+_AT = {"p": Fraction(2, 7), "q": Fraction(5, 11), "t": Fraction(3, 13)}  # any that is not special
+_MOST_DENOMINATOR, _CLEAR = 2**64, Fraction(1, 2**150)  # of a time made of floats
+_BITS, _STEP, _NO_PART = 600, Fraction(1, 2**200), Fraction(1, 2**40)
+
+
+class NoReadingsError(Exception):
+    """The times that are read, or are due, cannot be told."""
+
+
+@dataclass(frozen=True)
+class Read:
+    """`time`, `due`: in parts of h after t. `size`: what part of the step it is, of that of p'
+    where `of_p`, else of q'; 0 where it counts for nothing."""
+
+    time: Fraction
+    due: Fraction
+    size: Fraction
+    of_p: bool
+
+
+@dataclass(frozen=True)
+class _Place:
+    """The operation, which of its inputs reads, and a for each a (t + c h) in what that is of."""
+
+    at: Node
+    index: int
+    clocks: Mapping[int, Fraction]
+    time: Fraction
+
+    @property
+    def moves(self) -> Node:
+        return self.at.inputs[1 - self.index]
+
+
+class Readings:
+    """Those of a trace, in the order in which they are done. Raises NoReadingsError, or what
+    numbers raise where it cannot be computed at a point."""
+
+    def __init__(self, hamiltonian: Hamiltonian, p_next: Node, q_next: Node) -> None:
+        self.nodes, self.roots = in_order(p_next, q_next), (p_next, q_next)
+        self._scalars = Scalars(self.nodes)
+        self._places = [x for node in self.nodes if (x := self._place(node)) is not None]
+        self._kind = Duals()
+        with gmpy2.context(precision=_BITS):
+            self._at = _numbers(hamiltonian)
+            due, parts = self._due(), [self._part(place) for place in self._places]
+        self.reads = [
+            Read(place.time, c, *part)
+            for place, c, part in zip(self._places, due, parts, strict=True)
+        ]
+
+    def mended(self) -> tuple[Node, Node]:
+        """p' and q' of the same trace with each reading at the time when it is due."""
+        tape = Tape()
+        p, q, h, t = (tape.symbol(name) for name in "pqht")
+        times = [t + h * read.due for read in self.reads]
+        made = self._replayed(tape, {"p": p, "q": q, "h": h, "t": t}, times)
+        one, two = (made[root.number] for root in self.roots)
+        return one.node, two.node
+
+    def _place(self, node: Node) -> _Place | None:
+        """Where the node reads a time."""
+        still = [k for k, x in enumerate(node.inputs) if x.number not in self._scalars.moving]
+        if node.number not in self._scalars.moving or len(still) != 1:
+            return None
+        clocks: dict[int, tuple[Fraction, Fraction]] = {}
+        waiting = [node.inputs[still[0]]]
+        while waiting:
+            x = waiting.pop()
+            clock = self._scalars.clock(x)
+            if clock is not None:
+                clocks[x.number] = clock
+            else:
+                waiting += x.inputs
+        times = {c for _, c in clocks.values()}
+        if len(times) > 1:
+            raise NoReadingsError
+        factors = {number: a for number, (a, _) in clocks.items()}
+        return _Place(node, still[0], factors, times.pop()) if times else None
+
+    def _replayed(self, kind: Any, symbols: Mapping[str, Any], times: Sequence[Any]) -> Any:
+        """All nodes in numbers of that kind, each reading at the time given for it."""
+        plain = replayed(kind, symbols)
+        places = {place.at.number: (place, t) for place, t in zip(self._places, times, strict=True)}
+
+        def made_of(node: Node, inputs: list[Any]) -> Any:
+            if node.number in places:
+                place, t = places[node.number]
+                read = node.inputs[place.index]
+                known = {number: t * factor for number, factor in place.clocks.items()}
+                inner = [x for x in in_order(read) if x.number not in known]
+                inputs = list(inputs)
+                inputs[place.index] = through(inner, plain, known)[read.number]
+            return plain(node, inputs)
+
+        return through(self.nodes, made_of)
+
+    def _due(self) -> list[Fraction]:
+        """By derivatives along h, and along the flow in place of it, at a very small step."""
+        kind, at = self._kind, self._at
+        zero, one, h = gmpy2.mpfr(0), gmpy2.mpfr(1), kind.rational(_STEP).value
+        t = Dual(kind, at["t"], zero, zero)
+        symbols = {
+            "p": Dual(kind, at["p"], zero, -at["H_q"]),
+            "q": Dual(kind, at["q"], zero, at["H_p"]),
+            "h": Dual(kind, h, one, zero),
+            "t": t,
+        }
+        made = self._replayed(kind, symbols, [t] * len(self._places))
+        due = []
+        for place in self._places:
+            x = made[place.moves.number]
+            if not x.by_q:
+                raise NoReadingsError
+            # It may have a power of h as a factor, as h p has: what it is without that counts.
+            power = round(gmpy2.log2(abs(x.by_q)) / gmpy2.log2(h))
+            due.append(_rational((x.by_p - power * x.value / h) / x.by_q))
+        return due
+
+    def _part(self, place: _Place) -> tuple[Fraction, bool]:
+        """By the derivatives of p' and q' along its time, at a very small step."""
+        kind, at = self._kind, self._at
+        zero, one = gmpy2.mpfr(0), gmpy2.mpfr(1)
+        still = {name: Dual(kind, at[name], zero, zero) for name in "pqt"}
+        moved = Dual(kind, at["t"], one, zero)
+        times = [moved if x is place else still["t"] for x in self._places]
+        h = kind.rational(_STEP)
+        made = self._replayed(kind, {**still, "h": h}, times)
+        slopes = [made[root.number].by_p / h.value for root in self.roots]
+        whole = -at["H_qt"], at["H_pt"]
+        parts = [
+            Fraction(*map(int, (slope / x).as_integer_ratio())) if x else Fraction(0)
+            for slope, x in zip(slopes, whole, strict=True)
+        ]
+        parts = [x if abs(x) >= _NO_PART else Fraction(0) for x in parts]
+        of_p = abs(parts[0]) >= abs(parts[1])
+        return parts[not of_p], of_p
+
+
+def _numbers(hamiltonian: Hamiltonian) -> dict[str, "gmpy2.mpfr"]:
+    """The point, and derivatives of H at it."""
+    p, q, t = (symbol(name) for name in "pqt")
+    exact = hamiltonian.exact
+    wanted = {"H_p": (p,), "H_q": (q,), "H_pt": (p, t), "H_qt": (q, t)}
+    at = {symbol(name): sympy.Rational(x.numerator, x.denominator) for name, x in _AT.items()}
+    found = {name: gmpy2.mpfr(gmpy2.mpq(x)) for name, x in _AT.items()}
+    for name, by in wanted.items():
+        value = sympy.N(exact.diff(*by).subs(at), _BITS // 3)
+        if not value.is_real:
+            raise NoReadingsError
+        found[name] = gmpy2.mpfr(str(value))
+    return found
+
+
+def _rational(x: "gmpy2.mpfr") -> Fraction:
+    if not gmpy2.is_finite(x):
+        raise NoReadingsError
+    exact = Fraction(*map(int, x.as_integer_ratio()))
+    near = exact.limit_denominator(_MOST_DENOMINATOR)
+    if abs(near - exact) > _CLEAR:
+        raise NoReadingsError
+    return near
