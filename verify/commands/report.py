@@ -113,9 +113,7 @@ class _Asked:
 
 def _asked(scene: str | None, given: Mapping[str, Any]) -> _Asked:
     if scene is None:
-        exact = hamiltonian_of(given["system"], given["hamiltonian"], given["params"], time=True)
-        sections = partial(_sections, growth=not exact.time_dependent)
-        scenes = scenes_of(None, given, ("q", "p"), sections)
+        scenes = scenes_of(None, given, ("q", "p"), partial(_sections, given))
         name = given["system"] or "hamiltonian"
         return _Asked(line_of(given), name, f"{', '.join(given['schemes'])} on {name}", scenes)
     goes_alone(given)
@@ -124,14 +122,15 @@ def _asked(scene: str | None, given: Mapping[str, Any]) -> _Asked:
 
 
 def _sections(
-    *, growth: bool, q: str, p: str, step_sizes: Sequence[str], **length: Any
+    given: Mapping[str, Any], *, q: str, p: str, step_sizes: Sequence[str], **length: Any
 ) -> dict[str, Any]:
     """All that is known of a scheme on one orbit, its largest step over time, and for every H."""
     from verify.arithmetic.exact import positive
 
+    exact = hamiltonian_of(given["system"], given["hamiltonian"], given["params"], time=True)
     start = {"q": q, "p": p}
     grid = {"step_sizes": step_sizes, "initial_values": [start], "separate": True}
-    grid |= {"growth": True} if growth else {}
+    grid |= {} if exact.time_dependent else {"growth": True}
     largest = max(positive(h, "step_size") for h in step_sizes)
     return {
         "criteria": [1, 2, 3, 4],

@@ -52,7 +52,11 @@ def test_h_is_constant_and_the_equation_of_motion_holds_to_50_digits(
 @given(cases(), PARTS, PARTS)
 def test_the_flow_is_a_group_to_45_digits(case: Case, first: Fraction, whole: Fraction) -> None:
     t, total = time_in(case, first), time_in(case, whole)
-    assert group_defect(case, total - t, t) < 1e-45
+    try:
+        defect = group_defect(case, total - t, t)
+    except NoFlowError:  # from so far out there is no way back with 10,000 digits, and it is said
+        assume(False)
+    assert defect < 1e-45
 
 
 @st.composite

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from verify.arithmetic.exact import text
 from verify.execution.plan import Plan
-from verify.execution.study import Results, Study, called, known_results, toml_section
+from verify.execution.study import Results, Section, Study, called, known_results
 from verify.hamiltonians.periods import is_angle
 from verify.scenes.results.stroboscopic import SchemeSections, StroboscopicResult
 from verify.scenes.scene import Scene
@@ -46,7 +46,13 @@ def _found(scene: Scene, results: Results) -> Iterator[StroboscopicResult]:
             )
 
 
-_SECTION = toml_section(11, "orbits at multiples of a period", "[[stroboscopic]]")
+def _asked(scene: Scene) -> bool:
+    """Also of an H without time, of which nobody asks it: nothing is then said of it."""
+    return bool(scene.stroboscopic) or not scene.exact_hamiltonian().time_dependent
+
+
+_WHY_NOT = "the scene has no [[stroboscopic]]"
+_SECTION = Section(11, "orbits at multiples of a period", _WHY_NOT, _asked)
 STUDY = Study(
     11,
     (_SECTION,),
