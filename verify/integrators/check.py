@@ -14,13 +14,13 @@ from verify.integrators.measured import of_measured
 from verify.integrators.probe import Point, Trial, dual_step, measured
 from verify.integrators.repeated import repeated
 from verify.integrators.results import NOTHING, Claims, Finding
-from verify.integrators.rounded_order import Rounded, rounded_orders
 from verify.integrators.step import Step, StepError, last_line, within
 from verify.integrators.still_clock import measured_mistakes
 from verify.integrators.tracing.clocks import clock_mistakes
 from verify.integrators.tracing.domain import domain_of
 from verify.integrators.tracing.functions import copied
 from verify.integrators.tracing.number import UntraceableError
+from verify.integrators.tracing.rounded_order import Rounded, rounded_orders
 from verify.integrators.tracing.step_map import TracedMap, traced_map
 from verify.integrators.tracing.trace import Node, Tape
 from verify.proof.expansion import MOST_ORDERS

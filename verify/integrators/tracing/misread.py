@@ -6,9 +6,9 @@ from fractions import Fraction
 from verify.algebra.ring import Ring
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.rounded_order import rounded_orders
 from verify.integrators.tracing.number import UntraceableError
 from verify.integrators.tracing.readings import NoReadingsError, Read, Readings
+from verify.integrators.tracing.rounded_order import rounded_orders
 from verify.integrators.tracing.step_map import traced_map
 from verify.integrators.tracing.trace import Node, in_order
 from verify.proof.order import convergence_of
