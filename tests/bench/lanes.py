@@ -56,7 +56,7 @@ def loops(system: str, digits: int, orbits: int, certified: bool) -> tuple[Kerne
         run = KernelRun(hamiltonian, "lie2", start, STEPS, asked, points=0)
         more = {"tangent"} if certified else set()
         kernel = kernel_for(run.hamiltonian, "lie2", made, asked | more)
-        shift, limits = next(run._formats(kernel))
+        shift, limits = next(run.formats(kernel, made))
         found.append(ChunkedLoop(run, kernel, made, limits, shift))
     return kernel, found
 

@@ -25,6 +25,7 @@ from verify.algebra.substitution import substitute
 from verify.errors import InputError
 from verify.flows.extrapolation import LOST, Flow, NoFlowError, Number, State, functions_at
 from verify.hamiltonians.hamiltonian import Hamiltonian, VectorField
+from verify.hamiltonians.periods import period_in
 
 Element = tuple[Ring, Poly]
 Start = tuple[Fraction, Fraction]  # p, q
@@ -122,24 +123,11 @@ def shifts(hamiltonian: Hamiltonian) -> Iterator[tuple[Fraction, Fraction]]:
     zero = Fraction(0)
     yield zero, zero
     for name in ("p", "q"):
-        period = _period_in(hamiltonian.exact, name)
-        if period:
+        turns = (period_in(hamiltonian, name) or sympy.S.Zero) / (2 * sympy.pi)
+        if turns.is_Rational and turns:
+            period = Fraction(int(turns.p), int(turns.q))
             for size in (period, -period):
                 yield (size, zero) if name == "p" else (zero, size)
-
-
-def _period_in(expression: sympy.Expr, name: str) -> Fraction | None:
-    """A period of H in one variable, in units of 2π, shown by algebra."""
-    variable = symbol(name)
-    arguments = [f.args[0] for f in expression.atoms(sympy.sin, sympy.cos, sympy.tan)]
-    rates = {sympy.expand(a).diff(variable) for a in arguments} - {sympy.S.Zero}
-    if not rates or not all(rate.is_Rational for rate in rates):
-        return None
-    period = Fraction(math.lcm(*(int(r.q) for r in rates)), math.gcd(*(int(r.p) for r in rates)))
-    shift = 2 * sympy.pi * sympy.Rational(period.numerator, period.denominator)
-    gap = expression.subs(variable, variable + shift) - expression
-    ring, (difference,) = embed([gap], ("p", "q"))
-    return period if ring.decide(difference).zero is True else None
 
 
 # -- the first way round --------------------------------------------------------------------------

@@ -1,6 +1,8 @@
-"""Whether H(p, q, t) has a given period in t, and whether q is an angle."""
+"""Periods of H(p, q, t): one that is found, one that is given for t, and whether q is an angle."""
 
+import math
 from fractions import Fraction
+from functools import lru_cache
 
 import sympy
 
@@ -14,7 +16,7 @@ def check_period(hamiltonian: Hamiltonian, period: Fraction) -> None:
     """InputError where H at t + period differs from H at t, or may: what is not decided is not
     taken for a period. H without t has every one.
 
-    >>> check_period(Hamiltonian.parse("p**2/2 + q**2*cos(2*pi*t)", time=True), Fraction(1))
+    >>> check_period(Hamiltonian.parse("p**2/2 + q**2*cos(2*pi*t)"), Fraction(1))
     """
     if not hamiltonian.time_dependent:
         return
@@ -40,3 +42,26 @@ def _is_same(hamiltonian: Hamiltonian, name: str, shift: sympy.Expr) -> bool | N
     moved = sympy.expand(hamiltonian.exact.xreplace({x: x + shift}))
     field, (change,) = hamiltonian.field(moved - hamiltonian.exact)
     return field.ring.decide(change).zero
+
+
+@lru_cache(maxsize=256)
+def period_in(hamiltonian: Hamiltonian, name: str) -> sympy.Expr | None:
+    """A period of H in p, q or t, shown by algebra: a rational number, or one times π.
+
+    None where H is not known to have such a one. The parameters have their values.
+
+    >>> period_in(Hamiltonian.parse("p**2/2 + q**2*(2 + cos(2*pi*t/3) + sin(pi*t))"), "t")
+    6
+    >>> period_in(Hamiltonian.parse("p**2/2 - cos(3*q/2)"), "q")
+    4*pi/3
+    """
+    variable = symbol(name)
+    functions = hamiltonian.exact.atoms(sympy.sin, sympy.cos, sympy.tan)
+    rates = {sympy.expand(f.args[0]).diff(variable) for f in functions} - {sympy.S.Zero}
+    for unit in (sympy.S.One, sympy.pi):
+        parts = [rate / unit for rate in rates]
+        if parts and all(part.is_Rational for part in parts):
+            common = math.lcm(*(int(x.q) for x in parts)), math.gcd(*(int(x.p) for x in parts))
+            period = 2 * sympy.pi / unit * sympy.Rational(*common)
+            return period if _is_same(hamiltonian, name, period) is True else None
+    return None

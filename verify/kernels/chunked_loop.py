@@ -92,6 +92,7 @@ class ChunkedLoop:
         self.fixed += [number(x) for x in limits]
         if kernel.timed:
             self.fixed += [number(x) for x in clock_inputs(arithmetic, run.start).values()]
+        self.turns = run.turns(arithmetic)
         self.state: State = self._first_state()
         self._at = {name: k for k, name in enumerate(kernel.state_names)}
         self._observables = ("p", "q", *sorted(run.observables & set(_ACCUMULATORS)))
@@ -109,11 +110,25 @@ class ChunkedLoop:
     def _first_state(self) -> State:
         start, number = self.run.start, self.arithmetic.number
         if self.kernel.timed:
-            start = start | first_rest(self.arithmetic, start)
+            start = start | self._clock_after(0)
         state = [number(start["p"]), number(start["q"])]
         for kind, first in zip(self.kernel.kinds[2:], self.kernel.start, strict=True):
             value = start[first] if isinstance(first, str) else Fraction(first)
             state.append(tangent_map.nearest_double(value) if kind == "float" else number(value))
+        return tuple(state)
+
+    def _clock_after(self, done: int) -> dict[str, Fraction]:
+        """What the kernel's clock starts with after so many steps."""
+        t = self.run.start["t"] + done * self.run.start["h"]
+        t = self.turns.time(t, self.arithmetic) if self.turns else t
+        return {"t": t} | first_rest(self.arithmetic, t)
+
+    def _turned_back(self) -> State:
+        """The state with whole periods of H taken off t."""
+        state, clock = list(self.state), self._clock_after(self.done)
+        for at, first in enumerate(self.kernel.start, start=2):
+            if isinstance(first, str) and first in clock:
+                state[at] = self.arithmetic.number(clock[first])
         return tuple(state)
 
     # -- steps --------------------------------------------------------------------------------
@@ -142,6 +157,7 @@ class ChunkedLoop:
         """So many steps to the next stop, and so many stops: to a note or to some, or on the way to
         the next where that is far."""
         left, chunk = self.section - self.done % self.section, self.arithmetic.chunk
+        chunk = min(chunk, self.turns.steps) if self.turns else chunk
         rest = self.run.steps - self.done
         # The first note is made by itself, since a run may be asked there whether to go on.
         if self.done and left == self.section and 2 * self.section <= min(chunk, rest):
@@ -151,7 +167,8 @@ class ChunkedLoop:
     def _advance(self, every: int, stops: int = 1) -> list[State]:
         """The states at the next stops; fewer where a number left the arithmetic's range."""
         kernel = self.kernel.function
-        found = self.arithmetic.states(kernel, every, stops, self.fixed, self.state)
+        state = self._turned_back() if self.turns else self.state
+        found = self.arithmetic.states(kernel, every, stops, self.fixed, state)
         return list(takewhile(self._finite, found))
 
     def _finite(self, state: State) -> bool:

@@ -57,9 +57,9 @@ def clock_inputs(arithmetic: Arithmetic, start: Mapping[str, Fraction]) -> dict[
     return {"t0": start["t"]}
 
 
-def first_rest(arithmetic: Arithmetic, start: Mapping[str, Fraction]) -> dict[str, Fraction]:
-    """What is carried from the start beside p, q and t."""
-    return {"t_rest": _cut(arithmetic, start["t"])} if arithmetic.absolute else {}
+def first_rest(arithmetic: Arithmetic, t: Fraction) -> dict[str, Fraction]:
+    """What is carried from t on beside p, q and t."""
+    return {"t_rest": _cut(arithmetic, t)} if arithmetic.absolute else {}
 
 
 def _cut(arithmetic: Arithmetic, x: Fraction) -> Fraction:

@@ -65,6 +65,8 @@ class PointMap:
         )
         if self.kernel.scales or self.kernel.tangent:
             raise UnsupportedError(f"{arithmetic.name} carries no observables for many points")
+        turns = self.kernel_run.turns(arithmetic)
+        self._t0 = turns.time(t0, arithmetic) if turns else t0
 
     def __call__(self, p: Any, q: Any) -> Values:
         """All that is carried, for points (p_i, q_i): two sequences of the arithmetic's numbers.
@@ -89,7 +91,7 @@ class PointMap:
         """What is carried beside p and q, at the start."""
         start = self.kernel_run.start
         if self.kernel.timed:
-            start = start | first_rest(self.arithmetic, start)
+            start = start | {"t": self._t0} | first_rest(self.arithmetic, self._t0)
         exact = (start[x] if isinstance(x, str) else Fraction(x) for x in self.kernel.start)
         return [self.arithmetic.number(x) for x in exact]
 
@@ -150,7 +152,9 @@ class PointMap:
         exact = self.arithmetic.exact
         far = {"p": max(abs(exact(x)) for x in p), "q": max(abs(exact(x)) for x in q)}
         run = self.kernel_run
-        found = limits(self.kernel, run.inputs(self.kernel, 0), run.start | far, run.times)
+        last = self._t0 + self.steps * run.start["h"]
+        times = (self._t0, last) if self.kernel.timed else None
+        found = limits(self.kernel, run.inputs(self.kernel, 0), run.start | far, times)
         if found is None:
             raise UnsupportedError(f"no box around the points is safe in {self.arithmetic.name}")
         return found

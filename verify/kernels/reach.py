@@ -20,6 +20,7 @@ from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.kernels.kernel import Kernel
 from verify.kernels.rounding import PRECISION, Ball, Rounded, analyse
+from verify.kernels.turns import Times
 
 _TOP = Fraction(2) ** 15 * (1 - Fraction(1, 2**20))  # numbers are below 2^15 in size
 _VALUE_LIMITS = tuple(Fraction(2) ** n for n in (13, 11, 9, 7, 5, 4, 3, 2, 1))
@@ -29,9 +30,6 @@ _SIDES = tuple(
     for share in (1, Fraction(3, 4))
 )
 _ASCENDING = _SIDES[::-1]
-
-
-Times = tuple[Fraction, Fraction] | None
 
 
 class Limits(NamedTuple):
@@ -47,7 +45,7 @@ def limits(
     kernel: Kernel,
     inputs: Mapping[str, Fraction],
     start: Mapping[str, Fraction],
-    times: Times = None,
+    times: Times | None = None,
 ) -> Limits | None:
     """The kernel's limits for these h and parameters, by the names that its source has for them.
 
@@ -71,7 +69,7 @@ def _side(size: Fraction) -> Fraction | None:
 def _largest(
     kernel: Kernel,
     inputs: tuple[tuple[str, Fraction], ...],
-    times: Times,
+    times: Times | None,
     boxes: tuple[tuple[Fraction | None, Fraction | None], ...],
 ) -> Limits | None:
     """The limits of the first of the boxes that is safe, with the greatest limit of values, grown
@@ -100,7 +98,7 @@ def _largest(
 def _room(
     kernel: Kernel,
     inputs: tuple[tuple[str, Fraction], ...],
-    times: Times,
+    times: Times | None,
     p: Fraction,
     q: Fraction,
     value: Fraction,

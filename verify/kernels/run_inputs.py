@@ -5,11 +5,13 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Self
 
+from verify.arithmetic.number_system import Arithmetic
 from verify.errors import InputError
 from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.computation import step_map_of
 from verify.kernels.kernel import Kernel
+from verify.kernels.turns import Times, Turns, turns_of
 
 
 def _compilable(hamiltonian: Hamiltonian, scheme: str) -> Hamiltonian:
@@ -53,6 +55,7 @@ class RunInputs:
         shares_kernel: bool = False,
     ) -> None:
         self.hamiltonian, self.scheme = _compilable(hamiltonian, scheme), scheme
+        self._given = hamiltonian
         self.parameters, self.start = dict(hamiltonian.values), start
         self.steps, self.observables, self.points = steps, observables, points
         self.sections = points or sections
@@ -77,11 +80,20 @@ class RunInputs:
         scales = {"kappa": 2**shift * h**kernel.power, "down": Fraction(1, 2**shift)}
         return {"h": h, **named, **(scales if kernel.scales else {})}
 
-    @property
-    def times(self) -> tuple[Fraction, Fraction] | None:
-        """The first and the last time at which a step is made; None where H does not depend on
-        it."""
+    def turns(self, arithmetic: Arithmetic) -> Turns | None:
+        """What is taken off t in this arithmetic, if anything is."""
+        if not (arithmetic.absolute and self.hamiltonian.time_dependent):
+            return None
+        return turns_of(self._given, self._all_times(), self.start["h"])
+
+    def times(self, arithmetic: Arithmetic) -> Times | None:
+        """The first and the last time at which a step is made in this arithmetic; None where H does
+        not depend on it."""
         if not self.hamiltonian.time_dependent:
             return None
+        turns = self.turns(arithmetic)
+        return turns.times if turns else self._all_times()
+
+    def _all_times(self) -> Times:
         first = self.start["t"]
         return first, first + self.steps * self.start["h"]

@@ -47,7 +47,7 @@ class KernelRun(RunInputs):
         """
         made = (self.hamiltonian, self.scheme, arithmetic, self.observables | {"tangent"}, False)
         kernel = kernel_for(*made)
-        return not arithmetic.absolute or any(True for _ in self._formats(kernel))
+        return not arithmetic.absolute or any(True for _ in self.formats(kernel, arithmetic))
 
     def run(
         self,
@@ -71,7 +71,7 @@ class KernelRun(RunInputs):
         if not arithmetic.absolute:
             return _outcome(ChunkedLoop(self, kernel, arithmetic, (), 0), progress, enough)
         outcome = replace(_NOWHERE, reason=_NOWHERE.reason + arithmetic.name)
-        for shift, found in self._formats(kernel):
+        for shift, found in self.formats(kernel, arithmetic):
             loop = ChunkedLoop(self, kernel, arithmetic, found, shift)
             outcome = _outcome(loop, progress, enough)
             if outcome.done == self.steps or outcome.kernel is None:  # done, or not enough
@@ -83,16 +83,16 @@ class KernelRun(RunInputs):
             outcome = replace(outcome, reason=reason)
         return outcome
 
-    def _formats(self, kernel: Kernel) -> Iterator[tuple[int, Limits]]:
+    def formats(self, kernel: Kernel, arithmetic: Arithmetic) -> Iterator[tuple[int, Limits]]:
         """Scalings s of ΔJ with the limits that they have, the finest first.
 
         With a smaller s, 2^s ΔJ is smaller and the orbit may go farther.
         """
         h_power = self.start["h"] ** kernel.power
         finest = min(63, max(0, (1 / h_power).__floor__().bit_length() - 1))
-        last = None
+        last, times = None, self.times(arithmetic)
         for shift in range(finest, -1, -_FEWER_BITS):
-            found = limits(kernel, self.inputs(kernel, shift), self.start, self.times)
+            found = limits(kernel, self.inputs(kernel, shift), self.start, times)
             if found is not None and found != last:
                 last = found
                 yield shift, found

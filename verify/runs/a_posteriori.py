@@ -130,6 +130,10 @@ class _Certificate:
 
     def times(self) -> Ball:
         """All times at which a step is made."""
+        turns = self.run.turns(self.arithmetic)
+        if turns:
+            first, last = map(rational_ball, turns.times)
+            return first.union(last)
         begun = rational_ball(self.run.start.get("t", Fraction(0)))
         return begun.union(begun + self.steps * self.h)
 

@@ -43,7 +43,7 @@ def states(kernel_run: KernelRun, arithmetic: Arithmetic) -> Iterator[dict[str, 
         kernel_run.observables | {"tangent"},
     )
     kernel = kernel_for(*made)
-    shift, limits = next(kernel_run._formats(kernel)) if arithmetic.absolute else (0, ())
+    shift, limits = next(kernel_run.formats(kernel, arithmetic)) if arithmetic.absolute else (0, ())
     walk = ChunkedLoop(kernel_run, kernel, arithmetic, tuple(limits), shift)
     for step in range(kernel_run.steps + 1):
         if step:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -92,7 +93,7 @@ def ran(case: str, name: str, **more: Any) -> RunResult:
         "q": 1, "p": 0, "step_size": H, "steps": STEPS, "t0": T0, "arithmetic": name, "digits": 25,
         "observables": ("lambda",),
     }  # fmt: skip
-    return run(Hamiltonian.parse(formula, time=True), scheme, **asked | more)
+    return run(Hamiltonian.parse(formula), scheme, **asked | more)
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -127,7 +128,7 @@ def test_a_bound_that_forgets_the_clock_would_be_too_small(
     made = number_systems.get(name, 25)
     start = {"p": Fraction(0), "q": Fraction(1), "h": H, "t": T0}
     kernel_run = KernelRun(
-        Hamiltonian.parse(PENDULUM, time=True), "lie2", start, STEPS, frozenset({"lambda"}), 0
+        Hamiltonian.parse(PENDULUM), "lie2", start, STEPS, frozenset({"lambda"}), 0
     )
     outcome = kernel_run.run(made, tangent=True)
     right = certify(kernel_run, made, outcome)
@@ -146,7 +147,7 @@ def test_what_the_format_cuts_off_from_h_does_not_add_up() -> None:
     for formula in ("p**2/2 + q*t/1000000", "p**2/2 - (1 + cos(t)/2)*q"):
         found = [
             run(
-                Hamiltonian.parse(formula, time=True), "symplectic-euler", q=1, p=0, t0="1/7",
+                Hamiltonian.parse(formula), "symplectic-euler", q=1, p=0, t0="1/7",
                 step_size="1/30000", steps=100_000, arithmetic=name, digits=30, observables=(),
             )
             for name in ("fixed", "mpfr")
@@ -157,8 +158,10 @@ def test_what_the_format_cuts_off_from_h_does_not_add_up() -> None:
         ]
 
 
-def test_fixed_leaves_its_range_with_notice_where_t_does() -> None:
-    found = ran("lie2", "fixed", t0=100_000)
+def test_fixed_leaves_its_range_with_notice_where_a_t_without_a_period_does() -> None:
+    ran = partial(run, scheme="lie2", q=1, p=0, step_size=H, steps=STEPS, t0=100_000, digits=25)
+    chirp = Hamiltonian.parse("p**2/2 + q**2/2 - q*cos(t**2)")
+    found = ran(chirp, arithmetic="fixed", observables=())
     assert (found.arithmetic, found.status) == ("mpfr", "finished")
     assert "range of fixed" in found.fallback
 
@@ -213,7 +216,7 @@ def test_where_delta_j_depends_on_time_alone_it_is_run() -> None:
 
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_a_kernel_of_an_h_without_t_has_no_clock(name: str) -> None:
-    plain = Hamiltonian.parse("p**2/2 - cos(q)", time=True)
+    plain = Hamiltonian.parse("p**2/2 - cos(q)")
     kernel = kernel_for(plain, "lie2", number_systems.get(name, 20), frozenset({"lambda"}))
     assert not kernel.timed
     assert not {"step", "clock", "clock_rest"} & set(kernel.state_names)
@@ -221,7 +224,7 @@ def test_a_kernel_of_an_h_without_t_has_no_clock(name: str) -> None:
 
 
 def test_a_pole_in_t_that_a_step_passes_over_is_named_with_its_step() -> None:
-    opened = Hamiltonian.parse("p**2/2 + q**2/(2*(1 - t))", time=True)
+    opened = Hamiltonian.parse("p**2/2 + q**2/(2*(1 - t))")
     check_times(opened, Fraction(0), Fraction(3, 100), 33)
     for steps in (34, 10**9):
         with pytest.raises(InputError, match=r"at step 34, t = 0.99 … 1.02"):
@@ -234,5 +237,5 @@ def test_a_pole_in_t_that_a_step_passes_over_is_named_with_its_step() -> None:
 
 
 def test_smooth_in_all_times_is_seen_in_few_looks() -> None:
-    always = Hamiltonian.parse("p**2/2 + q**2/(3/2 + cos(t))", time=True)
+    always = Hamiltonian.parse("p**2/2 + q**2/(3/2 + cos(t))")
     check_times(always, Fraction(0), Fraction(1, 1000), 10**7)
