@@ -4,13 +4,15 @@ A field with divergence 0 has such a G on every disc. It is looked for in closed
 - in p and q as polynomials: by integrating term by term, which finds it always;
 - among the products of k derivatives of H with k − 1 derivatives by p and by q each: the modified
   Hamiltonians of Runge–Kutta methods and splittings are made of those, whatever H is (Hairer,
-  Lubich, Wanner, IX.9; of splittings they are Poisson brackets of T and V);
+  Lubich, Wanner, IX.9; of splittings they are Poisson brackets of T and V); in time a factor less
+  may be a derivative by t more;
 - among the polynomials in what H and the field are made of, for maps of a user's own.
 What is found is held against the field in the ring; what is not found is not denied.
 """
 
 import math
 from collections.abc import Iterator, Sequence
+from itertools import product
 
 from verify.algebra.generator import terms_of
 from verify.algebra.linear_combination import combination
@@ -22,7 +24,7 @@ from verify.proof.modified_field import Vector, field_of
 from verify.proof.potential import among_polynomials
 from verify.proof.telescoping import multisets
 
-_MOST_PRODUCTS = 400  # tried in the second way
+_MOST_PRODUCTS, _MOST_IN_TIME = 400, 2000  # tried in the second way
 
 
 def hamiltonian_of(field: VectorField, vector: Vector, factors: int) -> Poly | None:
@@ -95,14 +97,35 @@ def _among_products(field: VectorField, vector: Vector, factors: int) -> Poly | 
     if factors < 2 or energy is None:
         return energy
     jets = Jets(factors - 1, separable=field.separable())
-    names = list(multisets(jets.indices, factors, factors - 1, factors - 1))
-    if len(names) > _MOST_PRODUCTS:
+    plain = multisets(jets.indices, factors, factors - 1, factors - 1)
+    names = [*([(*each, 0) for each in chosen] for chosen in plain)]
+    if field.timed:
+        names += _products_in_time(jets.indices, factors)
+    if len(names) > (_MOST_IN_TIME if field.timed else _MOST_PRODUCTS):
         return None
-    partial = partials(ring, energy)
-    products = [_product(ring, [partial(i, j) for i, j in chosen]) for chosen in names]
+    in_time = [energy]
+    for _ in range(factors - 1 if field.timed else 0):
+        in_time.append(ring.diff(in_time[-1], "t"))
+    partial = [partials(ring, x) for x in in_time]
+    products = [_product(ring, [partial[k](i, j) for i, j, k in chosen]) for chosen in names]
     numbers = _numbers_in(ring, vector)
     candidates = [ring.multiply(c, m) for c in numbers for m in products if not m.is_zero()]
     return _combined(ring, candidates, vector)
+
+
+def _products_in_time(
+    indices: Sequence[tuple[int, int]], factors: int
+) -> Iterator[list[tuple[int, int, int]]]:
+    """Of m < `factors` derivatives of H, m − 1 by p and by q, and `factors` − m by t."""
+    for m in range(1, factors):
+        for chosen in multisets([(0, 0), *indices], m, m - 1, m - 1):
+            shares = product(range(factors - m + 1), repeat=m)
+            made = (
+                tuple(sorted((i, j, k) for (i, j), k in zip(chosen, share, strict=True)))
+                for share in shares
+                if sum(share) == factors - m
+            )
+            yield from (list(each) for each in set(made) if (0, 0, 0) not in each)
 
 
 def _product(ring: Ring, parts: Sequence[Poly]) -> Poly:

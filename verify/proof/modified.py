@@ -36,7 +36,7 @@ def modified_of(step_map: StepMap, scheme: Scheme | None, order: int) -> Modifie
             shown = str(step_map.hamiltonian.expression)
             problem = f"the map is not (p, q) at h = 0: {name}' is {ring.text(first)} there"
             raise InputError("map", shown, problem)
-    vectors = modified_field(ring, p_next, q_next)
+    vectors = modified_field(ring, p_next, q_next, source.timed)
     terms = [_term(source, j, vector, step_map.domain) for j, vector in enumerate(vectors)]
     found = ModifiedEquation(
         scheme=scheme.name if scheme else "the map",

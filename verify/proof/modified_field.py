@@ -10,6 +10,9 @@ The series need not converge; every coefficient is exact. Of a map with det J �
 divergence 0. For the flow φ of f̃ satisfies d/dt log det φ_t' = div f̃ along it: where div f_k is the
 first divergence that is not 0, log det J = h · h^(k−1) div f_k + O(h^(k+1)), so that the leading
 term of ΔJ = det J − 1 is h^k div f_k. ∎
+
+Where H depends on time so does f̃, and the map from t to t + h is its flow with t' = 1. Then it is
+D_F = F·∇ + h ∂/∂t, by which y_n has ∂/∂t of [y_(n−1)]_(k−1) as well.
 """
 
 from collections.abc import Sequence
@@ -28,18 +31,19 @@ class Differential(Protocol):
     def zero(self) -> Poly: ...
 
     def diff(self, x: Poly, name: str) -> Poly:
-        """∂x/∂p or ∂x/∂q."""
+        """∂x/∂p or ∂x/∂q, or ∂x/∂t where there is t."""
 
     def reduce(self, x: Poly) -> Poly:
         """The normal form."""
 
 
 def modified_field(
-    ring: Differential, p_next: Sequence[Poly], q_next: Sequence[Poly]
+    ring: Differential, p_next: Sequence[Poly], q_next: Sequence[Poly], timed: bool = False
 ) -> list[Vector]:
     """[f_1, f_2, …] of the map with these coefficients of h⁰, h¹, … in p' and q'.
 
-    Those of h⁰ are p and q. As many terms as there are coefficients after them.
+    Those of h⁰ are p and q. As many terms as there are coefficients after them. `timed`: they
+    depend on t.
     """
     found: list[Vector] = []
     # flows[n][k]: [y_n]_k, with its gradient, which is made once.
@@ -61,6 +65,9 @@ def modified_field(
             for j in range(1, k - n + 2):
                 change = along(found[j - 1], n - 1, k - j)
                 total = total[0] + change[0], total[1] + change[1]
+            if timed:
+                later = [ring.diff(x, "t") for x in flows[n - 1, k - 1]]
+                total = total[0] + later[0], total[1] + later[1]
             flows[n, k] = ring.reduce(total[0] / n), ring.reduce(total[1] / n)
             term = term[0] - flows[n, k][0], term[1] - flows[n, k][1]
         flows[1, k] = ring.reduce(term[0]), ring.reduce(term[1])

@@ -31,7 +31,7 @@ VERLET = "kick 1/2 at {}; drift 1{}; kick 1/2 at {}; order 2"
 
 
 def hamiltonian(name: str) -> Hamiltonian:
-    return Hamiltonian.parse(DRIVEN[name], time=True)
+    return Hamiltonian.parse(DRIVEN[name])
 
 
 def proof(scheme: str, name: str) -> Proof:
@@ -54,7 +54,7 @@ def test_lie_is_of_its_order_and_of_even_order_its_error_telescopes(eta: int, na
 
 def test_the_map_of_lie2_is_written_with_the_derivative_by_t() -> None:
     """H = p²/2 + f(t) q: D²p = −f'(t), which X²p = 0 lacks."""
-    step = schemes.get("lie2").step_map(Hamiltonian.parse("p**2/2 + sin(t)*q", time=True))
+    step = schemes.get("lie2").step_map(Hamiltonian.parse("p**2/2 + sin(t)*q"))
     p, q, t, h = map(symbol, "pqth")
     assert step.p_next - (p - h * sympy.sin(t) - h**2 / 2 * sympy.cos(t)) == 0
     assert sympy.expand(step.q_next - (q + h * p - h**2 / 2 * sympy.sin(t))) == 0
@@ -76,7 +76,7 @@ def test_without_the_derivative_by_t_it_does_not_telescope() -> None:
 
 def test_a_parameter_and_not_t_is_what_a_proof_leaves_out() -> None:
     found = prove(
-        schemes.get("lie2").step_map(Hamiltonian.parse("p**2/2 + a*q**4*cos(t)", time=True)),
+        schemes.get("lie2").step_map(Hamiltonian.parse("p**2/2 + a*q**4*cos(t)")),
         schemes.get("lie2"),
     )
     assert found.verdict is Verdict.PROVED
@@ -135,7 +135,7 @@ def test_a_method_for_a_quadratic_t_loses_an_order_where_the_mass_depends_on_tim
     own = schemes.get(f"{text}; order 1")
     errors = {}
     for name, formula in {"force": "p**2/2 + q**3*(1 + t)", "mass": "p**2*(1 + t) + q**3"}.items():
-        step = own.step_map(Hamiltonian.parse(formula, time=True))
+        step = own.step_map(Hamiltonian.parse(formula))
         expanded = step.taylor(4)
         assert expanded is not None
         field, *series = expanded
@@ -158,28 +158,14 @@ def test_a_method_for_a_quadratic_t_loses_an_order_where_the_mass_depends_on_tim
 
 def test_an_h_without_t_has_no_t_in_its_ring() -> None:
     for formula in ("p**2/2 + q**4", "p**2/2 - cos(q)"):
-        plain, timed = (Hamiltonian.parse(formula, time=time) for time in (False, True))
-        assert plain == timed
-        assert not timed.time_dependent
-        assert "t" not in timed.field()[0].ring.places
+        found = Hamiltonian.parse(formula)
+        assert not found.time_dependent
+        assert "t" not in found.field()[0].ring.places
 
 
 def test_t_is_no_parameter_and_the_gradient_takes_it() -> None:
-    driven = Hamiltonian.parse("p**2/2 + a*q**2*t", {"a": 2}, time=True)
+    driven = Hamiltonian.parse("p**2/2 + a*q**2*t", {"a": 2})
     assert driven.parameters == ("a",)
     assert driven.gradient()(1.0, 3.0, 0.5) == (1.0, 6.0)
     with pytest.raises(InputError, match="parameter"):
-        Hamiltonian.parse("p**2/2 + q**2*t", {"t": 1}, time=True)
-
-
-def test_what_does_not_take_time_says_so() -> None:
-    import verify
-
-    formula = DRIVEN["pendulum"]
-    own = Hamiltonian.parse(formula, time=True)
-    with pytest.raises(InputError, match="t is not allowed"):
-        Hamiltonian.parse(formula)
-    for system in (formula, own):
-        with pytest.raises(InputError, match=r"t is not allowed|depends on t"):
-            verify.stability(system, "lie2", q=1, p=0, step_size=0.1, time=1)
-    assert verify.prove(formula, "lie2").order == 3
+        Hamiltonian.parse("p**2/2 + q**2*t", {"t": 1})
