@@ -11,8 +11,7 @@ from verify.studies.work_precision.task import WorkPrecisionTask
 def work_precision_task(scene: Scene, section: WorkPrecision) -> WorkPrecisionTask:
     """Error against run time. Raises InputError where peers are wanted and not installed."""
     schemes, sizes = section.schemes or scene.schemes, sorted(section.step_sizes, reverse=True)
-    timed = scene.exact_hamiltonian().time_dependent
-    peers, left_out = _peers(section.peers, timed)
+    peers, left_out = _peers(section.peers)
     return WorkPrecisionTask(
         **scene.hamiltonian_fields(),
         schemes=schemes,
@@ -31,7 +30,7 @@ def work_precision_task(scene: Scene, section: WorkPrecision) -> WorkPrecisionTa
     )
 
 
-def _peers(asked: bool | None, timed: bool) -> tuple[tuple[str, ...], tuple[tuple[str, str], ...]]:
+def _peers(asked: bool | None) -> tuple[tuple[str, ...], tuple[tuple[str, str], ...]]:
     """Those that are drawn, and the others with the reason why not."""
     from verify.studies.work_precision import peers
 
@@ -40,7 +39,7 @@ def _peers(asked: bool | None, timed: bool) -> tuple[tuple[str, ...], tuple[tupl
     for name, library in peers.libraries().items():
         if asked is False:
             left_out.append((name, "the scene says `peers = false`"))
-        elif not (problem := _problem(library, timed)):
+        elif not (problem := _problem(library)):
             drawn.append(name)
         elif asked:
             raise InputError("work_precision.peers", "true", problem)
@@ -49,9 +48,7 @@ def _peers(asked: bool | None, timed: bool) -> tuple[tuple[str, ...], tuple[tupl
     return tuple(drawn), tuple(left_out)
 
 
-def _problem(library: str, timed: bool) -> str:
+def _problem(library: str) -> str:
     """Why it cannot be drawn; empty where it can."""
-    if timed:
-        return "it is given no H that depends on time as yet"
     installed = find_spec(library) is not None
     return "" if installed else f"{library} is not installed; the extra `peers` has it"

@@ -6,16 +6,17 @@ from math import log2
 import pytest
 
 from tests.paths import ROOT
-from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.scene import Scene, load_scene
+from verify.studies.work_precision import peers
 from verify.studies.work_precision.measure import work_precision
-from verify.studies.work_precision.plan import work_precision_task
+from verify.studies.work_precision.peer_interface import InitialValueProblem
 from verify.studies.work_precision.runs import Ladder, Problem, reference
 
 DRIVEN = ROOT / "reports" / "driven"
 FILES = {path.stem: load_scene(path) for path in sorted(DRIVEN.glob("*.toml"))}
 SCENES = {name: scene for name, scene in FILES.items() if scene.work_precision}
+DUFFING = "p**2/2 + q**2/2 + q**4/4 - q*cos(7*t/5)/2"
 SLOPES = {"stormer-verlet": 2, "forest-ruth": 4, "triple-jump6": 6, "gauss4": 4, "rk4": 4}
 
 
@@ -46,7 +47,7 @@ def test_there_are_two_scenes_of_thirteen_methods() -> None:
 
 
 def test_energy_is_none_and_t0_counts() -> None:
-    hamiltonian = Hamiltonian.parse("p**2/2 + q**2/2 - q*cos(t)", time=True)
+    hamiltonian = Hamiltonian.parse("p**2/2 + q**2/2 - q*cos(t)")
     asked = {
         "q": Fraction(1), "p": Fraction(0), "time": Fraction(1), "schemes": ["stormer-verlet"],
         "step_sizes": [Fraction(1, 5), Fraction(1, 10)], "repeats": 1, "number_systems": (),
@@ -62,12 +63,18 @@ def test_energy_is_none_and_t0_counts() -> None:
     assert (early.t0, late.t0) == ("0", "2")
 
 
-def test_peers_are_left_out_and_refused_where_they_are_asked_for() -> None:
-    scene = SCENES["duffing"]
-    assert scene.work_precision is not None
-    task = work_precision_task(scene, scene.work_precision)
-    assert not task.peers
-    assert all("no H that depends on time" in why or "not installed" in why
-               for _, why in task.peers_left_out)  # fmt: skip
-    with pytest.raises(InputError, match="no H that depends on time"):
-        work_precision_task(scene, scene.work_precision.model_copy(update={"peers": True}))
+@pytest.mark.parametrize("name", peers.libraries())
+@pytest.mark.parametrize("t0", [Fraction(1, 3), Fraction(1000)])
+def test_a_peer_solves_it_from_its_t0(name: str, t0: Fraction) -> None:
+    pytest.importorskip(peers.libraries()[name])
+    hamiltonian, start = Hamiltonian.parse(DUFFING), (Fraction(0), Fraction(1))
+    solver = peers.get(name).make(
+        InitialValueProblem(hamiltonian, *start, Fraction(10), t0), Fraction(1, 10**12)
+    )
+    exact = reference(hamiltonian, *start, Fraction(10), t0)
+    other = reference(hamiltonian, *start, Fraction(10), t0 + 1)
+    first, again = solver.solve(), solver.solve()
+    assert (first.p, first.q) == (again.p, again.q)
+    for found, right, wrong in ((first.p, exact.p, other.p), (first.q, exact.q, other.q)):
+        assert abs(Fraction(found) - right) < Fraction(1, 10**10)
+        assert abs(Fraction(found) - wrong) > Fraction(1, 10)

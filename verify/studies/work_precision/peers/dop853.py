@@ -27,21 +27,28 @@ def make(problem: InitialValueProblem, tolerance: Fraction) -> Solver:
 
     begun = time.perf_counter()
     field, _ = problem.hamiltonian.field()
+    names = ("p", "q", "t") if field.timed else ("p", "q")
     slopes = functions_at(
-        float64.compiled_at_once(), [(field.ring, -field.h_q), (field.ring, field.h_p)]
+        float64.compiled_at_once(), [(field.ring, -field.h_q), (field.ring, field.h_p)], names
     )
-    start, end = (float(problem.p), float(problem.q)), float(problem.time)
-    slopes(*start)
+    start, begin = (float(problem.p), float(problem.q)), float(problem.t0)
+    end = float(problem.t0 + problem.time)
+    slopes(*start, *(begin,)[: field.timed])
     compiled = time.perf_counter() - begun
 
-    def f(_: float, z: tuple[float, float]) -> tuple[float, float]:
+    def still(_: float, z: tuple[float, float]) -> tuple[float, float]:
         p, q = z
         found: tuple[float, float] = slopes(p, q)
         return found
 
+    def driven(t: float, z: tuple[float, float]) -> tuple[float, float]:
+        p, q = z
+        found: tuple[float, float] = slopes(p, q, t)
+        return found
+
     def solve() -> Answer:
         found = solve_ivp(
-            f, (0.0, end), start, method="DOP853", t_eval=(end,),
+            driven if field.timed else still, (begin, end), start, method="DOP853", t_eval=(end,),
             rtol=float(tolerance), atol=float(tolerance),
         )  # fmt: skip
         if not found.success:

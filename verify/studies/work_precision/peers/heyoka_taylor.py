@@ -12,6 +12,7 @@ from typing import Any
 
 import sympy
 
+from verify.algebra.formula import symbol
 from verify.studies.work_precision.peer_interface import (
     Answer,
     InitialValueProblem,
@@ -31,14 +32,15 @@ def make(problem: InitialValueProblem, tolerance: Fraction) -> Solver:
     begun = time.perf_counter()
     p, q = hy.make_vars("p", "q")
     h = _translated(problem.hamiltonian.exact)
-    start, end = (float(problem.p), float(problem.q)), float(problem.time)
+    start, begin = (float(problem.p), float(problem.q)), float(problem.t0)
+    end = float(problem.t0 + problem.time)
     taylor = hy.taylor_adaptive(
         [(p, -hy.diff(h, q)), (q, hy.diff(h, p))], list(start), tol=float(tolerance)
     )
     compiled = time.perf_counter() - begun
 
     def solve() -> Answer:
-        taylor.time = 0.0
+        taylor.time = begin
         taylor.state[:] = start
         outcome, _, _, steps, *_ = taylor.propagate_until(end)
         if outcome != hy.taylor_outcome.time_limit:
@@ -53,7 +55,8 @@ def _translated(expression: sympy.Expr) -> Any:
     import heyoka as hy
 
     numbers = (x for x in expression.atoms(sympy.Rational) if x.q & (x.q - 1))
+    known = {x: hy.expression(float(x)) for x in numbers}
     try:
-        return hy.from_sympy(expression, {x: hy.expression(float(x)) for x in numbers})
+        return hy.from_sympy(expression, {**known, symbol("t"): hy.time})
     except (ValueError, TypeError) as error:
         raise PeerError(f"heyoka does not take this H: {error}") from None
