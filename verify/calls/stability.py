@@ -19,6 +19,7 @@ def stability(
     steps: int | None = None,
     time: Exact | None = None,
     parameters: GivenParameters = None,
+    t0: Exact | None = None,
     workers: int = 1,
 ) -> tuple[StabilityResult, ...]:
     """Judge runs: stable, drifts, unstable by the scheme or by arithmetic, escapes, overflow, ….
@@ -38,5 +39,5 @@ def stability(
         "steps": steps,
         "time": time,
     }
-    scene = scene_of(system, scheme, parameters, stability=[section])
+    scene = scene_of(system, scheme, parameters, t0=t0, stability=[section])
     return findings_of([scene], performed(scene, need_stability, workers)).runs

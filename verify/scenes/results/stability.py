@@ -15,7 +15,8 @@ KINDS: tuple[Kind, ...] = Kind.__args__  # type: ignore[attr-defined]
 
 
 class StabilityResult(WithProse):
-    """One run's verdict, which says what it is due to; `id` is the run's name in its scene.
+    """One run's verdict, which says what it is due to; `id` is the run's name in its scene, `t0`
+    when it starts where H depends on time.
 
     `step`: where it leaves its bounds, parts from the same scheme in other arithmetic, or leaves
     float64's range. `rate`: of a drift, the energy's change in a unit of time in parts of the
@@ -32,6 +33,7 @@ class StabilityResult(WithProse):
     steps: int
     q: str
     p: str
+    t0: str | None = None
     kind: Kind
     step: int | None = None
     rate: str | None = None
@@ -62,6 +64,7 @@ class LargestStepResult(OfScheme, WithProse):
     time: str
     q: str
     p: str
+    t0: str | None = None
     bounded: str | None
     unbounded: str | None
     linear: str | None
@@ -90,6 +93,7 @@ class StabilityMapResult(OfScheme):
     steps: int
     q: str
     p: str
+    t0: str | None = None
     cells: tuple[tuple[MapCell, ...], ...]
     linear: tuple[str | None, ...]
 

@@ -63,20 +63,27 @@ def shortened(x: Fraction | None, digits: int = 4) -> str | None:
 
 
 def largest_step(
-    hamiltonian: Hamiltonian, scheme: str, *, p: Fraction, q: Fraction, time: Fraction
+    hamiltonian: Hamiltonian,
+    scheme: str,
+    *,
+    p: Fraction,
+    q: Fraction,
+    time: Fraction,
+    t0: Fraction | None = None,
 ) -> LargestStepResult:
-    """The largest h with bounded motion in float64 from (p, q) until `time`, by bisection.
+    """The largest h with bounded motion in float64 from (p, q) for the length `time`, by bisection.
 
     From small steps upwards until the first that is not bounded; beyond it there may be other
     steps with bounded motion, by resonance, which are not looked for.
     """
-    orbit = exact_orbit(hamiltonian, p, q, time)
+    begin = t0 or Fraction(0)
+    orbit = exact_orbit(hamiltonian, p, q, time, begin)
     omega, linear = frequency(orbit), _linear_step(scheme, orbit)
     good = bad = None
 
     def stays(h: Fraction) -> bool:
         steps = time // h
-        return steps >= 1 and bounded(Run(hamiltonian, scheme, h, q, p, steps))
+        return steps >= 1 and bounded(Run(hamiltonian, scheme, h, q, p, steps, t0=begin))
 
     if orbit.kind == "escapes":
         detail = prose("the exact solution ", orbit.summary)
@@ -94,6 +101,7 @@ def largest_step(
         time=text(time),
         q=text(q),
         p=text(p),
+        t0=None if t0 is None else text(t0),
         bounded=shortened(good),
         unbounded=shortened(bad),
         linear=shortened(linear),
@@ -140,15 +148,17 @@ def stability_map(
     steps: int,
     p: Fraction,
     q: Fraction,
+    t0: Fraction | None = None,
 ) -> StabilityMapResult:
     """For each value of the parameter, a row: the verdicts with each step size, and the step size
     of linear theory.
     """
-    cells, linear = [], []
+    cells, linear, begin = [], [], t0 or Fraction(0)
     for value in values:
         own = hamiltonian.with_values({**dict(hamiltonian.values), parameter: value})
-        orbit = exact_orbit(own, p, q, max(step_sizes) * steps)
-        row = (judge(RunMotion(Run(own, scheme, h, q, p, steps))) for h in step_sizes)
+        orbit = exact_orbit(own, p, q, max(step_sizes) * steps, begin)
+        runs = (Run(own, scheme, h, q, p, steps, t0=begin) for h in step_sizes)
+        row = (judge(RunMotion(run)) for run in runs)
         cells.append(tuple(MapCell(kind=found.kind, step=found.step) for found in row))
         linear.append(shortened(_linear_step(scheme, orbit)))
     return StabilityMapResult(
@@ -160,6 +170,7 @@ def stability_map(
         steps=steps,
         q=text(q),
         p=text(p),
+        t0=None if t0 is None else text(t0),
         cells=tuple(cells),
         linear=tuple(linear),
     )

@@ -1,6 +1,7 @@
 """A scene's sections on stability → the tasks that they need."""
 
 from collections.abc import Iterator
+from typing import Any
 
 from verify.arithmetic.exact import short
 from verify.execution.plan import Plan
@@ -20,9 +21,15 @@ def need_stability(plan: Plan, scene: Scene) -> None:
         plan.need(over, f"{name}: stability over step size and {over.parameter}")
 
 
+def _given(scene: Scene) -> dict[str, Any]:
+    """H, and when its runs start where it depends on time."""
+    timed = scene.exact_hamiltonian().time_dependent
+    return scene.hamiltonian_fields() | ({"t0": scene.t0} if timed else {})
+
+
 def stability_tasks(scene: Scene) -> Iterator[tuple[str, StabilityTask]]:
     """Each run with its name: scene, section, scheme, step size and which initial value."""
-    given = scene.hamiltonian_fields() if scene.stability else {}
+    given = _given(scene) if scene.stability else {}
     for section in scene.stability:
         for scheme in section.schemes or scene.schemes:
             for k, at in enumerate(section.initial_values, start=1):
@@ -38,7 +45,7 @@ def stability_tasks(scene: Scene) -> Iterator[tuple[str, StabilityTask]]:
 
 
 def largest_step_tasks(scene: Scene) -> Iterator[LargestStepTask]:
-    given = scene.hamiltonian_fields() if scene.largest_step else {}
+    given = _given(scene) if scene.largest_step else {}
     for section in scene.largest_step:
         at = section.initial_value
         for scheme in section.schemes or scene.schemes:
@@ -46,7 +53,7 @@ def largest_step_tasks(scene: Scene) -> Iterator[LargestStepTask]:
 
 
 def stability_map_tasks(scene: Scene) -> Iterator[StabilityMapTask]:
-    given = scene.hamiltonian_fields() if scene.stability_map else {}
+    given = _given(scene) if scene.stability_map else {}
     for section in scene.stability_map:
         at = section.initial_value
         for scheme in section.schemes or scene.schemes:

@@ -23,6 +23,7 @@ def run_result(run: Run) -> StabilityResult:
         steps=run.steps,
         q=text(run.q),
         p=text(run.p),
+        t0=text(run.t0) if run.hamiltonian.time_dependent else None,
         kind=found.kind,
         step=found.step,
         rate=shortened(found.rate, 3),

@@ -31,7 +31,10 @@ def describe_rounded_start(run: Run) -> Prose:
 
 
 def nearest_equilibrium(run: Run) -> tuple[Fraction, Fraction] | None:
-    """A zero (p, q) of H's gradient very near to the initial value, by Newton's method."""
+    """A zero (p, q) of H's gradient very near to the initial value, by Newton's method; None where
+    H depends on time."""
+    if run.hamiltonian.time_dependent:
+        return None
     field, _ = run.hamiltonian.field()
     ring, arithmetic = field.ring, mpfr.make(_DIGITS)
     gradient = (field.h_p, field.h_q)

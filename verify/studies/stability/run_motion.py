@@ -1,7 +1,8 @@
 """The motion in one run: in float64 and in high precision, and the bounds it is held to.
 
 Bounds: ten times the exact orbit's reach in p and in q, and a hundred times its energy scale (see
-`verify.flows.orbit`). Two runs are apart where they differ by a tenth of the reach.
+`verify.flows.orbit`), but for an H that depends on time, whose value the drive changes. Two runs
+are apart where they differ by a tenth of the reach.
 """
 
 from collections.abc import Callable
@@ -43,7 +44,7 @@ class RunMotion:
 
     def __init__(self, run: Run) -> None:
         self.run = run
-        self.orbit = exact_orbit(run.hamiltonian, run.p, run.q, run.time)
+        self.orbit = exact_orbit(run.hamiltonian, run.p, run.q, run.time, run.t0)
         # More where the initial value is written with more.
         self.digits = _DIGITS + initial_value_digits((run.p, run.q))
         self._errors: dict[int, tuple[Trail, list[Fraction | None]]] = {}
@@ -86,7 +87,9 @@ class RunMotion:
         return (here - first) / (self.orbit.scale or 1)
 
     def energy_errors(self, trail: Trail) -> list[Fraction | None]:
-        """Those of a run's points, computed once."""
+        """Those of a run's points, computed once; none of a driven one."""
+        if self.run.hamiltonian.time_dependent:
+            return []
         if id(trail) not in self._errors:
             errors = [self.energy_error(point) for point in trail.points]
             self._errors[id(trail)] = trail, errors
@@ -105,7 +108,8 @@ class RunMotion:
 
     def beyond(self, point: Point) -> bool:
         """Whether a point is out of the exact orbit's bounds, its energy included."""
-        return self.outside(point) or _too_much(self.energy_error(point))
+        driven = self.run.hamiltonian.time_dependent
+        return self.outside(point) or (not driven and _too_much(self.energy_error(point)))
 
     def stays(self, trail: Trail) -> bool:
         """Whether a run keeps within the bounds, to its end."""

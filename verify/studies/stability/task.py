@@ -1,5 +1,6 @@
 """The tasks on stability: one run judged, the largest step, and a map of verdicts."""
 
+from fractions import Fraction
 from typing import Literal
 
 from verify.arithmetic import AUTO, step_cost
@@ -17,7 +18,12 @@ _BISECTION_COST = 3 * _RUN_COST
 _CELL_COST = _RUN_COST // 8  # of a map, most of whose cells are judged by one short run
 
 
-class StabilityTask(InitialValueTask):
+class _FromATime(InitialValueTask):
+    t0: Number | None = None
+    """None where H does not depend on time."""
+
+
+class StabilityTask(_FromATime):
     """Judge one run: stable, drifting, unstable, and whose fault it is."""
 
     result = StabilityResult
@@ -34,11 +40,15 @@ class StabilityTask(InitialValueTask):
         from verify.studies.stability.results import run_result
         from verify.studies.stability.trail import Run
 
-        hamiltonian = self.exact_hamiltonian()
-        return run_result(Run(hamiltonian, self.scheme, self.step_size, self.q, self.p, self.steps))
+        z0 = self.q, self.p
+        run = Run(
+            self.exact_hamiltonian(), self.scheme, self.step_size, *z0, self.steps,
+            t0=self.t0 or Fraction(0),
+        )  # fmt: skip
+        return run_result(run)
 
 
-class LargestStepTask(InitialValueTask):
+class LargestStepTask(_FromATime):
     """The largest step size with bounded motion until `time`."""
 
     result = LargestStepResult
@@ -56,7 +66,7 @@ class LargestStepTask(InitialValueTask):
         return largest_step(self.exact_hamiltonian(), **self.asked())
 
 
-class StabilityMapTask(InitialValueTask):
+class StabilityMapTask(_FromATime):
     """Verdicts over a parameter's values and step sizes."""
 
     result = StabilityMapResult

@@ -63,14 +63,15 @@ class Trail:
 
     def onwards(self, point: Point, steps: int) -> "Trail":
         """So many steps from one of its points, followed more closely."""
-        return follow(replace(self.run, p=point.p, q=point.q, steps=steps), self.arithmetic)
+        t0 = self.run.t0 + point.step * self.run.step_size
+        onwards = replace(self.run, p=point.p, q=point.q, t0=t0, steps=steps)
+        return follow(onwards, self.arithmetic)
 
 
 def follow(run: Run, arithmetic: Arithmetic) -> Trail:
     """The run in this arithmetic. Raises UnsupportedError where that lacks a function."""
-    start = {"p": run.p, "q": run.q, "h": run.step_size}
     sections = _sections(run.steps)
-    asked = run.hamiltonian, run.scheme, start, run.steps, frozenset[str](), 0
+    asked = run.hamiltonian, run.scheme, run.start, run.steps, frozenset[str](), 0
     outcome = KernelRun(*asked, sections=sections).run(arithmetic)
     section = -(-run.steps // sections)
     points = [Point(0, run.p, run.q)]

@@ -37,6 +37,7 @@ from verify.studies.stability.trail import (
 
 _MOST_DIGITS = 400
 _FLOAT_BITS = 53
+_NEXT = Fraction(1, 10**14)
 _FEWER_BITS = 45
 _RANGE_STEPS = 20_000  # that are looked at for what float64's range does to them
 _SMALL = Fraction(1, 10**75)  # the square of a square of what is smaller vanishes in float64
@@ -117,7 +118,23 @@ def _not_the_scheme(motion: RunMotion) -> Judgement:
     at = f"at step {step}" if step is not None else f"before step {here.done + 1}"
     told = prose(f"float64 parts {at} from the same scheme in {digits // 2} and in {digits} digits")
     told += describe_rounded_start(motion.run)
+    if motion.orbit.kind == "driven":
+        told += _sensitive(motion, digits, precise)
     return Judgement("unstable: arithmetic", told, step=step or here.done + 1)
+
+
+def _sensitive(motion: RunMotion, digits: int, precise: Trail) -> Prose:
+    """Whether a neighbour parts from the run as well, without rounding: as driven ones may be
+    chaotic."""
+    run = precise.run
+    near = follow_precisely(replace(run, q=run.q + _NEXT * (motion.orbit.reach[1] or 1)), digits)
+    step = first_apart(near, precise, motion.apart)
+    if step is None:
+        return Prose()
+    return prose(
+        "; so does, without rounding, what starts 10⁻¹⁴ of the reach away, at step "
+        f"{step}: the motion is sensitive there"
+    )
 
 
 def _confirmed(motion: RunMotion) -> tuple[int, Trail] | None:
@@ -187,6 +204,8 @@ def _bounded(motion: RunMotion) -> Judgement:
     if precise.steps < motion.run.steps:
         told += f", of which {precise.steps} were done in high precision too"
     kind: Kind = "stable" if rate is None else "drifts"
+    if motion.orbit.kind == "driven":
+        told += "; its energy changes with the drive, and is not looked at for a drift"
     if rate is None and too_short(motion):
         told += "; it goes round too few times to tell a drift of its energy from a swing"
     worst = motion.worst(precise)
