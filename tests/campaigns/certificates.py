@@ -57,7 +57,7 @@ def seeds(longest: int = 12_000) -> tuple[Data, ...]:
         for name in OF_ONE:
             scheme = get(name)
             try:
-                hamiltonian = Hamiltonian.parse(text, time=True)
+                hamiltonian = Hamiltonian.parse(text)
                 proof = prove(scheme.step_map(hamiltonian), scheme)
                 found.append(of_one(proof, potential_of(proof, scheme)))
             except InputError:

@@ -81,12 +81,8 @@ def test_a_formula(formula: str, words: str, capsys: pytest.CaptureFixture[str])
     told(capsys, typed, (f"hamiltonian={formula}: ", words))
 
 
-def test_an_h_that_depends_on_time_is_not_for_every_command(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+def test_an_h_in_time_is_not_for_every_one(capsys: pytest.CaptureFixture[str]) -> None:
     formula = "p**2/2 + q*t"
-    words = ("is not allowed: only `prove`, ", "and scenes take an H that depends on time as yet")
-    told(capsys, ["modified", "--scheme", "lie2", "--hamiltonian", formula], words)
     lie2 = ["prove", "--scheme", "lie2"]
     told(capsys, [*lie2, "--time-dependent", "--hamiltonian", formula], ("--time-dependent",))
 

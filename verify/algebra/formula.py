@@ -41,10 +41,6 @@ _APPLY: dict[type, Callable[[sympy.Expr, sympy.Expr], sympy.Expr]] = {
     ast.Mult: operator.mul,
     ast.Div: operator.truediv,
 }
-_NO_TIME = (
-    "only `prove`, `run`, `separate`, `export`, `check-integrator` and scenes take an H that "
-    "depends on time as yet"
-)
 _SHORT = 18  # digits of a number that is surely within the limits
 _DECIMAL = re.compile(r"[0-9.eE+-]+", re.ASCII)
 _PARAMETER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,31}")
@@ -95,15 +91,13 @@ def parse(
     names: Iterable[str] | None = None,
     *,
     source: str = "formula",
-    time: bool = False,
 ) -> sympy.Expr:
     """The exact expression that `text` writes.
 
-    `names`: the names that may occur; None allows p, q and any parameter name, and t where `time`
-    is allowed for. `source` is the name under which an error speaks of the text. Raises InputError,
-    never anything else.
+    `names`: the names that may occur; None allows p, q, t and any parameter name. `source` is the
+    name under which an error speaks of the text. Raises InputError, never anything else.
     """
-    return read(text, names, source=source, time=time)[0]
+    return read(text, names, source=source)[0]
 
 
 def read(
@@ -111,7 +105,6 @@ def read(
     names: Iterable[str] | None = None,
     *,
     source: str = "formula",
-    time: bool = False,
 ) -> tuple[sympy.Expr, list[Requirement]]:
     """As `parse`, with all that what is written asks for to be defined, simplified away or not."""
     if not isinstance(text, str):
@@ -127,7 +120,7 @@ def read(
     line = " ".join(text.replace("^", "**").split())
     tree = _tree(line, text, source)
     known = None if names is None else frozenset(names)
-    reader = _Reader(source, text, line, known, time)
+    reader = _Reader(source, text, line, known)
     result = reader.read(tree, 0)
     if not isinstance(tree, ast.BinOp):
         checked(result, source, text)
@@ -160,11 +153,8 @@ def _nodes() -> ModuleType:
 class _Reader:
     """Turns one syntax tree into an expression; each method takes a node and its depth."""
 
-    def __init__(
-        self, source: str, text: str, line: str, names: frozenset[str] | None, time: bool
-    ) -> None:
+    def __init__(self, source: str, text: str, line: str, names: frozenset[str] | None) -> None:
         self.source, self.text, self.line, self.names = source, text, line, names
-        self.time = time
         self.required: list[Requirement] = []
 
     def fail(self, problem: str, at: ast.expr | int | None = None) -> InputError:
@@ -219,8 +209,6 @@ class _Reader:
     def name(self, name: str, at: ast.expr | None = None) -> sympy.Expr:
         if name == "pi":
             return sympy.pi
-        if name == "t" and self.names is None and not self.time:
-            raise self.fail(f"t is not allowed: {_NO_TIME}", at)
         if self.names is not None and name not in self.names:
             raise self.fail(_nodes().unknown_name(name, self.names, FUNCTIONS), at)
         if self.names is None and name not in ("p", "q", "t"):

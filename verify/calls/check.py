@@ -55,7 +55,7 @@ def check(
     >>> str(found.verdict), found.area_preserving, found.order
     ('PROVED', False, 2)
     """
-    exact = hamiltonian_from(system, parameters, time=True)
+    exact = hamiltonian_from(system, parameters)
     if order is not None:
         order = whole("order", order, 1, MOST_CLAIMED)
     if not isinstance(area_preserving, bool):

@@ -54,7 +54,7 @@ def program(
     name: str = "step",
 ) -> Program:
     """What is written: the map as assignments, with its constants; see `export`."""
-    exact = hamiltonian_from(system, parameters, time=True)
+    exact = hamiltonian_from(system, parameters)
     found = scheme_from(scheme)
     step_map = step_map_from(found, exact)
     if isinstance(found, Scheme):

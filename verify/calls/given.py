@@ -40,13 +40,10 @@ _SCHEME = (
 )
 
 
-def hamiltonian_from(
-    system: GivenSystem, parameters: GivenParameters = None, *, time: bool = False
-) -> Hamiltonian:
+def hamiltonian_from(system: GivenSystem, parameters: GivenParameters = None) -> Hamiltonian:
     """The Hamiltonian that is meant, with these parameter values beside those that it has.
 
-    `time`: whether it may depend on t. Raises InputError for what is no system, an unknown name, a
-    bad formula or parameter.
+    Raises InputError for what is no system, an unknown name, a bad formula or parameter.
 
     >>> hamiltonian_from("Duffing", {"delta": 0.1}).texts
     {'hamiltonian': 'delta*q**4/4 + p**2/2 + q**2/2', 'parameters': {'delta': '0.1'}}
@@ -55,24 +52,17 @@ def hamiltonian_from(
         raise InputError("parameters", parameters, "is not a mapping of names to values")
     if isinstance(system, Hamiltonian):
         values = {**dict(system.values), **(parameters or {})}
-        return _allowed(system.with_values(values) if parameters else system, time)
+        return system.with_values(values) if parameters else system
     if isinstance(system, System):
-        return _allowed(system.hamiltonian(parameters), time)
+        return system.hamiltonian(parameters)
     if not isinstance(system, str):
         raise InputError("system", system, _SYSTEM)
     name = systems.canonical(system)
     if name in systems.names():
-        return _allowed(systems.get(name).hamiltonian(parameters), time)
+        return systems.get(name).hamiltonian(parameters)
     if len(system.strip()) >= _LEAST and _NAME.fullmatch(system.strip()):
         raise unknown("system", system, systems.names(), "; or a formula in p and q")
-    return Hamiltonian.parse(system, parameters, time=time)
-
-
-def _allowed(hamiltonian: Hamiltonian, time: bool) -> Hamiltonian:
-    if hamiltonian.time_dependent and not time:
-        problem = "depends on t, which this call does not take as yet"
-        raise InputError("hamiltonian", hamiltonian.formula, problem)
-    return hamiltonian
+    return Hamiltonian.parse(system, parameters)
 
 
 def scheme_from(scheme: GivenScheme) -> Scheme | StepMap:
@@ -158,7 +148,7 @@ def scene_of(
     `t0`: when its runs start, which an H without t does not look at. `known_as`: the name of the
     system, where it has one.
     """
-    exact = hamiltonian_from(system, parameters, time=True)
+    exact = hamiltonian_from(system, parameters)
     data = {
         **({"system": known_as} if known_as else {"hamiltonian": exact.formula}),
         "parameters": dict[str, Fraction](exact.values),

@@ -45,7 +45,7 @@ def prove(
                 name, parameters or claims, "does not go with a StepMap that is proved"
             )
         return prove_map(system, claims)
-    exact = hamiltonian_from(system, parameters, time=True)
+    exact = hamiltonian_from(system, parameters)
     if scheme is None:
         raise InputError("scheme", NOT_GIVEN, "is missing; such as prove('duffing', 'lie2')")
     found = scheme_from(scheme)

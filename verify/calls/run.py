@@ -73,7 +73,7 @@ def run(
     >>> found.values["lambda"] < 0, found.orbit.t.tolist()[:3], found.orbit.texts("p")[1]
     (True, [0.0, 0.01, 0.02], '-0.04875')
     """
-    exact = hamiltonian_from(system, parameters, time=True)
+    exact = hamiltonian_from(system, parameters)
     check_start(exact, q, p, t0)
     name = scheme_name(scheme, exact)
     count = steps_from(steps, time, step_size)

@@ -42,7 +42,7 @@ def separate(
     >>> found.plain.parts.truncation > found.plain.parts.total
     True
     """
-    exact = hamiltonian_from(system, parameters, time=True)
+    exact = hamiltonian_from(system, parameters)
     name, count = scheme_name(scheme, exact), steps_from(steps, time, step_size)
     with progress_of(progress, "separating, steps", study.RUNS * count, adding=True) as tell:
         return study.separate(
@@ -79,7 +79,7 @@ def separate_grid(
     N = `steps` steps, or N = ⌊time / h⌋ of each h. Raises InputError as `separate` does, and where
     a step size is given twice.
     """
-    exact = hamiltonian_from(system, parameters, time=True)
+    exact = hamiltonian_from(system, parameters)
     name, sizes = scheme_name(scheme, exact), listed("step_sizes", step_sizes)
     steps = None if steps is None else whole("steps", steps, 1)
     total = study.RUNS * sum(count for _, count in study.grid(sizes, steps, time))

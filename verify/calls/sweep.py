@@ -37,8 +37,8 @@ def sweep(
 
     The arguments are those of `verify.run`. `scheme`, `step_size`, `q`, `p` and each of the
     `parameters` may be lists, ranges or arrays; `time` gives every step size its N = ⌊time / h⌋.
-    `options`: `arithmetic`, `digits`. Raises InputError, one line, as `verify.run` does; a run that
-    left its range has empty values, and its `status` says so.
+    `options`: `arithmetic`, `digits`, `t0`. Raises InputError, one line, as `verify.run`; a run
+    that left its range has empty values, and its `status` says so.
 
     >>> found = sweep("duffing", ["lie2", "rk4"], parameters={"delta": 1}, q=1.5, p=0,
     ...               step_size=[0.1, 0.05], time=1)
@@ -47,7 +47,7 @@ def sweep(
     >>> found.column("lambda").shape, found.column("step_size").tolist()
     ((4,), [0.1, 0.05, 0.1, 0.05])
     """
-    known = {"arithmetic", "digits"}
+    known = {"arithmetic", "digits", "t0"}
     for name in set(options) - known:
         raise InputError(name, options[name], f"unknown; allowed: {', '.join(sorted(known))}")
     values = _parameters(parameters)

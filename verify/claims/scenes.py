@@ -42,7 +42,9 @@ def scene_for(
     """As `_scene_for`, and InputError where the claim speaks of no H that depends on time."""
     name, scene = _scene_for(claim, hamiltonian_keys, runs, named)
     if claim.autonomous and scene.exact_hamiltonian().time_dependent:
-        raise InputError("kind", claim.kind, "speaks of no H that depends on t as yet")
+        raise InputError(
+            "kind", claim.kind, "is of orbits that close, and so of no H that depends on t"
+        )
     return name, scene
 
 

@@ -19,7 +19,7 @@ _CLAIMED = click.IntRange(1, 12)
 
 @click.command("check-integrator")
 @click.argument("target", metavar="MODULE:FUNCTION")
-@with_hamiltonian(time=True)
+@with_hamiltonian
 @click.option(
     "--arguments",
     metavar="ORDER",

@@ -73,9 +73,7 @@ def prove(
         for option, given in {"separable": separable, "time-dependent": time_dependent}.items():
             if given:
                 raise InputError(f"--{option}", NOT_GIVEN, "goes with --every-hamiltonian")
-        return _prove_one(
-            hamiltonian_of(system, hamiltonian, params, time=True), scheme, certificate
-        )
+        return _prove_one(hamiltonian_of(system, hamiltonian, params), scheme, certificate)
     if system is not None or hamiltonian is not None or params:
         raise InputError(
             "--every-hamiltonian", NOT_GIVEN, "goes without --system, --hamiltonian, --param"

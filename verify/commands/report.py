@@ -127,7 +127,7 @@ def _sections(
     """All that is known of a scheme on one orbit, its largest step over time, and for every H."""
     from verify.arithmetic.exact import positive
 
-    exact = hamiltonian_of(given["system"], given["hamiltonian"], given["params"], time=True)
+    exact = hamiltonian_of(given["system"], given["hamiltonian"], given["params"])
     start = {"q": q, "p": p}
     grid = {"step_sizes": step_sizes, "initial_values": [start], "separate": True}
     grid |= {} if exact.time_dependent else {"growth": True}

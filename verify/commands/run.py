@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@with_hamiltonian(time=True)
+@with_hamiltonian
 @scheme_option
 @answering
 @cache_option

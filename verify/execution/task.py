@@ -66,7 +66,7 @@ class HamiltonianTask(Task):
     parameters: dict[str, Number]
 
     def exact_hamiltonian(self) -> Hamiltonian:
-        return Hamiltonian.parse(self.hamiltonian, self.parameters, time=True)
+        return Hamiltonian.parse(self.hamiltonian, self.parameters)
 
     def asked(self, *without: str) -> dict[str, Any]:
         """What it asks for beside H, by the names of its fields."""

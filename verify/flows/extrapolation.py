@@ -72,9 +72,9 @@ class Flow:
     def __init__(self, field: VectorField, digits: int) -> None:
         self.arithmetic = mpfr.make(digits + _GUARD)
         ring, self.timed = field.ring, field.timed
-        self._names = ("p", "q", "t") if self.timed else ("p", "q")
+        self.names = ("p", "q", "t") if self.timed else ("p", "q")
         elements = [(ring, -field.h_q), (ring, field.h_p)]
-        self._slopes = functions_at(self.arithmetic, elements, self._names)
+        self._slopes = functions_at(self.arithmetic, elements, self.names)
         self._midpoint = self._midpoint_in_time if self.timed else self._midpoint_still
         self._tolerance = self.arithmetic.number(Fraction(1, 10 ** (digits + _GUARD - _LOST)))
         self._columns = 6 + digits // 3  # more of them gain less than a shorter step does
@@ -84,7 +84,7 @@ class Flow:
 
     def state(self, point: Mapping[str, Fraction]) -> State:
         """z at a point: p and q by name, and t where H depends on it."""
-        return tuple(self.number(point[name]) for name in self._names)
+        return tuple(self.number(point[name]) for name in self.names)
 
     def slope(self, z: State) -> State:
         """f(z) = (−H_q, H_p). Raises NoFlowError where it is not defined."""

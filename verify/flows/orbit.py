@@ -4,6 +4,8 @@ What a stability verdict needs to know of the exact solution, before any scheme 
 flow is followed with few digits until it closes (in phase space, or up to a period of H in p or q),
 or until the time is over. Lengths are measured in each coordinate by the orbit's own reach, so that
 neither the size of an orbit nor the units of p and q matter.
+
+Where H depends on time nothing closes, and nothing rests: the orbit is followed to its end.
 """
 
 from collections.abc import Sequence
@@ -20,7 +22,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.prose import Prose, prose, read_prose
 
 _DIGITS, _MOST_DIGITS = 20, 40
-_MOST_STEPS = 3000
+_MOST_STEPS, _MOST_IN_TIME = 3000, 20_000
 _PART = Fraction(2, 5)  # of 1/ω, the time of a step at most: 16 points on a circle
 _FAR = 10**6  # an orbit that goes so many times farther than it has before is leaving
 _NEAR = Fraction(1, 5)  # of the reach: what crosses the line through z₀ so near to it is back
@@ -29,15 +31,16 @@ _FASTER = 10**9  # a step that has to be so many times shorter than before: the 
 _STILL = 10**12
 _OUTWARDS = 30  # steps in a row of an orbit that is leaving, at least
 
-Kind = Literal["closed", "rotates", "at rest", "open", "escapes", "unknown"]
+Kind = Literal["closed", "rotates", "at rest", "open", "driven", "escapes", "unknown"]
 
 
 @dataclass(frozen=True)
 class ExactOrbit:
     """What is known of the orbit through z₀ over a time T.
 
-    `kind`: closed, closed up to a period of H (rotates), at rest, still under way at T (open),
-    leaves every bound (escapes), or not followed to its end (unknown); `summary` says more.
+    `kind`: closed, closed up to a period of H (rotates), at rest, still under way at T (open), or
+    at its end where H depends on time (driven), leaves every bound (escapes), or not followed to
+    its end (unknown); `summary` says more.
     `centre` and `reach` of p and q; `turns`: the coordinates that H is periodic in and the orbit
     runs through, in which there is no bound. `scale`: of the energy. `stiffness`: the greatest ω² =
     det Hess H on the orbit; `period`: that of a closed one, about.
@@ -55,10 +58,12 @@ class ExactOrbit:
 
 # The maps of several schemes have the same orbits, some hundreds.
 @lru_cache(maxsize=4096)
-def exact_orbit(hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fraction) -> ExactOrbit:
-    """The orbit through (p, q) until `time`."""
-    orbit = _OrbitSearch(hamiltonian, (p, q), time).orbit()
-    if orbit.kind not in ("escapes", "open"):
+def exact_orbit(
+    hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fraction, t0: Fraction = Fraction(0)
+) -> ExactOrbit:
+    """The orbit through (p, q), at t0 where H depends on it, for the length `time`."""
+    orbit = _OrbitSearch(hamiltonian, (p, q), time, t0).orbit()
+    if hamiltonian.time_dependent or orbit.kind not in ("escapes", "open"):
         return orbit
     exactly = _by_algebra(hamiltonian, p, q, time)
     if exactly is None:
@@ -80,7 +85,11 @@ def _by_algebra(hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fracti
 
 class _OrbitSearch:
     def __init__(
-        self, hamiltonian: Hamiltonian, start: tuple[Fraction, Fraction], time: Fraction
+        self,
+        hamiltonian: Hamiltonian,
+        start: tuple[Fraction, Fraction],
+        time: Fraction,
+        t0: Fraction,
     ) -> None:
         field, _ = hamiltonian.field()
         ring = field.ring
@@ -88,11 +97,10 @@ class _OrbitSearch:
         stiffness = ring.reduce(h_pp * ring.diff(field.h_q, "q") - h_pq * h_pq)
         self.flow = Flow(field, _DIGITS + initial_value_digits(start))
         self.arithmetic = self.flow.arithmetic
-        self.at = functions_at(
-            self.arithmetic, [(ring, x) for x in (-field.h_q, field.h_p, stiffness, field.energy)]
-        )
-        self.start, self.time = start, self.number(time)
-        self.z0: State = self.number(start[0]), self.number(start[1])
+        elements = [(ring, x) for x in (-field.h_q, field.h_p, stiffness, field.energy)]
+        self.at = functions_at(self.arithmetic, elements, self.flow.names)
+        self.start, self.time, self.timed = start, self.number(time), field.timed
+        self.z0: State = tuple(map(self.number, (*start, t0)[: len(self.flow.names)]))
         self.shifts = [self.turned(s) for s in shifts(hamiltonian)]
         self.free = tuple(
             x.is_zero() for x in (field.h_p, field.h_q)
@@ -114,9 +122,9 @@ class _OrbitSearch:
             self.note(self.z0)
         except NoFlowError as error:
             return self.found("unknown", error.said)
-        if not any(self.rates[0][:2]):
+        if not self.timed and not any(self.rates[0][:2]):
             return self.found("at rest", "stays where it is, an equilibrium")
-        if any(self.free):
+        if not self.timed and any(self.free):
             names = ("p", "q") if self.free[0] else ("q", "p")
             summary = (
                 f"H does not depend on {names[0]}: {names[1]} stays and {names[0]} moves evenly"
@@ -140,13 +148,13 @@ class _OrbitSearch:
         with self.arithmetic.context():
             z, time, step = self.z0, self.time - self.time, self.time / 16
         outwards, longest = 0, None
-        for _ in range(_MOST_STEPS):
+        for _ in range(_MOST_IN_TIME if self.timed else _MOST_STEPS):
             with self.arithmetic.context():
                 left = self.time - time
                 step = min(2 * step, self.allowed(), left)
             step, after = self.stepped(z, step)
             if after is None or (longest and step < left and step * _FASTER < longest):
-                summary = f"becomes ever faster at t = `{float(time):.6g}`"
+                summary = f"becomes ever faster at t = `{self.clock(time):.6g}`"
                 return self.found("escapes", summary)
             with self.arithmetic.context():
                 time = time + step
@@ -157,11 +165,11 @@ class _OrbitSearch:
             self.note(after)
             if grown > _FAR and outwards >= _OUTWARDS:
                 summary = (
-                    f"is `{_FAR:.0e}` times as far out as z0 at t = `{float(time):.6g}`, "
+                    f"is `{_FAR:.0e}` times as far out as z0 at t = `{self.clock(time):.6g}`, "
                     "and goes on"
                 )
                 return self.found("escapes", summary)
-            back = self.returned(z, after)
+            back = None if self.timed else self.returned(z, after)
             if back is not None:
                 shift, part = back
                 with self.arithmetic.context():
@@ -170,9 +178,17 @@ class _OrbitSearch:
                 summary = f"{kind}, with a period of about `{float(period):.3g}`"
                 return self.found(kind, summary, shift, period=self.arithmetic.exact(period))
             z = after
+            if time >= self.time and self.timed:
+                return self.found(
+                    "driven", f"is driven; followed to its end, t = `{self.clock(time):.6g}`"
+                )
             if time >= self.time:
-                return self.found("open", f"is still under way at t = `{float(time):.6g}`")
-        return self.found("unknown", f"was followed to t = `{float(time):.6g}` only")
+                return self.found("open", f"is still under way at t = `{self.clock(time):.6g}`")
+        return self.found("unknown", f"was followed to t = `{self.clock(time):.6g}` only")
+
+    def clock(self, time: Number) -> float:
+        """t after so long."""
+        return float(time) + (float(self.z0[2]) if self.timed else 0)
 
     def allowed(self) -> Number:
         """The step that the local frequency allows; call it inside the context."""
@@ -193,8 +209,9 @@ class _OrbitSearch:
 
     def size(self, z: State) -> Number:
         """|z| in parts of |z₀|, by the greater coordinate; call it inside the context."""
-        first = max(map(abs, self.z0)) or max(map(abs, self.points[min(1, len(self.points) - 1)]))
-        return max(map(abs, z)) / first if first else first
+        near = (self.z0, self.points[min(1, len(self.points) - 1)])
+        first, second = (max(map(abs, x[:2])) for x in near)
+        return max(map(abs, z[:2])) / (first or second) if first or second else first
 
     def returned(self, z: State, after: State) -> tuple[State, Number] | None:
         """The shift with which the last step crossed the line through z₀, if it did so near z₀.
@@ -234,7 +251,7 @@ class _OrbitSearch:
     def _ends(self) -> tuple[State, State]:
         """The middle of the points seen, and how far they reach from it."""
         middle, reach = [], []
-        for x in zip(*self.points, strict=True):
+        for x in list(zip(*self.points, strict=True))[:2]:
             low, high = min(x), max(x)
             middle.append((low + high) / 2)
             reach.append((high - low) / 2)
@@ -264,11 +281,22 @@ class _OrbitSearch:
             summary=read_prose(summary),
             centre=(exact(centre[0]), exact(centre[1])),
             reach=(reach[0], reach[1]),
-            turns=(bool(shift[0]), bool(shift[1])),
+            turns=self.turns(reached, shift),
             scale=scale,
             stiffness=exact(stiffest),
             period=period,
         )
+
+    def turns(self, reached: State, shift: Sequence[Number]) -> tuple[bool, bool]:
+        """In which coordinates it goes round: that of its own shift; in time, where it has gone
+        further than a period of H."""
+        p, q = (
+            any(2 * reached[k] > abs(s[k]) > 0 for s in self.shifts)
+            if self.timed
+            else bool(shift[k])
+            for k in (0, 1)
+        )
+        return p, q
 
 
 def initial_value_digits(start: tuple[Fraction, Fraction]) -> int:

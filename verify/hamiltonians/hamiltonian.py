@@ -33,18 +33,16 @@ from verify.notebook import aligned_latex, cut, short_latex
 
 # A report asks for the same few Hamiltonians thousands of times: once for every task.
 @lru_cache(maxsize=64)
-def _of_formula(formula: str, time: bool) -> "Hamiltonian":
+def _of_formula(formula: str) -> "Hamiltonian":
     """H as it is read from its own text: tasks, kept results and certificates hold that.
 
     It can be much longer than the formula, and sympy multiplies a number into a sum one level
     deeper each time that it is read.
     """
-    found, required = read(formula, source="hamiltonian", time=time)
+    found, required = read(formula, source="hamiltonian")
     for _ in range(MAX_DEPTH):
         same = reads_back(found, MAX_LENGTH)
-        again = (
-            found if same else parse(to_text(found), source="hamiltonian, written out", time=time)
-        )
+        again = found if same else parse(to_text(found), source="hamiltonian, written out")
         if again == found:
             made = Hamiltonian(found)
             written = Domain.of(required) if required else EVERYWHERE
@@ -81,18 +79,15 @@ class Hamiltonian:
         cls,
         formula: str,
         parameters: Mapping[str, Exact | None] | None = None,
-        *,
-        time: bool = False,
     ) -> "Hamiltonian":
         """From a formula (see `verify.algebra.formula`) and parameter values; None leaves a symbol.
 
-        `time`: whether H may depend on t, which most of the toolkit does not take as yet. Raises
-        InputError for a bad formula, a bad value, a parameter that H does not have, or a name that
-        is likely meant for a p or q that is missing.
+        Raises InputError for a bad formula, a bad value, a parameter that H does not have, or a
+        name that is likely meant for a p or q that is missing.
         """
         if not isinstance(formula, str):  # the parser says so
             parse(formula, source="hamiltonian")
-        made = _of_formula(formula, time)
+        made = _of_formula(formula)
         if parameters is not None and not isinstance(parameters, Mapping):
             raise InputError("parameters", parameters, "is not a mapping of names to values")
         result = made.with_values(parameters or {})

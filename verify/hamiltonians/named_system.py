@@ -40,7 +40,7 @@ class System:
 
     def hamiltonian(self, values: Mapping[str, Exact | None] | None = None) -> Hamiltonian:
         """H with these parameter values; parameters without one stay symbols."""
-        return Hamiltonian.parse(self.formula, values, time=True)
+        return Hamiltonian.parse(self.formula, values)
 
     @property
     def time_dependent(self) -> bool:

@@ -27,7 +27,7 @@ _PARTS = 64  # of a step
 def check_times(hamiltonian: Hamiltonian, t0: Fraction, step_size: Fraction, steps: int) -> None:
     """InputError, which names the step, where H is not smooth at some time on the way.
 
-    >>> opened = Hamiltonian.parse("p**2/2 + q**2/(1 - t)", time=True)
+    >>> opened = Hamiltonian.parse("p**2/2 + q**2/(1 - t)")
     >>> check_times(opened, Fraction(0), Fraction(2), 9)
     Traceback (most recent call last):
     verify.errors.InputError: t0=0: at step 1, t = 0 … 2, H is not smooth; it is where t - 1 ≠ 0

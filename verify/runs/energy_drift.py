@@ -32,11 +32,15 @@ def energy_drifts(result: RunResult, order: int = 4, points: int = _POINTS) -> l
     """The drift of H, and of H̃ with each term up to h^order that is not 0, in turn.
 
     `points`: so many states at most. Raises InputError where the scheme has no modified Hamiltonian
-    that differs from H: where a term is not Hamiltonian first.
+    that differs from H: where a term is not Hamiltonian first; and for an H that depends on time,
+    which nothing keeps.
     """
     whole("order", order, 1, MOST_ORDER)
     whole("points", points, 1, MOST_POINTS)
     hamiltonian = Hamiltonian.parse(result.hamiltonian, result.parameters)
+    if hamiltonian.time_dependent:
+        problem = "depends on t: no energy is kept, and its drift says nothing"
+        raise InputError("hamiltonian", hamiltonian.formula, problem)
     scheme = schemes.get(result.scheme)
     found = modified_of(scheme.step_map(hamiltonian), scheme, order)
     ring, energies = _energies(found)

@@ -67,7 +67,7 @@ def orbit_of(
     InputError where no digits of it can be confirmed.
     """
     whole("points", points, 1, MOST_POINTS)
-    hamiltonian = Hamiltonian.parse(result.hamiltonian, result.parameters, time=True)
+    hamiltonian = Hamiltonian.parse(result.hamiltonian, result.parameters)
     step_size, q, p, t0 = map(Fraction, (result.step_size, result.q, result.p, result.t0))
     orbit = Orbit(hamiltonian, result.scheme, step_size, q, p, t0=t0)
     binary = result.arithmetic == float64.NAME

@@ -91,10 +91,12 @@ def proved_run(
     digits: int,
     observables: Sequence[str],
 ) -> RunResult | None:
-    """The observables without any step, and without p and q, where a proof gives all of them."""
+    """The observables without any step, and without p and q, where a proof gives all of them; of a
+    run that is asked for p and q alone it gives none.
+    """
     check(hamiltonian, steps, digits, observables)
     known = proved(step_map_of(hamiltonian, scheme), step_size, steps, digits)
-    if not set(observables) <= set(known):
+    if not observables or not set(observables) <= set(known):
         return None
     found = Bounds({}, "a proof, and no run", rigorous=True)
     done = Measured(found, ball.NAME, Outcome())

@@ -29,7 +29,7 @@ def solution_errors(result: RunResult, points: int = 200) -> tuple[tuple[Fractio
     Raises InputError where it cannot be followed so far.
     """
     table = orbit_of(result, points)
-    hamiltonian = Hamiltonian.parse(result.hamiltonian, result.parameters, time=True)
+    hamiltonian = Hamiltonian.parse(result.hamiltonian, result.parameters)
     t0 = Fraction(result.t0)
     times = [Fraction(t) for t in table.texts("t")]
     states = zip(table.texts("p"), table.texts("q"), strict=True)

@@ -43,12 +43,6 @@ class Frozen(BaseModel):
 class Section(Frozen):
     """What a scene asks for, in a table of its own."""
 
-    @property
-    def without_time(self) -> str | None:
-        """Which key of it takes no H that depends on time as yet; "" for all of it, None where each
-        does."""
-        return ""
-
 
 class OfScheme(Frozen):
     """What was found of a scheme for one H with its parameter values."""

@@ -133,10 +133,6 @@ class Flow(PlacedShape, Section):
     source: Annotated[str, Field(max_length=80)] = ""
     """What of a paper it repeats, for its caption."""
 
-    @property
-    def without_time(self) -> None:
-        """It takes every H."""
-
     @model_validator(mode="after")
     def _check(self) -> Self:
         if bool(self.steps) == bool(self.times):

@@ -72,11 +72,6 @@ class Grid(Section):
         return steps_of(self.time, self.steps, h)
 
     @property
-    def without_time(self) -> str | None:
-        """Growth laws, where they are asked for."""
-        return "growth" if self.growth else None
-
-    @property
     def runs(self) -> int:
         """Those of one scheme."""
         return len(self.step_sizes) * len(self.initial_values)
@@ -103,10 +98,6 @@ class SeparationOver(Section):
     def _check(self) -> Self:
         self.as_grid()
         return self
-
-    @property
-    def without_time(self) -> None:
-        """It takes every H."""
 
     def as_grid(self) -> Grid:
         """The same as a grid, which checks it."""
@@ -149,10 +140,6 @@ class Series(Section):
             raise InputError("time, steps", NOT_GIVEN, "give one of the two")
         steps_of(self.time, self.steps, self.step_size)
         return self
-
-    @property
-    def without_time(self) -> None:
-        """It takes every H."""
 
     @property
     def count(self) -> int:

@@ -140,7 +140,9 @@ class Scene(Frozen):
         for name in dict.fromkeys((*self.schemes, *also)):
             scheme_catalogue.get(name).step_map(exact)
         if exact.time_dependent:
-            self._check_takes_time(exact)
+            if self.grid is not None and self.grid.growth:
+                problem = "depends on t; [grid] with growth = true is of orbits that close"
+                raise InputError("hamiltonian", exact.formula, problem)
             for strobed in self.stroboscopic:
                 strobed.check_hamiltonian(exact)
         free = set(exact.symbols)
@@ -156,22 +158,11 @@ class Scene(Frozen):
                 raise InputError("parameter", over.parameter, f"H has no such; it has: {known}")
         return self
 
-    def _check_takes_time(self, exact: Hamiltonian) -> None:
-        for key, section in self._by_key():
-            within = section.without_time
-            if within is not None:
-                where = f"[{key}]{f' with {within} = true' if within else ''}"
-                problem = f"depends on t, which {where} does not take as yet"
-                raise InputError("hamiltonian", exact.formula, problem)
-
     def sections(self) -> list[Section]:
         """Every [section] and [[section]] of the scene, whatever it asks for."""
-        return [section for _, section in self._by_key()]
-
-    def _by_key(self) -> list[tuple[str, Section]]:
-        given = ((name, getattr(self, name)) for name in Scene.model_fields)
-        each = ((n, x) for n, v in given for x in (v if isinstance(v, tuple) else (v,)))
-        return [(name, x) for name, x in each if isinstance(x, Section)]
+        given = (getattr(self, name) for name in Scene.model_fields)
+        each = (x for value in given for x in (value if isinstance(value, tuple) else (value,)))
+        return [x for x in each if isinstance(x, Section)]
 
     def with_only(self, **sections: Any) -> "Scene":
         """The same H and schemes with these sections, and no others."""
@@ -189,7 +180,7 @@ class Scene(Frozen):
         if self.system is not None:
             return systems.get(self.system).hamiltonian(self.parameters)
         systems.check_is_formula(self.hamiltonian or "")
-        return Hamiltonian.parse(self.hamiltonian or "", self.parameters, time=True)
+        return Hamiltonian.parse(self.hamiltonian or "", self.parameters)
 
 
 def load_scene(path: Path) -> Scene:

@@ -68,11 +68,6 @@ class WorkPrecision(Section):
     peers: bool | None = None
     """Whether others' solvers stand beside; where it is left out, those installed do."""
 
-    @property
-    def without_time(self) -> str | None:
-        """Others' solvers, where they are asked for."""
-        return "peers" if self.peers else None
-
     @model_validator(mode="after")
     def _check(self) -> Self:
         for name in ("step_sizes", "schemes", "number_systems", "digits"):
@@ -114,10 +109,6 @@ class Reference(Section):
     """The schemes; the scene's, where it is left out."""
     flow: Annotated[bool, Field(strict=True)] = True
     """Whether the exact flow at the times N·h is given, too."""
-
-    @property
-    def without_time(self) -> None:
-        """It takes every H."""
 
     @model_validator(mode="after")
     def _check(self) -> Self:

@@ -44,10 +44,6 @@ class Stroboscopic(Section):
     """What of a paper it repeats, for its caption."""
 
     @property
-    def without_time(self) -> None:
-        """It takes every H."""
-
-    @property
     def steps(self) -> int:
         """Of one period."""
         return int(self.period / self.step_size)

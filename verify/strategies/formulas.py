@@ -59,7 +59,7 @@ class Formula:
 
     def hamiltonian(self) -> Hamiltonian:
         """H of that text, with its parameters' values."""
-        return Hamiltonian.parse(self.text, dict(self.parameters), time=True)
+        return Hamiltonian.parse(self.text, dict(self.parameters))
 
 
 def formulas(

@@ -53,7 +53,7 @@ def as_read(data: Data) -> Data:
 def of_text(text: str, name: str) -> Data:
     """The certificate of the scheme of that name for this H."""
     scheme = get(name)
-    proof = prove(scheme.step_map(Hamiltonian.parse(text, time=True)), scheme)
+    proof = prove(scheme.step_map(Hamiltonian.parse(text)), scheme)
     return as_read(of_one(proof, potential_of(proof, scheme)))
 
 
@@ -70,7 +70,7 @@ def of_drawn(draw: st.DrawFn) -> Data:
     bent = draw(st.sampled_from(INVOLVED)).format(f"({inner})")
     text = f"p**2/2 + ({draw(rationals(4))})*{bent} + ({draw(rationals(3))})*q**3 + 5"
     scheme = get(draw(st.sampled_from(["lie1", "lie2", *["symplectic-euler"] * separable])))
-    proof = prove(scheme.step_map(Hamiltonian.parse(text, time=True)), scheme)
+    proof = prove(scheme.step_map(Hamiltonian.parse(text)), scheme)
     potential = potential_of(proof, scheme)
     data = as_read(of_one(proof, potential))
     assert (data["order"], data["convergence_order"]) == (proof.order, proof.convergence_order)

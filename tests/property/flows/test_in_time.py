@@ -23,7 +23,7 @@ CASES = {
 
 
 def flow(formula: str, time: object, t0: object, digits: int = 25, **start: Fraction) -> Solution:
-    hamiltonian = Hamiltonian.parse(formula, time=True)
+    hamiltonian = Hamiltonian.parse(formula)
     at = {**START, **start}
     return exact_solution(
         hamiltonian, p=at["p"], q=at["q"], time=Fraction(str(time)), t0=Fraction(str(t0)),
@@ -69,11 +69,11 @@ def test_where_h_opens_it_is_said_and_no_value_given() -> None:
 
 def test_whether_it_stays_bounded_is_not_told_of_such_an_h() -> None:
     with pytest.raises(InputError, match="depends on t"):
-        leaves(Hamiltonian.parse(PENDULUM, time=True), **START, time=Fraction(1))
+        leaves(Hamiltonian.parse(PENDULUM), **START, time=Fraction(1))
 
 
 def test_solution_errors_of_a_run_shrink_with_its_order() -> None:
-    hamiltonian = Hamiltonian.parse(PENDULUM, time=True)
+    hamiltonian = Hamiltonian.parse(PENDULUM)
 
     def last(h: Fraction) -> Fraction:
         made = run(hamiltonian, "rk4", **START, step_size=h, steps=int(2 / h), t0="1/3")

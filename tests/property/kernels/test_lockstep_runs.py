@@ -28,7 +28,7 @@ H = {
 def runs(name: str, points: int = 0, scheme: str = "lie2") -> list[KernelRun]:
     """Eleven, of which no two are alike: the last ones have other steps."""
     text, values = H[name]
-    hamiltonian = Hamiltonian.parse(text, values, time=True)
+    hamiltonian = Hamiltonian.parse(text, values)
     found = []
     for k in range(11):
         start = {"q": Fraction(k - 4, 7), "p": Fraction(3 - k, 11), "h": Fraction(1, 50 + k // 6)}

@@ -185,7 +185,7 @@ def test_and_so_is_that_of_a_proof_for_one_h(seed: int) -> None:
     def text(x: Polynomial) -> str:
         return " + ".join(f"({c})*p**{a}*q**{b}*t**{m}" for (a, b, m), c in x.items())
 
-    hamiltonian = Hamiltonian.parse(f"{text(T)} + {text(V)}", time=True)
+    hamiltonian = Hamiltonian.parse(f"{text(T)} + {text(V)}")
     own = [(kind, sympy.Rational(x)) for kind, x in parts]
     step = shears(hamiltonian, "drawn", own, all_times(own, tuple(map(sympy.Rational, clock))))
     assert convergence_of(step).order == order_by_hand(parts, clock)

@@ -112,7 +112,7 @@ def test_a_step_is_that_of_the_extended_autonomous_system(
 
 
 def test_a_frozen_clock_is_another_step() -> None:
-    made = Hamiltonian.parse("p**2/2 + q**2/2 + q*t", time=True)
+    made = Hamiltonian.parse("p**2/2 + q**2/2 + q*t")
     right, wrong = (
         one_step(made, s, Fraction(1)) for s in ("stormer-verlet", "stormer-verlet, clock frozen")
     )
@@ -126,7 +126,7 @@ def test_h_and_t0_may_be_shifted_together(
     scheme: str, made: Hamiltonian, t0: Fraction, shift: Fraction
 ) -> None:
     moved = made.exact.subs(t, t + sympy.Rational(shift.numerator, shift.denominator))
-    shifted = Hamiltonian.parse(to_text(moved), time=True)
+    shifted = Hamiltonian.parse(to_text(moved))
     here, there = one_step(made, scheme, t0, 3), one_step(shifted, scheme, t0 - shift, 3)
     for (x, x_bound), (y, y_bound) in zip(here, there, strict=True):
         assert abs(x - y) <= x_bound + y_bound
@@ -134,9 +134,7 @@ def test_h_and_t0_may_be_shifted_together(
 
 @pytest.mark.parametrize("scheme", ["lie2", "rk4"])
 def test_a_shift_of_h_alone_is_seen(scheme: str) -> None:
-    made, moved = (
-        Hamiltonian.parse(f"p**2/2 + q**2/2 + q*({time})", time=True) for time in ("t", "t + 1")
-    )
+    made, moved = (Hamiltonian.parse(f"p**2/2 + q**2/2 + q*({time})") for time in ("t", "t + 1"))
     here, there = (one_step(x, scheme, Fraction(1), 3) for x in (made, moved))
     assert any(abs(x - y) > b + c for (x, b), (y, c) in zip(here, there, strict=True))
 
@@ -192,9 +190,7 @@ def test_by_series_the_step_back_begins_at_the_later_time(made: Hamiltonian) -> 
     """And a clock that stands still is not symmetric, where the force changes."""
     for scheme in ("stormer-verlet", "position-verlet"):
         assert by_series(get(scheme).step_map(made), 3).verdict is Verdict.UNDECIDED
-    still = get("position-verlet, clock frozen").step_map(
-        Hamiltonian.parse("p**2/2 + q*t", time=True)
-    )
+    still = get("position-verlet, clock frozen").step_map(Hamiltonian.parse("p**2/2 + q*t"))
     assert by_series(still, 3).verdict is Verdict.REFUTED
 
 
@@ -219,7 +215,7 @@ def test_of_an_h_without_t_t0_changes_nothing(made: Hamiltonian, t0: Fraction) -
 @given(made=in_time)
 def test_what_is_drawn_has_t_and_reads_back(made: Hamiltonian) -> None:
     assert made.time_dependent
-    assert Hamiltonian.parse(made.formula, time=True).exact == made.exact
+    assert Hamiltonian.parse(made.formula).exact == made.exact
 
 
 @few

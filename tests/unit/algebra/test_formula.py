@@ -172,7 +172,6 @@ REFUSED = {
     "star argument": ("sin(*q)", "one argument"),
     "double star argument": ("sin(**q)", "one argument"),
     "function without argument list": ("sin + q", "sin"),
-    "time": ("q*t", "time"),
     "step": ("q*h", "'h'"),
     "leading underscore": ("_q", "parameter"),
     "dunder name": ("__builtins__", "parameter"),

@@ -55,13 +55,21 @@ def test_a_claim_on_a_run_has_its_t0(tmp_path: Path) -> None:
     from verify.hamiltonians.hamiltonian import Hamiltonian
     from verify.runs.run import run
 
-    exact = Hamiltonian.parse("p**2/2 - (1 + cos(2*t)/2)*cos(q)", time=True)
+    exact = Hamiltonian.parse("p**2/2 - (1 + cos(2*t)/2)*cos(q)")
     found = run(exact, "lie2", q=1.5, p=0, step_size="0.1", steps=20, t0="1/3", digits=12,
                 arithmetic="mpfr")  # fmt: skip
     printed = f"{float(found.values['lambda'].value):.6e}"
     claim = f'kind = "lambda"\n{H}\n{RUN}printed = "{printed}"'
     assert verdict(tmp_path, claim).holds
     assert verdict(tmp_path, claim.replace('"1/3"', '"1/4"')) is REFUTED
+
+
+def test_the_distance_from_the_exact_solution_is_that_from_its_t0(tmp_path: Path) -> None:
+    claim = f'kind = "solution_error"\n{H}\n{RUN}'
+    assert verdict(tmp_path, f'{claim}within = "1/100"') is Verdict.MEASURED
+    assert verdict(tmp_path, f'{claim}within = "1/100000"') is REFUTED
+    still = claim.replace('"lie2"', f'"{FROZEN}"')
+    assert verdict(tmp_path, f'{still}within = "1/100"') is REFUTED
 
 
 @pytest.mark.parametrize(
@@ -72,7 +80,7 @@ def test_a_claim_on_a_run_has_its_t0(tmp_path: Path) -> None:
         (f'kind = "order"\norder = 3\n{EVERY}\nscheme = "stormer-verlet"',
          "say 'separable hamiltonian in time'"),
         (f'kind = "order"\norder = 3\n{SEPARABLE}\nscheme = "lie2"', "say 'hamiltonian in time'"),
-        (f'kind = "solution_error"\nwithin = 1\n{H}\n{RUN}', "speaks of no H that depends on t"),
+        (f'kind = "no_pattern"\nwithin = "1/10"\n{H}\n{RUN}', "and so of no H that depends on t"),
         (f'kind = "lambda"\n{H}\n{RUN}printed = "1"'.replace('"1/3"', '"soon"'), "soon"),
     ],
 )  # fmt: skip

@@ -220,7 +220,7 @@ def test_a_refuted_clock_has_a_counterexample_with_its_time() -> None:
     assert f"t = {example.t}" in str(example)
     gap = float(example.found)
     at = [float(x) for x in (example.p, example.q, example.t, example.h)]
-    flow = Flow(Hamiltonian.parse(DRIVEN, time=True).field()[0], 20)
+    flow = Flow(Hamiltonian.parse(DRIVEN).field()[0], 20)
     end = flow.advance(
         tuple(map(flow.number, (example.p, example.q, example.t))), flow.number(example.h)
     )

@@ -15,7 +15,7 @@ from verify.schemes.splitting import right_times
 from verify.schemes.splitting_conditions import Splitting
 
 HALF = sympy.Rational(1, 2)
-DRIVEN = Hamiltonian.parse("p**2/2 + q**4/4 - q*cos(t)", time=True)
+DRIVEN = Hamiltonian.parse("p**2/2 + q**4/4 - q*cos(t)")
 
 
 def every_h(name: str) -> Splitting:

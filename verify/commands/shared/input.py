@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable, Iterable
-from functools import partial, wraps
+from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -115,15 +115,8 @@ def hamiltonian_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return command
 
 
-def with_hamiltonian(
-    command: Callable[..., Any] | None = None, *, time: bool = False
-) -> Callable[..., Any]:
-    """The command with these options, which it gets as one Hamiltonian, `exact`.
-
-    `time`: whether that may depend on t.
-    """
-    if command is None:
-        return partial(with_hamiltonian, time=time)
+def with_hamiltonian(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The command with these options, which it gets as one Hamiltonian, `exact`."""
 
     @wraps(command)
     def given(
@@ -133,19 +126,16 @@ def with_hamiltonian(
         params: tuple[str, ...],
         **options: Any,
     ) -> Any:
-        exact = hamiltonian_of(system, hamiltonian, params, time=time)
+        exact = hamiltonian_of(system, hamiltonian, params)
         return command(*args, exact=exact, **options)
 
     return hamiltonian_options(given)
 
 
 def hamiltonian_of(
-    system: str | None, hamiltonian: str | None, params: tuple[str, ...], *, time: bool = False
+    system: str | None, hamiltonian: str | None, params: tuple[str, ...]
 ) -> "Hamiltonian":
-    """The Hamiltonian that the options name; InputError unless they name one.
-
-    `time`: whether it may depend on t.
-    """
+    """The Hamiltonian that the options name; InputError unless they name one."""
     from verify.hamiltonians import systems
     from verify.hamiltonians.hamiltonian import Hamiltonian
 
@@ -163,13 +153,9 @@ def hamiltonian_of(
             raise InputError("--param", text, f"is more than one; write --param {instead}")
         values[name.strip()] = value
     if system is not None:
-        found = systems.get(system).hamiltonian(values)
-        if found.time_dependent and not time:
-            problem = "depends on t, which this command does not take as yet"
-            raise InputError("--system", system, problem)
-        return found
+        return systems.get(system).hamiltonian(values)
     systems.check_is_formula(hamiltonian or "")
-    return Hamiltonian.parse(hamiltonian or "", values, time=time)
+    return Hamiltonian.parse(hamiltonian or "", values)
 
 
 def paper_folder() -> Path:

@@ -81,7 +81,7 @@ def scenes_of(
         raise InputError(
             "SCENE", NOT_GIVEN, "is missing; or give --system, --scheme, --step-size, …"
         )
-    exact = hamiltonian_of(*(given[name] for name in _SYSTEM), time=True)
+    exact = hamiltonian_of(*(given[name] for name in _SYSTEM))
     for name in (*_NEEDED, *needed):
         if name not in asked:
             raise InputError(name, NOT_GIVEN, "is missing")

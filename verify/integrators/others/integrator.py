@@ -32,7 +32,7 @@ class FloatStep:
     @property
     def exact(self) -> Hamiltonian:
         """H."""
-        return Hamiltonian.parse(self.hamiltonian, time=True)
+        return Hamiltonian.parse(self.hamiltonian)
 
 
 @dataclass(frozen=True)

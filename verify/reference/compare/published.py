@@ -136,7 +136,10 @@ def _runs(folder: Path, name: str) -> Iterator[PublishedRun]:
         told = error.errors(include_url=False)[0]
         where = ".".join(map(str, told["loc"]))
         raise InputError("file", name, f"is no reference data: {where}: {told['msg']}") from None
-    hamiltonian = Hamiltonian.parse(data.hamiltonian, data.parameters, time=data.timed)
+    hamiltonian = Hamiltonian.parse(data.hamiltonian, data.parameters)
+    if hamiltonian.time_dependent and not data.timed:
+        problem = "is no reference data: its H depends on t, and its runs have no t0"
+        raise InputError("file", name, problem)
     for run in data.runs:
         _check_exponents(run, name)
         yield PublishedRun(data.name, hamiltonian, run)

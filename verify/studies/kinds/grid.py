@@ -42,7 +42,8 @@ def grid_runs(scene: Scene, scheme: str, results: Results) -> list[RunResult]:
 
 def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
     name, tasks = called(scene), grid_tasks(scene, scheme)
-    if preserves and scene.grid and set(scene.grid.observables) <= set(CLOSED_FORM):
+    asked = set(scene.grid.observables) if scene.grid else set()
+    if preserves and asked and asked <= set(CLOSED_FORM):
         why = "ΔJ ≡ 0 is proved: ΔJ, MSE and Λ are exactly 0"
         plan.leave_out(f"{name}: {len(tasks)} runs of {scheme}", why)
         return

@@ -55,7 +55,7 @@ def clock_times(t0: float, h: float) -> list[object]:
 
 
 def separated(step_size: str, t0: str, digits: int = 12) -> SeparationResult:
-    hamiltonian = Hamiltonian.parse(FORMULA, {"eps": "1/2"}, time=True)
+    hamiltonian = Hamiltonian.parse(FORMULA, {"eps": "1/2"})
     return separate(hamiltonian, "lie2", q="1.5", p=0, step_size=step_size, steps=STEPS, t0=t0,
                     digits=digits)  # fmt: skip
 
@@ -97,7 +97,7 @@ def test_where_no_addition_rounds_it_is_exactly_0_and_the_run_is_that_of_verify_
     assert found.plain is not None
     assert isinstance(found.plain.parts, PartsInTime)
     assert (found.plain.parts.clock.value, found.plain.parts.clock.bound) == ("0", "0")
-    hamiltonian = Hamiltonian.parse(FORMULA, {"eps": "1/2"}, time=True)
+    hamiltonian = Hamiltonian.parse(FORMULA, {"eps": "1/2"})
     direct = run(hamiltonian, "lie2", q="1.5", p=0, step_size="1/8", steps=STEPS, t0="-3/4",
                  observables=("lambda_plain",))  # fmt: skip
     value = direct.values["lambda_plain"]

@@ -97,7 +97,6 @@ TOLD = {
     "q +": ("column 3: something is missing after +", "q"),
     "* q": ("column 1: something is missing before *", "q"),
     "p + * q": ("column 3: something is missing in + *", "p + q"),
-    "q*t": ("column 3: t is not allowed: only `prove`, `run`, `separate`", "q"),
     "h*q": ("column 1: 'h' stands for something else here: the step size", "q"),
     "q + inf": ("column 5: 'inf' stands for something else here", "q"),
     "p + 1/(q - q)": ("column 8: division by zero", "1/q"),

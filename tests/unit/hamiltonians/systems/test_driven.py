@@ -11,7 +11,6 @@ import sympy
 
 from verify.algebra.formula import symbol
 from verify.calls.given import hamiltonian_from
-from verify.errors import InputError
 from verify.flows.solution import _numerical_solution, exact_solution
 from verify.hamiltonians import forced_motion, systems
 from verify.proof.order import prove
@@ -108,12 +107,9 @@ def test_mathieu_has_the_exponent_of_its_unstable_regime() -> None:
     assert abs(trace) > 2
 
 
-def test_where_no_t_is_taken_it_is_said_in_one_line() -> None:
-    with pytest.raises(InputError, match="depends on t"):
-        hamiltonian_from("mathieu")
-    with pytest.raises(InputError, match="depends on t"):
-        hamiltonian_from(systems.get("mathieu"), {"a": 1})
-    assert hamiltonian_from("Mathieu", time=True).time_dependent
+def test_it_is_found_by_its_name() -> None:
+    assert hamiltonian_from(systems.get("mathieu"), {"a": 1}).time_dependent
+    assert hamiltonian_from("Mathieu").time_dependent
 
 
 def test_a_scene_has_it_by_its_name() -> None:

@@ -15,7 +15,7 @@ from verify.scenes.region_sections import PlacedShape
 from verify.scenes.results.regions import EXACT_FLOW, FlowImage
 from verify.studies.regions.carry import carry
 
-DRIVEN = Hamiltonian.parse("p**2/2 - (1 + cos(2*t)/2)*cos(q)", time=True)
+DRIVEN = Hamiltonian.parse("p**2/2 - (1 + cos(2*t)/2)*cos(q)")
 T0, H, STEPS = Fraction(1, 3), Fraction(1, 20), 30
 Q = np.array([0.5, 1.25, -0.75, 0.125, 1.5])
 P = np.array([0.25, -0.5, 0.75, 1.0, 0.0])

@@ -55,7 +55,7 @@ def test_a_point_is_where_a_run_of_so_many_periods_ends(tmp_path: Path) -> None:
             )
             for periods in (1, 7, 12):
                 one = run(
-                    Hamiltonian.parse(KICKED, time=True), each.scheme, q=orbit.q, p=orbit.p,
+                    Hamiltonian.parse(KICKED), each.scheme, q=orbit.q, p=orbit.p,
                     t0="1/3", step_size="0.05", steps=20 * periods, arithmetic="mpfr", digits=40,
                     observables=(),
                 )  # fmt: skip
@@ -112,7 +112,7 @@ def test_without_t_the_scene_has_no_t0(tmp_path: Path) -> None:
     ],
 )
 def test_which_h_have_a_period(hamiltonian: str, period: str, good: bool) -> None:
-    exact = Hamiltonian.parse(hamiltonian, time=True)
+    exact = Hamiltonian.parse(hamiltonian)
     if good:
         check_period(exact, Fraction(period))
         return

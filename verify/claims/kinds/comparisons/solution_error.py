@@ -45,7 +45,6 @@ class SolutionErrorClaim(RunClaim):
     """
 
     only_here = "an error at one time is that of its own runs"
-    autonomous = True
     kind: Literal["solution_error"]
     step_size: StepSize | None = None
     """That of the grid's runs which is spoken of; all, where it is left out."""
@@ -63,7 +62,8 @@ class SolutionErrorClaim(RunClaim):
         return self
 
     def quantities(self) -> tuple[str, ...]:
-        return ("lambda",)
+        """None: p and q at the end, which every run has that is done and not proved."""
+        return ()
 
     def check_scene(self, scene: Scene) -> None:
         sizes = scene.grid.step_sizes if scene.grid else ()
@@ -87,7 +87,9 @@ class SolutionErrorClaim(RunClaim):
         known = [e for e in errors if e.high is not None and e.low is not None]
         details = [["initial value", "h", "t", "error, of the orbit’s reach"], *map(_row, errors)]
         if not known:
-            return self.result(Verdict.UNDECIDED, "no exact solution is known", details)
+            return self.result(
+                Verdict.UNDECIDED, "no exact solution, or no state at the end, is known", details
+            )
         least, most = (pick(known, key=lambda e: e.high or 0) for pick in (min, max))
         allowed = f"{'within' if self.within else 'beyond'} "
         evidence = prose(
@@ -116,10 +118,13 @@ def _some(holds: Sequence[bool | None]) -> Verdict:
 
 
 def _error_of(exact: Hamiltonian, run: RunResult) -> _Error:
+    if not {"p", "q"} <= set(run.values):  # a scene's run that a proof was given for
+        return _Error(run, None, None)
     p, q, time = Fraction(run.p), Fraction(run.q), Fraction(run.step_size) * run.steps
     try:
-        solution = exact_solution(exact, p=p, q=q, time=time, digits=_DIGITS)
-        reach = exact_orbit(exact, p, q, time).reach
+        t0 = Fraction(run.t0)
+        solution = exact_solution(exact, p=p, q=q, time=time, digits=_DIGITS, t0=t0)
+        reach = exact_orbit(exact, p, q, time, t0).reach
     except (NoFlowError, InputError):
         return _Error(run, None, None)
     lows, highs = [Fraction(0)], [Fraction(0)]

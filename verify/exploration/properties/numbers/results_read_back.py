@@ -33,7 +33,7 @@ def _must_be_same_scene(scene: Scene) -> None:
 
 def _must_be_same(sample: Sample) -> None:
     given, values = sample.hamiltonian, []
-    read = Hamiltonian.parse(given.formula, dict(given.values), time=True)
+    read = Hamiltonian.parse(given.formula, dict(given.values))
     for hamiltonian in (given, read):
         field, _ = hamiltonian.field()
         values.append([enclose(field.ring, x, sample.start, BITS) for x in
