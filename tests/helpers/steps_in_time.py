@@ -11,7 +11,6 @@ from fractions import Fraction
 F = Fraction
 Series = list[Fraction]
 Polynomial = dict[tuple[int, int, int], Fraction]  # of powers of p, q and t
-_DEGREE = 7
 _ONE = F(1)
 
 
@@ -20,7 +19,8 @@ def times(x: Series, y: Series) -> Series:
     for i, a in enumerate(x):
         if a:
             for j, b in enumerate(y[: len(x) - i]):
-                total[i + j] += a * b
+                if b:
+                    total[i + j] += a * b
     return total
 
 
@@ -37,18 +37,21 @@ def value(h: Polynomial, at: Sequence[Series]) -> Series:
     most = len(at[0])
     one = [F(1), *[F(0)] * (most - 1)]
     tables = []
-    for x in at:
+    for by, x in enumerate(at):
         table = [one]
-        for _ in range(_DEGREE):
+        for _ in range(max((powers[by] for powers in h), default=0)):
             table.append(times(table[-1], x))
         tables.append(table)
+    of_time: dict[tuple[int, int], Series] = {}  # what stands before each pⁱ qʲ
+    for (i, j, k), c in h.items():
+        before = of_time.setdefault((i, j), [F(0)] * most)
+        of_time[i, j] = [a + c * b if b else a for a, b in zip(before, tables[2][k], strict=True)]
     total = [F(0)] * most
-    for powers, c in h.items():
-        term = one
-        for table, n in zip(tables, powers, strict=True):
+    for (i, j), term in of_time.items():
+        for table, n in zip(tables, (i, j), strict=False):
             if n:
                 term = times(term, table[n])
-        total = [a + c * b for a, b in zip(total, term, strict=True)]
+        total = [a + b for a, b in zip(total, term, strict=True)]
     return total
 
 

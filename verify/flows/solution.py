@@ -19,6 +19,7 @@ from verify.flows.closed_orbit import at_rest, closed_orbit
 from verify.flows.extrapolation import Flow, NoFlowError
 from verify.hamiltonians import known_flows
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.times_on_the_way import first_fault
 
 _GUARD = 6  # digits beyond those asked for with which the first flow is followed
 _MORE = 10  # and how many more the next one has
@@ -29,6 +30,7 @@ _ROUGH, _POINTS = 12, 8  # digits and points with which a closed orbit is looked
 NOT_KNOWN = "not known"
 
 _FORCED = "closed form of the forced oscillator"  # the one that is known in time
+_PARTS = 1024  # of the time, in which poles of H are looked for
 _FROM_START = Fraction(0)
 State = tuple[Fraction, Fraction]  # p, q
 
@@ -72,6 +74,11 @@ def exact_solution(
         if state is not None:
             found = closed_form.enclosed(state, (p, q), digits)
             return Solution(found.p, found.q, found.bound, _FORCED)
+        part = time / _PARTS
+        passed, words = first_fault(hamiltonian, t0, part, _PARTS)
+        if words:
+            between = f"t = {plain(t0 + passed * part, 6)} and {plain(t0 + (passed + 1) * part, 6)}"
+            raise NoFlowError(f"between {between} H is not smooth; it is where `{words}`")
         return _numerical_solution(hamiltonian, (p, q, t0), time, digits)
     known = known_flows.closed_form(hamiltonian, p, q)
     rest = known.rest if known else at_rest(hamiltonian, hamiltonian.field()[0], (p, q))

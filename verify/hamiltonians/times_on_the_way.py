@@ -32,21 +32,32 @@ def check_times(hamiltonian: Hamiltonian, t0: Fraction, step_size: Fraction, ste
     Traceback (most recent call last):
     verify.errors.InputError: t0=0: at step 1, t = 0 … 2, H is not smooth; it is where t - 1 ≠ 0
     """
+    step, words = first_fault(hamiltonian, t0, step_size, steps)
+    if words:
+        begin = t0 + step * step_size
+        between = f"t = {text(begin)} … {text(begin + step_size)}"
+        problem = f"at step {step + 1}, {between}, H is not smooth; it is where {words}"
+        raise InputError("t0", text(t0), problem)
+
+
+def first_fault(
+    hamiltonian: Hamiltonian, t0: Fraction, step_size: Fraction, steps: int
+) -> tuple[int, str]:
+    """The first step in whose time H may not be smooth, and the condition that fails.
+
+    0 and "" where there is none. `step_size` may be negative.
+    """
     if not hamiltonian.time_dependent:
-        return
-    for requirement, words in zip(
-        hamiltonian.domain.requirements, hamiltonian.domain.shown, strict=True
-    ):
-        if {s.name for s in requirement.expression.free_symbols} != {"t"}:
-            continue
-        ring, (x,) = embed([requirement.expression], ("t",))
-        search = _Search(ring, x, requirement.relation, t0, step_size)
-        step = search.first(0, steps * _PARTS)
-        if step is not None:
-            begin = t0 + step * step_size
-            between = f"t = {text(begin)} … {text(begin + step_size)}"
-            problem = f"at step {step + 1}, {between}, H is not smooth; it is where {words}"
-            raise InputError("t0", text(t0), problem)
+        return 0, ""
+    domain = hamiltonian.domain
+    for requirement, words in zip(domain.requirements, domain.shown, strict=True):
+        if {s.name for s in requirement.expression.free_symbols} == {"t"}:
+            ring, (x,) = embed([requirement.expression], ("t",))
+            search = _Search(ring, x, requirement.relation, t0, step_size)
+            step = search.first(0, steps * _PARTS)
+            if step is not None:
+                return step, words
+    return 0, ""
 
 
 class _Search:

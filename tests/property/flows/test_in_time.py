@@ -63,8 +63,11 @@ def test_the_start_counts() -> None:
 
 
 def test_where_h_opens_it_is_said_and_no_value_given() -> None:
-    with pytest.raises(NoFlowError):
-        flow("p**2/2 + q**2/(2*(1 - t)**2)", 2, 0)
+    for t0, time in ((0, 2), (2, -2)):
+        with pytest.raises(NoFlowError, match="H is not smooth; it is where"):
+            flow("p**2/2 + q**2/(2*(1 - t)**2)", time, t0)
+    before = flow("p**2/2 + q**2/(2*(1 - t)**2)", "1/2", 0)
+    assert before.bound < Fraction(1, 10**20)
 
 
 def test_whether_it_stays_bounded_is_not_told_of_such_an_h() -> None:

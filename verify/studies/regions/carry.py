@@ -23,6 +23,7 @@ from verify.arithmetic.exact import decimal, known_digits, text, upper
 from verify.arithmetic.number_system import UnsupportedError
 from verify.flows.extrapolation import NoFlowError
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.times_on_the_way import first_fault
 from verify.kernels.many_points import LeftRangeError
 from verify.prose import Number, Prose, prose, read_prose
 from verify.scenes.results.regions import EXACT_FLOW, CarriedOutline, FlowImage
@@ -109,6 +110,7 @@ def carry(
     preserves = by.preserves_area
     found: dict[str, Any] = {}
     try:
+        _check_smooth(by)
         with np.errstate(all="ignore"):  # what is not finite is looked for
             carried, plane = _measured(by, shape, digits)
             found = _areas(carried, plane, preserves)
@@ -127,6 +129,17 @@ def carry(
         seconds=time.perf_counter() - begun,
         **found,
     )
+
+
+def _check_smooth(by: _Carrying) -> None:
+    """NoFlowError where H is not smooth at some time on the way, which all points would meet."""
+    step, words = first_fault(by.hamiltonian, by.t0, by.step_size, by.steps)
+    if words:
+        begin = text(by.t0 + step * by.step_size)
+        reason = (
+            f"at step {step + 1}, from t = `{begin}` on, H is not smooth; it is where `{words}`"
+        )
+        raise NoFlowError(reason)
 
 
 # -- areas ----------------------------------------------------------------------------------------

@@ -89,3 +89,14 @@ def test_a_splitting_keeps_area_and_nears_the_flow_by_its_order() -> None:
 def test_the_exact_flow_keeps_area() -> None:
     found = image(EXACT_FLOW)
     assert abs(Fraction(found.area_change or 1)) <= Fraction(found.probe_error or 0) < 1e-9
+
+
+def test_where_h_opens_on_the_way_its_step_is_named_and_nothing_is_carried() -> None:
+    opened = Hamiltonian.parse("p**2/2 + q**2/(2*(1 - t)**2)")
+    square = PlacedShape(shape="square").to_shape()
+    for name in ("lie2", EXACT_FLOW):
+        asked = {"digits": 17, "mean_lambda": False, "distance": False}
+        image = carry(opened, name, square, step_size=Fraction(1, 10), steps=20, **asked)
+        assert "at step 10, from t = 0.9 on, H is not smooth" in str(image.problem)
+        before = carry(opened, name, square, step_size=Fraction(1, 10), steps=5, **asked)
+        assert not before.problem

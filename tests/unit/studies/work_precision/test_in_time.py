@@ -27,8 +27,12 @@ def problem(scene: Scene) -> Problem:
     return Problem(exact, *start, time, scene.t0, reference(exact, *start, time, scene.t0))
 
 
-@pytest.mark.parametrize("name", SCENES)
-@pytest.mark.parametrize("scheme", [*SLOPES, *(x for x in SCENES["duffing"].schemes if "," in x)])
+WRONG = [x for x in SCENES["duffing"].schemes if "," in x]
+CASES = [(name, x) for name in SCENES for x in (*SLOPES, *WRONG)]
+CASES.remove(("mathieu", "triple-jump6"))  # fifteen parts take seven seconds to compile
+
+
+@pytest.mark.parametrize(("name", "scheme"), CASES)
 def test_right_clocks_keep_the_order_and_wrong_ones_leave_1(name: str, scheme: str) -> None:
     ladder = Ladder(problem(SCENES[name]), scheme)
     coarse, fine = (ladder.point(Fraction(1, n)) for n in (40, 80))
