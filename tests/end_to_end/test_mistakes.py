@@ -69,7 +69,9 @@ FORMULAS = {
     "p**2/2 + fabs(q)": "fabs is not smooth",
     "p**2/2 + pow(q,2)": "write (q**2)",
     "v**2/2 + x**2/2": "has no p and no q; are v, x meant? write p and q",
-    "p1**2/2 + p2**2/2 + q1*q2": "write p and q, in one degree of freedom",
+    "p1**2/2 + p3**2/2 + q1*q3": "has p1, p3, q1, q3, and neither p2 nor q2",
+    "p**2/2 + q1*q": "has q1 beside p and q; allowed: p and q alone",
+    "p1**2/2 + q33*q1": "has 33 degrees of freedom; allowed: up to 32",
     "p**2/2 + pq": "has no q, and pq would be a parameter; write p*q",
     "pendulum": "is no formula but a system; write",
 }

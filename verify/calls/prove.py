@@ -11,6 +11,8 @@ from verify.calls.given import (
 from verify.errors import NOT_GIVEN, InputError
 from verify.proof.order import prove as prove_map
 from verify.proof.order_proof import Proof
+from verify.proof.symplectic.order import prove_symplectic
+from verify.proof.symplectic.proof import SymplecticProof
 from verify.schemes.scheme import Scheme
 from verify.schemes.step_map import StepMap
 
@@ -20,12 +22,14 @@ def prove(
     scheme: GivenScheme | None = None,
     *,
     parameters: GivenParameters = None,
-) -> Proof:
+) -> Proof | SymplecticProof:
     """Prove the order in h of ΔJ = det J − 1, that of the map, and what the scheme claims.
+
+    Of an H in p1 … pn and q1 … qn that of S = JᵀΩJ − Ω is proved, in a SymplecticProof.
 
     Parameters
     ----------
-    system: a Hamiltonian, a system's name, a formula in p, q and, if you like, t; or a StepMap,
+    system: a Hamiltonian, a system's name, a formula in p, q (or p1, p2, …) and t; or a StepMap,
         which is then proved itself, with a `scheme` or without one whose claims it is held to.
     scheme: a name, 'p_next = …; q_next = …', a Scheme, or a StepMap of the same Hamiltonian.
     parameters: exact values by name; one without a value stays a symbol, and the proof holds for
@@ -36,6 +40,9 @@ def prove(
     >>> found = prove("duffing", "lie2")
     >>> str(found.verdict), found.order, found.leading
     ('PROVED', 3, 3*delta*p*q)
+    >>> several = prove("p1**2/2 + p2**2/2 - cos(q1 - q2)", "lie2")
+    >>> several.order, several.symplectic, several.telescopes
+    (3, False, True)
     """
     if isinstance(system, StepMap):
         claims = None if scheme is None else scheme_from(scheme)
@@ -49,4 +56,6 @@ def prove(
     if scheme is None:
         raise InputError("scheme", NOT_GIVEN, "is missing; such as prove('duffing', 'lie2')")
     found = scheme_from(scheme)
+    if not exact.planar and isinstance(found, Scheme):
+        return prove_symplectic(exact, found)
     return prove_map(step_map_from(found, exact), found if isinstance(found, Scheme) else None)

@@ -61,11 +61,13 @@ def prove(
     """Prove the order in h of ΔJ = det J − 1, and of the map itself.
 
     A parameter without a value stays a symbol, and the proof holds for all its values but those
-    that it names: ΔJ may be smaller where one is 0.
+    that it names: ΔJ may be smaller where one is 0. Of an H in p1 … pn and q1 … qn the order of
+    S = JᵀΩJ − Ω is proved, which is 0 for a symplectic map, and that of det J − 1 beside.
 
     \b
     verify prove --system duffing --scheme lie2
     verify prove --hamiltonian "p**2/2 - (1 + cos(2*t)/2)*cos(q)" --scheme lie2
+    verify prove --hamiltonian "(p1**2 + p2**2)/2 + q1**2*q2 - q2**3/3" --scheme lie2
     verify prove --every-hamiltonian --scheme lie6
     verify prove --every-hamiltonian --time-dependent --scheme stormer-verlet
     """
@@ -101,6 +103,8 @@ def _prove_one(exact: "Hamiltonian", scheme: str, certificate: Path | None) -> A
     from verify.proof.special_values import special_values
     from verify.schemes import get
 
+    if not exact.planar:
+        return _prove_in_degrees(exact, scheme, certificate)
     begun = time.perf_counter()
     chosen = get(scheme)
     proof = prove_order(chosen.step_map(exact), chosen)
@@ -115,6 +119,25 @@ def _prove_one(exact: "Hamiltonian", scheme: str, certificate: Path | None) -> A
             "special_values": list(map(_special_json, special)),
         },
         lambda: _print_one(exact, chosen.name, proof, potential, special),
+        failed=proof.verdict == "REFUTED",
+    )
+
+
+def _prove_in_degrees(exact: "Hamiltonian", scheme: str, certificate: Path | None) -> Answer:
+    """Of p1 … pn and q1 … qn: S in place of ΔJ."""
+    from verify.commands.shared.in_degrees import print_symplectic, symplectic_json
+    from verify.proof.symplectic.order import prove_symplectic
+    from verify.schemes import get
+
+    if certificate is not None:
+        problem = "is of one degree of freedom, p and q; there is none of several yet"
+        raise InputError("--certificate", str(certificate), problem)
+    begun, chosen = time.perf_counter(), get(scheme)
+    proof = prove_symplectic(exact, chosen)
+    seconds = f"{time.perf_counter() - begun:.6f}"
+    return Answer(
+        lambda: symplectic_json(exact, chosen.name, proof, seconds),
+        lambda: print_symplectic(exact, chosen.name, proof),
         failed=proof.verdict == "REFUTED",
     )
 
@@ -180,6 +203,7 @@ def _every_json(proof: "EveryProof", seconds: str) -> dict[str, Any]:
         "formula": proof.formula or None,
         "delta_j": "0" if proof.area_preserving else None,  # there is no closed form in the jets
         **picked(proof, "area_preserving", "convergence_order", "telescopes", "potential"),
+        "symplectic": proof.area_preserving,  # in the plane that is the same
         **picked(proof, "why", "checked"),
         "conditions": [asdict(condition) for condition in proof.conditions],
         "domain": proof.domain.texts,

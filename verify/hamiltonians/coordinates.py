@@ -1,4 +1,7 @@
-"""Names likely meant for something else where H lacks a coordinate: x for q, pq for p*q."""
+"""Which names are coordinates: p and q, or p1 … pn and q1 … qn.
+
+And names likely meant for something else where a coordinate is missing: x for q, pq for p*q.
+"""
 
 import re
 from collections.abc import Collection
@@ -12,8 +15,28 @@ _LIKELY = {
     "p": re.compile(r"[vPy]|[pPv]_?([1-9xyzr]|theta|phi)|(mom|vel)\w*|[xpq]_?dot|dp|dx"),
     "q": re.compile(r"[xyzQXYZ]|[xyzqQ]_?[1-9xyzr]|theta|phi|varphi|angle|pos\w*|dq"),
 }
+_NUMBERED = re.compile(r"[pq]([1-9]\d{0,2})", re.ASCII)
+PLANE = ("p", "q")
+MOST_DEGREES = 32  # of freedom; a matrix of 64 × 64 exact functions is more than any page shows
 _PRODUCT = re.compile(r"[pq]{2,}")
 _CALL = re.compile(r"(sinh?|cosh?|tanh?|exp|log|ln|sqrt|atan)_?([pq])")
+
+
+def coordinates_of(names: Collection[str]) -> tuple[str, ...]:
+    """p and q; or, where these are not among the names and numbered ones are, p1 … pn, q1 … qn.
+
+    >>> coordinates_of({"p1", "q2", "k"})
+    ('p1', 'p2', 'q1', 'q2')
+    """
+    numbers = [int(found[1]) for found in map(_NUMBERED.fullmatch, names) if found]
+    if not numbers or {"p", "q"} & set(names):
+        return PLANE
+    return numbered(max(numbers))
+
+
+def numbered(degrees: int) -> tuple[str, ...]:
+    """p1 … pn, q1 … qn."""
+    return tuple(f"{letter}{k}" for letter in PLANE for k in range(1, degrees + 1))
 
 
 def check_coordinates(formula: str, expression: sympy.Expr, parameters: Collection[str]) -> None:
@@ -22,6 +45,13 @@ def check_coordinates(formula: str, expression: sympy.Expr, parameters: Collecti
     `parameters`: those without a value; whoever gives one its value says that it is one.
     """
     present = names_in(expression)
+    if coordinates_of(present) != PLANE:
+        _check_numbers(formula, present)
+        return
+    beside = sorted(x for x in parameters if _NUMBERED.fullmatch(x))
+    if beside and {"p", "q"} & set(present):
+        problem = f"has {', '.join(beside)} beside p and q; allowed: p and q alone, a parameter of"
+        raise InputError("hamiltonian", formula, f"{problem} that name with its value, or p1 … qn")
     missing = [name for name in _LIKELY if name not in present]
     if missing:
         _check_words(formula, " and no ".join(missing), parameters)
@@ -34,6 +64,19 @@ def check_coordinates(formula: str, expression: sympy.Expr, parameters: Collecti
             f"has no {lacks}; {'is' if len(meant) == 1 else 'are'} {names} meant? write"
             f" {' and '.join(missing)}, in one degree of freedom, or give a parameter its value",
         )
+
+
+def _check_numbers(formula: str, present: Collection[str]) -> None:
+    """InputError where a number is left out, or there are too many."""
+    degrees = len(coordinates_of(present)) // 2
+    if degrees > MOST_DEGREES:
+        problem = f"has {degrees} degrees of freedom; allowed: up to {MOST_DEGREES}"
+        raise InputError("hamiltonian", formula, problem)
+    for k in range(1, degrees):
+        if not {f"p{k}", f"q{k}"} & set(present):
+            known = ", ".join(x for x in numbered(degrees) if x in present)
+            problem = f"has {known}, and neither p{k} nor q{k}; allowed: p1 … pn and q1 … qn"
+            raise InputError("hamiltonian", formula, problem)
 
 
 def _check_words(formula: str, lacks: str, parameters: Collection[str]) -> None:

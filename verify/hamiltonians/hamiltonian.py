@@ -1,4 +1,8 @@
-"""A planar Hamiltonian H(p, q), or H(p, q, t), with exact parameters, and its Lie derivative."""
+"""A Hamiltonian H(p, q), or H(p, q, t), with exact parameters, and its Lie derivative in the plane.
+
+In n degrees of freedom its coordinates are p1 … pn and q1 … qn; what is derived of such an H is in
+`verify.hamiltonians.canonical_field`.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -26,7 +30,7 @@ from verify.algebra.substitution import substitute
 from verify.arithmetic.exact import Exact, rational, text
 from verify.drawable import drawn_by
 from verify.errors import InputError
-from verify.hamiltonians.coordinates import check_coordinates
+from verify.hamiltonians.coordinates import PLANE, check_coordinates, coordinates_of
 from verify.hamiltonians.lie_derivatives import LieDerivatives
 from verify.notebook import aligned_latex, cut, short_latex
 
@@ -110,7 +114,29 @@ class Hamiltonian:
     @cached_property
     def parameters(self) -> tuple[str, ...]:
         """All parameter names, with or without a value."""
-        return tuple(sorted(names_in(self.expression) - {"p", "q", "t"}))
+        return tuple(sorted(names_in(self.expression) - {*self.coordinates, "t"}))
+
+    @cached_property
+    def coordinates(self) -> tuple[str, ...]:
+        """p and q; or p1 … pn, q1 … qn where it has such."""
+        return coordinates_of(names_in(self.expression))
+
+    @property
+    def planar(self) -> bool:
+        """Whether its coordinates are p and q."""
+        return self.coordinates == PLANE
+
+    def check_planar(self) -> None:
+        """InputError where its coordinates are not p and q, for what is of the plane."""
+        if not self.planar:
+            names = ", ".join(self.coordinates)
+            problem = f"is of {names}; what is asked for takes p and q, one degree of freedom"
+            raise InputError("hamiltonian", self.formula, problem)
+
+    @property
+    def degrees(self) -> int:
+        """Of freedom."""
+        return len(self.coordinates) // 2
 
     @cached_property
     def time_dependent(self) -> bool:
@@ -175,6 +201,7 @@ class Hamiltonian:
         raises: OverflowError beyond float's range, ValueError or ZeroDivisionError where H is not
         defined. Raises InputError where a parameter has no value.
         """
+        self.check_planar()
         if self.symbols:
             raise InputError("parameter", self.symbols[0], "has no value; a gradient needs one")
         names = ("p", "q", "t") if self.time_dependent else ("p", "q")
@@ -195,7 +222,11 @@ class Hamiltonian:
     def field(
         self, *others: sympy.Expr, most_terms: int = MAX_TERMS
     ) -> tuple["VectorField", list[Poly]]:
-        """The vector field of `exact`, and the other expressions as elements of its ring."""
+        """The vector field of `exact`, and the other expressions as elements of its ring.
+
+        Raises InputError where H is not of p and q: all that asks for it is of the plane.
+        """
+        self.check_planar()
         if not others and most_terms == MAX_TERMS:
             return _field_of(self), []
         return _embedded(self, others, most_terms)

@@ -46,6 +46,7 @@ def check_integrator(
 
     Raises InputError where a parameter of H has no value, or `start` is too far for floats.
     """
+    hamiltonian.check_planar()
     if hamiltonian.symbols:
         raise InputError("parameter", hamiltonian.symbols[0], "has no value; a step needs one")
     for name, x in zip("pq", start or (), strict=False):

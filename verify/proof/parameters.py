@@ -6,6 +6,7 @@ That it is not zero at some point says nothing of a single value of δ: 12 δ p 
 
 from collections.abc import Iterator, Sequence
 from functools import reduce
+from itertools import islice, product
 
 import flint
 import sympy
@@ -18,9 +19,11 @@ from verify.algebra.requirement import Requirement
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.zero_test import clear_inverses
 from verify.errors import InputError
+from verify.hamiltonians.coordinates import PLANE, coordinates_of
 
-_COORDINATES = ("p", "q", "h", "t")
+_STEP_AND_TIME = ("h", "t")
 _AT = (0, 1, 2)  # where functions of p and q have simple values
+_MOST_POINTS = 81
 _MOST_PARTS = 12  # coefficients that are said not to vanish all together
 
 
@@ -29,7 +32,7 @@ def not_zero_for(ring: Ring, x: Poly, what: str) -> Domain:
 
     `what` names x where nothing more is known than that it is so for almost all parameters.
     """
-    parameters = [name for name in ring.variables if name not in _COORDINATES]
+    parameters = [name for name in ring.variables if name not in _coordinates(ring)]
     if not any(ring.depends(x, name) for name in parameters):
         return Domain()
     x = clear_inverses(ring, x)  # a denominator is not 0 where x is defined
@@ -47,12 +50,16 @@ def not_zero_for(ring: Ring, x: Poly, what: str) -> Domain:
     return Domain.of(needed, f"{what} does not vanish identically in p and q")
 
 
+def _coordinates(ring: Ring) -> tuple[str, ...]:
+    return (*coordinates_of(ring.variables), *_STEP_AND_TIME)
+
+
 def _depending(ring: Ring, x: Poly) -> list[int]:
     """The places of what depends on p or q and is in x."""
-    degrees, found = x.degrees(), []
+    degrees, found, of_state = x.degrees(), list[int](), _coordinates(ring)
     for g in ring.generators_in(x):
         inside = ring.variable(g.name) if g.kind == "variable" else g.argument
-        depends = inside is not None and any(ring.depends(inside, n) for n in _COORDINATES)
+        depends = inside is not None and any(ring.depends(inside, n) for n in of_state)
         if depends and degrees[g.index] > 0:
             found.append(g.index)
     return found
@@ -95,19 +102,19 @@ def _not_all_zero(rests: Sequence[sympy.Expr]) -> list[Requirement]:
 
 # -- of functions ---------------------------------------------------------------------------------
 
-_Point = tuple[sympy.Expr, sympy.Expr]
+_Point = tuple[sympy.Expr, ...]
 
 
 def _points(ring: Ring, x: Poly, factors: Sequence[Poly]) -> Iterator[_Point]:
     """Values of p and q, and such as make the argument of a function 1: q = 1/a for sin(a q)."""
-    simple = [sympy.Integer(n) for n in _AT]
-    yield from ((p, q) for p in simple for q in simple)
-    for g in ring.generators_in(x):
-        for name in ("p", "q"):
+    simple, names = [sympy.Integer(n) for n in _AT], coordinates_of(ring.variables)
+    yield from islice(product(simple, repeat=len(names)), _MOST_POINTS)
+    for g in ring.generators_in(x) if names == PLANE else ():
+        for name in PLANE:
             if g.kind == "variable" or g.argument is None:
                 continue
             slope = ring.diff(g.argument, name)
-            if slope.is_zero() or any(ring.depends(slope, n) for n in _COORDINATES):
+            if slope.is_zero() or any(ring.depends(slope, n) for n in _coordinates(ring)):
                 continue
             cleared = clear_inverses(ring, slope)
             if all(f in factors for f, _ in cleared.factor()[1]):
@@ -117,9 +124,10 @@ def _points(ring: Ring, x: Poly, factors: Sequence[Poly]) -> Iterator[_Point]:
 
 def _is_product(ring: Ring, x: Poly, factors: Sequence[Poly], point: _Point) -> bool:
     """Whether at the point nothing of x is left but some of the factors, and a number not 0."""
-    put = dict(zip((symbol("p"), symbol("q"), symbol("t")), (*point, sympy.S.One), strict=True))
+    state = (*coordinates_of(ring.variables), "t")
+    put = dict(zip(map(symbol, state), (*point, sympy.S.One), strict=True))
     value = ring.expression(x).xreplace(put)
-    names = [name for name in ring.variables if name not in ("p", "q", "t")]
+    names = [name for name in ring.variables if name not in state]
     try:
         own, (left, *known) = embed([value, *map(ring.expression, factors)], names)
     except InputError:

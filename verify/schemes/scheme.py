@@ -1,7 +1,7 @@
 """What an integration scheme is: a name, its claims as data, and how it makes a step map."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from functools import lru_cache
 
 from verify.algebra.conditions import ByConditions
@@ -20,7 +20,8 @@ class Scheme:
     that the scheme takes. `explicit`: no equation is solved. `symmetric`: claimed that the step of
     −h undoes that of h. `source`: where it is defined.
     `build` raises InputError for an H that the scheme does not take. `every_h`: the scheme as it is
-    for every H; None where it is known for one H at a time.
+    for every H; None where it is known for one H at a time. `formulas`: those of a user's own map
+    in n degrees of freedom, by what they give: p1_next, ….
     """
 
     name: str
@@ -31,6 +32,7 @@ class Scheme:
     source: str
     build: Callable[[Hamiltonian], StepMap]
     every_h: BySeries | ByConditions | None = None
+    formulas: Mapping[str, str] = field(default_factory=dict, hash=False)
 
     def __repr__(self) -> str:
         area = "det J ≡ 1" if self.area_preserving else "area not preserved"

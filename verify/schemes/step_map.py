@@ -33,7 +33,7 @@ _MOST_IN_PARTS = 150
 _MOST_FACTORED = 1000  # terms of ΔJ in all, beyond which it is written as it stands
 # Of an implicit scheme, for one H and for every one.
 SOLVABLE = "the stages have a solution that depends smoothly on (p, q)"
-_AT_STAGES = "H is smooth at the stages"
+AT_STAGES = "H is smooth at the stages"
 _NOT_WRITTEN = "the implicit scheme's map is given by equations, and has no closed form"
 _UNWRITTEN = "not written in closed form"
 _MOST_COMPOSED, _MOST_OF_DELTA_J = 150, 5000
@@ -75,7 +75,7 @@ class StepMap:
         """Where the map is smooth: where H is, and is so at the stages, if there are any."""
         words = [SOLVABLE] if self.implicit else []
         if (self.of_parts or self.implicit) and self.hamiltonian.domain.names & {"p", "q"}:
-            words.append(_AT_STAGES)
+            words.append(AT_STAGES)
         return Domain.of((), *words) & self.hamiltonian.domain & self.asked
 
     @cached_property

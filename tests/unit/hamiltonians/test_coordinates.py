@@ -11,7 +11,9 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
     [
         ("v**2/2 + x**2/2", "has no p and no q; are v, x meant"),
         ("p**2/2 + x**2/2", "has no q; is x meant"),
-        ("p1**2/2 + p2**2/2 + q1**2*q2", "are p1, p2, q1, q2 meant"),
+        ("p1**2/2 + p**2/2 + q**2", "has p1 beside p and q; allowed: p and q alone"),
+        ("p1**2/2 + q3*p3", "has p1, p3, q3, and neither p2 nor q2"),
+        ("p1 + p40", "has 40 degrees of freedom; allowed: up to 32"),
         ("P**2/2 + Q**2/2", "are P, Q meant"),
         ("p**2/2 - cos(theta)", "has no q; is theta meant"),
         ("vx*q", "has no p; is vx meant"),
@@ -40,3 +42,19 @@ def test_a_name_with_a_value_is_a_parameter() -> None:
     assert Hamiltonian.parse("p**2/2 + x", {"x": 2}).parameters == ("x",)
     with pytest.raises(InputError, match="is x meant"):
         Hamiltonian.parse("p**2/2 + x", {"x": None})
+
+
+def test_numbered_names_are_coordinates_unless_they_have_a_value() -> None:
+    several = Hamiltonian.parse("p1**2/2 + k*q2 + t")
+    assert several.coordinates == ("p1", "p2", "q1", "q2")
+    assert (several.degrees, several.parameters, several.planar) == (2, ("k",), False)
+    named = Hamiltonian.parse("p**2/2 + q1*q", {"q1": 2})
+    assert (named.coordinates, named.parameters) == (("p", "q"), ("q1",))
+    assert Hamiltonian.parse("p**2/2 + q0*q").parameters == ("q0",)
+
+
+def test_what_is_of_the_plane_refuses_several_degrees_in_one_line() -> None:
+    several = Hamiltonian.parse("p1**2/2 + q1**2*q2")
+    for planar in (several.field, several.gradient):
+        with pytest.raises(InputError, match="is of p1, p2, q1, q2; what is asked for takes p and"):
+            planar()

@@ -133,6 +133,28 @@ def at_time(ring: Ring, x: Poly, u: Series, v: Series, w: Series) -> Series:
     return total
 
 
+def at_moved(ring: Ring, x: Poly, moves: Sequence[tuple[str, Series]], most: int) -> Series:
+    """The ring element x, up to h^most, where each variable of a name is moved by its series, O(h).
+
+    One variable after the other, so that an x with few of them is soon done.
+    """
+    if not moves or x.is_zero():
+        return Series.of(ring, [x], most)
+    (name, by), *rest = moves
+    if not by.coefficients[0].is_zero():
+        raise ValueError(f"{name} is moved at h = 0")
+    by = Series.of(ring, by.coefficients, most)
+    total, power = Series.of(ring, [], most), Series.of(ring, [ring.one], most)
+    for n in range(most + 1):
+        if x.is_zero() or power.vanishes:
+            break
+        inner = at_moved(ring, x, rest, most - n)  # the power begins with hⁿ
+        share = power.times(Fraction(1, math.factorial(n)))
+        total += Series.of(ring, inner.coefficients, most) * share
+        x, power = ring.diff(x, name), power * by
+    return total
+
+
 def delta_j(p_next: Series, q_next: Series) -> Series:
     """ΔJ of the map with these series, by its increments."""
     ring = p_next.ring

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from verify.integrators.results import Finding
     from verify.proof.order_proof import Proof
     from verify.proof.potential import Potential
+    from verify.proof.symplectic.proof import SymplecticProof
     from verify.scenes.frozen import Frozen
     from verify.scenes.results.report import Report
     from verify.scenes.results.run import RunResult
@@ -56,6 +57,7 @@ def proof_json(
         "leading": proof.first.text,
         "delta_j": proof.step_map.delta_j_text,
         **picked(proof, "area_preserving", "convergence_order"),
+        "symplectic": proof.area_preserving,  # in the plane that is the same
         "witness": {name: text(value) for name, value in proof.witness.items()},
         "telescopes": potential.holds,
         "potential": potential.text,
@@ -64,7 +66,9 @@ def proof_json(
     }
 
 
-def print_head(exact: "Hamiltonian", scheme: str, found: "Proof | Finding") -> None:
+def print_head(
+    exact: "Hamiltonian", scheme: str, found: "Proof | SymplecticProof | Finding"
+) -> None:
     """The verdict, and of what it is."""
     click.echo(f"{found.verdict}: {found.reason}")
     click.echo(f"  H        {exact.formula}")

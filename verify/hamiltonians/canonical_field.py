@@ -1,0 +1,108 @@
+"""The vector field of H(p1 … pn, q1 … qn), and what is derived along it.
+
+z = (p1 … pn, q1 … qn); z' = f with f = −∂H/∂q for a momentum and ∂H/∂p for a coordinate; X = f·∂ is
+the Lie derivative, and D = ∂_t + X takes its place where H depends on t.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import sympy
+
+from verify.algebra.embedding import embed
+from verify.algebra.ring import Poly, Ring
+from verify.hamiltonians.hamiltonian import Hamiltonian
+
+Matrix = tuple[tuple[Poly, ...], ...]
+
+
+@dataclass(frozen=True, eq=False)
+class CanonicalField:
+    """H as an element of a ring that has the coordinates, h, t where H has it, and parameters."""
+
+    ring: Ring
+    names: tuple[str, ...]
+    energy: Poly
+
+    @property
+    def degrees(self) -> int:
+        """Of freedom: half as many as there are names."""
+        return len(self.names) // 2
+
+    @property
+    def timed(self) -> bool:
+        """Whether H depends on t."""
+        return "t" in self.ring.places
+
+    @cached_property
+    def slopes(self) -> tuple[Poly, ...]:
+        """f, a component for each name."""
+        n, diff = self.degrees, self.ring.diff
+        forces = [-diff(self.energy, name) for name in self.names[n:]]
+        return (*forces, *(diff(self.energy, name) for name in self.names[:n]))
+
+    @cached_property
+    def start(self) -> tuple[Poly, ...]:
+        """z itself."""
+        return tuple(map(self.ring.variable, self.names))
+
+    @cached_property
+    def separable(self) -> bool:
+        """Whether H = T(p) + V(q): all its mixed derivatives are the zero function."""
+        n, ring = self.degrees, self.ring
+        mixed = (ring.diff(v, q) for v in self.slopes[n:] for q in self.names[n:])
+        return all(ring.vanishes(x) is True for x in mixed)
+
+    def derive(self, y: Poly, along: Sequence[Poly] | None = None) -> Poly:
+        """X y, or D y; or the derivative along another field than f, t standing still."""
+        ring, slopes = self.ring, self.slopes if along is None else along
+        total = ring.diff(y, "t") if self.timed and along is None else ring.zero
+        for slope, name in zip(slopes, self.names, strict=True):
+            if not slope.is_zero():
+                total += slope * ring.diff(y, name)
+        return ring.reduce(total)
+
+    @cached_property
+    def _powers(self) -> dict[int, tuple[Poly, ...]]:
+        return {0: self.start, 1: tuple(map(self.ring.reduce, self.slopes))}
+
+    def power(self, n: int) -> tuple[Poly, ...]:
+        """Xⁿz, made once."""
+        if n not in self._powers:
+            self._powers.setdefault(n, tuple(map(self.derive, self.power(n - 1))))
+        return self._powers[n]
+
+    def term(self, n: int) -> tuple[Poly, ...]:
+        """Xⁿz/n!, the coefficient of hⁿ in the exact flow."""
+        return tuple(x / math.factorial(n) for x in self.power(n))
+
+    def gradient(self, x: Poly) -> tuple[Poly, ...]:
+        """∂x/∂z."""
+        return tuple(self.ring.diff(x, name) for name in self.names)
+
+
+def canonical_field(
+    hamiltonian: Hamiltonian, *others: sympy.Expr
+) -> tuple[CanonicalField, list[Poly]]:
+    """The field of `exact`, and other expressions as elements of its ring. Raises InputError."""
+    if others:
+        return _made(hamiltonian, others)
+    return _made_once(hamiltonian), []
+
+
+def _made(
+    hamiltonian: Hamiltonian, others: Sequence[sympy.Expr]
+) -> tuple[CanonicalField, list[Poly]]:
+    time = ("t",) if hamiltonian.time_dependent else ()
+    names = hamiltonian.coordinates
+    variables = (*names, "h", *time, *hamiltonian.symbols)
+    ring, (energy, *elements) = embed([hamiltonian.exact, *others], variables)
+    return CanonicalField(ring, names, energy), elements
+
+
+# Few, since a field keeps what was derived along it.
+@lru_cache(maxsize=8)
+def _made_once(hamiltonian: Hamiltonian) -> CanonicalField:
+    return _made(hamiltonian, ())[0]

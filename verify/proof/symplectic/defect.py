@@ -1,0 +1,122 @@
+"""S = JᵀΩJ − Ω and ΔJ = det J − 1 of a map in n degrees of freedom, as power series in h.
+
+With N = Ω⁻¹S, det J² = det(1 + N), so that log det J = ½ tr(N − N²/2 + N³/3 − …): where S begins
+with hᵐ, ΔJ is Σ S(p_i, q_i) up to h^(2m−1).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from verify.algebra.ring import Poly, Ring
+from verify.algebra.series.power_series import Series
+from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
+from verify.proof.expansion import Expansion
+from verify.proof.symplectic.two_form import TwoForm, wedge
+from verify.schemes.degrees.canonical_map import CanonicalMap, State
+
+Matrix = list[list[Series]]
+
+
+@dataclass
+class DefectSeries:
+    """The coefficients of h⁰, h¹, … of z', S and ΔJ, made as far as they are looked at."""
+
+    map: CanonicalMap
+    first: int  # so many are made at once
+    _made: tuple[CanonicalField, State] | None = None
+    _gradients: list[list[tuple[Poly, ...]]] = field(default_factory=list)
+    _forms: dict[int, TwoForm] = field(default_factory=dict)
+
+    @property
+    def field(self) -> CanonicalField:
+        """H's field, in the ring of the coefficients."""
+        return self._reached(0)[0]
+
+    def _reached(self, n: int) -> tuple[CanonicalField, State]:
+        if self._made is None or self._made[1][0].most < n:
+            self._made = _state(self.map, max(self.first, n + 1))
+            self._gradients, self._forms = [], {}
+        return self._made
+
+    def coefficient(self, n: int) -> tuple[Poly, ...]:
+        """Those of hⁿ in z'."""
+        return tuple(series.coefficients[n] for series in self._reached(n)[1])
+
+    def _gradient(self, n: int) -> list[tuple[Poly, ...]]:
+        """The coefficient of hⁿ in J, by rows."""
+        flow, _ = self._reached(n)
+        while len(self._gradients) <= n:
+            rows = self.coefficient(len(self._gradients))
+            self._gradients.append([flow.gradient(x) for x in rows])
+        return self._gradients[n]
+
+    def form(self, m: int) -> TwoForm:
+        """The coefficient of hᵐ in S."""
+        flow, _ = self._reached(m)
+        if m not in self._forms:
+            ring, n = flow.ring, flow.degrees
+            rows = [self._gradient(k) for k in range(m + 1)]
+
+            def entry(a: int, b: int) -> Poly:
+                total = -ring.one if m == 0 and b == a + n else ring.zero
+                for k in range(m + 1):
+                    for i in range(n):
+                        total += wedge(ring, rows[k][i], rows[m - k][n + i], a, b)
+                return total
+
+            self._forms[m] = TwoForm.of(ring, flow.names, entry)
+        return self._forms[m]
+
+    def delta_j(self, most: int) -> tuple[Poly, ...]:
+        """The coefficients of h⁰ … h^most in ΔJ."""
+        flow, _ = self._reached(most)
+        forms = [self.form(m) for m in range(most + 1)]
+        ring, size = flow.ring, len(flow.names)
+        matrix = [[_of_inverse(ring, forms, a, b, flow.degrees) for b in range(size)]
+                  for a in range(size)]  # fmt: skip
+        begins = next((m for m, form in enumerate(forms) if form.entries), most + 1)
+        total = power = Series.of(ring, [], most)
+        product: Matrix | None = None
+        for k in range(1, most // max(begins, 1) + 1):
+            product = matrix if product is None else _times(product, matrix)
+            trace = product[0][0]
+            for a in range(1, size):
+                trace += product[a][a]
+            total += trace.times(Fraction((-1) ** (k + 1), 2 * k))
+        result, power = Series.of(ring, [], most), Series.of(ring, [ring.one], most)
+        for k in range(1, most // max(begins, 1) + 1):
+            power = (power * total).times(Fraction(1, k))
+            result += power
+        return result.coefficients
+
+
+def _of_inverse(ring: Ring, forms: Sequence[TwoForm], a: int, b: int, n: int) -> Series:
+    """The entry of Ω⁻¹S."""
+    row, sign = (a + n, -1) if a < n else (a - n, 1)
+    return Series(ring, tuple(form.at(row, b) * sign for form in forms))
+
+
+def _times(x: Matrix, y: Matrix) -> Matrix:
+    size, found = range(len(x)), []
+    for a in size:
+        row = []
+        for b in size:
+            total = x[a][0] * y[0][b]
+            for c in size[1:]:
+                total += x[a][c] * y[c][b]
+            row.append(total)
+        found.append(row)
+    return found
+
+
+def _state(step: CanonicalMap, most: int) -> tuple[CanonicalField, State]:
+    if step.series is not None:
+        return step.field, step.series(most)
+    assert step.closed is not None  # noqa: S101 - a map has one or the other
+    count, ring = most + 1, step.ring
+    expansions = [Expansion(ring, x) for x in step.closed]
+    parts = [each.coefficient(n) for each in expansions for n in range(count)]
+    flow, exact = canonical_field(step.hamiltonian, *(own.expression(x) for own, x in parts))
+    rows = (exact[count * i : count * (i + 1)] for i in range(len(expansions)))
+    return flow, tuple(Series.of(flow.ring, row, most) for row in rows)

@@ -1,0 +1,205 @@
+"""The order in h of S = JᵀΩJ − Ω for one H(p1 … pn, q1 … qn), and the order of the map itself.
+
+In the plane S is ΔJ dp∧dq; in more degrees of freedom det J ≡ 1 is the weaker half, so both are
+looked at. A map that does nothing is symplectic, so its order is proved beside.
+"""
+
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+from verify.algebra.domain import EVERYWHERE, Domain
+from verify.algebra.ring import Decision, Poly, Ring
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.proof.order import Convergence
+from verify.proof.parameters import not_zero_for
+from verify.proof.symplectic import closed_form
+from verify.proof.symplectic.defect import DefectSeries
+from verify.proof.symplectic.proof import SymplecticProof
+from verify.proof.symplectic.telescoping import telescopes_of_lie
+from verify.proof.symplectic.two_form import Place, TwoForm
+from verify.prose import Prose, prose, read_prose
+from verify.schemes.degrees import map_in_degrees
+from verify.schemes.degrees.canonical_map import CanonicalMap
+from verify.schemes.scheme import Scheme
+from verify.verdict import Verdict
+
+_MOST = 8  # powers of h that are looked at; more where a scheme claims a higher order
+
+
+@dataclass(frozen=True)
+class _Defect:
+    """The first coefficient of S that is not shown to vanish; `decision.zero` True where S ≡ 0.
+
+    `power` None with `decision.zero` False: S is not 0, and its coefficients that were looked at
+    are.
+    """
+
+    power: int | None
+    form: TwoForm | None
+    decision: Decision
+    place: Place | None = None
+
+
+_NONE = _Defect(None, None, Decision(True))
+
+
+def prove_symplectic(hamiltonian: Hamiltonian, scheme: Scheme) -> SymplecticProof:
+    """The order of S and of the map by exact algebra, and whether the scheme's claims hold.
+
+    Raises InputError for an H that the scheme does not take.
+    """
+    step = map_in_degrees(scheme, hamiltonian)
+    series = DefectSeries(step, scheme.order + 1)
+    most = max(_MOST, scheme.order + 1)
+    convergence = _convergence(step, series, most)
+    defect = _within(step.domain, _defect(step, series, most))
+    verdict, reason = _verdict(scheme, convergence, defect, most)
+    found = _Rest(step, series, defect, most)
+    return SymplecticProof(
+        verdict=verdict,
+        reason=reason,
+        degrees=hamiltonian.degrees,
+        order=defect.power if defect.decision.zero is False else None,
+        leading=defect.form,
+        symplectic=defect.decision.zero,
+        convergence_order=convergence.order,
+        domain=step.domain & _parameters(defect),
+        entry=defect.form.called(defect.place) if defect.form and defect.place else "",
+        witness=defect.decision.witness,
+        enclosure=defect.decision.enclosure,
+        conditions=step.conditions,
+        **found.volume(),
+        **found.telescoping(),
+    )
+
+
+def _convergence(step: CanonicalMap, series: DefectSeries, most: int) -> Convergence:
+    """The order to which the map agrees with the exact flow."""
+    for n in range(step.flow_up_to + 1, most + 1):
+        own, flow = series.coefficient(n), series.field
+        for x, y in zip(own, flow.term(n), strict=True):
+            gap = flow.ring.reduce(x - y)
+            agrees = flow.ring.vanishes(gap)
+            if agrees is not True:
+                exact_for = partial(not_zero_for, flow.ring, gap, f"what differs at h^{n}")
+                return Convergence(n - 1, agrees is False, exact_for)
+    return Convergence(None, True)
+
+
+# -- S ---------------------------------------------------------------------------------------------
+
+
+def _defect(step: CanonicalMap, series: DefectSeries, most: int) -> _Defect:
+    if step.symplectic_by_conditions:
+        return _NONE
+    highest = 2 * step.degree if step.degree is not None else most
+    for m in range(highest + 1):
+        form = series.form(m)
+        decision, place = form.decide()
+        if decision.zero is not True:
+            return _Defect(m, form, decision, place)
+    if step.degree is not None:  # S is a polynomial in h, all of whose coefficients vanish
+        return _NONE
+    if step.closed is None:
+        return _Defect(None, None, Decision(None))
+    form = closed_form.defect(step)
+    decision, place = form.decide()
+    return _NONE if decision.zero is True else _Defect(None, form, decision, place)
+
+
+def _within(domain: Domain, defect: _Defect) -> _Defect:
+    """With a witness in the domain; where it has no point nothing is said."""
+    if defect.form is None or defect.decision.zero is not False or not domain.requirements:
+        return defect
+    decision, place = defect.form.decide(domain)
+    return replace(defect, decision=decision, place=place)
+
+
+def _parameters(defect: _Defect) -> Domain:
+    """Those for which the entry that is shown is not the zero function."""
+    if defect.form is None or defect.place is None or defect.decision.zero is not False:
+        return EVERYWHERE
+    x, ring = defect.form.entries[defect.place], defect.form.ring
+    return not_zero_for(ring, x, f"the entry {defect.form.called(defect.place)} of S")
+
+
+# -- what goes with it ----------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Rest:
+    step: CanonicalMap
+    series: DefectSeries
+    defect: _Defect
+    most: int
+
+    def volume(self) -> dict[str, Any]:
+        """Whether det J ≡ 1, and the order of det J − 1 where it is not."""
+        found: dict[str, Any] = {"volume_order": None, "volume_leading": "0"}
+        if self.defect.decision.zero is not False:
+            return {"area_preserving": self.defect.decision.zero, **found}
+        exact = closed_form.preserves_volume(self.step)
+        if exact is True:
+            return {"area_preserving": True, **found}
+        first = self._first_of_delta_j()
+        if first is None:
+            return {"area_preserving": exact, **found}
+        power, ring, x = first
+        leading = {"volume_order": power, "volume_leading": ring.text(x)}
+        return {"area_preserving": False, **leading}
+
+    def _first_of_delta_j(self) -> tuple[int, Ring, Poly] | None:
+        """The first coefficient of ΔJ that is shown not to vanish, before any that is undecided."""
+        ring = self.series.field.ring
+        begin = self.defect.power or 0
+        for most in range(begin, self.most + 1):
+            x = self.series.delta_j(most)[most]
+            zero = self.series.field.ring.vanishes(x)
+            if zero is not True:
+                return (most, ring, x) if zero is False else None
+        return None
+
+    def telescoping(self) -> dict[str, Any]:
+        """Of lieη; of other maps it is not known."""
+        eta, defect = self.step.flow_up_to, self.defect
+        if eta < 1 or defect.power != eta + 1 or defect.form is None:
+            known = True if defect.decision.zero is True else None  # 0 is the derivative of 0
+            return {"telescopes": known, "potential": "0" if known else ""}
+        holds, potential = telescopes_of_lie(self.series.field, eta, defect.form)
+        return {"telescopes": holds, "potential": potential}
+
+
+# -- the verdict ----------------------------------------------------------------------------------
+
+
+def _verdict(
+    scheme: Scheme, convergence: Convergence, defect: _Defect, most: int
+) -> tuple[Verdict, Prose]:
+    called = f"`{scheme.name}`" if "=" in scheme.name else scheme.name
+    if convergence.misses(scheme.order):
+        known = f"agrees with the exact flow up to `h^{convergence.order}`"
+        if convergence.order == -1:
+            known = "agrees with the exact flow not even at h = 0"
+        if not convergence.decided:
+            said = f"the map {known}; whether further is not decided"
+            return Verdict.UNDECIDED, read_prose(said)
+        said = f"{called} claims order {scheme.order}; the map {known} only"
+        return Verdict.REFUTED, read_prose(said)
+    power, zero = defect.power, defect.decision.zero
+    if zero is None:
+        what = f"of `h^{power}`" if power is not None else f"beyond `h^{most}`"
+        said = f"the coefficient {what} in S is neither shown to vanish nor not to"
+        return Verdict.UNDECIDED, read_prose(said)
+    if zero:
+        return Verdict.PROVED, prose("S is the zero form: the map is symplectic")
+    if scheme.area_preserving:
+        said = f"{called} claims to be symplectic; S has order {power}"
+        return Verdict.REFUTED, read_prose(said)
+    if power is None:
+        said = f"S is not the zero form, and its coefficients up to `h^{most}` vanish"
+        return Verdict.PROVED, read_prose(said)
+    said = (
+        f"the coefficients of S below `h^{power}` vanish identically, that of `h^{power}` does not"
+    )
+    return Verdict.PROVED, read_prose(said)
