@@ -42,6 +42,12 @@ _WIDTH = 88
     help="With --every-hamiltonian: for every H(p, q, t), or T(p, t) + V(q, t).",
 )
 @click.option(
+    "--degrees",
+    type=int,
+    metavar="N",
+    help="With --every-hamiltonian: in N degrees of freedom. Those of one H follow from its names.",
+)
+@click.option(
     "--certificate",
     type=PATH,
     metavar="FILE",
@@ -56,6 +62,7 @@ def prove(
     every_hamiltonian: bool,
     separable: bool,
     time_dependent: bool,
+    degrees: int | None,
     certificate: Path | None,
 ) -> Answer:
     """Prove the order in h of ΔJ = det J − 1, and of the map itself.
@@ -69,10 +76,12 @@ def prove(
     verify prove --hamiltonian "p**2/2 - (1 + cos(2*t)/2)*cos(q)" --scheme lie2
     verify prove --hamiltonian "(p1**2 + p2**2)/2 + q1**2*q2 - q2**3/3" --scheme lie2
     verify prove --every-hamiltonian --scheme lie6
+    verify prove --every-hamiltonian --degrees 2 --scheme lie4
     verify prove --every-hamiltonian --time-dependent --scheme stormer-verlet
     """
     if not every_hamiltonian:
-        for option, given in {"separable": separable, "time-dependent": time_dependent}.items():
+        only = {"separable": separable, "time-dependent": time_dependent, "degrees": degrees}
+        for option, given in only.items():
             if given:
                 raise InputError(f"--{option}", NOT_GIVEN, "goes with --every-hamiltonian")
         return _prove_one(hamiltonian_of(system, hamiltonian, params), scheme, certificate)
@@ -80,6 +89,8 @@ def prove(
         raise InputError(
             "--every-hamiltonian", NOT_GIVEN, "goes without --system, --hamiltonian, --param"
         )
+    if degrees is not None and degrees != 1:
+        return _every_in_degrees(scheme, degrees, separable, time_dependent, certificate)
     from verify.proof.every import prove_every
     from verify.proof.every_in_time import prove_every_in_time
 
@@ -129,17 +140,41 @@ def _prove_in_degrees(exact: "Hamiltonian", scheme: str, certificate: Path | Non
     from verify.proof.symplectic.order import prove_symplectic
     from verify.schemes import get
 
-    if certificate is not None:
-        problem = "is of one degree of freedom, p and q; there is none of several yet"
-        raise InputError("--certificate", str(certificate), problem)
+    _check_certificate(certificate)
     begun, chosen = time.perf_counter(), get(scheme)
     proof = prove_symplectic(exact, chosen)
     seconds = f"{time.perf_counter() - begun:.6f}"
     return Answer(
-        lambda: symplectic_json(exact, chosen.name, proof, seconds),
-        lambda: print_symplectic(exact, chosen.name, proof),
+        lambda: symplectic_json(exact.texts, chosen.name, proof, seconds),
+        lambda: print_symplectic(exact.texts, chosen.name, proof),
         failed=proof.verdict == "REFUTED",
     )
+
+
+def _every_in_degrees(
+    scheme: str, degrees: int, separable: bool, timed: bool, certificate: Path | None
+) -> Answer:
+    """For every H of so many degrees of freedom."""
+    from verify.commands.shared.in_degrees import print_symplectic, symplectic_json
+    from verify.proof.symplectic.every import prove_every_in_degrees, quantifier
+    from verify.schemes import get
+
+    _check_certificate(certificate)
+    begun, chosen = time.perf_counter(), get(scheme)
+    proof = prove_every_in_degrees(chosen.name, degrees, separable=separable, timed=timed)
+    seconds = f"{time.perf_counter() - begun:.6f}"
+    texts = {"hamiltonian": quantifier(chosen, degrees, separable=separable, timed=timed)}
+    return Answer(
+        lambda: symplectic_json(texts, chosen.name, proof, seconds),
+        lambda: print_symplectic(texts, chosen.name, proof),
+        failed=proof.verdict == "REFUTED",
+    )
+
+
+def _check_certificate(certificate: Path | None) -> None:
+    if certificate is not None:
+        problem = "is of one degree of freedom, p and q; there is none of several yet"
+        raise InputError("--certificate", str(certificate), problem)
 
 
 def _special_json(special: "SpecialValue") -> dict[str, Any]:

@@ -5,26 +5,32 @@ the Lie derivative, and D = ∂_t + X takes its place where H depends on t.
 """
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import sympy
 
 from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
+from verify.algebra.series.coefficient_ring import CoefficientRing
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
-Matrix = tuple[tuple[Poly, ...], ...]
 
+class Flow(ABC):
+    """What is derived along a field over any ring; `names` are p1 … pn, q1 … qn."""
 
-@dataclass(frozen=True, eq=False)
-class CanonicalField:
-    """H as an element of a ring that has the coordinates, h, t where H has it, and parameters."""
-
-    ring: Ring
     names: tuple[str, ...]
-    energy: Poly
+
+    @property
+    @abstractmethod
+    def ring(self) -> CoefficientRing:
+        """The ring of all its elements, with a variable for each name, and t where H has it."""
+
+    @property
+    @abstractmethod
+    def slopes(self) -> tuple[Poly, ...]:
+        """f, a component for each name."""
 
     @property
     def degrees(self) -> int:
@@ -37,32 +43,17 @@ class CanonicalField:
         return "t" in self.ring.places
 
     @cached_property
-    def slopes(self) -> tuple[Poly, ...]:
-        """f, a component for each name."""
-        n, diff = self.degrees, self.ring.diff
-        forces = [-diff(self.energy, name) for name in self.names[n:]]
-        return (*forces, *(diff(self.energy, name) for name in self.names[:n]))
-
-    @cached_property
     def start(self) -> tuple[Poly, ...]:
         """z itself."""
         return tuple(map(self.ring.variable, self.names))
 
-    @cached_property
-    def separable(self) -> bool:
-        """Whether H = T(p) + V(q): all its mixed derivatives are the zero function."""
-        n, ring = self.degrees, self.ring
-        mixed = (ring.diff(v, q) for v in self.slopes[n:] for q in self.names[n:])
-        return all(ring.vanishes(x) is True for x in mixed)
-
-    def derive(self, y: Poly, along: Sequence[Poly] | None = None) -> Poly:
-        """X y, or D y; or the derivative along another field than f, t standing still."""
-        ring, slopes = self.ring, self.slopes if along is None else along
-        total = ring.diff(y, "t") if self.timed and along is None else ring.zero
-        for slope, name in zip(slopes, self.names, strict=True):
+    def derive(self, y: Poly) -> Poly:
+        """X y; D y where H depends on time."""
+        total = self.ring.diff(y, "t") if self.timed else self.ring.zero
+        for slope, name in zip(self.slopes, self.names, strict=True):
             if not slope.is_zero():
-                total += slope * ring.diff(y, name)
-        return ring.reduce(total)
+                total += slope * self.ring.diff(y, name)
+        return self.ring.reduce(total)
 
     @cached_property
     def _powers(self) -> dict[int, tuple[Poly, ...]]:
@@ -81,6 +72,33 @@ class CanonicalField:
     def gradient(self, x: Poly) -> tuple[Poly, ...]:
         """∂x/∂z."""
         return tuple(self.ring.diff(x, name) for name in self.names)
+
+
+class CanonicalField(Flow):
+    """That of one H, an element of a ring with the coordinates, h, t where H has it, and
+    parameters."""
+
+    def __init__(self, ring: Ring, names: tuple[str, ...], energy: Poly) -> None:
+        self._ring, self.names, self.energy = ring, names, energy
+
+    @property
+    def ring(self) -> Ring:
+        """The ring, in which zero is decided."""
+        return self._ring
+
+    @cached_property
+    def slopes(self) -> tuple[Poly, ...]:
+        """f, a component for each name."""
+        n, diff = self.degrees, self.ring.diff
+        forces = [-diff(self.energy, name) for name in self.names[n:]]
+        return (*forces, *(diff(self.energy, name) for name in self.names[:n]))
+
+    @cached_property
+    def separable(self) -> bool:
+        """Whether H = T(p) + V(q): all its mixed derivatives are the zero function."""
+        n, ring = self.degrees, self.ring
+        mixed = (ring.diff(v, q) for v in self.slopes[n:] for q in self.names[n:])
+        return all(ring.vanishes(x) is True for x in mixed)
 
 
 def canonical_field(

@@ -39,6 +39,12 @@ def numbered(degrees: int) -> tuple[str, ...]:
     return tuple(f"{letter}{k}" for letter in PLANE for k in range(1, degrees + 1))
 
 
+def check_degrees(degrees: int) -> None:
+    """InputError unless that is a number of degrees of freedom."""
+    if not 1 <= degrees <= MOST_DEGREES:
+        raise InputError("degrees", degrees, f"must be 1 … {MOST_DEGREES}")
+
+
 def check_coordinates(formula: str, expression: sympy.Expr, parameters: Collection[str]) -> None:
     """InputError where H has no p or no q, and among its parameters is a name that stands for it.
 

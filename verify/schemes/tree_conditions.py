@@ -173,6 +173,16 @@ def gaps_of(tableau: ImplicitTableau, order: int) -> Mapping[Tree, Poly]:
     return {tree: weights.gap(tree) for tree in trees(order)}
 
 
+def all_trees_hold(tableau: ImplicitTableau, order: int) -> bool:
+    """Whether the condition of every tree of up to so many vertices holds exactly.
+
+    In the plane fewer do, as the module says; in n degrees of freedom, for every n, all.
+    """
+    ring = tableau.numbers.ring
+    gaps = (gap for n in range(1, order + 1) for gap in gaps_of(tableau, n).values())
+    return all(ring.vanishes(gap) is True for gap in gaps)
+
+
 def _cancels(ring: Ring, gaps: Mapping[Tree, Poly], jets: Jets) -> bool | None:
     """Whether Σ gap F(t)/σ(t), trees of one size, is 0 for every H; None where it is not decided.
 

@@ -10,7 +10,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from verify.algebra.ring import Poly, Ring
+from verify.algebra.generator import Poly
+from verify.algebra.series.coefficient_ring import CoefficientRing
 
 Partial = Callable[[int, int], Poly]  # (i, j) ↦ ∂ⁱ⁺ʲ f / ∂pⁱ ∂qʲ
 
@@ -19,11 +20,11 @@ Partial = Callable[[int, int], Poly]  # (i, j) ↦ ∂ⁱ⁺ʲ f / ∂pⁱ ∂q�
 class Series:
     """Σ hᵏ coefficients[k], the coefficients in normal form in `ring` and free of h."""
 
-    ring: Ring
+    ring: CoefficientRing
     coefficients: tuple[Poly, ...]
 
     @classmethod
-    def of(cls, ring: Ring, coefficients: Sequence[Poly], most: int) -> "Series":
+    def of(cls, ring: CoefficientRing, coefficients: Sequence[Poly], most: int) -> "Series":
         """With these first coefficients, as far as h^most."""
         kept = [*coefficients[: most + 1], *[ring.zero] * (most + 1 - len(coefficients))]
         return cls(ring, tuple(kept))
@@ -83,7 +84,7 @@ class Series:
         return Series(self.ring, tuple(self.ring.diff(c, name) for c in self.coefficients))
 
 
-def partials(ring: Ring, x: Poly) -> Partial:
+def partials(ring: CoefficientRing, x: Poly) -> Partial:
     """The partial derivatives of a ring element, each made once."""
     known = {(0, 0): x}
 
@@ -119,7 +120,7 @@ def at_point(partial: Partial, u: Series, v: Series) -> Series:
     return total
 
 
-def at_time(ring: Ring, x: Poly, u: Series, v: Series, w: Series) -> Series:
+def at_time(ring: CoefficientRing, x: Poly, u: Series, v: Series, w: Series) -> Series:
     """f(p + u, q + v, t + w) for the ring element f; u, v and w are O(h)."""
     if not w.coefficients[0].is_zero():
         raise ValueError("the time is not t at h = 0")
@@ -133,7 +134,9 @@ def at_time(ring: Ring, x: Poly, u: Series, v: Series, w: Series) -> Series:
     return total
 
 
-def at_moved(ring: Ring, x: Poly, moves: Sequence[tuple[str, Series]], most: int) -> Series:
+def at_moved(
+    ring: CoefficientRing, x: Poly, moves: Sequence[tuple[str, Series]], most: int
+) -> Series:
     """The ring element x, up to h^most, where each variable of a name is moved by its series, O(h).
 
     One variable after the other, so that an x with few of them is soon done.

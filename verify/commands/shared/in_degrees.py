@@ -1,38 +1,46 @@
 """How a proof in n degrees of freedom is printed, and what its JSON has."""
 
+import textwrap
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from verify.commands.shared.answer import picked
-from verify.commands.shared.output import cut, print_head
+from verify.commands.shared.output import cut
 
 if TYPE_CHECKING:
-    from verify.hamiltonians.hamiltonian import Hamiltonian
     from verify.proof.symplectic.proof import SymplecticProof
+_WIDTH, _NAMES = 88, 12
 
 
 def symplectic_json(
-    exact: "Hamiltonian", scheme: str, proof: "SymplecticProof", seconds: str
+    texts: Mapping[str, Any], scheme: str, proof: "SymplecticProof", seconds: str
 ) -> dict[str, Any]:
-    """The keys of a proof in the plane, of S in place of ΔJ, and what is known of det J beside."""
+    """The keys of a proof in the plane, of S in place of ΔJ, and what is known of det J beside.
+
+    `texts`: H and its parameters, or for which H it is.
+    """
     from dataclasses import asdict
 
     from verify.arithmetic.exact import text
 
     return {
         **picked(proof, "verdict", "reason"),
-        **exact.texts,
+        **texts,
         "degrees": proof.degrees,
         "scheme": scheme,
         "order": proof.order,
         "leading": proof.leading_text,
+        "formula": proof.formula or None,
         "delta_j": "0" if proof.area_preserving else None,
         **picked(proof, "symplectic", "area_preserving", "volume_order", "volume_leading"),
         **picked(proof, "convergence_order", "entry"),
         "witness": {name: text(value) for name, value in proof.witness.items()},
         "telescopes": proof.telescopes,
         "potential": proof.potential or None,
+        "why": proof.why,
+        "checked": proof.checked,
         "conditions": [asdict(condition) for condition in proof.conditions],
         "domain": proof.domain.texts,
         "special_values": [],
@@ -40,28 +48,50 @@ def symplectic_json(
     }
 
 
-def print_symplectic(exact: "Hamiltonian", scheme: str, proof: "SymplecticProof") -> None:
+def print_symplectic(texts: Mapping[str, Any], scheme: str, proof: "SymplecticProof") -> None:
     """The same for a reader."""
-    from verify.arithmetic.exact import text
-
-    print_head(exact, scheme, proof)
+    click.echo(f"{proof.verdict}: {proof.reason}")
+    _line("H", texts["hamiltonian"])
+    for name, value in texts.get("parameters", {}).items():
+        _line(name, value)
+    _line("scheme", scheme)
     if proof.order is not None:
-        rest = f"h^{proof.order} + O(h^{proof.order + 1})"
-        click.echo(f"  S        ({cut(proof.leading_text)})·{rest}")
-    if proof.entry:
-        at = ", ".join(f"{n} = {text(v)}" for n, v in proof.witness.items())
-        click.echo(f"  witness  {at or 'any point'}: {proof.entry} has {proof.enclosure}")
-    click.echo(f"  det J    {_of_volume(proof)}")
+        long = proof.formula or proof.leading_text
+        shown = proof.leading_text if len(proof.leading_text) < 4 * _WIDTH else long
+        _line("S", f"({cut(shown)})·h^{proof.order} + O(h^{proof.order + 1})")
+    if proof.witness or proof.enclosure:
+        _line("witness", _witness(proof))
+    _line("det J", _of_volume(proof))
     if proof.telescopes is not None and not proof.symplectic:
-        how = f"the Lie derivative of {cut(proof.potential)}" if proof.telescopes else "no"
-        click.echo(f"  telescopes  {how}")
+        _line("telescopes", _telescoping(proof))
+    for identity in proof.checked:
+        _line("checked", str(identity))
     for condition in proof.conditions:
-        click.echo(f"  as       {condition.name}")
+        found = "holds" if condition.holds else f"residue {condition.residue}"
+        _line("condition", f"{condition.name}: {found}")
     if proof.domain:
-        click.echo(f"  where    {proof.domain.prose}")
+        _line("where", str(proof.domain.prose))
     order = proof.convergence_order
     known = "in all powers of h that were looked at" if order is None else f"up to h^{order}"
-    click.echo(f"  the map  agrees with the exact flow {known}")
+    _line("the map", f"agrees with the exact flow {known}")
+
+
+def _line(name: str, text: str) -> None:
+    first, rest = f"  {name:{_NAMES - 2}} ", " " * (_NAMES + 1)
+    click.echo(textwrap.fill(text, _WIDTH, initial_indent=first, subsequent_indent=rest))
+
+
+def _witness(proof: "SymplecticProof") -> str:
+    from verify.arithmetic.exact import text
+
+    at = ", ".join(f"{n} = {text(v)}" for n, v in proof.witness.items())
+    return f"{at or 'any point'}: the coefficient of {proof.entry} is {proof.enclosure}"
+
+
+def _telescoping(proof: "SymplecticProof") -> str:
+    if not proof.telescopes:
+        return f"no: {proof.why}"
+    return f"S begins with a Lie derivative, that of {cut(proof.potential)}"
 
 
 def _of_volume(proof: "SymplecticProof") -> str:

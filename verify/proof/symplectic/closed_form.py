@@ -16,7 +16,7 @@ def defect(step: CanonicalMap) -> TwoForm:
     def entry(a: int, b: int) -> Poly:
         total = -ring.one if b == a + n else ring.zero
         for i in range(n):
-            total += wedge(ring, rows[i], rows[n + i], a, b)
+            total += wedge(rows[i], rows[n + i], a, b)
         return total
 
     return TwoForm.of(ring, step.field.names, entry)

@@ -4,44 +4,60 @@ With N = Ω⁻¹S, det J² = det(1 + N), so that log det J = ½ tr(N − N²/2 +
 with hᵐ, ΔJ is Σ S(p_i, q_i) up to h^(2m−1).
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
 from fractions import Fraction
+from functools import partial
+from typing import Generic, TypeVar
 
-from verify.algebra.ring import Poly, Ring
+from verify.algebra.generator import Poly
+from verify.algebra.series.coefficient_ring import CoefficientRing
 from verify.algebra.series.power_series import Series
-from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
+from verify.hamiltonians.canonical_field import CanonicalField, Flow, canonical_field
 from verify.proof.expansion import Expansion
 from verify.proof.symplectic.two_form import TwoForm, wedge
 from verify.schemes.degrees.canonical_map import CanonicalMap, State
 
+F = TypeVar("F", bound=Flow)
 Matrix = list[list[Series]]
 
 
-@dataclass
-class DefectSeries:
-    """The coefficients of h⁰, h¹, … of z', S and ΔJ, made as far as they are looked at."""
+class DefectSeries(Generic[F]):
+    """The coefficients of h⁰, h¹, … of z', S and ΔJ, made as far as they are looked at.
 
-    map: CanonicalMap
-    first: int  # so many are made at once
-    _made: tuple[CanonicalField, State] | None = None
-    _gradients: list[list[tuple[Poly, ...]]] = field(default_factory=list)
-    _forms: dict[int, TwoForm] = field(default_factory=dict)
+    `made(most)`: z' up to h^most at least, over the ring of the flow that comes with it.
+    """
+
+    def __init__(self, made: Callable[[int], tuple[F, State]], first: int) -> None:
+        """`first`: so many are made at once."""
+        self._make, self._first = made, first
+        self._made: tuple[F, State] | None = None
+        self._gradients: list[list[tuple[Poly, ...]]] = []
+        self._forms: dict[int, TwoForm] = {}
 
     @property
-    def field(self) -> CanonicalField:
+    def flow(self) -> F:
         """H's field, in the ring of the coefficients."""
         return self._reached(0)[0]
 
-    def _reached(self, n: int) -> tuple[CanonicalField, State]:
+    def _reached(self, n: int) -> tuple[F, State]:
         if self._made is None or self._made[1][0].most < n:
-            self._made = _state(self.map, max(self.first, n + 1))
+            self._made = self._make(self._first if n <= self._first else n + 1)
             self._gradients, self._forms = [], {}
         return self._made
 
     def coefficient(self, n: int) -> tuple[Poly, ...]:
         """Those of hⁿ in z'."""
         return tuple(series.coefficients[n] for series in self._reached(n)[1])
+
+    def agrees(self, n: int) -> tuple[bool | None, Poly]:
+        """Whether those of hⁿ in z' are the exact flow's, and what differs, or may."""
+        flow, _ = self._reached(n)
+        for x, y in zip(self.coefficient(n), flow.term(n), strict=True):
+            gap = flow.ring.reduce(x - y)
+            same = flow.ring.vanishes(gap)
+            if same is not True:
+                return same, gap
+        return True, flow.ring.zero
 
     def _gradient(self, n: int) -> list[tuple[Poly, ...]]:
         """The coefficient of hⁿ in J, by rows."""
@@ -62,7 +78,7 @@ class DefectSeries:
                 total = -ring.one if m == 0 and b == a + n else ring.zero
                 for k in range(m + 1):
                     for i in range(n):
-                        total += wedge(ring, rows[k][i], rows[m - k][n + i], a, b)
+                        total += wedge(rows[k][i], rows[m - k][n + i], a, b)
                 return total
 
             self._forms[m] = TwoForm.of(ring, flow.names, entry)
@@ -91,7 +107,7 @@ class DefectSeries:
         return result.coefficients
 
 
-def _of_inverse(ring: Ring, forms: Sequence[TwoForm], a: int, b: int, n: int) -> Series:
+def _of_inverse(ring: CoefficientRing, forms: Sequence[TwoForm], a: int, b: int, n: int) -> Series:
     """The entry of Ω⁻¹S."""
     row, sign = (a + n, -1) if a < n else (a - n, 1)
     return Series(ring, tuple(form.at(row, b) * sign for form in forms))
@@ -108,6 +124,11 @@ def _times(x: Matrix, y: Matrix) -> Matrix:
             row.append(total)
         found.append(row)
     return found
+
+
+def series_of(step: CanonicalMap, first: int) -> DefectSeries[CanonicalField]:
+    """Those of one map."""
+    return DefectSeries(partial(_state, step), first)
 
 
 def _state(step: CanonicalMap, most: int) -> tuple[CanonicalField, State]:

@@ -10,11 +10,12 @@ from typing import Any
 
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.ring import Decision, Poly, Ring
+from verify.hamiltonians.canonical_field import CanonicalField
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import Convergence
 from verify.proof.parameters import not_zero_for
 from verify.proof.symplectic import closed_form
-from verify.proof.symplectic.defect import DefectSeries
+from verify.proof.symplectic.defect import DefectSeries, series_of
 from verify.proof.symplectic.proof import SymplecticProof
 from verify.proof.symplectic.telescoping import telescopes_of_lie
 from verify.proof.symplectic.two_form import Place, TwoForm
@@ -36,12 +37,13 @@ class _Defect:
     """
 
     power: int | None
-    form: TwoForm | None
     decision: Decision
+    form: TwoForm | None = None
     place: Place | None = None
+    ring: Ring | None = None  # the form's
 
 
-_NONE = _Defect(None, None, Decision(True))
+_NONE = _Defect(None, Decision(True))
 
 
 def prove_symplectic(hamiltonian: Hamiltonian, scheme: Scheme) -> SymplecticProof:
@@ -50,7 +52,7 @@ def prove_symplectic(hamiltonian: Hamiltonian, scheme: Scheme) -> SymplecticProo
     Raises InputError for an H that the scheme does not take.
     """
     step = map_in_degrees(scheme, hamiltonian)
-    series = DefectSeries(step, scheme.order + 1)
+    series = series_of(step, scheme.order + 1)
     most = max(_MOST, scheme.order + 1)
     convergence = _convergence(step, series, most)
     defect = _within(step.domain, _defect(step, series, most))
@@ -74,23 +76,22 @@ def prove_symplectic(hamiltonian: Hamiltonian, scheme: Scheme) -> SymplecticProo
     )
 
 
-def _convergence(step: CanonicalMap, series: DefectSeries, most: int) -> Convergence:
+def _convergence(
+    step: CanonicalMap, series: DefectSeries[CanonicalField], most: int
+) -> Convergence:
     """The order to which the map agrees with the exact flow."""
     for n in range(step.flow_up_to + 1, most + 1):
-        own, flow = series.coefficient(n), series.field
-        for x, y in zip(own, flow.term(n), strict=True):
-            gap = flow.ring.reduce(x - y)
-            agrees = flow.ring.vanishes(gap)
-            if agrees is not True:
-                exact_for = partial(not_zero_for, flow.ring, gap, f"what differs at h^{n}")
-                return Convergence(n - 1, agrees is False, exact_for)
+        agrees, gap = series.agrees(n)
+        if agrees is not True:
+            exact_for = partial(not_zero_for, series.flow.ring, gap, f"what differs at h^{n}")
+            return Convergence(n - 1, agrees is False, exact_for)
     return Convergence(None, True)
 
 
 # -- S ---------------------------------------------------------------------------------------------
 
 
-def _defect(step: CanonicalMap, series: DefectSeries, most: int) -> _Defect:
+def _defect(step: CanonicalMap, series: DefectSeries[CanonicalField], most: int) -> _Defect:
     if step.symplectic_by_conditions:
         return _NONE
     highest = 2 * step.degree if step.degree is not None else most
@@ -98,30 +99,35 @@ def _defect(step: CanonicalMap, series: DefectSeries, most: int) -> _Defect:
         form = series.form(m)
         decision, place = form.decide()
         if decision.zero is not True:
-            return _Defect(m, form, decision, place)
+            return _Defect(m, decision, form, place, series.flow.ring)
     if step.degree is not None:  # S is a polynomial in h, all of whose coefficients vanish
         return _NONE
     if step.closed is None:
-        return _Defect(None, None, Decision(None))
+        return _Defect(None, Decision(None))
     form = closed_form.defect(step)
     decision, place = form.decide()
-    return _NONE if decision.zero is True else _Defect(None, form, decision, place)
+    shown = _Defect(None, decision, form, place, step.ring)
+    return _NONE if decision.zero is True else shown
 
 
 def _within(domain: Domain, defect: _Defect) -> _Defect:
     """With a witness in the domain; where it has no point nothing is said."""
-    if defect.form is None or defect.decision.zero is not False or not domain.requirements:
+    if defect.form is None or defect.ring is None or not domain.requirements:
         return defect
-    decision, place = defect.form.decide(domain)
+    if defect.decision.zero is not False:
+        return defect
+    decision, place = defect.form.decide(partial(domain.decide, defect.ring))
     return replace(defect, decision=decision, place=place)
 
 
 def _parameters(defect: _Defect) -> Domain:
     """Those for which the entry that is shown is not the zero function."""
-    if defect.form is None or defect.place is None or defect.decision.zero is not False:
+    if defect.form is None or defect.place is None or defect.ring is None:
         return EVERYWHERE
-    x, ring = defect.form.entries[defect.place], defect.form.ring
-    return not_zero_for(ring, x, f"the entry {defect.form.called(defect.place)} of S")
+    if defect.decision.zero is not False:
+        return EVERYWHERE
+    x = defect.form.entries[defect.place]
+    return not_zero_for(defect.ring, x, f"the entry {defect.form.called(defect.place)} of S")
 
 
 # -- what goes with it ----------------------------------------------------------------------------
@@ -130,7 +136,7 @@ def _parameters(defect: _Defect) -> Domain:
 @dataclass(frozen=True)
 class _Rest:
     step: CanonicalMap
-    series: DefectSeries
+    series: DefectSeries[CanonicalField]
     defect: _Defect
     most: int
 
@@ -151,11 +157,11 @@ class _Rest:
 
     def _first_of_delta_j(self) -> tuple[int, Ring, Poly] | None:
         """The first coefficient of ΔJ that is shown not to vanish, before any that is undecided."""
-        ring = self.series.field.ring
+        ring = self.series.flow.ring
         begin = self.defect.power or 0
         for most in range(begin, self.most + 1):
             x = self.series.delta_j(most)[most]
-            zero = self.series.field.ring.vanishes(x)
+            zero = self.series.flow.ring.vanishes(x)
             if zero is not True:
                 return (most, ring, x) if zero is False else None
         return None
@@ -166,7 +172,7 @@ class _Rest:
         if eta < 1 or defect.power != eta + 1 or defect.form is None:
             known = True if defect.decision.zero is True else None  # 0 is the derivative of 0
             return {"telescopes": known, "potential": "0" if known else ""}
-        holds, potential = telescopes_of_lie(self.series.field, eta, defect.form)
+        holds, potential = telescopes_of_lie(self.series.flow, eta, defect.form)
         return {"telescopes": holds, "potential": potential}
 
 

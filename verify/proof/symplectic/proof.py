@@ -5,9 +5,12 @@ from fractions import Fraction
 
 from verify.algebra.conditions import Condition
 from verify.algebra.domain import Domain
+from verify.notebook import cut
 from verify.proof.symplectic.two_form import TwoForm
 from verify.prose import Prose
 from verify.verdict import Verdict
+
+MOST_TERMS = 2000  # of a form that is written out
 
 
 @dataclass(frozen=True)
@@ -20,7 +23,9 @@ class SymplecticProof:
     symplectic map fulfils and some others do; `volume_order` and `volume_leading` are those of
     det J − 1. `convergence_order`: z' agrees with the exact flow up to h to this power; None: in
     all that was looked at. `telescopes`: whether `leading` is the Lie derivative of a 2-form,
-    `potential`; None where that is not known.
+    `potential`; None where that is not known; `why` says how it is.
+    `formula`: what `leading` is of lieη, for any η. `checked` names the identities
+    that were checked, of a proof for every H.
     """
 
     verdict: Verdict
@@ -39,9 +44,18 @@ class SymplecticProof:
     enclosure: str = ""
     telescopes: bool | None = None
     potential: str = ""
+    formula: str = ""
+    why: str = ""
     conditions: tuple[Condition, ...] = ()
+    checked: tuple[Prose, ...] = ()
+
+    def __repr__(self) -> str:
+        return f"SymplecticProof({self.verdict}: {cut(str(self.reason))})"
 
     @property
     def leading_text(self) -> str:
-        """The leading coefficient of S as a formula."""
-        return self.leading.text if self.leading else "0"
+        """The leading coefficient of S as a formula: `formula` where its terms are too many."""
+        if self.leading is None:
+            return "0"
+        long = self.leading.length > MOST_TERMS
+        return self.formula if long and self.formula else self.leading.text

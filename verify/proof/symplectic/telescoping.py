@@ -22,11 +22,11 @@ from verify.algebra.formula import symbol
 from verify.algebra.ring import Poly
 from verify.algebra.substitution import substitute
 from verify.errors import InputError
-from verify.hamiltonians.canonical_field import CanonicalField
+from verify.hamiltonians.canonical_field import CanonicalField, Flow
 from verify.proof.symplectic.two_form import TwoForm, lie_derivative, wedge
 
 
-def potential_of_lie(flow: CanonicalField, eta: int) -> TwoForm:
+def potential_of_lie(flow: Flow, eta: int) -> TwoForm:
     """β of lieη, for even η."""
     if eta % 2:
         raise ValueError("for odd η the leading coefficient does not telescope")
@@ -37,7 +37,7 @@ def potential_of_lie(flow: CanonicalField, eta: int) -> TwoForm:
     def entry(a: int, b: int) -> Poly:
         total = ring.zero
         for k in range(eta + 1):
-            both = (wedge(ring, rows[eta - k][i], rows[k][n + i], a, b) for i in range(n))
+            both = (wedge(rows[eta - k][i], rows[k][n + i], a, b) for i in range(n))
             total += (-1) ** k * sum(both, ring.zero)
         return factor * total
 

@@ -7,9 +7,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
 
-from verify.algebra.domain import Domain
-from verify.algebra.ring import Decision, Poly, Ring
-from verify.hamiltonians.canonical_field import CanonicalField
+from verify.algebra.ring import Decision, Poly
+from verify.algebra.series.coefficient_ring import CoefficientRing
+from verify.hamiltonians.canonical_field import Flow
 
 Place = tuple[int, int]
 
@@ -18,12 +18,14 @@ Place = tuple[int, int]
 class TwoForm:
     """Its coefficients that are not 0 in normal form, by their places a < b."""
 
-    ring: Ring
+    ring: CoefficientRing
     names: tuple[str, ...]
     entries: Mapping[Place, Poly] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, ring: Ring, names: tuple[str, ...], entry: Callable[[int, int], Poly]) -> "TwoForm":
+    def of(
+        cls, ring: CoefficientRing, names: tuple[str, ...], entry: Callable[[int, int], Poly]
+    ) -> "TwoForm":
         """With the coefficients c_ab, which are put in normal form."""
         made = {place: ring.reduce(entry(*place)) for place in combinations(range(len(names)), 2)}
         return cls(ring, names, {place: x for place, x in made.items() if not x.is_zero()})
@@ -43,6 +45,11 @@ class TwoForm:
         return f"d{a}∧d{b}"
 
     @property
+    def length(self) -> int:
+        """How many terms its entries have together."""
+        return sum(map(len, self.entries.values()))
+
+    @property
     def text(self) -> str:
         """As a formula."""
         terms = (self._term(self.ring.text(x), at) for at, x in self.entries.items())
@@ -57,14 +64,17 @@ class TwoForm:
         n = len(self.names) // 2
         return self.ring.reduce(sum((self.at(i, n + i) for i in range(n)), self.ring.zero))
 
-    def decide(self, domain: Domain | None = None) -> tuple[Decision, Place | None]:
-        """Whether it is the zero form, and the entry that shows that it is not.
+    def decide(
+        self, decide: Callable[[Poly], Decision] | None = None
+    ) -> tuple[Decision, Place | None]:
+        """Whether it is the zero form, and the entry that shows that it is not; `decide` in place
+        of the ring's own.
 
         Undecided where no entry is shown not to be zero, and one is not shown to be.
         """
         undecided = None
         for place, x in self.entries.items():
-            decision = domain.decide(self.ring, x) if domain else self.ring.decide(x)
+            decision = (decide or self.ring.decide)(x)
             if decision.zero is False:
                 return decision, place
             if decision.zero is None:
@@ -72,7 +82,7 @@ class TwoForm:
         return undecided or (Decision(True), None)
 
 
-def lie_derivative(flow: CanonicalField, form: TwoForm) -> TwoForm:
+def lie_derivative(flow: Flow, form: TwoForm) -> TwoForm:
     """Along the flow, of D = ∂_t + X where H depends on time: D applied to the entries, and with
     A = f' AᵀB + BA."""
     ring, slopes = flow.ring, [flow.gradient(x) for x in flow.slopes]
@@ -87,6 +97,6 @@ def lie_derivative(flow: CanonicalField, form: TwoForm) -> TwoForm:
     return TwoForm.of(ring, flow.names, entry)
 
 
-def wedge(ring: Ring, x: Sequence[Poly], y: Sequence[Poly], a: int, b: int) -> Poly:
+def wedge(x: Sequence[Poly], y: Sequence[Poly], a: int, b: int) -> Poly:
     """The entry ab of dx∧dy, of two gradients."""
     return x[a] * y[b] - x[b] * y[a]

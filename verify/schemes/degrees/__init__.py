@@ -1,17 +1,19 @@
 """Step maps in n degrees of freedom, from the coefficients that a scheme has for every H.
 
-A file of `kinds/` has `KIND`, a class of coefficients, and `build(coefficients, hamiltonian)`, the
-map that they make. Adding a kind is adding one file.
+A file of `kinds/` has `KIND`, a class of coefficients; `build(coefficients, hamiltonian)`, the map
+that they make; `conditions(coefficients)`, which suffice for a symplectic one, for every H; and
+where the coefficients are rational `series_over(flow, coefficients, most)`, the map's series over
+any ring. Adding a kind is adding one file.
 """
 
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from verify.discovery import Catalogue
 from verify.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
 
     from verify.hamiltonians.hamiltonian import Hamiltonian
     from verify.schemes.degrees.canonical_map import CanonicalMap
@@ -21,9 +23,17 @@ _FILES = Catalogue(f"{__name__}.kinds", [f"{folder}/kinds" for folder in __path_
 
 
 @cache
-def _builders() -> "Mapping[type, Callable[..., CanonicalMap]]":
+def _kinds() -> "Mapping[type, Any]":
     modules = map(_FILES.module, _FILES.names)
-    return {module.KIND: module.build for module in modules}
+    return {module.KIND: module for module in modules}
+
+
+def kind_of(scheme: "Scheme") -> Any:
+    """The module of `kinds/` that knows its coefficients; InputError where there is none."""
+    found = _kinds().get(type(scheme.every_h))
+    if found is None:
+        raise InputError("scheme", scheme.name, "is known in one degree of freedom only")
+    return found
 
 
 def map_in_degrees(scheme: "Scheme", hamiltonian: "Hamiltonian") -> "CanonicalMap":
@@ -32,7 +42,5 @@ def map_in_degrees(scheme: "Scheme", hamiltonian: "Hamiltonian") -> "CanonicalMa
         from verify.schemes.degrees.by_formulas import map_by_formulas
 
         return map_by_formulas(hamiltonian, scheme.formulas)
-    build = _builders().get(type(scheme.every_h))
-    if build is None:
-        raise InputError("scheme", scheme.name, "is known in one degree of freedom only")
-    return build(scheme.every_h, hamiltonian)
+    made: CanonicalMap = kind_of(scheme).build(scheme.every_h, hamiltonian)
+    return made

@@ -8,12 +8,12 @@ from verify.algebra.conditions import Condition
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.power_series import Series, at_moved
-from verify.hamiltonians.canonical_field import CanonicalField
+from verify.hamiltonians.canonical_field import CanonicalField, Flow
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.step_map import AT_STAGES
 from verify.schemes.substep import h_inside
 
-_SOLVABLE = "the stages have a solution that depends smoothly on z"
+SOLVABLE = "the stages have a solution that depends smoothly on z"
 State = tuple[Series, ...]  # a series for each of p1 … pn, q1 … qn
 
 
@@ -45,7 +45,7 @@ class CanonicalMap:
     @property
     def domain(self) -> Domain:
         """Where the map is smooth: where H is, and is so at the stages, if there are any."""
-        words = [_SOLVABLE] if self.implicit else []
+        words = [SOLVABLE] if self.implicit else []
         if self.closed is None and self.hamiltonian.domain.names & {*self.field.names}:
             words.append(AT_STAGES)
         return Domain.of((), *words) & self.hamiltonian.domain & self.asked
@@ -63,13 +63,13 @@ class CanonicalMap:
         return bool(self.conditions) and all(c.holds is True for c in self.conditions)
 
 
-def start_of(field: CanonicalField, most: int) -> State:
+def start_of(field: Flow, most: int) -> State:
     """z as series."""
     return tuple(Series.of(field.ring, [x], most) for x in field.start)
 
 
 def slopes_at(
-    field: CanonicalField, changes: Sequence[Series], clock: Series | None, places: Sequence[int]
+    field: Flow, changes: Sequence[Series], clock: Series | None, places: Sequence[int]
 ) -> list[Series]:
     """Those components of f at z + changes, and where H depends on it at t + clock."""
     ring, most = field.ring, changes[0].most

@@ -6,6 +6,7 @@ b_i a_ij + b_j a_ji = b_i b_j for all i, j suffices for every H in any number of
 
 from collections.abc import Sequence
 
+from verify.algebra.conditions import Condition
 from verify.algebra.ring import Poly
 from verify.algebra.series.power_series import Series
 from verify.hamiltonians.canonical_field import canonical_field
@@ -50,5 +51,10 @@ def build(coefficients: TreeConditions, hamiltonian: Hamiltonian) -> CanonicalMa
         return tuple(x + y for x, y in pairs)
 
     return CanonicalMap(
-        hamiltonian, field, series, conditions=tableau.area_conditions(), implicit=True
+        hamiltonian, field, series, conditions=conditions(coefficients), implicit=True
     )
+
+
+def conditions(coefficients: TreeConditions) -> tuple[Condition, ...]:
+    """Those of the module's text."""
+    return coefficients.tableau.area_conditions()
