@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from verify import schemes as schemes
     from verify.calls.bench import bench as bench
     from verify.calls.check import check as check
+    from verify.calls.check_map import check_map as check_map
     from verify.calls.export import export as export
     from verify.calls.flow import flow as flow
     from verify.calls.modified import modified_hamiltonian as modified_hamiltonian
@@ -64,6 +65,7 @@ _NAMES = {
     "stability": ("verify.calls.stability", "runs judged: stable or not, and whose fault it is"),
     "bench": ("verify.calls.bench", "error against run time"),
     "check": ("verify.calls.check", "a step function of one's own: proved, else measured"),
+    "check_map": ("verify.calls.check_map", "any map of one's own: symplectic or not"),
     "plot_orbit": ("verify.pages.plotting_orbits", "an orbit's quantity over t, or in the plane"),
     "plot_energy_drift": ("verify.pages.plotting_energy", "the drift of H and of H̃ over t"),
     "plot_runs": ("verify.pages.plotting", "a quantity of runs against the step size"),

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 
-from verify.arithmetic.exact import decimal, text
+from verify.arithmetic.exact import decimal
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.agreement import by_duals, must_agree, must_agree_but_for_rounding
@@ -20,6 +20,7 @@ from verify.integrators.tracing.clocks import clock_mistakes
 from verify.integrators.tracing.domain import domain_of
 from verify.integrators.tracing.functions import copied
 from verify.integrators.tracing.number import UntraceableError
+from verify.integrators.tracing.readings_of_floats import readings
 from verify.integrators.tracing.rounded_order import Rounded, rounded_orders
 from verify.integrators.tracing.step_map import TracedMap, traced_map
 from verify.integrators.tracing.trace import Node, Tape
@@ -172,7 +173,7 @@ def _proved(trial: Trial) -> tuple[Finding, tuple[Node, Node]]:
         domain=(proof.domain & domain_of(tape)).texts,
     ).noting(
         f"traced with symbols; the map {traced.how}",
-        *_readings(tape),
+        *readings(tape),
     )
     found = _but_for_rounding(found, traced, tape)
     return _measured_area(found, trial), (p_next, q_next)
@@ -185,18 +186,6 @@ def _clock(hamiltonian: Hamiltonian, p_next: Node, q_next: Node, order: int | No
             return clock_mistakes(hamiltonian, p_next, q_next, order)
     except StepError:
         return []
-
-
-def _readings(tape: Tape) -> list[Prose]:
-    notes = [prose("h > 0 is taken for granted")] if tape.positive else []
-    if tape.readings:
-        shown = ", ".join(f"`{x!r}` as `{text(v)}`" for x, v in sorted(tape.readings.items()))
-        told = f"floats are read as the exact numbers that they are written for: {shown}"
-        notes.append(read_prose(told))
-    if tape.rounded:
-        shown = ", ".join(f"`{x!r}`" for x in sorted(tape.rounded))
-        notes.append(read_prose(f"floats taken by their exact binary values: {shown}"))
-    return notes
 
 
 def _but_for_rounding(found: Finding, traced: TracedMap, tape: Tape) -> Finding:

@@ -11,7 +11,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any, TypeAlias, TypeVar
+from typing import Any, Protocol, TypeAlias, TypeVar
 
 from verify.integrators.tracing.number import TracedNumber
 from verify.prose import Number, Prose, prose, read_prose
@@ -97,7 +97,7 @@ class Step:
         finite."""
         with self.limited():
             result = self.called(self.function, p, q, h, self.clock(p, q) if t is None else t)
-        x, y = (_real(x) for x in self.pair(result))
+        x, y = (real(x) for x in self.pair(result))
         if x - x != 0 or y - y != 0:
             found = prose(Number(f"{x:g}"), ", ", Number(f"{y:g}"))
             raise StepError(prose("it returns ", found, line_of_error(p, q, h)))
@@ -108,21 +108,32 @@ class Step:
         parts = _parts(result)
         if self.order.index("p") > self.order.index("q"):
             parts.reverse()
-        return _single(parts[0]), _single(parts[1])
+        return single(parts[0]), single(parts[1])
 
-    @contextlib.contextmanager
-    def limited(self) -> Iterator[None]:
+    def limited(self) -> contextlib.AbstractContextManager[None]:
         """Around every call: what it prints, what it raises, and how long it takes."""
-        if self.left <= 0:
-            raise StepError("its calls took all the time that there is")
-        begun = time.perf_counter()
-        try:
-            with quiet(), within(self.left, f"a call of it does not end within {self.left:.3g} s"):
-                yield
-        except SystemExit:
-            raise StepError("it calls sys.exit") from None
-        finally:
-            self.left -= time.perf_counter() - begun
+        return limited(self)
+
+
+class Limited(Protocol):
+    """Code whose calls have so many seconds left."""
+
+    left: float
+
+
+@contextlib.contextmanager
+def limited(owner: Limited) -> Iterator[None]:
+    """Around every call of a user's code: what it prints, what it raises, and how long it takes."""
+    if owner.left <= 0:
+        raise StepError("its calls took all the time that there is")
+    begun = time.perf_counter()
+    try:
+        with quiet(), within(owner.left, f"a call of it does not end within {owner.left:.3g} s"):
+            yield
+    except SystemExit:
+        raise StepError("it calls sys.exit") from None
+    finally:
+        owner.left -= time.perf_counter() - begun
 
 
 @contextlib.contextmanager
@@ -177,7 +188,7 @@ def _parts(result: Theirs) -> list[Theirs]:
     return parts
 
 
-def _single(x: Theirs) -> Theirs:
+def single(x: Theirs) -> Theirs:
     shape = getattr(x, "shape", ())
     if shape:
         if any(n != 1 for n in shape):
@@ -186,7 +197,7 @@ def _single(x: Theirs) -> Theirs:
     return x[()] if hasattr(x, "dtype") and hasattr(x, "reshape") else x
 
 
-def _real(x: Theirs) -> float:
+def real(x: Theirs) -> float:
     if isinstance(x, str | bytes | bytearray) or x is None or isinstance(x, TracedNumber):
         raise StepError(f"it returns {'text' if isinstance(x, str) else type(x).__name__}")
     if isinstance(x, complex):

@@ -132,15 +132,8 @@ def with_hamiltonian(command: Callable[..., Any]) -> Callable[..., Any]:
     return hamiltonian_options(given)
 
 
-def hamiltonian_of(
-    system: str | None, hamiltonian: str | None, params: tuple[str, ...]
-) -> "Hamiltonian":
-    """The Hamiltonian that the options name; InputError unless they name one."""
-    from verify.hamiltonians import systems
-    from verify.hamiltonians.hamiltonian import Hamiltonian
-
-    if (system is None) == (hamiltonian is None):
-        raise InputError("--system, --hamiltonian", system or NOT_GIVEN, "give one of the two")
+def values_of(params: tuple[str, ...]) -> dict[str, str]:
+    """The values of NAME=VALUE by their names. Raises InputError."""
     values: dict[str, str] = {}
     for text in params:
         name, given, value = text.partition("=")
@@ -152,6 +145,19 @@ def hamiltonian_of(
             instead = " --param ".join(part.strip() for part in re.split("[,;]", text))
             raise InputError("--param", text, f"is more than one; write --param {instead}")
         values[name.strip()] = value
+    return values
+
+
+def hamiltonian_of(
+    system: str | None, hamiltonian: str | None, params: tuple[str, ...]
+) -> "Hamiltonian":
+    """The Hamiltonian that the options name; InputError unless they name one."""
+    from verify.hamiltonians import systems
+    from verify.hamiltonians.hamiltonian import Hamiltonian
+
+    if (system is None) == (hamiltonian is None):
+        raise InputError("--system, --hamiltonian", system or NOT_GIVEN, "give one of the two")
+    values = values_of(params)
     if system is not None:
         return systems.get(system).hamiltonian(values)
     systems.check_is_formula(hamiltonian or "")

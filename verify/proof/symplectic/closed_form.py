@@ -4,14 +4,13 @@ from collections.abc import Sequence
 
 from verify.algebra.ring import Poly, Ring
 from verify.proof.symplectic.two_form import TwoForm, wedge
-from verify.schemes.degrees.canonical_map import CanonicalMap
 
 _MOST_TERMS = 300  # of J's entries together, beyond which det J is not multiplied out
 
 
-def defect(step: CanonicalMap) -> TwoForm:
-    """S of a map in closed form."""
-    ring, n, rows = step.ring, step.field.degrees, jacobian(step)
+def defect(ring: Ring, names: tuple[str, ...], closed: Sequence[Poly]) -> TwoForm:
+    """S of z ↦ `closed`, z being the variables of these names."""
+    n, rows = len(names) // 2, jacobian(ring, names, closed)
 
     def entry(a: int, b: int) -> Poly:
         total = -ring.one if b == a + n else ring.zero
@@ -19,23 +18,24 @@ def defect(step: CanonicalMap) -> TwoForm:
             total += wedge(rows[i], rows[n + i], a, b)
         return total
 
-    return TwoForm.of(ring, step.field.names, entry)
+    return TwoForm.of(ring, names, entry)
 
 
-def jacobian(step: CanonicalMap) -> list[tuple[Poly, ...]]:
-    """∂z'/∂z by rows, of a map in closed form."""
-    assert step.closed is not None  # noqa: S101 - the caller's condition
-    return [step.field.gradient(x) for x in step.closed]
+def jacobian(ring: Ring, names: tuple[str, ...], closed: Sequence[Poly]) -> list[tuple[Poly, ...]]:
+    """∂z'/∂z by rows."""
+    return [tuple(ring.diff(x, name) for name in names) for x in closed]
 
 
-def preserves_volume(step: CanonicalMap) -> bool | None:
+def preserves_volume(
+    ring: Ring, names: tuple[str, ...], closed: Sequence[Poly] | None
+) -> bool | None:
     """Whether det J ≡ 1; None where that is not decided, or there is too much to multiply."""
-    if step.closed is None:
+    if closed is None:
         return None
-    rows = jacobian(step)
+    rows = jacobian(ring, names, closed)
     if sum(len(x) for row in rows for x in row) > _MOST_TERMS:
         return None
-    return step.ring.vanishes(determinant(step.ring, rows) - 1)
+    return ring.vanishes(determinant(ring, rows) - 1)
 
 
 def determinant(ring: Ring, matrix: Sequence[Sequence[Poly]]) -> Poly:

@@ -104,7 +104,7 @@ def _defect(step: CanonicalMap, series: DefectSeries[CanonicalField], most: int)
         return _NONE
     if step.closed is None:
         return _Defect(None, Decision(None))
-    form = closed_form.defect(step)
+    form = closed_form.defect(step.ring, step.field.names, step.closed)
     decision, place = form.decide()
     shown = _Defect(None, decision, form, place, step.ring)
     return _NONE if decision.zero is True else shown
@@ -145,7 +145,8 @@ class _Rest:
         found: dict[str, Any] = {"volume_order": None, "volume_leading": "0"}
         if self.defect.decision.zero is not False:
             return {"area_preserving": self.defect.decision.zero, **found}
-        exact = closed_form.preserves_volume(self.step)
+        own = self.step
+        exact = closed_form.preserves_volume(own.ring, own.field.names, own.closed)
         if exact is True:
             return {"area_preserving": True, **found}
         first = self._first_of_delta_j()

@@ -1,0 +1,189 @@
+"""A map's Jacobian at points: with dual numbers of 200 bits, or by central differences of floats.
+
+With S = JᵀΩJ − Ω comes, for each entry, how far it may be off by the probe's own error.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import combinations
+
+import gmpy2
+
+from verify.integrators.maps.user_map import UserMap
+from verify.integrators.step import StepError, real
+from verify.integrators.tracing.dual import BITS, Dual, Duals
+from verify.integrators.tracing.functions import copied
+
+Place = tuple[int, int]
+Columns = list[list[float]]
+_STENCIL = ((1, 45), (2, -9), (3, 1))  # of the sixth order, over 60
+_WIDTH = 2.0**-7
+_EPSILON = 2.0**-52
+_DUAL = 2.0 ** -(BITS - 30)
+# Parts of an entry's terms: what a rounded coefficient, and the tolerance of a loop, may do to it.
+_OF_COEFFICIENT, _OF_LOOP = 64 * _EPSILON, 1e-9
+
+
+@dataclass(frozen=True)
+class Reading:
+    """At one point: the entries of S, a < b, det J − 1, and the errors that they may have."""
+
+    point: tuple[Fraction, ...]
+    entries: dict[Place, float]
+    noise: dict[Place, float]
+    volume: float
+    volume_noise: float
+
+    @property
+    def worst(self) -> Place:
+        """The entry that is most of all beyond its noise."""
+        return max(self.entries, key=lambda at: abs(self.entries[at]) / self.noise[at])
+
+    @property
+    def beyond(self) -> float:
+        """How many times its noise that entry is."""
+        return abs(self.entries[self.worst]) / self.noise[self.worst]
+
+
+class DualProbe:
+    """The map at dual numbers, two columns of J at a time."""
+
+    how = "duals"
+
+    def __init__(self, own: UserMap) -> None:
+        self.map, self.kind = own, Duals()
+        with self.kind.running():
+            self.function = copied(own.function, self.kind)
+
+    def at(self, point: Sequence[Fraction]) -> Reading:
+        """S at the point. Raises StepError, and what the user's code raises."""
+        size, rows = len(point), [list[gmpy2.mpfr]() for _ in point]
+        with self.kind.running():
+            for first in range(0, size, 2):
+                for row, x in zip(rows, self._two(point, first), strict=True):
+                    row += [x.by_p, x.by_q]
+            columns = [[row[k] for row in rows] for k in range(size)]
+            share = _DUAL + _OF_COEFFICIENT * len(self.kind.rounded)
+            share += _OF_LOOP if self.kind.compared else 0.0
+            return _reading(tuple(point), columns, None, share)
+
+    def value(self, point: Sequence[Fraction]) -> list[float]:
+        """z' at the point."""
+        with self.kind.running():
+            return [float(x.value) for x in self._two(point, 0)]
+
+    def _two(self, point: Sequence[Fraction], first: int) -> list[Dual]:
+        """z' with its derivatives by two of the coordinates."""
+        state = []
+        for k, x in enumerate(map(self.kind.rational, point)):
+            by = [gmpy2.mpfr(k == first + i) for i in (0, 1)]
+            state.append(Dual(self.kind, x.value, *by))
+        zero = state[0] * 0
+        found = [zero + x for x in self.map.called(self.function, state, self.kind.rational)]
+        if not all(isinstance(x, Dual) for x in found):
+            raise StepError("it returns what is no number")
+        if not all(gmpy2.is_finite(x.value) for x in found):
+            raise StepError("it returns what is not finite")
+        return [x for x in found if isinstance(x, Dual)]
+
+
+class FloatProbe:
+    """The map at floats, columns of J by central differences of the increments."""
+
+    how = "floats"
+
+    def __init__(self, own: UserMap) -> None:
+        self.map = own
+
+    def value(self, point: Sequence[Fraction]) -> list[float]:
+        """z' at the point."""
+        return self._at([float(x) for x in point])
+
+    def _at(self, z: Sequence[float]) -> list[float]:
+        found = [real(x) for x in self.map.called(self.map.function, z, float)]
+        if not all(map(math.isfinite, found)):
+            raise StepError("it returns what is not finite")
+        return found
+
+    def at(self, point: Sequence[Fraction]) -> Reading:
+        """S at the point; its errors by a second width."""
+        z = [float(x) for x in point]
+        reach = 1 + max(map(abs, z + self._at(z)))
+        width = _WIDTH * reach
+        one, two = (self._columns(z, w) for w in (width, width / 2))
+        noise = [
+            [abs(x - y) + 8 * _EPSILON * reach / width for x, y in zip(*pair, strict=True)]
+            for pair in zip(one, two, strict=True)
+        ]
+        return _reading(tuple(point), two, noise, 4 * _EPSILON)
+
+    def _columns(self, z: Sequence[float], width: float) -> Columns:
+        columns = []
+        for i in range(len(z)):
+            total = [float(60 * width * (k == i)) for k in range(len(z))]
+            for k, weight in _STENCIL:
+                ahead, behind = list(z), list(z)
+                ahead[i], behind[i] = z[i] + k * width, z[i] - k * width
+                f, b = self._at(ahead), self._at(behind)
+                for j in range(len(z)):
+                    total[j] += weight * ((f[j] - ahead[j]) - (b[j] - behind[j]))
+            columns.append([x / (60 * width) for x in total])
+        return columns
+
+
+Probe = DualProbe | FloatProbe
+
+
+def _reading(
+    point: tuple[Fraction, ...],
+    columns: Sequence[Sequence["gmpy2.mpfr | float"]],
+    errors: Columns | None,
+    share: float,
+) -> Reading:
+    """S and det J − 1 of these columns, each with `share` of its terms and what `errors` make."""
+    size = len(columns)
+    half, entries, noise = size // 2, {}, {}
+    for a, b in combinations(range(size), 2):
+        u, v = columns[a], columns[b]
+        pairs = [(i, half + i) for i in range(half)]
+        terms = [u[i] * v[j] - u[j] * v[i] for i, j in pairs]
+        entries[a, b] = float(sum(terms, type(u[0])(0)) - (b == a + half))
+        large = sum(abs(float(u[i] * v[j])) + abs(float(u[j] * v[i])) for i, j in pairs)
+        noise[a, b] = share * (1 + large)
+        if errors is not None:
+            e, f = errors[a], errors[b]
+            noise[a, b] += sum(
+                e[i] * abs(float(v[j])) + e[j] * abs(float(v[i]))
+                + f[j] * abs(float(u[i])) + f[i] * abs(float(u[j]))
+                for i, j in pairs
+            )  # fmt: skip
+    rows = [[float(columns[k][i]) for k in range(size)] for i in range(size)]
+    change, scale = _change_of_volume(columns)
+    wrong = share * scale
+    if errors is not None:
+        wrong += (
+            size
+            * max(max(e) for e in errors)
+            * max(1.0, *(abs(x) for r in rows for x in r)) ** (size - 1)
+        )
+    return Reading(point, entries, noise, change, wrong)
+
+
+def _change_of_volume(columns: Sequence[Sequence["gmpy2.mpfr | float"]]) -> tuple[float, float]:
+    """det J − 1 by elimination, the largest entries first, and how large the products in it are."""
+    rows = [list(column) for column in columns]
+    size, found, scale = len(rows), rows[0][0] * 0 + 1, 1.0
+    for k in range(size):
+        at = max(range(k, size), key=lambda i: abs(rows[i][k]))
+        scale *= 1 + max(abs(float(x)) for x in rows[at])
+        if rows[at][k] == 0:
+            return -1.0, scale
+        if at != k:
+            rows[k], rows[at], found = rows[at], rows[k], -found
+        found *= rows[k][k]
+        for i in range(k + 1, size):
+            share = rows[i][k] / rows[k][k]
+            rows[i] = [x - share * y for x, y in zip(rows[i], rows[k], strict=True)]
+    return float(found - 1), scale

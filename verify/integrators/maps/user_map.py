@@ -1,0 +1,138 @@
+"""A user's own map as it is called: map(p, q) with sequences, map(p, q) of the plane, or map(z)."""
+
+import inspect
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from verify.arithmetic.exact import rational
+from verify.errors import InputError
+from verify.hamiltonians.coordinates import PLANE, check_degrees, numbered
+from verify.integrators.step import TIME_LIMIT, StepError, Theirs, limited, single
+
+_POSITIONAL = inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD
+_WANTED = "wanted: map(p, q), which returns p', q', or map(z), which returns z'"
+
+
+@dataclass
+class UserMap:
+    """`names`: p and q, or p1 … qn, in our order; `places`: where each stands in the one z that the
+    function takes, or None where it takes p and q. `given`: further arguments by their names.
+    `left`: seconds left for its calls.
+    """
+
+    function: Callable[..., Theirs]
+    names: tuple[str, ...]
+    places: tuple[int, ...] | None
+    given: Mapping[str, Fraction] = field(default_factory=dict)
+    left: float = TIME_LIMIT
+
+    @property
+    def degrees(self) -> int:
+        """Of freedom."""
+        return len(self.names) // 2
+
+    def called(
+        self,
+        function: Callable[..., Theirs],
+        z: Sequence[Theirs],
+        of_number: Callable[[Fraction], Theirs],
+    ) -> list[Theirs]:
+        """z' in our order, of the function or a copy of it. Raises StepError, and its errors."""
+        import numpy as np
+
+        given = {name: of_number(x) for name, x in self.given.items()}
+        kind = float if isinstance(z[0], float) else object
+        n = self.degrees
+        with limited(self):
+            if self.places is not None:
+                one = np.empty(2 * n, dtype=kind)
+                for place, x in zip(self.places, z, strict=True):
+                    one[place] = x
+                found = self._flat(function(one, **given))
+                return [found[place] for place in self.places]
+            if self.names == PLANE:
+                return self._flat(function(*z, **given))
+            pair = [np.empty(n, dtype=kind) for _ in PLANE]
+            for k, x in enumerate(z):
+                pair[k // n][k % n] = x
+            return self._flat(function(*pair, **given))
+
+    def _flat(self, result: Theirs) -> list[Theirs]:
+        """The numbers that were returned, as many as there are coordinates."""
+        found = list(_numbers(result, depth=3))
+        if len(found) != len(self.names):
+            raise StepError(f"it returns {len(found)} numbers; wanted: {len(self.names)}")
+        return found
+
+
+def _numbers(result: Theirs, depth: int) -> list[Theirs]:
+    if result is None or isinstance(result, str | bytes | dict | set):
+        raise StepError(f"it returns {type(result).__name__}; {_WANTED}")
+    if getattr(result, "shape", ()):
+        result = list(result.ravel())
+    if not isinstance(result, list | tuple):
+        return [single(result)]
+    if depth == 0:
+        raise StepError(f"it returns lists of lists of lists; {_WANTED}")
+    return [x for part in result for x in _numbers(part, depth - 1)]
+
+
+def map_from(
+    function: Callable[..., Theirs],
+    degrees: int,
+    arguments: str | None = None,
+    parameters: Mapping[str, Fraction] | None = None,
+    time_limit: float = TIME_LIMIT,
+) -> UserMap:
+    """The function as a map in so many degrees of freedom.
+
+    `arguments`: the order of the coordinates in the one z that it takes, such as "q1,p1,q2,p2".
+    `parameters`: further arguments that it takes by name. InputError for a wrong signature.
+    """
+    check_degrees(degrees)
+    names = PLANE if degrees == 1 else numbered(degrees)
+    places = None if arguments is None else _places(arguments, names)
+    given = parameters or {}
+    try:
+        named = list(inspect.signature(function).parameters.values())
+    except (TypeError, ValueError):  # some functions written in C have none
+        return UserMap(function, names, places, given, time_limit)
+    shown = f"{getattr(function, '__name__', 'map')}({', '.join(map(str, named))})"
+    known = {x.name for x in named}
+    for name in given:
+        if name not in known:
+            raise InputError("parameter", name, f"is no argument of {shown}")
+    own = [x for x in named if x.kind in _POSITIONAL and x.name not in given]
+    needed = [x for x in own if x.default is x.empty]
+    kept = [x for x in named if x.kind is x.KEYWORD_ONLY and x.default is x.empty]
+    if places is None and len(needed) == 1:
+        places = tuple(range(len(names)))
+    count = 2 if places is None else 1
+    if len(needed) > count or len(own) < count or any(x.name not in given for x in kept):
+        raise InputError("map", shown, _WANTED)
+    return UserMap(function, names, places, given, time_limit)
+
+
+def _places(arguments: str, names: tuple[str, ...]) -> tuple[int, ...]:
+    order = [name.strip() for name in arguments.split(",")]
+    if sorted(order) != sorted(names):
+        problem = f"is no order of {', '.join(names)}"
+        raise InputError("--arguments", arguments, problem)
+    return tuple(map(order.index, names))
+
+
+def start_of(own: UserMap, p: str | None, q: str | None) -> list[Fraction] | None:
+    """A point that is written as two lists, p1,p2 and q1,q2; None where neither is given."""
+    if p is None and q is None:
+        return None
+    if p is None or q is None:
+        raise InputError("--p, --q", p or q or "", "give both or none")
+    point = list[Fraction]()
+    for name, written in (("p", p), ("q", q)):
+        numbers = [rational(part.strip(), f"--{name}") for part in written.split(",")]
+        if len(numbers) != own.degrees:
+            problem = f"has {len(numbers)} numbers; allowed: {own.degrees}, as --degrees says"
+            raise InputError(f"--{name}", written, problem)
+        point += numbers
+    return point
