@@ -12,7 +12,8 @@ from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
-    from verify.integrators.results import Finding
+    from verify.integrators.results import Claims, Finding
+    from verify.integrators.step import Step
 
 _CLAIMED = click.IntRange(1, 12)
 
@@ -30,6 +31,7 @@ _CLAIMED = click.IntRange(1, 12)
 @click.option("--p", "p", metavar="P", help="Its momentum.")
 @click.option("--order", type=_CLAIMED, metavar="K", help="Claimed order of convergence.")
 @click.option("--area-preserving", is_flag=True, help="Claimed: det J ≡ 1.")
+@click.option("--symplectic", is_flag=True, help="Claimed: JᵀΩJ ≡ Ω; in the plane det J ≡ 1.")
 @click.option("--area-order", type=_CLAIMED, metavar="K", help="Claimed: ΔJ = O(h^K).")
 @click.option(
     "--time-limit",
@@ -47,12 +49,14 @@ def check_integrator(
     p: str | None,
     order: int | None,
     area_preserving: bool,
+    symplectic: bool,
     area_order: int | None,
     time_limit: float,
 ) -> Answer:
     """Check a Python function step(p, q, h) → (p', q') of your own: its order and that of ΔJ.
 
-    Or step(p, q, t, h), for an H(p, q, t): then its order is that for the motion in time.
+    Or step(p, q, t, h), for an H(p, q, t): then its order is that for the motion in time. For an H
+    in p1 … pn, q1 … qn p and q are arrays, and S = JᵀΩJ − Ω is looked at in place of ΔJ.
 
     THIS RUNS YOUR CODE, which no other command does: MODULE is imported, from the current folder
     too, or file.py:FUNCTION is loaded, and the function is called.
@@ -76,14 +80,39 @@ def check_integrator(
     if exact.symbols:
         raise InputError("--param", exact.symbols[0], "has no value; a step of one's own needs it")
     step, notes = step_from(load(target), arguments, dict(exact.values), time_limit)
-    claims = Claims(order, area_order, area_preserving)
+    claims = Claims(order, area_order, area_preserving, symplectic)
+    claimed = claims != Claims()
+    if not exact.planar:
+        if start is not None:
+            raise InputError("--p, --q", p or "", "go with one degree of freedom")
+        return _in_degrees(exact, target, step, claims, notes)
     found = check(step, exact, claims, start).noting(*notes)
     seconds = f"{time.perf_counter() - begun:.6f}"
-    claimed = claims != Claims()
     return Answer(
         lambda: _json(exact, target, found, seconds),
         lambda: _print(exact, target, found),
         failed=found.verdict.value == "REFUTED" or (claimed and not found.verdict.holds),
+    )
+
+
+def _in_degrees(
+    exact: "Hamiltonian", target: str, step: "Step", claims: "Claims", notes: list[str]
+) -> Answer:
+    """For an H of several degrees of freedom."""
+    from verify.commands.shared.in_degrees import print_step, step_json
+    from verify.integrators.degrees.check import check_step
+    from verify.integrators.results import Claims
+
+    begun = time.perf_counter()
+    found = check_step(step, exact, claims)
+    for note in notes:
+        found = found.noting(note)
+    seconds = f"{time.perf_counter() - begun:.6f}"
+    failed = found.verdict == "REFUTED" or (claims != Claims() and not found.verdict.holds)
+    return Answer(
+        lambda: step_json(exact.texts, target, found, seconds),
+        lambda: print_step(exact.texts, target, found),
+        failed=failed,
     )
 
 

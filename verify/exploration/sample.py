@@ -7,7 +7,8 @@ from typing import Any
 
 from verify import arithmetic as number_systems
 from verify.errors import InputError
-from verify.hamiltonians.hamiltonian import Hamiltonian, VectorField
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.vector_field import VectorField
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.proof.order import prove
 from verify.proof.order_proof import Proof

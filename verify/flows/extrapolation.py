@@ -16,7 +16,7 @@ from typing import Any
 from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import mpfr
-from verify.hamiltonians.hamiltonian import VectorField
+from verify.hamiltonians.vector_field import VectorField
 from verify.kernels.lowering import Lowering
 from verify.kernels.program import Evaluator, Program
 from verify.prose import read_prose

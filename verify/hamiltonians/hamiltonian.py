@@ -25,13 +25,13 @@ from verify.algebra.formula import (
 )
 from verify.algebra.monomials import names_in, reads_back
 from verify.algebra.requirement import of_expression
-from verify.algebra.ring import Poly, Ring
+from verify.algebra.ring import Poly
 from verify.algebra.substitution import substitute
 from verify.arithmetic.exact import Exact, rational, text
 from verify.drawable import drawn_by
 from verify.errors import InputError
 from verify.hamiltonians.coordinates import PLANE, check_coordinates, coordinates_of
-from verify.hamiltonians.lie_derivatives import LieDerivatives
+from verify.hamiltonians.vector_field import VectorField
 from verify.notebook import aligned_latex, cut, short_latex
 
 
@@ -221,7 +221,7 @@ class Hamiltonian:
 
     def field(
         self, *others: sympy.Expr, most_terms: int = MAX_TERMS
-    ) -> tuple["VectorField", list[Poly]]:
+    ) -> tuple[VectorField, list[Poly]]:
         """The vector field of `exact`, and the other expressions as elements of its ring.
 
         Raises InputError where H is not of p and q: all that asks for it is of the plane.
@@ -234,7 +234,7 @@ class Hamiltonian:
 
 def _embedded(
     hamiltonian: Hamiltonian, others: Sequence[sympy.Expr], most_terms: int
-) -> tuple["VectorField", list[Poly]]:
+) -> tuple[VectorField, list[Poly]]:
     time = ("t",) if hamiltonian.time_dependent else ()
     variables = ("p", "q", "h", *time, *hamiltonian.symbols)
     ring, elements = embed([hamiltonian.exact, *others], variables, most_terms)
@@ -244,87 +244,5 @@ def _embedded(
 # Several schemes are proved for one H after another: what they share is made once. Few, since a
 # field keeps what was derived along it.
 @lru_cache(maxsize=8)
-def _field_of(hamiltonian: Hamiltonian) -> "VectorField":
+def _field_of(hamiltonian: Hamiltonian) -> VectorField:
     return _embedded(hamiltonian, (), MAX_TERMS)[0]
-
-
-@dataclass(frozen=True)
-class VectorField:
-    """p' = −H_q, q' = H_p (Eq. 1) in a ring; X = H_p ∂_q − H_q ∂_p is its Lie derivative.
-
-    Where H depends on t the ring has that variable, and D = ∂_t + X takes the place of X in all
-    that is derived along the flow. `of_energy`: H itself; None in a ring to which only its
-    derivatives were carried.
-    """
-
-    ring: Ring
-    h_p: Poly
-    h_q: Poly
-    of_energy: Poly | None = None
-
-    @property
-    def energy(self) -> Poly:
-        """H, of a field that was made of it."""
-        assert self.of_energy is not None  # noqa: S101 - the field of a Hamiltonian has it
-        return self.of_energy
-
-    @classmethod
-    def of(cls, ring: Ring, hamiltonian: Poly) -> "VectorField":
-        """That of H, an element of the ring."""
-        return cls(ring, ring.diff(hamiltonian, "p"), ring.diff(hamiltonian, "q"), hamiltonian)
-
-    def derive(self, y: Poly) -> Poly:
-        """X y, the derivative of y along the flow; D y where H depends on time."""
-        ring = self.ring
-        along = self.h_p * ring.diff(y, "q") - self.h_q * ring.diff(y, "p")
-        return ring.reduce(along + ring.diff(y, "t") if self.timed else along)
-
-    @property
-    def timed(self) -> bool:
-        """Whether H depends on t."""
-        return "t" in self.ring.places
-
-    def powers(self, y: Poly, most: int) -> Sequence[Poly]:
-        """[y, X y, …, X^most y]."""
-        result = [y]
-        for _ in range(most):
-            result.append(self.derive(result[-1]))
-        return result
-
-    @cached_property
-    def _powers(self) -> LieDerivatives:
-        return LieDerivatives(self.ring, self.h_p, self.h_q)
-
-    def power(self, name: str, n: int) -> Poly:
-        """Xⁿ y of y = p or q, made once."""
-        return self._powers.power(name, n)
-
-    def lie_derivatives(self, name: str, most: int) -> Sequence[Poly]:
-        """[y, X y, …, X^most y] of y = p or q, each made once."""
-        return [self._powers.power(name, n) for n in range(most + 1)]
-
-    def taylor(self, name: str, most: int) -> dict[int, Poly]:
-        """{n: Xⁿy/n!} of y = p or q, n = 0 … most, those that are not 0."""
-        terms = {n: self._powers.term(name, n) for n in range(most + 1)}
-        return {n: x for n, x in terms.items() if not x.is_zero()}
-
-    def truncated(self, eta: int) -> tuple[Poly, Poly]:
-        """Σ hⁿ/n! Xⁿp and Σ hⁿ/n! Xⁿq, n = 0 … η."""
-        return self._powers.truncated(eta)
-
-    def truncated_at(self, p_next: Poly, q_next: Poly) -> int | None:
-        """The η whose `truncated` these very objects are; None for any other elements."""
-        return self._powers.truncated_at(p_next, q_next)
-
-    def delta_j(self, n: int, eta: int) -> Poly:
-        """The coefficient of hⁿ in ΔJ of the map `truncated(eta)`, by direct expansion."""
-        return self._powers.delta_j(n, eta)
-
-    def bracket(self, x: Poly, y: Poly) -> Poly:
-        """∂(x, y)/∂(p, q)."""
-        diff, multiply = self.ring.diff, self.ring.multiply
-        return multiply(diff(x, "p"), diff(y, "q")) - multiply(diff(x, "q"), diff(y, "p"))
-
-    def separable(self) -> bool:
-        """Whether H = T(p) + V(q): the mixed derivative H_pq is the zero function."""
-        return self.ring.decide(self.ring.diff(self.h_p, "q")).zero is True

@@ -17,12 +17,13 @@ class Claims:
     """What is asked for; None and False ask for nothing.
 
     `order`: of convergence, at least. `area_order`: ΔJ = O(h^area_order). `area_preserving`:
-    det J ≡ 1.
+    det J ≡ 1. `symplectic`: the same in the plane, and more in several degrees of freedom.
     """
 
     order: int | None = None
     area_order: int | None = None
     area_preserving: bool = False
+    symplectic: bool = False
 
 
 NOTHING = Claims()
@@ -114,7 +115,7 @@ def judged(claims: Claims, found: Finding) -> list[Judged]:
             area = (
                 f"ΔJ is not 0, but O(`h^{found.area_at_least}`), as where an iteration ends early"
             )
-    if claims.area_preserving:
+    if claims.area_preserving or claims.symplectic:
         told.append(("det J ≡ 1", found.area_preserving, area))
     if claims.area_order is not None:
         shown = found.area_at_least is not None and claims.area_order <= found.area_at_least

@@ -19,7 +19,7 @@ from verify.algebra.linear_combination import combination
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.jets import Jets
 from verify.algebra.series.power_series import partials
-from verify.hamiltonians.hamiltonian import VectorField
+from verify.hamiltonians.vector_field import VectorField
 from verify.proof.modified_field import Vector, field_of
 from verify.proof.potential import among_polynomials
 from verify.proof.telescoping import multisets

@@ -12,7 +12,7 @@ from verify.algebra.domain import Domain
 from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
-from verify.hamiltonians.hamiltonian import VectorField
+from verify.hamiltonians.vector_field import VectorField
 from verify.proof.expansion import MOST_ORDERS, Expansion, Leading
 from verify.proof.hamiltonian_of_field import hamiltonian_of
 from verify.proof.modified_equation import ModifiedEquation, Term, judged

@@ -21,7 +21,7 @@ from verify.algebra.enclosure import enclose, points
 from verify.algebra.linear_combination import combination, may_combine
 from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
-from verify.hamiltonians.hamiltonian import VectorField
+from verify.hamiltonians.vector_field import VectorField
 from verify.proof.order_proof import Proof
 from verify.proof.telescoping import potential_of_lie
 from verify.schemes.every_hamiltonian import TaylorSeries

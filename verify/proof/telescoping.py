@@ -28,7 +28,7 @@ from verify.prose import Formula, Prose, prose, read_prose
 
 
 class Derivation(Protocol):
-    """p and q with their derivatives along the flow: `verify.hamiltonians.hamiltonian.VectorField`
+    """p and q with their derivatives along the flow: `verify.hamiltonians.vector_field.VectorField`
     is one.
     """
 

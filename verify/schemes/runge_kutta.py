@@ -10,7 +10,8 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from verify.algebra.series.power_series import Series, at_point, at_time, partials
-from verify.hamiltonians.hamiltonian import Hamiltonian, VectorField
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.vector_field import VectorField
 from verify.schemes.every_hamiltonian import RungeKutta
 from verify.schemes.scheme import Scheme
 from verify.schemes.stages import Point, Stages

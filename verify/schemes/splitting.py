@@ -16,7 +16,8 @@ from verify.algebra.formula import symbol
 from verify.algebra.ring import Poly
 from verify.algebra.series.power_series import Series, at_time
 from verify.errors import InputError
-from verify.hamiltonians.hamiltonian import Hamiltonian, VectorField
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.vector_field import VectorField
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting_conditions import LETTERS, Part, Splitting
 from verify.schemes.step_map import Expanded, StepMap, Substep

@@ -15,7 +15,7 @@ from collections.abc import Mapping, Sequence
 
 from verify.algebra.generator import Generator, terms_of
 from verify.algebra.ring import Poly, Ring
-from verify.hamiltonians.hamiltonian import VectorField
+from verify.hamiltonians.vector_field import VectorField
 
 Point = tuple[Poly, ...]  # p, q, and t where H depends on time
 _NAMES = 4  # for a stage: its point and its slope

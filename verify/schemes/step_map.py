@@ -18,7 +18,8 @@ from verify.algebra.requirement import of_expression
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.power_series import Series
 from verify.errors import InputError, LimitError
-from verify.hamiltonians.hamiltonian import Hamiltonian, VectorField
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.vector_field import VectorField
 from verify.notebook import aligned_latex, short_latex
 from verify.schemes.composition import composed_polynomials, occurrences, polynomial
 from verify.schemes.stages import chained

@@ -10,7 +10,7 @@ from functools import cached_property
 from verify.algebra.conditions import Condition
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.power_series import Series, at_point, partials
-from verify.hamiltonians.hamiltonian import VectorField
+from verify.hamiltonians.vector_field import VectorField
 from verify.schemes.composition import arguments
 
 

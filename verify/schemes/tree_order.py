@@ -16,7 +16,7 @@ import flint
 from verify.algebra.enclosure import enclose, enclosed, points
 from verify.algebra.series.power_series import partials
 from verify.arithmetic.flint_precision import working_precision
-from verify.hamiltonians.hamiltonian import VectorField
+from verify.hamiltonians.vector_field import VectorField
 from verify.schemes.implicit_tableau import ImplicitTableau
 from verify.schemes.tree_conditions import MOST_ORDER, Differentials, gaps_of, symmetry
 

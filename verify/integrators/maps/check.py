@@ -13,7 +13,7 @@ from verify.algebra.limits import checked
 from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
 from verify.integrators.maps.probes import DualProbe, FloatProbe, Probe, Reading
-from verify.integrators.maps.user_map import UserMap
+from verify.integrators.maps.user_map import CallableMap, UserMap
 from verify.integrators.step import StepError, last_line, within
 from verify.integrators.tracing.domain import domain_of
 from verify.integrators.tracing.functions import copied
@@ -71,23 +71,23 @@ class MapFinding:
 def check_map(own: UserMap, start: Sequence[Fraction] | None = None) -> MapFinding:
     """Runs the user's code. `start`: a point z to look at beside others."""
     points = [tuple(start)] if start is not None else []
-    points += _points(len(own.names))
+    points += points_of(len(own.names))
     try:
-        called = _called(FloatProbe(own), points)
+        called = called_at(FloatProbe(own), points)
     except Exception as error:  # the user's code may raise anything
-        return MapFinding(Verdict.UNDECIDED, prose(_why(error)), "calls", own.degrees)
+        return MapFinding(Verdict.UNDECIDED, prose(why(error)), "calls", own.degrees)
     notes = list[Prose]()
     for examine in (_proved, _by_duals, _by_floats):
         try:
             found = examine(own, points, called)
             return replace(found, notes=(*notes, *found.notes))
         except Exception as error:  # as above
-            notes.append(prose(f"{_MEANS[examine]}: ", _why(error)))
+            notes.append(prose(f"{_MEANS[examine]}: ", why(error)))
     neither = prose("it can be neither traced nor measured")
     return MapFinding(Verdict.UNDECIDED, neither, "calls", own.degrees, notes=tuple(notes))
 
 
-def _called(floats: FloatProbe, points: Sequence[tuple[Fraction, ...]]) -> Called:
+def called_at(floats: FloatProbe, points: Sequence[tuple[Fraction, ...]]) -> Called:
     """What it returns at points where it is defined, each time the same."""
     found, lost = Called(), list[Exception]()
     for point in points:
@@ -102,7 +102,7 @@ def _called(floats: FloatProbe, points: Sequence[tuple[Fraction, ...]]) -> Calle
     return found
 
 
-def _points(size: int) -> list[tuple[Fraction, ...]]:
+def points_of(size: int) -> list[tuple[Fraction, ...]]:
     """Points with small coordinates, all of them different."""
     parts = [Fraction(x) for x in _PARTS]
     return [
@@ -111,7 +111,7 @@ def _points(size: int) -> list[tuple[Fraction, ...]]:
     ]
 
 
-def _why(error: Exception) -> Prose:
+def why(error: Exception) -> Prose:
     known = isinstance(error, UntraceableError | StepError | InputError)
     return prose(error.args[0] if known and error.args else last_line(error))
 
@@ -123,7 +123,7 @@ def _proved(own: UserMap, points: Sequence[tuple[Fraction, ...]], called: Called
     with within(_SECONDS, "its proof takes too long"):
         tape, ring, closed = _traced(own)
         duals = DualProbe(own)
-        _must_agree(duals, called)
+        must_agree(duals, called)
         form = closed_form.defect(ring, own.names, closed)
         decision, place = form.decide()
         volume = closed_form.preserves_volume(ring, own.names, closed)
@@ -141,7 +141,7 @@ def _proved(own: UserMap, points: Sequence[tuple[Fraction, ...]], called: Called
     if decision.zero is None or place is None:
         return base
     if tape.rounded:
-        told = _measured(own, duals, points)
+        told = measured(own, duals, points)
         return replace(told, notes=(*base.notes, *told.notes))
     return _refuted(base, duals, form, volume, decision.witness, place, decision.enclosure)
 
@@ -201,7 +201,7 @@ def _traced(own: UserMap) -> tuple[Tape, Ring, list[Poly]]:
     return tape, ring, closed
 
 
-def _must_agree(duals: DualProbe, called: Called) -> None:
+def must_agree(duals: DualProbe, called: Called) -> None:
     """StepError where the copy that is traced is not the function that was called."""
     for point, theirs in called.items():
         ours = duals.value(point)
@@ -215,12 +215,12 @@ def _must_agree(duals: DualProbe, called: Called) -> None:
 
 def _by_duals(own: UserMap, points: Sequence[tuple[Fraction, ...]], called: Called) -> MapFinding:
     duals = DualProbe(own)
-    _must_agree(duals, called)
-    return _measured(own, duals, points)
+    must_agree(duals, called)
+    return measured(own, duals, points)
 
 
 def _by_floats(own: UserMap, points: Sequence[tuple[Fraction, ...]], _: Called) -> MapFinding:
-    return _measured(own, FloatProbe(own), points)
+    return measured(own, FloatProbe(own), points)
 
 
 _MEANS: dict[Callable[..., MapFinding], str] = {
@@ -230,7 +230,7 @@ _MEANS: dict[Callable[..., MapFinding], str] = {
 }
 
 
-def _measured(own: UserMap, probe: Probe, points: Sequence[tuple[Fraction, ...]]) -> MapFinding:
+def measured(own: CallableMap, probe: Probe, points: Sequence[tuple[Fraction, ...]]) -> MapFinding:
     """By the entries of S at the points, each against its noise."""
     found = list[Reading]()
     lost = StepError("it fails at all points")
@@ -238,13 +238,13 @@ def _measured(own: UserMap, probe: Probe, points: Sequence[tuple[Fraction, ...]]
         try:
             found.append(probe.at(point))
         except Exception as error:  # the user's code may raise anything
-            lost = StepError(str(_why(error)))
+            lost = StepError(str(why(error)))
     if len(found) < 2:
         raise lost
     worst = max(found, key=lambda reading: reading.beyond)
     entry = f"d{own.names[worst.worst[0]]}∧d{own.names[worst.worst[1]]}"
     base = MapFinding(
-        Verdict.UNDECIDED, prose(""), probe.how, own.degrees,
+        Verdict.UNDECIDED, prose(""), probe.how, len(own.names) // 2,
         largest=max(abs(x) for r in found for x in r.entries.values()),
         probe_error=max(x for r in found for x in r.noise.values()),
         area_preserving=_of_volume(found), entry=entry,

@@ -11,7 +11,7 @@ from itertools import combinations
 
 import gmpy2
 
-from verify.integrators.maps.user_map import UserMap
+from verify.integrators.maps.user_map import CallableMap
 from verify.integrators.step import StepError, real
 from verify.integrators.tracing.dual import BITS, Dual, Duals
 from verify.integrators.tracing.functions import copied
@@ -52,7 +52,7 @@ class DualProbe:
 
     how = "duals"
 
-    def __init__(self, own: UserMap) -> None:
+    def __init__(self, own: CallableMap) -> None:
         self.map, self.kind = own, Duals()
         with self.kind.running():
             self.function = copied(own.function, self.kind)
@@ -94,7 +94,7 @@ class FloatProbe:
 
     how = "floats"
 
-    def __init__(self, own: UserMap) -> None:
+    def __init__(self, own: CallableMap) -> None:
         self.map = own
 
     def value(self, point: Sequence[Fraction]) -> list[float]:

@@ -4,6 +4,7 @@ import inspect
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import Protocol
 
 from verify.arithmetic.exact import rational
 from verify.errors import InputError
@@ -12,6 +13,23 @@ from verify.integrators.step import TIME_LIMIT, StepError, Theirs, limited, sing
 
 _POSITIONAL = inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD
 _WANTED = "wanted: map(p, q), which returns p', q', or map(z), which returns z'"
+
+
+class CallableMap(Protocol):
+    """What a probe calls: a map, or a step with its h."""
+
+    @property
+    def function(self) -> Callable[..., Theirs]: ...
+
+    @property
+    def names(self) -> tuple[str, ...]: ...
+
+    def called(
+        self,
+        function: Callable[..., Theirs],
+        z: Sequence[Theirs],
+        of_number: Callable[[Fraction], Theirs],
+    ) -> list[Theirs]: ...
 
 
 @dataclass
@@ -59,11 +77,15 @@ class UserMap:
             return self._flat(function(*pair, **given))
 
     def _flat(self, result: Theirs) -> list[Theirs]:
-        """The numbers that were returned, as many as there are coordinates."""
-        found = list(_numbers(result, depth=3))
-        if len(found) != len(self.names):
-            raise StepError(f"it returns {len(found)} numbers; wanted: {len(self.names)}")
-        return found
+        return flat(result, len(self.names))
+
+
+def flat(result: Theirs, count: int) -> list[Theirs]:
+    """So many numbers that were returned, in sequences or not. Raises StepError."""
+    found = list(_numbers(result, depth=3))
+    if len(found) != count:
+        raise StepError(f"it returns {len(found)} numbers; wanted: {count}")
+    return found
 
 
 def _numbers(result: Theirs, depth: int) -> list[Theirs]:

@@ -11,9 +11,9 @@ from fractions import Fraction
 
 from verify.algebra.ring import Poly
 from verify.algebra.series.power_series import Series, delta_j
-from verify.hamiltonians.hamiltonian import VectorField
+from verify.hamiltonians.vector_field import VectorField
 
-_ROUNDING = Fraction(1, 2**44)
+ROUNDING = Fraction(1, 2**44)
 
 
 @dataclass(frozen=True)
@@ -38,19 +38,19 @@ def rounded_orders(field: VectorField, p: Series, q: Series) -> Rounded:
         for own, name in ((p, "p"), (q, "q")):
             flow = field.power(name, n) / math.factorial(n)
             x = own.coefficients[n]
-            gap = max(gap, _size(ring.reduce(x - flow)))
-            scale = max(scale, _size(x), _size(flow))
-        if gap > _ROUNDING * scale:
+            gap = max(gap, size_of(ring.reduce(x - flow)))
+            scale = max(scale, size_of(x), size_of(flow))
+        if gap > ROUNDING * scale:
             convergence = n - 1
             break
         residue = max(residue, gap)
     for n, x in enumerate(delta_j(p, q).coefficients):
-        if _size(x) > _ROUNDING * scale:
+        if size_of(x) > ROUNDING * scale:
             return Rounded(convergence, n, residue, x)
-        residue = max(residue, _size(x))
+        residue = max(residue, size_of(x))
     return Rounded(convergence, None, residue, None)
 
 
-def _size(x: Poly) -> Fraction:
+def size_of(x: Poly) -> Fraction:
     """The largest coefficient."""
     return max((abs(Fraction(int(c.p), int(c.q))) for c in x.coeffs()), default=Fraction(0))

@@ -7,6 +7,7 @@ Derivatives, section 13.2).
 
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
+from typing import Generic, Protocol, TypeVar
 
 import sympy
 
@@ -14,7 +15,6 @@ from verify.algebra.limits import checked
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.power_series import Series
 from verify.errors import InputError
-from verify.hamiltonians.hamiltonian import Hamiltonian, VectorField
 from verify.integrators.tracing.number import OPERATORS
 from verify.integrators.tracing.trace import Node, expressions, in_order, through
 
@@ -23,13 +23,28 @@ _PAIRED = {"sin": ("sin", "cos", -1), "cos": ("sin", "cos", -1),
 _REACHES = (7, 9, 13)  # who asks for one more order asks for further ones
 
 
-class TracedSeries:
-    """p' and q' of a trace as power series in h. InputError where it has none at h = 0."""
+class InRing(Protocol):
+    """A field, of the plane or of more degrees of freedom, in its ring."""
 
-    def __init__(self, hamiltonian: Hamiltonian, p_next: Node, q_next: Node) -> None:
-        self.roots = p_next, q_next
-        self._made: dict[int, tuple[Series, Series]] = {}
-        self.nodes = in_order(p_next, q_next)
+    @property
+    def ring(self) -> Ring: ...
+
+
+F = TypeVar("F", bound=InRing)
+
+
+class TracedSeries(Generic[F]):
+    """A trace as power series in h, one for each root. InputError where it has none at h = 0.
+
+    `field_with(*expressions)`: H's field, and expressions as elements of its ring.
+    """
+
+    def __init__(
+        self, roots: Sequence[Node], field_with: Callable[..., tuple[F, list[Poly]]]
+    ) -> None:
+        self.roots = tuple(roots)
+        self._made: dict[int, tuple[Series, ...]] = {}
+        self.nodes = in_order(*roots)
         at_zero = expressions(self.nodes, {"h": sympy.S.Zero})
         wanted: dict[tuple[int, str], sympy.Expr] = {}
         for node in self.nodes:
@@ -38,22 +53,21 @@ class TracedSeries:
             for name, expression in _beginnings(node, at_zero):
                 checked(expression, "step", "its value at h = 0")
                 wanted[node.number, name] = expression
-        self.field, elements = hamiltonian.field(*wanted.values())
+        self.field, elements = field_with(*wanted.values())
         self.known: dict[tuple[int, str], Poly] = dict(zip(wanted, elements, strict=True))
 
-    def __call__(self, most: int) -> tuple[VectorField, Series, Series]:
-        """The vector field, and p' and q' up to h^most."""
+    def __call__(self, most: int) -> tuple[F, tuple[Series, ...]]:
+        """The field, and the roots up to h^most."""
         reach = next((n for n in _REACHES if n >= most), most)
         if reach not in self._made:
             self._made[reach] = self._up_to(reach)
-        p, q = (Series.of(self.field.ring, x.coefficients, most) for x in self._made[reach])
-        return self.field, p, q
+        ring = self.field.ring
+        return self.field, tuple(Series.of(ring, x.coefficients, most) for x in self._made[reach])
 
-    def _up_to(self, most: int) -> tuple[Series, Series]:
+    def _up_to(self, most: int) -> tuple[Series, ...]:
         maker = _Maker(self.field.ring, most, self.known)
         made = through(self.nodes, maker.series)
-        p, q = (made[root.number] for root in self.roots)
-        return p, q
+        return tuple(made[root.number] for root in self.roots)
 
 
 def _beginnings(node: Node, at_zero: Mapping[int, sympy.Expr]) -> list[tuple[str, sympy.Expr]]:

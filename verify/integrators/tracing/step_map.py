@@ -1,17 +1,18 @@
 """From a trace to a step map that can be proved: shears, a closed form, or a series in h."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
 from verify.algebra.limits import checked
 from verify.algebra.ring import Ring
-from verify.algebra.series.power_series import Series
 from verify.errors import InputError
-from verify.hamiltonians.hamiltonian import Hamiltonian, VectorField
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.vector_field import VectorField
 from verify.integrators.tracing.series import TracedSeries
 from verify.integrators.tracing.shears import shears_of
 from verify.integrators.tracing.trace import Node, expressions, in_order, sizes
-from verify.schemes.step_map import StepMap, Substep
+from verify.schemes.step_map import Expanded, StepMap, Substep
 
 _MOST_WRITTEN = 3000  # operations of p' and q' as trees, of which a closed form is tried
 _MOST_TERMS, _MOST_OF_DELTA_J = 800, 20_000
@@ -27,10 +28,10 @@ class TracedMap:
 
     step_map: StepMap
     how: str
-    make: TracedSeries | None
+    make: Callable[[int], Expanded] | None
 
     @cached_property
-    def series(self) -> tuple[VectorField, Series, Series] | None:
+    def series(self) -> Expanded | None:
         return self.make(_ORDERS) if self.make else None
 
 
@@ -39,10 +40,7 @@ _ORDERS = 9
 
 def traced_map(hamiltonian: Hamiltonian, p_next: Node, q_next: Node) -> TracedMap:
     """InputError where the trace has neither a series in h nor a closed form that is short."""
-    try:
-        series = TracedSeries(hamiltonian, p_next, q_next)
-    except InputError:
-        series = None
+    series = _series(hamiltonian, p_next, q_next)
     shears = shears_of(hamiltonian, p_next, q_next)
     if shears is not None:
         return TracedMap(
@@ -60,6 +58,22 @@ def traced_map(hamiltonian: Hamiltonian, p_next: Node, q_next: Node) -> TracedMa
         "is known by its Taylor series in h",
         series,
     )
+
+
+def _series(
+    hamiltonian: Hamiltonian, p_next: Node, q_next: Node
+) -> Callable[[int], Expanded] | None:
+    """None where it has none at h = 0."""
+    try:
+        traced = TracedSeries((p_next, q_next), hamiltonian.field)
+    except InputError:
+        return None
+
+    def series(most: int) -> Expanded:
+        field, (p, q) = traced(most)
+        return field, p, q
+
+    return series
 
 
 def _closed(hamiltonian: Hamiltonian, p_next: Node, q_next: Node) -> Substep | None:

@@ -26,6 +26,7 @@ from verify.schemes.scheme import Scheme
 from verify.verdict import Verdict
 
 _MOST = 8  # powers of h that are looked at; more where a scheme claims a higher order
+_NO_SCHEME = "not a scheme for this H:"
 
 
 @dataclass(frozen=True)
@@ -46,22 +47,38 @@ class _Defect:
 _NONE = _Defect(None, Decision(True))
 
 
+@dataclass(frozen=True)
+class Claimed:
+    """What is claimed of a map: its order, and whether it is symplectic; "" of a map without a
+    name."""
+
+    name: str = ""
+    order: int = 1
+    symplectic: bool = False
+
+
 def prove_symplectic(hamiltonian: Hamiltonian, scheme: Scheme) -> SymplecticProof:
     """The order of S and of the map by exact algebra, and whether the scheme's claims hold.
 
     Raises InputError for an H that the scheme does not take.
     """
-    step = map_in_degrees(scheme, hamiltonian)
-    series = series_of(step, scheme.order + 1)
-    most = max(_MOST, scheme.order + 1)
+    called = f"`{scheme.name}`" if "=" in scheme.name else scheme.name
+    claimed = Claimed(called, scheme.order, scheme.area_preserving)
+    return prove_map(map_in_degrees(scheme, hamiltonian), claimed)
+
+
+def prove_map(step: CanonicalMap, claimed: Claimed) -> SymplecticProof:
+    """The same of a map that is made."""
+    series = series_of(step, claimed.order + 1)
+    most = max(_MOST, claimed.order + 1)
     convergence = _convergence(step, series, most)
     defect = _within(step.domain, _defect(step, series, most))
-    verdict, reason = _verdict(scheme, convergence, defect, most)
+    verdict, reason = _verdict(claimed, convergence, defect, most)
     found = _Rest(step, series, defect, most)
     return SymplecticProof(
         verdict=verdict,
         reason=reason,
-        degrees=hamiltonian.degrees,
+        degrees=step.field.degrees,
         order=defect.power if defect.decision.zero is False else None,
         leading=defect.form,
         symplectic=defect.decision.zero,
@@ -181,18 +198,17 @@ class _Rest:
 
 
 def _verdict(
-    scheme: Scheme, convergence: Convergence, defect: _Defect, most: int
+    claimed: Claimed, convergence: Convergence, defect: _Defect, most: int
 ) -> tuple[Verdict, Prose]:
-    called = f"`{scheme.name}`" if "=" in scheme.name else scheme.name
-    if convergence.misses(scheme.order):
+    if convergence.misses(claimed.order):
         known = f"agrees with the exact flow up to `h^{convergence.order}`"
         if convergence.order == -1:
             known = "agrees with the exact flow not even at h = 0"
         if not convergence.decided:
             said = f"the map {known}; whether further is not decided"
             return Verdict.UNDECIDED, read_prose(said)
-        said = f"{called} claims order {scheme.order}; the map {known} only"
-        return Verdict.REFUTED, read_prose(said)
+        of_it = f"{claimed.name} claims order {claimed.order};" if claimed.name else _NO_SCHEME
+        return Verdict.REFUTED, read_prose(f"{of_it} the map {known} only")
     power, zero = defect.power, defect.decision.zero
     if zero is None:
         what = f"of `h^{power}`" if power is not None else f"beyond `h^{most}`"
@@ -200,8 +216,8 @@ def _verdict(
         return Verdict.UNDECIDED, read_prose(said)
     if zero:
         return Verdict.PROVED, prose("S is the zero form: the map is symplectic")
-    if scheme.area_preserving:
-        said = f"{called} claims to be symplectic; S has order {power}"
+    if claimed.symplectic:
+        said = f"{claimed.name} claims to be symplectic; S has order {power}"
         return Verdict.REFUTED, read_prose(said)
     if power is None:
         said = f"S is not the zero form, and its coefficients up to `h^{most}` vanish"

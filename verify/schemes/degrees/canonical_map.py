@@ -25,7 +25,8 @@ class CanonicalMap:
     polynomial in h. `closed`: z' in that ring; None where it is not written out. `conditions`:
     where all of them hold the map is symplectic, for every H that the scheme takes. `flow_up_to`:
     the power of h up to which it is made of the exact flow's own terms. `asked`: where the scheme's
-    own formulas are defined. `implicit`: equations are solved for it.
+    own formulas are defined. `implicit`: equations are solved for it. `expand`: z' up
+    to h^most over a ring that comes with it, in place of `series`.
     """
 
     hamiltonian: Hamiltonian
@@ -36,6 +37,7 @@ class CanonicalMap:
     flow_up_to: int = -1
     asked: Domain = EVERYWHERE
     implicit: bool = False
+    expand: Callable[[int], tuple[CanonicalField, State]] | None = None
 
     @property
     def ring(self) -> Ring:

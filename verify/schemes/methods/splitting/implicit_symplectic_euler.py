@@ -14,7 +14,8 @@ from functools import lru_cache
 from verify.algebra.implicit_unknowns import define, unknowns
 from verify.algebra.ring import Poly
 from verify.algebra.series.power_series import Series, at_point, partials
-from verify.hamiltonians.hamiltonian import Hamiltonian, VectorField
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.vector_field import VectorField
 from verify.schemes.every_hamiltonian import Stage, StageEquations
 from verify.schemes.methods.splitting.symplectic_euler import PARTS
 from verify.schemes.scheme import Scheme

@@ -1,0 +1,73 @@
+"""A step of arrays as it is called, and with its h fixed as a map that probes call."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from verify.integrators.maps.user_map import flat
+from verify.integrators.step import Step, Theirs
+
+
+@dataclass
+class StepOfArrays:
+    """`names`: p1 … pn, q1 … qn, of which the step takes p and q as arrays, and returns both."""
+
+    step: Step
+    names: tuple[str, ...]
+
+    @property
+    def function(self) -> Callable[..., Theirs]:
+        """The user's."""
+        return self.step.function
+
+    def called(
+        self,
+        function: Callable[..., Theirs],
+        z: Sequence[Theirs],
+        h: Theirs,
+        t: Theirs,
+    ) -> list[Theirs]:
+        """z' in our order. Raises StepError, and what the user's code raises."""
+        import numpy as np
+
+        n = len(self.names) // 2
+        kind = float if isinstance(z[0], float) else object
+        p, q = (np.empty(n, dtype=kind) for _ in "pq")
+        for k, x in enumerate(z):
+            (p, q)[k // n][k % n] = x
+        with self.step.limited():
+            found = flat(self.step.raw(function, p, q, h, t), 2 * n)
+        exchanged = self.step.order.index("p") > self.step.order.index("q")
+        return [*found[n:], *found[:n]] if exchanged else found
+
+    def at(self, h: Fraction, t: Fraction) -> "StepAt":
+        """The map of that step size, at that time."""
+        return StepAt(self, h, t)
+
+
+@dataclass
+class StepAt:
+    """A `verify.integrators.maps.user_map.CallableMap`."""
+
+    own: StepOfArrays
+    h: Fraction
+    t: Fraction
+
+    @property
+    def function(self) -> Callable[..., Theirs]:
+        """The user's."""
+        return self.own.function
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the coordinates."""
+        return self.own.names
+
+    def called(
+        self,
+        function: Callable[..., Theirs],
+        z: Sequence[Theirs],
+        of_number: Callable[[Fraction], Theirs],
+    ) -> list[Theirs]:
+        """z' in our order."""
+        return self.own.called(function, z, of_number(self.h), of_number(self.t))

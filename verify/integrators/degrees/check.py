@@ -1,0 +1,256 @@
+"""Whether a step of arrays is a scheme for H, and symplectic: proved, else measured at points.
+
+Where its code lets no symbols through only S is measured, for some step sizes: the exact flow in
+several degrees of freedom, with which the order could be, is not known here.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from verify.algebra.domain import EVERYWHERE, Domain
+from verify.errors import InputError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.integrators.degrees.called import StepOfArrays
+from verify.integrators.degrees.traced import traced_map
+from verify.integrators.maps.check import (
+    Called,
+    MapFinding,
+    called_at,
+    measured,
+    must_agree,
+    points_of,
+    why,
+)
+from verify.integrators.maps.probes import DualProbe, FloatProbe
+from verify.integrators.results import Claims
+from verify.integrators.step import Step, within
+from verify.integrators.tracing.domain import domain_of
+from verify.integrators.tracing.readings_of_floats import readings
+from verify.integrators.tracing.rounded_order import ROUNDING, size_of
+from verify.proof.symplectic.defect import series_of
+from verify.proof.symplectic.order import Claimed, prove_map
+from verify.proof.symplectic.proof import SymplecticProof
+from verify.prose import Prose, prose, read_prose
+from verify.schemes.degrees.canonical_map import CanonicalMap
+from verify.verdict import Verdict
+
+_SECONDS = 40.0  # for a proof
+_SIZES = (Fraction(1, 8), Fraction(1, 64))
+_TIME = Fraction(1, 4)
+_MOST = 8  # orders that are looked at but for rounding
+
+
+@dataclass(frozen=True)
+class StepFinding:
+    """What was found of a step of arrays.
+
+    `how`: "proof", "duals", "floats", or "calls" where the function was only called.
+
+    `proof`: what is proved. `convergence_order`: that of the map, None where it is not known
+    (`order_known` False) or agrees in all that was looked at. `measured`: S at points, with the
+    step size `h`, where there is no proof.
+    """
+
+    verdict: Verdict
+    reason: Prose
+    how: str
+    degrees: int
+    proof: SymplecticProof | None = None
+    symplectic: bool | None = None
+    area_preserving: bool | None = None
+    convergence_order: int | None = None
+    order_known: bool = False
+    measured: MapFinding | None = None
+    h: Fraction | None = None
+    domain: Domain = EVERYWHERE
+    notes: tuple[Prose, ...] = ()
+
+    def __repr__(self) -> str:
+        return f"StepFinding({self.verdict}: {self.reason})"
+
+    def noting(self, *parts: str | Prose) -> "StepFinding":
+        """The same with one more note, first."""
+        return replace(self, notes=(prose(*parts), *self.notes))
+
+
+def check_step(step: Step, hamiltonian: Hamiltonian, claims: Claims) -> StepFinding:
+    """Runs the user's code. Raises InputError where a parameter of H has no value."""
+    if hamiltonian.symbols:
+        raise InputError("parameter", hamiltonian.symbols[0], "has no value; a step needs one")
+    step.moving = hamiltonian.time_dependent
+    own, degrees = StepOfArrays(step, hamiltonian.coordinates), hamiltonian.degrees
+    at, points = own.at(_SIZES[0], _TIME), points_of(2 * degrees)
+    try:
+        called = called_at(FloatProbe(at), points)
+    except Exception as error:  # the user's code may raise anything
+        return StepFinding(Verdict.UNDECIDED, prose(why(error)), "calls", degrees)
+    try:
+        with within(_SECONDS, "its proof takes too long"):
+            found = _proved(own, hamiltonian, called)
+    except Exception as error:  # as above
+        found = _measured(own, points, called).noting("no proof: ", why(error))
+    return _held_to(claims, found)
+
+
+# -- proved ---------------------------------------------------------------------------------------
+
+
+def _proved(own: StepOfArrays, hamiltonian: Hamiltonian, called: Called) -> StepFinding:
+    tape, made = traced_map(own, hamiltonian)
+    must_agree(DualProbe(own.at(_SIZES[0], _TIME)), called)
+    proof = prove_map(made, Claimed())
+    found = StepFinding(
+        proof.verdict,
+        proof.reason,
+        "proof",
+        hamiltonian.degrees,
+        proof=proof,
+        symplectic=proof.symplectic,
+        area_preserving=proof.area_preserving,
+        convergence_order=proof.convergence_order,
+        order_known=True,
+        domain=proof.domain & domain_of(tape),
+        notes=(prose("traced with symbols"), *readings(tape)),
+    )
+    return _but_for_rounding(found, own, made) if tape.rounded else found
+
+
+def _but_for_rounding(found: StepFinding, own: StepOfArrays, made: CanonicalMap) -> StepFinding:
+    """Where coefficients are rounded: the order, with residues of their size taken for 0, and S at
+    points, of which such rounding is allowed."""
+    order = _rounded_order(made)
+    points = points_of(len(own.names))
+    here = own.at(_SIZES[0], _TIME)
+    seen = measured(here, DualProbe(here), points)
+    exact = found.convergence_order
+    same = seen.symplectic == found.symplectic and (exact is None or order == exact)
+    if same:
+        return found
+    told = (
+        f"but for the rounding of its coefficients it agrees with the exact flow up to `h^{order}`"
+    )
+    verdict = seen.verdict if order >= 1 else Verdict.REFUTED
+    return replace(
+        found,
+        verdict=verdict,
+        reason=prose(read_prose(told), "; ", seen.reason),
+        how="duals",
+        proof=None,
+        symplectic=seen.symplectic,
+        area_preserving=seen.area_preserving,
+        convergence_order=order,
+        measured=seen,
+        h=here.h,
+    )
+
+
+def _rounded_order(made: CanonicalMap) -> int:
+    """Up to which power of h the map agrees with the flow, but for residues of rounding."""
+    series, scale = series_of(made, 3), Fraction(0)
+    for n in range(_MOST + 1):
+        own, flow = series.coefficient(n), series.flow
+        gap = Fraction(0)
+        for x, y in zip(own, flow.term(n), strict=True):
+            gap = max(gap, size_of(flow.ring.reduce(x - y)))
+            scale = max(scale, size_of(x), size_of(y))
+        if gap > ROUNDING * scale:
+            return n - 1
+    return _MOST
+
+
+# -- measured -------------------------------------------------------------------------------------
+
+
+def _measured(
+    own: StepOfArrays, points: Sequence[tuple[Fraction, ...]], called: Called
+) -> StepFinding:
+    """S at the points for some step sizes; the order is not known."""
+    notes, degrees = list[Prose](), len(own.names) // 2
+    for how in ("duals", "floats"):
+        try:
+            if how == "duals":
+                must_agree(DualProbe(own.at(_SIZES[0], _TIME)), called)
+            each = [(h, _at(own, h, how, points)) for h in _SIZES]
+        except Exception as error:  # the user's code may raise anything
+            notes.append(prose(f"not measured with {how}: ", why(error)))
+            continue
+        h, worst = next((x for x in each if x[1].symplectic is not True), each[0])
+        return StepFinding(
+            worst.verdict,
+            prose(read_prose(f"with h = `{h}`, "), worst.reason),
+            how,
+            degrees,
+            symplectic=worst.symplectic,
+            area_preserving=worst.area_preserving,
+            measured=worst,
+            h=h,
+            notes=(*notes, prose("its order is not measured in several degrees of freedom")),
+        )
+    neither = prose("it can be neither traced nor measured")
+    return StepFinding(Verdict.UNDECIDED, neither, "calls", degrees, notes=tuple(notes))
+
+
+def _at(
+    own: StepOfArrays, h: Fraction, how: str, points: Sequence[tuple[Fraction, ...]]
+) -> MapFinding:
+    here = own.at(h, _TIME)
+    return measured(here, DualProbe(here) if how == "duals" else FloatProbe(here), points)
+
+
+# -- what is claimed ------------------------------------------------------------------------------
+
+
+def _held_to(claims: Claims, found: StepFinding) -> StepFinding:
+    """REFUTED where a claim is, UNDECIDED where one is not decided.
+
+    A step that is not symplectic is no mistake unless it is claimed to be.
+    """
+    told = list(_judged(claims, found))
+    false = [said for holds, said in told if holds is False]
+    open_ = [said for holds, said in told if holds is None]
+    if found.verdict is Verdict.REFUTED and found.how != "proof" and _is_scheme(found):
+        found = replace(found, verdict=Verdict.MEASURED)  # that it is not symplectic
+    if false:
+        return replace(found, verdict=Verdict.REFUTED, reason=read_prose(false[0]))
+    if open_ and found.verdict is not Verdict.REFUTED:
+        said = read_prose(f"{open_[0]} is claimed and not decided: ")
+        return replace(found, verdict=Verdict.UNDECIDED, reason=prose(said, found.reason))
+    return found
+
+
+def _is_scheme(found: StepFinding) -> bool:
+    """Whether nothing is known against its order."""
+    return not found.order_known or found.convergence_order is None or found.convergence_order >= 1
+
+
+def _judged(claims: Claims, found: StepFinding) -> Iterator[tuple[bool | None, str]]:
+    """Each claim that does not hold: whether it is refuted, and what is said."""
+    proof, agreed = found.proof, found.convergence_order
+    if claims.order is not None:
+        claim = f"order {claims.order}"
+        if not found.order_known:
+            yield None, claim
+        elif agreed is not None and agreed < claims.order:
+            known = f"the map agrees with the exact flow up to `h^{agreed}` only"
+            yield False, f"{claim} is claimed; {known}"
+    if claims.symplectic and found.symplectic is not True:
+        where = f"S has order {proof.order}" if proof and proof.order else "S is not 0"
+        claim = "that it is symplectic"
+        yield (
+            found.symplectic,
+            claim if found.symplectic is None else f"{claim} is claimed; {where}",
+        )
+    if claims.area_preserving and found.area_preserving is not True:
+        where = f"det J − 1 has order {proof.volume_order}" if proof else "det J is not 1"
+        known = "det J ≡ 1"
+        yield (
+            found.area_preserving,
+            known if found.area_preserving is None else (f"{known} is claimed; {where}"),
+        )
+    if claims.area_order is not None and not found.area_preserving:
+        claim, power = f"ΔJ = O(`h^{claims.area_order}`)", proof.volume_order if proof else None
+        if power is None:
+            yield None, claim
+        elif power < claims.area_order:
+            yield False, f"{claim} is claimed; det J − 1 has order {power}"
