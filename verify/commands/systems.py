@@ -21,7 +21,7 @@ def systems() -> Answer:
     """
     from verify.hamiltonians.systems import all_systems
 
-    rows = [_row(system) for system in all_systems().values()]
+    rows = [_row(system) for system in all_systems(None).values()]
     return Answer(lambda: {"systems": rows}, lambda: _print(rows))
 
 
@@ -29,6 +29,7 @@ def _row(system: "System") -> dict[str, Any]:
     return {
         **picked(system, "name", "title"),
         "hamiltonian": system.formula,
+        "degrees": system.degrees,
         "parameters": dict(system.parameters),
         "regimes": {name: dict(values) for name, values in system.regimes.items()},
         "exact_flow": system.has_closed_form,
@@ -40,6 +41,7 @@ def _print(rows: list[dict[str, Any]]) -> None:
     width = max(len(row["name"]) for row in rows)
     for row in rows:
         flow = "exact flow in closed form" if row["exact_flow"] else "exact flow by numbers"
+        flow = flow if row["degrees"] == 1 else f"{row['degrees']} degrees of freedom"
         click.echo(f"{row['name']:{width}}  H = {row['hamiltonian']}; {flow}")
         for name, meaning in row["parameters"].items():
             click.echo(f"{'':{width}}  {name}: {meaning}")

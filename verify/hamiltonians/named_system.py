@@ -14,12 +14,14 @@ Regime = Mapping[str, str]  # "p", "q" and every parameter, as exact text
 
 @dataclass(frozen=True)
 class System:
-    """`formula` is H(p, q), or H(p, q, t); `parameters` explains each of its parameters.
+    """`formula` is H(p, q), H(p, q, t), or H(p1, …, q1, …).
 
+    `parameters` explains each of its parameters.
     `flow` is its exact flow in closed form, where that is known; of an H that depends on time,
     `flow_in_time` gives p and q for (parameters, p, q and t at the start, how long). Without one,
     `goes` may say of (parameters, p, q) how the orbit goes to infinity as t grows: None where it
-    stays bounded. `regimes` are examples of the kinds of orbits that it has.
+    stays bounded. `regimes` are examples of the kinds of orbits that it has; in several degrees of
+    freedom p and q are lists in them.
     """
 
     name: str
@@ -46,6 +48,11 @@ class System:
     def time_dependent(self) -> bool:
         """Whether t is in H."""
         return self.hamiltonian().time_dependent
+
+    @property
+    def degrees(self) -> int:
+        """Of freedom."""
+        return self.hamiltonian().degrees
 
     @property
     def has_closed_form(self) -> bool:

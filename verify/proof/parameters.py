@@ -23,7 +23,8 @@ from verify.hamiltonians.coordinates import PLANE, coordinates_of
 
 _STEP_AND_TIME = ("h", "t")
 _AT = (0, 1, 2)  # where functions of p and q have simple values
-_MOST_POINTS = 81
+_MOST_POINTS, _FEWEST_POINTS = 81, 9
+_LONG = 300  # terms of what is looked at at few points
 _MOST_PARTS = 12  # coefficients that are said not to vanish all together
 
 
@@ -45,7 +46,8 @@ def not_zero_for(ring: Ring, x: Poly, what: str) -> Domain:
         rests = _without_multiples([_radical(part / common, factors) for part in parts])
         if len(rests) <= _MOST_PARTS:
             return Domain.of([*needed, *_not_all_zero([ring.expression(r) for r in rests])])
-    if any(_is_product(ring, x, factors, point) for point in _points(ring, x, factors)):
+    written = ring.expression(x)
+    if any(_is_product(ring, written, factors, point) for point in _points(ring, x, factors)):
         return Domain.of(needed)
     return Domain.of(needed, f"{what} does not vanish identically in p and q")
 
@@ -108,7 +110,8 @@ _Point = tuple[sympy.Expr, ...]
 def _points(ring: Ring, x: Poly, factors: Sequence[Poly]) -> Iterator[_Point]:
     """Values of p and q, and such as make the argument of a function 1: q = 1/a for sin(a q)."""
     simple, names = [sympy.Integer(n) for n in _AT], coordinates_of(ring.variables)
-    yield from islice(product(simple, repeat=len(names)), _MOST_POINTS)
+    most = _MOST_POINTS if len(x) < _LONG else _FEWEST_POINTS
+    yield from islice(product(simple, repeat=len(names)), most)
     for g in ring.generators_in(x) if names == PLANE else ():
         for name in PLANE:
             if g.kind == "variable" or g.argument is None:
@@ -122,11 +125,11 @@ def _points(ring: Ring, x: Poly, factors: Sequence[Poly]) -> Iterator[_Point]:
                 yield from ((at, n) if name == "p" else (n, at) for n in simple)
 
 
-def _is_product(ring: Ring, x: Poly, factors: Sequence[Poly], point: _Point) -> bool:
+def _is_product(ring: Ring, x: sympy.Expr, factors: Sequence[Poly], point: _Point) -> bool:
     """Whether at the point nothing of x is left but some of the factors, and a number not 0."""
     state = (*coordinates_of(ring.variables), "t")
     put = dict(zip(map(symbol, state), (*point, sympy.S.One), strict=True))
-    value = ring.expression(x).xreplace(put)
+    value = x.xreplace(put)
     names = [name for name in ring.variables if name not in state]
     try:
         own, (left, *known) = embed([value, *map(ring.expression, factors)], names)

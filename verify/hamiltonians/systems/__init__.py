@@ -20,9 +20,10 @@ def names() -> tuple[str, ...]:
     return _FILES.names
 
 
-def all_systems() -> "dict[str, System]":
-    """Every named system by its name."""
-    return {name: get(name) for name in names()}
+def all_systems(degrees: int | None = 1) -> "dict[str, System]":
+    """The named systems by their names: those of so many degrees of freedom, or with None all."""
+    found = {name: get(name) for name in names()}
+    return {n: x for n, x in found.items() if degrees is None or x.degrees == degrees}
 
 
 def canonical(name: str) -> str:

@@ -1,0 +1,1 @@
+"""Systems of two degrees of freedom."""
