@@ -72,18 +72,19 @@ class Processes:
 
         When it returns they write nothing any more.
         """
-        ended = {}
-        for pool in (*self._idle, *self._busy.values()):
+        ended, pools = {}, [*self._idle, *self._busy.values()]
+        for pool in pools:
             # The executor has no public way to end a task that is running.
             for process in (pool._processes or {}).values():
                 process.terminate()
                 ended[process.pid] = process.sentinel
-            pool.shutdown(wait=False, cancel_futures=True)
         alive = list(ended.values())
         until = time.monotonic() + _TO_END
         while alive and time.monotonic() < until:
             done = connection.wait(alive, until - time.monotonic())
             alive = [each for each in alive if each not in done]
+        for pool in pools:  # whose thread, not waited for, may close what Python's exit writes to
+            pool.shutdown(wait=not alive, cancel_futures=True)
         return [pid for pid in ended if pid is not None]
 
     def close(self) -> None:
