@@ -172,7 +172,7 @@ def drawn(seed: int) -> tuple[list[tuple[str, Fraction]], list[Fraction]]:
     return parts, clock
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", range(24))
 def test_the_order_by_conditions_is_that_of_the_map_by_hand(seed: int) -> None:
     parts, clock = drawn(seed)
     assert order_by_conditions(parts, clock) == order_by_hand(parts, clock)

@@ -48,7 +48,8 @@ def test_the_nearest_name_is_asked_for(given: str, meant: str) -> None:
 def test_systems_are_known_in_any_case() -> None:
     assert systems.get("Double Well").name == "double-well"
     with pytest.raises(
-        InputError, match=r"dufing: unknown; is duffing meant\? allowed: chirped-oscillator, coupled"
+        InputError,
+        match=r"dufing: unknown; is duffing meant\? allowed: chirped-oscillator, coupled",
     ):
         systems.get("dufing")
 

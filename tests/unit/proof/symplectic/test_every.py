@@ -86,7 +86,7 @@ def test_what_is_needed_in_the_plane_is_needed_in_more(scheme: str, degrees: int
         assert more.telescopes == plane.telescopes
 
 
-@pytest.mark.parametrize(("scheme", "degrees"), [("lie4", 2), ("lie3", 3), ("lie2", 5)])
+@pytest.mark.parametrize(("scheme", "degrees"), [("lie4", 2), ("lie3", 2), ("lie2", 3)])
 def test_telescoping_is_checked_identity_by_identity(scheme: str, degrees: int) -> None:
     found = prove_every_in_degrees(scheme, degrees)
     even = get(scheme).order % 2 == 0
