@@ -69,7 +69,7 @@ def check_map(
 
     begun = time.perf_counter()
     given = {n: rational(x, f"parameter {n}") for n, x in values_of(params).items()}
-    own = map_from(load(target), degrees, arguments, given, time_limit)
+    own = map_from(load(target, "map"), degrees, arguments, given, time_limit)
     found = check(own, start_of(own, p, q))
     seconds = f"{time.perf_counter() - begun:.6f}"
     return Answer(

@@ -28,38 +28,38 @@ _MOST_SECONDS = 86_400
 _POSITIONAL = inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD
 
 
-def load(target: str) -> Callable[..., Theirs]:
+def load(target: str, called: str = "integrator") -> Callable[..., Theirs]:
     """The function that MODULE:FUNCTION or path/to/file.py:function names. Runs the module.
 
-    The current folder is searched first. Raises InputError where it does not import, has no such
-    name, or that is no function.
+    The current folder is searched first. `called`: what an error calls it. Raises InputError where
+    it does not import, has no such name, or that is no function.
     """
     place, _, name = target.rpartition(":")
     if not place or not name:
-        raise InputError("integrator", target, "write it as MODULE:FUNCTION or file.py:FUNCTION")
+        raise InputError(called, target, "write it as MODULE:FUNCTION or file.py:FUNCTION")
     if place.endswith(":"):
-        raise InputError("integrator", target, f"write one : in it, as {place[:-1]}:{name}")
+        raise InputError(called, target, f"write one : in it, as {place[:-1]}:{name}")
     with quiet():
-        module = _module(place, target)
+        module = _module(place, target, called)
         found: Theirs = module
         for part in name.split("."):
             if not hasattr(found, part):
                 known = sorted(n for n, x in vars(module).items() if inspect.isfunction(x))
                 has = f"it has: {', '.join(known[:8])}" if known else "it has no function"
-                raise InputError("integrator", target, f"{place} has no {name}; {has}")
+                raise InputError(called, target, f"{place} has no {name}; {has}")
             found = getattr(found, part)
     if not callable(found):
-        raise InputError("integrator", target, f"{name} is no function but {type(found).__name__}")
+        raise InputError(called, target, f"{name} is no function but {type(found).__name__}")
     function: Callable[..., Theirs] = found
     return function
 
 
-def _module(place: str, target: str) -> ModuleType:
+def _module(place: str, target: str, called: str) -> ModuleType:
     path = Path(place)
     try:
         if path.suffix == ".py":
             if not path.is_file():
-                raise InputError("integrator", target, f"there is no file {place}")
+                raise InputError(called, target, f"there is no file {place}")
             sys.path.insert(0, str(path.parent.resolve()))
             spec = importlib.util.spec_from_file_location(path.stem, path)
             assert spec is not None  # noqa: S101 - a .py file has a loader
@@ -70,7 +70,7 @@ def _module(place: str, target: str) -> ModuleType:
             return module
         if path.is_file() or "/" in place:
             problem = f"{place} is no Python file; write file.py:FUNCTION"
-            raise InputError("integrator", target, problem)
+            raise InputError(called, target, problem)
         sys.path.insert(0, str(Path.cwd()))
         return importlib.import_module(place)
     except (InputError, KeyboardInterrupt):
@@ -79,7 +79,7 @@ def _module(place: str, target: str) -> ModuleType:
         unknown = isinstance(error, ModuleNotFoundError) and error.name == place.split(".")[0]
         hint = "; write the path of its file, as file.py:FUNCTION" if unknown else ""
         problem = f"does not import: {last_line(error)}{hint}"
-        raise InputError("integrator", target, problem) from None
+        raise InputError(called, target, problem) from None
 
 
 # -- its signature --------------------------------------------------------------------------------

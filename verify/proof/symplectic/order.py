@@ -162,16 +162,13 @@ class _Rest:
         found: dict[str, Any] = {"volume_order": None, "volume_leading": "0"}
         if self.defect.decision.zero is not False:
             return {"area_preserving": self.defect.decision.zero, **found}
-        own = self.step
-        exact = closed_form.preserves_volume(own.ring, own.field.names, own.closed)
-        if exact is True:
-            return {"area_preserving": True, **found}
         first = self._first_of_delta_j()
         if first is None:
+            own = self.step
+            exact = closed_form.preserves_volume(own.ring, own.field.names, own.closed)
             return {"area_preserving": exact, **found}
         power, ring, x = first
-        leading = {"volume_order": power, "volume_leading": ring.text(x)}
-        return {"area_preserving": False, **leading}
+        return {"area_preserving": False, "volume_order": power, "volume_leading": ring.text(x)}
 
     def _first_of_delta_j(self) -> tuple[int, Ring, Poly] | None:
         """The first coefficient of ΔJ that is shown not to vanish, before any that is undecided."""
