@@ -7,7 +7,7 @@ import click
 
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering, picked
-from verify.commands.shared.input import with_hamiltonian
+from verify.commands.shared.input import time_limit_option, with_hamiltonian
 from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
@@ -33,13 +33,7 @@ _CLAIMED = click.IntRange(1, 12)
 @click.option("--area-preserving", is_flag=True, help="Claimed: det J ≡ 1.")
 @click.option("--symplectic", is_flag=True, help="Claimed: JᵀΩJ ≡ Ω; in the plane det J ≡ 1.")
 @click.option("--area-order", type=_CLAIMED, metavar="K", help="Claimed: ΔJ = O(h^K).")
-@click.option(
-    "--time-limit",
-    type=click.FloatRange(0.01),
-    default=60.0,
-    metavar="SECONDS",
-    help="For all calls of the function.",
-)
+@time_limit_option
 @answering
 def check_integrator(
     target: str,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands.shared.answer import Answer, answering, picked
+from verify.commands.shared.input import time_limit_option, values_of
 
 if TYPE_CHECKING:
     from verify.integrators.maps.check import MapFinding
@@ -29,13 +30,7 @@ if TYPE_CHECKING:
 )
 @click.option("--q", "q", metavar="Q1,Q2", help="A point to look at beside others: q1, …, qn.")
 @click.option("--p", "p", metavar="P1,P2", help="Its p1, …, pn.")
-@click.option(
-    "--time-limit",
-    type=click.FloatRange(0.01),
-    default=60.0,
-    metavar="SECONDS",
-    help="For all calls of the function.",
-)
+@time_limit_option
 @answering
 def check_map(
     target: str,
@@ -62,7 +57,6 @@ def check_map(
     verify check-map ring.py:turn --degrees 2 --arguments q1,p1,q2,p2 --param strength=0.3
     """
     from verify.arithmetic.exact import rational
-    from verify.commands.shared.input import values_of
     from verify.integrators.loading import load
     from verify.integrators.maps.check import check_map as check
     from verify.integrators.maps.user_map import map_from, start_of

@@ -1,6 +1,5 @@
 """The command `verify prove`, for one Hamiltonian or for every one."""
 
-import textwrap
 import time
 from dataclasses import asdict
 from pathlib import Path
@@ -11,7 +10,7 @@ import click
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering, picked
 from verify.commands.shared.input import PATH, hamiltonian_of, hamiltonian_options, scheme_option
-from verify.commands.shared.output import cut
+from verify.commands.shared.output import cut, line
 from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
@@ -21,7 +20,6 @@ if TYPE_CHECKING:
     from verify.proof.potential import Potential
     from verify.proof.special_values import SpecialValue
     from verify.schemes.scheme import Scheme
-_WIDTH = 88
 
 
 @click.command()
@@ -249,28 +247,22 @@ def _every_json(proof: "EveryProof", seconds: str) -> dict[str, Any]:
 
 def _print_every(proof: "EveryProof") -> None:
     click.echo(f"{proof.verdict}: {proof.reason}")
-    _line("H", proof.quantifier)
-    _line("scheme", proof.scheme)
+    line("H", proof.quantifier)
+    line("scheme", proof.scheme)
     if proof.order is not None:
-        _line("leading", f"h^{proof.order} · ({cut(proof.formula or proof.leading)})")
+        line("leading", f"h^{proof.order} · ({cut(proof.formula or proof.leading)})")
         if proof.formula:
-            _line("", f"= h^{proof.order} · ({cut(proof.leading)})")
+            line("", f"= h^{proof.order} · ({cut(proof.leading)})")
     if proof.telescopes:
         by = "D" if proof.timed else "X"
-        _line("G", f"{cut(proof.potential or '')}, the leading coefficient is {by}·G")
+        line("G", f"{cut(proof.potential or '')}, the leading coefficient is {by}·G")
     if proof.telescopes is not None:
-        _line("telescopes", ("yes: " if proof.telescopes else "no: ") + cut(proof.why))
+        line("telescopes", ("yes: " if proof.telescopes else "no: ") + cut(proof.why))
     if proof.domain:
-        _line("where", proof.domain.prose)
-    _line("the map", f"agrees with the exact flow up to h^{proof.convergence_order}")
+        line("where", proof.domain.prose)
+    line("the map", f"agrees with the exact flow up to h^{proof.convergence_order}")
     for identity in proof.checked:
-        _line("checked", identity)
+        line("checked", identity)
     for condition in proof.conditions:
         found = "holds" if condition.holds else f"residue {condition.residue}"
-        _line("condition", f"{condition.name}: {found}")
-
-
-def _line(name: str, text: str) -> None:
-    indent = " " * 13
-    first = f"  {name:11}"
-    click.echo(textwrap.fill(text, _WIDTH, initial_indent=first, subsequent_indent=indent))
+        line("condition", f"{condition.name}: {found}")

@@ -14,12 +14,11 @@ from verify.integrators.measured import of_measured
 from verify.integrators.probe import Point, Trial, dual_step, measured
 from verify.integrators.repeated import repeated
 from verify.integrators.results import NOTHING, Claims, Finding
-from verify.integrators.step import Step, StepError, last_line, within
+from verify.integrators.step import Step, StepError, why, within
 from verify.integrators.still_clock import measured_mistakes
 from verify.integrators.tracing.clocks import clock_mistakes
 from verify.integrators.tracing.domain import domain_of
 from verify.integrators.tracing.functions import copied
-from verify.integrators.tracing.number import UntraceableError
 from verify.integrators.tracing.readings_of_floats import readings
 from verify.integrators.tracing.rounded_order import Rounded, rounded_orders
 from verify.integrators.tracing.step_map import TracedMap, traced_map
@@ -105,7 +104,7 @@ def _examine(trial: Trial, provable: bool) -> Finding:
                 found, ends = _proved(trial)
             return found.noting(*_clock(trial.hamiltonian, *ends, found.convergence_order))
     except Exception as error:  # the user's code may raise anything
-        notes.append(prose("no proof: ", _why(error)))
+        notes.append(prose("no proof: ", why(error)))
     kept = _KEPT * max(step.left, 0)
     for how in ("duals", "floats"):
         step.left += -kept if how == "duals" else kept
@@ -115,7 +114,7 @@ def _examine(trial: Trial, provable: bool) -> Finding:
             told = of_measured(measured(trial, how), trial)
             return replace(told, notes=(*notes, *told.notes)).noting(*_still(trial, how, told))
         except Exception as error:  # as above
-            notes.append(prose(f"not measured with {how}: ", _why(error)))
+            notes.append(prose(f"not measured with {how}: ", why(error)))
     neither = prose("it can be neither traced nor measured")
     return Finding(Verdict.UNDECIDED, neither, "calls").noting(*notes)
 
@@ -138,11 +137,6 @@ def _exchanged(trial: Trial, provable: bool) -> list[str]:
     return [f"with arguments in the order {','.join(order)} it is a scheme for this H"]
 
 
-def _why(error: Exception) -> Prose:
-    known = isinstance(error, UntraceableError | StepError | InputError)
-    return prose(error.args[0] if known else last_line(error))
-
-
 # -- proved ---------------------------------------------------------------------------------------
 
 
@@ -152,8 +146,7 @@ def _proved(trial: Trial) -> tuple[Finding, tuple[Node, Node]]:
     symbols = [tape.symbol(name) for name in ("pqht" if step.moving else "pqh")]
     symbols += [] if step.moving else [tape.rational(Fraction(0))]
     roots = dual_step(step, copied(step.function, tape), *symbols)
-    if tape.refused:  # what is traced is then what it does where that fails
-        raise UntraceableError(f"{tape.refused[0]}, and catches the error of a symbol that cannot")
+    tape.check()
     p_next, q_next = (x.node for x in roots)
     must_agree_but_for_rounding(trial, p_next, q_next)
     traced = traced_map(trial.hamiltonian, p_next, q_next)
@@ -242,7 +235,7 @@ def _measured_area(found: Finding, trial: Trial) -> Finding:
     try:
         other = of_measured(measured(trial, "duals"), trial)
     except Exception as error:  # the user's code may raise anything
-        return found.noting(prose("not measured: ", _why(error)))
+        return found.noting(prose("not measured: ", why(error)))
     if other.verdict is not Verdict.MEASURED:
         return found
     return replace(

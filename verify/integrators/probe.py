@@ -15,7 +15,7 @@ from verify.arithmetic.systems import mpfr
 from verify.flows.extrapolation import Flow, NoFlowError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.fitted_order import Fitted, fitted
-from verify.integrators.step import State, Step, StepError, Theirs
+from verify.integrators.step import State, Step, StepError, Theirs, lifted
 from verify.integrators.tracing.dual import BITS, Duals
 from verify.integrators.tracing.functions import copied
 
@@ -250,11 +250,7 @@ def dual_step(
     """p' and q' of a copied function at numbers of ours."""
     with step.limited():
         result = step.called(function, p, q, h, t)
-    pair = step.pair(result)
-    lifted = [p * 0 + x for x in pair]
-    if any(type(x) is not type(p) for x in lifted):
-        raise StepError("it returns what is no number")
-    return lifted
+    return lifted(p, step.pair(result))
 
 
 class _Floats:

@@ -8,12 +8,13 @@ import contextlib
 import signal
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any, Protocol, TypeAlias, TypeVar
 
-from verify.integrators.tracing.number import TracedNumber
+from verify.errors import InputError
+from verify.integrators.tracing.number import TracedNumber, UntraceableError
 from verify.prose import Number, Prose, prose, read_prose
 
 Theirs: TypeAlias = Any  # what a user's code takes, holds or returns: it may be anything
@@ -195,6 +196,21 @@ def single(x: Theirs) -> Theirs:
             raise StepError(f"it returns arrays of shape {tuple(shape)} for a single p, q")
         return x.reshape(-1)[0]
     return x[()] if hasattr(x, "dtype") and hasattr(x, "reshape") else x
+
+
+def lifted(first: Theirs, found: Sequence[Theirs]) -> list[Theirs]:
+    """What was returned, all as numbers of the kind of `first`. Raises StepError."""
+    zero = first * 0
+    made = [zero + x for x in found]
+    if any(type(x) is not type(first) for x in made):
+        raise StepError("it returns what is no number")
+    return made
+
+
+def why(error: Exception) -> Prose:
+    """What is said of an error that the user's code, or what we do with it, raised."""
+    known = isinstance(error, UntraceableError | StepError | InputError)
+    return prose(error.args[0] if known and error.args else last_line(error))
 
 
 def real(x: Theirs) -> float:

@@ -120,20 +120,6 @@ def at_point(partial: Partial, u: Series, v: Series) -> Series:
     return total
 
 
-def at_time(ring: CoefficientRing, x: Poly, u: Series, v: Series, w: Series) -> Series:
-    """f(p + u, q + v, t + w) for the ring element f; u, v and w are O(h)."""
-    if not w.coefficients[0].is_zero():
-        raise ValueError("the time is not t at h = 0")
-    total, power = Series.of(ring, [], u.most), Series.of(ring, [ring.one], u.most)
-    for n in range(u.most + 1):
-        if x.is_zero() or power.vanishes:
-            break
-        share = power.times(Fraction(1, math.factorial(n)))
-        total += at_point(partials(ring, x), u, v) * share
-        x, power = ring.diff(x, "t"), power * w
-    return total
-
-
 def at_moved(
     ring: CoefficientRing, x: Poly, moves: Sequence[tuple[str, Series]], most: int
 ) -> Series:
@@ -156,6 +142,11 @@ def at_moved(
         total += Series.of(ring, inner.coefficients, most) * share
         x, power = ring.diff(x, name), power * by
     return total
+
+
+def at_time(ring: CoefficientRing, x: Poly, u: Series, v: Series, w: Series) -> Series:
+    """f(p + u, q + v, t + w) for the ring element f; u, v and w are O(h)."""
+    return at_moved(ring, x, (("p", u), ("q", v), ("t", w)), u.most)
 
 
 def delta_j(p_next: Series, q_next: Series) -> Series:

@@ -1,6 +1,5 @@
 """How a proof in n degrees of freedom is printed, and what its JSON has."""
 
-import textwrap
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -8,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands.shared.answer import picked
-from verify.commands.shared.output import cut
+from verify.commands.shared.output import cut, line
 
 if TYPE_CHECKING:
     from verify.integrators.degrees.check import StepFinding
     from verify.proof.symplectic.proof import SymplecticProof
-_WIDTH, _NAMES = 88, 12
+_LONG = 352  # characters of S, beyond which its formula stands for it
 
 
 def symplectic_json(
@@ -92,52 +91,47 @@ def print_step(texts: Mapping[str, Any], target: str, found: "StepFinding") -> N
         print_symplectic(texts, target, shown)
     else:
         click.echo(f"{found.verdict}: {found.reason}")
-        _line("H", texts["hamiltonian"])
-        _line("scheme", target)
+        line("H", texts["hamiltonian"])
+        line("scheme", target)
         seen = found.measured
         if seen is not None:
-            _line(
+            line(
                 "measured",
                 f"|S| up to {seen.largest:.1e}; the probe's error {seen.probe_error:.1e}",
             )
         if seen is not None and seen.counterexample is not None:
             at = ", ".join(f"{name} = {x}" for name, x in seen.counterexample.items())
-            _line("against", f"{seen.entry} has {seen.value} at {at}, h = {found.h}")
+            line("against", f"{seen.entry} has {seen.value} at {at}, h = {found.h}")
     for note in found.notes:
-        _line("note", str(note))
+        line("note", str(note))
 
 
 def print_symplectic(texts: Mapping[str, Any], scheme: str, proof: "SymplecticProof") -> None:
     """The same for a reader."""
     click.echo(f"{proof.verdict}: {proof.reason}")
-    _line("H", texts["hamiltonian"])
+    line("H", texts["hamiltonian"])
     for name, value in texts.get("parameters", {}).items():
-        _line(name, value)
-    _line("scheme", scheme)
+        line(name, value)
+    line("scheme", scheme)
     if proof.order is not None:
         long = proof.formula or proof.leading_text
-        shown = proof.leading_text if len(proof.leading_text) < 4 * _WIDTH else long
-        _line("S", f"({cut(shown)})·h^{proof.order} + O(h^{proof.order + 1})")
+        shown = proof.leading_text if len(proof.leading_text) < _LONG else long
+        line("S", f"({cut(shown)})·h^{proof.order} + O(h^{proof.order + 1})")
     if proof.witness or proof.enclosure:
-        _line("witness", _witness(proof))
-    _line("det J", _of_volume(proof))
+        line("witness", _witness(proof))
+    line("det J", _of_volume(proof))
     if proof.telescopes is not None and not proof.symplectic:
-        _line("telescopes", _telescoping(proof))
+        line("telescopes", _telescoping(proof))
     for identity in proof.checked:
-        _line("checked", str(identity))
+        line("checked", str(identity))
     for condition in proof.conditions:
         found = "holds" if condition.holds else f"residue {condition.residue}"
-        _line("condition", f"{condition.name}: {found}")
+        line("condition", f"{condition.name}: {found}")
     if proof.domain:
-        _line("where", str(proof.domain.prose))
+        line("where", str(proof.domain.prose))
     order = proof.convergence_order
     known = "in all powers of h that were looked at" if order is None else f"up to h^{order}"
-    _line("the map", f"agrees with the exact flow {known}")
-
-
-def _line(name: str, text: str) -> None:
-    first, rest = f"  {name:{_NAMES - 2}} ", " " * (_NAMES + 1)
-    click.echo(textwrap.fill(text, _WIDTH, initial_indent=first, subsequent_indent=rest))
+    line("the map", f"agrees with the exact flow {known}")
 
 
 def _witness(proof: "SymplecticProof") -> str:

@@ -108,6 +108,15 @@ scheme_option = click.option(
 )
 
 
+time_limit_option = click.option(
+    "--time-limit",
+    type=click.FloatRange(0.01),
+    default=60.0,
+    metavar="SECONDS",
+    help="For all calls of the function.",
+)
+
+
 def hamiltonian_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """The command with the options that name a Hamiltonian, which `hamiltonian_of` takes."""
     for option in reversed(_HAMILTONIAN_OPTIONS):

@@ -1,5 +1,6 @@
 """Results as commands tell them: JSON objects with decimal strings, short texts for people."""
 
+import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
         SeparationResult,
     )
 
+_WIDTH, _NAMES = 88, 10  # of a line, and of the name that it begins with
 _LONGEST = 400  # characters of a formula on the terminal
 _LABELS = {
     "lambda": "Λ",
@@ -64,6 +66,12 @@ def proof_json(
         "domain": proof.domain.texts,
         "seconds": seconds,
     }
+
+
+def line(name: str, text: str) -> None:
+    """A name and what it is, wrapped."""
+    first, rest = f"  {name:{_NAMES}} ", " " * (_NAMES + 3)
+    click.echo(textwrap.fill(text, _WIDTH, initial_indent=first, subsequent_indent=rest))
 
 
 def print_head(

@@ -4,12 +4,15 @@
 """
 
 import re
+from functools import cache
 from typing import TYPE_CHECKING
 
 from verify.discovery import Catalogue
 from verify.errors import InputError, plain_name, unknown
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from verify.hamiltonians.named_system import System
 
 _FILES = Catalogue(__name__, __path__)
@@ -20,8 +23,12 @@ def names() -> tuple[str, ...]:
     return _FILES.names
 
 
-def all_systems(degrees: int | None = 1) -> "dict[str, System]":
-    """The named systems by their names: those of so many degrees of freedom, or with None all."""
+@cache
+def all_systems(degrees: int | None = 1) -> "Mapping[str, System]":
+    """The named systems by their names: those of so many degrees of freedom, or with None all.
+
+    Made once: whoever looks for a known flow goes through them.
+    """
     found = {name: get(name) for name in names()}
     return {n: x for n, x in found.items() if degrees is None or x.degrees == degrees}
 

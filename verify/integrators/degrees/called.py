@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from verify.integrators.maps.user_map import flat
+from verify.integrators.maps.user_map import arrays, flat
 from verify.integrators.step import Step, Theirs
 
 
@@ -28,15 +28,9 @@ class StepOfArrays:
         t: Theirs,
     ) -> list[Theirs]:
         """z' in our order. Raises StepError, and what the user's code raises."""
-        import numpy as np
-
         n = len(self.names) // 2
-        kind = float if isinstance(z[0], float) else object
-        p, q = (np.empty(n, dtype=kind) for _ in "pq")
-        for k, x in enumerate(z):
-            (p, q)[k // n][k % n] = x
         with self.step.limited():
-            found = flat(self.step.raw(function, p, q, h, t), 2 * n)
+            found = flat(self.step.raw(function, *arrays(z), h, t), 2 * n)
         exchanged = self.step.order.index("p") > self.step.order.index("q")
         return [*found[n:], *found[:n]] if exchanged else found
 

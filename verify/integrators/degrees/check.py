@@ -20,14 +20,13 @@ from verify.integrators.maps.check import (
     measured,
     must_agree,
     points_of,
-    why,
 )
 from verify.integrators.maps.probes import DualProbe, FloatProbe
 from verify.integrators.results import Claims
-from verify.integrators.step import Step, within
+from verify.integrators.step import Step, why, within
 from verify.integrators.tracing.domain import domain_of
 from verify.integrators.tracing.readings_of_floats import readings
-from verify.integrators.tracing.rounded_order import ROUNDING, size_of
+from verify.integrators.tracing.rounded_order import Compared, agreement
 from verify.proof.symplectic.defect import series_of
 from verify.proof.symplectic.order import Claimed, prove_map
 from verify.proof.symplectic.proof import SymplecticProof
@@ -147,16 +146,15 @@ def _but_for_rounding(found: StepFinding, own: StepOfArrays, made: CanonicalMap)
 
 def _rounded_order(made: CanonicalMap) -> int:
     """Up to which power of h the map agrees with the flow, but for residues of rounding."""
-    series, scale = series_of(made, 3), Fraction(0)
-    for n in range(_MOST + 1):
+    series = series_of(made, 3)
+
+    def compared(n: int) -> Iterator[Compared]:
         own, flow = series.coefficient(n), series.flow
-        gap = Fraction(0)
         for x, y in zip(own, flow.term(n), strict=True):
-            gap = max(gap, size_of(flow.ring.reduce(x - y)))
-            scale = max(scale, size_of(x), size_of(y))
-        if gap > ROUNDING * scale:
-            return n - 1
-    return _MOST
+            yield x, y, flow.ring.reduce(x - y)
+
+    order = agreement(map(compared, range(_MOST + 1))).order
+    return _MOST if order is None else order
 
 
 # -- measured -------------------------------------------------------------------------------------
@@ -242,7 +240,8 @@ def _judged(claims: Claims, found: StepFinding) -> Iterator[tuple[bool | None, s
             claim if found.symplectic is None else f"{claim} is claimed; {where}",
         )
     if claims.area_preserving and found.area_preserving is not True:
-        where = f"det J − 1 has order {proof.volume_order}" if proof else "det J is not 1"
+        power = proof.volume_order if proof else None
+        where = f"det J − 1 has order {power}" if power else "det J is not 1"
         known = "det J ≡ 1"
         yield (
             found.area_preserving,

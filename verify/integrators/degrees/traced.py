@@ -8,11 +8,10 @@ from verify.errors import InputError
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.degrees.called import StepOfArrays
-from verify.integrators.step import StepError
+from verify.integrators.step import lifted
 from verify.integrators.tracing.functions import copied
-from verify.integrators.tracing.number import UntraceableError
 from verify.integrators.tracing.series import TracedSeries
-from verify.integrators.tracing.trace import Node, Tape, Traced, expressions, in_order, sizes
+from verify.integrators.tracing.trace import Node, Tape, expressions, in_order, sizes
 from verify.schemes.degrees.canonical_map import CanonicalMap, State
 
 _MOST_WRITTEN = 3000  # operations of z' as trees, of which a closed form is tried
@@ -28,13 +27,8 @@ def traced_map(own: StepOfArrays, hamiltonian: Hamiltonian) -> tuple[Tape, Canon
     symbols = [tape.symbol(name) for name in own.names]
     clock = tape.symbol("t") if own.step.moving else tape.rational(Fraction(0))
     found = own.called(copied(own.function, tape), symbols, tape.symbol("h"), clock)
-    if tape.refused:  # what is traced is then what it does where that fails
-        raise UntraceableError(f"{tape.refused[0]}, and catches the error of a symbol that cannot")
-    zero = symbols[0] * 0
-    lifted = [zero + x for x in found]
-    roots = [x.node for x in lifted if isinstance(x, Traced)]
-    if len(roots) != len(found):
-        raise StepError("it returns what is no number")
+    tape.check()
+    roots = [x.node for x in lifted(symbols[0], found)]
     return tape, _made(roots, hamiltonian)
 
 

@@ -11,15 +11,13 @@ from fractions import Fraction
 from verify.algebra.embedding import embed
 from verify.algebra.limits import checked
 from verify.algebra.ring import Poly, Ring
-from verify.errors import InputError
 from verify.integrators.maps.probes import DualProbe, FloatProbe, Probe, Reading
 from verify.integrators.maps.user_map import CallableMap, UserMap
-from verify.integrators.step import StepError, last_line, within
+from verify.integrators.step import StepError, lifted, why, within
 from verify.integrators.tracing.domain import domain_of
 from verify.integrators.tracing.functions import copied
-from verify.integrators.tracing.number import UntraceableError
 from verify.integrators.tracing.readings_of_floats import readings
-from verify.integrators.tracing.trace import Tape, Traced, expressions, in_order, sizes
+from verify.integrators.tracing.trace import Tape, expressions, in_order, sizes
 from verify.proof.symplectic import closed_form
 from verify.proof.symplectic.two_form import TwoForm
 from verify.prose import Prose, prose, read_prose
@@ -111,11 +109,6 @@ def points_of(size: int) -> list[tuple[Fraction, ...]]:
     ]
 
 
-def why(error: Exception) -> Prose:
-    known = isinstance(error, UntraceableError | StepError | InputError)
-    return prose(error.args[0] if known and error.args else last_line(error))
-
-
 # -- proved ---------------------------------------------------------------------------------------
 
 
@@ -184,13 +177,8 @@ def _traced(own: UserMap) -> tuple[Tape, Ring, list[Poly]]:
     tape = Tape()
     symbols = [tape.symbol(name) for name in own.names]
     found = own.called(copied(own.function, tape), symbols, tape.rational)
-    if tape.refused:  # what is traced is then what it does where that fails
-        raise UntraceableError(f"{tape.refused[0]}, and catches the error of a symbol that cannot")
-    zero = symbols[0] * 0
-    lifted = [zero + x for x in found]
-    roots = [x.node for x in lifted if isinstance(x, Traced)]
-    if len(roots) != len(found):
-        raise StepError("it returns what is no number")
+    tape.check()
+    roots = [x.node for x in lifted(symbols[0], found)]
     nodes = in_order(*roots)
     size = sizes(nodes)
     if sum(size[root.number] for root in roots) > _MOST_WRITTEN:

@@ -12,7 +12,7 @@ from itertools import combinations
 import gmpy2
 
 from verify.integrators.maps.user_map import CallableMap
-from verify.integrators.step import StepError, real
+from verify.integrators.step import StepError, lifted, real
 from verify.integrators.tracing.dual import BITS, Dual, Duals
 from verify.integrators.tracing.functions import copied
 
@@ -80,13 +80,11 @@ class DualProbe:
         for k, x in enumerate(map(self.kind.rational, point)):
             by = [gmpy2.mpfr(k == first + i) for i in (0, 1)]
             state.append(Dual(self.kind, x.value, *by))
-        zero = state[0] * 0
-        found = [zero + x for x in self.map.called(self.function, state, self.kind.rational)]
-        if not all(isinstance(x, Dual) for x in found):
-            raise StepError("it returns what is no number")
+        result = self.map.called(self.function, state, self.kind.rational)
+        found: list[Dual] = lifted(state[0], result)
         if not all(gmpy2.is_finite(x.value) for x in found):
             raise StepError("it returns what is not finite")
-        return [x for x in found if isinstance(x, Dual)]
+        return found
 
 
 class FloatProbe:
@@ -159,15 +157,11 @@ def _reading(
                 + f[j] * abs(float(u[i])) + f[i] * abs(float(u[j]))
                 for i, j in pairs
             )  # fmt: skip
-    rows = [[float(columns[k][i]) for k in range(size)] for i in range(size)]
     change, scale = _change_of_volume(columns)
     wrong = share * scale
     if errors is not None:
-        wrong += (
-            size
-            * max(max(e) for e in errors)
-            * max(1.0, *(abs(x) for r in rows for x in r)) ** (size - 1)
-        )
+        largest = max(1.0, *(abs(float(x)) for column in columns for x in column))
+        wrong += size * max(map(max, errors)) * largest ** (size - 1)
     return Reading(point, entries, noise, change, wrong)
 
 

@@ -57,27 +57,34 @@ class UserMap:
         of_number: Callable[[Fraction], Theirs],
     ) -> list[Theirs]:
         """z' in our order, of the function or a copy of it. Raises StepError, and its errors."""
-        import numpy as np
-
         given = {name: of_number(x) for name, x in self.given.items()}
-        kind = float if isinstance(z[0], float) else object
-        n = self.degrees
         with limited(self):
             if self.places is not None:
-                one = np.empty(2 * n, dtype=kind)
-                for place, x in zip(self.places, z, strict=True):
-                    one[place] = x
+                one = array([z[self.places.index(k)] for k in range(len(z))])
                 found = self._flat(function(one, **given))
                 return [found[place] for place in self.places]
             if self.names == PLANE:
                 return self._flat(function(*z, **given))
-            pair = [np.empty(n, dtype=kind) for _ in PLANE]
-            for k, x in enumerate(z):
-                pair[k // n][k % n] = x
-            return self._flat(function(*pair, **given))
+            return self._flat(function(*arrays(z), **given))
 
     def _flat(self, result: Theirs) -> list[Theirs]:
         return flat(result, len(self.names))
+
+
+def array(numbers: Sequence[Theirs]) -> Theirs:
+    """Of floats; or of numbers of ours, as objects."""
+    import numpy as np
+
+    made = np.empty(len(numbers), dtype=float if isinstance(numbers[0], float) else object)
+    for k, x in enumerate(numbers):
+        made[k] = x
+    return made
+
+
+def arrays(z: Sequence[Theirs]) -> tuple[Theirs, Theirs]:
+    """p and q of z, as arrays."""
+    half = len(z) // 2
+    return array(z[:half]), array(z[half:])
 
 
 def flat(result: Theirs, count: int) -> list[Theirs]:

@@ -6,6 +6,7 @@ from errors by their size beside the coefficients that they are residues of.
 """
 
 import math
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -13,7 +14,7 @@ from verify.algebra.ring import Poly
 from verify.algebra.series.power_series import Series, delta_j
 from verify.hamiltonians.vector_field import VectorField
 
-ROUNDING = Fraction(1, 2**44)
+_ROUNDING = Fraction(1, 2**44)
 
 
 @dataclass(frozen=True)
@@ -29,28 +30,50 @@ class Rounded:
     leading: Poly | None
 
 
-def rounded_orders(field: VectorField, p: Series, q: Series) -> Rounded:
-    ring, most = field.ring, p.most
+@dataclass(frozen=True)
+class Agreement:
+    """`order`: up to which power of h two series agree so, None in all that were looked at;
+    `residue`: the largest of what was taken for 0, beside coefficients of the size `scale`."""
+
+    order: int | None
+    residue: Fraction
+    scale: Fraction
+
+
+Compared = tuple[Poly, Poly, Poly]  # a coefficient, the flow's, and their difference in normal form
+
+
+def agreement(coefficients: Iterable[Iterable[Compared]]) -> Agreement:
+    """Of the coefficients of h⁰, h¹, …, each of all components."""
     residue, scale = Fraction(0), Fraction(0)
-    convergence: int | None = None
-    for n in range(most + 1):
+    for n, components in enumerate(coefficients):
         gap = Fraction(0)
-        for own, name in ((p, "p"), (q, "q")):
-            flow = field.power(name, n) / math.factorial(n)
-            x = own.coefficients[n]
-            gap = max(gap, size_of(ring.reduce(x - flow)))
-            scale = max(scale, size_of(x), size_of(flow))
-        if gap > ROUNDING * scale:
-            convergence = n - 1
-            break
+        for x, y, difference in components:
+            gap = max(gap, _size(difference))
+            scale = max(scale, _size(x), _size(y))
+        if gap > _ROUNDING * scale:
+            return Agreement(n - 1, residue, scale)
         residue = max(residue, gap)
+    return Agreement(None, residue, scale)
+
+
+def rounded_orders(field: VectorField, p: Series, q: Series) -> Rounded:
+    """Those of a map of the plane."""
+
+    def compared(n: int) -> Iterator[Compared]:
+        for own, name in ((p, "p"), (q, "q")):
+            x, y = own.coefficients[n], field.power(name, n) / math.factorial(n)
+            yield x, y, field.ring.reduce(x - y)
+
+    found = agreement(map(compared, range(p.most + 1)))
+    convergence, residue, scale = found.order, found.residue, found.scale
     for n, x in enumerate(delta_j(p, q).coefficients):
-        if size_of(x) > ROUNDING * scale:
+        if _size(x) > _ROUNDING * scale:
             return Rounded(convergence, n, residue, x)
-        residue = max(residue, size_of(x))
+        residue = max(residue, _size(x))
     return Rounded(convergence, None, residue, None)
 
 
-def size_of(x: Poly) -> Fraction:
+def _size(x: Poly) -> Fraction:
     """The largest coefficient."""
     return max((abs(Fraction(int(c.p), int(c.q))) for c in x.coeffs()), default=Fraction(0))

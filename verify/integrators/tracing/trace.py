@@ -57,6 +57,15 @@ class Tape(Kind):
         """All that were made, in their order."""
         return self._nodes.values()
 
+    def check(self) -> None:
+        """UntraceableError where code caught the error of what a symbol cannot.
+
+        What is traced is then what it does where that fails.
+        """
+        if self.refused:
+            caught = "and catches the error of a symbol that cannot"
+            raise UntraceableError(f"{self.refused[0]}, {caught}")
+
     def node(self, operation: str, inputs: tuple[Node, ...], value: Any = None) -> Node:
         key = (operation, *(x.number for x in inputs), value)
         if key not in self._nodes:

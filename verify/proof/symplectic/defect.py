@@ -92,7 +92,7 @@ class DefectSeries(Generic[F]):
         matrix = [[_of_inverse(ring, forms, a, b, flow.degrees) for b in range(size)]
                   for a in range(size)]  # fmt: skip
         begins = next((m for m, form in enumerate(forms) if form.entries), most + 1)
-        total = power = Series.of(ring, [], most)
+        total = Series.of(ring, [], most)
         product: Matrix | None = None
         for k in range(1, most // max(begins, 1) + 1):
             product = matrix if product is None else _times(product, matrix)
