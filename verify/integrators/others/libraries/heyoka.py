@@ -75,24 +75,31 @@ def _integrator(formula: str, eta: int, variational: bool) -> Any:
     equations: Any = [(p, -hy.diff(h, q)), (q, hy.diff(h, p))]
     if variational:
         equations = hy.var_ode_sys(equations, hy.var_args.vars, order=1)
+    return _of_order(eta, equations)
+
+
+def _of_order(eta: int, equations: Any) -> Any:
+    import heyoka as hy
+
     found = hy.taylor_adaptive(equations, [0.5, 0.5], tol=math.exp(3 - 2 * eta))
     if found.order != eta:
         raise RuntimeError(f"heyoka took order {found.order}")
     return found
 
 
+def _moved(taylor: Any, p: float, q: float, t: float, h: float) -> tuple[float, float]:
+    """By one step of size h, from t on."""
+    taylor.time = t
+    taylor.state[:] = (p, q)
+    _, taken = taylor.step(max_delta_t=h)
+    if taken != h:
+        raise RuntimeError("heyoka took a shorter step")
+    return float(taylor.state[0]), float(taylor.state[1])
+
+
 def _step(eta: int) -> Map:
     taylor = _integrator(_SLOW, eta, variational=False)
-
-    def step(p: float, q: float, h: float) -> tuple[float, float]:
-        taylor.time = 0.0
-        taylor.state[:] = (p, q)
-        _, taken = taylor.step(max_delta_t=h)
-        if taken != h:
-            raise RuntimeError("heyoka took a shorter step")
-        return float(taylor.state[0]), float(taylor.state[1])
-
-    return step
+    return lambda p, q, h: _moved(taylor, p, q, 0.0, h)
 
 
 def _in_time(eta: int) -> Map:
@@ -100,19 +107,8 @@ def _in_time(eta: int) -> Map:
 
     p, q = hy.make_vars("p", "q")
     equations: Any = [(p, (hy.cos(hy.time / 4) - hy.sin(q)) / 16), (q, p / 16)]
-    taylor = hy.taylor_adaptive(equations, [0.5, 0.5], tol=math.exp(3 - 2 * eta))
-    if taylor.order != eta:
-        raise RuntimeError(f"heyoka took order {taylor.order}")
-
-    def step(p: float, q: float, t: float, h: float) -> tuple[float, float]:
-        taylor.time = t
-        taylor.state[:] = (p, q)
-        _, taken = taylor.step(max_delta_t=h)
-        if taken != h:
-            raise RuntimeError("heyoka took a shorter step")
-        return float(taylor.state[0]), float(taylor.state[1])
-
-    return step
+    taylor = _of_order(eta, equations)
+    return lambda p, q, t, h: _moved(taylor, p, q, t, h)
 
 
 def _agreement() -> tuple[Verdict, str, tuple[tuple[str, ...], ...]]:

@@ -82,13 +82,18 @@ def integrators() -> Iterator[ReleasedIntegrator]:
         yield _integrator(_SOFT, "janus", f"JANUS, order {order}", order, f"order = {order}")
     for name, order in (("LF", 2), ("LF4", 4), ("LF6", 6), ("LF8", 8), ("PMLF4", 4), ("PMLF6", 6)):
         yield _integrator(_FREE, "eos", f"EOS, phi1 = {name}", order, f"phi1 = '{name}'")
-    yield _integrator(_FORCED, "whfast", "WHFAST", 2)
-    for name in ("1", "2", "3", "4"):
-        yield _integrator(_FORCED, "saba", f"SABA{name}", 2, f"type = '{name}'")
-    for name in ("10_4", "8_6_4", "10_6_4"):
-        title = f"SABA({name.replace('_', ',')})"
-        yield _integrator(_FORCED, "saba", title, 4, f"type = '{name}'")
+    for given in _with_forces():
+        yield _integrator(_FORCED, *given)
     yield from _in_time()
+
+
+def _with_forces() -> Iterator[tuple[Any, ...]]:
+    """Those that take additional forces."""
+    yield "whfast", "WHFAST", 2
+    for name in ("1", "2", "3", "4"):
+        yield "saba", f"SABA{name}", 2, f"type = '{name}'"
+    for name in ("10_4", "8_6_4", "10_6_4"):
+        yield "saba", f"SABA({name.replace('_', ',')})", 4, f"type = '{name}'"
 
 
 def _in_time() -> Iterator[ReleasedIntegrator]:
@@ -99,12 +104,8 @@ def _in_time() -> Iterator[ReleasedIntegrator]:
     for name, order in (("LF", 2), ("LF4", 4)):  # additional forces belong to the outer splitting
         settings = f"phi0 = '{name}'", "phi1 = 'LF8'"
         yield _driven(_FREE, "eos", f"EOS, phi0 = {name}, phi1 = LF8", order, *settings)
-    yield _driven(_FORCED, "whfast", "WHFAST", 2)
-    for name in ("1", "2", "3", "4"):
-        yield _driven(_FORCED, "saba", f"SABA{name}", 2, f"type = '{name}'")
-    for name in ("10_4", "8_6_4", "10_6_4"):
-        title = f"SABA({name.replace('_', ',')})"
-        yield _driven(_FORCED, "saba", title, 4, f"type = '{name}'")
+    for given in _with_forces():
+        yield _driven(_FORCED, *given)
 
 
 def _driven(problem: _Problem, *given: Any) -> ReleasedIntegrator:
