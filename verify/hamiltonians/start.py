@@ -1,11 +1,41 @@
 """Where a run may start: where H is defined and smooth."""
 
+from collections.abc import Sequence
+from fractions import Fraction
+
 from verify.arithmetic.exact import Exact, rational, text
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
+Given = Exact | Sequence[Exact]  # one number, or one for each degree of freedom
 
-def check_start(hamiltonian: Hamiltonian, q: Exact, p: Exact, t0: Exact = 0) -> None:
+
+def point_of(hamiltonian: Hamiltonian, q: Given, p: Given) -> dict[str, Fraction]:
+    """Each coordinate's value by its name, exactly: of q and p as they are given, a list each.
+
+    In the plane a number will do. InputError for too few or too many.
+
+    >>> point_of(Hamiltonian.parse("p1**2/2 + p2**2/2 + q1*q2"), ["0.5", 0], p=[1, 2])["q1"]
+    Fraction(1, 2)
+    """
+    degrees, found = hamiltonian.degrees, {}
+    for letter, given in (("p", p), ("q", q)):
+        several = isinstance(given, Sequence) and not isinstance(given, str)
+        values = list(given) if several else [given]  # type: ignore[arg-type, list-item]
+        if hamiltonian.planar and several:
+            raise InputError(letter, values, "is a list; H is of p and q: one number is wanted")
+        if len(values) != degrees:
+            names = hamiltonian.coordinates
+            own = ", ".join(name for name in names if name[0] == letter)
+            problem = f"has {len(values)} of {degrees} numbers; H is of {own}"
+            raise InputError(letter, ", ".join(map(str, values)), problem)
+        own_names = [name for name in hamiltonian.coordinates if name[0] == letter]
+        for name, value in zip(own_names, values, strict=True):
+            found[name] = rational(value, name)
+    return {name: found[name] for name in hamiltonian.coordinates}
+
+
+def check_start(hamiltonian: Hamiltonian, q: Given, p: Given, t0: Exact = 0) -> None:
     """InputError where H is not defined, or not smooth, at (q, p), and at t0 where it depends on
     time.
 
@@ -13,7 +43,8 @@ def check_start(hamiltonian: Hamiltonian, q: Exact, p: Exact, t0: Exact = 0) -> 
     Traceback (most recent call last):
     verify.errors.InputError: q, p=-1, 0: H is not smooth there; it is where q > 0
     """
-    point = {"q": rational(q, "q"), "p": rational(p, "p")}
+    values = point_of(hamiltonian, q, p)
+    point = {name: values[name] for name in sorted(values, key=lambda name: name[0] != "q")}
     if hamiltonian.time_dependent:
         point["t"] = rational(t0, "t0")
     domain = hamiltonian.domain

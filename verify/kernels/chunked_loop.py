@@ -22,9 +22,10 @@ from verify.scenes.results.run import SeriesPoint
 
 Progress = Callable[[int], None]  # called with the number of steps done
 _ACCUMULATORS = {"lambda": "lam", "lambda_max": "lam_top", "mse": "mse", "delta_j_max": "top",
-                 "lambda_plain": "plain"}  # fmt: skip
+                 "lambda_plain": "plain", "symplectic_defect_max": "s_top"}  # fmt: skip
+_FORM = "symplectic_defect"  # the greatest entry of W
 # Powers of the 2^s that the kernel carries.
-_SCALED = {"lam": 1, "lam_top": 1, "mse": 2, "top": 1, "dj": 1}
+_SCALED = {"lam": 1, "lam_top": 1, "mse": 2, "top": 1, "dj": 1, "s_top": 1, "w": 1}
 _EXTREMES = ("dj_low", "dj_high", "lam_low", "lam_high")
 Exact = Annotated[Fraction, PlainValidator(fraction_of), PlainSerializer(fraction_text)]
 Note = Mapping[str, Fraction]
@@ -56,7 +57,7 @@ class Reached:
     """Where a run is after some chunks and their notes, which is all that a checkpoint keeps.
 
     `trail` has p, q and the observables at points on the way and at the last step done, as the
-    exact rationals that they are; `tangents` what `verify.kernels.tangent_map.NAMES` names, at the
+    exact rationals that they are; `tangents` what `verify.kernels.tangent_map` notes, at the
     same points. `state`: all that is carried; `seen`: extremes since the last note.
     """
 
@@ -95,8 +96,11 @@ class ChunkedLoop:
         self.turns = run.turns(arithmetic)
         self.state: State = self._first_state()
         self._at = {name: k for k, name in enumerate(kernel.state_names)}
-        self._observables = ("p", "q", *sorted(run.observables & set(_ACCUMULATORS)))
-        known = (*(name for name in tangent_map.NAMES if name in self._at), "done")
+        asked = sorted(run.observables & {*_ACCUMULATORS, _FORM})
+        self._observables = (*kernel.coordinates, *asked)
+        self._form = [name for name in kernel.state_names if f"d{name}" in kernel.outputs and name.startswith("w_")]
+        noted = tangent_map.names_of(kernel.coordinates)
+        known = (*(name for name in noted if name in self._at), "done")
         self._tangent = known if "growth" in self._at else ()
         self._doubles = [k for k, x in enumerate(self.state) if isinstance(x, float)]
         self.section = -(-run.steps // run.sections)  # steps between two notes
@@ -111,8 +115,8 @@ class ChunkedLoop:
         start, number = self.run.start, self.arithmetic.number
         if self.kernel.timed:
             start = start | self._clock_after(0)
-        state = [number(start["p"]), number(start["q"])]
-        for kind, first in zip(self.kernel.kinds[2:], self.kernel.start, strict=True):
+        state: list[Number] = []
+        for kind, first in zip(self.kernel.kinds, self.kernel.start, strict=True):
             value = start[first] if isinstance(first, str) else Fraction(first)
             state.append(tangent_map.nearest_double(value) if kind == "float" else number(value))
         return tuple(state)
@@ -126,7 +130,7 @@ class ChunkedLoop:
     def _turned_back(self) -> State:
         """The state with whole periods of H taken off t."""
         state, clock = list(self.state), self._clock_after(self.done)
-        for at, first in enumerate(self.kernel.start, start=2):
+        for at, first in enumerate(self.kernel.start):
             if isinstance(first, str) and first in clock:
                 state[at] = self.arithmetic.number(clock[first])
         return tuple(state)
@@ -227,12 +231,19 @@ class ChunkedLoop:
         self, name: str, state: State, done: int, of: Callable[[Number], Fraction]
     ) -> Fraction:
         """The same of what is carried, or of its radii; Π det J as it is."""
+        if name == _FORM:
+            sizes = (abs(self._total(entry, state, of)) for entry in self._form)
+            return self._unscaled("w", max(sizes, default=Fraction(0)))
         carried = _ACCUMULATORS.get(name, name)
+        total = self._unscaled(carried, self._total(carried, state, of))
+        return total / done if name == "mse" else total
+
+    def _total(self, carried: str, state: State, of: Callable[[Number], Fraction]) -> Fraction:
+        """What is carried under a name, with what a compensated kernel carries beside it."""
         total = of(state[self._at[carried]])
         if (rest := f"{carried}_rest") in self._at:
             total += of(state[self._at[rest]])
-        total = self._unscaled(carried, total)
-        return total / done if name == "mse" else total
+        return total
 
     def _exact(self, x: Number) -> Fraction:
         return Fraction(x) if isinstance(x, float) else self.arithmetic.exact(x)

@@ -10,6 +10,7 @@ from fractions import Fraction
 from functools import lru_cache
 
 from verify.algebra.ring import Poly
+from verify.hamiltonians.coordinates import PLANE
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.increments import increments
 from verify.kernels.program import Evaluator, Program
@@ -17,13 +18,12 @@ from verify.kernels.tangent_map import Tangent, product
 from verify.schemes import get
 from verify.schemes.step_map import StepMap, Substep, h_inside
 
-_STATE = ("p", "q")
 
 
 @dataclass(frozen=True)
 class Observed:
-    """ΔJ; the determinant of the four entries; A − 1 of the tangent map; see
-    `verify.kernels.kernel`.
+    """ΔJ; the determinant of the four entries; A − 1 of the tangent map; in n degrees of freedom
+    the entries of S, and M and W; see `verify.kernels.kernel`.
 
     `scaled`: ΔJ is divided by the power of h that it has, and multiplied by κ. `pipelined` as in
     `verify.arithmetic.number_system.Arithmetic`.
@@ -34,13 +34,17 @@ class Observed:
     delta_j: bool
     determinant: bool
     tangent: bool
+    symplectic: bool = False
+    carried: bool = False
 
 
 @dataclass(frozen=True, eq=False)
 class Computation:
     """`outputs`: the indices of the increments of p and q, `dp` and `dq`, of ΔJ, `dj`, and of det J
-    where it is asked for, `det`. `power` is the r of κ; `parameters` are those of H; `timed` says
-    whether it depends on t, which is one more input then. Nobody writes into the program any more.
+    where it is asked for, `det`; of entries of M and W, too. `power` is the r of κ; `parameters` are
+    those of H; `timed` says whether it depends on t, which is one more input then. `coordinates`
+    name the state; `defect` has the entries of S that are asked for. Nobody writes into the program
+    any more.
     """
 
     program: Program
@@ -49,11 +53,19 @@ class Computation:
     power: int
     parameters: tuple[str, ...]
     timed: bool
+    coordinates: tuple[str, ...]
+    defect: Mapping[str, int]
+
+    @property
+    def matrix(self) -> list[str]:
+        """The names of M's entries, where it is carried."""
+        return [name[1:] for name in self.outputs if name.startswith("dm_")]
 
     @property
     def roots(self) -> list[int]:
         """What is read of the program's values."""
-        return [*self.outputs.values(), *(self.tangent.needed if self.tangent else ())]
+        needed = self.tangent.needed if self.tangent else ()
+        return [*self.outputs.values(), *self.defect.values(), *needed]
 
 
 def step_map_of(hamiltonian: Hamiltonian, scheme: str) -> StepMap:
@@ -76,7 +88,7 @@ def _first_part(
     named = {n: program.input(a, static=True) for n, a in arguments.items()}
     found = program.constant(Fraction(0))
     time = ("t",) if step_map.hamiltonian.time_dependent else ()
-    named |= {n: program.input(n, static=False) for n in (*_STATE, *time)}
+    named |= {n: program.input(n, static=False) for n in (*PLANE, *time)}
     if scaled:
         program.input("kappa", static=True)
     first = step_map.substeps[0]
@@ -94,11 +106,11 @@ def computed(step_map: StepMap, asked: Observed) -> Computation:
     evaluator = begun.copy()
     program = evaluator.program
     tangent = Tangent(program) if asked.tangent else None
-    total = dict.fromkeys(_STATE, program.constant(Fraction(0)))
+    total = dict.fromkeys(PLANE, program.constant(Fraction(0)))
     jacobian = None
     for k, step in enumerate(step_map.substeps):
         if k > 0:
-            at = {n: program.add(named[n], total[n]) for n in _STATE}
+            at = {n: program.add(named[n], total[n]) for n in PLANE}
             evaluator = Evaluator(program, step.ring, {**named, **at}, asked.pipelined)
         if k > 0 and asked.delta_j and not step.preserves_area:
             own = _delta_j(evaluator, step, asked.scaled, power)
@@ -111,8 +123,8 @@ def computed(step_map: StepMap, asked: Observed) -> Computation:
             jacobian = own_j if jacobian is None else product(program, own_j, jacobian)
         if tangent:
             tangent.follow(step, evaluator)
-        changes = increments(evaluator, step, named["h"])
-        for n, change in zip(_STATE, changes, strict=True):
+        changes = increments(evaluator, step.ring, step.increments, named["h"])
+        for n, change in zip(PLANE, changes, strict=True):
             total[n] = program.add(total[n], change)
     result = {"dp": total["p"], "dq": total["q"], "dj": delta_j}
     if jacobian is not None:
@@ -120,7 +132,8 @@ def computed(step_map: StepMap, asked: Observed) -> Computation:
         minus = program.neg(program.mul(b, c))
         result["det"] = program.add(program.mul(a, d), minus)
     exact = step_map.hamiltonian
-    return Computation(program, result, tangent, power, exact.symbols, exact.time_dependent)
+    timed = exact.time_dependent
+    return Computation(program, result, tangent, power, exact.symbols, timed, PLANE, {})
 
 
 def _delta_j(evaluator: Evaluator, step: Substep, scaled: bool, power: int) -> int:

@@ -13,17 +13,17 @@ from functools import cached_property, partial
 
 from verify.algebra.ring import Poly, Ring
 from verify.kernels.program import Evaluator
-from verify.schemes.step_map import Substep, h_inside
+from verify.schemes.substep import h_inside
 
 _MOST = 12  # times a value is added to itself at most
 Pair = tuple[int, int]
 
 
-def increments(evaluator: Evaluator, step: Substep, h: int) -> Pair:
-    """The indices of the increments of p and q; `h` is the index of the step size."""
-    ways = [_Way(step, None)]
-    if not (evaluator.pipelined or h_inside(step.ring, step.p_next, step.q_next)):
-        ways += [way for first in (0, 1) if (way := _Way(step, first)).shared]
+def increments(evaluator: Evaluator, ring: Ring, pair: tuple[Poly, Poly], h: int) -> Pair:
+    """The indices of the increments of p and q, a `pair`; `h` is the index of the step size."""
+    ways = [_Way(ring, pair, None)]
+    if not (evaluator.pipelined or h_inside(ring, *pair)):
+        ways += [way for first in (0, 1) if (way := _Way(ring, pair, first)).shared]
     return evaluator.cheapest([partial(way.write, evaluator, h) for way in ways])
 
 
@@ -31,13 +31,14 @@ def increments(evaluator: Evaluator, step: Substep, h: int) -> Pair:
 class _Way:
     """`first`: which increment's coefficients are taken from the other's; None where none are."""
 
-    step: Substep
+    ring: Ring
+    pair: tuple[Poly, Poly]
     first: int | None
 
     @cached_property
     def parts(self) -> tuple[dict[int, Poly], dict[int, Poly]]:
         """(coefficients of the first, of the second) by powers of h."""
-        ring, (u, v) = self.step.ring, self.step.increments
+        ring, (u, v) = self.ring, self.pair
         one, two = ring.powers(u, "h"), ring.powers(v, "h")
         return (one, two) if self.first == 0 else (two, one)
 
@@ -52,9 +53,9 @@ class _Way:
         return dict(ratios)
 
     def write(self, evaluator: Evaluator, h: int) -> Pair:
-        program, ring = evaluator.program, self.step.ring
+        program, ring = evaluator.program, self.ring
         if self.first is None:
-            u, v = self.step.increments
+            u, v = self.pair
             return evaluator.evaluate(u), evaluator.evaluate(v)
         (one, two), shared = self.parts, self.shared
         own = evaluator.evaluate(_sum(ring, {k: x for k, x in one.items() if k not in shared}))

@@ -3,7 +3,9 @@
 Observables: `delta_j_max` max |ΔJ|, `mse` Σ ΔJ² (Eq. 15 before its 1/N), `lambda` Λ (Eq. 16) by
 the closed form of ΔJ as Λ ← Λ + ΔJ + Λ ΔJ, `lambda_max` the greatest |Λ| after any step,
 `lambda_plain` Π det J the plain way (four entries,
-their determinant, the product), `extremes` the least and greatest ΔJ and Λ of one call's steps.
+their determinant, the product), `extremes` the least and greatest ΔJ and Λ of one call's steps. In
+n degrees of freedom also `symplectic_defect_max`, the greatest |entry| of S, and
+`symplectic_defect`, W, with the Jacobian M of all steps so far: W ← W + MᵀSM, M ← J M.
 
 Where H depends on time, step k is made at t = t₀ + k h (`verify.kernels.clock`).
 
@@ -29,17 +31,22 @@ from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels import newton, tangent_map
 from verify.kernels.clock import clock_of
-from verify.kernels.computation import Computation, Observed, computed, step_map_of
+from verify.kernels.computation import Computation, Observed, computed
+from verify.kernels.degrees.computation import computed_in_degrees, map_of
 from verify.kernels.lowering import Lowering
+from verify.schemes.degrees.canonical_map import CanonicalMap
 from verify.schemes.step_map import StepMap
 
 OBSERVABLES = (
     "delta_j_max", "mse", "lambda", "lambda_max", "lambda_plain", "extremes", "tangent",
+    "symplectic_defect_max", "symplectic_defect",
 )  # fmt: skip
 CLOSED_FORM = frozenset({"delta_j_max", "mse", "lambda", "lambda_max", "extremes"})
+_OF_FORM = frozenset({"symplectic_defect_max", "symplectic_defect"})
 PARTIAL = ("inverse", "root", "log", "exp", "sinh", "cosh")  # functions that may leave a range
 SCALES = ("kappa", "down", "shift")  # 2^s h^r, 2^−s and s itself
 LIMITS = ("reach_p", "reach_q", "reach_part", "reach_value")
+_OF_MATRIX = "reach_m"  # where M is carried
 LOOP = "    for k in range(steps):"  # what is before this line is the same for every k
 
 
@@ -51,7 +58,7 @@ class Kernel(Computation):
 
     `state_names` names the state and accumulators in their order: p, q, then those of the
     observables; `kinds` says of each what it is (see `verify.arithmetic.wide.translate`), `start`
-    has the initial values, p and q apart; "p" and "q" there are those in float64. An arithmetic of
+    has the initial values, numbers or names of the run's own. An arithmetic of
     absolute precision has `scales` and `limits`, the numbers that the loop's guard compares with.
     `lowering` writes the program; `names` is what the source's names stand for.
     """
@@ -76,7 +83,7 @@ def kernel_for(
     compensated: bool = False,
 ) -> Kernel:
     """The kernel for a generic Hamiltonian (see `Hamiltonian.with_symbols`), compiled once."""
-    step_map = step_map_of(hamiltonian, scheme)
+    step_map = map_of(hamiltonian, scheme)
     return Writer(step_map, arithmetic, observables, compensated).kernel()
 
 
@@ -85,30 +92,35 @@ class Writer:
 
     def __init__(
         self,
-        step_map: StepMap,
+        step_map: StepMap | CanonicalMap,
         arithmetic: Arithmetic,
         observables: frozenset[str],
         compensated: bool,
         scaled: bool = True,
     ) -> None:
         self.arithmetic, self.observables, self.compensated = arithmetic, observables, compensated
-        needs_delta_j = bool(observables & CLOSED_FORM)
-        self.scaled = scaled and arithmetic.absolute and needs_delta_j
-        self.made: Computation = computed(
-            step_map,
-            Observed(
-                pipelined=arithmetic.pipelined,
-                scaled=self.scaled,
-                delta_j=needs_delta_j,
-                determinant="lambda_plain" in observables,
-                tangent="tangent" in observables,
-            ),
+        self.scaled = scaled and arithmetic.absolute and bool(observables & (CLOSED_FORM | _OF_FORM))
+        asked = Observed(
+            pipelined=arithmetic.pipelined,
+            scaled=self.scaled,
+            delta_j=bool(observables & CLOSED_FORM),
+            determinant="lambda_plain" in observables,
+            tangent="tangent" in observables,
+            symplectic="symplectic_defect_max" in observables,
+            carried="symplectic_defect" in observables,
         )
+        if isinstance(step_map, StepMap):
+            self.made: Computation = computed(step_map, asked)
+        else:
+            self.made = computed_in_degrees(step_map, asked)
+        self.coordinates = self.made.coordinates
         self.program, self.tangent = self.made.program, self.made.tangent
         self.lowering = Lowering(
             self.program, arithmetic.functions, bits=arithmetic.bits, guard=arithmetic.guard
         )
-        self.state_names: list[tuple[str, str, int | str]] = [("p", "wide", 0), ("q", "wide", 0)]
+        self.state_names: list[tuple[str, str, int | str]] = [
+            (name, "wide", name) for name in self.coordinates
+        ]
         self.clock = clock_of(arithmetic) if self.made.timed else None
         for name, start in self.clock.carried if self.clock else ():
             self.carry(name, start)
@@ -118,7 +130,8 @@ class Writer:
     def kernel(self) -> Kernel:
         """The kernel, compiled. UnsupportedError where the arithmetic lacks what it needs."""
         lines = self.statements(self.made.outputs)
-        limits = LIMITS if self.arithmetic.absolute else ()
+        matrix = (_OF_MATRIX,) * bool(self.made.matrix)
+        limits = (*LIMITS, *matrix) if self.arithmetic.absolute else ()
         scales = SCALES if self.scaled else ()
         clock = self.clock.arguments if self.clock else ()
         needed = self.made.roots
@@ -139,7 +152,7 @@ class Writer:
             limits=limits,
             state_names=names,
             kinds=kinds,
-            start=start[2:],
+            start=start,
             lowering=self.lowering,
             source=source,
             names=scope,
@@ -179,7 +192,7 @@ class Writer:
             self.carry("lam_top", 0, "sum")
             lines += ["lam_size = abs(lam)", self.keep_extreme("lam_top", "lam_size", ">")]
         if "mse" in asked:
-            lines += self.accumulate("mse", "dj * dj")
+            lines += self.sum_up("mse", "dj * dj")
         if "delta_j_max" in asked:
             self.carry("top", 0)
             lines += ["size = abs(dj)", self.keep_extreme("top", "size", ">")]
@@ -188,16 +201,42 @@ class Writer:
                 for end, order in ((f"{name}_low", "<"), (f"{name}_high", ">")):
                     self.carry(end, 0, kind)
                     lines.append(self.keep_extreme(end, name, order, first="k == 0 or "))
+        if "symplectic_defect_max" in asked:
+            lines += self.greatest_entry()
         if self.tangent:
-            for name, start in tangent_map.CARRIED:
+            for name, start in tangent_map.carried(self.coordinates):
                 self.carry(name, start, "float")
             change = [self.tangent.lowering.name(index) for index in self.tangent.change]
-            lines += tangent_map.statements(change)
-        return lines + self.accumulate("p", value["dp"]) + self.accumulate("q", value["dq"])
+            lines += tangent_map.statements(change, self.coordinates)
+        lines += self.of_matrices(value)
+        for name in self.coordinates:
+            lines += self.accumulate(name, value[f"d{name}"])
+        return lines
+
+    def greatest_entry(self) -> list[str]:
+        """The greatest |entry| of S."""
+        self.carry("s_top", 0)
+        lines: list[str] = []
+        for index in self.made.defect.values():
+            name = self.lowering.name(index)
+            lines += [f"s_size = abs({name})", self.keep_extreme("s_top", "s_size", ">")]
+        return lines
+
+    def of_matrices(self, value: Mapping[str, str]) -> list[str]:
+        """W ← W + MᵀSM and M ← J M, entry by entry; all increments are made before."""
+        lines: list[str] = []
+        for name, increment in value.items():
+            if name.startswith("dw_"):
+                lines += self.sum_up(name[1:], increment)
+            elif name.startswith("dm_"):
+                _, a, b = name.split("_")
+                self.carry(name[1:], int(a == b))
+                lines += self.accumulate(name[1:], increment)
+        return lines
 
     def product_of_factors(self) -> list[str]:
         """Λ ← Λ + ΔJ + Λ ΔJ."""
-        lines = self.accumulate("lam", "dj + lam * dj")
+        lines = self.sum_up("lam", "dj + lam * dj")
         product = "lam"
         if self.arithmetic.absolute:
             self.carry("part", 0)
@@ -227,10 +266,13 @@ class Writer:
         """Adds to the state: its name, the value it starts with, and its kind of number."""
         self.state_names.append((name, kind, start))
 
+    def sum_up(self, name: str, increment: str) -> list[str]:
+        """The statements `name += increment` of a sum that begins with 0."""
+        self.carry(name, 0, "sum")
+        return self.accumulate(name, increment)
+
     def accumulate(self, name: str, increment: str) -> list[str]:
         """The statements `name += increment`; compensated (Kahan) where the kernel is."""
-        if name not in ("p", "q"):
-            self.carry(name, 0, "sum")
         if not self.compensated:
             return [f"{name} = {name} + ({increment})"]
         self.carry(f"{name}_rest", 0)
@@ -274,10 +316,12 @@ class Writer:
         """What holds as long as the orbit is in range; empty where nothing is to be looked at."""
         if not self.arithmetic.absolute:
             template = self.arithmetic.guard
-            return " and ".join(template.format(x=x) for x in ("p", "q")) if template else ""
-        looked_at = {"p": "reach_p", "q": "reach_q"}
+            inside = (template.format(x=x) for x in self.coordinates) if template else ()
+            return " and ".join(inside)
+        looked_at = {name: f"reach_{name[0]}" for name in self.coordinates}
         products = [name for name, _, _ in self.state_names if name in ("part", "plain")]
         looked_at |= dict.fromkeys(products, "reach_part")
+        looked_at |= dict.fromkeys(self.made.matrix, _OF_MATRIX)
         for index in self.lowering.live(needed):
             if self.program.ops[index].kind in PARTIAL:
                 looked_at[self.lowering.name(index)] = "reach_value"

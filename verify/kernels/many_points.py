@@ -92,7 +92,8 @@ class PointMap:
         start = self.kernel_run.start
         if self.kernel.timed:
             start = start | {"t": self._t0} | first_rest(self.arithmetic, self._t0)
-        exact = (start[x] if isinstance(x, str) else Fraction(x) for x in self.kernel.start)
+        rest = self.kernel.start[2:]
+        exact = (start[x] if isinstance(x, str) else Fraction(x) for x in rest)
         return [self.arithmetic.number(x) for x in exact]
 
     def _in_lanes(self, p: np.ndarray, q: np.ndarray) -> list[np.ndarray]:
@@ -115,7 +116,7 @@ class PointMap:
 
     def _one_by_one(self, p: Sequence[Number], q: Sequence[Number]) -> list[list[Number]]:
         made = self.arithmetic
-        inputs = self._inputs(self._limits(p, q))
+        inputs = self._inputs(self._limits(p, q)[: len(self.kernel.limits)])
         rest = self._rest
         points = [(*z, *rest) for z in zip(p, q, strict=True)]
         found: list[Sequence[Number]] = []

@@ -18,11 +18,13 @@ import flint
 
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
+from verify.hamiltonians.coordinates import PLANE
 from verify.kernels.kernel import Kernel
 from verify.kernels.rounding import PRECISION, Ball, Rounded, analyse
 from verify.kernels.turns import Times
 
 _TOP = Fraction(2) ** 15 * (1 - Fraction(1, 2**20))  # numbers are below 2^15 in size
+_MATRIX_LIMITS = tuple(Fraction(2) ** n for n in (12, 10, 8, 6, 4, 3, 2))
 _VALUE_LIMITS = tuple(Fraction(2) ** n for n in (13, 11, 9, 7, 5, 4, 3, 2, 1))
 _SIDES = tuple(
     Fraction(2) ** n * share * Fraction(1023, 1024)
@@ -33,12 +35,14 @@ _ASCENDING = _SIDES[::-1]
 
 
 class Limits(NamedTuple):
-    """What p, q, Λ (or 1 + Λ) and functions' values stay below; see `kernel.LIMITS`."""
+    """What all momenta, all coordinates, Λ (or 1 + Λ), functions' values, and the entries of M where
+    it is carried, stay below; see `kernel.LIMITS`."""
 
     p: Fraction
     q: Fraction
     part: Fraction
     value: Fraction
+    matrix: Fraction
 
 
 def limits(
@@ -52,7 +56,8 @@ def limits(
     `times`: the first and the last, where H depends on time. None where no box that holds the start
     is safe.
     """
-    own = [abs(start[n]) for n in ("p", "q")]
+    sizes = {name: abs(start[name]) for name in kernel.coordinates}
+    own = [max(x for name, x in sizes.items() if name[0] == kind) for kind in PLANE]
     roomy = [[room * max(own)] * 2 for room in (16, 2)]
     boxes = tuple((_side(p), _side(q)) for p, q in (*roomy, own))
     return _largest(kernel, tuple(inputs.items()), times, boxes)
@@ -74,10 +79,10 @@ def _largest(
 ) -> Limits | None:
     """The limits of the first of the boxes that is safe, with the greatest limit of values, grown
     as far as can be."""
-    safe = partial(_room, kernel, inputs, times)
 
-    def grown(p: Fraction, q: Fraction, value: Fraction) -> Limits:
+    def grown(p: Fraction, q: Fraction, value: Fraction, matrix: Fraction) -> Limits:
         """First to all sides."""
+        safe = partial(_room, kernel, inputs, times, matrix)
         wider = ((max(p, r), max(q, r)) for r in _SIDES)
         p, q = next((p, q) for p, q in wider if safe(p, q, value) is not None)
         # q first: it is an angle more often than p, and grows where that turns.
@@ -85,12 +90,13 @@ def _largest(
         p = next(r for r in _SIDES if r == p or safe(r, q, value) is not None)
         part = safe(p, q, value)
         assert part is not None  # noqa: S101 - as was just seen
-        return Limits(p, q, part, value)
+        return Limits(p, q, part, value, matrix)
 
+    matrices = _MATRIX_LIMITS if kernel.matrix else (Fraction(1),)
     with working_precision(PRECISION):
-        for (p, q), value in product(boxes, _VALUE_LIMITS):
-            if p and q and safe(p, q, value) is not None:
-                return grown(p, q, value)
+        for (p, q), value, matrix in product(boxes, _VALUE_LIMITS, matrices):
+            if p and q and _room(kernel, inputs, times, matrix, p, q, value) is not None:
+                return grown(p, q, value, matrix)
     return None
 
 
@@ -99,17 +105,21 @@ def _room(
     kernel: Kernel,
     inputs: tuple[tuple[str, Fraction], ...],
     times: Times | None,
+    matrix: Fraction,
     p: Fraction,
     q: Fraction,
     value: Fraction,
 ) -> Fraction | None:
-    """How large Λ may become; None where an operation may leave the format in this box.
+    """How large Λ may become; None where an operation may leave the format in this box, M's entries
+    staying below `matrix`.
 
     Boxes have few sides, so that the runs of a grid ask for the same ones.
     """
     given = {name: Rounded(rational_ball(x), flint.arb(0)) for name, x in inputs}
     around = flint.arb(0, 1)
-    given |= {n: Rounded(rational_ball(r) * around, flint.arb(0)) for n, r in (("p", p), ("q", q))}
+    own = {name: p if name[0] == "p" else q for name in kernel.coordinates}
+    own |= dict.fromkeys(kernel.matrix, matrix)
+    given |= {n: Rounded(rational_ball(r) * around, flint.arb(0)) for n, r in own.items()}
     if times:
         first, last = map(rational_ball, times)
         given["t"] = Rounded(first.union(last), flint.arb(0))
@@ -119,7 +129,7 @@ def _room(
         return None
     sizes = [x.magnitude for x in (*found.values(), *([given["t"]] if times else []))]
     size = {name: found[index].magnitude for name, index in kernel.outputs.items()}
-    sizes += [rational_ball(p) + size["dp"], rational_ball(q) + size["dq"]]
+    sizes += [rational_ball(r) + size[f"d{name}"] for name, r in own.items()]
     sizes.append(size["dj"] * size["dj"])
     top = rational_ball(_TOP)
     return _part_limit(size) if all(x < top for x in sizes) else None

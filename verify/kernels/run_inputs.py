@@ -9,7 +9,7 @@ from verify.arithmetic.number_system import Arithmetic
 from verify.errors import InputError
 from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.computation import step_map_of
+from verify.kernels.degrees.computation import map_of
 from verify.kernels.kernel import Kernel
 from verify.kernels.turns import Times, Turns, turns_of
 
@@ -27,7 +27,7 @@ def _compilable(hamiltonian: Hamiltonian, scheme: str) -> Hamiltonian:
 @lru_cache(maxsize=256)
 def _takes(hamiltonian: Hamiltonian, scheme: str) -> bool:
     try:
-        step_map_of(hamiltonian, scheme)
+        map_of(hamiltonian, scheme)
     except InputError:
         return False
     return True
@@ -64,7 +64,7 @@ class RunInputs:
     @property
     def implicit(self) -> bool:
         """Whether a step solves equations; there is no certificate of such runs."""
-        return step_map_of(self.hamiltonian, self.scheme).implicit
+        return map_of(self.hamiltonian, self.scheme).implicit
 
     def observing(self, observables: frozenset[str]) -> Self:
         """The same run with other observables, and without a series."""

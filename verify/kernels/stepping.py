@@ -32,6 +32,11 @@ class Outcome(Reached):
         """What is carried, after the last step that was done."""
         return self.trail[-1]
 
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Those of what is carried that are the state."""
+        return self.kernel.coordinates if self.kernel else ()
+
 
 _FEWER_BITS = 8  # of ΔJ's scaling, where an orbit needs more room
 _NOWHERE = Outcome(reason="an operation of the first step may leave the range of ")
@@ -72,7 +77,7 @@ class KernelRun(RunInputs):
             return _outcome(ChunkedLoop(self, kernel, arithmetic, (), 0), progress, enough)
         outcome = replace(_NOWHERE, reason=_NOWHERE.reason + arithmetic.name)
         for shift, found in self.formats(kernel, arithmetic):
-            loop = ChunkedLoop(self, kernel, arithmetic, found, shift)
+            loop = ChunkedLoop(self, kernel, arithmetic, found[: len(kernel.limits)], shift)
             outcome = _outcome(loop, progress, enough)
             if outcome.done == self.steps or outcome.kernel is None:  # done, or not enough
                 return outcome

@@ -1,4 +1,4 @@
-"""A rigorous bound for a long run, from what was carried along with it.
+"""A rigorous bound for a long run, from what was carried along with it, in any number of degrees.
 
 Let z_{k+1} = Φ(z_k) be the exact orbit of the exact step map, ẑ_k the computed one, and
 e_k = ẑ_k − z_k, A_k = DΦ(ẑ_k). Then ẑ_{k+1} = Φ(ẑ_k) + r_k with ‖r_k‖ ≤ ε, the rounding of one
@@ -11,7 +11,7 @@ B a bound of the second derivatives of Φ over that box, widened by the error. B
 multiply norms of A_k here and lose digits like e^(cT). Instead take any matrices M_k, M_0 = 1, that
 nearly follow the tangent map: M_{k+1} = A_k M_k + R_k with ‖R_k‖ ≤ ρ ‖M_k‖
 (`verify.kernels.tangent_map` carries them in float64; ρ is counted as ε is). With e_k = M_k x_k,
-‖M⁻¹‖ = ‖M‖/|det M| for 2 × 2,
+‖M⁻¹‖ = ‖M‖/|det M| for 2 × 2 (for more, `verify.runs.inverse_norm`),
 
     x_{k+1} = x_k + M_{k+1}⁻¹ (s_k − R_k x_k),
 
@@ -48,7 +48,10 @@ from verify.arithmetic.number_system import Arithmetic
 from verify.kernels.clock import error_of_time
 from verify.kernels.rounding import FLOAT, PRECISION, Ball, Rounded, analyse, rounding_of
 from verify.kernels.stepping import KernelRun, Outcome
+from verify.runs import form_bound
 from verify.runs.derivatives import Derivatives, norm
+from verify.runs.derivatives_in_degrees import DerivativesInDegrees
+from verify.runs.inverse_norm import least_of, square_of_norm
 
 _MOST_GROWTH = 50  # of Q: beyond it e^Q says nothing
 METHOD = "a-posteriori bound with the tangent map carried along"
@@ -62,6 +65,8 @@ class _Steps:
     delta_j: Ball
     tangent: Ball
     size: Ball  # a bound of |D|
+    defect: Ball  # of an entry of S
+    values: Mapping[str, Rounded]  # the kernel's outputs
 
 
 def certify(
@@ -87,11 +92,12 @@ class _Certificate:
         self.seen = {n: rational_ball(x) for n, x in outcome.tangents[note].items()}
         self.h = rational_ball(run.start["h"])
         self.unit = flint.arb(2) ** -arithmetic.bits
+        self.names = self.kernel.coordinates
 
     # -- the orbit ----------------------------------------------------------------------------
 
     def bounds(self) -> dict[str, Fraction] | None:
-        derivatives = Derivatives.of(self.run.hamiltonian, self.run.scheme)
+        derivatives = self.derivatives()
         steps = self.one_step()
         if derivatives is None or steps is None:
             return None
@@ -99,14 +105,23 @@ class _Certificate:
         if orbit is None:
             return None
         error, summed = orbit
-        found = {"p": error, "q": error} | self.observables(steps, derivatives, error, summed)
+        found = dict.fromkeys(self.names, error)
+        found |= self.observables(steps, derivatives, error, summed)
+        if isinstance(derivatives, DerivativesInDegrees):
+            found |= self.of_form(steps, derivatives, error, summed)
         return {name: bounds(x)[1] for name, x in found.items() if in_reach(x)}
+
+    def derivatives(self) -> Derivatives | DerivativesInDegrees | None:
+        """Those of the step."""
+        exact, scheme = self.run.hamiltonian, self.run.scheme
+        kind = Derivatives if exact.planar else DerivativesInDegrees
+        return kind.of(exact, scheme)
 
     def box(self, margin: Ball) -> dict[str, Ball]:
         """The states visited, widened; float64's rounding of them is within 2^−50."""
         around = flint.arb(0, 1)
         found = {}
-        for n in ("p", "q"):
+        for n in self.names:
             low, high = self.seen[f"{n}_low"], self.seen[f"{n}_high"]
             rounded = flint.arb(2) ** -50 * (1 + abs(low) + abs(high))
             found[n] = low.union(high) + around * (margin + rounded)
@@ -117,7 +132,7 @@ class _Certificate:
         if kernel.tangent is None or self.arithmetic.rounding is None:
             return None
         live = kernel.lowering.live(kernel.roots)
-        found = analyse(program, live, self.inputs(), rounding_of(self.arithmetic))
+        found = analyse(program, live, self.inputs() | self.matrix(), rounding_of(self.arithmetic))
         if found is None:
             return None
         values = {name: found[index] for name, index in kernel.outputs.items()}
@@ -125,8 +140,18 @@ class _Certificate:
         if tangent is None:
             return None
         # ε is Euclid's norm of what both components lose.
-        added = [self.adding(name, values[f"d{name}"]) for name in ("p", "q")]
-        return _Steps(norm(added), values["dj"].error, tangent, values["dj"].magnitude)
+        sizes = self.box(flint.arb(0))
+        added = norm(self.adding(sizes[n].abs_upper(), values[f"d{n}"]) for n in self.names)
+        changed, defect = values["dj"], flint.arb(0)
+        for index in kernel.defect.values():
+            defect = defect.max(found[index].error)
+        return _Steps(added, changed.error, tangent, changed.magnitude, defect, values)
+
+    def matrix(self) -> dict[str, Rounded]:
+        """The entries of M where it is carried: data too, within the box of `form_bound`."""
+        most = form_bound.MOST * self.seen["growth_top"].abs_upper().sqrt()
+        box = flint.arb(0, 1) * most * (1 + flint.arb(2) ** -10)
+        return {name: Rounded(box, flint.arb(0)) for name in self.kernel.matrix}
 
     def times(self) -> Ball:
         """All times at which a step is made."""
@@ -150,12 +175,11 @@ class _Certificate:
             )
         return given
 
-    def adding(self, name: str, increment: Rounded) -> Ball:
-        """The error of a component's increment, and of adding it."""
+    def adding(self, size: Ball, increment: Rounded) -> Ball:
+        """The error of an increment, and of adding it to what is of that size."""
         if self.arithmetic.absolute:
             return increment.error
-        size = self.box(flint.arb(0))[name].abs_upper() + increment.magnitude
-        return increment.error + size * self.unit
+        return increment.error + (size + increment.magnitude) * self.unit
 
     def one_tangent(self, main: Mapping[int, Rounded]) -> Ball | None:
         """ρ: the error of one step of the tangent map, relative to ‖M‖."""
@@ -178,20 +202,30 @@ class _Certificate:
         # the products. That is 4 times half a unit, and what is of second order.
         return ((error + 3 * unit * size) * (1 + unit) + unit * unit).abs_upper()
 
-    def orbit(self, steps: _Steps, derivatives: Derivatives) -> tuple[Ball, Ball] | None:
-        """(a bound of ‖e_k‖ for all k, one of Σ ‖e_k‖)."""
-        seen, count = self.seen, self.steps
+    def motion(self, steps: _Steps) -> form_bound.Motion | None:
+        """How M has grown; None where nothing follows from it."""
+        seen, count, size = self.seen, self.steps, len(self.names)
         slack = 1 + flint.arb(count) * flint.arb(2) ** -50  # of float64's own sums
         growth, highest = seen["growth"] * slack, seen["growth_top"] * slack
-        least = seen["det_low"] - flint.arb(2) ** -48 * seen["growth_top"]
+        least = least_of(size, seen)
         if not (growth.is_finite() and least > 0):
             return None
         # Q: it multiplies every bound by e^Q, so that a large one says nothing.
         rate = steps.tangent * growth / least
         if not rate < _MOST_GROWTH:
             return None
-        top = _square_of_norm(highest, least).sqrt()
-        path = (count * (count + 1) * _square_of_norm(growth / (count + 1), least)).sqrt()
+        top = square_of_norm(size, highest, least).sqrt()
+        mean = square_of_norm(size, growth / (count + 1), least)
+        return form_bound.Motion(count, least, rate, top, (count * (count + 1) * mean).sqrt())
+
+    def orbit(
+        self, steps: _Steps, derivatives: Derivatives | DerivativesInDegrees
+    ) -> tuple[Ball, Ball] | None:
+        """(a bound of ‖e_k‖ for all k, one of Σ ‖e_k‖)."""
+        motion = self.motion(steps)
+        if motion is None:
+            return None
+        least, rate, top, path = motion.least, motion.rate, motion.top, motion.path
         # X without its quadratic term. Twice the error that it gives is E*, over which B is taken.
         alone = rate.exp() * (self.first_error() + path / least * steps.state)
         error = (2 * top * alone).abs_upper()
@@ -204,7 +238,7 @@ class _Certificate:
 
     def first_error(self) -> Ball:
         start, number, exact = self.run.start, self.arithmetic.number, self.arithmetic.exact
-        lost = [rational_ball(exact(number(start[n])) - start[n]) for n in ("p", "q")]
+        lost = [rational_ball(exact(number(start[n])) - start[n]) for n in self.names]
         return norm(lost)
 
     def values_of_inputs(self) -> dict[str, Ball]:
@@ -214,8 +248,43 @@ class _Certificate:
 
     # -- the observables ----------------------------------------------------------------------
 
+    def of_form(
+        self, steps: _Steps, derivatives: DerivativesInDegrees, error: Ball, summed: Ball
+    ) -> dict[str, Ball]:
+        """S and W; see `verify.runs.form_bound`."""
+        asked, scale = self.run.observables, flint.arb(2) ** -self.shift
+        if not asked & {"symplectic_defect_max", "symplectic_defect"}:
+            return {}
+        fixed, box = self.values_of_inputs(), self.box(error)
+        size, slope = derivatives.form(fixed, box)
+        result = {}
+        if "symplectic_defect_max" in asked:
+            result["symplectic_defect_max"] = slope * error + scale * steps.defect
+        motion = self.motion(steps)
+        if "symplectic_defect" in asked and motion is not None:
+            most = form_bound.MOST * motion.top
+            matrix = (self.adding(most, steps.values[f"d{x}"]) for x in self.kernel.matrix)
+            entries = [x for name, x in steps.values.items() if name.startswith("dw_")]
+            largest = flint.arb(0)
+            for x in entries:
+                largest = largest.max(self.adding(most * most / scale, x))
+            result["symplectic_defect"] = form_bound.of_form(
+                motion,
+                summed=summed,
+                second=derivatives.second(fixed, box),
+                size=size,
+                slope=slope,
+                of_matrix=norm(matrix),
+                of_entry=scale * largest,
+            )
+        return {name: x.abs_upper() for name, x in result.items()}
+
     def observables(
-        self, steps: _Steps, derivatives: Derivatives, error: Ball, summed: Ball
+        self,
+        steps: _Steps,
+        derivatives: Derivatives | DerivativesInDegrees,
+        error: Ball,
+        summed: Ball,
     ) -> dict[str, Ball]:
         asked, count = self.run.observables, self.steps
         if not asked & {"delta_j_max", "mse", "lambda", "lambda_max"}:
@@ -263,9 +332,3 @@ class _Certificate:
             # D Λ is rounded in D + D Λ, which is summed, and 2^−s (D + D Λ), which Λ adds, is cut.
             return self.unit * (1 + scale)
         return self.unit * (1 + self.unit) * (largest + 2 * jump * (1 + largest))
-
-
-def _square_of_norm(squares: Ball, least: Ball) -> Ball:
-    """A bound of ‖M‖², from those of the sum of its entries' squares and of its determinant; or one
-    of the mean of ‖M‖² over several M, from that of those sums."""
-    return ((squares + (squares * squares - 4 * least * least).abs_upper().sqrt()) / 2).abs_upper()

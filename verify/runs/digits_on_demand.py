@@ -29,6 +29,8 @@ WORTH_COMPILING = (
     60_000  # steps that repay a compiled kernel: it takes 0.2–0.8 s, mpfr 3–8 µs a step
 )
 _SHORT = 1000  # steps that take less time than a certificate does: nothing is foreseen of them
+# Of N, by which bounds grow where the tangent map grows linearly; others like N³.
+_POWERS = {"lambda": 4, "lambda_max": 4, "symplectic_defect": 9}
 _MORE = 20  # digits that cost such a run nothing, and are there for an observable that is small
 
 
@@ -159,13 +161,12 @@ class _Foresight:
         growth = Fraction(self.kernel_run.steps, int(outcome.tangents[0]["done"]))
         note, seen = outcome.trail[0], outcome.tangents[0]
         sizes = {n: abs(x) for n, x in note.items()}
-        sizes["p"] = sizes["q"] = max(sizes["p"], sizes["q"])
+        largest = max(sizes[name] for name in outcome.coordinates)
+        sizes |= dict.fromkeys(outcome.coordinates, largest)
         if "lambda" in sizes:
             sizes["lambda"] = max(abs(seen["least"]), abs(seen["most"]))
         short = [
-            missing_digits(
-                sizes[n], error * growth ** (4 if n in ("lambda", "lambda_max") else 3), self.digits
-            )
+            missing_digits(sizes[n], error * growth ** _POWERS.get(n, 3), self.digits)
             for n, error in errors.items()
             if sizes.get(n)
         ]

@@ -15,6 +15,7 @@ from typing import Literal
 from verify import arithmetic as number_systems
 from verify.arithmetic.exact import magnitude
 from verify.arithmetic.number_system import Arithmetic
+from verify.hamiltonians.coordinates import PLANE
 from verify.kernels.stepping import KernelRun, Outcome
 
 Bounded = dict[str, tuple[Fraction, Fraction]]  # values with their bounds
@@ -23,7 +24,6 @@ Status = Literal["finished", "left range", "unresolved"]
 _MORE_DIGITS = 15
 _ATTEMPTS = 6
 LINEAR = Fraction(1, 100)
-_STATE = ("p", "q")
 
 
 @dataclass(frozen=True)
@@ -43,23 +43,26 @@ def working_digits(digits: int, steps: int) -> int:
 
 
 def spread(first: Outcome, second: Outcome, least: Fraction = Fraction(0)) -> Fraction:
-    """The greatest difference of p or q at any checkpoint, relative to the orbit's size in each.
+    """The greatest difference of a coordinate at any checkpoint, relative to the orbit's size in all
+    of its kind, momenta or others.
 
     Where that is smaller than `least`, relative to `least`.
     """
-    spread = Fraction(0)
-    for name in _STATE:
-        size = max(least, *(abs(a[name]) for a in (*first.trail, *second.trail)))
-        pairs = zip(first.trail, second.trail, strict=False)
+    spread, both = Fraction(0), (*first.trail, *second.trail)
+    for letter in PLANE:
+        own = [name for name in first.coordinates if name[0] == letter]
+        size = max(least, *(abs(a[name]) for a in both for name in own))
+        pairs = list(zip(first.trail, second.trail, strict=False))
         if size:
-            spread = max(spread, *(abs(a[name] - b[name]) / size for a, b in pairs))
+            apart = (abs(a[name] - b[name]) for a, b in pairs for name in own)
+            spread = max(spread, *(x / size for x in apart))
     return spread
 
 
 def _noise(own: Arithmetic, *runs: Outcome) -> Fraction:
     """What in p or q may be nothing but rounding beside the orbit's size, as p at an equilibrium:
     no precision ends it."""
-    sizes = [abs(at[name]) for run in runs for at in run.trail for name in _STATE]
+    sizes = [abs(at[name]) for run in runs for at in run.trail for name in run.coordinates]
     return max(sizes, default=Fraction(0)) * Fraction(1, 2 ** (own.bits // 2))
 
 
@@ -86,7 +89,7 @@ def resolved(kernel_run: KernelRun, own: Arithmetic, first: Outcome, digits: int
         lacking = (
             missing_of(name, *value, digits)
             for name, value in found.items()
-            if not (name in _STATE and abs(value[0]) <= value[1] <= noise)  # 0, as far as is known
+            if not (name in first.coordinates and abs(value[0]) <= value[1] <= noise)  # 0, as far as is known
         )
         missing = max(lacking, default=0)
         if missing <= 0:

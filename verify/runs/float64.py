@@ -29,7 +29,6 @@ _CERTIFIED_DIGITS = 20
 _REFERENCE_DIGITS = 40
 _FOLLOWED_STEPS = 1000  # a chaotic orbit is followed so far; it loses digits at every step
 _RERUN_STEPS = 20_000  # an orbit is followed in mpfr so far where there is no certificate
-_STATE = ("p", "q")
 
 
 def bounded(run: KernelRun, first: Outcome, known: Bounded) -> Bounds:
@@ -105,7 +104,7 @@ def _compensated(run: KernelRun, first: Outcome) -> Bounds:
     found = {}
     for name, x in first.values.items():
         largest = max(abs(a[name]) for a in (*first.trail, *second.trail))
-        if name in _STATE:
+        if name in first.coordinates:
             difference = apart * largest
         else:
             pairs = zip(first.trail, second.trail, strict=True)

@@ -8,6 +8,7 @@ depend on (p, q), Λ = (1 + ΔJ)^N − 1 is enclosed by ball arithmetic.
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 
 from verify import arithmetic as number_systems
@@ -16,21 +17,24 @@ from verify.arithmetic.arb import in_reach, middle_and_radius
 from verify.arithmetic.exact import Exact, positive, rational, text, whole
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.systems import ball, float64
-from verify.errors import InputError, unknown
+from verify.errors import InputError
 from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.start import Given, point_of
 from verify.hamiltonians.times_on_the_way import check_times
 from verify.kernels.chunked_loop import Progress
-from verify.kernels.computation import step_map_of
-from verify.kernels.orbit import Orbit
+from verify.kernels.degrees.computation import map_of
 from verify.kernels.stepping import KernelRun, Outcome
+from verify.proof.symplectic.closed_defect import ClosedDefect
 from verify.runs.digits_on_demand import Measured, choose, measure
 from verify.runs.estimated import Bounded, Bounds
 from verify.runs.float64 import bounded
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.run import RunResult
-from verify.scenes.values import AUTO, CLOSED_FORM, MAX_DIGITS, MAX_STEPS, OBSERVABLES
+from verify.scenes.observables import SEVERAL, check_observables, observed
+from verify.scenes.values import AUTO, CLOSED_FORM, MAX_DIGITS, MAX_STEPS
 from verify.schemes import canonical
+from verify.schemes.degrees.canonical_map import CanonicalMap
 from verify.schemes.step_map import StepMap
 
 
@@ -38,14 +42,14 @@ def run(
     hamiltonian: Hamiltonian,
     scheme: str,
     *,
-    q: Exact,
-    p: Exact,
+    q: Given,
+    p: Given,
     step_size: Exact,
     steps: int,
     t0: Exact = 0,
     arithmetic: str = float64.NAME,
     digits: int = 17,
-    observables: Sequence[str] = CLOSED_FORM,
+    observables: Sequence[str] | None = None,
     points: int = 0,
     progress: Progress | None = None,
     shares_kernel: bool = False,
@@ -53,7 +57,8 @@ def run(
 ) -> RunResult:
     """Run `steps` steps of `step_size` from (q, p) and report p, q and the observables.
 
-    `t0`: when it starts, of an H that depends on time. `arithmetic`: one of
+    `q`, `p`: a number each; in n degrees of freedom a list each. `observables`: those of
+    `verify.scenes.observables` for that many degrees, where it is left out. `t0`: when it starts, of an H that depends on time. `arithmetic`: one of
     `verify.arithmetic.names()`, or `auto` for the fastest with rigorous bounds. `digits`:
     significant digits wanted (float64 gives what it knows). `points`: at most so many points of a
     thinned series are kept. `progress` is called with the number of steps done. `keeper` keeps
@@ -63,49 +68,67 @@ def run(
     """
     scheme = canonical(scheme)
     h = positive(step_size, "step_size")
-    z0 = rational(q, "q"), rational(p, "p")
-    orbit = Orbit(hamiltonian, scheme, h, *z0, t0=rational(t0, "t0"))
-    check(hamiltonian, steps, digits, observables)
-    check_times(hamiltonian, orbit.t0, h, steps)
+    begun = Start(hamiltonian, scheme, h, point_of(hamiltonian, q, p), rational(t0, "t0"))
+    wanted = observed(hamiltonian, observables)
+    check(hamiltonian, steps, digits, wanted)
+    check_times(hamiltonian, begun.t0, h, steps)
     whole("points", points, 0)
-    known = proved(step_map_of(hamiltonian, scheme), h, steps, digits)
-    needed = frozenset(o for o in observables if o not in known) | _series_needs(known, points)
+    known = proved(map_of(hamiltonian, scheme), h, steps, digits)
+    needed = frozenset(o for o in wanted if o not in known) | _series_needs(known, points)
+    start = begun.point | {"h": h, "t": begun.t0}
     kernel_run = KernelRun(
-        hamiltonian, scheme, orbit.start, steps, needed, points, keeper, shares_kernel=shares_kernel
+        hamiltonian, scheme, start, steps, needed, points, keeper, shares_kernel=shares_kernel
     )
     if arithmetic == AUTO:
         arithmetic = choose(kernel_run, digits)
     done = _run(kernel_run, arithmetic, digits, known, progress)
-    return _result(orbit, steps, digits, observables, known, done)
+    return _result(begun, steps, digits, wanted, known, done)
+
+
+@dataclass(frozen=True)
+class Start:
+    """What a run is of, and where it begins: each coordinate's value by its name."""
+
+    hamiltonian: Hamiltonian
+    scheme: str
+    step_size: Fraction
+    point: Mapping[str, Fraction]
+    t0: Fraction
+
+    def text(self, letter: str) -> str | tuple[str, ...]:
+        """q or p as it is shown: a number, or a list in n degrees of freedom."""
+        own = tuple(text(x) for name, x in self.point.items() if name[0] == letter)
+        return own[0] if self.hamiltonian.planar else own
 
 
 def proved_run(
     hamiltonian: Hamiltonian,
     scheme: str,
     *,
-    q: Fraction,
-    p: Fraction,
+    q: Given,
+    p: Given,
     step_size: Fraction,
     steps: int,
     t0: Fraction,
     digits: int,
-    observables: Sequence[str],
+    observables: Sequence[str] | None,
 ) -> RunResult | None:
     """The observables without any step, and without p and q, where a proof gives all of them; of a
     run that is asked for p and q alone it gives none.
     """
-    check(hamiltonian, steps, digits, observables)
-    known = proved(step_map_of(hamiltonian, scheme), step_size, steps, digits)
-    if not observables or not set(observables) <= set(known):
+    wanted = observed(hamiltonian, observables)
+    check(hamiltonian, steps, digits, wanted)
+    known = proved(map_of(hamiltonian, scheme), step_size, steps, digits)
+    if not wanted or not set(wanted) <= set(known):
         return None
     found = Bounds({}, "a proof, and no run", rigorous=True)
     done = Measured(found, ball.NAME, Outcome())
-    orbit = Orbit(hamiltonian, scheme, step_size, q, p, t0=t0)
-    return _result(orbit, steps, digits, observables, known, done)
+    begun = Start(hamiltonian, scheme, step_size, point_of(hamiltonian, q, p), t0)
+    return _result(begun, steps, digits, wanted, known, done)
 
 
 def _result(
-    orbit: Orbit,
+    begun: Start,
     steps: int,
     digits: int,
     observables: Sequence[str],
@@ -115,22 +138,21 @@ def _result(
     """What was found of the run, and what was `known` of it by a proof."""
     found = done.bounds
     most = min(digits, number_systems.about(done.arithmetic).digits or digits)
-    values = {
-        n: Value.of(*found.values[n], most) for n in ("p", "q", *observables) if n in found.values
-    }
+    names = (*begun.point, *observables)
+    values = {n: Value.of(*found.values[n], most) for n in names if n in found.values}
     if found.status == "finished":
         values |= {n: Value.of(*known[n], digits) for n in observables if n in known}
     return RunResult(
-        **orbit.hamiltonian.texts,
-        scheme=orbit.scheme,
+        **begun.hamiltonian.texts,
+        scheme=begun.scheme,
         arithmetic=done.arithmetic,
         fallback=done.fallback,
         digits=digits,
-        step_size=text(orbit.step_size),
+        step_size=text(begun.step_size),
         steps=steps,
-        q=text(orbit.q),
-        p=text(orbit.p),
-        t0=text(orbit.t0),
+        q=begun.text("q"),
+        p=begun.text("p"),
+        t0=text(begun.t0),
         status=found.status,
         failed_step=found.failed_step,
         values=values,
@@ -158,9 +180,7 @@ def check(hamiltonian: Hamiltonian, steps: int, digits: int, observables: Sequen
         raise InputError("parameter", name, f"has no value; a run needs one, as {name}=1")
     for name, value, most in (("steps", steps, MAX_STEPS), ("digits", digits, MAX_DIGITS)):
         whole(name, value, 1, most)
-    for name in observables:
-        if name not in OBSERVABLES:
-            raise unknown("observable", name, OBSERVABLES)
+    check_observables(hamiltonian.degrees, observables)
 
 
 def _series_needs(known: Mapping[str, object], points: int) -> frozenset[str]:
@@ -170,9 +190,12 @@ def _series_needs(known: Mapping[str, object], points: int) -> frozenset[str]:
 # -- what a proof gives ---------------------------------------------------------------------------
 
 
-def proved(step_map: StepMap, h: Fraction, steps: int, digits: int) -> Bounded:
-    """max |ΔJ|, MSE and Λ with their bounds, where no run is needed for them."""
+def proved(step_map: StepMap | CanonicalMap, h: Fraction, steps: int, digits: int) -> Bounded:
+    """max |ΔJ|, MSE and Λ with their bounds, where no run is needed for them; S and W too."""
     zero = Fraction(0), Fraction(0)
+    if isinstance(step_map, CanonicalMap):
+        vanishes = ClosedDefect.of(step_map).vanishes
+        return dict.fromkeys(SEVERAL, zero) if vanishes else {}
     if step_map.preserves_area:
         return dict.fromkeys((*CLOSED_FORM, "lambda_max"), zero)
     if len(step_map.substeps) > 1:

@@ -50,5 +50,5 @@ def _made(roots: list[Node], hamiltonian: Hamiltonian) -> CanonicalMap:
             pass
         else:
             whole = tuple(closed)
-            return CanonicalMap(hamiltonian, field, None, closed=whole, expand=expand)
-    return CanonicalMap(hamiltonian, field, None, expand=expand)
+            return CanonicalMap(hamiltonian, field, closed=whole, expand=expand)
+    return CanonicalMap(hamiltonian, field, expand=expand)

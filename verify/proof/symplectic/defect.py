@@ -134,8 +134,9 @@ def series_of(step: CanonicalMap, first: int) -> DefectSeries[CanonicalField]:
 def _state(step: CanonicalMap, most: int) -> tuple[CanonicalField, State]:
     if step.expand is not None:
         return step.expand(most)
-    if step.series is not None:
-        return step.field, step.series(most)
+    series = step.series(most)
+    if series is not None:
+        return step.field, series
     assert step.closed is not None  # noqa: S101 - a map has one or the other
     count, ring = most + 1, step.ring
     expansions = [Expansion(ring, x) for x in step.closed]

@@ -33,6 +33,7 @@ from verify.proof.symplectic.two_form import TwoForm, lie_derivative, wedge
 from verify.prose import Formula, Prose, prose, read_prose
 from verify.schemes import get
 from verify.schemes.degrees import kind_of
+from verify.schemes.degrees.canonical_map import series_of
 from verify.schemes.degrees.canonical_map import SOLVABLE
 from verify.schemes.every_hamiltonian import TaylorSeries
 from verify.schemes.scheme import Scheme
@@ -81,10 +82,10 @@ def prove_every_in_degrees(
     kind = kind_of(scheme)
     separable = separable or scheme.needs_separable
     size = 2 * degrees + timed
-    if size**scheme.order > _MOST_TERMS and hasattr(kind, "series_over"):
+    if size**scheme.order > _MOST_TERMS and hasattr(kind, "step"):
         problem = f"are too many for {scheme.name}: its polynomials are too long"
         raise LimitError("degrees", degrees, problem)
-    if hasattr(kind, "series_over"):
+    if hasattr(kind, "step"):
         return _by_series(scheme, kind, degrees, separable, timed)
     return _by_conditions(scheme, kind, degrees, separable, timed)
 
@@ -147,7 +148,7 @@ def _by_series(
 ) -> SymplecticProof:
     every_h, most = scheme.every_h, scheme.order + 1
     flow = JetFlow(degrees, most + 2, separable=separable, timed=timed)
-    series = DefectSeries(lambda n: (flow, kind.series_over(flow, every_h, n)), most)
+    series = DefectSeries(lambda n: (flow, series_of(flow, kind.step(every_h), n)), most)
     agreed = next((n - 1 for n in range(most + 1) if series.agrees(n)[0] is not True), most)
     own = kind.conditions(every_h)
     if own and first_wrong(own) is None:

@@ -51,8 +51,8 @@ class RunResult(OfScheme):
     digits: int
     step_size: str
     steps: int
-    q: str
-    p: str
+    q: str | tuple[str, ...]
+    p: str | tuple[str, ...]
     t0: str = "0"
     status: Literal["finished", "left range", "unresolved"]
     failed_step: int | None

@@ -2,8 +2,8 @@
 
 A file of `kinds/` has `KIND`, a class of coefficients; `build(coefficients, hamiltonian)`, the map
 that they make; `conditions(coefficients)`, which suffice for a symplectic one, for every H; and
-where the coefficients are rational `series_over(flow, coefficients, most)`, the map's series over
-any ring. Adding a kind is adding one file.
+where the coefficients are rational `step(coefficients)`, how the map is made over any ring. Adding
+a kind is adding one file.
 """
 
 from functools import cache

@@ -7,11 +7,10 @@ import sympy
 from verify.algebra.domain import Domain
 from verify.algebra.formula import read, symbol
 from verify.algebra.requirement import of_expression
-from verify.algebra.series.power_series import Series
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.schemes.degrees.canonical_map import CanonicalMap, State
+from verify.schemes.degrees.canonical_map import CanonicalMap
 
 _NEXT = "_next"
 
@@ -38,16 +37,4 @@ def map_by_formulas(hamiltonian: Hamiltonian, formulas: Mapping[str, str]) -> Ca
     exact = [put[symbol(name + _NEXT)] for name in coordinates]
     asked &= Domain.of(r for x in exact for r in of_expression(x, smooth=True))
     field, closed = canonical_field(hamiltonian, *exact)
-    made = CanonicalMap(hamiltonian, field, None, closed=tuple(closed), asked=asked)
-    if made.degree is None:
-        return made
-    powers = [field.ring.powers(x, "h") for x in closed]
-
-    def series(most: int) -> State:
-        ring = field.ring
-        return tuple(
-            Series.of(ring, [own.get(n, ring.zero) for n in range(most + 1)], most)
-            for own in powers
-        )
-
-    return CanonicalMap(hamiltonian, field, series, closed=tuple(closed), asked=asked)
+    return CanonicalMap(hamiltonian, field, closed=tuple(closed), asked=asked)

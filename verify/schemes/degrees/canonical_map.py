@@ -1,37 +1,41 @@
 """A one-step map z ↦ z' in n degrees of freedom: its Taylor series in h, and its closed form."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 from verify.algebra.conditions import Condition
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.ring import Poly, Ring
-from verify.algebra.series.power_series import Series, at_moved
+from verify.algebra.series.power_series import Series
 from verify.hamiltonians.canonical_field import CanonicalField, Flow
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.schemes.degrees.step_algebra import SeriesAlgebra, StepAlgebra
 from verify.schemes.step_map import AT_STAGES
 from verify.schemes.substep import h_inside
 
 SOLVABLE = "the stages have a solution that depends smoothly on z"
 State = tuple[Series, ...]  # a series for each of p1 … pn, q1 … qn
+# z' − z from what a step is made of; the same kind of value.
+Step = Callable[[StepAlgebra[Any]], list[Any]]
 
 
 @dataclass(frozen=True, eq=False)
 class CanonicalMap:
     """It equals itself alone.
 
-    `series(most)`: z' up to h^most, over the field's ring; None of a closed form that is no
-    polynomial in h. `closed`: z' in that ring; None where it is not written out. `conditions`:
-    where all of them hold the map is symplectic, for every H that the scheme takes. `flow_up_to`:
-    the power of h up to which it is made of the exact flow's own terms. `asked`: where the scheme's
-    own formulas are defined. `implicit`: equations are solved for it. `expand`: z' up
-    to h^most over a ring that comes with it, in place of `series`.
+    `step`: how z' is made, and so its series; None of a map that has a closed form alone. `closed`:
+    z' in the field's ring; None where it is not written out. `conditions`: where all of them hold
+    the map is symplectic, for every H that the scheme takes. `flow_up_to`: the power of h up to
+    which it is made of the exact flow's own terms. `asked`: where the scheme's own formulas are
+    defined. `implicit`: equations are solved for it. `expand`: z' up to h^most over a ring that
+    comes with it, in place of `series`.
     """
 
     hamiltonian: Hamiltonian
     field: CanonicalField
-    series: Callable[[int], State] | None
+    step: Step | None = None
     closed: tuple[Poly, ...] | None = None
     conditions: tuple[Condition, ...] = ()
     flow_up_to: int = -1
@@ -59,23 +63,25 @@ class CanonicalMap:
             return None
         return max((max(self.ring.powers(x, "h"), default=0) for x in self.closed), default=0)
 
+    def series(self, most: int) -> State | None:
+        """z' up to h^most, over the field's ring; None of a closed form that is no polynomial in
+        h."""
+        if self.step is not None:
+            return series_of(self.field, self.step, most)
+        if self.degree is None or self.closed is None:
+            return None
+        ring, powers = self.ring, [self.ring.powers(x, "h") for x in self.closed]
+        each = ([own.get(n, ring.zero) for n in range(most + 1)] for own in powers)
+        return tuple(Series.of(ring, own, most) for own in each)
+
     @property
     def symplectic_by_conditions(self) -> bool:
         """Whether it is symplectic by what its coefficients fulfil."""
         return bool(self.conditions) and all(c.holds is True for c in self.conditions)
 
 
-def start_of(field: Flow, most: int) -> State:
-    """z as series."""
-    return tuple(Series.of(field.ring, [x], most) for x in field.start)
-
-
-def slopes_at(
-    field: Flow, changes: Sequence[Series], clock: Series | None, places: Sequence[int]
-) -> list[Series]:
-    """Those components of f at z + changes, and where H depends on it at t + clock."""
-    ring, most = field.ring, changes[0].most
-    moves = [move for move in zip(field.names, changes, strict=True) if not move[1].vanishes]
-    if field.timed and clock is not None and not clock.vanishes:
-        moves.append(("t", clock))
-    return [at_moved(ring, field.slopes[k], moves, most) for k in places]
+def series_of(flow: Flow, step: Step, most: int) -> State:
+    """z' up to h^most."""
+    changes = step(SeriesAlgebra(flow, most))
+    start = (Series.of(flow.ring, [x], most) for x in flow.start)
+    return tuple(x + y for x, y in zip(start, changes, strict=True))

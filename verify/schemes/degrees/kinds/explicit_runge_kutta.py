@@ -2,21 +2,23 @@
 
 from collections.abc import Sequence
 from fractions import Fraction
+from typing import Any
 
 from verify.algebra.conditions import Condition
-from verify.algebra.series.power_series import Series
-from verify.hamiltonians.canonical_field import Flow, canonical_field
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.schemes.degrees.canonical_map import CanonicalMap, State, slopes_at, start_of
+from verify.schemes.degrees.canonical_map import CanonicalMap, Step
+from verify.schemes.degrees.step_algebra import StepAlgebra
 from verify.schemes.every_hamiltonian import RungeKutta
 
 KIND = RungeKutta
+Stage = tuple[list[Any], Fraction]  # a change of z, and that of t by h
 
 
 def build(coefficients: RungeKutta, hamiltonian: Hamiltonian) -> CanonicalMap:
     """The map for any H."""
     field, _ = canonical_field(hamiltonian)
-    return CanonicalMap(hamiltonian, field, lambda most: series_over(field, coefficients, most))
+    return CanonicalMap(hamiltonian, field, step(coefficients))
 
 
 def conditions(_: RungeKutta) -> tuple[Condition, ...]:
@@ -24,24 +26,20 @@ def conditions(_: RungeKutta) -> tuple[Condition, ...]:
     return ()
 
 
-def series_over(field: Flow, coefficients: RungeKutta, most: int) -> State:
-    """z' up to h^most."""
-    ring, places = field.ring, range(len(field.names))
-    still, one = Series.of(ring, [], most), Series.of(ring, [ring.one], most)
+def step(coefficients: RungeKutta) -> Step:
+    """How z' is made."""
 
-    def moved(weights: Sequence[Fraction], slopes: Sequence[list[Series]]) -> list[Series]:
-        """h Σ w_j k_j, and h Σ w_j for the clock."""
-        changes = []
-        for own in range(len(places) + 1):
-            total = still
-            for w, slope in zip(weights, slopes, strict=True):
-                total += slope[own].times(w)
-            changes.append(total.shifted(1))
-        return changes
+    def changes(algebra: StepAlgebra[Any]) -> list[Any]:
+        places = range(algebra.size)
 
-    def slope(point: list[Series]) -> list[Series]:
-        *changes, clock = point
-        return [*slopes_at(field, changes, clock, places), one]
+        def moved(weights: Sequence[Fraction], slopes: Sequence[list[Any]]) -> Stage:
+            columns = [[slope[k] for slope in slopes] for k in places]
+            own = [algebra.moved(algebra.nothing, weights, column) for column in columns]
+            return own, sum(weights, Fraction(0))
 
-    *changes, _ = coefficients.step(slope, moved)
-    return tuple(x + y for x, y in zip(start_of(field, most), changes, strict=True))
+        def slope(stage: Stage) -> list[Any]:
+            return algebra.slopes(*stage, places)
+
+        return coefficients.step(slope, moved)[0]
+
+    return changes

@@ -1,17 +1,19 @@
-"""Implicit Runge–Kutta methods: their series by iteration, symplectic by their coefficients.
+"""Implicit Runge–Kutta methods: symplectic by their coefficients.
 
-b_i a_ij + b_j a_ji = b_i b_j for all i, j suffices for every H in any number of degrees of freedom
-(Sanz-Serna 1988; Hairer, Lubich, Wanner, Geometric Numerical Integration, theorem VI.4.3).
+The unknowns are Z_i = Y_i − z, Y_i the points at which the slopes are taken: Z_i = h Σ a_ij f(z +
+Z_j), and z' = z + h Σ b_i f(z + Z_i). b_i a_ij + b_j a_ji = b_i b_j for all i, j suffices for S ≡ 0,
+for every H in any number of degrees of freedom (Sanz-Serna 1988; Hairer, Lubich, Wanner, Geometric
+Numerical Integration, theorem VI.4.3).
 """
 
 from collections.abc import Sequence
+from typing import Any
 
 from verify.algebra.conditions import Condition
-from verify.algebra.ring import Poly
-from verify.algebra.series.power_series import Series
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.schemes.degrees.canonical_map import CanonicalMap, State, slopes_at, start_of
+from verify.schemes.degrees.canonical_map import CanonicalMap, Step
+from verify.schemes.degrees.step_algebra import Number, StepAlgebra
 from verify.schemes.tree_conditions import TreeConditions
 
 KIND = TreeConditions
@@ -23,38 +25,43 @@ def build(coefficients: TreeConditions, hamiltonian: Hamiltonian) -> CanonicalMa
     count = tableau.stages
     numbers = [x for row in (*tableau.rows, tableau.weights) for x in row]
     field, exact = canonical_field(hamiltonian, *numbers)
-    ring, places = field.ring, range(len(field.names))
-    rows = [exact[count * i : count * (i + 1)] for i in range(count + 1)]
-
-    def series(most: int) -> State:
-        slopes = [[Series.of(ring, [x], 0) for x in field.slopes]] * count
-
-        def moved(weights: Sequence[Poly], longest: int) -> list[Series]:
-            """h Σ w_j k_j, as far as h^longest."""
-            changes = []
-            for place in places:
-                total = Series.of(ring, [], longest)
-                for w, slope in zip(weights, slopes, strict=True):
-                    own = Series.of(ring, [ring.zero, *slope[place].coefficients], longest)
-                    total += own.times(w)
-                changes.append(total)
-            return changes
-
-        for longest in range(1, most):
-            clocks = [Series.of(ring, [ring.zero, sum(row, ring.zero)], longest) for row in rows]
-            points = [moved(row, longest) for row in rows[:-1]]
-            slopes = [
-                slopes_at(field, point, clock, places)
-                for point, clock in zip(points, clocks, strict=False)
-            ]
-        pairs = zip(start_of(field, most), moved(rows[-1], most), strict=True)
-        return tuple(x + y for x, y in pairs)
-
+    rows = [exact[count * i : count * (i + 1)] for i in range(count)]
+    clocks = [sum(row, field.ring.zero) for row in rows]
     return CanonicalMap(
-        hamiltonian, field, series, conditions=conditions(coefficients), implicit=True
+        hamiltonian,
+        field,
+        _step(rows, exact[count * count :], clocks),
+        conditions=conditions(coefficients),
+        implicit=True,
     )
 
 
 def conditions(coefficients: TreeConditions) -> tuple[Condition, ...]:
     """Those of the module's text."""
     return coefficients.tableau.area_conditions()
+
+
+def _step(
+    rows: Sequence[Sequence[Number]], weights: Sequence[Number], clocks: Sequence[Number]
+) -> Step:
+    def changes(outer: StepAlgebra[Any]) -> list[Any]:
+        size = outer.size
+
+        def combined(
+            algebra: StepAlgebra[Any], own: Sequence[Sequence[Number]], unknowns: Sequence[Any]
+        ) -> list[Any]:
+            """h Σ w_j f(z + Z_j) of each row of weights, row after row."""
+            stages = [unknowns[size * i : size * (i + 1)] for i in range(len(clocks))]
+            slopes = [
+                algebra.slopes(stage, clock, range(size))
+                for stage, clock in zip(stages, clocks, strict=True)
+            ]
+            columns = [[slope[k] for slope in slopes] for k in range(size)]
+            return [
+                algebra.moved(algebra.nothing, row, column) for row in own for column in columns
+            ]
+
+        solved = outer.solved(size * len(clocks), lambda inner, z: combined(inner, rows, z))
+        return combined(outer, [weights], solved)
+
+    return changes

@@ -5,14 +5,16 @@ and S of a shear is that block less its transpose, which is 0.
 """
 
 from collections.abc import Sequence
+from typing import Any
 
 from verify.algebra.conditions import Condition
+from verify.algebra.ring import Poly
 from verify.algebra.series.jets_in_degrees import JetsInDegrees
-from verify.algebra.series.power_series import Series
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.schemes.degrees.canonical_map import CanonicalMap, State, slopes_at, start_of
+from verify.schemes.degrees.canonical_map import CanonicalMap, Step
+from verify.schemes.degrees.step_algebra import StepAlgebra
 from verify.schemes.splitting import all_times
 from verify.schemes.splitting_conditions import Splitting
 
@@ -28,23 +30,23 @@ def build(coefficients: Splitting, hamiltonian: Hamiltonian) -> CanonicalMap:
     if not field.separable:
         problem = "a splitting into kicks and drifts is for H = T(p) + V(q)"
         raise InputError("hamiltonian", hamiltonian.formula, problem)
-    ring, n = field.ring, field.degrees
-    of_kind = {"kick": range(n), "drift": range(n, 2 * n)}
+    kinds = [kind for kind, _ in parts]
+    step = _step(kinds, exact[: len(parts)], exact[len(parts) :])
+    return CanonicalMap(hamiltonian, field, step, conditions=conditions(coefficients))
 
-    def series(most: int) -> State:
-        start = start_of(field, most)
-        changes: Sequence[Series] = [Series.of(ring, [], most)] * (2 * n)
-        each = zip(parts, exact[: len(parts)], exact[len(parts) :], strict=True)
-        for (kind, _), size, time in each:
-            places = of_kind[kind]
-            clock = Series.of(ring, [ring.zero, time], most)
-            moved = slopes_at(field, changes, clock, places)
-            changes = list(changes)
-            for place, slope in zip(places, moved, strict=True):
-                changes[place] += slope.times(size).shifted(1)
-        return tuple(x + y for x, y in zip(start, changes, strict=True))
 
-    return CanonicalMap(hamiltonian, field, series, conditions=conditions(coefficients))
+def _step(kinds: Sequence[str], sizes: Sequence[Poly], times: Sequence[Poly]) -> Step:
+    def changes(algebra: StepAlgebra[Any]) -> list[Any]:
+        n = algebra.size // 2
+        moves = {"kick": range(n), "drift": range(n, 2 * n)}
+        found = [algebra.nothing] * algebra.size
+        for kind, size, time in zip(kinds, sizes, times, strict=True):
+            slopes = algebra.slopes(found, time, moves[kind])
+            for place, slope in zip(moves[kind], slopes, strict=True):
+                found[place] = algebra.moved(found[place], [size], [slope])
+        return found
+
+    return changes
 
 
 def conditions(coefficients: Splitting) -> tuple[Condition, ...]:

@@ -6,20 +6,23 @@ a = b, dP∧dH_p + dQ∧dH_q = −d(dH) = 0 leaves dp'∧dq' − dp∧dq = (1 �
 Numerical Integration, VI.3.)
 """
 
+from collections.abc import Callable, Sequence
 from fractions import Fraction
+from typing import Any
 
 import sympy
 
 from verify.algebra.conditions import Condition
-from verify.algebra.series.power_series import Series
-from verify.hamiltonians.canonical_field import Flow, canonical_field
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.schemes.degrees.canonical_map import CanonicalMap, State, slopes_at, start_of
+from verify.schemes.degrees.canonical_map import CanonicalMap, Step
 from verify.schemes.degrees.kinds import splittings
+from verify.schemes.degrees.step_algebra import StepAlgebra
 from verify.schemes.every_hamiltonian import Stage, StageEquations
 from verify.schemes.splitting_conditions import Splitting
 
 KIND = StageEquations
+_ONE = Fraction(1)
 
 
 def build(coefficients: StageEquations, hamiltonian: Hamiltonian) -> CanonicalMap:
@@ -35,7 +38,7 @@ def build(coefficients: StageEquations, hamiltonian: Hamiltonian) -> CanonicalMa
     return CanonicalMap(
         hamiltonian,
         field,
-        lambda most: series_over(field, coefficients, most),
+        step(coefficients),
         conditions=conditions(coefficients),
         implicit=True,
     )
@@ -46,27 +49,33 @@ def conditions(coefficients: StageEquations) -> tuple[Condition, ...]:
     return tuple(map(_condition, coefficients.stages))
 
 
-def series_over(field: Flow, coefficients: StageEquations, most: int) -> State:
-    """z' up to h^most, by iteration: each one makes one power of h more right."""
-    ring, n = field.ring, field.degrees
-    before = [Series.of(ring, [], most)] * (2 * n)
-    for stage in coefficients.stages:
-        changes = before
-        shares = [stage.at_p] * n + [stage.at_q] * n
-        weights = [stage.kick] * n + [stage.drift] * n
-        clock = Series.of(ring, [ring.zero, ring.constant(_time(stage))], most)
-        for _ in range(most):
-            at = [x + (y - x).times(c) for x, y, c in zip(before, changes, shares, strict=True)]
-            slopes = slopes_at(field, at, clock, range(2 * n))
-            moved = (s.times(w).shifted(1) for s, w in zip(slopes, weights, strict=True))
-            changes = [x + y for x, y in zip(before, moved, strict=True)]
-        before = changes
-    return tuple(x + y for x, y in zip(start_of(field, most), before, strict=True))
+def step(coefficients: StageEquations) -> Step:
+    """How z' is made: of each stage the change that it makes is solved for."""
+
+    def changes(outer: StepAlgebra[Any]) -> list[Any]:
+        found = [outer.nothing] * outer.size
+        for stage in coefficients.stages:
+            change = outer.solved(outer.size, _right(stage, found))
+            found = [outer.between(x, y, _ONE) for x, y in zip(found, change, strict=True)]
+        return found
+
+    return changes
 
 
-def _time(stage: Stage) -> Fraction:
-    """When H is read in it, as a part of h: t goes with q."""
-    return stage.at_q
+def _right(
+    stage: Stage, before: Sequence[Any]
+) -> Callable[[StepAlgebra[Any], Sequence[Any]], list[Any]]:
+    """h times the slopes that a stage takes, at a share of the change that they make."""
+
+    def right(algebra: StepAlgebra[Any], change: Sequence[Any]) -> list[Any]:
+        n = algebra.size // 2
+        shares, weights = [stage.at_p] * n + [stage.at_q] * n, [stage.kick] * n + [stage.drift] * n
+        at = [algebra.between(*each) for each in zip(before, change, shares, strict=True)]
+        slopes = algebra.slopes(at, stage.at_q, range(2 * n))  # t goes with q
+        each = zip(weights, slopes, strict=True)
+        return [algebra.moved(algebra.nothing, [w], [slope]) for w, slope in each]
+
+    return right
 
 
 def _condition(stage: Stage) -> Condition:

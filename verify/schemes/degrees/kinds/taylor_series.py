@@ -1,10 +1,9 @@
 """lieη: the exact flow's Taylor polynomial, z' = Σ hⁿ/n! Xⁿz, n = 0 … η."""
 
 from verify.algebra.conditions import Condition
-from verify.algebra.series.power_series import Series
-from verify.hamiltonians.canonical_field import Flow, canonical_field
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.schemes.degrees.canonical_map import CanonicalMap, State
+from verify.schemes.degrees.canonical_map import CanonicalMap, Step
 from verify.schemes.every_hamiltonian import TaylorSeries
 
 KIND = TaylorSeries
@@ -18,7 +17,7 @@ def build(coefficients: TaylorSeries, hamiltonian: Hamiltonian) -> CanonicalMap:
     return CanonicalMap(
         hamiltonian,
         field,
-        lambda most: series_over(field, coefficients, most),
+        step(coefficients),
         closed=tuple(sum(own, field.ring.zero) for own in zip(*powers, strict=True)),
         flow_up_to=eta,
     )
@@ -29,7 +28,6 @@ def conditions(_: TaylorSeries) -> tuple[Condition, ...]:
     return ()
 
 
-def series_over(field: Flow, coefficients: TaylorSeries, most: int) -> State:
-    """z' up to h^most."""
-    terms = [field.term(n) for n in range(min(coefficients.eta, most) + 1)]
-    return tuple(Series.of(field.ring, own, most) for own in zip(*terms, strict=True))
+def step(coefficients: TaylorSeries) -> Step:
+    """How z' is made."""
+    return lambda algebra: algebra.along_flow(coefficients.eta)

@@ -1,0 +1,96 @@
+"""Bounds of a step's derivatives over a box of states, from the kernel's own operations.
+
+In n degrees of freedom z', det J − 1 and the entries of S are differentiated operation by operation
+(`verify.kernels.partials`), and enclosed over the box.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import flint
+
+from verify.errors import InputError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.computation import Observed
+from verify.kernels.degrees.computation import computed_in_degrees, map_of
+from verify.kernels.partials import Partials
+from verify.kernels.program import Program
+from verify.kernels.rounding import Ball, Rounded, analyse
+from verify.runs.derivatives import norm
+from verify.schemes.step_map import StepMap
+
+_ZERO = flint.arb(0)
+
+
+@dataclass(frozen=True)
+class DerivativesInDegrees:
+    """Indices in `program`: of z' and det J − 1 `values`, of second derivatives of z', and of the
+    gradients of det J − 1 and of S's entries, one after the other."""
+
+    program: Program
+    parameters: tuple[str, ...]
+    values: tuple[int, ...]
+    hessians: tuple[int, ...]
+    of_volume: tuple[int, ...]
+    defect: tuple[int, ...]
+    of_defect: tuple[int, ...]
+
+    @classmethod
+    @lru_cache(maxsize=32)
+    def of(cls, hamiltonian: Hamiltonian, scheme: str) -> "DerivativesInDegrees | None":
+        """None for a scheme that does not take this H, or is given by equations for it."""
+        try:
+            step = map_of(hamiltonian, scheme)
+        except InputError:
+            return None
+        if step.implicit or isinstance(step, StepMap):
+            return None
+        asked = Observed(
+            pipelined=False, scaled=False, delta_j=True, determinant=False, tangent=False,
+            symplectic=True,
+        )  # fmt: skip
+        made = computed_in_degrees(step, asked)
+        program = made.program.copy()
+        partials = Partials(program, [program.input(n, static=False) for n in made.coordinates])
+        changes = [made.outputs[f"d{name}"] for name in made.coordinates]
+        slopes = [x for at in changes for x in partials.gradient(at)]
+        second = [x for at in slopes for x in partials.gradient(at)]
+        defect = tuple(made.defect.values())
+        return cls(
+            program,
+            made.parameters,
+            (*changes, made.outputs["dj"]),
+            tuple(second),
+            tuple(partials.gradient(made.outputs["dj"])),
+            defect,
+            tuple(x for at in defect for x in partials.gradient(at)),
+        )
+
+    def second(self, fixed: Mapping[str, Ball], box: Mapping[str, Ball]) -> Ball:
+        """B with ‖Φ(z + e) − Φ(z) − DΦ(z) e‖ ≤ ½ B ‖e‖² in the box, and ‖DΦ(z + e) − DΦ(z)‖ ≤ B ‖e‖;
+        not finite where Φ may be undefined in it."""
+        found = self._over((*self.hessians, *self.values), fixed, box)
+        return flint.arb.nan() if found is None else norm(found[: len(self.hessians)])
+
+    def gradient(self, fixed: Mapping[str, Ball], box: Mapping[str, Ball]) -> Ball:
+        """A bound of ‖∇ det J‖ in the box."""
+        found = self._over(self.of_volume, fixed, box)
+        return flint.arb.nan() if found is None else norm(found)
+
+    def form(self, fixed: Mapping[str, Ball], box: Mapping[str, Ball]) -> tuple[Ball, Ball]:
+        """Bounds in the box of Frobenius' norm of S, and of that of its gradients."""
+        found = self._over((*self.defect, *self.of_defect), fixed, box)
+        if found is None:
+            return flint.arb.nan(), flint.arb.nan()
+        count, twice = len(self.defect), flint.arb(2).sqrt()  # an entry stands in S twice
+        return twice * norm(found[:count]), twice * norm(found[count:])
+
+    def _over(
+        self, wanted: Sequence[int], fixed: Mapping[str, Ball], box: Mapping[str, Ball]
+    ) -> list[Ball] | None:
+        parameters = {f"x{k}": fixed[n] for k, n in enumerate(self.parameters)}
+        others = {n: x for n, x in fixed.items() if n in ("h", "t")}
+        inputs = {n: Rounded(x, _ZERO) for n, x in {**box, **parameters, **others}.items()}
+        found = analyse(self.program, self.program.live(wanted), inputs, lambda *_: _ZERO)
+        return None if found is None else [found[at].interval for at in wanted]

@@ -1,0 +1,62 @@
+"""A rigorous bound of W, the symplectic defect of a whole run, in n degrees of freedom.
+
+Let J_k be the exact Jacobian of the first k steps along the exact orbit, Ĵ_k the computed one, and
+M_k the matrices that were carried in float64 (see `verify.runs.a_posteriori`, whose e_k, A_k, d, Q
+and S these are). With B a bound of the second derivatives of a step, ‖A(ẑ_k) − A(z_k)‖ ≤ B ‖e_k‖.
+
+1. D_k = M_k − J_k obeys D_{k+1} = A(ẑ_k) D_k + (A(ẑ_k) − A(z_k)) J_k + R_k. As long as
+   ‖J_k‖ ≤ 2 max ‖M‖, D_k = M_k Y_k has ‖Y_k‖ ≤ Y = e^Q (2 max ‖M‖² B Σ‖e_k‖/d + Q). Where Y ≤ 1 that
+   gives ‖J_{k+1}‖ ≤ 2 max ‖M‖ again, so that it holds for all k.
+2. E_k = Ĵ_k − J_k obeys the same with the rounding ρ of a step of Ĵ in place of R_k:
+   ‖E_k‖ ≤ E = max ‖M‖ e^Q (2 max ‖M‖² B Σ‖e_k‖ + S ρ)/d.
+3. W = Σ J_kᵀ S_k J_k; an entry of the computed sum is off by at most Σ (‖Ĵ‖ + ‖J‖) ‖S‖ E + ‖J‖² ‖S(ẑ_k)
+   − S(z_k)‖, and by the rounding of its terms. Entries of Ĵ were taken to be within ±3 max ‖M‖
+   where rounding was counted, so that E ≤ max ‖M‖ is asked for.
+"""
+
+from dataclasses import dataclass
+
+import flint
+
+from verify.kernels.rounding import Ball
+
+MOST = 3  # times max ‖M‖: the entries of Ĵ
+
+
+@dataclass(frozen=True)
+class Motion:
+    """`steps`, d, Q, max ‖M‖ and S."""
+
+    steps: int
+    least: Ball
+    rate: Ball
+    top: Ball
+    path: Ball
+
+
+def of_form(
+    motion: Motion,
+    *,
+    summed: Ball,
+    second: Ball,
+    size: Ball,
+    slope: Ball,
+    of_matrix: Ball,
+    of_entry: Ball,
+) -> Ball:
+    """A bound of the error of each entry of W; not finite where there is none.
+
+    `summed`: Σ ‖e_k‖. `second`: B. `size`, `slope`: of S and its gradient.
+    `of_matrix`, `of_entry`: the rounding of one step of Ĵ, and of one term of W and its addition.
+    """
+    top, grown = motion.top, motion.rate.exp()
+    moved = 2 * top * top * second * summed / motion.least
+    if not grown * (moved + motion.rate) <= 1:
+        return flint.arb.nan()
+    apart = top * grown * (moved + motion.path * of_matrix / motion.least)
+    if not apart <= top:
+        return flint.arb.nan()
+    terms = motion.steps * (2 * top + MOST * top) * size * apart
+    found = terms + 4 * top * top * slope * summed + motion.steps * of_entry
+    # The computed W was taken to be below 9 max ‖M‖² where its rounding was counted.
+    return found.abs_upper() if found <= 3 * top * top else flint.arb.nan()
