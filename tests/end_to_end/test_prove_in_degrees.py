@@ -72,7 +72,7 @@ def test_what_is_refused(
     assert status < 2 or err.count("\n") == 1
 
 
-@pytest.mark.parametrize("command", ["run", "separate", "stability", "report"])
+@pytest.mark.parametrize("command", ["separate", "stability"])
 def test_what_takes_one_degree_says_so(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     typed = (command, "--hamiltonian", HENON, "--scheme", "lie2", "--step-size", "0.1",
              "--steps", "10", "--q", "1", "--p", "0")  # fmt: skip

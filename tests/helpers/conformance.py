@@ -18,8 +18,8 @@ import flint
 from verify.algebra.enclosure import BALLS
 from verify.arithmetic.arb import bounds, middle_and_radius, rational_ball
 from verify.arithmetic.number_system import Arithmetic
-from verify.kernels.program import Op
 from verify.kernels.rounding import rounding_of
+from verify.kernels.step.program import Op
 
 ZERO, HALF = Fraction(0), Fraction(1, 2)
 # Units in the last place that a function may be off: libm keeps within 2, mpmath within 1, MPFR

@@ -19,8 +19,8 @@ from verify.arithmetic.arb import bounds, middle_and_radius, rational_ball
 from verify.arithmetic.compiled import engine
 from verify.arithmetic.compiled.engine import Fixed
 from verify.arithmetic.systems import fixed
-from verify.kernels.program import Op
 from verify.kernels.rounding import rounding_of
+from verify.kernels.step.program import Op
 
 WIDTHS = (128, 192, 256, 320, 512)
 WIDEST = 1024

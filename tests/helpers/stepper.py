@@ -5,9 +5,9 @@ from typing import Any
 
 from verify.arithmetic.systems import mpfr
 from verify.flows.extrapolation import Flow
-from verify.kernels import newton
-from verify.kernels.lowering import Lowering
-from verify.kernels.program import Evaluator, Program
+from verify.kernels.step import newton
+from verify.kernels.step.lowering import Lowering
+from verify.kernels.step.program import Evaluator, Program
 from verify.schemes.step_map import StepMap, Substep
 
 DIGITS = 60

@@ -15,11 +15,11 @@ from verify.calls.given import (
 from verify.calls.progress import Progress, progress_of
 from verify.errors import InputError
 from verify.execution.keeping import NOTHING, Keeper
-from verify.hamiltonians.start import check_start
+from verify.hamiltonians.start import Given, check_start
 from verify.runs.run import run as run_scheme
 from verify.scenes.results.orbit import MOST_POINTS
 from verify.scenes.results.run import RunResult
-from verify.scenes.values import AUTO, CLOSED_FORM, steps_from
+from verify.scenes.values import AUTO, steps_from
 
 _DIGITS = 17
 
@@ -28,8 +28,8 @@ def run(
     system: GivenSystem,
     scheme: GivenScheme,
     *,
-    q: Exact,
-    p: Exact,
+    q: Given,
+    p: Given,
     step_size: Exact,
     steps: int | None = None,
     time: Exact | None = None,
@@ -37,7 +37,7 @@ def run(
     parameters: GivenParameters = None,
     arithmetic: str | None = None,
     digits: int | None = None,
-    observables: Sequence[str] = CLOSED_FORM,
+    observables: Sequence[str] | None = None,
     points: int = 0,
     progress: Progress = None,
     keeper: Keeper = NOTHING,
@@ -48,14 +48,17 @@ def run(
     ----------
     system: a Hamiltonian, a system's name, or a formula such as "p**2/2 - cos(q)".
     scheme: a name, 'p_next = …; q_next = …', a Scheme, or a StepMap of the same Hamiltonian.
-    q, p, step_size: exact numbers; a float is the decimal that it prints as, 0.1 is 1/10.
+    q, p, step_size: exact numbers; a float is the decimal that it prints as, 0.1 is 1/10. In n
+        degrees of freedom q and p are lists.
     steps, time: one of the two; N = ⌊time / step_size⌋ steps.
     t0: when the run starts, for an H that depends on t.
     parameters: exact values by name, beside those that the Hamiltonian has.
     arithmetic: float64, fixed, mpfr, mpmath, ball, or auto, the fastest that certifies the digits.
         Left out: float64, or auto where `digits` is given.
     digits: significant digits wanted; float64 gives those that it knows.
-    observables: of delta_j_max, mse, lambda, lambda_plain, lambda_max.
+    observables: of delta_j_max, mse, lambda, lambda_plain, lambda_max; in n degrees of freedom also
+        symplectic_defect_max, the greatest |entry| of any S = JᵀΩJ − Ω, and symplectic_defect, that
+        of all steps together. Left out: those that the command tells.
     points: so many states, at most, in `orbit` and in `series`, 1 … 10,000; 0 leaves `series` out.
     progress: None for a bar in a notebook, True for one anywhere, False, or a function that is
         called with the number of steps done.
@@ -93,9 +96,15 @@ def run(
             t0=t0,
             arithmetic=arithmetic,
             digits=digits or _DIGITS,
-            observables=tuple(observables) if is_list(observables) else (str(observables),),
+            observables=_names(observables),
             points=int(points),
             progress=tell,
             keeper=keeper,
         )
     return result.with_points(int(points))
+
+
+def _names(observables: Sequence[str] | None) -> tuple[str, ...] | None:
+    if observables is None:
+        return None
+    return tuple(observables) if is_list(observables) else (str(observables),)

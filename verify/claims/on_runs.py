@@ -23,7 +23,17 @@ from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.run import RunResult
 from verify.scenes.run_sections import Grid
 from verify.scenes.scene import Scene
-from verify.scenes.values import AUTO, Digits, InitialValue, Number, Steps, StepSize, Time
+from verify.scenes.values import (
+    AUTO,
+    Coordinates,
+    Digits,
+    InitialState,
+    InitialValue,
+    Start,
+    Steps,
+    StepSize,
+    Time,
+)
 from verify.studies.kinds.grid import grid_tasks
 from verify.verdict import Verdict
 
@@ -42,11 +52,11 @@ class RunKeys(Frozen):
     """The length of each run, N = T/h rounded down; or `steps`."""
     steps: Steps | None = None
     """The number of steps of each run; or `time`."""
-    q: Number | None = None
-    """The initial displacement."""
-    p: Number | None = None
-    """The initial momentum."""
-    initial_values: tuple[InitialValue, ...] | None = None
+    q: Coordinates | None = None
+    """The initial displacement; in n degrees of freedom a list."""
+    p: Coordinates | None = None
+    """The initial momentum; as q."""
+    initial_values: tuple[Start, ...] | None = None
     """The initial values, where there are several."""
     digits: Digits | None = None
     """Certified digits; by default 20, and five more than are printed."""
@@ -196,7 +206,7 @@ def _step_sizes(keys: RunKeys, base: Grid | None) -> tuple[Any, ...]:
     return keys.step_sizes or (base.step_sizes if base else ())
 
 
-def _initial_values(keys: RunKeys, base: Grid | None) -> tuple[InitialValue, ...]:
+def _initial_values(keys: RunKeys, base: Grid | None) -> tuple[InitialValue | InitialState, ...]:
     if keys.q is None and keys.p is None:
         if keys.initial_values is None and base is None:
             raise InputError("q", NOT_GIVEN, "is missing: give q and p, or initial_values")
@@ -205,4 +215,8 @@ def _initial_values(keys: RunKeys, base: Grid | None) -> tuple[InitialValue, ...
         raise InputError("initial_values", NOT_GIVEN, "give these, or q and p")
     if keys.q is None or keys.p is None:
         raise InputError("p" if keys.p is None else "q", NOT_GIVEN, "is missing: give q and p")
+    if isinstance(keys.q, tuple) and isinstance(keys.p, tuple):
+        return (InitialState(q=keys.q, p=keys.p),)
+    if isinstance(keys.q, tuple) or isinstance(keys.p, tuple):
+        raise InputError("q, p", NOT_GIVEN, "give a number each, or a list each")
     return (InitialValue(q=keys.q, p=keys.p),)

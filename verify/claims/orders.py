@@ -1,16 +1,17 @@
 """Claims that say an order in h, and what is proved of such an order."""
 
 from abc import abstractmethod
-from dataclasses import dataclass
 from typing import Annotated, Self
 
 from pydantic import Field
 
-from verify.algebra.domain import EVERYWHERE, Domain
+from verify.algebra.domain import EVERYWHERE
 from verify.algebra.formula import to_text
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
 from verify.claims.formulas import step_map_of, within, witness_of
+from verify.claims.orders_in_degrees import flow_order, volume_order
+from verify.claims.proved_order import ProvedOrder
 from verify.claims.quantified import QuantifiedClaim
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import MOST_ORDERS
@@ -18,7 +19,6 @@ from verify.proof.order import convergence_of, leading_of
 from verify.prose import Formula, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.schemes.step_map import StepMap
-from verify.verdict import Verdict
 
 Order = Annotated[int, Field(ge=1, le=64, strict=True)]
 
@@ -34,7 +34,7 @@ class OrderedClaim(QuantifiedClaim):
     def claimed(self) -> int:
         """The order that is claimed."""
 
-    def judge_known(self, known: "ProvedOrder") -> ClaimResult:
+    def judge_known(self, known: ProvedOrder) -> ClaimResult:
         """Whether what is proved is as claimed."""
         verdict = known.verdict(self.claimed, at_least=self.at_least)
         domain = known.holds_in(self.claimed, at_least=self.at_least)
@@ -45,41 +45,20 @@ class OrderedClaim(QuantifiedClaim):
         return self.model_copy(update={"every": None, "at_least": True}) if self.every else self
 
 
-@dataclass(frozen=True)
-class ProvedOrder:
-    """What is proved of an order: it is at least `least`, and no more than that where `exact`.
-
-    `vanishes`: whether it is that of the zero function, which has every order; None where that is
-    not decided. `evidence` says so in one line. `domain`: where the map is defined; `exact_for`:
-    the parameters for which it is no more than `least`.
-    """
-
-    least: int
-    exact: bool
-    vanishes: bool | None
-    evidence: str
-    domain: Domain = EVERYWHERE
-    exact_for: Domain = EVERYWHERE
-
-    def holds_in(self, order: int, *, at_least: bool) -> Domain:
-        """Where the verdict holds: it need not depend on that the order is no higher."""
-        known = self.vanishes or order < self.least or (at_least and order == self.least)
-        return self.domain if known else self.domain & self.exact_for
-
-    def verdict(self, order: int, *, at_least: bool) -> Verdict:
-        """Whether the order is this one, or with `at_least` no lower one."""
-        if at_least:
-            if order <= self.least or self.vanishes:
-                return Verdict.PROVED
-            return Verdict.REFUTED if self.exact else Verdict.UNDECIDED
-        if self.vanishes or order < self.least or (self.exact and order != self.least):
-            return Verdict.REFUTED
-        return Verdict.PROVED if self.exact else Verdict.UNDECIDED
+def delta_j_of(claim: Claim, findings: Findings) -> ProvedOrder:
+    """The order of ΔJ of the claim's scheme for its scene's H, in any number of degrees."""
+    hamiltonian = findings.scene_of(claim).exact_hamiltonian()
+    if hamiltonian.planar:
+        return delta_j_order(step_map_of(hamiltonian, claim.scheme))
+    return volume_order(hamiltonian, claim.scheme)
 
 
-def map_of(claim: Claim, findings: Findings) -> StepMap:
-    """The exact map of the claim's scheme for its scene's H."""
-    return step_map_of(findings.scene_of(claim).exact_hamiltonian(), claim.scheme)
+def flow_of(claim: Claim, findings: Findings) -> ProvedOrder:
+    """Up to which power of h its map agrees with the exact flow, in any number of degrees."""
+    hamiltonian = findings.scene_of(claim).exact_hamiltonian()
+    if hamiltonian.planar:
+        return convergence_order(step_map_of(hamiltonian, claim.scheme))
+    return flow_order(hamiltonian, claim.scheme)
 
 
 def delta_j_order(step_map: StepMap) -> ProvedOrder:

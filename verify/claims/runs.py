@@ -30,8 +30,13 @@ QUANTITIES = {
     "abs_lambda": Compared("|Λ|", ("lambda",), abs),
     "mse_over_lambda": Compared("MSE/|Λ|", ("mse", "lambda"), lambda mse, end: mse / abs(end)),
     "delta_j_max": Compared("max |ΔJ|", ("delta_j_max",), lambda largest: largest),
+    "symplectic_defect_max": Compared("max |S|", ("symplectic_defect_max",), lambda s: s),
+    "symplectic_defect": Compared("max |W|", ("symplectic_defect",), lambda w: w),
 }
-Quantity = Literal["mse", "abs_lambda", "mse_over_lambda", "delta_j_max"]  # that claims compare
+Quantity = Literal[  # that claims compare; the last two in n degrees of freedom
+    "mse", "abs_lambda", "mse_over_lambda", "delta_j_max", "symplectic_defect_max",
+    "symplectic_defect",
+]  # fmt: skip
 
 
 class NoValueError(Exception):
@@ -44,7 +49,9 @@ class NoValueError(Exception):
 
 def start_of(run: RunResult) -> Prose:
     """The run's initial value."""
-    return prose("q₀ = ", Number(run.q), ", p₀ = ", Number(run.p))
+    if not isinstance(run.q, str):
+        return prose(f"q₀ = {run.start_text('q')}, p₀ = {run.start_text('p')}")
+    return prose("q₀ = ", Number(run.q), ", p₀ = ", Number(run.start_text("p")))
 
 
 def end_of(run: RunResult) -> Prose:

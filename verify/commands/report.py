@@ -11,6 +11,7 @@ import click
 
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering
+from verify.commands.shared.initial_value import listed
 from verify.commands.shared.input import (
     PATH,
     check_ours,
@@ -128,13 +129,13 @@ def _sections(
     from verify.arithmetic.exact import positive
 
     exact = hamiltonian_of(given["system"], given["hamiltonian"], given["params"])
-    start = {"q": q, "p": p}
-    grid = {"step_sizes": step_sizes, "initial_values": [start], "separate": True}
-    grid |= {} if exact.time_dependent else {"growth": True}
+    start = {"q": listed(q, exact), "p": listed(p, exact)}
+    grid: dict[str, Any] = {"step_sizes": step_sizes, "initial_values": [start]}
+    grid |= {"separate": True} if exact.planar else {}
+    grid |= {"growth": True} if exact.planar and not exact.time_dependent else {}
     largest = max(positive(h, "step_size") for h in step_sizes)
     return {
-        "criteria": [1, 2, 3, 4],
-        "every_hamiltonian": True,
+        **({"criteria": [1, 2, 3, 4], "every_hamiltonian": True} if exact.planar else {}),
         "grid": {**grid, **length},
         "series": [{"step_size": largest, "initial_value": start, **length}],
     }

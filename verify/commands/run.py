@@ -9,6 +9,7 @@ from verify import arithmetic as number_systems
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering
 from verify.commands.shared.cache import cache_option
+from verify.commands.shared.initial_value import listed, start_options
 from verify.commands.shared.input import PATH, keepable, scheme_option, with_hamiltonian
 from verify.commands.shared.orbit_file import STANDARD_OUTPUT, check_orbit_file, write_orbit
 from verify.errors import InputError
@@ -27,8 +28,7 @@ if TYPE_CHECKING:
 @click.option("--steps", type=int, metavar="N", help="At least 1; or:")
 @click.option("--time", metavar="T", help="N is T/H rounded down.")
 @click.option("--t0", default="0", metavar="T", help="When it starts, of an H(p, q, t).")
-@click.option("--q", "q", required=True, metavar="Q", help="Initial displacement.")
-@click.option("--p", "p", required=True, metavar="P", help="Initial momentum.")
+@start_options
 @click.option("--digits", type=int, metavar="D", help="Significant digits wanted.")
 @click.option(
     "--arithmetic",
@@ -102,7 +102,9 @@ def _result(
     digits: int | None,
     arithmetic: str | None,
     keep: Path | None,
-    **start: Any,
+    q: str,
+    p: str,
+    t0: str,
 ) -> "tuple[RunResult, str]":
     """The run, and what is to be said of its time."""
     from verify.arithmetic.exact import positive
@@ -110,8 +112,9 @@ def _result(
     from verify.execution.keeping import Keeper, name_of
     from verify.hamiltonians.start import check_start
     from verify.runs.run import run as run_scheme
-    from verify.scenes.values import AUTO, CLOSED_FORM, REPORTED, rounded_down, steps_from
+    from verify.scenes.values import AUTO, REPORTED, rounded_down, steps_from
 
+    start: dict[str, Any] = {"q": listed(q, exact), "p": listed(p, exact), "t0": t0}
     check_start(exact, **start)
     arithmetic = arithmetic or (AUTO if digits else "float64")
     count = steps_from(steps, time, step_size)
@@ -128,7 +131,7 @@ def _result(
             arithmetic=arithmetic,
             digits=17 if digits is None else digits,
             # The plain way shows what rounding does to it; at many digits that is nothing.
-            observables=REPORTED if arithmetic == "float64" else CLOSED_FORM,
+            observables=REPORTED if arithmetic == "float64" and exact.planar else None,
             progress=tell,
             keeper=keeper,
             **start,

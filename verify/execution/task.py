@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 from verify.execution.keeping import Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.frozen import Frozen
-from verify.scenes.values import Number
+from verify.scenes.values import Coordinates, Number
 
 
 class Task(Frozen):
@@ -85,3 +85,10 @@ class InitialValueTask(SchemeTask):
 
     q: Number
     p: Number
+
+
+class StartTask(SchemeTask):
+    """The same in any number of degrees of freedom."""
+
+    q: Coordinates
+    p: Coordinates

@@ -28,7 +28,7 @@ def neighbours(
     """Each once: with another initial value in reach, step size within `steps`, or |coefficient| of
     H within `coefficients`; without that last bound a search would only make H ever larger."""
     assert scene.grid is not None  # noqa: S101 - the caller's scenes are drawn
-    start, h = scene.grid.initial_values[0], scene.grid.step_sizes[0]
+    start, h = scene.grid.in_the_plane[0], scene.grid.step_sizes[0]
     formula, p, q = scene.hamiltonian or "", start.p, start.q
     moved = [x for move in _MOVES for x in ((q + move, p), (q, p + move))]
     sizes = [min(max(_rounded(h * factor), steps[0]), steps[1]) for factor in _FACTORS]

@@ -43,7 +43,7 @@ class Sample:
         """
         if scene.grid is None:
             raise InputError("scene", scene.name, "has no [grid], which gives step and start")
-        start, h = scene.grid.initial_values[0], scene.grid.step_sizes[0]
+        start, h = scene.grid.in_the_plane[0], scene.grid.step_sizes[0]
         return cls(
             hamiltonian=scene.exact_hamiltonian(),
             scheme=get(scene.schemes[0]),

@@ -17,8 +17,8 @@ from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import mpfr
 from verify.hamiltonians.vector_field import VectorField
-from verify.kernels.lowering import Lowering
-from verify.kernels.program import Evaluator, Program
+from verify.kernels.step.lowering import Lowering
+from verify.kernels.step.program import Evaluator, Program
 from verify.prose import read_prose
 
 Number = Any  # gmpy2.mpfr, which has no type stubs

@@ -20,17 +20,19 @@ def point_of(hamiltonian: Hamiltonian, q: Given, p: Given) -> dict[str, Fraction
     """
     degrees, found = hamiltonian.degrees, {}
     for letter, given in (("p", p), ("q", q)):
-        several = isinstance(given, Sequence) and not isinstance(given, str)
-        values = list(given) if several else [given]  # type: ignore[arg-type, list-item]
-        if hamiltonian.planar and several:
-            raise InputError(letter, values, "is a list; H is of p and q: one number is wanted")
+        values: Sequence[Exact]
+        if isinstance(given, Sequence) and not isinstance(given, str):
+            values = given
+            if hamiltonian.planar:
+                raise InputError(letter, values, "is a list; H is of p and q: give one number")
+        else:
+            values = [given]
+        own = [name for name in hamiltonian.coordinates if name[0] == letter]
         if len(values) != degrees:
-            names = hamiltonian.coordinates
-            own = ", ".join(name for name in names if name[0] == letter)
-            problem = f"has {len(values)} of {degrees} numbers; H is of {own}"
-            raise InputError(letter, ", ".join(map(str, values)), problem)
-        own_names = [name for name in hamiltonian.coordinates if name[0] == letter]
-        for name, value in zip(own_names, values, strict=True):
+            shown = ", ".join(text(x) if isinstance(x, Fraction) else str(x) for x in values)
+            problem = f"has {len(values)} of {degrees} numbers; H is of {', '.join(own)}"
+            raise InputError(letter, shown, problem)
+        for name, value in zip(own, values, strict=True):
             found[name] = rational(value, name)
     return {name: found[name] for name in hamiltonian.coordinates}
 

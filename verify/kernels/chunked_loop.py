@@ -14,10 +14,10 @@ from verify.arithmetic.exact import decimal
 from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic, State
 from verify.execution.keeping import fraction_of, fraction_text
-from verify.kernels import tangent_map
 from verify.kernels.clock import clock_inputs, first_rest
 from verify.kernels.kernel import Kernel
 from verify.kernels.run_inputs import RunInputs
+from verify.kernels.step import tangent_map
 from verify.scenes.results.run import SeriesPoint
 
 Progress = Callable[[int], None]  # called with the number of steps done
@@ -57,7 +57,7 @@ class Reached:
     """Where a run is after some chunks and their notes, which is all that a checkpoint keeps.
 
     `trail` has p, q and the observables at points on the way and at the last step done, as the
-    exact rationals that they are; `tangents` what `verify.kernels.tangent_map` notes, at the
+    exact rationals that they are; `tangents` what `verify.kernels.step.tangent_map` notes, at the
     same points. `state`: all that is carried; `seen`: extremes since the last note.
     """
 
@@ -98,7 +98,11 @@ class ChunkedLoop:
         self._at = {name: k for k, name in enumerate(kernel.state_names)}
         asked = sorted(run.observables & {*_ACCUMULATORS, _FORM})
         self._observables = (*kernel.coordinates, *asked)
-        self._form = [name for name in kernel.state_names if f"d{name}" in kernel.outputs and name.startswith("w_")]
+        self._form = [
+            name
+            for name in kernel.state_names
+            if f"d{name}" in kernel.outputs and name.startswith("w_")
+        ]
         noted = tangent_map.names_of(kernel.coordinates)
         known = (*(name for name in noted if name in self._at), "done")
         self._tangent = known if "growth" in self._at else ()
@@ -116,7 +120,8 @@ class ChunkedLoop:
         if self.kernel.timed:
             start = start | self._clock_after(0)
         state: list[Number] = []
-        for kind, first in zip(self.kernel.kinds, self.kernel.start, strict=True):
+        carried = (*self.kernel.coordinates, *self.kernel.start)
+        for kind, first in zip(self.kernel.kinds, carried, strict=True):
             value = start[first] if isinstance(first, str) else Fraction(first)
             state.append(tangent_map.nearest_double(value) if kind == "float" else number(value))
         return tuple(state)
@@ -130,7 +135,7 @@ class ChunkedLoop:
     def _turned_back(self) -> State:
         """The state with whole periods of H taken off t."""
         state, clock = list(self.state), self._clock_after(self.done)
-        for at, first in enumerate(self.kernel.start):
+        for at, first in enumerate(self.kernel.start, start=len(self.kernel.coordinates)):
             if isinstance(first, str) and first in clock:
                 state[at] = self.arithmetic.number(clock[first])
         return tuple(state)

@@ -9,7 +9,7 @@ n degrees of freedom also `symplectic_defect_max`, the greatest |entry| of S, an
 
 Where H depends on time, step k is made at t = t₀ + k h (`verify.kernels.clock`).
 
-`tangent` carries the tangent map along (see `verify.kernels.tangent_map`), for a rigorous bound.
+`tangent` carries the tangent map along, for a rigorous bound (`verify.kernels.step.tangent_map`).
 
 Where an arithmetic's numbers have an absolute precision (fixed point), D = 2^s ΔJ is carried, and
 so are its sums, so that they keep their significant digits however small h is; it is evaluated from
@@ -29,20 +29,19 @@ from functools import lru_cache
 from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels import newton, tangent_map
 from verify.kernels.clock import clock_of
-from verify.kernels.computation import Computation, Observed, computed
-from verify.kernels.degrees.computation import computed_in_degrees, map_of
-from verify.kernels.lowering import Lowering
+from verify.kernels.step import newton, tangent_map
+from verify.kernels.step.computation import Computation, Observed, computed
+from verify.kernels.step.in_degrees import computed_in_degrees, map_of
+from verify.kernels.step.lowering import Lowering
 from verify.schemes.degrees.canonical_map import CanonicalMap
 from verify.schemes.step_map import StepMap
 
 OBSERVABLES = (
     "delta_j_max", "mse", "lambda", "lambda_max", "lambda_plain", "extremes", "tangent",
-    "symplectic_defect_max", "symplectic_defect",
 )  # fmt: skip
+OF_FORM = frozenset({"symplectic_defect_max", "symplectic_defect"})  # in n degrees of freedom
 CLOSED_FORM = frozenset({"delta_j_max", "mse", "lambda", "lambda_max", "extremes"})
-_OF_FORM = frozenset({"symplectic_defect_max", "symplectic_defect"})
 PARTIAL = ("inverse", "root", "log", "exp", "sinh", "cosh")  # functions that may leave a range
 SCALES = ("kappa", "down", "shift")  # 2^s h^r, 2^−s and s itself
 LIMITS = ("reach_p", "reach_q", "reach_part", "reach_value")
@@ -58,7 +57,7 @@ class Kernel(Computation):
 
     `state_names` names the state and accumulators in their order: p, q, then those of the
     observables; `kinds` says of each what it is (see `verify.arithmetic.wide.translate`), `start`
-    has the initial values, numbers or names of the run's own. An arithmetic of
+    has the initial values, coordinates apart: numbers, or names of the run's own. An arithmetic of
     absolute precision has `scales` and `limits`, the numbers that the loop's guard compares with.
     `lowering` writes the program; `names` is what the source's names stand for.
     """
@@ -99,7 +98,7 @@ class Writer:
         scaled: bool = True,
     ) -> None:
         self.arithmetic, self.observables, self.compensated = arithmetic, observables, compensated
-        self.scaled = scaled and arithmetic.absolute and bool(observables & (CLOSED_FORM | _OF_FORM))
+        self.scaled = scaled and arithmetic.absolute and bool(observables & (CLOSED_FORM | OF_FORM))
         asked = Observed(
             pipelined=arithmetic.pipelined,
             scaled=self.scaled,
@@ -152,7 +151,7 @@ class Writer:
             limits=limits,
             state_names=names,
             kinds=kinds,
-            start=start,
+            start=start[len(self.coordinates) :],
             lowering=self.lowering,
             source=source,
             names=scope,

@@ -92,8 +92,7 @@ class PointMap:
         start = self.kernel_run.start
         if self.kernel.timed:
             start = start | {"t": self._t0} | first_rest(self.arithmetic, self._t0)
-        rest = self.kernel.start[2:]
-        exact = (start[x] if isinstance(x, str) else Fraction(x) for x in rest)
+        exact = (start[x] if isinstance(x, str) else Fraction(x) for x in self.kernel.start)
         return [self.arithmetic.number(x) for x in exact]
 
     def _in_lanes(self, p: np.ndarray, q: np.ndarray) -> list[np.ndarray]:

@@ -35,8 +35,8 @@ _ASCENDING = _SIDES[::-1]
 
 
 class Limits(NamedTuple):
-    """What all momenta, all coordinates, Λ (or 1 + Λ), functions' values, and the entries of M where
-    it is carried, stay below; see `kernel.LIMITS`."""
+    """What all momenta, all coordinates, Λ (or 1 + Λ), functions' values, and M's entries where it
+    is carried, stay below; see `kernel.LIMITS`."""
 
     p: Fraction
     q: Fraction

@@ -15,7 +15,7 @@ import flint
 
 from verify.algebra.enclosure import BALLS, square
 from verify.arithmetic.number_system import Arithmetic
-from verify.kernels.program import Op, Program
+from verify.kernels.step.program import Op, Program
 
 Ball = flint.arb
 PRECISION = 96  # bits for intervals and bounds, which nobody needs to many digits

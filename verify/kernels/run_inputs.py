@@ -9,8 +9,8 @@ from verify.arithmetic.number_system import Arithmetic
 from verify.errors import InputError
 from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.degrees.computation import map_of
 from verify.kernels.kernel import Kernel
+from verify.kernels.step.in_degrees import map_of
 from verify.kernels.turns import Times, Turns, turns_of
 
 

@@ -17,6 +17,7 @@ from verify.scenes.results.report import Report
 from verify.scenes.results.statement import Outcome
 from verify.verdict import Verdict
 
+_QUESTIONS = {"ΔJ": "Is area preserved?", "S": "Is the symplectic form preserved?"}
 _LEAST = 2  # answers; of one alone the tiles say as much, but for the formula of a few ΔJ
 _FEW = 3  # schemes, and systems
 _MOST_LINKS = 12
@@ -64,25 +65,31 @@ def _theory(claims: Sequence[ClaimView]) -> Iterator[Answer]:
 
 def _area(report: Report) -> Iterator[Answer]:
     """One line a scheme; of what does not preserve area the leading term, for each H."""
-    by_scheme: dict[str, list[tuple[str, ProofResult]]] = {}
-    for scene in report.scenes:
-        for proof in scene.proofs:
-            by_scheme.setdefault(proof.scheme, []).append((scene.title or scene.name, proof))
-    lines = tuple(_line_of(scheme, found) for scheme, found in by_scheme.items())
-    if lines:
-        yield Answer("Is area preserved?", lines)
+    for what, question in _QUESTIONS.items():
+        by_scheme: dict[str, list[tuple[str, ProofResult]]] = {}
+        for scene in report.scenes:
+            for proof in scene.proofs:
+                if proof.what == what:
+                    named = scene.title or scene.name, proof
+                    by_scheme.setdefault(proof.scheme, []).append(named)
+        lines = tuple(_line_of(scheme, found) for scheme, found in by_scheme.items())
+        if lines:
+            yield Answer(question, lines)
 
 
 def _line_of(scheme: str, found: Sequence[tuple[str, ProofResult]]) -> Prose:
-    if all(proof.area_preserving for _, proof in found):
-        return Prose(f"{scheme}: yes, det J ≡ 1 is proved")
+    kept = "det J ≡ 1" if found[0][1].form is None else "S ≡ 0"
+    if all(proof.keeps for _, proof in found):
+        return Prose(f"{scheme}: yes, {kept} is proved")
     parts: list[Prose] = []
     for title, proof in found:
         of = f" ({title})" if len(found) > 1 else ""
-        if proof.area_preserving:
-            parts.append(prose(f"det J ≡ 1{of}"))
+        if proof.keeps:
+            parts.append(prose(f"{kept}{of}"))
         elif proof.order is None:
             parts.append(prose(f"not decided{of}"))
+        elif proof.form is not None:
+            parts.append(prose("S = O(", Formula(f"h**{proof.order}"), f"), no smaller{of}"))
         else:
             power = proof.order
             leading = proof.shown.leading or proof.leading

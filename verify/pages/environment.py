@@ -13,8 +13,8 @@ from verify.pages.text.signs import SIGNS
 TEMPLATES = Path(__file__).parent / "templates"
 _FILTERS = (
     prose.prose, prose.quoted, prose.sentence, prose.cell, notation.notation, mathml.name,
-    mathml.plain, steps.steps, typography.exact, typography.number, typography.whole,
-    typography.listed, typography.every,
+    mathml.formula, mathml.plain, steps.steps, typography.exact, typography.number,
+    typography.whole, typography.listed, typography.every,
 )  # fmt: skip
 
 

@@ -141,22 +141,24 @@ def _finding_of_proofs(proofs: Sequence[ProofResult]) -> str:
 
 
 def _proof_counts(proofs: Sequence[ProofResult]) -> list[tuple[Verdict, int, str]]:
-    preserving = sum(p.area_preserving is True for p in proofs)
+    preserving = sum(p.keeps is True for p in proofs)
+    several = any(p.form is not None for p in proofs)
     ordered = sum(p.order is not None for p in proofs)
     parts = [
-        (Verdict.PROVED, preserving, "with det J ≡ 1"),
-        (Verdict.PROVED, ordered, "with a ΔJ of a proved order in h"),
+        (Verdict.PROVED, preserving, "with S ≡ 0" if several else "with det J ≡ 1"),
+        (Verdict.PROVED, ordered, f"with {'an S' if several else 'a ΔJ'} of a proved order in h"),
         (Verdict.UNDECIDED, len(proofs) - preserving - ordered, "undecided"),
     ]
     return [part for part in parts if part[1]]
 
 
 def _finding_of_proof(proof: ProofResult) -> str:
-    if proof.area_preserving:
-        return f"{proof.scheme} preserves area exactly (det J ≡ 1)"
+    if proof.keeps:
+        exactly = "preserves area exactly (det J ≡ 1)" if proof.form is None else "is symplectic"
+        return f"{proof.scheme} {exactly}"
     if proof.order is not None:
-        return f"ΔJ of {proof.scheme} is of order {_h(proof.order)}"
-    return f"the order of ΔJ of {proof.scheme} is undecided"
+        return f"{proof.what} of {proof.scheme} is of order {_h(proof.order)}"
+    return f"the order of {proof.what} of {proof.scheme} is undecided"
 
 
 def _finding_of_runs(judged: Sequence[StabilityResult]) -> str:
@@ -206,12 +208,13 @@ def _tiles_of_runs(judged: Sequence[StabilityResult]) -> list[Tile]:
 
 def _tile_of_proof(proof: ProofResult) -> Tile:
     verdict, sign = proof.verdict, SIGNS[proof.verdict][0]
-    if proof.area_preserving:
-        return Tile(verdict, sign, "ΔJ ≡ 0", proof.scheme, "preserves area exactly")
+    what, kept = proof.what, "area" if proof.form is None else "the symplectic form"
+    if proof.keeps:
+        return Tile(verdict, sign, f"{what} ≡ 0", proof.scheme, f"preserves {kept} exactly")
     if proof.order is not None:
-        meaning = "proved: changes area at this order in every step"
-        return Tile(Verdict.REFUTED, "≠", f"ΔJ ∼ {_h(proof.order)}", proof.scheme, meaning)
-    return Tile(verdict, sign, "ΔJ", proof.scheme, "its order is undecided")
+        meaning = f"proved: changes {kept} at this order in every step"
+        return Tile(Verdict.REFUTED, "≠", f"{what} ∼ {_h(proof.order)}", proof.scheme, meaning)
+    return Tile(verdict, sign, what, proof.scheme, "its order is undecided")
 
 
 # -- the most telling picture ---------------------------------------------------------------------

@@ -7,6 +7,7 @@ from functools import cached_property
 
 from markupsafe import Markup
 
+from verify.hamiltonians.coordinates import coordinates_of
 from verify.pages.figures.captioned_plot import Plot
 from verify.pages.first_screen import FirstScreen, first_screen
 from verify.pages.sections import page as of_page
@@ -93,10 +94,11 @@ def _most_favourable_first(claims: Sequence[ClaimResult]) -> list[ClaimResult]:
 
 def _scene(scene: SceneResult, anchor: str) -> SceneView:
     names = mathml.free_names(scene.hamiltonian)
+    known = {*coordinates_of(names), *scene.parameters, "t"}
     return SceneView(
         result=scene,
         anchor=anchor,
-        symbols=tuple(n for n in names if n not in (*scene.parameters, "t")),
+        symbols=tuple(n for n in names if n not in known),
         floors=_floors(scene),
         sections=shown(of_scene.FILES, Place(anchor, scene.title), scene, anchor),
     )

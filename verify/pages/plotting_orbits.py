@@ -63,8 +63,8 @@ def label_of(run: RunResult, among: Sequence[RunResult]) -> str:
     parts = {
         "": run.scheme if len(run.scheme) <= _LABEL else cut(run.scheme)[:_LABEL] + "…",
         "h": run.step_size,
-        "q": run.q,
-        "p": run.p,
+        "q": run.start_text("q"),
+        "p": run.start_text("p"),
     }
     keys = {"": "scheme", "h": "step_size", "q": "q", "p": "p"}
     kept = [n for n in parts if n == "" or len({getattr(x, keys[n]) for x in among}) > 1]

@@ -10,8 +10,8 @@ step, counted from the kernel's operations over the box that the orbit has visit
 B a bound of the second derivatives of Φ over that box, widened by the error. Ball arithmetic would
 multiply norms of A_k here and lose digits like e^(cT). Instead take any matrices M_k, M_0 = 1, that
 nearly follow the tangent map: M_{k+1} = A_k M_k + R_k with ‖R_k‖ ≤ ρ ‖M_k‖
-(`verify.kernels.tangent_map` carries them in float64; ρ is counted as ε is). With e_k = M_k x_k,
-‖M⁻¹‖ = ‖M‖/|det M| for 2 × 2 (for more, `verify.runs.inverse_norm`),
+(`verify.kernels.step.tangent_map` carries them in float64; ρ is counted as ε is). With
+e_k = M_k x_k, ‖M⁻¹‖ = ‖M‖/|det M| for 2 × 2 (for more, `verify.runs.inverse_norm`),
 
     x_{k+1} = x_k + M_{k+1}⁻¹ (s_k − R_k x_k),
 

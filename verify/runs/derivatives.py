@@ -7,8 +7,8 @@ from functools import lru_cache
 from verify.algebra.enclosure import Enclosures
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.computation import step_map_of
 from verify.kernels.rounding import Ball
+from verify.kernels.step.computation import step_map_of
 from verify.schemes.composition import in_stages, unfolded
 from verify.schemes.step_map import StepMap, Substep, h_inside
 

@@ -1,7 +1,7 @@
 """Bounds of a step's derivatives over a box of states, from the kernel's own operations.
 
 In n degrees of freedom z', det J − 1 and the entries of S are differentiated operation by operation
-(`verify.kernels.partials`), and enclosed over the box.
+(`verify.kernels.step.partials`), and enclosed over the box.
 """
 
 from collections.abc import Mapping, Sequence
@@ -12,11 +12,11 @@ import flint
 
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.computation import Observed
-from verify.kernels.degrees.computation import computed_in_degrees, map_of
-from verify.kernels.partials import Partials
-from verify.kernels.program import Program
 from verify.kernels.rounding import Ball, Rounded, analyse
+from verify.kernels.step.computation import Observed
+from verify.kernels.step.in_degrees import computed_in_degrees, map_of
+from verify.kernels.step.partials import Partials
+from verify.kernels.step.program import Program
 from verify.runs.derivatives import norm
 from verify.schemes.step_map import StepMap
 
@@ -68,7 +68,7 @@ class DerivativesInDegrees:
         )
 
     def second(self, fixed: Mapping[str, Ball], box: Mapping[str, Ball]) -> Ball:
-        """B with ‖Φ(z + e) − Φ(z) − DΦ(z) e‖ ≤ ½ B ‖e‖² in the box, and ‖DΦ(z + e) − DΦ(z)‖ ≤ B ‖e‖;
+        """B with ‖Φ(z + e) − Φ(z) − DΦ(z) e‖ ≤ ½ B ‖e‖² and ‖DΦ(z + e) − DΦ(z)‖ ≤ B ‖e‖ in the box;
         not finite where Φ may be undefined in it."""
         found = self._over((*self.hessians, *self.values), fixed, box)
         return flint.arb.nan() if found is None else norm(found[: len(self.hessians)])

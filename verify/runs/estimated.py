@@ -43,8 +43,8 @@ def working_digits(digits: int, steps: int) -> int:
 
 
 def spread(first: Outcome, second: Outcome, least: Fraction = Fraction(0)) -> Fraction:
-    """The greatest difference of a coordinate at any checkpoint, relative to the orbit's size in all
-    of its kind, momenta or others.
+    """The greatest difference of a coordinate at any checkpoint, relative to the orbit's size in
+    all of its kind, momenta or others.
 
     Where that is smaller than `least`, relative to `least`.
     """
@@ -89,7 +89,9 @@ def resolved(kernel_run: KernelRun, own: Arithmetic, first: Outcome, digits: int
         lacking = (
             missing_of(name, *value, digits)
             for name, value in found.items()
-            if not (name in first.coordinates and abs(value[0]) <= value[1] <= noise)  # 0, as far as is known
+            if not (
+                name in first.coordinates and abs(value[0]) <= value[1] <= noise
+            )  # 0, as far as is known
         )
         missing = max(lacking, default=0)
         if missing <= 0:

@@ -5,13 +5,13 @@ M_k the matrices that were carried in float64 (see `verify.runs.a_posteriori`, w
 and S these are). With B a bound of the second derivatives of a step, ‖A(ẑ_k) − A(z_k)‖ ≤ B ‖e_k‖.
 
 1. D_k = M_k − J_k obeys D_{k+1} = A(ẑ_k) D_k + (A(ẑ_k) − A(z_k)) J_k + R_k. As long as
-   ‖J_k‖ ≤ 2 max ‖M‖, D_k = M_k Y_k has ‖Y_k‖ ≤ Y = e^Q (2 max ‖M‖² B Σ‖e_k‖/d + Q). Where Y ≤ 1 that
-   gives ‖J_{k+1}‖ ≤ 2 max ‖M‖ again, so that it holds for all k.
+   ‖J_k‖ ≤ 2 max ‖M‖, D_k = M_k Y_k has ‖Y_k‖ ≤ Y = e^Q (2 max ‖M‖² B Σ‖e_k‖/d + Q). Where Y ≤ 1
+   that gives ‖J_{k+1}‖ ≤ 2 max ‖M‖ again, so that it holds for all k.
 2. E_k = Ĵ_k − J_k obeys the same with the rounding ρ of a step of Ĵ in place of R_k:
    ‖E_k‖ ≤ E = max ‖M‖ e^Q (2 max ‖M‖² B Σ‖e_k‖ + S ρ)/d.
-3. W = Σ J_kᵀ S_k J_k; an entry of the computed sum is off by at most Σ (‖Ĵ‖ + ‖J‖) ‖S‖ E + ‖J‖² ‖S(ẑ_k)
-   − S(z_k)‖, and by the rounding of its terms. Entries of Ĵ were taken to be within ±3 max ‖M‖
-   where rounding was counted, so that E ≤ max ‖M‖ is asked for.
+3. W = Σ J_kᵀ S_k J_k; an entry of the computed sum is off by at most the sum of
+   (‖Ĵ‖ + ‖J‖) ‖S‖ E + ‖J‖² ‖S(ẑ_k) − S(z_k)‖, and by the rounding of its terms. Entries of Ĵ were
+   taken to be within ±3 max ‖M‖ where rounding was counted, so that E ≤ max ‖M‖ is asked for.
 """
 
 from dataclasses import dataclass

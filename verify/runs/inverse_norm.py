@@ -2,8 +2,8 @@
 
 For 2 × 2, ‖M⁻¹‖ = ‖M‖/|det M|. In n degrees of freedom M⁻¹ = B⁻¹ MᵀΩ with B = MᵀΩM, which is
 antisymmetric: its singular values come in pairs, |Pf B| is the product of one of each, and det M is
-Pf B/Pf Ω. So ‖M⁻¹‖ ≤ ‖M‖ ‖B‖ⁿ⁻¹/|det M|, and ‖B‖² is at most the sum of squares of its entries above
-the diagonal. Along an orbit of a nearly symplectic map B stays near Ω, however large M grows.
+Pf B/Pf Ω. So ‖M⁻¹‖ ≤ ‖M‖ ‖B‖ⁿ⁻¹/|det M|, and ‖B‖² is at most the sum of the squares of its entries
+above the diagonal. Where the map is nearly symplectic B stays near Ω, however large M grows.
 """
 
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""The states of a run, at every step or thinned: t, p, q, H − H₀, ΔJ and Λ.
+"""The states of a run, at every step or thinned: t, p, q, H − H₀, ΔJ, Λ and, where it is more, W.
 
 A float64 run's p, q and Λ are the numbers of that run, whole: it is what is under test. In any
 other arithmetic the states of exact arithmetic are wanted: the run is done twice, with 15 more
@@ -24,15 +24,16 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError, bits_for
 from verify.arithmetic.systems import ball, float64, mpfr
 from verify.errors import InputError
-from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.energy import energy_of
 from verify.kernels.chunked_loop import Note, Progress
 from verify.kernels.clock import clock_inputs
-from verify.kernels.computation import step_map_of
 from verify.kernels.kernel import kernel_for
-from verify.kernels.orbit import Orbit
+from verify.kernels.step.in_degrees import map_of, preserves
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.digits_on_demand import choose
 from verify.runs.estimated import LINEAR, digits_of, spread, working_digits
+from verify.runs.start import Start
+from verify.scenes.observables import observed
 from verify.scenes.results.orbit import MOST_POINTS as MOST_POINTS
 from verify.scenes.results.orbit import OrbitTable
 from verify.scenes.results.run import RunResult
@@ -42,7 +43,6 @@ _MORE_DIGITS = 15
 _GUARD = 60  # bits, of what cancels in H − H₀; beyond, twice as many are tried
 _BINARY = "p, q and Λ are the numbers of the float64 run, whole"
 _AGREED = "the digits in which two runs agree"
-_STATE = ("p", "q")
 _ZERO = Fraction(0)
 Box = Mapping[str, tuple[Fraction, Fraction]]  # p and q, each with how far it may be off
 
@@ -67,26 +67,28 @@ def orbit_of(
     InputError where no digits of it can be confirmed.
     """
     whole("points", points, 1, MOST_POINTS)
-    hamiltonian = Hamiltonian.parse(result.hamiltonian, result.parameters)
-    step_size, q, p, t0 = map(Fraction, (result.step_size, result.q, result.p, result.t0))
-    orbit = Orbit(hamiltonian, result.scheme, step_size, q, p, t0=t0)
+    orbit = Start.of(result)
     binary = result.arithmetic == float64.NAME
     states = _states(orbit, result.steps, points, 0 if binary else result.digits, progress)
     rows = _Rows(orbit, float64.NUMBER_SYSTEM.digits or 17 if binary else result.digits)
     every = states.at[1] if len(states.at) > 1 else 1
-    return OrbitTable(tuple(rows.of(states, binary)), every, _BINARY if binary else _AGREED)
+    digits = _BINARY if binary else _AGREED
+    shown = {"lambda": ("delta_j", "lambda")}
+    observables = tuple(x for name in rows.observed for x in shown.get(name, (name,)))
+    names = tuple(orbit.point)
+    return OrbitTable(tuple(rows.of(states, binary)), every, digits, names, observables)
 
 
 # -- the states -----------------------------------------------------------------------------------
 
 
 def _states(
-    orbit: Orbit, steps: int, points: int, digits: int, progress: Progress | None
+    orbit: Start, steps: int, points: int, digits: int, progress: Progress | None
 ) -> _States:
     """The states of the run; in float64 where no digits are asked for."""
-    start = orbit.start
-    whole_area = step_map_of(orbit.hamiltonian, orbit.scheme).preserves_area
-    asked: frozenset[str] = frozenset() if whole_area else frozenset({"lambda"})
+    start = orbit.inputs
+    nothing_lost = preserves(map_of(orbit.hamiltonian, orbit.scheme))
+    asked = frozenset[str]() if nothing_lost else frozenset(_observed(orbit))
     while True:
         run = KernelRun(orbit.hamiltonian, orbit.scheme, start, steps, asked, 0, sections=points)
         found = _confirmed(run, digits, progress) if digits else _binary(run, progress)
@@ -94,11 +96,17 @@ def _states(
         if done == steps or not done:
             break
         steps = done  # it left the range; so that its last finite state is noted as well
-    first = _first(own, start) if not digits else {"p": orbit.p, "q": orbit.q}
+    first = orbit.point if digits else _first(own, orbit.point)
     every = -(-steps // points)
     at = (0, *(min(k * every, steps) for k in range(1, len(notes) + 1)))
-    nothing = {"p": Fraction(0), "q": Fraction(0), "lambda": Fraction(0)}
+    nothing = dict.fromkeys((*orbit.point, *_observed(orbit)), _ZERO)
     return _States(at, ({**nothing, **first}, *notes), (nothing, *radii))
+
+
+def _observed(orbit: Start) -> tuple[str, ...]:
+    """Λ, and W where that is more."""
+    usual = observed(orbit.hamiltonian, None)
+    return tuple(name for name in ("lambda", "symplectic_defect") if name in usual)
 
 
 Found = tuple[Arithmetic, int, tuple[Note, ...], tuple[Note, ...]]
@@ -110,9 +118,9 @@ def _binary(run: KernelRun, progress: Progress | None) -> Found:
     return own, outcome.done, outcome.trail, ({},) * len(outcome.trail)
 
 
-def _first(own: Arithmetic, start: dict[str, Fraction]) -> Note:
+def _first(own: Arithmetic, point: Note) -> Note:
     """The initial state as the arithmetic has it."""
-    return {name: Fraction(own.number(start[name])) for name in _STATE}
+    return {name: Fraction(own.number(x)) for name, x in point.items()}
 
 
 def _confirmed(run: KernelRun, digits: int, progress: Progress | None) -> Found:
@@ -155,25 +163,30 @@ def _differences(first: Outcome, second: Outcome) -> Iterator[Note]:
 class _Rows:
     """Writes the rows of one orbit with so many digits."""
 
-    def __init__(self, orbit: Orbit, digits: int) -> None:
+    def __init__(self, orbit: Start, digits: int) -> None:
         self.orbit, self.digits = orbit, digits
-        field, _ = orbit.hamiltonian.field()
-        self.energy = Enclosures(field.ring, [field.energy])
-        self.delta_j = _DeltaJ(orbit, digits)
+        exact, self.names = orbit.hamiltonian, tuple(orbit.point)
+        ring, energy = energy_of(exact)
+        self.energy = Enclosures(ring, [energy])
+        self.observed = _observed(orbit)
+        self.delta_j = _DeltaJ(orbit, digits) if "lambda" in self.observed else None
 
     def of(self, states: _States, binary: bool) -> Iterator[tuple[str, ...]]:
         """The rows; in `binary` a number is written so that it is read back to the same double."""
-        z_0 = {name: around(states.notes[0][name], _ZERO) for name in _STATE}
+        z_0 = {name: around(states.notes[0][name], _ZERO) for name in self.names}
         z_0 |= self._time(0)
         for k, note, radii in zip(states.at, states.notes, states.radii, strict=True):
-            pairs = {n: (note.get(n, _ZERO), radii.get(n, _ZERO)) for n in (*_STATE, "lambda")}
+            pairs = {
+                n: (note.get(n, _ZERO), radii.get(n, _ZERO)) for n in (*self.names, *self.observed)
+            }
             shown = {
                 n: repr(float(x)) if binary else self._known(x, r) for n, (x, r) in pairs.items()
             }
-            box = {n: pairs[n] for n in _STATE}
+            box = {n: pairs[n] for n in self.names}
             energy = self._energy_error(box, z_0, k) if k else "0"
-            t, change = text(self._at(k)), self._text(self.delta_j(box, k))
-            yield t, shown["p"], shown["q"], energy, change, shown["lambda"]
+            change = [self._text(self.delta_j(box, k))] if self.delta_j else []
+            state, others = ([shown[n] for n in names] for names in (self.names, self.observed))
+            yield text(self._at(k)), *state, energy, *change, *others
 
     def _at(self, k: int) -> Fraction:
         return self.orbit.t0 + k * self.orbit.step_size
@@ -208,11 +221,11 @@ class _Rows:
 class _DeltaJ:
     """ΔJ at states, by one step of a kernel from Λ = 0: Λ is ΔJ after it."""
 
-    def __init__(self, orbit: Orbit, digits: int) -> None:
-        step_map = step_map_of(orbit.hamiltonian, orbit.scheme)
-        self.vanishes = step_map.preserves_area
+    def __init__(self, orbit: Start, digits: int) -> None:
+        step_map = map_of(orbit.hamiltonian, orbit.scheme)
+        self.vanishes, self.names = preserves(step_map), tuple(orbit.point)
         self.own = mpfr.make(2 * digits) if step_map.implicit else ball.make(digits + 25)
-        run = KernelRun(orbit.hamiltonian, orbit.scheme, orbit.start, 1, frozenset({"lambda"}), 0)
+        run = KernelRun(orbit.hamiltonian, orbit.scheme, orbit.inputs, 1, frozenset({"lambda"}), 0)
         self.kernel = kernel_for(run.hamiltonian, run.scheme, self.own, run.observables)
         given = run.inputs(self.kernel, 0)
         if self.kernel.timed:
@@ -227,7 +240,7 @@ class _DeltaJ:
         own = self.own
         try:
             with own.context():
-                state = [_in(own, *box[name]) for name in _STATE]
+                state = [_in(own, *box[name]) for name in self.names]
                 state += [own.number(Fraction(k))] if self.kernel.timed else []
                 _, *after = self.kernel.function(1, *self.inputs, *state, own.number(_ZERO))
                 found: Any = after[-1]

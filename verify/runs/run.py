@@ -8,7 +8,6 @@ depend on (p, q), Λ = (1 + ΔJ)^N − 1 is enclosed by ball arithmetic.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 
 from verify import arithmetic as number_systems
@@ -23,15 +22,15 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import Given, point_of
 from verify.hamiltonians.times_on_the_way import check_times
 from verify.kernels.chunked_loop import Progress
-from verify.kernels.degrees.computation import map_of
+from verify.kernels.step.in_degrees import map_of, preserves
 from verify.kernels.stepping import KernelRun, Outcome
-from verify.proof.symplectic.closed_defect import ClosedDefect
 from verify.runs.digits_on_demand import Measured, choose, measure
 from verify.runs.estimated import Bounded, Bounds
 from verify.runs.float64 import bounded
+from verify.runs.start import Start
+from verify.scenes.observables import SEVERAL, check_observables, observed
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.run import RunResult
-from verify.scenes.observables import SEVERAL, check_observables, observed
 from verify.scenes.values import AUTO, CLOSED_FORM, MAX_DIGITS, MAX_STEPS
 from verify.schemes import canonical
 from verify.schemes.degrees.canonical_map import CanonicalMap
@@ -57,14 +56,14 @@ def run(
 ) -> RunResult:
     """Run `steps` steps of `step_size` from (q, p) and report p, q and the observables.
 
-    `q`, `p`: a number each; in n degrees of freedom a list each. `observables`: those of
-    `verify.scenes.observables` for that many degrees, where it is left out. `t0`: when it starts, of an H that depends on time. `arithmetic`: one of
-    `verify.arithmetic.names()`, or `auto` for the fastest with rigorous bounds. `digits`:
-    significant digits wanted (float64 gives what it knows). `points`: at most so many points of a
-    thinned series are kept. `progress` is called with the number of steps done. `keeper` keeps
-    checkpoints, from which an interrupted run goes on. `shares_kernel`: see
-    `verify.kernels.run_inputs`. Raises InputError for h ≤ 0, N < 1, a parameter without a value,
-    unknown names.
+    `q`, `p`: a number each; in n degrees of freedom a list each. `t0`: when it starts, of an H that
+    depends on time. `arithmetic`: one of `verify.arithmetic.names()`, or `auto` for the fastest
+    with rigorous bounds. `digits`: significant digits wanted (float64 gives what it knows).
+    `observables`: where they are left out, those of `verify.scenes.observables` for so many
+    degrees. `points`: at most so many points of a thinned series are kept. `progress` is called
+    with the number of steps done. `keeper` keeps checkpoints, from which an interrupted run goes
+    on. `shares_kernel`: see `verify.kernels.run_inputs`. Raises InputError for h ≤ 0, N < 1, a
+    parameter without a value, unknown names, lists of another length.
     """
     scheme = canonical(scheme)
     h = positive(step_size, "step_size")
@@ -75,30 +74,20 @@ def run(
     whole("points", points, 0)
     known = proved(map_of(hamiltonian, scheme), h, steps, digits)
     needed = frozenset(o for o in wanted if o not in known) | _series_needs(known, points)
-    start = begun.point | {"h": h, "t": begun.t0}
     kernel_run = KernelRun(
-        hamiltonian, scheme, start, steps, needed, points, keeper, shares_kernel=shares_kernel
+        hamiltonian,
+        scheme,
+        begun.inputs,
+        steps,
+        needed,
+        points,
+        keeper,
+        shares_kernel=shares_kernel,
     )
     if arithmetic == AUTO:
         arithmetic = choose(kernel_run, digits)
     done = _run(kernel_run, arithmetic, digits, known, progress)
     return _result(begun, steps, digits, wanted, known, done)
-
-
-@dataclass(frozen=True)
-class Start:
-    """What a run is of, and where it begins: each coordinate's value by its name."""
-
-    hamiltonian: Hamiltonian
-    scheme: str
-    step_size: Fraction
-    point: Mapping[str, Fraction]
-    t0: Fraction
-
-    def text(self, letter: str) -> str | tuple[str, ...]:
-        """q or p as it is shown: a number, or a list in n degrees of freedom."""
-        own = tuple(text(x) for name, x in self.point.items() if name[0] == letter)
-        return own[0] if self.hamiltonian.planar else own
 
 
 def proved_run(
@@ -180,7 +169,7 @@ def check(hamiltonian: Hamiltonian, steps: int, digits: int, observables: Sequen
         raise InputError("parameter", name, f"has no value; a run needs one, as {name}=1")
     for name, value, most in (("steps", steps, MAX_STEPS), ("digits", digits, MAX_DIGITS)):
         whole(name, value, 1, most)
-    check_observables(hamiltonian.degrees, observables)
+    check_observables(hamiltonian, observables)
 
 
 def _series_needs(known: Mapping[str, object], points: int) -> frozenset[str]:
@@ -193,12 +182,10 @@ def _series_needs(known: Mapping[str, object], points: int) -> frozenset[str]:
 def proved(step_map: StepMap | CanonicalMap, h: Fraction, steps: int, digits: int) -> Bounded:
     """max |ΔJ|, MSE and Λ with their bounds, where no run is needed for them; S and W too."""
     zero = Fraction(0), Fraction(0)
-    if isinstance(step_map, CanonicalMap):
-        vanishes = ClosedDefect.of(step_map).vanishes
-        return dict.fromkeys(SEVERAL, zero) if vanishes else {}
-    if step_map.preserves_area:
-        return dict.fromkeys((*CLOSED_FORM, "lambda_max"), zero)
-    if len(step_map.substeps) > 1:
+    several = isinstance(step_map, CanonicalMap)
+    if preserves(step_map):
+        return dict.fromkeys(SEVERAL if several else (*CLOSED_FORM, "lambda_max"), zero)
+    if isinstance(step_map, CanonicalMap) or len(step_map.substeps) > 1:
         return {}
     step = step_map.substeps[0]
     if any(step.ring.depends(step.delta_j, name) for name in ("p", "q", "t")):

@@ -33,7 +33,8 @@ def solution_errors(result: RunResult, points: int = 200) -> tuple[tuple[Fractio
     t0 = Fraction(result.t0)
     times = [Fraction(t) for t in table.texts("t")]
     states = zip(table.texts("p"), table.texts("q"), strict=True)
-    start = Fraction(result.p), Fraction(result.q)
+    q, p = map(Fraction, result.plane_start)
+    start = p, q
     digits = max(_MORE, result.digits + _DIGITS)
     try:
         exact = list(_solution(hamiltonian, start, t0, times, digits))

@@ -6,7 +6,7 @@ from typing import Literal
 from verify.arithmetic import AUTO, in_lanes, step_cost
 from verify.arithmetic.systems import float64, mpfr
 from verify.execution.keeping import Keeper
-from verify.execution.task import InitialValueTask
+from verify.execution.task import StartTask
 from verify.runs.float64 import DIRECT_STEPS
 from verify.runs.run import proved_run, run
 from verify.scenes.results.run import RunResult
@@ -16,7 +16,7 @@ from verify.scenes.values import Number, StepSize
 _RUN_COST, _LONG_RUN_COST = 1_000_000, 50_000_000
 
 
-class RunTask(InitialValueTask):
+class RunTask(StartTask):
     """Run N steps and report the observables."""
 
     result = RunResult
@@ -26,7 +26,7 @@ class RunTask(InitialValueTask):
     t0: Number = Fraction(0)
     arithmetic: str
     digits: int
-    observables: tuple[str, ...]
+    observables: tuple[str, ...] | None
     points: int
     shares_kernel: bool = False
 

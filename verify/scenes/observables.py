@@ -10,7 +10,8 @@ from verify.scenes.values import CLOSED_FORM, OBSERVABLES
 OF_FORM = ("symplectic_defect_max", "symplectic_defect")
 SEVERAL = (*OF_FORM, *CLOSED_FORM, "lambda_max")
 _USUAL = (*OF_FORM, *CLOSED_FORM)
-# Of a step's operations: S has n(2n − 1) entries, det J is a Pfaffian, W takes products of matrices.
+# By the operations of a step: S has n(2n − 1) entries, det J is a Pfaffian, W is made of products
+# of matrices.
 _MOST_DEGREES = {"symplectic_defect_max": 8, "symplectic_defect": 4, "mse": 4, "delta_j_max": 4,
                  "lambda": 4, "lambda_max": 4}  # fmt: skip
 
@@ -24,13 +25,15 @@ def observed(hamiltonian: Hamiltonian, asked: Sequence[str] | None) -> tuple[str
     return tuple(name for name in _USUAL if hamiltonian.degrees <= _MOST_DEGREES[name])
 
 
-def check_observables(degrees: int, asked: Sequence[str]) -> None:
+def check_observables(hamiltonian: Hamiltonian, asked: Sequence[str]) -> None:
     """InputError for a name that there is not, or that is not for so many degrees of freedom."""
-    known = OBSERVABLES if degrees == 1 else SEVERAL
+    known, degrees = OBSERVABLES if hamiltonian.planar else SEVERAL, hamiltonian.degrees
     for name in asked:
-        if degrees == 1 and name in OF_FORM:
+        if hamiltonian.planar and name in OF_FORM:
             same = {"symplectic_defect_max": "delta_j_max", "symplectic_defect": "lambda"}[name]
-            raise InputError("observable", name, f"is |{same}| in one degree of freedom; ask for it")
+            raise InputError(
+                "observable", name, f"is |{same}| in one degree of freedom; ask for it"
+            )
         if name not in known:
             raise unknown("observable", name, known)
         if degrees > _MOST_DEGREES.get(name, degrees):

@@ -8,12 +8,13 @@ from pydantic import Field, model_validator
 
 from verify.errors import NOT_GIVEN, InputError, unknown
 from verify.scenes.frozen import Section
+from verify.scenes.observables import OF_FORM
 from verify.scenes.values import (
-    CLOSED_FORM,
     OBSERVABLES,
     ArithmeticName,
     Digits,
     InitialValue,
+    Start,
     Steps,
     StepSize,
     Time,
@@ -32,14 +33,17 @@ class Grid(Section):
     """The number N of steps of each run; or `time`."""
     step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=1, max_length=1000)]
     """The step sizes h, each once."""
-    initial_values: Annotated[tuple[InitialValue, ...], Field(min_length=1, max_length=1000)]
-    """Where the runs start, such as `{ q = 1.5, p = 0 }`, each once."""
+    initial_values: Annotated[tuple[Start, ...], Field(min_length=1, max_length=1000)]
+    """Where the runs start, such as `{ q = 1.5, p = 0 }`, each once; in n degrees of freedom lists,
+    such as `{ q = [0.3, -0.1], p = [0.1, 0.2] }`."""
     arithmetic: ArithmeticName = "float64"
     """The number system; `auto` where `digits` stand and this does not."""
     digits: Digits = 17
     """Significant digits that are asked for."""
-    observables: tuple[str, ...] = CLOSED_FORM
-    """What is computed: `delta_j_max`, `mse`, `lambda`, `lambda_plain`, `lambda_max`."""
+    observables: tuple[str, ...] | None = None
+    """What is computed: `delta_j_max`, `mse`, `lambda`, `lambda_plain`, `lambda_max`; in n degrees
+    of freedom also `symplectic_defect_max` and `symplectic_defect`. Left out: ΔJ, MSE and Λ, and
+    these two."""
     separate: bool = False
     """Whether truncation is separated from rounding in Λ of each of these runs."""
     growth: bool = False
@@ -53,10 +57,10 @@ class Grid(Section):
     def _check(self) -> Self:
         if (self.time is None) == (self.steps is None):
             raise InputError("time, steps", NOT_GIVEN, "give one of the two")
-        for name in self.observables:
-            if name not in OBSERVABLES:
+        for name in self.observables or ():
+            if name not in (*OBSERVABLES, *OF_FORM):
                 raise unknown("observable", name, OBSERVABLES)
-        if self.growth and "lambda" not in self.observables:
+        if self.growth and self.observables and "lambda" not in self.observables:
             raise InputError("growth", self.growth, "wants lambda among the observables")
         distinct("step_sizes", self.step_sizes)
         if len(set(self.initial_values)) < len(self.initial_values):
@@ -70,6 +74,11 @@ class Grid(Section):
     def steps_for(self, h: Fraction) -> int:
         """N: as given, or the whole steps of size h that fit into `time`."""
         return steps_of(self.time, self.steps, h)
+
+    @property
+    def in_the_plane(self) -> tuple[InitialValue, ...]:
+        """The initial values in one degree of freedom, for what there is of it alone."""
+        return tuple(at for at in self.initial_values if isinstance(at, InitialValue))
 
     @property
     def runs(self) -> int:
@@ -117,8 +126,8 @@ class Series(Section):
 
     step_size: StepSize
     """The step size h."""
-    initial_value: InitialValue
-    """Where the run starts."""
+    initial_value: Start
+    """Where the run starts; in n degrees of freedom with lists."""
     time: Time | None = None
     """The length of the run; or `steps`."""
     steps: Steps | None = None

@@ -11,7 +11,7 @@
     [grid]                                 # runs: every step size with every initial value
     time = 20000                           # or steps = 5000
     step_sizes = [0.001, 0.01]
-    initial_values = [{ q = 1.5, p = 0 }]
+    initial_values = [{ q = 1.5, p = 0 }]  # of p1 … pn, q1 … qn: { q = [0.3, 0], p = [0, 0.1] }
 
     separate = true                        # truncation and rounding in Λ of each of these runs
     growth = true                          # Λ of each of these runs against its growth law
@@ -67,9 +67,11 @@ from verify.errors import CONTROL, NOT_GIVEN, InputError, without_controls
 from verify.files import read_text
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.start import point_of
 from verify.scenes.frozen import Frozen, Section
 from verify.scenes.mistakes.syntax import toml_mistake
 from verify.scenes.mistakes.values import one_line
+from verify.scenes.observables import check_observables
 from verify.scenes.region_sections import Flow
 from verify.scenes.run_sections import Grid, SeparationOver, Series
 from verify.scenes.sections import Reference, WorkPrecision
@@ -80,6 +82,7 @@ from verify.scenes.values import (
     SchemeName,
     SystemName,
 )
+from verify.schemes.degrees import check_takes
 
 _MAX_DEPTH = 12
 
@@ -138,7 +141,8 @@ class Scene(Frozen):
         sections = self.sections()
         also = (name for section in sections for name in getattr(section, "schemes", ()))
         for name in dict.fromkeys((*self.schemes, *also)):
-            scheme_catalogue.get(name).step_map(exact)
+            check_takes(scheme_catalogue.get(name), exact)
+        self._check_degrees(exact)
         if exact.time_dependent:
             if self.grid is not None and self.grid.growth:
                 problem = "depends on t; [grid] with growth = true is of orbits that close"
@@ -157,6 +161,29 @@ class Scene(Frozen):
                 known = ", ".join(exact.parameters) or "none"
                 raise InputError("parameter", over.parameter, f"H has no such; it has: {known}")
         return self
+
+    def _check_degrees(self, exact: Hamiltonian) -> None:
+        """Whether starts are those of H, and in n degrees of freedom nothing of the plane is asked
+        for."""
+        if not exact.planar:
+            self._check_no_plane(exact)
+        for section in self.sections():
+            starts = getattr(section, "initial_values", None) or ()
+            one = getattr(section, "initial_value", None)
+            for at in (*starts, *(() if one is None else (one,))):
+                point_of(exact, at.q, at.p)
+        if self.grid is not None and self.grid.observables is not None:
+            check_observables(exact, self.grid.observables)
+
+    def _check_no_plane(self, exact: Hamiltonian) -> None:
+        """InputError where something of the plane is asked for."""
+        own = {name for name in Scene.model_fields if name not in _IDENTITY and getattr(self, name)}
+        asked = own - {"name", "every_hamiltonian", "grid", "series"}
+        asked |= {f"grid.{name}" for name in ("separate", "growth") if getattr(self.grid, name, 0)}
+        if asked:
+            names = ", ".join(exact.coordinates)
+            problem = f"is of {names}; {min(asked)} takes p and q, one degree of freedom"
+            raise InputError("hamiltonian", exact.formula, problem)
 
     def sections(self) -> list[Section]:
         """Every [section] and [[section]] of the scene, whatever it asks for."""

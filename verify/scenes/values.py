@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterable
 from fractions import Fraction
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer
+from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, PlainSerializer, Tag
 
 from verify import arithmetic as number_systems
 from verify import schemes
@@ -12,6 +12,7 @@ from verify.arithmetic.exact import Exact, positive, rational, text, whole
 from verify.drawable import drawn_by
 from verify.errors import NOT_GIVEN, InputError, unknown
 from verify.hamiltonians import systems
+from verify.hamiltonians.coordinates import MOST_DEGREES
 from verify.scenes.frozen import Frozen
 
 MAX_STEPS = 10**12
@@ -21,8 +22,15 @@ CLOSED_FORM = ("delta_j_max", "mse", "lambda")
 REPORTED = (*CLOSED_FORM, "lambda_plain")
 OBSERVABLES = (*REPORTED, "lambda_max")  # the last: the greatest |Λ| after any of the steps
 
+# Marks which of two models a table is read as; what names a key leaves it out.
+OF_ONE, OF_SEVERAL = "«one»", "«several»"
 Number = Annotated[
     Fraction, BeforeValidator(lambda x: rational(x, "number")), PlainSerializer(text)
+]
+Several = Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST_DEGREES)]
+Coordinates = Annotated[  # of q or of p: a number, or in n degrees of freedom a list
+    Annotated[Number, Tag(OF_ONE)] | Annotated[Several, Tag(OF_SEVERAL)],
+    Discriminator(lambda x: OF_SEVERAL if isinstance(x, list | tuple) else OF_ONE),
 ]
 StepSize = Annotated[
     Fraction, BeforeValidator(lambda x: positive(x, "step_size")), PlainSerializer(text)
@@ -107,3 +115,24 @@ class InitialValue(Frozen):
     """The displacement."""
     p: Number
     """The momentum."""
+
+
+class InitialState(Frozen):
+    """Where a run in n degrees of freedom starts, exactly."""
+
+    q: Several
+    """The displacements, q1 … qn."""
+    p: Several
+    """The momenta, p1 … pn."""
+
+
+def _which(given: Any) -> str:
+    """Whether a table, or a model, has lists."""
+    q = given.get("q", given.get("p")) if isinstance(given, dict) else getattr(given, "q", None)
+    return OF_SEVERAL if isinstance(q, list | tuple) else OF_ONE
+
+
+Start = Annotated[
+    Annotated[InitialValue, Tag(OF_ONE)] | Annotated[InitialState, Tag(OF_SEVERAL)],
+    Discriminator(_which),
+]

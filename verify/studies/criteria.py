@@ -125,6 +125,6 @@ def measured_slopes(name: str, runs: Sequence[RunResult]) -> list[tuple[float, f
             size = abs(ball(value))
             if Fraction(value.bound) <= _PLATEAU * abs(Fraction(value.value)):
                 point = log10(Fraction(run.step_size)), float(size.log() / 2.302585092994046)
-                groups.setdefault((run.q, run.p), []).append(point)
+                groups.setdefault((run.start_text("q"), run.start_text("p")), []).append(point)
     usable = [g for g in groups.values() if len({x for x, _ in g}) >= _MIN_POINTS]
     return [slope(points) for points in usable]

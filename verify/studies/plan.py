@@ -4,8 +4,8 @@ from typing import Any
 
 from verify.execution.plan import Plan
 from verify.execution.study import Results, called, plan_of
+from verify.kernels.step.in_degrees import map_of, preserves
 from verify.scenes.scene import Scene
-from verify.schemes import get
 from verify.studies.kinds import studies
 
 
@@ -25,10 +25,10 @@ def found_of(scene: Scene, results: Results) -> dict[str, Any]:
 def _plan_scene(plan: Plan, scene: Scene) -> None:
     found = studies()
     for scheme in scene.schemes:
-        preserves = get(scheme).step_map(scene.exact_hamiltonian()).preserves_area
+        preserved = preserves(map_of(scene.exact_hamiltonian(), scheme))
         for study in found:
             if study.need_of_scheme:
-                study.need_of_scheme(plan, scene, scheme, preserves)
+                study.need_of_scheme(plan, scene, scheme, preserved)
     for study in found:
         if study.need:
             study.need(plan, scene)

@@ -23,9 +23,9 @@ from verify.arithmetic.systems import fixed, mpfr, mpmath
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import Kernel, kernel_for
-from verify.kernels.lowering import Lowering
-from verify.kernels.program import Op
 from verify.kernels.rounding import PRECISION, Ball, Rounded, Rounding, analyse, rounding_of
+from verify.kernels.step.lowering import Lowering
+from verify.kernels.step.program import Op
 from verify.kernels.stepping import KernelRun
 
 

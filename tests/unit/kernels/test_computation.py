@@ -17,9 +17,9 @@ from verify.algebra.ring import Poly
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.computation import Observed, computed, step_map_of
 from verify.kernels.kernel import OBSERVABLES, kernel_for
-from verify.kernels.program import Evaluator, Program, _nest
+from verify.kernels.step.computation import Observed, computed, step_map_of
+from verify.kernels.step.program import Evaluator, Program, _nest
 from verify.runs import derivatives
 from verify.schemes import get
 from verify.schemes.composition import in_stages, unfolded

@@ -23,7 +23,7 @@ from tests.helpers.implicit_steps import (
 )
 from tests.helpers.sampled.formulas import P, Q, plain
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels import newton
+from verify.kernels.step import newton
 from verify.runs.run import run
 from verify.schemes.implicit_runge_kutta import _Equations, implicit_map
 from verify.schemes.step_map import StepMap

@@ -23,7 +23,7 @@ from verify.algebra.embedding import embed
 from verify.algebra.formula import symbol
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import OBSERVABLES, Kernel, kernel_for
-from verify.kernels.program import Evaluator, Program
+from verify.kernels.step.program import Evaluator, Program
 
 VARIABLES = ("p", "q", "h", "delta")
 STATE = ("p", "q")

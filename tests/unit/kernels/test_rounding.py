@@ -14,9 +14,9 @@ from verify.arithmetic.arb import bounds, rational_ball
 from verify.arithmetic.systems import mpfr
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import Writer
-from verify.kernels.lowering import Lowering
-from verify.kernels.program import Program
 from verify.kernels.rounding import PRECISION, Rounded, analyse, rounding_of
+from verify.kernels.step.lowering import Lowering
+from verify.kernels.step.program import Program
 from verify.schemes import get
 
 BITS = 24

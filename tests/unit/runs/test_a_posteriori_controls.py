@@ -27,9 +27,9 @@ from tests.helpers.exact_orbits import Case, case, enclosed_finely
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import fixed, mpfr
 from verify.kernels import rounding
-from verify.kernels import tangent_map as tangent
 from verify.kernels.kernel import kernel_for
 from verify.kernels.rounding import rounding_of
+from verify.kernels.step import tangent_map as tangent
 from verify.kernels.stepping import Outcome
 from verify.runs import a_posteriori as certificate
 from verify.runs.a_posteriori import _Certificate, certify
@@ -236,14 +236,14 @@ _statements = tangent.statements
 @pytest.mark.parametrize("orbit", [SADDLE, SADDLE_FLOATING], ids=["fixed", "mpfr"])
 @pytest.mark.usefixtures("afresh")
 def test_a_tangent_map_that_stays_the_identity_is_caught(orbit: Orbit, monkeypatch: Patch) -> None:
-    monkeypatch.setattr(tangent, "statements", lambda _: _statements(["0"] * 4))
+    monkeypatch.setattr(tangent, "statements", lambda *_: _statements(["0"] * 4))
     assert orbit.outside(orbit.again()) >= {"p", "q"}
 
 
 @pytest.mark.parametrize("row", [0, 1])
 @pytest.mark.usefixtures("afresh")
 def test_a_row_of_the_tangent_map_that_is_left_out_is_caught(row: int, monkeypatch: Patch) -> None:
-    def lying(change: Any) -> list[str]:
+    def lying(change: Any, *_: Any) -> list[str]:
         return _statements([c if i // 2 != row else "0" for i, c in enumerate(change)])
 
     monkeypatch.setattr(tangent, "statements", lying)
@@ -253,7 +253,7 @@ def test_a_row_of_the_tangent_map_that_is_left_out_is_caught(row: int, monkeypat
 @pytest.mark.usefixtures("afresh")
 def test_a_determinant_that_is_not_looked_at_is_caught(monkeypatch: Patch) -> None:
     """Areas shrink to 10⁻⁸, and the errors made there are then magnified as much again."""
-    lying = lambda change: [x for x in _statements(change) if "det_low" not in x]  # noqa: E731
+    lying = lambda change, *_: [x for x in _statements(change) if "det_low" not in x]  # noqa: E731
     monkeypatch.setattr(tangent, "statements", lying)
     assert "q" in SQUEEZED.outside(SQUEEZED.again())
 

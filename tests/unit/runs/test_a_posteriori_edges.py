@@ -14,8 +14,8 @@ from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import fixed, float64, mpfr, mpmath
 from verify.execution.keeping import Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.program import Op
 from verify.kernels.rounding import rounding_of
+from verify.kernels.step.program import Op
 from verify.kernels.stepping import KernelRun
 from verify.runs.a_posteriori import certify
 from verify.runs.derivatives import Derivatives

@@ -313,6 +313,18 @@ initial_values = [{ q = 1, p = 0 }]
 """
 
 
+SEVERAL = """
+name = "several"
+hamiltonian = "(p1**2 + p2**2 + q1**2 + q2**2)/2 + q1**2*q2 - q2**3/3"
+schemes = ["lie2"]
+
+[grid]
+steps = 9
+step_sizes = [0.1]
+initial_values = [{ q = [0.1, 0], p = [0, 0.1] }]
+"""
+
+
 @pytest.fixture(scope="module")
 def full_report(tmp_path_factory: pytest.TempPathFactory) -> Report:
     folder = tmp_path_factory.mktemp("full")
@@ -321,11 +333,11 @@ def full_report(tmp_path_factory: pytest.TempPathFactory) -> Report:
     file = load_claims(folder / "claims.toml")
     store, figures = execute.Store(None), file.figures
     made = make_report(
-        "All", [scene, load(folder, DRIVEN)], file.claims, store, figures=figures, command="test",
-        where=THIS_PROCESS,
+        "All", [scene, load(folder, DRIVEN), load(folder, SEVERAL)], file.claims, store,
+        figures=figures, command="test", where=THIS_PROCESS,
     )  # fmt: skip
-    first, driven = made.scenes
-    scenes = (_with_symbols(_with_ratio(first)), driven)
+    first, *others = made.scenes
+    scenes = (_with_symbols(_with_ratio(first)), *others)
     return made.model_copy(update={"gallery": gallery(shown()), "scenes": scenes})
 
 

@@ -11,9 +11,9 @@ from verify import arithmetic, schemes
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.lowering import Lowering
-from verify.kernels.program import Program
 from verify.kernels.rounding import rounding_of
+from verify.kernels.step.lowering import Lowering
+from verify.kernels.step.program import Program
 from verify.runs.run import run
 from verify.schemes.step_map import StepMap
 

@@ -7,7 +7,7 @@ from pydantic import Field
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.claims.findings import Findings
 from verify.claims.formulas import within
-from verify.claims.orders import delta_j_order, map_of
+from verify.claims.orders import delta_j_of
 from verify.claims.quantified import QuantifiedClaim
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
@@ -24,7 +24,7 @@ class AreaClaim(QuantifiedClaim):
     """Whether det J ≡ 1 is claimed, or that it is not so."""
 
     def judge_one(self, findings: Findings) -> ClaimResult:
-        known = delta_j_order(map_of(self, findings))
+        known = delta_j_of(self, findings)
         domain = known.domain & known.exact_for
         return self.judge_known(known.vanishes, known.evidence + within(domain), domain)
 

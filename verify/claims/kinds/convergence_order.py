@@ -6,7 +6,8 @@ The map agrees with the exact flow up to h to this power.
 from typing import TYPE_CHECKING, Literal
 
 from verify.claims.findings import Findings
-from verify.claims.orders import Order, OrderedClaim, ProvedOrder, convergence_order, map_of
+from verify.claims.orders import Order, OrderedClaim, flow_of
+from verify.claims.proved_order import ProvedOrder
 from verify.prose import Formula, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
@@ -31,7 +32,7 @@ class ConvergenceOrderClaim(OrderedClaim):
         return self.claimed
 
     def judge_one(self, findings: Findings) -> ClaimResult:
-        return self.judge_known(convergence_order(map_of(self, findings)))
+        return self.judge_known(flow_of(self, findings))
 
     def judge_every(self, proof: "EveryProof") -> ClaimResult:
         found = proof.convergence_order

@@ -3,7 +3,8 @@
 from typing import TYPE_CHECKING, Literal
 
 from verify.claims.findings import Findings
-from verify.claims.orders import Order, OrderedClaim, ProvedOrder, delta_j_order, map_of
+from verify.claims.orders import Order, OrderedClaim, delta_j_of
+from verify.claims.proved_order import ProvedOrder
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
@@ -23,7 +24,7 @@ class OrderClaim(OrderedClaim):
         return self.order
 
     def judge_one(self, findings: Findings) -> ClaimResult:
-        return self.judge_known(delta_j_order(map_of(self, findings)))
+        return self.judge_known(delta_j_of(self, findings))
 
     def judge_every(self, proof: "EveryProof") -> ClaimResult:
         preserves, order = proof.area_preserving, proof.order

@@ -61,10 +61,8 @@ def write_orbit(result: "RunResult", path: Path, points: int | None) -> None:
 
 def as_csv(table: "OrbitTable") -> str:
     """The rows under a header, ended by line feeds; what is not defined at a state is empty."""
-    from verify.scenes.results.orbit import COLUMNS
-
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
-    writer.writerow(COLUMNS)
+    writer.writerow(table.columns)
     writer.writerows(table.rows)
     return file.getvalue()

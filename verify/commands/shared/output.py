@@ -36,6 +36,7 @@ _LABELS = {
     "q": "q",
     "p": "p",
 }
+_IN_DEGREES = {"symplectic_defect_max": "max |S|", "symplectic_defect": "max |W|"}
 
 
 def cut(formula: str) -> str:
@@ -111,15 +112,25 @@ def print_proof(exact: "Hamiltonian", scheme: str, proof: "Proof", potential: "P
 
 
 def run_json(result: "RunResult") -> dict[str, Any]:
-    values = {name: result.values.get(name) for name in _LABELS}
+    labels = {**_LABELS, **({} if isinstance(result.q, str) else _IN_DEGREES)}
+    values = {name: _told(result, name) for name in labels}
     return {
-        **{name: value.value if value else None for name, value in values.items()},
+        **{name: value for name, (value, _) in values.items()},
         **picked(result, "steps", "digits", "arithmetic", "fallback"),
-        "error_bound": {name: value.bound for name, value in values.items() if value},
+        "error_bound": {name: bound for name, (_, bound) in values.items() if bound},
         # `exact`: what a proof gave, and no run.
         **picked(result, "error_kind", "error_method", "exact", "status", "failed_step"),
         "seconds": f"{result.seconds:.6f}",
     }
+
+
+def _told(result: "RunResult", name: str) -> tuple[Any, Any]:
+    """A value and its bound; lists of q and of p in n degrees of freedom."""
+    if name in ("q", "p") and not isinstance(result.q, str):
+        own = [x for n, x in result.values.items() if n[0] == name and n[1:].isdigit()]
+        return ([x.value for x in own], [x.bound for x in own]) if own else (None, None)
+    value = result.values.get(name)
+    return (value.value, value.bound) if value else (None, None)
 
 
 def unfinished(result: "RunResult") -> str:
@@ -144,7 +155,8 @@ def print_run(result: "RunResult") -> None:
     if result.status != "finished":
         click.echo(unfinished(result))
         return
-    for name, label in _LABELS.items():
+    coordinates = {name: name for name in result.values if name[1:].isdigit()}
+    for name, label in {**_IN_DEGREES, **_LABELS, **coordinates}.items():
         if name in result.values:
             value = result.values[name]
             click.echo(f"{label:10} {value.value}  ± {value.bound}")

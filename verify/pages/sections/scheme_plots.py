@@ -30,7 +30,7 @@ def against_step_size(
         return
     from verify.pages.figures import figures
 
-    order = proof.order
+    order = proof.order_of_delta_j
     span = f"over {interval(scene.t0, scene.time)}" if scene.time else "over all steps"
     of_lam = (order - 1, order) if order is not None and order > 1 else ()
     of_ratio = (order, order + 1) if order is not None else ()

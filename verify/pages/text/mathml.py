@@ -18,6 +18,7 @@ from markupsafe import Markup, escape
 
 from verify.algebra.formula import FUNCTIONS, parse
 from verify.errors import InputError
+from verify.hamiltonians.coordinates import PLANE, coordinates_of
 from verify.pages.text.inline_math import in_line
 from verify.pages.text.terms import Term, factor_key, terms_of
 
@@ -128,8 +129,10 @@ def free_names(text: str) -> tuple[str, ...]:
 
 def hamiltonian(text: str) -> Markup:
     """H(p, q) = …, or H(p, q, t) = … of a formula with t."""
-    left = "H(p, q, t)" if "t" in free_names(text) else "H(p, q)"
-    return equation(NAMED[left], text)
+    names = free_names(text)
+    left = "H(p, q, t)" if "t" in names else "H(p, q)"
+    plane = coordinates_of({*names, *_identifiers(text)}) == PLANE
+    return equation(NAMED[left if plane else "H"], text)
 
 
 def read(text: str) -> Expr | None:

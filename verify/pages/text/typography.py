@@ -131,7 +131,12 @@ def start(run: RunResult | SeparationResult | AverageResult | WorkPrecisionResul
     """A run's initial value, and when it starts, where that is not 0."""
     t0 = getattr(run, "t0", "0")
     at = {"q₀": run.q, "p₀": run.p} | ({} if t0 == "0" else {"t₀": t0})
-    return ", ".join(f"{name}{NBSP}={NBSP}{number(x)}" for name, x in at.items())
+    return ", ".join(f"{name}{NBSP}={NBSP}{_coordinates(x)}" for name, x in at.items())
+
+
+def _coordinates(x: str | tuple[str, ...]) -> str:
+    """A number; or those of n degrees of freedom, in brackets."""
+    return number(x) if isinstance(x, str) else f"({', '.join(map(number, x))})"
 
 
 def interval(t0: str, length: Fraction | str, shown: Callable[[str], str] = str) -> str:

@@ -56,6 +56,14 @@ ALWAYS = {
         "at first."
     ),
 }
+# Where there are several degrees of freedom.
+OF_FORM = {
+    "S": Markup(
+        "JᵀΩJ − Ω, by how much one step changes the symplectic form Ω = Σ dp<sub>i</sub> ∧ "
+        "dq<sub>i</sub>; max |S| is the largest entry in any step. S = 0 is more than det J = 1."
+    ),
+    "W": Markup("The same of all steps together: W ← W + MᵀSM, with M the Jacobian so far."),
+}
 # Terms that several sections need.
 SEPARATED = {
     "Truncation, rounding": Markup(

@@ -33,8 +33,7 @@ from verify.proof.symplectic.two_form import TwoForm, lie_derivative, wedge
 from verify.prose import Formula, Prose, prose, read_prose
 from verify.schemes import get
 from verify.schemes.degrees import kind_of
-from verify.schemes.degrees.canonical_map import series_of
-from verify.schemes.degrees.canonical_map import SOLVABLE
+from verify.schemes.degrees.canonical_map import SOLVABLE, series_of
 from verify.schemes.every_hamiltonian import TaylorSeries
 from verify.schemes.scheme import Scheme
 from verify.schemes.tree_conditions import TreeConditions, all_trees_hold

@@ -14,8 +14,8 @@ import flint
 from verify.algebra.enclosure import enclose_all
 from verify.arithmetic.arb import around, in_reach, middle_and_radius, rational_ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.kernels.computation import step_map_of
 from verify.kernels.orbit import Orbit
+from verify.kernels.step.computation import step_map_of
 from verify.reference.compare.findings import DOUBLE, SINGLE
 from verify.reference.compare.scatter import Scatters
 from verify.reference.compare.setting import Bounded

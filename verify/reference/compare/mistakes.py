@@ -18,7 +18,7 @@ from verify.arithmetic.exact import short
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.orbit import Orbit
-from verify.kernels.tangent_map import nearest_double
+from verify.kernels.step.tangent_map import nearest_double
 from verify.reference.compare.agreement import nearest_single
 from verify.reference.compare.setting import Setting
 from verify.schemes.splitting_conditions import Part, Splitting

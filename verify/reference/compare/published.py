@@ -16,7 +16,7 @@ from verify.files import read_bytes
 from verify.formats import check_format
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.orbit import Orbit
-from verify.kernels.tangent_map import nearest_double
+from verify.kernels.step.tangent_map import nearest_double
 from verify.reference.make.models import DATA_FORMAT, Data, Run, values_of
 from verify.reference.make.reading import json_of
 from verify.reference.make.writing import MANIFEST, SCHEMAS

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from verify.arithmetic.exact import rational
 from verify.errors import NOT_GIVEN, InputError, unknown, without_controls
-from verify.kernels.tangent_map import nearest_double
+from verify.kernels.step.tangent_map import nearest_double
 from verify.reference.compare.published import KEYS, Published, PublishedRun
 from verify.reference.compare.table import Table, opened
 from verify.reference.make.models import VALUES

@@ -21,8 +21,8 @@ from verify.errors import InputError
 from verify.flows.extrapolation import NoFlowError
 from verify.flows.solution import Solution, exact_solution, leaves_by_algebra
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.computation import step_map_of
 from verify.kernels.orbit import Orbit
+from verify.kernels.step.computation import step_map_of
 from verify.reference.make.correct_rounding import correctly_rounded, near_zero
 from verify.reference.make.models import VALUES
 from verify.runs.run import run

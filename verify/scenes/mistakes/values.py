@@ -24,7 +24,9 @@ def one_line(
 
     `model`: what was read, where its keys are to be told.
     """
-    errors = error.errors(include_url=False)
+    errors: list[dict[str, Any]] = [
+        {**e, "loc": _of_keys(e["loc"])} for e in error.errors(include_url=False)
+    ]
     # A mistyped key is also a missing one: name what was typed.
     first = next((e for e in errors if e["type"] == "extra_forbidden"), errors[0])
     cause = first.get("ctx", {}).get("error")
@@ -41,6 +43,11 @@ def one_line(
             f"{source}: {where}", NOT_GIVEN, f"is missing; write {first['loc'][-1]} = …"
         )
     return InputError(f"{source}: {where}", first.get("input"), _value_mistake(first))
+
+
+def _of_keys(loc: Sequence[str | int]) -> tuple[str | int, ...]:
+    """A place without what says, as «one», as which of two models a table was read."""
+    return tuple(part for part in loc if not str(part).startswith("«"))
 
 
 def _value_mistake(error: Error) -> str:

@@ -6,6 +6,7 @@ from typing import Literal, Self
 
 from pydantic import PrivateAttr
 
+from verify.errors import InputError
 from verify.lateral import compute
 from verify.notebook import aligned_latex, html_table, number_latex
 from verify.scenes.frozen import Frozen, OfScheme, Seconds
@@ -19,6 +20,8 @@ _SHOWN = {
     "lambda_max": ("max |Λ|", r"\max |\Lambda|"),
     "mse": ("MSE", r"\text{MSE}"),
     "delta_j_max": ("max |ΔJ|", r"\max |\Delta J|"),
+    "symplectic_defect_max": ("max |S|", r"\max |S|"),
+    "symplectic_defect": ("max |W|", r"\max |W|"),
     "q": ("q", "q"),
     "p": ("p", "p"),
 }
@@ -72,6 +75,19 @@ class RunResult(OfScheme):
         made._points = points or MOST_POINTS
         return made
 
+    def start_text(self, letter: str) -> str:
+        """q or p where it began; in n degrees of freedom the numbers, one after the other."""
+        given = self.q if letter == "q" else self.p
+        return given if isinstance(given, str) else f"({', '.join(given)})"
+
+    @property
+    def plane_start(self) -> tuple[str, str]:
+        """q and p, of a run in one degree of freedom; InputError of another."""
+        if isinstance(self.q, str) and isinstance(self.p, str):
+            return self.q, self.p
+        problem = "has more degrees of freedom; what is asked for takes p and q"
+        raise InputError("run", self.scheme, problem)
+
     @cached_property
     def orbit(self) -> OrbitTable:
         """The states as arrays and exact texts: every step up to 10,000 or `points`, else thinned.
@@ -104,7 +120,7 @@ class RunResult(OfScheme):
 
     def _repr_html_(self) -> str:
         """The values, each with its error bound."""
-        start = f"from q = {self.q}, p = {self.p}"
+        start = f"from q = {self.start_text('q')}, p = {self.start_text('p')}"
         caption = f"{self.scheme}: {self.steps} steps of h = {self.step_size} {start}"
         bounds = f"bounds {self.error_kind}: {self.error_method}"
         foot = f"{self.arithmetic}, {self.digits} digits; {bounds}"
@@ -113,18 +129,19 @@ class RunResult(OfScheme):
         if self.status != "finished":
             at = f" at step {self.failed_step}" if self.failed_step is not None else ""
             return html_table(caption, (), [("outcome", self.status + at)], foot)
-        rows = [
-            (label, value.value, f"± {value.bound}")
-            for name, (label, _) in _SHOWN.items()
-            if (value := self.values.get(name))
-        ]
+        rows = [(label, value.value, f"± {value.bound}") for label, _, value in self._shown()]
         return html_table(caption, ("", "value", "error bound"), rows, foot)
 
     def _repr_latex_(self) -> str:
         """The values with their error bounds."""
         lines = [
             f"{symbol} &= {number_latex(value.value)} \\pm {number_latex(value.bound)}"
-            for name, (_, symbol) in _SHOWN.items()
-            if (value := self.values.get(name))
+            for _, symbol, value in self._shown()
         ]
         return aligned_latex(lines or [rf"\Lambda &: \text{{{self.status}}}"])
+
+    def _shown(self) -> list[tuple[str, str, Value]]:
+        """The values, each with its label as text and in LaTeX; coordinates come last."""
+        several = {n: (n, f"{n[0]}_{{{n[1:]}}}") for n in self.values if n[1:].isdigit()}
+        each = (_SHOWN | several).items()
+        return [(*shown, self.values[name]) for name, shown in each if name in self.values]

@@ -44,3 +44,11 @@ def map_in_degrees(scheme: "Scheme", hamiltonian: "Hamiltonian") -> "CanonicalMa
         return map_by_formulas(hamiltonian, scheme.formulas)
     made: CanonicalMap = kind_of(scheme).build(scheme.every_h, hamiltonian)
     return made
+
+
+def check_takes(scheme: "Scheme", hamiltonian: "Hamiltonian") -> None:
+    """InputError for an H that the scheme does not take, in any number of degrees of freedom."""
+    if hamiltonian.planar:
+        scheme.step_map(hamiltonian)
+    else:
+        map_in_degrees(scheme, hamiltonian)

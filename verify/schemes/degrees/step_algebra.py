@@ -76,9 +76,7 @@ class SeriesAlgebra:
             moves.append(("t", Series.of(ring, [ring.zero, late], self.most)))
         return [at_moved(ring, flow.slopes[k], moves, self.most) for k in places]
 
-    def moved(
-        self, change: Series, weights: Sequence[Number], slopes: Sequence[Series]
-    ) -> Series:
+    def moved(self, change: Series, weights: Sequence[Number], slopes: Sequence[Series]) -> Series:
         total = self._cut(change)
         for w, slope in zip(weights, slopes, strict=True):
             total += self._cut(slope).times(w).shifted(1)

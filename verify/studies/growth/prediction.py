@@ -128,9 +128,10 @@ def _prediction(
 def _between(f: Element, run: RunResult) -> Ball:
     """[f] = f(z_N) − f(z₀), not finite where f may be undefined."""
     ring, x = f
+    q, p = map(Fraction, run.plane_start)
     ends = (
         {name: ball(run.values[name]) for name in ("p", "q")},
-        {"p": rational_ball(Fraction(run.p)), "q": rational_ball(Fraction(run.q))},
+        {"p": rational_ball(p), "q": rational_ball(q)},
     )
     last, first = (enclose_over(ring, x, end) for end in ends)
     return UNKNOWN if last is None or first is None else last - first

@@ -20,7 +20,9 @@ def _need(plan: Plan, scene: Scene, scheme: str, _preserves: bool) -> None:
 
 
 def _task(scene: Scene, scheme: str) -> EveryTask:
-    return EveryTask(scheme=scheme, timed=scene.exact_hamiltonian().time_dependent)
+    exact = scene.exact_hamiltonian()
+    degrees = 1 if exact.planar else exact.degrees
+    return EveryTask(scheme=scheme, timed=exact.time_dependent, degrees=degrees)
 
 
 def _found(scene: Scene, results: Results) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from verify.execution.plan import Plan
 from verify.execution.study import Results, Study, called, known_results, toml_section
 from verify.runs.digits_on_demand import WORTH_COMPILING
 from verify.runs.task import RunTask
+from verify.scenes.observables import OF_FORM, observed
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene
 from verify.scenes.values import CLOSED_FORM
@@ -16,10 +17,11 @@ def grid_task(scene: Scene, scheme: str, h: Fraction, start: int) -> RunTask:
     """The grid's run for a step size and the index of an initial value."""
     assert scene.grid is not None  # noqa: S101 - asked for by grids only
     grid, at = scene.grid, scene.grid.initial_values[start]
+    observables = observed(scene.exact_hamiltonian(), grid.observables)
     return RunTask(
         **scene.hamiltonian_fields(), scheme=scheme,
         step_size=h, steps=grid.steps_for(h), q=at.q, p=at.p, t0=scene.t0,
-        arithmetic=grid.arithmetic, digits=grid.digits, observables=grid.observables, points=0,
+        arithmetic=grid.arithmetic, digits=grid.digits, observables=observables, points=0,
         shares_kernel=grid.runs > 1 and grid.steps_in_all >= WORTH_COMPILING,
     )  # fmt: skip
 
@@ -42,9 +44,12 @@ def grid_runs(scene: Scene, scheme: str, results: Results) -> list[RunResult]:
 
 def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
     name, tasks = called(scene), grid_tasks(scene, scheme)
-    asked = set(scene.grid.observables) if scene.grid else set()
-    if preserves and asked and asked <= set(CLOSED_FORM):
+    exact = scene.exact_hamiltonian()
+    asked = set(observed(exact, scene.grid.observables)) if scene.grid else set()
+    if preserves and asked and asked <= {*CLOSED_FORM, *OF_FORM}:
         why = "ΔJ ≡ 0 is proved: ΔJ, MSE and Λ are exactly 0"
+        if not exact.planar:
+            why = "S ≡ 0 is proved: S, W, ΔJ, MSE and Λ are exactly 0"
         plan.leave_out(f"{name}: {len(tasks)} runs of {scheme}", why)
         return
     for task in tasks:

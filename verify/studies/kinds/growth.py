@@ -20,7 +20,7 @@ def _tasks(scene: Scene, scheme: str) -> list[GrowthTask]:
     given = scene.hamiltonian_fields()
     return [
         GrowthTask(**given, scheme=scheme, q=at.q, p=at.p, digits=_DIGITS)
-        for at in scene.grid.initial_values
+        for at in scene.grid.in_the_plane
     ]
 
 

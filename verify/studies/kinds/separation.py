@@ -25,7 +25,7 @@ def _rows(scene: Scene, scheme: str, grid: Grid) -> list[list[SeparationTask]]:
             )
             for h in grid.step_sizes
         ]
-        for at in grid.initial_values
+        for at in grid.in_the_plane
     ]  # fmt: skip
 
 

@@ -6,10 +6,10 @@ from verify.arithmetic.exact import text
 from verify.execution.plan import Plan
 from verify.execution.study import Results, Study, called, known_results, toml_section
 from verify.runs.task import RunTask
+from verify.scenes.observables import observed
 from verify.scenes.results.run import RunResult
 from verify.scenes.run_sections import Series
 from verify.scenes.scene import Scene
-from verify.scenes.values import CLOSED_FORM
 
 
 def _task(scene: Scene, scheme: str, series: Series) -> RunTask:
@@ -17,8 +17,8 @@ def _task(scene: Scene, scheme: str, series: Series) -> RunTask:
     return RunTask(
         **scene.hamiltonian_fields(), scheme=scheme,
         step_size=series.step_size, steps=series.count, q=at.q, p=at.p, t0=scene.t0,
-        arithmetic=series.arithmetic, digits=series.digits, observables=CLOSED_FORM,
-        points=series.points,
+        arithmetic=series.arithmetic, digits=series.digits,
+        observables=observed(scene.exact_hamiltonian(), None), points=series.points,
     )  # fmt: skip
 
 

@@ -13,13 +13,15 @@ _COST = 20_000_000  # of a proof, about
 
 
 class EveryTask(Task):
-    """What is proved of a scheme for every H; `timed`: for every H that depends on time."""
+    """What is proved of a scheme for every H, in so many degrees of freedom; `timed`: for every H
+    that depends on time."""
 
     result = EveryResult
     imports = ("verify.proof.every",)
     kind: Literal["every"] = "every"
     scheme: str
     timed: bool = False
+    degrees: int = 1
 
     @property
     def cost(self) -> int:
@@ -30,11 +32,41 @@ class EveryTask(Task):
         """The proof for every H, as a result."""
         from verify.proof.every import prove_every
 
+        if self.degrees > 1:
+            return _in_degrees(self.scheme, self.degrees, self.timed)
         proof = _in_time(self.scheme) if self.timed else prove_every(self.scheme)
-        return EveryResult(**{name: getattr(proof, name) for name in EveryResult.model_fields})
+        known = EveryResult.model_fields.keys() - {"degrees"}
+        return EveryResult(**{name: getattr(proof, name) for name in known})
 
 
 def _in_time(scheme: str) -> "EveryProof":
     from verify.proof.every_in_time import prove_every_in_time
 
     return prove_every_in_time(scheme)
+
+
+def _in_degrees(name: str, degrees: int, timed: bool) -> EveryResult:
+    from verify.proof.symplectic.every import prove_every_in_degrees, quantifier
+    from verify.prose import Prose
+    from verify.schemes import get
+
+    proof = prove_every_in_degrees(name, degrees, timed=timed)
+    return EveryResult(
+        scheme=name,
+        quantifier=quantifier(get(name), degrees, separable=False, timed=timed),
+        timed=timed,
+        degrees=degrees,
+        verdict=proof.verdict,
+        reason=proof.reason,
+        order=proof.order,
+        area_preserving=proof.area_preserving,
+        convergence_order=proof.convergence_order,
+        formula="",
+        leading=proof.formula or proof.leading_text,
+        telescopes=proof.telescopes,
+        potential=proof.potential,
+        why=Prose(proof.why),
+        checked=proof.checked,
+        conditions=proof.conditions,
+        argument=Prose(),
+    )

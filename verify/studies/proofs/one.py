@@ -15,6 +15,7 @@ from verify.scenes.results.proof import Formulas, ProofResult
 from verify.schemes import get
 from verify.schemes.scheme import Scheme
 from verify.schemes.step_map import StepMap, grouped
+from verify.studies.proofs.one_in_degrees import in_degrees
 
 _COST = 10_000_000  # of a proof, about
 _LONG = 12  # digits of a value that no formula is read with
@@ -40,6 +41,9 @@ class ProofTask(SchemeTask):
         """The proof for this H, as a result."""
         hamiltonian, scheme = self.exact_hamiltonian(), get(self.scheme)
         begun = time.perf_counter()
+        if not hamiltonian.planar:
+            found = in_degrees(hamiltonian, scheme)
+            return found.model_copy(update={"seconds": time.perf_counter() - begun})
         step_map = scheme.step_map(hamiltonian)
         proof = prove(step_map, scheme)
         written = _written(step_map) if self.formulas else dict.fromkeys(_FORMULAS)

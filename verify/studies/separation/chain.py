@@ -20,7 +20,7 @@ from verify.arithmetic.number_system import NumberSystem, UnsupportedError
 from verify.errors import InputError
 from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.computation import step_map_of
+from verify.kernels.step.computation import step_map_of
 from verify.kernels.stepping import KernelRun
 from verify.runs.digits_on_demand import choose, measure
 from verify.runs.estimated import working_digits

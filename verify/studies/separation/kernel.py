@@ -35,10 +35,10 @@ from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels import newton
-from verify.kernels.computation import step_map_of
 from verify.kernels.kernel import PARTIAL, Kernel, Writer
-from verify.kernels.lowering import Lowering
+from verify.kernels.step import newton
+from verify.kernels.step.computation import step_map_of
+from verify.kernels.step.lowering import Lowering
 from verify.schemes.step_map import StepMap
 
 WORKING = frozenset({"lambda", "lambda_plain"})  # with these `verify run` steps in float64, too

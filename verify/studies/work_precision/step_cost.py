@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Sequence
 
 from verify.kernels.kernel import Kernel
-from verify.kernels.lowering import Lowering
+from verify.kernels.step.lowering import Lowering
 from verify.scenes.results.work_precision import CostResult
 from verify.schemes.scheme import Scheme
 

@@ -90,7 +90,7 @@ def sums_for_products(sample: Sample, patch: Patch) -> Sample:
     from verify.kernels.kernel import Writer
 
     kernel_for.cache_clear()
-    patch.setattr(Writer, "product_of_factors", lambda self: self.accumulate("lam", "dj"))
+    patch.setattr(Writer, "product_of_factors", lambda self: self.sum_up("lam", "dj"))
     return sample
 
 

@@ -43,7 +43,7 @@ class NoPatternClaim(RunClaim):
         return ("lambda",)
 
     def _laws(self, scene: Scene) -> list[GrowthTask]:
-        given, starts = scene.hamiltonian_fields(), scene.grid.initial_values if scene.grid else ()
+        given, starts = scene.hamiltonian_fields(), scene.grid.in_the_plane if scene.grid else ()
         return [
             GrowthTask(**given, scheme=self.scheme, q=at.q, p=at.p, digits=_DIGITS) for at in starts
         ]

@@ -113,7 +113,8 @@ def _shifted(
 
 def _values(run: RunResult, delta_j: DeltaJ) -> dict[str, Ball]:
     h = rational_ball(Fraction(run.step_size))
-    first = delta_j(rational_ball(Fraction(run.p)), rational_ball(Fraction(run.q)), h)
+    q, p = map(Fraction, run.plane_start)
+    first = delta_j(rational_ball(p), rational_ball(q), h)
     last = delta_j(ball(run.values["p"]), ball(run.values["q"]), h)
     lam, mse = QUANTITIES["lambda"](run), QUANTITIES["mse"](run)
     return {

@@ -120,7 +120,7 @@ def _some(holds: Sequence[bool | None]) -> Verdict:
 def _error_of(exact: Hamiltonian, run: RunResult) -> _Error:
     if not {"p", "q"} <= set(run.values):  # a scene's run that a proof was given for
         return _Error(run, None, None)
-    p, q, time = Fraction(run.p), Fraction(run.q), Fraction(run.step_size) * run.steps
+    (q, p), time = map(Fraction, run.plane_start), Fraction(run.step_size) * run.steps
     try:
         t0 = Fraction(run.t0)
         solution = exact_solution(exact, p=p, q=q, time=time, digits=_DIGITS, t0=t0)

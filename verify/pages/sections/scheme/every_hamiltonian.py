@@ -28,6 +28,12 @@ def _view(scene: SceneResult, proof: ProofResult, _: str) -> EveryView | None:
 
 def _finding(every: EveryResult) -> Markup:
     found = [sentence(every.reason)]
+    if every.degrees > 1:
+        if every.order is not None and len(every.leading) <= _LONGEST_POTENTIAL:
+            found.append(sentence(Prose(f"That coefficient of S is {every.leading}")))
+        if every.telescopes and every.order is not None:
+            found.append(Markup("Along an orbit it telescopes: it is a Lie derivative."))
+        return Markup(" ").join(found)
     if every.formula:
         found.append(sentence(Prose("It is ", Formula(every.formula))))
     if every.telescopes:

@@ -28,7 +28,9 @@ class ProofView:
         return all(len(text) <= _HALF for text in (*rows, shown.delta_j or ""))
 
 
-def _view(_: SceneResult, proof: ProofResult, __: str) -> ProofView:
+def _view(_: SceneResult, proof: ProofResult, __: str) -> ProofView | None:
+    if proof.form is not None:
+        return None
     jacobian, leading = proof.shown.jacobian, proof.shown.leading or proof.leading
     return ProofView(
         proof=proof,

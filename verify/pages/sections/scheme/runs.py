@@ -20,6 +20,8 @@ _COLUMNS = {
     "delta_j_max": "max |ΔJ|",
     "lambda": "Λ by closed form",
     "lambda_plain": "Λ the plain way",
+    "symplectic_defect_max": "max |S|",
+    "symplectic_defect": "max |W|",
 }
 
 

@@ -1,9 +1,9 @@
 """Implicit Runge–Kutta methods: symplectic by their coefficients.
 
-The unknowns are Z_i = Y_i − z, Y_i the points at which the slopes are taken: Z_i = h Σ a_ij f(z +
-Z_j), and z' = z + h Σ b_i f(z + Z_i). b_i a_ij + b_j a_ji = b_i b_j for all i, j suffices for S ≡ 0,
-for every H in any number of degrees of freedom (Sanz-Serna 1988; Hairer, Lubich, Wanner, Geometric
-Numerical Integration, theorem VI.4.3).
+The unknowns are Z_i = Y_i − z, Y_i the points at which the slopes are taken:
+Z_i = h Σ a_ij f(z + Z_j), and z' = z + h Σ b_i f(z + Z_i). That b_i a_ij + b_j a_ji = b_i b_j for
+all i, j suffices for S ≡ 0, for every H in any number of degrees of freedom (Sanz-Serna 1988;
+Hairer, Lubich, Wanner, Geometric Numerical Integration, theorem VI.4.3).
 """
 
 from collections.abc import Sequence

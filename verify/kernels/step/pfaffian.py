@@ -8,7 +8,7 @@ pair it is S(p_i, q_i).
 from collections.abc import Callable, Sequence
 from itertools import combinations
 
-from verify.kernels.operations import Program
+from verify.kernels.step.operations import Program
 
 Entry = Callable[[int, int], int]  # the index of the entry ab, a < b
 

@@ -7,8 +7,8 @@ from fractions import Fraction
 import gmpy2
 
 from verify.arithmetic.number import Number
-from verify.kernels import newton
-from verify.kernels.operations import Loop, Program
+from verify.kernels.step import newton
+from verify.kernels.step.operations import Loop, Program
 
 _INFIX = {"add": "+", "sub": "-", "mul": "*"}
 _GUARD = 64  # bits of a given root beyond those of the arithmetic

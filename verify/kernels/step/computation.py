@@ -12,12 +12,11 @@ from functools import lru_cache
 from verify.algebra.ring import Poly
 from verify.hamiltonians.coordinates import PLANE
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.increments import increments
-from verify.kernels.program import Evaluator, Program
-from verify.kernels.tangent_map import Tangent, product
+from verify.kernels.step.increments import increments
+from verify.kernels.step.program import Evaluator, Program
+from verify.kernels.step.tangent_map import Tangent, product
 from verify.schemes import get
 from verify.schemes.step_map import StepMap, Substep, h_inside
-
 
 
 @dataclass(frozen=True)
@@ -41,10 +40,10 @@ class Observed:
 @dataclass(frozen=True, eq=False)
 class Computation:
     """`outputs`: the indices of the increments of p and q, `dp` and `dq`, of ΔJ, `dj`, and of det J
-    where it is asked for, `det`; of entries of M and W, too. `power` is the r of κ; `parameters` are
-    those of H; `timed` says whether it depends on t, which is one more input then. `coordinates`
-    name the state; `defect` has the entries of S that are asked for. Nobody writes into the program
-    any more.
+    where it is asked for, `det`; of M's and W's entries, too. `power` is the r of κ; `parameters`
+    are those of H; `timed` says whether it depends on t, which is one more input then.
+    `coordinates` name the state; `defect` has the entries of S that are asked for. Nobody writes
+    into the program any more.
     """
 
     program: Program

@@ -10,13 +10,13 @@ of squares of MᵀΩM's entries above the diagonal.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from itertools import combinations
 
 from verify.hamiltonians.coordinates import PLANE
-from verify.kernels.lowering import Lowering
-from verify.kernels.program import Evaluator, Program
+from verify.kernels.step.lowering import Lowering
+from verify.kernels.step.program import Evaluator, Program
 from verify.schemes.step_map import Substep
 
 _SUMS = ("growth", "growth_top", "det_low", "form_top", "least", "most")
@@ -80,8 +80,10 @@ class Tangent:
         float64, all else is read."""
         known: dict[int, int] = {}
         program = self.program
-        again = {"add": program.add, "mul": program.mul, "neg": program.neg,
-                 "sub": lambda x, y: program.add(x, program.neg(y))}  # fmt: skip
+        again: dict[str, Callable[..., int]] = {
+            "add": program.add, "mul": program.mul, "neg": program.neg,
+            "sub": lambda x, y: program.add(x, program.neg(y)),
+        }  # fmt: skip
         for index in self.main.live(change):
             op = self.main.ops[index]
             if op.kind == "const":
@@ -133,11 +135,15 @@ def statements(change: Sequence[str], coordinates: Sequence[str] = PLANE) -> lis
     return [
         *lines,
         f"f_size = {' + '.join(f'({row})' for row in squares)}",
-        *(_form(coordinates) if size > 2 else ["f_det = m_pp * m_qq - m_pq * m_qp"]),
+        *(_form(coordinates) if size > 2 else [_determinant(*coordinates)]),
         "growth = growth + f_size",
         "if f_size > growth_top: growth_top = f_size",
         "if f_det < det_low: det_low = f_det",
     ]
+
+
+def _determinant(p: str, q: str) -> str:
+    return f"f_det = m_{p}{p} * m_{q}{q} - m_{p}{q} * m_{q}{p}"
 
 
 def _form(coordinates: Sequence[str]) -> list[str]:

@@ -13,12 +13,12 @@ from itertools import combinations
 
 from verify.algebra.ring import Poly
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.computation import Computation, Observed, step_map_of
-from verify.kernels.degrees.pfaffian import Pfaffian, change_of_volume
-from verify.kernels.degrees.program_algebra import ProgramAlgebra
-from verify.kernels.partials import Partials
-from verify.kernels.program import Evaluator, Program
-from verify.kernels.tangent_map import Tangent
+from verify.kernels.step.computation import Computation, Observed, step_map_of
+from verify.kernels.step.partials import Partials
+from verify.kernels.step.pfaffian import Pfaffian, change_of_volume
+from verify.kernels.step.program import Evaluator, Program
+from verify.kernels.step.program_algebra import ProgramAlgebra
+from verify.kernels.step.tangent_map import Tangent
 from verify.proof.symplectic.closed_defect import ClosedDefect
 from verify.schemes import get
 from verify.schemes.degrees import map_in_degrees
@@ -33,6 +33,13 @@ def map_of(hamiltonian: Hamiltonian, scheme: str) -> StepMap | CanonicalMap:
     the next that asks."""
     planar = hamiltonian.planar
     return step_map_of(hamiltonian, scheme) if planar else _in_degrees(hamiltonian, scheme)
+
+
+def preserves(step_map: StepMap | CanonicalMap) -> bool:
+    """Whether ΔJ ≡ 0 is shown; in n degrees of freedom S ≡ 0."""
+    if isinstance(step_map, StepMap):
+        return step_map.preserves_area
+    return ClosedDefect.of(step_map).vanishes
 
 
 @lru_cache(maxsize=32)

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from verify.hamiltonians.canonical_field import CanonicalField
-from verify.kernels.increments import increments
-from verify.kernels.operations import Loop
-from verify.kernels.partials import Partials
-from verify.kernels.program import Evaluator, Program
+from verify.kernels.step.increments import increments
+from verify.kernels.step.operations import Loop
+from verify.kernels.step.partials import Partials
+from verify.kernels.step.program import Evaluator, Program
 from verify.schemes.degrees.step_algebra import Number, StepAlgebra
 
 _ZERO = Fraction(0)

@@ -1,4 +1,4 @@
-"""Polynomials in generators → a straight-line program (`verify.kernels.operations`): nothing twice.
+"""Polynomials in generators → a straight-line program, in which nothing is made twice.
 
 A polynomial in p and q keeps one coefficient per monomial, whatever h and the parameters look like
 inside it, since what is static is computed once before the loop.
@@ -13,9 +13,9 @@ import flint
 
 from verify.algebra.generator import Generator, System, terms_of
 from verify.algebra.ring import Poly, Ring
-from verify.kernels.operations import Loop, Tail
-from verify.kernels.operations import Op as Op
-from verify.kernels.operations import Program as Program
+from verify.kernels.step.operations import Loop, Tail
+from verify.kernels.step.operations import Op as Op
+from verify.kernels.step.operations import Program as Program
 
 _MOST_VARIABLES = 4  # of which all orders are tried for nested evaluation
 

@@ -7,7 +7,7 @@ as derivatives, and no operation is written twice, so that they cost little besi
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 
-from verify.kernels.operations import Op, Program
+from verify.kernels.step.operations import Op, Program
 
 Gradient = Mapping[int, int]  # by input, of what is not 0
 
@@ -85,7 +85,5 @@ _SLOPES: Mapping[str, Callable[[Program, int, int], int]] = {
     "sinh": lambda made, x, y: made.apply("cosh", x),
     "cosh": lambda made, x, y: made.apply("sinh", x),
     "inverse": lambda made, x, y: made.neg(made.mul(y, y)),
-    "atan": lambda made, x, y: made.apply(
-        "inverse", made.add(made.quotient(1, 1), made.mul(x, x))
-    ),
+    "atan": lambda made, x, y: made.apply("inverse", made.add(made.quotient(1, 1), made.mul(x, x))),
 }

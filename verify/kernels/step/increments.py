@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property, partial
 
 from verify.algebra.ring import Poly, Ring
-from verify.kernels.program import Evaluator
+from verify.kernels.step.program import Evaluator
 from verify.schemes.substep import h_inside
 
 _MOST = 12  # times a value is added to itself at most

@@ -1,0 +1,40 @@
+"""What a run is of, and where it begins."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from verify.arithmetic.exact import text
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.start import point_of
+from verify.scenes.results.run import RunResult
+
+
+@dataclass(frozen=True)
+class Start:
+    """A scheme's step of one size, from `point`, each coordinate's value by its name, at t0 where H
+    depends on time."""
+
+    hamiltonian: Hamiltonian
+    scheme: str
+    step_size: Fraction
+    point: Mapping[str, Fraction]
+    t0: Fraction
+
+    @classmethod
+    def of(cls, result: RunResult) -> "Start":
+        """That of a run that was done."""
+        hamiltonian = Hamiltonian.parse(result.hamiltonian, result.parameters)
+        point = point_of(hamiltonian, result.q, result.p)
+        step_size, t0 = Fraction(result.step_size), Fraction(result.t0)
+        return cls(hamiltonian, result.scheme, step_size, point, t0)
+
+    @property
+    def inputs(self) -> dict[str, Fraction]:
+        """What a kernel's run begins with."""
+        return {**self.point, "h": self.step_size, "t": self.t0}
+
+    def text(self, letter: str) -> str | tuple[str, ...]:
+        """q or p as it is shown: a number, or a list in n degrees of freedom."""
+        own = tuple(text(x) for name, x in self.point.items() if name[0] == letter)
+        return own[0] if self.hamiltonian.planar else own
