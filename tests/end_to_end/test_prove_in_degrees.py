@@ -1,5 +1,7 @@
 """`verify prove` in several degrees of freedom: its JSON, its text and its exit status."""
 
+from pathlib import Path
+
 import pytest
 
 import verify
@@ -56,8 +58,6 @@ def test_long_forms_are_named_and_not_written_out(capsys: pytest.CaptureFixture[
     [
         ((*ONE, "--scheme", OWN), 1, "REFUTED: p1_next = p1; "),
         ((*ONE, "--scheme", "p_next = p; q_next = q"), 2, "in one degree of freedom only"),
-        ((*ONE, "--scheme", "lie2", "--certificate", "c.json"), 2, "there is none of several yet"),
-        ((*EVERY, "--scheme", "lie2", "--certificate", "c.json"), 2, "there is none of several"),
         ((*EVERY[:-1], "33", "--scheme", "lie2"), 2, "--degrees=33: must be 1 … 32"),
         ((*EVERY[:-1], "20", "--scheme", "lie2"), 2, "derivatives of H would be needed"),
         ((*EVERY[:-1], "x", "--scheme", "lie2"), 2, "--degrees=x"),
@@ -70,6 +70,25 @@ def test_what_is_refused(
     found, out, err = here(capsys, *typed)
     assert (found, said in out + err) == (status, True)
     assert status < 2 or err.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("typed", "said"),
+    [
+        ((*ONE, "--scheme", "lie2"), "for this H and this map"),
+        ((*ONE, "--scheme", "stormer-verlet"), "= 0 for every smooth H = T(p) + V(q) in 2"),
+        ((*EVERY, "--scheme", "lie2"), "every smooth H in 2 degrees of freedom"),
+    ],
+)
+def test_certificates_are_written_and_checked(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, typed: tuple[str, ...], said: str
+) -> None:
+    path = str(tmp_path / "c.json")
+    assert here(capsys, *typed, "--certificate", path)[0] == 0
+    status, out, _ = here(capsys, "certificate", "check", path)
+    assert (status, said in out) == (0, True)
+    found = json_of(here(capsys, "certificate", "check", path, "--json")[1])
+    assert (found["accepted"], found["degrees"]) == (True, 2)
 
 
 @pytest.mark.parametrize("command", ["separate", "stability"])

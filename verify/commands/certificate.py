@@ -39,8 +39,8 @@ def _print(found: "Established") -> None:
     click.echo(f"holds: {found.statement}")
     lines = {
         "H": found.hamiltonian,
-        "p'": found.p_next,
-        "q'": found.q_next,
+        **_numbered("p", found.p_next),
+        **_numbered("q", found.q_next),
         "L": found.leading,
         "G": found.potential,
         "map": found.scheme,
@@ -50,3 +50,10 @@ def _print(found: "Established") -> None:
         if text:
             cut = f"{text[:_LONGEST]} … ({len(text):,} characters; all of it with --json)"
             click.echo(f"  {name:<5}  {text if len(text) <= _LONGEST else cut}")
+
+
+def _numbered(letter: str, formulas: str | tuple[str, ...]) -> dict[str, str]:
+    """The formulas of new values by what they are called: p', or p1', p2', …."""
+    if isinstance(formulas, str):
+        return {f"{letter}'": formulas}
+    return {f"{letter}{k}'": text for k, text in enumerate(formulas, start=1)}

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from verify.proof.order_proof import Proof
     from verify.proof.potential import Potential
     from verify.proof.special_values import SpecialValue
+    from verify.proof.symplectic.proof import SymplecticProof
     from verify.schemes.scheme import Scheme
 
 
@@ -138,15 +139,34 @@ def _prove_in_degrees(exact: "Hamiltonian", scheme: str, certificate: Path | Non
     from verify.proof.symplectic.order import prove_symplectic
     from verify.schemes import get
 
-    _check_certificate(certificate)
     begun, chosen = time.perf_counter(), get(scheme)
     proof = prove_symplectic(exact, chosen)
     seconds = f"{time.perf_counter() - begun:.6f}"
+    if certificate is not None:
+        _write(_certificate_in_degrees(proof, exact, chosen), certificate)
     return Answer(
         lambda: symplectic_json(exact.texts, chosen.name, proof, seconds),
         lambda: print_symplectic(exact.texts, chosen.name, proof),
         failed=proof.verdict == "REFUTED",
     )
+
+
+def _certificate_in_degrees(
+    proof: "SymplecticProof", exact: "Hamiltonian", scheme: "Scheme"
+) -> dict[str, Any]:
+    """Of this proof; or of that for every H, as `_certificate`."""
+    from verify.proof.certificates.several import of_every_in_degrees, of_one_in_degrees
+    from verify.proof.symplectic.every import prove_every_in_degrees
+
+    try:
+        return of_one_in_degrees(proof, exact, scheme)
+    except InputError as error:
+        if scheme.every_h is None or proof.verdict != "PROVED":
+            raise
+        click.echo(f"the certificate is of the proof for every H: {error}", err=True)
+        timed = exact.time_dependent
+        every = prove_every_in_degrees(scheme.name, exact.degrees, timed=timed)
+        return of_every_in_degrees(every, scheme, separable=False, timed=timed)
 
 
 def _every_in_degrees(
@@ -157,22 +177,20 @@ def _every_in_degrees(
     from verify.proof.symplectic.every import prove_every_in_degrees, quantifier
     from verify.schemes import get
 
-    _check_certificate(certificate)
     begun, chosen = time.perf_counter(), get(scheme)
     proof = prove_every_in_degrees(chosen.name, degrees, separable=separable, timed=timed)
     seconds = f"{time.perf_counter() - begun:.6f}"
+    if certificate is not None:
+        from verify.proof.certificates.several import of_every_in_degrees
+
+        made = of_every_in_degrees(proof, chosen, separable=separable, timed=timed)
+        _write(made, certificate)
     texts = {"hamiltonian": quantifier(chosen, degrees, separable=separable, timed=timed)}
     return Answer(
         lambda: symplectic_json(texts, chosen.name, proof, seconds),
         lambda: print_symplectic(texts, chosen.name, proof),
         failed=proof.verdict == "REFUTED",
     )
-
-
-def _check_certificate(certificate: Path | None) -> None:
-    if certificate is not None:
-        problem = "is of one degree of freedom, p and q; there is none of several yet"
-        raise InputError("--certificate", str(certificate), problem)
 
 
 def _special_json(special: "SpecialValue") -> dict[str, Any]:

@@ -1,8 +1,9 @@
 """Checks a certificate with the standard library alone; it shares nothing with the prover.
 
-**Theorem** (what acceptance proves). Let X f = H_p f_q − H_q f_p for a function H of p and q. With
-`time_dependent` it is one of t, too, and in all that follows X stands for D = ∂_t + X, "flow" for
-that from t to t + h, and J and each identity are taken at one t, which is any.
+**Theorem** (what acceptance proves). Let X f = H_p f_q − H_q f_p for a function H of p and q; with
+`degrees` that is summed over p_i and q_i. With `time_dependent` H is one of t, too, and in all that
+follows X stands for D = ∂_t + X, "flow" for that from t to t + h, and J and each identity are taken
+at one t, which is any.
 
 *Of one H*, a polynomial in p, q, parameters and functions. Where no denominator among them is 0,
 which is so at the witness: for every map p' = Σ p_n hⁿ + O(h^(m+1)), q' likewise, with the `p_next`
@@ -16,32 +17,43 @@ and `q_next` of the certificate and a smooth remainder, m the larger of `order` 
 
 With `order` null, for the map p' = Σ p_n hⁿ, q' = Σ q_n hⁿ without a remainder: 1, and det J = 1.
 
+With `degrees`, the same with S = JᵀΩJ − Ω in place of det J − 1 and 2-forms in place of L and G:
+2. S = L h^r + O(h^(r+1)), an entry of L being other than 0 at the witness; 3. the Lie derivative of
+G is L. With `order` null: S = 0, and the map is symplectic.
+
 *Of every H* (`separable`: every H = T(p) + V(q)), the same for each smooth H at every point; L is
-a polynomial in p, q and the derivatives of H that is not 0, and so is not 0 for some H.
+a polynomial in p, q and the derivatives of H that is not 0, and so is not 0 for some H. (Of a
+2-form, one of its entries is.)
 
 *Of stages*, for every H: det J = 1 for each smooth map (p, q) ↦ (p', q') that solves
 p' = p − h k H_q, q' = q + h d H_p at (p + s (p' − p), q + u (q' − q)), wherever the derivatives of
 these equations by (p', q') have a determinant det A ≠ 0; and so for one stage after the other. With
-`time_dependent` a stage has one time, t + c h with c any, at which both H_q and H_p are taken.
+`time_dependent` a stage has one time, t + c h with c any, at which both H_q and H_p are taken. With
+`degrees`, S = 0 in so many degrees of freedom.
 
 **Proof.** Names are differentiated by the rules for what they stand for, and the relations are true
 of that (sin² + cos² = 1, u · 1/u = 1): an identity up to Σ cofactor · relation is one of functions.
 For every H its derivatives are free: an identity of polynomials in them holds for each H, and at a
-point they take any values. With t as a coordinate, t' = 1, the flow is that of D. For the stages
-see `_preserves`: at its own time the H of each is a function of p and q.
+point they take any values. With t as a coordinate, t' = 1, the flow is that of D. The entry ab of S
+is Σ_i (p_i',a q_i',b − p_i',b q_i',a) less that of Ω; in the plane its one entry is det J − 1, and
+the Lie derivative of G dp∧dq is (X·G) dp∧dq, as X preserves dp∧dq. For the stages see `_preserves`:
+at its own time the H of each is a function of p and q.
 """
 
 from collections.abc import Iterable
 from fractions import Fraction
+from itertools import combinations
 from math import factorial
 
 from verify.proof.certificates.balls import Ball, function, plus, times
 from verify.proof.certificates.entries import (
     Expansion,
+    Form,
     Monomial,
     Poly,
     Stages,
     collected,
+    derived_by,
     need,
     read,
 )
@@ -75,21 +87,30 @@ def single(name: str) -> Poly:
 
 
 def _preserves(k: Fraction, d: Fraction, s: Fraction, u: Fraction, *, separable: bool) -> bool:
-    """Whether det J = 1 of a stage for every H.
+    """Whether det J = 1 of a stage for every H; with `degrees`, whether S = 0.
 
     A J = B by implicit differentiation: both are I + h E D with det A = 1 + h b (k s − d u) +
     h² k d s u (a c − b²), a, b, c = H_pp, H_pq, H_qq there, and det B the same of s − 1 and u − 1.
+
+    In n degrees of freedom: with K = k V + d T for H = T + V, or K = k H for k = d, the stage is
+    that of K with k = d = 1; where k d = 0, what moves does so by a gradient of what does not. With
+    P, Q the point and δ = d(z' − z), dP∧dK_P + dQ∧dK_Q = −d(dK) = 0 leaves
+    dp'∧dq' − dp∧dq = (1 − s − u) δp∧δq.
     """
     return (separable or k == d) and k * d * (1 - s - u) == 0
 
 
 class _Algebra:
-    """∂/∂p, ∂/∂q, ∂/∂t of every name: the free derivatives of H, or functions of arguments."""
+    """The derivatives of every name by the coordinates and t: the free derivatives of H, or
+    functions of arguments."""
 
     def __init__(self, entries: Expansion) -> None:
         self.given = entries
         self.work = 0
-        self.variables = "pqt" if entries.timed else "pq"
+        self.variables = (*entries.coordinates, *("t",) * entries.timed)
+        n = len(entries.coordinates) // 2
+        pairs = zip(entries.coordinates[:n], entries.coordinates[n:], strict=True)
+        self.pairs = list(pairs)
         self.images: dict[str, dict[str, Poly]] = {by: {by: ONE} for by in self.variables}
         self.relations: dict[str, Poly] = {}
         for made in entries.functions:
@@ -97,10 +118,10 @@ class _Algebra:
             self.images[made.name] = {
                 by: self.mul(slope, self.diff(made.argument, by)) for by in self.variables
             }
-        if entries.hamiltonian is None:
-            self.h_p, self.h_q = single("H_p"), single("H_q")
-        else:
-            self.h_p, self.h_q = (self.diff(entries.hamiltonian, by) for by in "pq")
+        self.slopes: dict[str, Poly] = {}  # of H, by each coordinate
+        for by in entries.coordinates:
+            h = entries.hamiltonian
+            self.slopes[by] = single(f"H_{by}") if h is None else self.diff(h, by)
 
     def slope(self, name: str, kind: str, u: Poly) -> Poly:
         """The derivative of the function by its argument; a relation that it obeys is noted."""
@@ -121,9 +142,9 @@ class _Algebra:
     def image(self, name: str, by: str) -> Poly:
         if name in self.images or not name.startswith("H_"):
             return self.images.get(name, {}).get(by, {})  # a parameter has none
-        i, j, k = (name.count(x) + (by == x) for x in "pqt")
-        mixed = self.given.separable and i and j
-        return {} if mixed else single("H_" + "p" * i + "q" * j + "t" * k)
+        derived = sorted([*derived_by(name), by], key=self.variables.index)
+        mixed = len({x[0] for x in derived} & {"p", "q"}) == 2
+        return {} if self.given.separable and mixed else single("H_" + "".join(derived))
 
     def add(self, x: Poly, y: Poly, scale: Fraction | int = 1) -> Poly:
         return self.sum_of([*x.items(), *((m, scale * c) for m, c in y.items())])
@@ -141,8 +162,10 @@ class _Algebra:
 
     def along_flow(self, x: Poly) -> Poly:
         """X x, or D x."""
-        by_q, by_p = self.mul(self.h_p, self.diff(x, "q")), self.mul(self.h_q, self.diff(x, "p"))
-        slope = self.add(by_q, by_p, -1)
+        slope: Poly = {}
+        for p, q in self.pairs:
+            slope = self.add(slope, self.mul(self.slopes[p], self.diff(x, q)))
+            slope = self.add(slope, self.mul(self.slopes[q], self.diff(x, p)), -1)
         return self.add(slope, self.diff(x, "t")) if self.given.timed else slope
 
     def sum_of(self, terms: Iterable[Term]) -> Poly:
@@ -172,20 +195,20 @@ class Identities(_Algebra):
             (given.order is None) == (not given.leading),
             "order, leading: one says that det J is 1, and one that it is not",
         )
-        length = max(map(len, (given.p_next, given.q_next)))
+        length = max(map(len, given.after))
         last = given.last
-        need(last is None or length <= last + 1, "p_next, q_next: are longer than is said of them")
+        said = "p_next, q_next" if given.planar else "next"
+        need(last is None or length <= last + 1, f"{said}: are longer than is said of them")
         self.check_flow()
-        self.check_determinant(given.order or 2 * length)
+        self.check_defect(given.order or 2 * length)
         if given.potential is not None:
-            slope = self.along_flow(given.potential)
-            self.zero(self.add(slope, given.leading, -1), "potential")
+            self.check_potential(given.potential)
         unused = min(self.cofactors, default="")
         need(not self.cofactors, f"cofactors: nothing asks for {unused!a}")
         self.check_witness()
 
     def check_flow(self) -> None:
-        for by, series in (("p", self.given.p_next), ("q", self.given.q_next)):
+        for by, series in zip(self.given.coordinates, self.given.after, strict=True):
             flow = single(by)
             for n in range(self.given.convergence_order + 1):
                 if n:
@@ -193,20 +216,41 @@ class Identities(_Algebra):
                 gap = self.add(_at(series, n), flow, Fraction(-1, factorial(n)))
                 self.zero(gap, f"{by} {n}")
 
-    def check_determinant(self, last: int) -> None:
-        """Up to h^last; that of h⁰ is 1, as the map there is (p, q)."""
-        given = self.given
-        slopes = [
-            [(self.diff(c, "p"), self.diff(c, "q")) for c in series[: last + 1]]
-            for series in (given.p_next, given.q_next)
-        ]
+    def check_defect(self, last: int) -> None:
+        """Up to h^last; that of h⁰ is 0, as the map there is the identity."""
+        given, after = self.given, dict(zip(self.given.coordinates, self.given.after, strict=True))
+        slopes = {
+            (of, by): [self.diff(c, by) for c in series[: last + 1]]
+            for of, series in after.items()
+            for by in given.coordinates
+        }
         for n in range(1, last + 1):
-            det = self.add({}, given.leading if n == given.order else {}, -1)
-            for k, (p_p, p_q) in enumerate(slopes[0][: n + 1]):
-                if n - k < len(slopes[1]):
-                    q_p, q_q = slopes[1][n - k]
-                    det = self.add(self.add(det, self.mul(p_p, q_q)), self.mul(p_q, q_p), -1)
-            self.zero(det, f"det {n}")
+            for a, b in combinations(given.coordinates, 2):
+                expected = given.leading.get((a, b), {}) if n == given.order else {}
+                gap = self.add({}, expected, -1)
+                for p, q in self.pairs:
+                    both = (slopes[p, a], slopes[q, b]), (slopes[p, b], slopes[q, a])
+                    for (x, y), sign in zip(both, (1, -1), strict=True):
+                        for k in range(max(0, n - len(y) + 1), min(n + 1, len(x))):
+                            gap = self.add(gap, self.mul(x[k], y[n - k]), sign)
+                self.zero(gap, f"det {n}" if given.planar else f"S {n} {a} {b}")
+
+    def check_potential(self, potential: Form) -> None:
+        """That its Lie derivative is L: X G_ab + Σ_c (f_c,a G_cb + G_ac f_c,b), f = (−H_q, H_p)."""
+        given = self.given
+
+        def at(a: str, b: str) -> Poly:
+            turned = (a, b) not in potential and (b, a) in potential
+            return self.add({}, potential[b, a], -1) if turned else potential.get((a, b), {})
+
+        field = {p: self.add({}, self.slopes[q], -1) for p, q in self.pairs}
+        field |= {q: self.slopes[p] for p, q in self.pairs}
+        for a, b in combinations(given.coordinates, 2):
+            gap = self.add(self.along_flow(at(a, b)), given.leading.get((a, b), {}), -1)
+            for c, slope in () if given.planar else field.items():  # there they cancel
+                gap = self.add(gap, self.mul(self.diff(slope, a), at(c, b)))
+                gap = self.add(gap, self.mul(at(a, c), self.diff(slope, b)))
+            self.zero(gap, "potential" if given.planar else f"potential {a} {b}")
 
     def check_witness(self) -> None:
         """That there is a point where all functions have a value, and L another than 0."""
@@ -218,8 +262,9 @@ class Identities(_Algebra):
         for name in inverses:
             self.value_of(name)
         if self.given.leading:
-            middle, radius = self.value(self.given.leading)
-            need(abs(middle) > radius, "the leading coefficient may be 0 at the witness")
+            balls = (self.value(x) for x in self.given.leading.values())
+            seen = any(abs(middle) > radius for middle, radius in balls)
+            need(seen, "the leading coefficient may be 0 at the witness")
 
     def zero(self, x: Poly, what: str) -> None:
         for name, cofactor in self.cofactors.pop(what, {}).items():

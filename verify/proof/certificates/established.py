@@ -8,10 +8,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from verify.proof.certificates.entries import Expansion, Monomial, Poly, Stages, need
+from verify.proof.certificates.entries import Expansion, Form, Monomial, Poly, Stages, need
 
 _LONGEST = 1_000_000  # characters of a formula with its functions written out
 _ALMOST = "L does not vanish identically in p and q"
+_SYMPLECTIC = "S = JᵀΩJ − Ω"
 _WHICH = {  # H, by (separable, timed)
     (False, False): "every smooth H",
     (True, False): "every smooth H = T(p) + V(q)",
@@ -26,20 +27,24 @@ class Established:
 
     `hamiltonian`: the one H, or which. `order`: of ΔJ = det J − 1, whose coefficient is `leading`;
     None, with `area_preserving`: det J = 1. `agrees`: the map does so with the flow up to this
-    power of h; None where nothing is said. `scheme`: where the entries are those of one.
+    power of h; None where nothing is said. `scheme`: where the entries are those of one. In n
+    `degrees` of freedom `order` and `leading` are those of S, `symplectic` says whether that is 0,
+    and the map is a formula for each coordinate.
     """
 
     statement: str
     scheme: str | None
     hamiltonian: str
-    p_next: str
-    q_next: str
-    area_preserving: bool
+    p_next: str | tuple[str, ...]
+    q_next: str | tuple[str, ...]
+    area_preserving: bool | None
     order: int | None
     leading: str | None
     potential: str | None
     convergence_order: int | None
     domain: tuple[str, ...]
+    degrees: int = 1
+    symplectic: bool | None = None
 
 
 def established(entries: Stages | Expansion) -> Established:
@@ -54,7 +59,9 @@ def _of_stages(entries: Stages) -> Established:
     times = [""] * len(entries.rows)
     if entries.times is not None:
         times = [f", t + ({c})*h" if c else ", t" for c in entries.times]
-    which = _WHICH[entries.separable, entries.times is not None]
+    which, what = _WHICH[entries.separable, entries.times is not None], "det J = 1"
+    if entries.degrees is not None:
+        which, what = f"{which} in {entries.degrees} degrees of freedom", f"{_SYMPLECTIC} = 0"
     p, q, p_next, q_next, implicit = "p", "q", [], [], False
     for n, ((kick, drift, at_p, at_q), time) in enumerate(zip(entries.rows, times, strict=True), 1):
         p_new, q_new = f"p{n}", f"q{n}"
@@ -65,7 +72,7 @@ def _of_stages(entries: Stages) -> Established:
         implicit |= bool(mixed or kick * drift * at_p * at_q)  # else det A is 1
         p, q = p_new, q_new
     return Established(
-        statement=f"det J = 1 for {which} and the scheme of these stages",
+        statement=f"{what} for {which} and the scheme of these stages",
         scheme=f"(p, q) ↦ ({p}, {q})",
         hamiltonian=which,
         p_next="; ".join(p_next),
@@ -76,6 +83,8 @@ def _of_stages(entries: Stages) -> Established:
         potential=None,
         convergence_order=None,
         domain=("the stages have a solution that depends smoothly on (p, q)",) * implicit,
+        degrees=entries.degrees or 1,
+        symplectic=True,
     )
 
 
@@ -87,39 +96,55 @@ def _between(start: str, end: str, share: Fraction) -> str:
 
 def _of_expansion(entries: Expansion) -> Established:
     written = _Writer(entries)
-    which = _WHICH[entries.separable, entries.timed]
+    which, degrees = _WHICH[entries.separable, entries.timed], len(entries.coordinates) // 2
+    what, less = ("det J", "det J − 1") if entries.planar else (_SYMPLECTIC, _SYMPLECTIC)
+    if not entries.planar:
+        which = f"{which} in {degrees} degrees of freedom"
     of_one = entries.hamiltonian is not None
     agreed, order = entries.convergence_order, entries.order
-    area = "det J = 1"
+    area = f"{what} = {1 if entries.planar else 0}"
     if order is not None:
         where = "" if of_one else " for some H"
-        area = f"det J − 1 = L h^{order} + O(h^{order + 1}), L not zero{where}"
-    along = "D·G, D = ∂/∂t + X" if entries.timed else "X·G"
-    telescopes = "" if entries.potential is None else f", and L = {along}"
-    flow = f"which agrees with the flow up to h^{agreed}{telescopes}"
+        area = f"{less} = L h^{order} + O(h^{order + 1}), L not zero{where}"
+    flow = f"which agrees with the flow up to h^{agreed}{_telescopes(entries)}"
+    formulas = [written.series(x, entries.last) for x in entries.after]
+    p_next: str | tuple[str, ...] = formulas[0] if entries.planar else tuple(formulas[:degrees])
+    q_next: str | tuple[str, ...] = formulas[1] if entries.planar else tuple(formulas[degrees:])
     return Established(
         statement=f"{area}, for {'this H' if of_one else which} and this map, {flow}",
         scheme=_taylor_series(entries),
         hamiltonian=which if entries.hamiltonian is None else written.poly(entries.hamiltonian),
-        p_next=written.series(entries.p_next, entries.last),
-        q_next=written.series(entries.q_next, entries.last),
-        area_preserving=order is None,
+        p_next=p_next,
+        q_next=q_next,
+        area_preserving=order is None if entries.planar or order is None else None,
         order=order,
-        leading=None if order is None else written.poly(entries.leading),
-        potential=None if entries.potential is None else written.poly(entries.potential),
+        leading=None if order is None else written.form(entries.leading),
+        potential=None if entries.potential is None else written.form(entries.potential),
         convergence_order=agreed,
         domain=(
             *(f"{written.poly(f.argument)} != 0" for f in entries.functions if f.kind == "inverse"),
             # L is not zero as a polynomial in the parameters, too; for some of them it may be.
             *([_ALMOST] if order is not None and entries.parameters else []),
         ),
+        degrees=degrees,
+        symplectic=order is None,
     )
+
+
+def _telescopes(entries: Expansion) -> str:
+    """What is said of L by the potential."""
+    if entries.potential is None:
+        return ""
+    by = "D = ∂/∂t + X" if entries.timed else "X"
+    if entries.planar:
+        return f", and L = {'D' if entries.timed else 'X'}·G{', ' + by if entries.timed else ''}"
+    return f", and L is the Lie derivative of G{' by ' + by if entries.timed else ''}"
 
 
 def _taylor_series(entries: Expansion) -> str | None:
     """The flow's own series, where that is all there is of the map."""
     agreed = entries.convergence_order
-    beyond = [c for series in (entries.p_next, entries.q_next) for c in series[agreed + 1 :] if c]
+    beyond = [c for series in entries.after for c in series[agreed + 1 :] if c]
     if beyond or (entries.last is not None and entries.last <= agreed):
         return None
     up_to = "" if entries.last is None else f", up to O(h^{entries.last + 1})"
@@ -130,6 +155,7 @@ class _Writer:
     """Polynomials in names as formulas; a function stands written out in the place of its name."""
 
     def __init__(self, entries: Expansion) -> None:
+        self.planar = entries.planar
         self.functions: dict[str, str] = {}
         self.below: dict[str, str] = {}  # what 1/u divides by
         for made in entries.functions:
@@ -147,6 +173,12 @@ class _Writer:
             need(length <= _LONGEST, "a formula is too long to be written out")
         text = " ".join(terms) or "0"
         return text.removeprefix("+ ") if text[0] != "-" else f"-{text[2:]}"
+
+    def form(self, x: Form) -> str:
+        """A 2-form, entry by entry; in the plane that of dp∧dq alone."""
+        if self.planar:
+            return self.poly(next(iter(x.values()), {}))
+        return " + ".join(f"({self.poly(c)})*d{a}∧d{b}" for (a, b), c in x.items()) or "0"
 
     def _term(self, names: Monomial, c: Fraction) -> str:
         above: list[str] = []

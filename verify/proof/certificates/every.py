@@ -57,7 +57,7 @@ def of_every(proof: EveryProof) -> Certificate:
     if isinstance(stages, StageEquations) and proof.area_preserving:
         rows = [[*map(str, (s.kick, s.drift, s.at_p, s.at_q))] for s in stages.stages]
         if proof.timed:
-            rows = [[*row, time] for row, time in zip(rows, _clock(scheme), strict=True)]
+            rows = [[*row, time] for row, time in zip(rows, clock_of(scheme), strict=True)]
         return data | {"stages": rows}
     if proof.order is None or not isinstance(every_h, BySeries):
         raise InputError("scheme", proof.scheme, _BY_COEFFICIENTS)
@@ -85,7 +85,7 @@ def _potential(jets: JetRing, every_h: BySeries, leading: Poly) -> Poly | None:
     return potential_of_lie(jets, every_h.eta) if isinstance(every_h, TaylorSeries) else None
 
 
-def _clock(scheme: Scheme) -> list[str]:
+def clock_of(scheme: Scheme) -> list[str]:
     """The time of each stage, in parts of h."""
     found = conditions_for(scheme.every_h).clock
     if not all(time.is_Rational for time in found):

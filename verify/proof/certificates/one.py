@@ -13,6 +13,7 @@ import sympy
 from verify.algebra.generator import terms_of
 from verify.algebra.ring import Poly, Ring
 from verify.errors import NOT_GIVEN, InputError
+from verify.hamiltonians.coordinates import PLANE
 from verify.proof.certificates.checker import see_witness
 from verify.proof.certificates.every import map_of, terms
 from verify.proof.certificates.file import FORMAT, Certificate
@@ -45,9 +46,9 @@ def of_one(proof: Proof, potential: Potential) -> Certificate:
         potential.potential or sympy.S.Zero,
     ]
     field, elements = hamiltonian.field(*asked)
-    plain = _Plain(field.ring)
+    plain = Plain(field.ring, PLANE)
     _, p_next, q_next, leading, _ = elements
-    h = plain.without_constants(elements[0], "pq")
+    h = plain.without_constants(elements[0])
     potential_ = plain.without_constants(elements[4], plain.variables)
     needed = max(proof.order or 0, proof.convergence_order) if proof.order else None
     series = [_coefficients(plain.ring, x)[: needed and needed + 1] for x in (p_next, q_next)]
@@ -64,7 +65,7 @@ def of_one(proof: Proof, potential: Potential) -> Certificate:
     }
     if proof.order is not None and potential.potential is not None:
         data["potential"] = terms(potential_, plain.names)
-    data["witness"] = _witness(data, proof.witness)
+    data["witness"] = witness_of(data, PLANE, proof.witness)
     data["cofactors"] = {
         what: plain.cofactors(x)
         for what, x in _zeros(plain, data, h, series, leading, potential_)
@@ -73,10 +74,12 @@ def of_one(proof: Proof, potential: Potential) -> Certificate:
     return data
 
 
-def _witness(data: Certificate, known: Mapping[str, Fraction]) -> dict[str, str]:
+def witness_of(
+    data: Certificate, coordinates: tuple[str, ...], known: Mapping[str, Fraction]
+) -> dict[str, str]:
     """A point at which the checker sees what is not 0: the proof's own, or one that is tried."""
     timed = ("t",) if data.get("time_dependent") else ()
-    names = ("p", "q", *timed, *data["parameters"])
+    names = (*coordinates, *timed, *data["parameters"])
     for k in range(_TRIED):
         tried = {name: Fraction(7 + 4 * k + i, 17 + 2 * i) for i, name in enumerate(names)}
         at = {name: str(known.get(name, value)) for name, value in tried.items()}
@@ -97,12 +100,13 @@ def _coefficients(ring: Ring, x: Poly) -> list[Poly]:
     return [powers.get(n, ring.zero) for n in range(max(powers, default=0) + 1)]
 
 
-class _Plain:
-    """A ring's polynomials with ∂/∂p, ∂/∂q, ∂/∂t by the chain rule, and nothing reduced."""
+class Plain:
+    """A ring's polynomials with derivatives by the coordinates and t by the chain rule, and nothing
+    reduced."""
 
-    def __init__(self, ring: Ring) -> None:
-        self.ring = ring
-        self.variables = "pqt" if "t" in ring.variables else "pq"
+    def __init__(self, ring: Ring, coordinates: tuple[str, ...]) -> None:
+        self.ring, self.coordinates = ring, coordinates
+        self.variables = (*coordinates, *("t",) * ("t" in ring.variables))
         self.names = {
             g.index: str(g.expression) if g.kind == "variable" else f"#{g.index}"
             for g in ring.generators
@@ -133,8 +137,9 @@ class _Plain:
                 total += x.derivative(index) * image[by]
         return total
 
-    def without_constants(self, x: Poly, variables: str) -> Poly:
-        """Without the terms that depend on none of these variables."""
+    def without_constants(self, x: Poly, variables: tuple[str, ...] = ()) -> Poly:
+        """Without the terms that depend on none of these variables, or of the coordinates."""
+        variables = variables or self.coordinates
         terms = {m: c for m, c in terms_of(x) if any(self._has(m, by) for by in variables)}
         return self.ring.context.from_dict(terms)
 
@@ -155,7 +160,7 @@ class _Plain:
 
 
 def _zeros(
-    plain: _Plain,
+    plain: Plain,
     data: Certificate,
     h: Poly,
     series: list[list[Poly]],

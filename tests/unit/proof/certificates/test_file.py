@@ -372,7 +372,7 @@ def test_the_checker_is_small_and_imports_nothing_of_the_provers() -> None:
             elif isinstance(node, ast.ImportFrom):
                 imported.add(node.module or "")
     own = {f"verify.proof.certificates.{name}" for name in ("entries", "balls")}
-    assert lines <= 600
+    assert lines <= 700
     assert {x.partition(".")[0] for x in imported - own} <= set(sys.stdlib_module_names)
 
 
