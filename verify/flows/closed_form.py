@@ -4,7 +4,7 @@ A ball holds the exact solution whatever the precision, and is wide or not finit
 lost: near a separatrix, after a long time, close to a blow-up. Then the precision is doubled.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TypeVar
@@ -106,11 +106,31 @@ def ends_after(motion: Motion, time: Fraction) -> None:
         raise NoFlowError(f"the exact solution blows up at t = {'−' if time < 0 else ''}`{told}`")
 
 
+def many_on_grid(
+    state: Sequence[arb], start: Sequence[Fraction], digits: int
+) -> tuple[list[Fraction], Fraction] | None:
+    """So many numbers on a grid of the digits asked for, relative to the largest of them and of the
+    start, with a bound of their errors; None where their balls are wider."""
+    least = arb(exactly(max(map(abs, start))))
+    return _grid(state, least, digits)
+
+
 def _on_grid(state: State, least: arb, digits: int) -> Evaluation | None:
     """The state on a grid of the digits asked for, where its balls are no wider."""
+    found = _grid(state, least, digits)
+    if found is None:
+        return None
+    (p, q), bound = found
+    return Evaluation(p, q, bound)
+
+
+def _grid(state: Sequence[arb], least: arb, digits: int) -> tuple[list[Fraction], Fraction] | None:
     if not all(x.is_finite() for x in state):
         return None
-    scale = least.max(state[0].abs_lower()).max(state[1].abs_lower()).lower()
+    scale = least
+    for x in state:
+        scale = scale.max(x.abs_lower())
+    scale = scale.lower()
     mantissa, exponent = scale.man_exp()
     size = int(exponent) + int(mantissa).bit_length()  # scale ≥ 2^(size − 1)
     if scale > 0 and size > _MOST_BITS:
@@ -124,8 +144,7 @@ def _on_grid(state: State, least: arb, digits: int) -> Evaluation | None:
     if apart > 1 << _FINER:
         return None
     grid = Fraction(2) ** unit
-    p, q = (whole * grid for whole, _ in found)
-    return Evaluation(p, q, apart * grid)
+    return [whole * grid for whole, _ in found], apart * grid
 
 
 def _rounded(x: arb) -> tuple[int, int]:

@@ -24,14 +24,14 @@ from verify.prose import read_prose
 Number = Any  # gmpy2.mpfr, which has no type stubs
 State = tuple[Number, ...]  # p, q, and t where H depends on it
 
-_GUARD = 12  # digits beyond those asked for, and what extrapolation and rounding may take of them
-_LOST = 8
+GUARD = 12  # digits beyond those asked for, and what extrapolation and rounding may take of them
+LOST_DIGITS = 8
 _HALVINGS = 12
 _MOST_STEPS = 200_000  # of one orbit: minutes
 _PATIENCE = 3  # steps after one that was too long before a longer one is tried
 _SHORTEST = 80  # halvings of the first step, after which time stands still
 LOST = "the orbit comes to rest, leaves where H is defined, or becomes too fast to be followed"
-_STILL = 1000  # a step's error is held against how far it goes, and this part of where it is
+STILL = 1000  # a step's error is held against how far it goes, and this part of where it is
 
 
 class NoFlowError(Exception):
@@ -43,6 +43,11 @@ class NoFlowError(Exception):
     def __init__(self, said: str) -> None:
         self.said = read_prose(said)
         super().__init__(str(self.said))
+
+
+def columns_for(digits: int) -> int:
+    """So many values are extrapolated at most; more gain less than a shorter step does."""
+    return 6 + digits // 3
 
 
 def functions_at(
@@ -70,14 +75,14 @@ class Flow:
     """The exact flow of a vector field without symbols, to `digits` digits."""
 
     def __init__(self, field: VectorField, digits: int) -> None:
-        self.arithmetic = mpfr.make(digits + _GUARD)
+        self.arithmetic = mpfr.make(digits + GUARD)
         ring, self.timed = field.ring, field.timed
-        self.names = ("p", "q", "t") if self.timed else ("p", "q")
+        self.names: tuple[str, ...] = ("p", "q", "t") if self.timed else ("p", "q")
         elements = [(ring, -field.h_q), (ring, field.h_p)]
         self._slopes = functions_at(self.arithmetic, elements, self.names)
         self._midpoint = self._midpoint_in_time if self.timed else self._midpoint_still
-        self._tolerance = self.arithmetic.number(Fraction(1, 10 ** (digits + _GUARD - _LOST)))
-        self._columns = 6 + digits // 3  # more of them gain less than a shorter step does
+        self._tolerance = self.arithmetic.number(Fraction(1, 10 ** (digits + GUARD - LOST_DIGITS)))
+        self._columns = columns_for(digits)
 
     def number(self, x: Fraction) -> Number:
         return self.arithmetic.number(x)
@@ -166,7 +171,7 @@ class Flow:
             if j > 2:
                 (p, q), (p0, q0) = row[-1], row[-2]
                 moved = abs(p - z[0]) + abs(q - z[1])
-                size = moved + (abs(p) + abs(q)) / _STILL
+                size = moved + (abs(p) + abs(q)) / STILL
                 if abs(p - p0) + abs(q - q0) <= self._tolerance * size:
                     return (p, q, z[2] + time) if self.timed else (p, q)
             above = row

@@ -1,0 +1,81 @@
+"""Gragg's method, extrapolated, for any number of coordinates; see `verify.flows.extrapolation`."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+from verify.arithmetic.systems import mpfr
+from verify.flows.extrapolation import (
+    GUARD,
+    LOST_DIGITS,
+    STILL,
+    Flow,
+    NoFlowError,
+    Number,
+    State,
+    columns_for,
+    functions_at,
+)
+from verify.hamiltonians.canonical_field import CanonicalField
+
+
+class FlowInDegrees(Flow):
+    """The exact flow of a field without symbols; a state has all its coordinates, and t where H
+    depends on it."""
+
+    def __init__(self, field: CanonicalField, digits: int) -> None:
+        self.arithmetic = mpfr.make(digits + GUARD)
+        self.timed = field.timed
+        self.names = (*field.names, "t") if self.timed else field.names
+        elements = [(field.ring, x) for x in field.slopes]
+        self._slopes = functions_at(self.arithmetic, elements, self.names)
+        self._tolerance = self.arithmetic.number(Fraction(1, 10 ** (digits + GUARD - LOST_DIGITS)))
+        self._columns = columns_for(digits)
+
+    def slope(self, z: State) -> State:
+        """f(z). Raises NoFlowError where it is not defined."""
+        try:
+            with self.arithmetic.context():
+                return self._slopes(*z)
+        except (ArithmeticError, ValueError):
+            raise NoFlowError("the orbit leaves where H is defined") from None
+
+    def _first_step(self, z: State, goal: Number) -> Number:
+        slopes = self.slope(z)
+        with self.arithmetic.context():
+            speed = sum(map(abs, slopes))
+            size = sum(map(abs, z[: len(slopes)]))
+            return min(goal, (1 + size) / speed) if speed else goal
+
+    def _extrapolated(self, z: State, time: Number) -> State | None:
+        above: list[list[Number]] = []
+        for j in range(1, self._columns + 1):
+            row = [list(self._end(z, time, 2 * j))]
+            for k, before in enumerate(above, start=1):
+                up, down = (j - k) ** 2, j**2 - (j - k) ** 2
+                pairs = zip(row[-1], before, strict=True)
+                row.append([last + (last - x) * up / down for last, x in pairs])
+            if j > 2:
+                moved = sum(abs(x - x0) for x, x0 in zip(row[-1], z, strict=False))
+                size = moved + sum(map(abs, row[-1])) / STILL
+                apart = sum(abs(x - y) for x, y in zip(row[-1], row[-2], strict=True))
+                if apart <= self._tolerance * size:
+                    return (*row[-1], z[-1] + time) if self.timed else tuple(row[-1])
+            above = row
+        return None
+
+    def _end(self, z: State, time: Number, count: int) -> Sequence[Number]:
+        """Gragg's rule with so many steps, smoothed at its end."""
+        h, slopes = time / count, self._slopes
+        t = z[-1] if self.timed else None
+        before = z[:-1] if self.timed else z
+
+        def at(y: Sequence[Number], k: int) -> State:
+            return slopes(*y) if t is None else slopes(*y, t + k * h)
+
+        now = [x + h * dx for x, dx in zip(before, at(before, 0), strict=True)]
+        twice = 2 * h
+        for k in range(1, count):
+            move = at(now, k)
+            before, now = tuple(now), [x + twice * dx for x, dx in zip(before, move, strict=True)]
+        last = at(now, count)
+        return [(x + y + h * dx) / 2 for x, y, dx in zip(now, before, last, strict=True)]

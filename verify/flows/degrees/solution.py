@@ -1,0 +1,183 @@
+"""The exact solution in n degrees of freedom at one time, with its error bound.
+
+H is taken apart into what is not coupled. A part in one degree of freedom is the plane's
+(`verify.flows.solution`), with its closed forms; Kepler's problem has one where the orbit is an
+ellipse; all else is followed by the numerical flow, with more digits until two of them agree.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+import sympy
+
+from verify.algebra.formula import symbol
+from verify.arithmetic.exact import plain
+from verify.errors import InputError
+from verify.flows.closed_form import MOST_DIGITS, many_on_grid, until
+from verify.flows.degrees.extrapolation import FlowInDegrees
+from verify.flows.extrapolation import NoFlowError
+from verify.flows.solution import exact_solution
+from verify.hamiltonians import kepler_motion
+from verify.hamiltonians.canonical_field import canonical_field
+from verify.hamiltonians.coordinates import PLANE, numbered
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.systems import get
+from verify.hamiltonians.times_on_the_way import first_fault
+
+_GUARD, _MORE, _TRIES, _SAFETY = 6, 10, 6, 2  # as in the plane
+_PARTS = 1024  # of the time, in which poles of H are looked for
+_ITSELF = "the initial value itself"
+_NUMERICAL = "numerical flow: Gragg's method, extrapolated"
+_ELLIPSE = "closed form of Kepler's ellipse"
+Point = Mapping[str, Fraction]
+
+
+@dataclass(frozen=True)
+class SolutionInDegrees:
+    """The coordinates by their names; `bound` ≥ |error| of each, `enclosed` where it is rigorous,
+    by the `method`."""
+
+    point: Point
+    bound: Fraction
+    method: str
+    enclosed: bool = True
+
+
+def solution_in_degrees(
+    hamiltonian: Hamiltonian,
+    point: Point,
+    time: Fraction,
+    digits: int,
+    t0: Fraction = Fraction(0),
+) -> SolutionInDegrees:
+    """φ_time(point), whose bound is at most 10^−digits times the largest coordinate at both ends.
+
+    Time may be negative; t0 is when it begins where H depends on it. Raises InputError for a
+    parameter without a value, and NoFlowError, saying why, where no solution reaches that time.
+    """
+    if hamiltonian.symbols:
+        raise InputError("parameter", hamiltonian.symbols[0], "needs a value")
+    if not 1 <= digits <= MOST_DIGITS:
+        raise InputError("digits", digits, f"must be 1 … {MOST_DIGITS}")
+    if time == 0:
+        return SolutionInDegrees(point, Fraction(0), _ITSELF)
+    parts = uncoupled(hamiltonian)
+    if len(parts) == 1:
+        return _of_part(hamiltonian, point, time, digits, t0)
+    found: dict[str, Fraction] = {}
+    solutions = []
+    for part, names in parts:
+        own = {name: point[old] for name, old in zip(part.coordinates, names, strict=True)}
+        solved = _of_part(part, own, time, digits, t0)
+        solutions.append(solved)
+        found |= {old: solved.point[name] for name, old in zip(own, names, strict=True)}
+    return SolutionInDegrees(
+        {name: found[name] for name in hamiltonian.coordinates},
+        max(solved.bound for solved in solutions),
+        "; ".join(dict.fromkeys(solved.method for solved in solutions)),
+        all(solved.enclosed for solved in solutions),
+    )
+
+
+def uncoupled(hamiltonian: Hamiltonian) -> list[tuple[Hamiltonian, tuple[str, ...]]]:
+    """H as a sum of Hamiltonians in coordinates of their own: each, in p and q or p1 … qn, with the
+    names that these have in H. What is coupled with nothing and does not move is left together."""
+    degrees = hamiltonian.degrees
+    groups = {k: {k} for k in range(1, degrees + 1)}
+    terms = sympy.Add.make_args(sympy.expand(hamiltonian.exact))
+    for term in terms:
+        numbers = sorted(_numbers(term, hamiltonian.coordinates))
+        together = set[int]().union(*(groups[k] for k in numbers)) if numbers else set[int]()
+        groups |= dict.fromkeys(together, together)
+    parts = sorted({min(g): sorted(g) for g in groups.values()}.values())
+    if len(parts) == 1:
+        return [(hamiltonian, hamiltonian.coordinates)]
+    return [_part(terms, own, hamiltonian.coordinates) for own in parts]
+
+
+def _numbers(term: sympy.Expr, coordinates: Sequence[str]) -> set[int]:
+    """Which degrees of freedom are in it."""
+    return {int(s.name[1:]) for s in term.free_symbols if s.name in coordinates}
+
+
+def _part(
+    terms: Sequence[sympy.Expr], own: Sequence[int], coordinates: Sequence[str]
+) -> tuple[Hamiltonian, tuple[str, ...]]:
+    old = tuple(f"{letter}{k}" for letter in PLANE for k in own)
+    new = PLANE if len(own) == 1 else numbered(len(own))
+    put = {symbol(a): symbol(b) for a, b in zip(old, new, strict=True)}
+    inside = [x for x in terms if _numbers(x, coordinates) & set(own)]
+    return Hamiltonian(sympy.Add(*inside).xreplace(put)), old
+
+
+def _of_part(
+    hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int, t0: Fraction
+) -> SolutionInDegrees:
+    if tuple(point) == PLANE:
+        plane = exact_solution(
+            hamiltonian, p=point["p"], q=point["q"], time=time, digits=digits, t0=t0
+        )
+        after = {"p": plane.p, "q": plane.q}
+        return SolutionInDegrees(after, plane.bound, plane.method, plane.enclosed)
+    return _ellipse(hamiltonian, point, time, digits) or _numerical(
+        hamiltonian, point, time, digits, t0
+    )
+
+
+def _ellipse(
+    hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int
+) -> SolutionInDegrees | None:
+    """Where H is Kepler's and the orbit is bound; None for all else."""
+    mu = _strength(hamiltonian)
+    if mu is None:
+        return None
+    q, p = (point["q1"], point["q2"]), (point["p1"], point["p2"])
+    if not kepler_motion.is_ellipse(mu, q, p):
+        return None
+    start = list(point.values())
+    found = until(lambda: many_on_grid(kepler_motion.after(mu, q, p, time), start, digits), digits)
+    after = dict(zip(("p1", "p2", "q1", "q2"), found[0], strict=True))
+    return SolutionInDegrees(after, found[1], _ELLIPSE)
+
+
+def _strength(hamiltonian: Hamiltonian) -> Fraction | None:
+    """μ, where H is Kepler's but for a constant."""
+    kepler = get("kepler").hamiltonian({}).expression
+    if len(hamiltonian.coordinates) != 4 or hamiltonian.time_dependent:
+        return None
+    mu = symbol("mu")
+    # At q = (1, 0) and p = 0 it is −μ, and at q = (2, 0) half of that.
+    at = [dict.fromkeys(map(symbol, ("p1", "p2", "q2")), 0) | {symbol("q1"): k} for k in (1, 2)]
+    first, second = (hamiltonian.exact.subs(x) for x in at)
+    value = sympy.nsimplify(2 * (second - first)) if (second - first).is_number else None
+    if value is None or not value.is_Rational:
+        return None
+    gap = sympy.simplify(hamiltonian.exact - kepler.subs(mu, value))
+    same = gap.is_number and not gap.free_symbols
+    return Fraction(int(value.p), int(value.q)) if same else None
+
+
+def _numerical(
+    hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int, t0: Fraction
+) -> SolutionInDegrees:
+    part = time / _PARTS
+    passed, words = first_fault(hamiltonian, t0, part, _PARTS)
+    if words:
+        between = f"t = {plain(t0 + passed * part, 6)} and {plain(t0 + (passed + 1) * part, 6)}"
+        raise NoFlowError(f"between {between} H is not smooth; it is where `{words}`")
+    field, _ = canonical_field(hamiltonian)
+    start = [*point.values(), *([t0] if field.timed else [])]
+    before: list[Fraction] | None = None
+    for k in range(_TRIES):
+        flow = FlowInDegrees(field, digits + _GUARD + k * _MORE)
+        z = flow.follow(tuple(map(flow.number, start)), time)
+        after = [flow.arithmetic.exact(x) for x in z[: len(point)]]
+        if before is not None:
+            bound = _SAFETY * max(abs(x - y) for x, y in zip(after, before, strict=True))
+            scale = max(map(abs, (*point.values(), *after)))
+            if bound * 10**digits <= scale:
+                ended = dict(zip(point, after, strict=True))
+                return SolutionInDegrees(ended, bound, _NUMERICAL, enclosed=False)
+        before = after
+    raise NoFlowError("the digits asked for are lost along the orbit")
