@@ -1,7 +1,7 @@
 """Whether a step of arrays is a scheme for H, and symplectic: proved, else measured at points.
 
-Where its code lets no symbols through only S is measured, for some step sizes: the exact flow in
-several degrees of freedom, with which the order could be, is not known here.
+Where its code lets no symbols through S is measured for some step sizes, and the order by the
+distance from the exact flow, as the step size falls.
 """
 
 from collections.abc import Iterator, Sequence
@@ -12,6 +12,7 @@ from verify.algebra.domain import EVERYWHERE, Domain
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.degrees.called import StepOfArrays
+from verify.integrators.degrees.distance import distance_of
 from verify.integrators.degrees.traced import traced_map
 from verify.integrators.maps.check import (
     Called,
@@ -88,7 +89,7 @@ def check_step(step: Step, hamiltonian: Hamiltonian, claims: Claims) -> StepFind
         with within(_SECONDS, "its proof takes too long"):
             found = _proved(own, hamiltonian, called)
     except Exception as error:  # as above
-        found = _measured(own, points, called).noting("no proof: ", why(error))
+        found = _measured(own, hamiltonian, points, called).noting("no proof: ", why(error))
     return _held_to(claims, found)
 
 
@@ -161,9 +162,12 @@ def _rounded_order(made: CanonicalMap) -> int:
 
 
 def _measured(
-    own: StepOfArrays, points: Sequence[tuple[Fraction, ...]], called: Called
+    own: StepOfArrays,
+    hamiltonian: Hamiltonian,
+    points: Sequence[tuple[Fraction, ...]],
+    called: Called,
 ) -> StepFinding:
-    """S at the points for some step sizes; the order is not known."""
+    """S at the points for some step sizes, and the order."""
     notes, degrees = list[Prose](), len(own.names) // 2
     for how in ("duals", "floats"):
         try:
@@ -174,7 +178,7 @@ def _measured(
             notes.append(prose(f"not measured with {how}: ", why(error)))
             continue
         h, worst = next((x for x in each if x[1].symplectic is not True), each[0])
-        return StepFinding(
+        found = StepFinding(
             worst.verdict,
             prose(read_prose(f"with h = `{h}`, "), worst.reason),
             how,
@@ -183,10 +187,42 @@ def _measured(
             area_preserving=worst.area_preserving,
             measured=worst,
             h=h,
-            notes=(*notes, prose("its order is not measured in several degrees of freedom")),
+            notes=tuple(notes),
         )
+        return _with_order(found, own, hamiltonian, how, points)
     neither = prose("it can be neither traced nor measured")
     return StepFinding(Verdict.UNDECIDED, neither, "calls", degrees, notes=tuple(notes))
+
+
+def _with_order(
+    found: StepFinding,
+    own: StepOfArrays,
+    hamiltonian: Hamiltonian,
+    how: str,
+    points: Sequence[tuple[Fraction, ...]],
+) -> StepFinding:
+    """The same with the order that is seen; REFUTED where it is none of a scheme for this H."""
+    try:
+        with within(_SECONDS, "its order takes too long to be measured"):
+            seen = distance_of(own, hamiltonian, how, points, _TIME)
+    except Exception as error:  # the user's code may raise anything
+        return found.noting("its order is not measured: ", why(error))
+    if seen.exact:
+        reason = prose("the map is the exact flow to its last digits; ", found.reason)
+        return replace(found, reason=reason, order_known=True)
+    if seen.order is None:
+        return found.noting("its error follows no power of h")
+    first, last = Fraction(seen.fit.first), seen.fit.last
+    said = f"the map's order is {seen.order}, as seen for h = {first} … `{last:.1e}`; "
+    verdict = found.verdict
+    if seen.order < 1:
+        said, verdict = (
+            "not a scheme for this H: its error after one step is of order h or 1; ",
+            (Verdict.REFUTED),
+        )
+    reason = prose(read_prose(said), found.reason)
+    known = replace(found, verdict=verdict, reason=reason)
+    return replace(known, convergence_order=seen.order, order_known=True)
 
 
 def _at(

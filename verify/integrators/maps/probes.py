@@ -18,6 +18,7 @@ from verify.integrators.tracing.functions import copied
 
 Place = tuple[int, int]
 Columns = list[list[float]]
+Ends = tuple[list[Fraction], list[Fraction]]
 _STENCIL = ((1, 45), (2, -9), (3, 1))  # of the sixth order, over 60
 _WIDTH = 2.0**-7
 _EPSILON = 2.0**-52
@@ -74,6 +75,13 @@ class DualProbe:
         with self.kind.running():
             return [float(x.value) for x in self._two(point, 0)]
 
+    def exact(self, point: Sequence[Fraction]) -> Ends:
+        """Where it is called, and z' there, as the rationals that they are."""
+        with self.kind.running():
+            begun = [self.kind.rational(x).value for x in point]
+            ended = [x.value for x in self._two(point, 0)]
+        return [_rational(x) for x in begun], [_rational(x) for x in ended]
+
     def _two(self, point: Sequence[Fraction], first: int) -> list[Dual]:
         """z' with its derivatives by two of the coordinates."""
         state = []
@@ -98,6 +106,11 @@ class FloatProbe:
     def value(self, point: Sequence[Fraction]) -> list[float]:
         """z' at the point."""
         return self._at([float(x) for x in point])
+
+    def exact(self, point: Sequence[Fraction]) -> Ends:
+        """Where it is called, and z' there, as the rationals that they are."""
+        begun = [float(x) for x in point]
+        return [Fraction(x) for x in begun], [Fraction(x) for x in self._at(begun)]
 
     def _at(self, z: Sequence[float]) -> list[float]:
         found = [real(x) for x in self.map.called(self.map.function, z, float)]
@@ -132,6 +145,11 @@ class FloatProbe:
 
 
 Probe = DualProbe | FloatProbe
+
+
+def _rational(x: "gmpy2.mpfr") -> Fraction:
+    above, below = x.as_integer_ratio()
+    return Fraction(int(above), int(below))
 
 
 def _reading(

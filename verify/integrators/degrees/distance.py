@@ -1,0 +1,81 @@
+"""How far one step of arrays is from the exact flow, as its step size falls: its order."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from verify.flows.degrees.extrapolation import FlowInDegrees
+from verify.flows.extrapolation import NoFlowError
+from verify.hamiltonians.canonical_field import canonical_field
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.integrators.degrees.called import StepOfArrays
+from verify.integrators.fitted_order import Fitted, fitted
+from verify.integrators.maps.probes import DualProbe, FloatProbe
+from verify.integrators.probe import LADDERS
+from verify.integrators.tracing.dual import BITS
+
+_POINTS = 3  # at which it is looked
+_DIGITS = {"duals": 50, "floats": 20}  # of the exact flow
+_NOISE = {"duals": 2.0 ** -(BITS - 30), "floats": 2.0**-50}  # of z', in parts of its size
+_ENOUGH = 3  # rows in the noise, after which none is looked at
+Point = tuple[Fraction, ...]
+
+
+@dataclass(frozen=True)
+class Distance:
+    """`fit`: of the power of h by which the distance falls. `exact`: none was seen beyond noise."""
+
+    fit: Fitted
+    exact: bool
+
+    @property
+    def order(self) -> int | None:
+        """Of the map; None where the distance follows no power of h."""
+        return None if self.fit.power is None else self.fit.power - 1
+
+
+def distance_of(
+    own: StepOfArrays, hamiltonian: Hamiltonian, how: str, points: Sequence[Point], t: Fraction
+) -> Distance:
+    """With "duals" or "floats". Raises StepError, NoFlowError, and what the user's code raises."""
+    flow = FlowInDegrees(canonical_field(hamiltonian)[0], _DIGITS[how])
+    rows: list[tuple[float, float, float]] = []
+    quiet, compared = 0, how == "floats"
+    for h in LADDERS[how]:
+        here = own.at(h, t)
+        probe = DualProbe(here) if how == "duals" else FloatProbe(here)
+        each = [_at(flow, probe, own.names, point, h, t, _NOISE[how]) for point in points[:_POINTS]]
+        known = [x for x in each if x is not None]
+        if not known:
+            continue
+        error, noise = max(known)
+        rows.append((float(h), error, noise))
+        compared |= isinstance(probe, DualProbe) and bool(probe.kind.compared)
+        quiet = quiet + 1 if error <= 10 * noise else 0
+        if quiet >= _ENOUGH:
+            break
+    if not rows:
+        raise NoFlowError("no exact solution is found from any of the points")
+    return Distance(fitted(rows, compared), all(error <= 10 * noise for _, error, noise in rows))
+
+
+def _at(
+    flow: FlowInDegrees,
+    probe: DualProbe | FloatProbe,
+    names: Sequence[str],
+    point: Point,
+    h: Fraction,
+    t: Fraction,
+    noise: float,
+) -> tuple[float, float] | None:
+    """The distance after one step, and its noise; None where the flow does not reach so far."""
+    start, there = probe.exact(point)
+    try:
+        z = flow.state({**dict(zip(names, start, strict=True)), "t": t})
+        after = flow.advance(z, flow.number(h))
+    except NoFlowError:
+        return None
+    exact = map(flow.arithmetic.exact, after[: len(names)])
+    apart = max(abs(x - y) for x, y in zip(there, exact, strict=True))
+    size = 1 + max(map(abs, there))
+    return float(apart), noise * float(size)
