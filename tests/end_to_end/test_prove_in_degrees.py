@@ -92,9 +92,12 @@ def test_certificates_are_written_and_checked(
 
 
 @pytest.mark.parametrize("command", ["separate", "stability"])
-def test_what_takes_one_degree_says_so(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize(("q", "p"), [("1", "0"), ("1,0", "0,1")])
+def test_what_takes_one_degree_says_so(
+    command: str, q: str, p: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     typed = (command, "--hamiltonian", HENON, "--scheme", "lie2", "--step-size", "0.1",
-             "--steps", "10", "--q", "1", "--p", "0")  # fmt: skip
+             "--steps", "10", "--q", q, "--p", p)  # fmt: skip
     status, _, err = here(capsys, *typed)
     assert (status, err.count("\n")) == (2, 1)
     assert "takes p and q, one degree of freedom" in err

@@ -57,7 +57,7 @@ def bench(scene: str | None, output: Path | None, cluster: str | None, **given: 
 
 
 def _section(
-    *, q: str, p: str, step_sizes: Sequence[str], peers: bool = False, **rest: Any
+    *, q: Any, p: Any, step_sizes: Sequence[str], peers: bool = False, **rest: Any
 ) -> dict[str, Any]:
     if len(step_sizes) < 2:
         raise InputError("step_sizes", step_sizes[0], "is one; an order takes two at least")

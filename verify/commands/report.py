@@ -11,7 +11,6 @@ import click
 
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering
-from verify.commands.shared.initial_value import listed
 from verify.commands.shared.input import (
     PATH,
     check_ours,
@@ -114,7 +113,7 @@ class _Asked:
 
 def _asked(scene: str | None, given: Mapping[str, Any]) -> _Asked:
     if scene is None:
-        scenes = scenes_of(None, given, ("q", "p"), partial(_sections, given))
+        scenes = scenes_of(None, given, ("q", "p"), partial(_sections, given), several=True)
         name = given["system"] or "hamiltonian"
         return _Asked(line_of(given), name, f"{', '.join(given['schemes'])} on {name}", scenes)
     goes_alone(given)
@@ -123,13 +122,13 @@ def _asked(scene: str | None, given: Mapping[str, Any]) -> _Asked:
 
 
 def _sections(
-    given: Mapping[str, Any], *, q: str, p: str, step_sizes: Sequence[str], **length: Any
+    given: Mapping[str, Any], *, q: Any, p: Any, step_sizes: Sequence[str], **length: Any
 ) -> dict[str, Any]:
     """All that is known of a scheme on one orbit, its largest step over time, and for every H."""
     from verify.arithmetic.exact import positive
 
     exact = hamiltonian_of(given["system"], given["hamiltonian"], given["params"])
-    start = {"q": listed(q, exact), "p": listed(p, exact)}
+    start = {"q": q, "p": p}
     grid: dict[str, Any] = {"step_sizes": step_sizes, "initial_values": [start]}
     grid |= {"separate": True} if exact.planar else {}
     grid |= {"growth": True} if exact.planar and not exact.time_dependent else {}

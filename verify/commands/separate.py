@@ -49,6 +49,7 @@ def separate(
     from verify.scenes.values import rounded_down
     from verify.studies.separation.separate import RUNS, grid, separate_grid
 
+    exact.check_planar()
     counts = grid(step_sizes, options["steps"], options["time"])
     with progress_bar("stepping", RUNS * sum(n for _, n in counts)) as advance:
         result = separate_grid(exact, scheme, step_sizes=step_sizes, progress=advance, **options)

@@ -63,7 +63,7 @@ def _of_linear(scene: str | None, given: Mapping[str, Any]) -> str:
     return str(given["schemes"][0])
 
 
-def _section(*, q: str, p: str, **rest: Any) -> dict[str, Any]:
+def _section(*, q: Any, p: Any, **rest: Any) -> dict[str, Any]:
     return {"stability": [{**rest, "initial_values": [{"q": q, "p": p}]}]}
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from verify.commands.shared.initial_value import listed
 from verify.commands.shared.input import (
     SCENE,
     SCHEME,
@@ -66,12 +67,14 @@ def scenes_of(
     given: Mapping[str, Any],
     needed: tuple[str, ...],
     sections: Callable[..., Mapping[str, Any]],
+    *,
+    several: bool = False,
 ) -> "list[Scene]":
     """The scenes of SCENE, or the one that the options in `given` are.
 
     `needed`: which of them cannot be left out, beside schemes and step sizes. `sections` makes the
-    scene's sections of those that are not the system's nor the schemes. InputError where both are
-    given, or neither, or one is missing.
+    scene's sections of those that are not the system's nor the schemes. `several`: H may have more
+    degrees of freedom than one. InputError where both are given, or neither, or one is missing.
     """
     if scene is not None:
         goes_alone(given)
@@ -82,12 +85,15 @@ def scenes_of(
             "SCENE", NOT_GIVEN, "is missing; or give --system, --scheme, --step-size, …"
         )
     exact = hamiltonian_of(*(given[name] for name in _SYSTEM))
+    if not several:
+        exact.check_planar()
     for name in (*_NEEDED, *needed):
         if name not in asked:
             raise InputError(name, NOT_GIVEN, "is missing")
     from verify.calls.given import scene_of
 
     own = {n: x for n, x in asked.items() if n not in (*_SYSTEM, "schemes", "t0")}
+    own |= {n: listed(own[n], exact) for n in ("q", "p") if n in own}
     name = given["system"] or exact.formula
     made = scene_of(
         exact, asked["schemes"], None, t0=asked.get("t0"), name=name, known_as=given["system"],
