@@ -46,6 +46,7 @@ from verify.arithmetic.arb import bounds, in_reach, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic
 from verify.kernels.clock import error_of_time
+from verify.kernels.kernel import CLOSED_FORM, OF_FORM
 from verify.kernels.rounding import FLOAT, PRECISION, Ball, Rounded, analyse, rounding_of
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs import form_bound
@@ -113,9 +114,11 @@ class _Certificate:
 
     def derivatives(self) -> Derivatives | DerivativesInDegrees | None:
         """Those of the step."""
-        exact, scheme = self.run.hamiltonian, self.run.scheme
-        kind = Derivatives if exact.planar else DerivativesInDegrees
-        return kind.of(exact, scheme)
+        exact, scheme, asked = self.run.hamiltonian, self.run.scheme, self.run.observables
+        if exact.planar:
+            return Derivatives.of(exact, scheme)
+        volume, form = bool(asked & CLOSED_FORM), bool(asked & OF_FORM)
+        return DerivativesInDegrees.of(exact, scheme, volume=volume, form=form)
 
     def box(self, margin: Ball) -> dict[str, Ball]:
         """The states visited, widened; float64's rounding of them is within 2^−50."""
@@ -198,14 +201,16 @@ class _Certificate:
             return None
         entries = [found[index] for index in tangent.change]
         size, error = norm(x.magnitude for x in entries), norm(x.error for x in entries)
-        # Two products, their sum, and its sum with M's rest are rounded; the rest is left out of
-        # the products. That is 4 times half a unit, and what is of second order.
-        return ((error + 3 * unit * size) * (1 + unit) + unit * unit).abs_upper()
+        # 2n products, their sum, and its sum with M's rest are rounded; the rest is left out of the
+        # products. That is 2n + 2 times half a unit, and what is of second order.
+        units = len(self.names) // 2 + 2
+        return ((error + units * unit * size) * (1 + unit) + unit * unit).abs_upper()
 
     def motion(self, steps: _Steps) -> form_bound.Motion | None:
         """How M has grown; None where nothing follows from it."""
         seen, count, size = self.seen, self.steps, len(self.names)
-        slack = 1 + flint.arb(count) * flint.arb(2) ** -50  # of float64's own sums
+        # Of float64's own sums, over the steps and in each sum of squares.
+        slack = 1 + flint.arb(count + size - 2) * flint.arb(2) ** -50
         growth, highest = seen["growth"] * slack, seen["growth_top"] * slack
         least = least_of(size, seen)
         if not (growth.is_finite() and least > 0):
@@ -253,7 +258,7 @@ class _Certificate:
     ) -> dict[str, Ball]:
         """S and W; see `verify.runs.form_bound`."""
         asked, scale = self.run.observables, flint.arb(2) ** -self.shift
-        if not asked & {"symplectic_defect_max", "symplectic_defect"}:
+        if not asked & OF_FORM:
             return {}
         fixed, box = self.values_of_inputs(), self.box(error)
         size, slope = derivatives.form(fixed, box)

@@ -38,8 +38,11 @@ class DerivativesInDegrees:
 
     @classmethod
     @lru_cache(maxsize=32)
-    def of(cls, hamiltonian: Hamiltonian, scheme: str) -> "DerivativesInDegrees | None":
-        """None for a scheme that does not take this H, or is given by equations for it."""
+    def of(
+        cls, hamiltonian: Hamiltonian, scheme: str, *, volume: bool, form: bool
+    ) -> "DerivativesInDegrees | None":
+        """None for a scheme that does not take this H, or is given by equations for it. `volume`,
+        `form`: whether det J and S are looked at; else theirs are 0 and none."""
         try:
             step = map_of(hamiltonian, scheme)
         except InputError:
@@ -47,8 +50,8 @@ class DerivativesInDegrees:
         if step.implicit or isinstance(step, StepMap):
             return None
         asked = Observed(
-            pipelined=False, scaled=False, delta_j=True, determinant=False, tangent=False,
-            symplectic=True,
+            pipelined=False, scaled=False, delta_j=volume, determinant=False, tangent=False,
+            symplectic=form,
         )  # fmt: skip
         made = computed_in_degrees(step, asked)
         program = made.program.copy()

@@ -28,6 +28,7 @@ _ATTEMPTS = 5
 WORTH_COMPILING = (
     60_000  # steps that repay a compiled kernel: it takes 0.2–0.8 s, mpfr 3–8 µs a step
 )
+_MOST_DEGREES = 8  # beyond, the Pfaffian of a certificate's matrices is too long
 _SHORT = 1000  # steps that take less time than a certificate does: nothing is foreseen of them
 # Of N, by which bounds grow where the tangent map grows linearly; others like N³.
 _POWERS = {"lambda": 4, "lambda_max": 4, "symplectic_defect": 9}
@@ -104,7 +105,7 @@ def certified(
     """The run's values to so many digits with rigorous bounds; where there are none, the arithmetic
     at the precision that was reached. Raises UnsupportedError."""
     own = number_systems.get(name, _first_digits(name, digits, kernel_run))
-    if kernel_run.implicit:
+    if kernel_run.implicit or kernel_run.hamiltonian.degrees > _MOST_DEGREES:
         return own
     for _ in range(_ATTEMPTS):
         foreseen = _Foresight(kernel_run, own, digits) if kernel_run.steps > _SHORT else None
