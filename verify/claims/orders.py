@@ -10,7 +10,7 @@ from verify.algebra.formula import to_text
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
 from verify.claims.formulas import step_map_of, within, witness_of
-from verify.claims.orders_in_degrees import flow_order, volume_order
+from verify.claims.orders_in_degrees import defect_order, flow_order, volume_order
 from verify.claims.proved_order import ProvedOrder
 from verify.claims.quantified import QuantifiedClaim
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -51,6 +51,14 @@ def delta_j_of(claim: Claim, findings: Findings) -> ProvedOrder:
     if hamiltonian.planar:
         return delta_j_order(step_map_of(hamiltonian, claim.scheme))
     return volume_order(hamiltonian, claim.scheme)
+
+
+def defect_of(claim: Claim, findings: Findings) -> ProvedOrder:
+    """The order of S = JᵀΩJ − Ω, which in the plane is ΔJ·Ω."""
+    hamiltonian = findings.scene_of(claim).exact_hamiltonian()
+    if hamiltonian.planar:
+        return delta_j_of(claim, findings)
+    return defect_order(hamiltonian, claim.scheme)
 
 
 def flow_of(claim: Claim, findings: Findings) -> ProvedOrder:

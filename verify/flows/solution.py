@@ -16,21 +16,16 @@ from verify.arithmetic.exact import plain
 from verify.errors import InputError
 from verify.flows import closed_form
 from verify.flows.closed_orbit import at_rest, closed_orbit
+from verify.flows.confirmed import METHOD, check_poles, confirmed
 from verify.flows.extrapolation import Flow, NoFlowError
 from verify.hamiltonians import known_flows
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.times_on_the_way import first_fault
 
-_GUARD = 6  # digits beyond those asked for with which the first flow is followed
-_MORE = 10  # and how many more the next one has
-_TRIES = 6
-_SAFETY = 2  # the better of two flows is nearer to the truth than they are to each other
 _TOLD = 12  # digits of a time at which a solution ends
 _ROUGH, _POINTS = 12, 8  # digits and points with which a closed orbit is looked for
 NOT_KNOWN = "not known"
 
 _FORCED = "closed form of the forced oscillator"  # the one that is known in time
-_PARTS = 1024  # of the time, in which poles of H are looked for
 _FROM_START = Fraction(0)
 State = tuple[Fraction, Fraction]  # p, q
 
@@ -74,11 +69,7 @@ def exact_solution(
         if state is not None:
             found = closed_form.enclosed(state, (p, q), digits)
             return Solution(found.p, found.q, found.bound, _FORCED)
-        part = time / _PARTS
-        passed, words = first_fault(hamiltonian, t0, part, _PARTS)
-        if words:
-            between = f"t = {plain(t0 + passed * part, 6)} and {plain(t0 + (passed + 1) * part, 6)}"
-            raise NoFlowError(f"between {between} H is not smooth; it is where `{words}`")
+        check_poles(hamiltonian, t0, time)
         return _numerical_solution(hamiltonian, (p, q, t0), time, digits)
     known = known_flows.closed_form(hamiltonian, p, q)
     rest = known.rest if known else at_rest(hamiltonian, hamiltonian.field()[0], (p, q))
@@ -151,17 +142,5 @@ def _numerical_solution(
     `start`: p, q, and t where H depends on it.
     """
     field, _ = hamiltonian.field()
-    before: State | None = None
-    for k in range(_TRIES):
-        flow = Flow(field, digits + _GUARD + k * _MORE)
-        number, exact = flow.arithmetic.number, flow.arithmetic.exact
-        z = flow.follow(tuple(map(number, start)), time)
-        after = exact(z[0]), exact(z[1])
-        if before is not None:
-            bound = _SAFETY * max(abs(after[0] - before[0]), abs(after[1] - before[1]))
-            scale = max(map(abs, (*start[:2], *after)))
-            if bound * 10**digits <= scale:
-                method = "numerical flow: Gragg's method, extrapolated"
-                return Solution(after[0], after[1], bound, method, enclosed=False)
-        before = after
-    raise NoFlowError("the digits asked for are lost along the orbit")
+    (p, q), bound = confirmed(lambda more: Flow(field, more), start, 2, time, digits)
+    return Solution(p, q, bound, METHOD, enclosed=False)

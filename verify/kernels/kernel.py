@@ -34,13 +34,13 @@ from verify.kernels.step import newton, tangent_map
 from verify.kernels.step.computation import Computation, Observed, computed
 from verify.kernels.step.in_degrees import computed_in_degrees, map_of
 from verify.kernels.step.lowering import Lowering
+from verify.scenes.observables import OF_FORM
 from verify.schemes.degrees.canonical_map import CanonicalMap
 from verify.schemes.step_map import StepMap
 
 OBSERVABLES = (
     "delta_j_max", "mse", "lambda", "lambda_max", "lambda_plain", "extremes", "tangent",
 )  # fmt: skip
-OF_FORM = frozenset({"symplectic_defect_max", "symplectic_defect"})  # in n degrees of freedom
 CLOSED_FORM = frozenset({"delta_j_max", "mse", "lambda", "lambda_max", "extremes"})
 PARTIAL = ("inverse", "root", "log", "exp", "sinh", "cosh")  # functions that may leave a range
 SCALES = ("kappa", "down", "shift")  # 2^s h^r, 2^−s and s itself
@@ -98,7 +98,9 @@ class Writer:
         scaled: bool = True,
     ) -> None:
         self.arithmetic, self.observables, self.compensated = arithmetic, observables, compensated
-        self.scaled = scaled and arithmetic.absolute and bool(observables & (CLOSED_FORM | OF_FORM))
+        self.scaled = (
+            scaled and arithmetic.absolute and bool(observables & {*CLOSED_FORM, *OF_FORM})
+        )
         asked = Observed(
             pipelined=arithmetic.pipelined,
             scaled=self.scaled,

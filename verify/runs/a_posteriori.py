@@ -46,13 +46,14 @@ from verify.arithmetic.arb import bounds, in_reach, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic
 from verify.kernels.clock import error_of_time
-from verify.kernels.kernel import CLOSED_FORM, OF_FORM
+from verify.kernels.kernel import CLOSED_FORM
 from verify.kernels.rounding import FLOAT, PRECISION, Ball, Rounded, analyse, rounding_of
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs import form_bound
 from verify.runs.derivatives import Derivatives, norm
 from verify.runs.derivatives_in_degrees import DerivativesInDegrees
 from verify.runs.inverse_norm import least_of, square_of_norm
+from verify.scenes.observables import OF_FORM
 
 _MOST_GROWTH = 50  # of Q: beyond it e^Q says nothing
 METHOD = "a-posteriori bound with the tangent map carried along"
@@ -117,7 +118,7 @@ class _Certificate:
         exact, scheme, asked = self.run.hamiltonian, self.run.scheme, self.run.observables
         if exact.planar:
             return Derivatives.of(exact, scheme)
-        volume, form = bool(asked & CLOSED_FORM), bool(asked & OF_FORM)
+        volume, form = bool(asked & CLOSED_FORM), bool(asked & {*OF_FORM})
         return DerivativesInDegrees.of(exact, scheme, volume=volume, form=form)
 
     def box(self, margin: Ball) -> dict[str, Ball]:
@@ -258,7 +259,7 @@ class _Certificate:
     ) -> dict[str, Ball]:
         """S and W; see `verify.runs.form_bound`."""
         asked, scale = self.run.observables, flint.arb(2) ** -self.shift
-        if not asked & OF_FORM:
+        if not asked & {*OF_FORM}:
             return {}
         fixed, box = self.values_of_inputs(), self.box(error)
         size, slope = derivatives.form(fixed, box)

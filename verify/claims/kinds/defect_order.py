@@ -5,8 +5,7 @@ from typing import Literal
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
 from verify.claims.formulas import within
-from verify.claims.orders import Order, delta_j_of
-from verify.claims.orders_in_degrees import defect_order
+from verify.claims.orders import Order, defect_of
 from verify.scenes.results.claim import ClaimResult
 
 
@@ -21,11 +20,7 @@ class DefectOrderClaim(Claim):
 
     def judge(self, findings: Findings) -> ClaimResult:
         """By the proof for the scene's H."""
-        hamiltonian = findings.scene_of(self).exact_hamiltonian()
-        if hamiltonian.planar:
-            known = delta_j_of(self, findings)
-        else:
-            known = defect_order(hamiltonian, self.scheme)
+        known = defect_of(self, findings)
         verdict = known.verdict(self.defect_order, at_least=self.at_least)
         domain = known.holds_in(self.defect_order, at_least=self.at_least)
         return self.result(verdict, known.evidence + within(domain), domain=domain)

@@ -7,8 +7,7 @@ from pydantic import Field
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
 from verify.claims.formulas import within
-from verify.claims.orders import delta_j_of
-from verify.claims.orders_in_degrees import defect_order
+from verify.claims.orders import defect_of
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
@@ -22,11 +21,7 @@ class SymplecticClaim(Claim):
 
     def judge(self, findings: Findings) -> ClaimResult:
         """By the proof for the scene's H."""
-        hamiltonian = findings.scene_of(self).exact_hamiltonian()
-        if hamiltonian.planar:
-            known = delta_j_of(self, findings)
-        else:
-            known = defect_order(hamiltonian, self.scheme)
+        known = defect_of(self, findings)
         domain = known.domain & known.exact_for
         evidence = known.evidence + within(domain)
         if known.vanishes is None:

@@ -12,23 +12,18 @@ from fractions import Fraction
 import sympy
 
 from verify.algebra.formula import symbol
-from verify.arithmetic.exact import plain
 from verify.errors import InputError
 from verify.flows.closed_form import MOST_DIGITS, many_on_grid, until
+from verify.flows.confirmed import METHOD, check_poles, confirmed
 from verify.flows.degrees.extrapolation import FlowInDegrees
-from verify.flows.extrapolation import NoFlowError
 from verify.flows.solution import exact_solution
 from verify.hamiltonians import kepler_motion
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.coordinates import PLANE, numbered
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.systems import get
-from verify.hamiltonians.times_on_the_way import first_fault
 
-_GUARD, _MORE, _TRIES, _SAFETY = 6, 10, 6, 2  # as in the plane
-_PARTS = 1024  # of the time, in which poles of H are looked for
 _ITSELF = "the initial value itself"
-_NUMERICAL = "numerical flow: Gragg's method, extrapolated"
 _ELLIPSE = "closed form of Kepler's ellipse"
 Point = Mapping[str, Fraction]
 
@@ -161,23 +156,10 @@ def _strength(hamiltonian: Hamiltonian) -> Fraction | None:
 def _numerical(
     hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int, t0: Fraction
 ) -> SolutionInDegrees:
-    part = time / _PARTS
-    passed, words = first_fault(hamiltonian, t0, part, _PARTS)
-    if words:
-        between = f"t = {plain(t0 + passed * part, 6)} and {plain(t0 + (passed + 1) * part, 6)}"
-        raise NoFlowError(f"between {between} H is not smooth; it is where `{words}`")
+    check_poles(hamiltonian, t0, time)
     field, _ = canonical_field(hamiltonian)
     start = [*point.values(), *([t0] if field.timed else [])]
-    before: list[Fraction] | None = None
-    for k in range(_TRIES):
-        flow = FlowInDegrees(field, digits + _GUARD + k * _MORE)
-        z = flow.follow(tuple(map(flow.number, start)), time)
-        after = [flow.arithmetic.exact(x) for x in z[: len(point)]]
-        if before is not None:
-            bound = _SAFETY * max(abs(x - y) for x, y in zip(after, before, strict=True))
-            scale = max(map(abs, (*point.values(), *after)))
-            if bound * 10**digits <= scale:
-                ended = dict(zip(point, after, strict=True))
-                return SolutionInDegrees(ended, bound, _NUMERICAL, enclosed=False)
-        before = after
-    raise NoFlowError("the digits asked for are lost along the orbit")
+    after, bound = confirmed(
+        lambda more: FlowInDegrees(field, more), start, len(point), time, digits
+    )
+    return SolutionInDegrees(dict(zip(point, after, strict=True)), bound, METHOD, enclosed=False)
