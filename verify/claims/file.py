@@ -37,12 +37,12 @@ from verify.claims.outside import outside
 from verify.claims.quantified import QuantifiedClaim
 from verify.claims.readings import settled
 from verify.claims.scenes import HAMILTONIAN_KEYS, HAMILTONIAN_SOURCES, scene_for
-from verify.claims.toml_lines import Lines, lines_of
 from verify.errors import NOT_GIVEN, InputError, LimitError, unknown
 from verify.files import read_text
 from verify.scenes.mistakes.values import one_line
 from verify.scenes.paper_figures import PaperFigure
 from verify.scenes.scene import Scene, load_scene, read_toml, scene_from
+from verify.scenes.toml_lines import Lines, lines_of
 
 _ROOT = ("title", "about", "defaults", "scene", "claim", "figure", "left_out")
 # Of each group a claim needs one: where it gives one itself, it takes none from the defaults.

@@ -174,6 +174,14 @@ def residue(series: Mapping[str, E], condition: LogCondition) -> E:
     return total
 
 
+def majorant(series: Mapping[str, E], condition: LogCondition) -> E:
+    """The same with every sign plus: of a step with all sizes positive, a bound of them."""
+    total = series[""]
+    for n, word in condition.terms:
+        total = total + of_logarithm(series, word, 1) * abs(n)
+    return total
+
+
 # -- quadratic kinetic energy ---------------------------------------------------------------------
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from tests.unit.claims.test_toml_lines import HEAD, MSE, write
+from tests.unit.scenes.test_toml_lines import HEAD, MSE, write
 from verify.claims.check import prepare
 from verify.claims.file import ClaimsFile, load_claims
 from verify.claims.kinds.value import ValueClaim

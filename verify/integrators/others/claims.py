@@ -1,10 +1,8 @@
 """The claims that are made for an integrator of others, each with its verdict and evidence."""
 
 from collections.abc import Iterator
-from fractions import Fraction
 from functools import singledispatch
 
-from verify.arithmetic.exact import decimal
 from verify.integrators.check import POINTS
 from verify.integrators.others import reproductions
 from verify.integrators.others.integrator import (
@@ -14,8 +12,6 @@ from verify.integrators.others.integrator import (
     ReleasedIntegrator,
 )
 from verify.integrators.others.measured import finding
-from verify.integrators.others.printed_order import WITHIN, OrderVerdict, judge_order
-from verify.integrators.others.printed_table import PrintedTable
 from verify.integrators.others.tableau import (
     WRONG,
     Symplecticity,
@@ -25,6 +21,8 @@ from verify.integrators.others.tableau import (
     symplecticity,
 )
 from verify.integrators.results import Finding
+from verify.integrators.tables.sentences import of_digits, of_printed
+from verify.integrators.tables.splitting_table import PrintedTable, judge_order
 from verify.prose import Formula, Number, Prose, joined, prose, read_prose
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
@@ -77,11 +75,11 @@ def _(method: PrintedTable, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
     order = integrator.order
     assert order is not None  # noqa: S101 - of printed tables it is always claimed
     found = judge_order(method, order)
-    yield "order", f"order {order}", of_printed(found, order, method), integrator.reproduction
+    yield "order", f"order {order}", of_printed(found, order), integrator.reproduction
     if found.verdict is not Verdict.REFUTED and method.units:
         code = reproductions.of_digits(method, found.nearest, order)
         exact = "every digit is right, to one unit of the last"
-        yield "digits", exact, of_digits(found, method), code
+        yield "digits", exact, of_digits(found), code
 
 
 @_claims.register
@@ -149,115 +147,6 @@ def of_tableau(
     said = read_prose(f"its order is {found.order}: of `h^{found.order + 1}`, {fails}")
     mend = prose(". ", repaired) if repaired else NONE
     return Verdict.REFUTED, prose(said, mend, beside), ()
-
-
-# -- printed tables -------------------------------------------------------------------------------
-
-
-def of_printed(found: OrderVerdict, claimed: int, table: PrintedTable) -> _Judgement:
-    """Whether the order can be had within ten units of the digits."""
-    count = f"{found.checked} condition{'' if found.checked == 1 else 's'}"
-    if found.verdict is Verdict.PROVED:
-        exactly = prose(f"all {count} hold exactly, for its coefficients are no decimals")
-        return found.verdict, exactly, ()
-    if found.verdict is Verdict.ENCLOSED:
-        assert found.off is not None  # noqa: S101 - of an enclosure it is known
-        said = (
-            f"exact coefficients that satisfy all {count} lie within {_far(found, table)} of those "
-            f"printed to {table.digits} decimals, whose residues are up to {_short(found.largest)}"
-        )
-        return found.verdict, read_prose(said), ()
-    if found.verdict is Verdict.MEASURED:
-        small = "as small as the digits make them" if found.digits is None else "of wrong digits"
-        said = (
-            f"all {count} hold but for residues up to {_short(found.largest)}, {small}; "
-            "that exact ones exist nearby is not shown"
-        )
-        return found.verdict, read_prose(said), ()
-    excluded = read_prose(_excluded(found, claimed, table))
-    return Verdict.REFUTED, excluded, _moved(found, table)
-
-
-def _excluded(found: OrderVerdict, claimed: int, table: PrintedTable) -> str:
-    if found.order >= claimed:  # each condition alone could hold; together they cannot
-        far = f"; the nearest exact ones are {_far(found, table)} away" if found.off else ""
-        return (
-            f"no coefficients within {WITHIN} units of the last printed digits satisfy all "
-            f"{found.checked} conditions together{far}; residues are up to {_short(found.largest)}"
-        )
-    assert found.failing is not None  # noqa: S101 - it is what excludes more
-    rounded = f", and no coefficients within {WITHIN} units of the last digits satisfy it"
-    said = (
-        f"its order is {found.order}: of `h^{found.failing.order}`, `{found.failing.name}` fails "
-        f"by {_short(found.residue)}{rounded if table.units else ''}"
-    )
-    return said + _alone(found, table)
-
-
-def _alone(found: OrderVerdict, table: PrintedTable) -> str:
-    """The one misprinted number, where one alone explains what is found."""
-    m = found.misprint
-    if m is None:
-        return ""
-    would = _rounded(m.value, table.units[m.name])
-    return (
-        f". One number alone explains it: `{m.name}`, printed `{m.printed.strip()}`, would be "
-        f"`{would}`"
-    )
-
-
-def of_digits(found: OrderVerdict, table: PrintedTable) -> _Judgement:
-    """Whether all digits are right to one unit of the last."""
-    if found.digits is None:
-        said = "the conditions do not tell all of its digits, or exact ones are not shown to exist"
-        return Verdict.UNDECIDED, prose(said), ()
-    if found.off is None:
-        said = "no coefficients within one unit of the last printed digits satisfy all conditions"
-        told = read_prose(f"{said}; the nearest are not known{_alone(found, table)}")
-        return Verdict.REFUTED, told, ()
-    if found.digits:
-        said = f"exact coefficients lie within {_far(found, table)} of the printed ones"
-        return Verdict.ENCLOSED, read_prose(said), ()
-    said = (
-        "no coefficients within one unit of the last printed digits satisfy all conditions; the "
-        f"nearest that do are up to {_far(found, table)} away{_alone(found, table)}"
-    )
-    return Verdict.REFUTED, read_prose(said), _moved(found, table)
-
-
-def _moved(found: OrderVerdict, table: PrintedTable) -> tuple[tuple[str, ...], ...]:
-    """The numbers whose last digits are off by more than a unit."""
-    if found.nearest is None:
-        return ()
-    rows = [("number", "printed", "nearest exact", "off, in units of the last digit")]
-    for name, exact in found.nearest.items():
-        off = (table.values[name] - exact) / table.units[name]
-        if abs(off) > 1:
-            printed = table.numbers[name].strip()
-            rows.append((name, printed, _rounded(exact, table.units[name]), decimal(off, 3)))
-    return tuple(rows) if len(rows) > 1 else ()
-
-
-def _rounded(x: Fraction, unit: Fraction) -> str:
-    """A number to the place of that unit."""
-    whole = round(x / unit)
-    places = len(str(1 / unit)) - 1
-    digits = str(abs(whole)).rjust(places + 1, "0")
-    return f"{'−' if whole < 0 else ''}{digits[:-places]}.{digits[-places:]}"
-
-
-def _far(found: OrderVerdict, table: PrintedTable) -> str:
-    """How far the nearest exact coefficients are: in units, or, where it is far, absolutely."""
-    assert found.off is not None  # noqa: S101 - the callers have one
-    assert found.nearest is not None  # noqa: S101 - and so its numbers
-    if found.off < 100:
-        return f"`{float(found.off):.2g}` units of the last digit"
-    most = max(abs(table.values[n] - x) for n, x in found.nearest.items())
-    return f"`{float(most):.1e}`"
-
-
-def _short(x: Fraction) -> str:
-    return f"`{float(x):.2e}`"
 
 
 # -- floats ---------------------------------------------------------------------------------------

@@ -2,7 +2,7 @@
 
 Map and exact flow agree up to h^p for every smooth f exactly where Σ_i b_i Φ_i(t) = 1/γ(t) for
 every tree t of at most p vertices, some of whose leaves are of time: Butcher's theorem for the
-system with t' = 1 beside it (`verify.schemes.timed.trees`). A branch puts into Φ_i(t) the factor
+system with t' = 1 beside it (`verify.schemes.coloured_trees`). A branch puts into Φ_i(t) the factor
 Σ_j a_ij Φ_j, a leaf of time the stage's time c_i. Where c = A 1, a leaf of time has the factor of
 any leaf, and the densities know no colours: each condition is one without time.
 
@@ -24,20 +24,20 @@ from verify.algebra.conditions import Condition
 from verify.algebra.generator import terms_of
 from verify.algebra.ring import Poly
 from verify.errors import InputError
-from verify.schemes.residue import condition_of
-from verify.schemes.timed.kinetic import Kinetic
-from verify.schemes.timed.tableau import TimedNumbers, TimedTableau
-from verify.schemes.timed.trees import (
+from verify.schemes.coloured_trees import (
     TIME,
-    Differentials,
     Tree,
-    TreeJets,
+    all_trees,
     density,
     equation_text,
     has_time,
+    of_all,
     symmetry,
-    trees,
 )
+from verify.schemes.residue import condition_of
+from verify.schemes.timed.differentials import Differentials, TreeJets
+from verify.schemes.timed.kinetic import Kinetic
+from verify.schemes.timed.tableau import TimedNumbers, TimedTableau
 from verify.schemes.tree_conditions import MOST_ORDER, TreeConditions
 from verify.schemes.tree_conditions import trees as plain_trees
 
@@ -103,12 +103,13 @@ def _of_order(tableau: TimedTableau, order: int, kinetic: Kinetic | None) -> tup
         return plain
     if order > _MOST_TIMED:
         return (Condition(f"b·Φ(t) = 1/γ(t) over trees of {order}", order, "unknown", None),)
-    weights, every = _Weights(numbers), trees(parts, order)
+    weights, every = _Weights(numbers), all_trees(of_all(parts, timed=True), order)
+    names = ("",) if parts == 1 else ("_p", "_q")
     # With right clocks a leaf of time is as any other.
     known = [tree for tree in every if not (numbers.right and has_time(tree))]
     found = {
         tree: condition_of(
-            numbers.ring, equation_text(tree, parts), order, weights.gap(tree), _DIGITS
+            numbers.ring, equation_text(tree, names), order, weights.gap(tree), _DIGITS
         )
         for tree in known
     }

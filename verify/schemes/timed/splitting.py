@@ -16,9 +16,7 @@ count (`verify.schemes.timed.quadratic`): 2, 2, 4, 6, 12, 20, 39, 67 for p²/(2m
 23, 45, 93, 182 for p²/(2m(t)).
 """
 
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property
 from typing import ClassVar
 
@@ -31,13 +29,11 @@ from verify.errors import InputError
 from verify.schemes.residue import condition_of
 from verify.schemes.splitting_conditions import LETTERS, MOST_ORDER, Part, Splitting
 from verify.schemes.timed.clocks import Times, right_clocks
+from verify.schemes.timed.equations import equations_of
 from verify.schemes.timed.kinetic import Kinetic
-from verify.schemes.timed.quadratic import Combination, combinations
-from verify.schemes.timed.step_words import StepWords, TimedPart, factors
-from verify.schemes.timed.words import Word, lyndon, of_the_flow, text, weight
+from verify.schemes.timed.step_words import StepWords, TimedPart
 
 _DIGITS = 12  # of a residue
-_PLAIN = 3  # the weight up to which a quadratic T asks for as much as any T
 
 
 @dataclass(frozen=True)
@@ -118,12 +114,12 @@ class TimedSplitting:
 
     def _of_weight(self, n: int) -> tuple[Condition, ...]:
         if n not in self._known:
-            if self.kinetic.quadratic and n > _PLAIN:
-                self._known[n] = tuple(self._of_generator(combinations(self.kinetic.timed, n)))
-            else:
-                words = lyndon(self.kinetic.timed, n)
-                self._words.prepare(words)
-                self._known[n] = tuple(self._of_word(word) for word in words)
+            (ring, _), equations = self.numbers, equations_of(self.kinetic, n)
+            self._words.prepare({word for each in equations for word in each.needed})
+            self._known[n] = tuple(
+                condition_of(ring, each.name, n, each.residue(self._words), _DIGITS)
+                for each in equations
+            )
         return self._known[n]
 
     @cached_property
@@ -133,36 +129,3 @@ class TimedSplitting:
     @cached_property
     def _known(self) -> dict[int, tuple[Condition, ...]]:
         return {}
-
-    def _of_word(self, word: Word) -> Condition:
-        ring, flow = self._words.ring, of_the_flow(word)
-        residue = self._words.coefficient(word) - ring.constant(flow)
-        return condition_of(ring, _equation(word, flow), weight(word), residue, _DIGITS)
-
-    def _of_generator(self, rows: Sequence[Combination]) -> Iterator[Condition]:
-        self._words.prepare({x for row in rows for _, word in row for x in factors(word)})
-        ring = self._words.ring
-        for row in rows:
-            # Of the exact flow the generator has each letter once, and no longer word.
-            value = sum(n for n, word in row if len(word) == 1)
-            residue = ring.constant(Fraction(-value))
-            for n, word in row:
-                residue += self._words.generator(word) * n
-            name = " + ".join(text(w) if n == 1 else f"({n}) {text(w)}" for n, w in row)
-            name = f"coefficient of {name} in the generator = {value}"
-            yield condition_of(ring, name, weight(row[0][1]), residue, _DIGITS)
-
-
-def _equation(word: Word, flow: Fraction) -> str:
-    """The word's condition; of one letter also as a sum over the parts.
-
-    >>> _equation((("K", 1),), Fraction(1, 2))
-    'Σ kicks·time = 1/2, coefficient of K1 = 1/2'
-    """
-    name = f"coefficient of {text(word)} = {flow}"
-    if len(word) > 1:
-        return name
-    ((kind, n),) = word
-    parts = {"K": "kicks", "D": "drifts"}[kind]
-    time = "" if n == 0 else "·time" if n == 1 else f"·time^{n}"
-    return f"Σ {parts}{time} = {flow}, {name}"

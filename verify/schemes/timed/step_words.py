@@ -12,22 +12,33 @@ vanish, where the others' coefficients in G do. Of a word G has
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from functools import cache
+from typing import Any, Protocol
 
-from verify.algebra.ring import Poly, Ring
 from verify.schemes.timed.words import Letter, Word, cuts, endings, weight
 
-TimedPart = tuple[str, Poly, Poly]  # "K" or "D", what part of h it takes, and at what part its time
+TimedPart = tuple[str, Any, Any]  # "K" or "D", what part of h it takes, and at what part its time
+
+
+class Numbers(Protocol):
+    """What a step's coefficients are made in: a ring, or numbers that need no reduction."""
+
+    @property
+    def zero(self) -> Any: ...
+    @property
+    def one(self) -> Any: ...
+    def reduce(self, x: Any) -> Any: ...
+    def multiply(self, x: Any, y: Any) -> Any: ...
 
 
 class StepWords:
-    """The coefficients of a step, each made once."""
+    """The coefficients of a step, each made once. `bound`: with every sign plus."""
 
-    def __init__(self, ring: Ring, parts: Sequence[TimedPart]) -> None:
-        self.ring, self.parts = ring, parts
-        self._known: dict[Word, Poly] = {}
-        self._generated: dict[Word, Poly] = {}
+    def __init__(self, ring: Numbers, parts: Sequence[TimedPart], bound: bool = False) -> None:
+        self.ring, self.parts, self.bound = ring, parts, bound
+        self._known: dict[Word, Any] = {}
+        self._generated: dict[Word, Any] = {}
 
-    def coefficient(self, word: Word) -> Poly:
+    def coefficient(self, word: Word) -> Any:
         """The word's in the step; `prepare` makes those of many together."""
         if word not in self._known:
             self.prepare([word])
@@ -47,19 +58,25 @@ class StepWords:
                     total = reached[word]
                     for head, tail in endings(word):
                         before = reached[head]
-                        if not before.is_zero():
+                        if not _is_zero(before):
                             total += shares.of(tail) * before
                     reached[word] = ring.reduce(total)
         self._known |= reached
 
-    def generator(self, word: Word) -> Poly:
+    def generator(self, word: Word) -> Any:
         """The word's in G."""
         if word not in self._generated:
             total = self.coefficient(word) * weight(word)
             for head, tail in cuts(word):
-                total -= self.coefficient(head) * self.generator(tail)
+                share = self.coefficient(head) * self.generator(tail)
+                total = total + share if self.bound else total - share
             self._generated[word] = self.ring.reduce(total)
         return self._generated[word]
+
+
+def _is_zero(x: Any) -> bool:
+    """Of a ball around 0 it is not known, and neither x == 0 nor x != 0 holds."""
+    return bool(x == 0)
 
 
 def _with_heads(words: Iterable[Word]) -> set[Word]:
@@ -83,16 +100,23 @@ def factors(word: Word) -> frozenset[Word]:
 class _Shares:
     """The coefficients of exp(a Σ sⁿ X_n): Π aᵐ s^(n m)/m! of letters X_n, m times each."""
 
-    def __init__(self, ring: Ring, size: Poly, time: Poly) -> None:
+    def __init__(self, ring: Numbers, size: Any, time: Any) -> None:
         self.ring, self.size, self.time = ring, size, time
-        self._known: dict[tuple[Letter, ...], Poly] = {}
+        self._known: dict[tuple[Letter, ...], Any] = {}
 
-    def of(self, run: Word) -> Poly:
+    def of(self, run: Word) -> Any:
         if run not in self._known:
             total = self.ring.one
             for (_, n), many in Counter(run).items():
-                one = self.ring.reduce(self.size * self.ring.reduce(self.time**n))
+                one = self.size if n == 0 else self.ring.multiply(self.size, self._power(n))
                 for k in range(1, many + 1):
                     total = self.ring.multiply(total, one) / k
             self._known[run] = total
         return self._known[run]
+
+    def _power(self, n: int) -> Any:
+        """By products: of a ball with 0 in it powers may be undefined."""
+        total = self.time
+        for _ in range(n - 1):
+            total = self.ring.multiply(total, self.time)
+        return total

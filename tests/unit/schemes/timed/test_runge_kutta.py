@@ -10,6 +10,7 @@ from tests.helpers.steps_in_time import agreement, flow, problem, runge_kutta_st
 from verify.errors import InputError
 from verify.proof.by_conditions import agreed_order
 from verify.schemes import get
+from verify.schemes.coloured_trees import all_trees, equation_text, of_all
 from verify.schemes.every_hamiltonian import Stage, StageEquations
 from verify.schemes.implicit_tableau import ImplicitTableau
 from verify.schemes.timed import runge_kutta
@@ -17,9 +18,9 @@ from verify.schemes.timed.for_scheme import conditions_for
 from verify.schemes.timed.kinetic import Kinetic
 from verify.schemes.timed.runge_kutta import TimedTrees
 from verify.schemes.timed.tableau import TimedTableau
-from verify.schemes.timed.trees import equation_text, trees
 
 R, F = sympy.Rational, Fraction
+TIMED = of_all(1, timed=True)
 CLASSES = {None: "any", Kinetic.GENERAL: "general", Kinetic.MASS: "mass",
            Kinetic.QUADRATIC: "quadratic", Kinetic.AUTONOMOUS: "autonomous"}  # fmt: skip
 TABLEAUS = {
@@ -94,8 +95,10 @@ def test_with_right_clocks_each_tree_with_leaves_of_time_holds(name: str) -> Non
     scheme = get(name)
     weights = runge_kutta._Weights(conditions_for(scheme.every_h).tableau.numbers)
     for n in range(1, scheme.order + 1):
-        assert all(weights.ring.decide(weights.gap(t)).zero for t in trees(1, n))
-    assert not all(weights.ring.decide(weights.gap(t)).zero for t in trees(1, scheme.order + 1))
+        assert all(weights.ring.decide(weights.gap(t)).zero for t in all_trees(TIMED, n))
+    assert not all(
+        weights.ring.decide(weights.gap(t)).zero for t in all_trees(TIMED, scheme.order + 1)
+    )
 
 
 def test_one_stage_of_the_wrong_time_is_refuted_with_its_residue() -> None:
@@ -122,7 +125,7 @@ def test_stages_of_two_parts_are_those_of_symplectic_euler() -> None:
 
 
 def test_conditions_are_written_with_t_for_the_stages_times() -> None:
-    assert [equation_text(t, 1) for t in trees(1, 3)] == [
+    assert [equation_text(t, ("",)) for t in all_trees(TIMED, 3)] == [
         "b·A(t) = 1/6", "b·A(c) = 1/6", "b·t^2 = 1/3", "b·(t c) = 1/3", "b·c^2 = 1/3",
     ]  # fmt: skip
 

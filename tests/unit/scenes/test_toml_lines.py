@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from verify.claims.file import load_claims
-from verify.claims.toml_lines import lines_of
 from verify.errors import InputError
+from verify.scenes.toml_lines import lines_of
 
 # -- lines ----------------------------------------------------------------------------------------
 

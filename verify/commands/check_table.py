@@ -1,0 +1,103 @@
+"""The command `verify check-table`: coefficients as papers and libraries print them."""
+
+import time
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from verify.commands.shared.answer import Answer, answering
+
+if TYPE_CHECKING:
+    from verify.integrators.tables.check import Judgement
+    from verify.integrators.tables.cost import Cost
+
+
+@click.command("check-table")
+@click.argument("tables", type=click.Path(path_type=Path), metavar="FILE.toml")
+@answering
+def check_table(tables: Path) -> Answer:
+    """Judge printed tables of coefficients by what they claim; exit status 1 where one is refuted.
+
+    \b
+    [[table]]
+    name = "Ruth 3"
+    kind = "splitting"                # a wrong kind lists them
+    order = 3
+    first = "kick"                    # or "drift", or "both"
+    sizes = ["7/24", "2/3", "3/4", "-2/3", "-1/24", "1"]
+    times = ["0", "-", "2/3", "-", "0", "-"]     # where it prints them
+
+    \b
+    [[table]]
+    name = "Heun"
+    kind = "runge-kutta"
+    order = 2
+    tableau = \"\"\"
+    0 |
+    1 | 1
+    --+---------
+      | 1/2 1/2
+    \"\"\"
+    """
+    from verify.integrators.tables.check import check_table as check
+
+    begun = time.perf_counter()
+    found = check(tables)
+    seconds = f"{time.perf_counter() - begun:.6f}"
+    return Answer(
+        lambda: {"claims": [_json(each) for each in found], "seconds": seconds},
+        lambda: _print(found),
+        failed=any(each.claim.verdict == "REFUTED" for each in found),
+    )
+
+
+def _json(found: "Judgement") -> dict[str, Any]:
+    claim = found.claim
+    return {
+        "id": found.id,
+        "table": found.table,
+        "line": found.line,
+        "statement": claim.statement,
+        "verdict": claim.verdict,
+        "evidence": claim.evidence,
+        "severity": claim.severity,
+        "nearest": claim.nearest,
+        "cost": claim.cost and _cost(claim.cost),
+        "details": claim.details,
+    }
+
+
+def _cost(cost: "Cost") -> dict[str, Any]:
+    def short(x: float | None) -> str | None:
+        return None if x is None else f"{x:.3g}"
+
+    return {
+        "double": cost.double,
+        "order": cost.order,
+        "claimed": cost.claimed,
+        "ulps": short(cost.ulps),
+        "error_constant": short(cost.error_constant),
+        "nearest_error_constant": short(cost.nearest_error_constant),
+        "below": short(cost.below),
+        "said": cost.said,
+    }
+
+
+def _print(found: "list[Judgement]") -> None:
+    width = max(len(each.id) for each in found)
+    for each in found:
+        claim = each.claim
+        click.echo(f"{claim.verdict:9}  {each.id:{width}}  {claim.evidence}")
+        if claim.severity is not None:
+            cost = f"; {claim.cost.said}" if claim.cost and claim.cost.said else ""
+            click.echo(f"{'':9}  {'':{width}}  {claim.severity}{cost}")
+        for row in claim.details[1:]:
+            name, printed, exact, off = row
+            click.echo(
+                f"{'':9}  {'':{width}}  {name}: {printed}, exact {exact}, off by {off} units"
+            )
+    verdicts = Counter(str(each.claim.verdict) for each in found)
+    of = f"{len(found)} claim{'s' if len(found) > 1 else ''}"
+    click.echo(f"{of}: " + ", ".join(f"{n} {word}" for word, n in verdicts.most_common()))

@@ -1,0 +1,80 @@
+"""What is asked of a table: conditions on its entries, as polynomials that any numbers can take."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from typing import Protocol
+
+import flint
+import sympy
+
+from verify.algebra.embedding import embed
+from verify.algebra.enclosure import enclosed
+from verify.arithmetic.arb import Ball
+from verify.arithmetic.number import E
+
+BITS = 320  # of the balls in which all is decided
+
+
+class Equation(Protocol):
+    """One condition: what it is called, and the power of h that needs it."""
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def order(self) -> int: ...
+
+
+@dataclass(frozen=True)
+class Named:
+    """A condition that is known by its name alone."""
+
+    name: str
+    order: int
+
+
+class Residues(Protocol):
+    """Left side − right side of every condition, from the entries; `one` is the ring's.
+
+    `bound`: with every sign plus, so that at |entries| it is a bound of all of them.
+    """
+
+    def __call__(self, entries: Sequence[E], one: E, bound: bool = False) -> list[E]: ...
+
+
+@dataclass(frozen=True)
+class Asked:
+    """`entries`: polynomials in the numbers that are rounded. `by_form`: how many conditions more
+    there are, that hold by the form of the table alone. `shares`: with which each counts in an
+    error constant, as 1/σ(t) of a tree; 1 where none are given. `labels`: what the entries are
+    called."""
+
+    entries: tuple[sympy.Expr, ...]
+    equations: tuple[Equation, ...]
+    residues: Residues
+    by_form: int = 0
+    shares: tuple[Fraction, ...] = ()
+    labels: tuple[str, ...] = ()
+
+    def up_to(self, order: int) -> list[int]:
+        """The places of the conditions of that order, and of lower ones."""
+        return [k for k, each in enumerate(self.equations) if each.order <= order]
+
+
+Number = Callable[[sympy.Expr], E]
+
+
+@lru_cache(maxsize=4096)
+def ball_of(x: sympy.Expr) -> Ball:
+    """A constant, at flint's present precision, which is `BITS` wherever this is called."""
+    if x.is_Rational:
+        return flint.arb(flint.fmpq(int(x.p), int(x.q)))
+    ring, (element,) = embed([x], ())
+    return enclosed(ring, element, {}, 2 * BITS)
+
+
+def size_of(x: sympy.Expr) -> Ball:
+    """Its absolute value."""
+    return abs(ball_of(x))

@@ -1,0 +1,118 @@
+"""A file of printed tables: read, and each judged by what it claims.
+
+[[table]]
+name = "Ruth 3"
+kind = "splitting"              # a wrong kind lists them
+order = 3
+first = "kick"
+sizes = ["7/24", "2/3", "3/4", "-2/3", "-1/24", "1"]
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from verify.errors import NOT_GIVEN, InputError, unknown
+from verify.files import read_text
+from verify.integrators.tables import kinds
+from verify.integrators.tables.entry import TableEntry
+from verify.integrators.tables.told import TableClaim
+from verify.scenes.mistakes.values import one_line
+from verify.scenes.scene import read_toml
+from verify.scenes.toml_lines import Lines, lines_of
+
+MOST_TABLES = 1000
+_ROOT = ("table", "title", "about")
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """One claim of one table. `id`: the table's name and the claim's kind; `line`: of the table."""
+
+    id: str
+    table: str
+    line: int | None
+    claim: TableClaim
+
+
+@dataclass(frozen=True)
+class TableFile:
+    """The entries, each with its line."""
+
+    name: str
+    entries: tuple[tuple[TableEntry, int], ...]
+    lines: Lines
+
+    def judged(self) -> Iterator[Judgement]:
+        """Every claim of every table. InputError, with the line, for a table that is none."""
+        for index, (entry, line) in enumerate(self.entries):
+            try:
+                for claim in kinds.get(entry.kind).claims(entry):
+                    yield Judgement(f"{entry.name}/{claim.kind}", entry.name, line, claim)
+            except InputError as error:
+                raise located(self.name, self.lines, index, entry.name, error) from None
+
+
+def read_tables(path: Path) -> TableFile:
+    """The tables of a TOML file; InputError names the file, the line, the table and the problem."""
+    data = read_toml(path)
+    lines = lines_of(read_text(path))
+    for key in sorted(set(data) - set(_ROOT)):
+        where = f"{path.name}:{lines.of('', 0, key) or lines.of(key)}: {key}"
+        raise InputError(where, data[key], f"unknown; allowed: {', '.join(_ROOT)}")
+    tables = data.get("table")
+    if not isinstance(tables, list) or not tables:
+        raise InputError("file", path.name, "must hold [[table]] tables, each with name and kind")
+    if len(tables) > MOST_TABLES:
+        raise InputError("file", path.name, f"has {len(tables)} tables; allowed: {MOST_TABLES}")
+    found: dict[str, tuple[TableEntry, int]] = {}
+    for index, table in enumerate(tables):
+        name = table.get("name") if isinstance(table, dict) else None
+        called = name if isinstance(name, str) and name else f"number {index + 1}"
+        try:
+            entry = _entry(table).in_folder(path.parent)
+            if called in found:
+                raise InputError("name", called, "stands twice; each table has its own")
+        except ValidationError as error:
+            said = one_line(error, f"table {called}", _model(table))
+            raise located(path.name, lines, index, called, said) from None
+        except InputError as error:
+            raise located(path.name, lines, index, called, error) from None
+        found[called] = entry, lines.of("table", index) or 1
+    return TableFile(path.name, tuple(found.values()), lines)
+
+
+def _model(table: Any) -> type[TableEntry]:
+    kind = table.get("kind") if isinstance(table, dict) else None
+    if kind is None:
+        allowed = ", ".join(kinds.names())
+        raise InputError("kind", NOT_GIVEN, f"is missing; allowed: {allowed}")
+    if kind not in kinds.CATALOGUE:
+        raise unknown("kind", kind, kinds.names())
+    model: type[TableEntry] = kinds.get(kind).Entry
+    return model
+
+
+def _entry(table: Mapping[str, Any]) -> TableEntry:
+    return _model(table).model_validate(table)
+
+
+def located(name: str, lines: Lines, index: int, table: str, error: InputError) -> InputError:
+    """The error with the file, the table and the line of the key that it names."""
+    said = error.name.removeprefix(f"table {table}").removeprefix(": ")
+    key = said.split(".")[0].split(" ")[0].split(",")[0]
+    candidates = (key, key.rstrip("_pq0123456789"), "numbers" if lines else "")
+    line = lines.of("table", index, *(x for x in candidates[:2] if x))
+    where = f"{name}:{line}: table {table}"
+    return type(error)(f"{where}: {said}" if said else where, error.value, error.problem)
+
+
+def check_table(path: Path) -> list[Judgement]:
+    """Every claim of every table of the file, judged.
+
+    Raises InputError, which names the file, the line and the table, for what is none.
+    """
+    return list(read_tables(path).judged())

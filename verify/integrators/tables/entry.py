@@ -1,0 +1,109 @@
+"""What tables of every kind may have: their keys, and numbers as they are written."""
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, Field, PrivateAttr
+
+from verify.algebra.formula import RESERVED
+from verify.errors import InputError
+from verify.integrators.tables.printed_numbers import PrintedNumbers, unit_of
+from verify.integrators.tables.signs import plain
+from verify.scenes.frozen import Frozen
+
+MOST_ENTRIES = 2000
+_SHARED = 8  # decimals from which two numbers that are printed alike are taken for one
+_LONGEST = 400  # characters of a number
+
+
+def written(value: Any) -> Any:
+    """A number as the file has it, in our signs; what is no text or whole number stays as it is."""
+    if isinstance(value, bool):
+        return value
+    if isinstance(value, int):
+        return str(value)
+    return plain(value) if isinstance(value, str) and len(value) <= _LONGEST else value
+
+
+Written = Annotated[str, BeforeValidator(written), Field(max_length=_LONGEST)]
+Row = tuple[Written, ...]
+Order = Annotated[int, Field(ge=1, le=20)]
+
+
+class TableEntry(Frozen):
+    """One [[table]]: `numbers` by name, `source` who claims it, `read` where it was read."""
+
+    name: Annotated[str, Field(min_length=1, max_length=200)]
+    kind: str
+    source: str = ""
+    read: str = ""
+    numbers: dict[str, Written] = Field(default_factory=dict)
+    symplectic: bool = False
+    symmetric: bool = False
+    csv: str | None = None
+    _folder: Path = PrivateAttr(default=Path())
+
+    def in_folder(self, folder: Path) -> "TableEntry":
+        """The same, with files that lie beside it in that folder."""
+        self._folder = folder
+        return self
+
+    @property
+    def folder(self) -> Path:
+        """Where its files lie."""
+        return self._folder
+
+
+class Naming:
+    """Gives decimals that stand in a table without a name one: `entry` returns what to write there.
+
+    Two that are printed alike to 8 decimals or more are one number.
+    """
+
+    def __init__(self, numbers: Mapping[str, str]) -> None:
+        for name in numbers:
+            if not (name.isascii() and name.isidentifier()) or name in RESERVED:
+                problem = "is no name of a number: letters, digits and _, and no function's name"
+                raise InputError("numbers", name, problem)
+        self.numbers = {**numbers}
+        self._known = {_size(text): name for name, text in numbers.items() if _is_long(text)}
+
+    def entry(self, text: str, label: str) -> str:
+        """A formula in names; `label` is the name of a decimal that has none."""
+        text = text.strip()
+        if not text or unit_of(text) is None:
+            return text or "0"
+        name = self._known.get(_size(text)) if _is_long(text) else None
+        if name is None:
+            name = label
+            while name in self.numbers:
+                name += "_"
+            self.numbers[name] = text
+            if _is_long(text):
+                self._known[_size(text)] = name
+        same = self.numbers[name].startswith("-") == text.startswith("-")
+        return name if same else f"-{name}"
+
+    def entries(self, texts: Iterable[str], label: str) -> tuple[str, ...]:
+        """One after the other, counted from 1."""
+        return tuple(self.entry(x, f"{label}{_place(k)}") for k, x in enumerate(texts))
+
+    @property
+    def printed(self) -> PrintedNumbers:
+        """All numbers that there are by now."""
+        return PrintedNumbers(self.numbers)
+
+
+def _size(text: str) -> str:
+    """Without its sign."""
+    return text.lstrip("+-")
+
+
+def _is_long(text: str) -> bool:
+    unit = unit_of(text)
+    return unit is not None and unit <= 1 / 10**_SHARED
+
+
+def _place(k: int) -> str:
+    return str(k + 1) if k < 9 else f"_{k + 1}"

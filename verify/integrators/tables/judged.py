@@ -1,0 +1,165 @@
+"""What the digits of a printed table can say of conditions; see `verify.integrators.tables.nearby`.
+
+- PROVED or REFUTED by exact algebra where no coefficient is rounded;
+- REFUTED where no numbers within ten units of the last digits satisfy all conditions, and a residue
+  is larger than 10⁻⁹;
+- ENCLOSED where exact ones are shown to exist there, or nearby where residues are smaller: then it
+  is digits that are wrong, which is judged apart;
+- MEASURED where neither is shown: the residues are small.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+import flint
+
+from verify.algebra.embedding import embed
+from verify.algebra.enclosure import enclose
+from verify.algebra.ring import Poly, Ring
+from verify.arithmetic.arb import in_reach, middle_and_radius
+from verify.arithmetic.flint_precision import working_precision
+from verify.integrators.tables.asked import BITS, Asked, Equation
+from verify.integrators.tables.misprint import Misprint, exact_misprint, misprint
+from verify.integrators.tables.nearby import Nearby
+from verify.integrators.tables.printed_numbers import PrintedNumbers
+from verify.verdict import Verdict
+
+WITHIN = 10  # units of the last digit, for the order
+OF_DIGITS = Fraction(1, 10**9)  # a residue below it is of wrong digits, and not of a wrong method
+_AT_LEAST = Verdict.PROVED, Verdict.ENCLOSED, Verdict.MEASURED
+
+
+@dataclass(frozen=True)
+class Judged:
+    """What was found of conditions of orders up to a claimed one.
+
+    `order`: the highest that is not excluded, of those looked at. `failing`: the first condition
+    that excludes more, with its `residue` as printed. `largest`: the largest residue of the claimed
+    order's conditions. `off`: how far the printed number that is farthest from a solution's is from
+    it, in units of its last digit, and `nearest` the solution's numbers; None where none is known.
+    `shown`: how many conditions are shown to hold there, of `checked`; the others do to 60 digits.
+    `digits`: whether all digits are right to one unit of the last; None where it is not known.
+    `residues`: all of them as printed, with their orders. `read`: the numbers as they were read.
+    """
+
+    verdict: Verdict
+    order: int
+    checked: int
+    failing: Equation | None = None
+    residue: Fraction = Fraction(0)
+    largest: Fraction = Fraction(0)
+    off: Fraction | None = None
+    nearest: Mapping[str, Fraction] | None = None
+    shown: int | None = None
+    digits: bool | None = None
+    misprint: Misprint | None = None
+    residues: tuple[tuple[Equation, Fraction], ...] = ()
+    read: PrintedNumbers | None = None
+
+    @property
+    def holds(self) -> bool:
+        """Whether nothing is known against the claim."""
+        return self.verdict in _AT_LEAST
+
+
+def judge(numbers: PrintedNumbers, asked: Asked, order: int) -> Judged:
+    """Whether the conditions of orders 1 … `order` can hold; those beyond tell where it ends.
+
+    Of the conditions of higher orders that are asked only the failing one counts.
+    """
+    if not asked.equations:  # they hold by the form of the table
+        return Judged(Verdict.PROVED, order, asked.by_form, read=numbers)
+    if not numbers.units:
+        return replace(_exactly(asked, order), read=numbers)
+    with working_precision(BITS):
+        return replace(_of(Nearby(numbers, asked), order), read=numbers)
+
+
+def _of(near: Nearby, order: int) -> Judged:
+    equations, own = near.asked.equations, near.asked.up_to(order)
+    every = range(len(equations))
+    checked = len(own) + near.asked.by_form
+    wrong = near.excluded(every, WITHIN)
+    plain = [k for k in wrong if abs(near.at_print[k]) > OF_DIGITS]
+    # What ends the order, if any does.
+    failing = min(plain or wrong, key=lambda k: equations[k].order, default=None)
+    highest = max((e.order for e in equations), default=order)
+    allowed = max(highest, order) if failing is None else equations[failing].order - 1
+    largest = max((abs(near.at_print[k]) for k in own), default=Fraction(0))
+    condition = None if failing is None else equations[failing]
+    size = Fraction(0) if failing is None else near.at_print[failing]
+    residues = tuple(zip(equations, near.at_print, strict=True))
+    seen = Judged(Verdict.MEASURED, allowed, checked, condition, size, largest, residues=residues)
+    if allowed < order and largest > OF_DIGITS:
+        one = misprint(near, own)
+        seen = replace(seen, verdict=Verdict.REFUTED, digits=False, misprint=one)
+        found = near.nearest(own) or (near.far(own) if one is None else None)
+        return seen if found is None else replace(seen, off=found.off, nearest=found.numbers)
+    return _with_nearest(seen, near, own, order)
+
+
+def _with_nearest(seen: Judged, near: Nearby, own: Sequence[int], order: int) -> Judged:
+    allowed, largest = seen.order, seen.largest
+    found = near.nearest(own)
+    if found is None:  # some conditions alone may show wrong digits
+        digits = False if near.excluded(own, 1) else None
+        one = misprint(near, own) if allowed < order else None
+        return replace(seen, digits=digits, misprint=one)
+    off = found.off
+    wrong_digits = off > 1 and (allowed < order or near.apart(own, 1))
+    one = misprint(near, own) if wrong_digits and off > WITHIN else None
+    digits = True if off <= 1 else False if wrong_digits else None
+    known = allowed >= order and off <= WITHIN
+    verdict = Verdict.ENCLOSED if known or largest <= OF_DIGITS else Verdict.MEASURED
+    if off > WITHIN and largest > OF_DIGITS and near.apart(own, WITHIN):
+        verdict = Verdict.REFUTED
+    order_found = max(allowed, order) if verdict is Verdict.ENCLOSED else allowed
+    if verdict is Verdict.ENCLOSED and found.shown < len(own):
+        verdict = Verdict.MEASURED
+    told = replace(seen, verdict=verdict, order=order_found, digits=digits, misprint=one)
+    return replace(told, off=off, nearest=found.numbers, shown=found.shown + near.asked.by_form)
+
+
+# -- exactly --------------------------------------------------------------------------------------
+
+
+def _exactly(asked: Asked, order: int) -> Judged:
+    """Of exact coefficients."""
+    equations, gaps = asked.equations, exact_residues(asked)
+    checked = len(asked.up_to(order)) + asked.by_form
+    wrong = [k for k, (zero, _) in enumerate(gaps) if zero is False]
+    unknown = [k for k, (zero, _) in enumerate(gaps) if zero is None]
+    failing = min(wrong, key=lambda k: equations[k].order, default=None)
+    highest = max((e.order for e in equations), default=order)
+    allowed = max(highest, order) if failing is None else equations[failing].order - 1
+    verdict = Verdict.PROVED if allowed >= order else Verdict.REFUTED
+    if verdict is Verdict.PROVED and any(equations[k].order <= order for k in unknown):
+        verdict = Verdict.UNDECIDED
+    sizes = tuple((e, x) for e, (_, x) in zip(equations, gaps, strict=True))
+    largest = max((abs(x) for e, x in sizes if e.order <= order), default=Fraction(0))
+    if failing is None:
+        return Judged(verdict, allowed, checked, largest=largest, residues=sizes)
+    one = exact_misprint(asked, order) if verdict is Verdict.REFUTED else None
+    seen = Judged(verdict, allowed, checked, equations[failing], gaps[failing][1], largest)
+    return replace(seen, residues=sizes, misprint=one)
+
+
+def exact_residues(asked: Asked) -> list[tuple[bool | None, Fraction]]:
+    """Of each condition whether it is 0, None where that is not decided, and its size, nearly."""
+    if all(x.is_Rational for x in asked.entries):
+        entries = [flint.fmpq(int(x.p), int(x.q)) for x in asked.entries]
+        found = asked.residues(entries, flint.fmpq(1))
+        return [(x == 0, Fraction(int(x.p), int(x.q))) for x in found]
+    ring, elements = embed(list(asked.entries), ())
+    return [_in_ring(ring, x) for x in asked.residues(elements, ring.one)]
+
+
+def _in_ring(ring: Ring, gap: Poly) -> tuple[bool | None, Fraction]:
+    gap = ring.reduce(gap)
+    zero = ring.decide(gap).zero
+    if zero:
+        return True, Fraction(0)
+    value = enclose(ring, gap, {}, BITS)
+    size = middle_and_radius(value)[0] if value is not None and in_reach(value) else Fraction(0)
+    return zero, size

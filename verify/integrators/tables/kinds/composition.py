@@ -1,0 +1,42 @@
+"""Compositions of steps w h of any symmetric method of order 2."""
+
+from collections.abc import Iterator
+
+from verify.errors import InputError
+from verify.integrators.tables.entry import Naming
+from verify.integrators.tables.layout import named_columns
+from verify.integrators.tables.splitting_claims import (
+    SizesEntry,
+    mirrored,
+    of_order,
+    sizes_of,
+    symmetric_claims,
+)
+from verify.integrators.tables.splitting_table import PrintedTable
+from verify.integrators.tables.told import TableClaim
+from verify.prose import prose
+from verify.verdict import Verdict
+
+
+class Entry(SizesEntry):
+    """`sizes` are the w; a `csv` file has them in a column size."""
+
+
+def claims(entry: Entry) -> Iterator[TableClaim]:
+    """Of the order, of digits, symplectic, symmetric."""
+    naming = Naming(entry.numbers)
+    if entry.csv is not None:
+        if entry.sizes is not None or entry.half is not None:
+            raise InputError("csv", entry.csv, "stands alone: leave out sizes and half")
+        sizes, half = tuple(named_columns(entry.folder, entry.csv, ("size",))["size"]), False
+    else:
+        sizes, half = sizes_of(entry)
+    named = naming.entries(sizes, "w")
+    parts = tuple(("step", size) for size in (mirrored(named) if half else named))
+    table = PrintedTable(entry.kind, parts, naming.numbers)
+    yield from of_order(entry, table)
+    if entry.symplectic:
+        said = prose("a composition of symplectic steps is symplectic, whatever their sizes are")
+        yield TableClaim("symplectic", "symplectic", Verdict.PROVED, said)
+    if entry.symmetric:
+        yield from symmetric_claims(table)

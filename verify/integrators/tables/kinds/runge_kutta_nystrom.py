@@ -1,0 +1,48 @@
+"""Runge–Kutta–Nyström methods for q'' = f(q, t):
+
+k_i = f(q + c_i h p + h² Σ a_ij k_j, t + c_i h),
+q' = q + h p + h² Σ b_bar_i k_i, p' = p + h Σ b_i k_i.
+"""
+
+from collections.abc import Iterator
+
+from verify.errors import NOT_GIVEN, InputError
+from verify.integrators.tables.entry import Naming, Order, Row, TableEntry
+from verify.integrators.tables.tableau_claims import of_tableau
+from verify.integrators.tables.tableau_table import PrintedBlock, TableauTable, square
+from verify.integrators.tables.told import TableClaim
+from verify.schemes.coloured_trees import NYSTROM
+
+
+class Entry(TableEntry):
+    """`embedded` and `embedded_bar` are the weights of an embedded method, as `b` and `b_bar`.
+    `row_sums`: whether Σ_j a_ij = c_i²/2 is claimed, which need not be."""
+
+    order: Order | None = None
+    a: tuple[Row, ...]
+    b: Row
+    b_bar: Row
+    c: Row
+    embedded: Row | None = None
+    embedded_bar: Row | None = None
+    embedded_order: Order | None = None
+    stage_order: Order | None = None
+    row_sums: bool = False
+
+
+def claims(entry: Entry) -> Iterator[TableClaim]:
+    """Of the order, of embedded weights, symplectic, symmetric, of stages."""
+    naming, stages = Naming(entry.numbers), len(entry.b)
+    rows = tuple(naming.entries(row, f"a{k + 1}_") for k, row in enumerate(square(entry.a, stages)))
+    b, bar = naming.entries(entry.b, "b"), naming.entries(entry.b_bar, "b_bar")
+    zeros = (("0",) * stages,) * stages
+    blocks = PrintedBlock(zeros, b), PrintedBlock(rows, bar, naming.entries(entry.c, "c"))
+    embedded = None
+    if (entry.embedded is None) != (entry.embedded_bar is None):
+        problem = "goes with the other: embedded is of p, as b, and embedded_bar of q, as b_bar"
+        raise InputError("embedded, embedded_bar", NOT_GIVEN, problem)
+    if entry.embedded is not None and entry.embedded_bar is not None:
+        one, other = entry.embedded, entry.embedded_bar
+        embedded = naming.entries(one, "embedded"), naming.entries(other, "embedded_bar")
+    table = TableauTable(blocks, NYSTROM, naming.printed, ("", ""), nystrom=True)
+    yield from of_tableau(entry, table, embedded)

@@ -1,0 +1,163 @@
+"""Butcher's tableau as it is printed, and lists of numbers, from lines of text or a CSV file.
+
+    0    |
+    1/2  | 1/2
+    1    | -1   2
+    -----+----------------
+         | 1/6  2/3  1/6
+
+Times stand left of a bar, or in the first column; the weights below a rule, or in lines whose first
+column is empty. The first line of weights is b, the second that of the embedded method. Columns are
+parted by `&`, tabs, commas, semicolons, or blanks.
+"""
+
+import csv
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from verify.errors import InputError
+from verify.files import read_text
+from verify.integrators.tables.signs import plain
+
+_RULE = re.compile(r"[\s|+:─━—_=\\-]*(?:\\hline)?[\s|+:─━—_=-]*|\\\\")
+_BARS = "│┃∣"
+_MOST_BYTES = 1 << 20
+_BLANKS = re.compile(r"\s{2,}")
+Line = tuple[str | None, list[str]]  # what stands left of a bar, None without one; and the columns
+
+
+@dataclass(frozen=True)
+class Layout:
+    """`times`: None where no column of them is there. `weights`: b, and the embedded ones."""
+
+    rows: tuple[tuple[str, ...], ...]
+    times: tuple[str, ...] | None
+    weights: tuple[tuple[str, ...], ...]
+
+
+def pasted(text: str, name: str = "tableau") -> Layout:
+    """InputError where it is no tableau."""
+    lines = []
+    for line in text.splitlines():
+        plainer = line.translate({ord(bar): "|" for bar in _BARS})
+        plainer = re.sub(r"\\\\\s*(\[[^]]*\])?\s*$", "", plainer.replace(r"\hline", "----"))
+        if plainer.strip():
+            lines.append(None if _is_rule(plainer) else plainer)
+    return _made(*_parted([line if line is None else _cells(line) for line in lines]), name)
+
+
+def _is_rule(line: str) -> bool:
+    return bool(re.search(r"[-─━—_=]{2}", line)) and _RULE.fullmatch(line) is not None
+
+
+def _cells(line: str) -> tuple[str | None, list[str]]:
+    """What stands left of a bar, None where there is none; and the columns."""
+    left: str | None = None
+    if "|" in line:
+        left, _, line = line.partition("|")
+        left = left.strip().rstrip("&").strip()
+    elif line.lstrip().startswith("&"):
+        left, line = "", line.lstrip()[1:]
+    return left, columns(line)
+
+
+def columns(line: str) -> list[str]:
+    """The numbers of a line, in our signs."""
+    for mark in ("&", "\t", ";", ","):
+        if mark in line:
+            parts = line.split(mark)
+            break
+    else:
+        closer = re.sub(r"\s*([/×·*])\s*", r"\1", line.strip())
+        wide = _BLANKS.split(closer)
+        parts = wide if any(" " in part for part in wide) and len(wide) > 1 else closer.split()
+    return [plain(part) for part in parts if part.strip()]
+
+
+def _parted(lines: Sequence[Line | None]) -> tuple[list[Line], list[Line]]:
+    """Stages, and weights: what stands below the last rule, or has nothing before its bar."""
+    rules = [k for k, line in enumerate(lines) if line is None]
+    inner = [k for k in rules if 0 < k < len(lines) - 1]
+    if inner:
+        cut = inner[0]
+        stages = [x for x in lines[:cut] if x is not None]
+        return stages, [x for x in lines[cut:] if x is not None]
+    told = [x for x in lines if x is not None]
+    cut = next((k for k, (left, _) in enumerate(told) if left == ""), len(told))
+    return told[:cut], told[cut:]
+
+
+def _made(stages: Sequence[Line], weights: Sequence[Line], name: str) -> Layout:
+    if not stages or not weights:
+        problem = "has no weights; write them below a line of ---, or after an empty first column"
+        raise InputError(name, f"{len(stages)} lines", problem)
+    if len(weights) > 2:
+        raise InputError(
+            name, f"{len(weights)} lines of weights", "has one, or two: b and embedded"
+        )
+    timed = any(left for left, _ in stages)
+    count = len(weights[0][1])
+    if not timed and all(left is None for left, _ in stages):
+        # Without bars the times are the first column, where rows are longer by one.
+        lengths = [len(cells) for _, cells in stages]
+        explicit = lengths[0] == 1 and all(
+            n in (k + 1, k + 2, count + 1) for k, n in enumerate(lengths)
+        )
+        if explicit or all(n == count + 1 for n in lengths):
+            stages, timed = [(cells[0], cells[1:]) for _, cells in stages], True
+    times = tuple(plain(left or "0") for left, _ in stages) if timed else None
+    return Layout(
+        tuple(tuple(cells) for _, cells in stages), times, tuple(tuple(x) for _, x in weights)
+    )
+
+
+# -- files ----------------------------------------------------------------------------------------
+
+
+def csv_rows(folder: Path, name: str) -> list[list[str]]:
+    """The rows of a CSV file that lies in that folder. InputError where it does not, or is none."""
+    if Path(name).name != name or name in ("", ".", ".."):
+        raise InputError("csv", name, "is no name of a file beside the table's")
+    text = read_text(folder / name, _MOST_BYTES).lstrip("\ufeff")
+    first = text.splitlines()[0] if text.strip() else ""
+    mark = next((x for x in ("\t", ";") if x in first), ",")
+    try:
+        found = list(csv.reader(text.splitlines(), delimiter=mark, strict=True))
+    except csv.Error as error:
+        raise InputError("csv", name, f"is no CSV file: {error}") from None
+    return [[cell.strip() for cell in row] for row in found if any(cell.strip() for cell in row)]
+
+
+def layout_of_csv(folder: Path, name: str) -> Layout:
+    """A tableau from a CSV file: times first, weights in rows whose first cell is empty."""
+    rows = csv_rows(folder, name)
+    if rows and not any(x.isdigit() for x in "".join(rows[0])):
+        rows = rows[1:]  # a header
+    lines: list[Line] = [(row[0], [plain(x) for x in row[1:] if x]) for row in rows]
+    stages = [x for x in lines if x[0]]
+    return _made(stages, [x for x in lines if not x[0]], name)
+
+
+def named_columns(folder: Path, name: str, allowed: Sequence[str]) -> dict[str, list[str]]:
+    """The columns of a CSV file by its header. InputError for a header that is not allowed."""
+    rows = csv_rows(folder, name)
+    header = [cell.lower() for cell in rows[0]] if rows else []
+    wrong = [cell for cell in header if cell not in allowed]
+    if not header or wrong:
+        problem = f"begins with a line of names, of these: {', '.join(allowed)}"
+        raise InputError(name, wrong[0] if wrong else "", problem)
+    return {
+        key: [plain(row[k]) if k < len(row) else "" for row in rows[1:]]
+        for k, key in enumerate(header)
+    }
+
+
+def one_column(given: Sequence[str] | str) -> Iterator[str]:
+    """Numbers from a list, or from one text with all of them."""
+    if isinstance(given, str):
+        for line in given.splitlines():
+            yield from columns(line)
+    else:
+        yield from given

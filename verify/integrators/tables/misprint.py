@@ -1,0 +1,106 @@
+"""One number alone that is misprinted: which, and what it would have to be."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+import flint
+
+from verify.algebra.formula import symbol
+from verify.arithmetic.arb import Ball, middle_and_radius
+from verify.arithmetic.flint_precision import working_precision
+from verify.integrators.tables.asked import BITS, Asked
+from verify.integrators.tables.nearby import Nearby, small
+
+_TURNS = 9
+_HELD = flint.arb(2) ** -150  # a residue that is 0, where no number is rounded
+_CLOSE, _LARGEST = Fraction(1, 10**40), 10**12  # to a quotient, and its denominator at most
+_MOST = 200  # entries of which one is looked for
+
+
+@dataclass(frozen=True)
+class Misprint:
+    """One number alone that, were it `value`, would make the conditions hold to the digits."""
+
+    name: str
+    printed: str
+    value: Fraction
+
+
+def misprint(near: Nearby, rows: Sequence[int]) -> Misprint | None:
+    """The one number whose change alone would do; None where none or several would."""
+    found = [m for k in range(len(near.names)) if (m := _single(near, k, rows)) is not None]
+    return found[0] if len(found) == 1 else None
+
+
+def _single(near: Nearby, k: int, rows: Sequence[int]) -> Misprint | None:
+    """By Newton's method for one unknown, in the sense of least squares."""
+    at, value = list(near.start), near.value
+    largest = max(abs(value[i]) for i in rows)
+    slope = [near.slope[i][k].mid() for i in rows]
+    for turn in range(_TURNS):
+        if turn:
+            there = near.moved(at, k)
+            slope = [((there[i] - value[i]) / small()).mid() for i in rows]
+        change = _least_squares(slope, [value[i] for i in rows])
+        if change is None:
+            return None
+        at[k] = (at[k] - change).mid()
+        value = near.residues(at)
+        if turn == 0 and not all(abs(value[i]) < largest for i in rows):
+            return None  # no change of this number alone brings them down
+    others = [(d, u) for d, u in zip(range(len(near.names)), near.unit, strict=True)]
+    for i in rows:
+        allowed = sum((abs(near.slope[i][d]) * u for d, u in others), _HELD)
+        if not abs(value[i]) < allowed:
+            return None
+    name = near.names[k]
+    return Misprint(name, near.numbers.numbers[name], middle_and_radius(at[k])[0])
+
+
+def _least_squares(slope: Sequence[Ball], value: Sequence[Ball]) -> Ball | None:
+    square = sum((d * d for d in slope), flint.arb(0))
+    if square == 0:
+        return None
+    return sum((d * v for d, v in zip(slope, value, strict=True)), flint.arb(0)) / square
+
+
+# -- of exact tables ------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Unknowns:
+    """Exact entries as numbers of which any may be wrong."""
+
+    values: Mapping[str, Fraction]
+    units: Mapping[str, Fraction]
+    numbers: Mapping[str, str]
+
+
+def exact_misprint(asked: Asked, order: int) -> Misprint | None:
+    """The one rational entry, of those that are not 0, and the quotient it would have to be."""
+    if not all(x.is_Rational for x in asked.entries) or len(asked.entries) > _MOST:
+        return None
+    labels = asked.labels or tuple(f"entry {k + 1}" for k in range(len(asked.entries)))
+    names = [f"x{k}" for k in range(len(labels))]
+    values = {n: Fraction(int(x.p), int(x.q)) for n, x in zip(names, asked.entries, strict=True)}
+    unknowns = _Unknowns(
+        values,
+        dict.fromkeys(names, _CLOSE**2),
+        dict(zip(names, map(str, asked.entries), strict=True)),
+    )
+    free = replace(asked, entries=tuple(map(symbol, names)))
+    with working_precision(BITS):
+        found = misprint(Nearby(unknowns, free), asked.up_to(order))
+    if found is None:
+        return None
+    value = found.value.limit_denominator(_LARGEST)
+    k = names.index(found.name)
+    if abs(value - found.value) > _CLOSE or value == values[found.name]:
+        return None
+    entries = [flint.fmpq(int(x.p), int(x.q)) for x in asked.entries]
+    entries[k] = flint.fmpq(value.numerator, value.denominator)
+    residues = asked.residues(entries, flint.fmpq(1))
+    if any(residues[i] != 0 for i in asked.up_to(order)):
+        return None
+    return Misprint(labels[k], str(asked.entries[k]), value)

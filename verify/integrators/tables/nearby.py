@@ -1,0 +1,348 @@
+"""The residues of a printed table near its numbers, and whether exact ones lie there.
+
+Coefficients that stand for algebraic numbers are printed as decimals: taken exactly they satisfy no
+condition at all. What can be asked is whether numbers near the printed ones do.
+
+With F the residues, J their derivative at the printed numbers x₀, and B a bound of the second
+derivatives (Cauchy's, by a majorant that has all signs plus), F(x) is F(x₀) + J (x − x₀) up to
+B |x − x₀|²/2, the norm being the sum. So
+
+- some combination of residues may be enclosed away from 0 over the whole box: then none exist;
+- else, with P = U Jᵀ(J U Jᵀ)⁻¹, U the squared units, t ↦ t − F(x₀ + P t) may map a ball around
+  −F(x₀) into itself: then, by Brouwer, a solution exists, and it is known where.
+
+J is a difference quotient with a step of 2⁻¹⁶⁰, whose error B bounds too. All is done in balls.
+
+Conditions may depend on one another, as those of trees do where simplifying assumptions hold. Then
+a solution of as many as are independent at x₀ is shown to exist, and the others are looked at
+there: where their residues are 0 to `HELD`, that is no proof, and much more than chance.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Protocol
+
+import flint
+
+from verify.arithmetic.arb import Ball, middle_and_radius, rational_ball
+from verify.integrators.tables.asked import Asked, ball_of, size_of
+from verify.integrators.tables.printed_numbers import entries_at
+
+_STEP = 160  # the difference quotient's, as a power of 1/2
+_RADIUS = Fraction(1, 8)  # of the polydisc of Cauchy's bound
+_TURNS = 40
+_CLOSE = flint.arb(2) ** -290  # of a chord's step, the last one
+# Of a condition's derivative, what is left beside the others', where it is taken to depend on them.
+_DEPENDENT = 1e-10, 1e-5
+_FEW, _FAR = 12, 20  # numbers of which a solution is looked for far away, and how large they are
+HELD = Fraction(1, 2**200)
+
+
+@dataclass(frozen=True)
+class Nearest:
+    """A solution: how far it is, in units of the last digit, and its numbers; how many conditions
+    are shown to hold there, and the largest residue of the others, as a bound."""
+
+    off: Fraction
+    numbers: Mapping[str, Fraction]
+    shown: int
+    rest: Fraction = Fraction(0)
+
+
+class Rounded(Protocol):
+    """Numbers by name: what is printed, its exact value, and one unit of its last digit."""
+
+    @property
+    def numbers(self) -> Mapping[str, str]: ...
+
+    @property
+    def values(self) -> Mapping[str, Fraction]: ...
+
+    @property
+    def units(self) -> Mapping[str, Fraction]: ...
+
+
+@dataclass(frozen=True)
+class _Moved:
+    """The same numbers with other values."""
+
+    numbers: Mapping[str, str]
+    values: Mapping[str, Fraction]
+    units: Mapping[str, Fraction]
+
+
+class Nearby:
+    """The residues near the printed numbers: values, derivatives, a bound of the second ones."""
+
+    def __init__(self, numbers: Rounded, asked: Asked) -> None:
+        self.numbers, self.asked = numbers, asked
+        self.names = tuple(numbers.units)
+        self.start = [rational_ball(numbers.values[n]) for n in self.names]
+        self.unit = [rational_ball(numbers.units[n]) for n in self.names]
+        self.second = self._second()
+        self.value = self.residues(self.start)
+        self.at_print = [middle_and_radius(x)[0] for x in self.value]
+        self.slope = self._slopes(self.start, self.value)  # [condition][number]
+
+    def residues(self, at: Sequence[Ball]) -> list[Ball]:
+        """Of all conditions, at those numbers."""
+        point = dict(zip(self.names, at, strict=True))
+        entries = entries_at(self.asked.entries, point, ball_of)
+        return self.asked.residues(entries, flint.arb(1))
+
+    def moved(self, at: Sequence[Ball], k: int) -> list[Ball]:
+        """The residues where number k is larger by the difference quotient's step."""
+        return self.residues([x + small() if i == k else x for i, x in enumerate(at)])
+
+    def _slopes(self, at: Sequence[Ball], value: Sequence[Ball]) -> list[list[Ball]]:
+        columns = []
+        for k in range(len(at)):
+            pairs = zip(value, self.moved(at, k), self.second, strict=True)
+            columns.append([(y - x) / small() + _around(small() * b) for x, y, b in pairs])
+        return [list(row) for row in zip(*columns, strict=True)]
+
+    def _second(self) -> list[Ball]:
+        """Bounds of each residue's second derivatives within half the polydisc's radius."""
+        radius = rational_ball(_RADIUS)
+        reach = {n: abs(x) + radius for n, x in zip(self.names, self.start, strict=True)}
+        entries = entries_at(self.asked.entries, reach, size_of)
+        bounds = self.asked.residues(entries, flint.arb(1), bound=True)
+        return [((x + 1) * 8 / radius**2).abs_upper() for x in bounds]
+
+    # -- none exist -------------------------------------------------------------------------------
+
+    def _excludes(
+        self,
+        weights: Mapping[int, Ball],
+        units: Fraction | int,
+        slopes: Sequence[Sequence[Ball]] | None = None,
+    ) -> bool:
+        """Whether Σ weight · residue is not 0 at any numbers within so many units.
+
+        With the derivatives over the whole box, `slopes`, by the mean value theorem; without, with
+        those at the printed numbers and the bound of the second ones.
+        """
+        radius, zero = [u * rational_ball(Fraction(units)) for u in self.unit], flint.arb(0)
+        spread = zero
+        if slopes is None:
+            slopes, reach = self.slope, sum(radius, zero) * sum(radius, zero) / 2
+            spread = sum((abs(w) * self.second[k] * reach for k, w in weights.items()), zero)
+        for i, r in enumerate(radius):
+            spread += abs(sum((w * slopes[k][i] for k, w in weights.items()), zero)) * r
+        return bool(abs(sum((w * self.value[k] for k, w in weights.items()), zero)) > spread)
+
+    def excluded(self, rows: Sequence[int], units: Fraction | int) -> list[int]:
+        """The conditions that hold for no numbers within so many units."""
+        one = flint.arb(1)
+        found = [k for k in rows if self._excludes({k: one}, units)]
+        left = [k for k in rows if k not in found and self._rough(k, units)]
+        if left:
+            slopes = self._over_box(units)
+            found += [k for k in left if self._excludes({k: one}, units, slopes)]
+        return sorted(found)
+
+    def _rough(self, k: int, units: Fraction | int) -> bool:
+        """Whether it is the bound of the second derivatives alone that keeps it from exclusion."""
+        radius = [u * rational_ball(Fraction(units)) for u in self.unit]
+        first = sum((abs(s) * r for s, r in zip(self.slope[k], radius, strict=True)), flint.arb(0))
+        return bool(abs(self.value[k]) > first)
+
+    def apart(self, rows: Sequence[int], units: Fraction | int) -> bool:
+        """Whether no numbers within so many units satisfy all of these conditions."""
+        return any(self._apart(chosen, units) for chosen in self._choices(rows))
+
+    def _apart(self, rows: Sequence[int], units: Fraction | int) -> bool:
+        inverse = self._inverse(rows, self.slope)
+        if inverse is None:
+            return False
+        count = len(rows)
+        combined = [
+            dict(zip(rows, (inverse[i, j] for j in range(count)), strict=True))
+            for i in range(len(self.names))
+        ]
+        if any(self._excludes(weights, units) for weights in combined):
+            return True
+        slopes = self._over_box(units)
+        return any(self._excludes(weights, units, slopes) for weights in combined)
+
+    def _over_box(self, units: Fraction | int) -> list[list[Ball]]:
+        """The derivatives over the box: slower than `_slopes`, and sharper than their bound."""
+        wide = rational_ball(Fraction(units))
+        box = [x + _around(u * wide) for x, u in zip(self.start, self.unit, strict=True)]
+        columns = []
+        with _series_of_two_terms():
+            for k in range(len(box)):
+                point = {
+                    n: flint.arb_series([x, int(i == k)], prec=2)
+                    for i, (n, x) in enumerate(zip(self.names, box, strict=True))
+                }
+                entries = entries_at(self.asked.entries, point, _constant)
+                residues = self.asked.residues(entries, flint.arb_series([1], prec=2))
+                columns.append([x[1] for x in residues])
+        return [list(row) for row in zip(*columns, strict=True)]
+
+    # -- one exists -------------------------------------------------------------------------------
+
+    def _choices(self, rows: Sequence[int]) -> list[list[int]]:
+        """All of them, where they can be independent; and those that seem to be."""
+        all_of_them = [list(rows)] if len(rows) <= len(self.names) else []
+        seeming = (self._independent(rows, least) for least in _DEPENDENT)
+        found = {tuple(each): each for each in (*all_of_them, *seeming)}
+        return list(found.values())
+
+    def _independent(self, rows: Sequence[int], least: float) -> list[int]:
+        """As many of the conditions as do not depend on one another at the printed numbers."""
+        import numpy as np
+
+        largest = max((u for u in self.numbers.units.values()), default=Fraction(1))
+        scale = [float(u / largest) for u in self.numbers.units.values()]
+        left = np.array([[float(x.mid()) for x in self.slope[k]] for k in rows]) * scale
+        left = left.reshape(len(rows), len(self.names))
+        size = np.linalg.norm(left, axis=1)
+        left = left / np.where(size > 0, size, 1)[:, None]
+        found: list[int] = []
+        while len(found) < min(len(rows), len(self.names)):
+            norms = np.linalg.norm(left, axis=1)
+            # Of those that are far enough from the ones chosen, the first: lower orders are so.
+            far = np.flatnonzero(norms > max(least, 0.1 * norms.max()))
+            if not len(far):
+                break
+            k = int(far[0])
+            direction = left[k] / norms[k]
+            left = left - np.outer(left @ direction, direction)
+            left[k] = 0
+            found.append(k)
+        return sorted(rows[k] for k in found)
+
+    def _inverse(
+        self, rows: Sequence[int], slope: Sequence[Sequence[Ball]]
+    ) -> flint.arb_mat | None:
+        """U Jᵀ(J U Jᵀ)⁻¹, nearly."""
+        if not rows or len(rows) > len(self.names):
+            return None
+        jacobian = flint.arb_mat([[x.mid() for x in slope[k]] for k in rows])
+        count = len(self.unit)
+        squares = [[self.unit[i] ** 2 if i == j else 0 for j in range(count)] for i in range(count)]
+        scaled = flint.arb_mat(squares) * jacobian.transpose()
+        try:
+            found = scaled * (jacobian * scaled).inv()
+        except ZeroDivisionError:
+            return None
+        middles = [[found[i, j].mid() for j in range(len(rows))] for i in range(count)]
+        return flint.arb_mat(middles)
+
+    def nearest(self, rows: Sequence[int]) -> Nearest | None:
+        """A solution of these conditions; None where none is shown to exist, or where those that
+        depend on others do not hold there."""
+        if not rows:
+            return Nearest(Fraction(0), dict(self.numbers.values), 0)
+        found = (self._nearest(rows, chosen) for chosen in self._choices(rows))
+        return next((each for each in found if each is not None), None)
+
+    def _nearest(self, rows: Sequence[int], chosen: Sequence[int]) -> Nearest | None:
+        inverse = self._inverse(chosen, self.slope)
+        if inverse is None:
+            return None
+        at = list(self.start)
+        for _ in range(_TURNS):  # chords: far faster than they are needed
+            value = self.residues(at)
+            change = (inverse * flint.arb_mat([[value[k].mid()] for k in chosen])).tolist()
+            at = [(x - d).mid() for x, (d,) in zip(at, change, strict=True)]
+            if all(abs(d) < _CLOSE for (d,) in change):
+                break
+        if not all(
+            abs(x - y) < rational_ball(_RADIUS / 4) for x, y in zip(at, self.start, strict=True)
+        ):
+            return None
+        around = self._solution(chosen, at)
+        if around is None:
+            return None
+        triples = list(zip(self.names, self.start, around, strict=True))
+        off = max(_upper(y - x) / self.numbers.units[n] for n, x, y in triples)
+        there, others = self.residues(around), set(rows) - set(chosen)
+        rest = max((_upper(there[k]) for k in others), default=Fraction(0))
+        numbers = {n: middle_and_radius(y)[0] for n, _, y in triples}
+        return Nearest(off, numbers, len(chosen), rest) if rest < HELD else None
+
+    def far(self, rows: Sequence[int]) -> Nearest | None:
+        """A solution that may be far from the printed numbers, by Newton's method; None where it
+        finds none, or one of many. Of a few numbers alone."""
+        if len(self.names) > _FEW or not rows:
+            return None
+        at, slope = list(self.start), self.slope
+        for _ in range(_TURNS):
+            value = self.residues(at)
+            chosen = self._choices(rows)[-1]
+            inverse = self._inverse(chosen, slope)
+            if inverse is None:
+                return None
+            change = (inverse * flint.arb_mat([[value[k].mid()] for k in chosen])).tolist()
+            at = [(x - d).mid() for x, (d,) in zip(at, change, strict=True)]
+            if all(abs(d) < _CLOSE for (d,) in change) or not all(abs(x) < _FAR for x in at):
+                break
+            slope = [[x.mid() for x in row] for row in self._slopes(at, self.residues(at))]
+        values = {n: middle_and_radius(x)[0] for n, x in zip(self.names, at, strict=True)}
+        if not all(abs(x) < _FAR for x in at):
+            return None
+        own = _Moved(self.numbers.numbers, values, self.numbers.units)
+        found = Nearby(own, self.asked).nearest(rows)
+        if found is None or found.shown < len(self.names):
+            return None
+        gaps = (abs(found.numbers[n] - x) / self.numbers.units[n] for n, x in
+                self.numbers.values.items())  # fmt: skip
+        return Nearest(max(gaps), found.numbers, found.shown, found.rest)
+
+    def _solution(self, rows: Sequence[int], at: Sequence[Ball]) -> list[Ball] | None:
+        """Balls around `at` in which a solution lies; None where that is not shown."""
+        value = self.residues(at)
+        slope = self._slopes(at, value)
+        inverse = self._inverse(rows, slope)
+        if inverse is None:
+            return None
+        target = [-value[k] for k in rows]
+        slack = 2 * max((x.abs_upper() for x in target), key=float) + flint.arb(2) ** -240
+        ball = flint.arb_mat([[x + _around(slack)] for x in target])
+        moved = [x for (x,) in (inverse * ball).tolist()]
+        far = sum((abs(x) for x in moved), flint.arb(0))
+        if not far < rational_ball(_RADIUS / 4):
+            return None
+        size = len(rows)
+        identity = flint.arb_mat([[int(i == j) for j in range(size)] for i in range(size)])
+        rest = identity - flint.arb_mat([slope[k] for k in rows]) * inverse
+        image = (rest * ball).tolist()
+        for i, k in enumerate(rows):
+            curved = _around(self.second[k] * far * far / 2)
+            if not ball[i, 0].contains_interior(target[i] + image[i][0] + curved):
+                return None
+        return [x + d for x, d in zip(at, moved, strict=True)]
+
+
+def small() -> Ball:
+    """The difference quotient's step."""
+    return flint.arb(2) ** -_STEP
+
+
+def _around(radius: Ball) -> Ball:
+    """[−radius, radius]."""
+    return radius.abs_upper() * flint.arb(0, 1)  # a tiny radius given as such may become infinite
+
+
+def _upper(x: Ball) -> Fraction:
+    middle, radius = middle_and_radius(x)
+    return abs(middle) + radius
+
+
+def _constant(x: "flint.arb") -> flint.arb_series:
+    return flint.arb_series([ball_of(x)], prec=2)
+
+
+@contextmanager
+def _series_of_two_terms() -> Iterator[None]:
+    """A value and its derivative; leaves flint's length of series as it was."""
+    before, flint.ctx.cap = flint.ctx.cap, 2
+    try:
+        yield
+    finally:
+        flint.ctx.cap = before

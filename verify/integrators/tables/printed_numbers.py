@@ -1,0 +1,186 @@
+"""Numbers as they are printed: which of them are rounded, to which digit, and what stands exactly.
+
+A decimal that stands for an algebraic number is rounded; 0.5 is not. Of a short one it cannot be
+seen, so it is a matter of reading. First what has few digits is exact, by itself or beside others:
+0.037109375 among numbers of 17 digits has lost zeros at its end, or is 19/512. Then it is not.
+"""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property, lru_cache
+
+import sympy
+
+from verify.algebra.formula import parse, symbol
+from verify.arithmetic.exact import rational
+from verify.arithmetic.number import E
+from verify.errors import InputError
+
+FIRST, LAST = 7, 3  # places up to which a decimal is exact, as it is read first, and last
+_FEWER = 5  # digits than the longest number has
+_OF_DOUBLES = 16, 17  # digits of a double that is printed so that it is read back
+
+
+@dataclass(frozen=True)
+class PrintedNumbers:
+    """`numbers`: by name, decimals as printed, or exact formulas of numbers.
+
+    `exact_up_to`: a decimal with so many places, or fewer, is exact; and so is one with so many
+    digits as `exact_digits`, or fewer.
+    """
+
+    numbers: Mapping[str, str]
+    exact_up_to: int = 0
+    exact_digits: int = 0
+
+    @cached_property
+    def units(self) -> dict[str, Fraction]:
+        """One unit of the last digit of each number that is rounded."""
+        found = ((name, unit_known(text)) for name, text in self.numbers.items())
+        most = Fraction(1, 10**self.exact_up_to) if self.exact_up_to else None
+        return {
+            name: unit
+            for name, unit in found
+            if unit is not None
+            and (most is None or unit < most)
+            and _digits(self.numbers[name]) > self.exact_digits
+        }
+
+    @cached_property
+    def values(self) -> dict[str, Fraction]:
+        """The rounded numbers exactly as they are printed."""
+        return {name: rational(self.numbers[name].replace(" ", ""), name) for name in self.units}
+
+    @cached_property
+    def digits(self) -> int:
+        """Decimals after the point of the number that has fewest."""
+        return min(places_of(unit) for unit in self.units.values())
+
+    @cached_property
+    def _exact(self) -> dict[sympy.Symbol, sympy.Expr]:
+        return {
+            symbol(name): parse(text, (), source=name)
+            for name, text in self.numbers.items()
+            if name not in self.units
+        }
+
+    def entry(self, text: str, source: str = "part") -> sympy.Expr:
+        """A formula in the numbers, in the symbols of those that are rounded."""
+        found = parse(text, self.numbers, source=source)
+        return sympy.expand(found.subs(self._exact)) if found.free_symbols else found
+
+    def readings(self) -> list["PrintedNumbers"]:
+        """The same as they may be read: with more of the decimals exact first."""
+        longest = max((_digits(x) for x in self.numbers.values() if unit_of(x)), default=0)
+        first = replace(self, exact_up_to=FIRST, exact_digits=longest - _FEWER)
+        last = replace(self, exact_up_to=LAST)
+        return [first] if first.units == last.units else [first, last]
+
+
+def unit_of(text: str) -> Fraction | None:
+    """One unit of the last digit of a decimal with a point; None for anything else.
+
+    >>> unit_of("-1.250"), unit_of("3/4")
+    (Fraction(1, 1000), None)
+    """
+    mantissa, _, exponent = text.lower().replace(" ", "").lstrip("+-").partition("e")
+    whole, point, decimals = mantissa.partition(".")
+    if not point or not (whole + decimals).isdecimal() or not (whole + decimals).isascii():
+        return None
+    power = exponent.lstrip("+-") or "0"
+    if not power.isdecimal() or len(power) > 3:
+        return None
+    return Fraction(10) ** (int(exponent or 0) - len(decimals))
+
+
+def places_of(unit: Fraction) -> int:
+    """Decimal places of a number that is known to that unit.
+
+    >>> places_of(Fraction(1, 1000)), places_of(Fraction(1, 800)), places_of(Fraction(1))
+    (3, 2, 0)
+    """
+    places = 0
+    while Fraction(1, 10 ** (places + 1)) >= unit:
+        places += 1
+    return places
+
+
+def unit_known(text: str) -> Fraction | None:
+    """As `unit_of`; but of what a program has printed of a double, as 0.054293734116568765, at
+    least half an ulp, to which such digits are known."""
+    unit = unit_of(text)
+    if unit is None or _digits(text) not in _OF_DOUBLES:
+        return unit
+    x = float(text.replace(" ", ""))
+    if rational(repr(x)) != rational(text.replace(" ", "")):
+        return unit
+    return max(unit, Fraction(math.ulp(x)) / 2)
+
+
+def _digits(text: str) -> int:
+    """How many significant digits a decimal has."""
+    mantissa = text.lower().replace(" ", "").lstrip("+-").partition("e")[0]
+    return len(mantissa.replace(".", "").lstrip("0"))
+
+
+def rounded_to(x: Fraction, unit: Fraction) -> str:
+    """A number to the place of that unit.
+
+    >>> rounded_to(Fraction(-2, 3), Fraction(1, 1000))
+    '−0.667'
+    """
+    places = max(places_of(unit), 0)
+    whole = round(x * 10**places)
+    digits = str(abs(whole)).rjust(places + 1, "0")
+    cut = len(digits) - places
+    return f"{'−' if whole < 0 else ''}{digits[:cut]}.{digits[cut:]}".rstrip(".")
+
+
+# -- entries as polynomials in the numbers --------------------------------------------------------
+
+
+def power(x: E, n: int) -> E:
+    """xⁿ, n ≥ 1, by products: of a ball with 0 in it, powers may be undefined."""
+    result = x
+    for _ in range(n - 1):
+        result = result * x
+    return result
+
+
+def evaluated(expression: sympy.Expr, at: Mapping[str, E], number: Callable[[sympy.Expr], E]) -> E:
+    """A polynomial in the numbers, at `at`; `number` makes what its coefficients are there."""
+    total: E | None = None
+    for powers, coefficient in _terms(expression):
+        term = number(coefficient)
+        for name, n in powers:
+            term = term * power(at[name], n)
+        total = term if total is None else total + term
+    return number(sympy.S.Zero) if total is None else total
+
+
+@lru_cache(maxsize=4096)
+def _terms(
+    expression: sympy.Expr,
+) -> tuple[tuple[tuple[tuple[str, int], ...], sympy.Expr], ...]:
+    """((number, exponent), …) and the coefficient, of each term."""
+    if not expression.free_symbols:
+        return (((), expression),)
+    names = sorted(expression.free_symbols, key=lambda x: x.name)
+    try:
+        polynomial = sympy.Poly(expression, *names)
+    except sympy.PolynomialError:
+        problem = "is no polynomial in the numbers that are rounded; give it as one of `numbers`"
+        raise InputError("entry", str(expression), problem) from None
+    return tuple(
+        (tuple((x.name, e) for x, e in zip(names, powers, strict=True) if e), coefficient)
+        for powers, coefficient in polynomial.terms()
+    )
+
+
+def entries_at(
+    entries: Sequence[sympy.Expr], at: Mapping[str, E], number: Callable[[sympy.Expr], E]
+) -> list[E]:
+    """All of them."""
+    return [evaluated(entry, at, number) for entry in entries]

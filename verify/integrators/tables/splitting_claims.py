@@ -1,0 +1,231 @@
+"""What tables of splittings and compositions claim, each with its verdict."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import cycle, islice
+from typing import Literal
+
+import sympy
+
+from verify.arithmetic.number import E
+from verify.errors import NOT_GIVEN, InputError
+from verify.integrators.tables.asked import Asked, Named
+from verify.integrators.tables.clocks import TimedTable, judge_clocks, judge_in_time
+from verify.integrators.tables.entry import MOST_ENTRIES, Naming, Order, Row, TableEntry
+from verify.integrators.tables.judged import Judged, judge
+from verify.integrators.tables.layout import named_columns, one_column
+from verify.integrators.tables.splitting_table import PrintedTable, judge_order
+from verify.integrators.tables.told import (
+    OF_WORDS,
+    WRONG_CLOCK,
+    WRONG_ORDER,
+    TableClaim,
+    best_reading,
+    condition_claims,
+    order_claims,
+)
+from verify.prose import prose
+from verify.verdict import Verdict
+
+_EXCHANGED = {"kick": "drift", "drift": "kick"}
+
+
+class SizesEntry(TableEntry):
+    """`sizes`: of all parts, as a list or one text; or `half` of them, read forth and back again,
+    the last standing once."""
+
+    order: Order | None = None
+    sizes: Row | str | None = None
+    half: Row | str | None = None
+
+
+class AlternatingEntry(SizesEntry):
+    """`first`: "kick", "drift", or "both" to be run either way. `times`: one for each size, in
+    parts of h, `-` where none is read; judged for kicks, and with `time_dependent = "T and V"` for
+    drifts too. A `csv` file has columns kind, size and time, or size alone."""
+
+    first: Literal["kick", "drift", "both"] | None = None
+    times: Row | str | None = None
+    time_dependent: Literal["V", "T and V"] | None = None
+
+
+def sizes_of(entry: SizesEntry) -> tuple[tuple[str, ...], bool]:
+    """The sizes as they are written, and whether they are half of them."""
+    if (entry.sizes is None) == (entry.half is None):
+        problem = "is missing; write sizes, or half" if entry.sizes is None else "goes without half"
+        raise InputError("sizes", NOT_GIVEN, problem)
+    found = tuple(one_column(entry.sizes if entry.sizes is not None else entry.half or ()))
+    if not 1 <= len(found) <= MOST_ENTRIES // 10:
+        raise InputError("sizes", len(found), f"are 1 to {MOST_ENTRIES // 10}")
+    return found, entry.half is not None
+
+
+def mirrored(half: Sequence[str]) -> tuple[str, ...]:
+    """Forth and back again, the last one standing once."""
+    return (*half, *half[-2::-1])
+
+
+def of_alternating(entry: AlternatingEntry) -> Iterator[TableClaim]:
+    """Of kicks and drifts: order, in time, digits, symplectic, symmetric."""
+    naming = Naming(entry.numbers)
+    kinds, sizes, times = _parts(entry, naming)
+    both = entry.first == "both"
+    for first in ("kick", "drift") if both else (kinds[0],):
+        own = kinds if first == kinds[0] else tuple(_EXCHANGED[kind] for kind in kinds)
+        table = PrintedTable(entry.kind, tuple(zip(own, sizes, strict=True)), naming.numbers)
+        for claim in _of_table(entry, table, times):
+            yield _named(claim, f", {first} first") if both else claim
+
+
+def _named(claim: TableClaim, more: str) -> TableClaim:
+    return replace(claim, kind=claim.kind + more, statement=claim.statement + more)
+
+
+def _parts(
+    entry: AlternatingEntry, naming: Naming
+) -> tuple[tuple[str, ...], tuple[str, ...], tuple[str | None, ...] | None]:
+    """Kinds, sizes and times, in names for their decimals."""
+    kinds: tuple[str, ...]
+    times: Sequence[str] | None = None
+    if entry.csv is not None:
+        if entry.sizes is not None or entry.half is not None or entry.times is not None:
+            raise InputError("csv", entry.csv, "stands alone: leave out sizes, half and times")
+        found = named_columns(entry.folder, entry.csv, ("kind", "size", "time"))
+        if "size" not in found:
+            raise InputError("csv", entry.csv, "has no column size")
+        sizes, half, times = tuple(found["size"]), False, found.get("time")
+        kinds = tuple(found.get("kind", ())) or _kinds(entry, len(sizes))
+        wrong = [kind for kind in kinds if kind not in _EXCHANGED]
+        if wrong:
+            raise InputError("kind", wrong[0], "is kick or drift")
+    else:
+        sizes, half = sizes_of(entry)
+        times = None if entry.times is None else tuple(one_column(entry.times))
+        kinds = _kinds(entry, 2 * len(sizes) - 1 if half else len(sizes))
+    named = naming.entries(sizes, "size")
+    named = mirrored(named) if half else named
+    if times is not None and len(times) != len(named):
+        raise InputError("times", len(times), f"are {len(named)}, one for each size")
+    told = None if times is None else tuple(
+        None if x in ("", "-", "–", "—") else naming.entry(x, f"time{k + 1}")
+        for k, x in enumerate(times)
+    )  # fmt: skip
+    return kinds, named, told
+
+
+def _kinds(entry: AlternatingEntry, count: int) -> tuple[str, ...]:
+    if entry.first is None:
+        raise InputError("first", NOT_GIVEN, 'is missing; write first = "kick", "drift" or "both"')
+    first = "drift" if entry.first == "drift" else "kick"
+    return tuple(islice(cycle((first, _EXCHANGED[first])), count))
+
+
+def _of_table(
+    entry: AlternatingEntry, table: PrintedTable, times: tuple[str | None, ...] | None
+) -> Iterator[TableClaim]:
+    if times is None and entry.time_dependent is not None:
+        raise InputError("times", NOT_GIVEN, "is missing; time_dependent is judged by them")
+    order = None
+    for order_claim in of_order(entry, table):
+        order = order or order_claim.verdict
+        yield order_claim
+    if times is not None and entry.order is not None:
+        timed = TimedTable(table, times, entry.time_dependent == "T and V")
+        yield from _in_time(timed, entry.order, order is Verdict.REFUTED)
+    if entry.symplectic:
+        evidence = prose(
+            "every kick and every drift is symplectic, whatever their coefficients are"
+        )
+        yield TableClaim("symplectic", "symplectic", Verdict.PROVED, evidence)
+    if entry.symmetric:
+        yield from symmetric_claims(table)
+
+
+def of_order(entry: SizesEntry, table: PrintedTable) -> Iterator[TableClaim]:
+    """The claim of its order, and of its digits; InputError where none is claimed."""
+    order = entry.order
+    if order is None:
+        if entry.symmetric or entry.symplectic:
+            return
+        raise InputError("order", NOT_GIVEN, "is missing; a table is judged by what it claims")
+    found = best_reading(table, lambda x: judge_order(x, order))
+    yield from order_claims(
+        "order", f"order {order}", found, order, lambda x: _following(table.read(x), order)
+    )
+
+
+def _following(table: PrintedTable, order: int) -> Asked:
+    """The conditions of the next order alone."""
+    if order >= table.most_order:
+        raise InputError("order", order + 1, f"is looked at up to {table.most_order}")
+    whole = table.asked(order)
+    places = [k for k, e in enumerate(whole.equations) if e.order == order + 1]
+
+    def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
+        found = whole.residues(entries, one, bound)
+        return [found[k] for k in places]
+
+    chosen = tuple(whole.equations[k] for k in places)
+    return Asked(whole.entries, chosen, residues)
+
+
+def _in_time(timed: TimedTable, order: int, refuted: bool) -> Iterator[TableClaim]:
+    """`refuted`: whether the order is without time."""
+    what = "T and V depend" if timed.both else "V depends"
+    statement = f"order {order}, too, where {what} on time"
+    found = best_reading(timed, lambda x: judge_in_time(x, order))
+    severity = WRONG_ORDER if refuted else WRONG_CLOCK
+    claim = next(order_claims("order in time", statement, found, order, severity=severity))
+    right = best_reading(timed, judge_clocks)
+    if claim.verdict is right.verdict is Verdict.REFUTED:
+        clocks = next(condition_claims("clock", "", "the right clock", right, severity))
+        more = prose(claim.evidence, "; ", clocks.evidence)
+        claim = replace(claim, evidence=more, nearest=claim.nearest or clocks.nearest)
+    yield claim
+    if right.holds and right.digits is False:
+        _, digits = condition_claims("clock", "the right clock", "", right, severity)
+        yield digits
+
+
+def symmetric_claims(table: PrintedTable) -> Iterator[TableClaim]:
+    """Whether it is the same read backwards, neighbours of one kind being one part, and none 0."""
+    found = best_reading(table, _judge_symmetric)
+    yield from condition_claims("symmetric", "symmetric", "symmetric", found, OF_WORDS)
+
+
+def _judge_symmetric(table: PrintedTable) -> Judged:
+    kinds, groups = _merged(table)
+    count = len(groups)
+    if kinds != kinds[::-1]:
+        name = "the first and the last part are of one kind"
+        return Judged(Verdict.REFUTED, 0, 1, Named(name, 1), read=table.printed)
+    every = [(k, count - 1 - k) for k in range(count // 2)]
+    pairs = [
+        (i, j)
+        for i, j in every
+        if sympy.expand(sum(table.sizes[k] for k in groups[i]))
+        != sympy.expand(sum(table.sizes[k] for k in groups[j]))
+    ]
+    equations = tuple(Named(f"part {i + 1} = part {j + 1}", 1) for i, j in pairs)
+
+    def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
+        sign = 1 if bound else -1
+        sums = [sum((entries[k] for k in group[1:]), entries[group[0]]) for group in groups]
+        return [sums[i] + sums[j] * sign for i, j in pairs]
+
+    asked = Asked(table.sizes, equations, residues, len(every) - len(pairs))
+    return judge(table.printed, asked, 1)
+
+
+def _merged(table: PrintedTable) -> tuple[list[str], list[list[int]]]:
+    """The kinds in turn, and the places of the parts that are one."""
+    kinds, groups = list[str](), list[list[int]]()
+    for k, ((kind, _), size) in enumerate(zip(table.parts, table.sizes, strict=True)):
+        if size == 0:
+            continue
+        if kinds and kinds[-1] == kind and kind != "step":
+            groups[-1].append(k)
+        else:
+            kinds.append(kind)
+            groups.append([k])
+    return kinds, groups

@@ -1,0 +1,138 @@
+"""A table of splitting coefficients as it is printed: of kicks and drifts, or of a composition."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+
+import sympy
+
+from verify.arithmetic.number import E
+from verify.errors import InputError
+from verify.integrators.tables.asked import Asked
+from verify.integrators.tables.judged import Judged, judge
+from verify.integrators.tables.printed_numbers import PrintedNumbers, power
+from verify.schemes.free_lie_words import (
+    KINDS,
+    MOST_ORDER,
+    LogCondition,
+    conditions,
+    majorant,
+    residue,
+    step,
+)
+from verify.schemes.splitting_conditions import LETTERS
+
+_ODD = (1, 3, 5, 7, 9)
+
+
+@dataclass(frozen=True)
+class PrintedTable:
+    """`kind`: see `verify.schemes.free_lie_words`. `parts`: ("kick" or "drift", size) in the order
+    in which they are made, or ("step", size) of a composition; sizes are formulas in `numbers`,
+    which are decimals as printed, or exact formulas of numbers. InputError for what is none.
+    """
+
+    kind: str
+    parts: tuple[tuple[str, str], ...]
+    numbers: Mapping[str, str]
+    exact_up_to: int = 0
+    exact_digits: int = 0
+
+    def __post_init__(self) -> None:
+        if self.kind not in KINDS:
+            raise InputError("kind", self.kind, f"allowed: {', '.join(KINDS)}")
+        known = ("step",) if self.kind == "composition" else tuple(LETTERS)
+        wrong = [name for name, _ in self.parts if name not in known]
+        if wrong or not self.parts:
+            raise InputError("parts", wrong, f"are {' or '.join(known)}, one at least")
+        _ = self.sizes, self.units
+
+    @cached_property
+    def printed(self) -> PrintedNumbers:
+        """The numbers as they are read."""
+        return PrintedNumbers(self.numbers, self.exact_up_to, self.exact_digits)
+
+    @cached_property
+    def sizes(self) -> tuple[sympy.Expr, ...]:
+        """Of the parts, in the symbols of the numbers that are rounded."""
+        return tuple(self.printed.entry(size) for _, size in self.parts)
+
+    @property
+    def units(self) -> dict[str, Fraction]:
+        """One unit of the last digit of each number that is rounded."""
+        return self.printed.units
+
+    @property
+    def values(self) -> dict[str, Fraction]:
+        """The rounded numbers exactly as they are printed."""
+        return self.printed.values
+
+    @property
+    def digits(self) -> int:
+        """Decimals after the point of the number that has fewest."""
+        return self.printed.digits
+
+    @property
+    def palindromic(self) -> bool:
+        """Whether it is the same read backwards, by its form."""
+        names = [name for name, _ in self.parts]
+        return names == names[::-1] and self.sizes == self.sizes[::-1]
+
+    @property
+    def most_order(self) -> int:
+        """The highest order that is looked at."""
+        return MOST_ORDER[self.kind]
+
+    def read(self, numbers: PrintedNumbers) -> "PrintedTable":
+        """The same with its numbers read so."""
+        return replace(self, exact_up_to=numbers.exact_up_to, exact_digits=numbers.exact_digits)
+
+    def letters(self, sizes: Sequence[E]) -> list[Mapping[str, E]]:
+        """The parts for `verify.schemes.free_lie_words.step`, with these sizes."""
+        if self.kind == "composition":
+            return [{str(n): power(x, n) for n in _ODD} for x in sizes]
+        names = (name for name, _ in self.parts)
+        return [{LETTERS[name]: x} for name, x in zip(names, sizes, strict=True)]
+
+    def sums_to_one(self, name: str) -> bool:
+        """Whether the sizes of these parts have the sum 1, whatever the numbers are."""
+        own = (x for (kind, _), x in zip(self.parts, self.sizes, strict=True) if kind == name)
+        return bool(sympy.expand(sum(own, sympy.S.Zero) - 1) == 0)
+
+    def conditions(self, order: int) -> tuple[LogCondition, ...]:
+        """The conditions of orders 1 … `order` that do not hold by the form of the table alone."""
+        by_form = {"Σ kicks = 1": "kick", "Σ drifts = 1": "drift", "Σ w = 1": "step"}
+        rational = all(size.is_Rational for size in self.sizes)
+        return tuple(
+            c
+            for c in conditions(self.kind, order)
+            if rational
+            or not (
+                (self.palindromic and c.order % 2 == 0)
+                or (c.name in by_form and self.sums_to_one(by_form[c.name]))
+            )
+        )
+
+    def asked(self, order: int) -> Asked:
+        """The conditions of order `order`, and some beyond, which tell where it ends."""
+        highest = min(order + (1 if self.units else 2), self.most_order)
+        equations = self.conditions(highest)
+        most = max((c.order for c in equations), default=1)
+
+        def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
+            series = step(self.kind, self.letters(entries), most, one)
+            return [(majorant if bound else residue)(series, c) for c in equations]
+
+        own = [c for c in equations if c.order <= order]
+        by_form = len(conditions(self.kind, order)) - len(own)
+        labels = tuple(f"{name} {k + 1}" for k, (name, _) in enumerate(self.parts))
+        return Asked(self.sizes, equations, residues, by_form, labels=labels)
+
+
+def judge_order(table: PrintedTable, order: int) -> Judged:
+    """Whether the table can have that order. InputError where it cannot be looked at so far."""
+    if not 1 <= order <= table.most_order:
+        problem = f"of a {table.kind} is looked at up to {table.most_order}"
+        raise InputError("order", order, problem)
+    return judge(table.printed, table.asked(order), order)

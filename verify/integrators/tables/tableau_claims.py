@@ -1,0 +1,135 @@
+"""What Runge–Kutta tables of all kinds claim, each with its verdict."""
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Protocol
+
+from verify.errors import NOT_GIVEN, InputError
+from verify.integrators.tables.asked import Asked
+from verify.integrators.tables.judged import Judged, judge
+from verify.integrators.tables.printed_numbers import PrintedNumbers
+from verify.integrators.tables.tableau_order import (
+    MANY,
+    judge_in_time,
+    order_asked,
+    row_sums_asked,
+    stage_order_asked,
+)
+from verify.integrators.tables.tableau_symmetry import judge_symmetric, judge_symplectic
+from verify.integrators.tables.tableau_table import TableauTable, Texts
+from verify.integrators.tables.told import (
+    NOT_SYMPLECTIC,
+    OF_WORDS,
+    WRONG_CLOCK,
+    WRONG_ORDER,
+    WRONG_WEIGHTS,
+    TableClaim,
+    best_reading,
+    condition_claims,
+    order_claims,
+)
+from verify.prose import prose
+from verify.verdict import Verdict
+
+
+class Claimed(Protocol):
+    """What an entry claims."""
+
+    @property
+    def order(self) -> int | None: ...
+    @property
+    def embedded_order(self) -> int | None: ...
+    @property
+    def stage_order(self) -> int | None: ...
+    @property
+    def row_sums(self) -> bool | None: ...
+    @property
+    def symplectic(self) -> bool: ...
+    @property
+    def symmetric(self) -> bool: ...
+
+
+def of_tableau(
+    entry: Claimed,
+    table: TableauTable,
+    embedded: Sequence[Texts] | None = None,
+    separable: bool = False,
+) -> Iterator[TableClaim]:
+    """Each claim that the entry makes of its table; InputError where it makes none."""
+    made = list(_claims(entry, table, embedded, separable))
+    if not made:
+        raise InputError("order", NOT_GIVEN, "is missing; a table is judged by what it claims")
+    yield from made
+
+
+def _claims(
+    entry: Claimed, table: TableauTable, embedded: Sequence[Texts] | None, separable: bool
+) -> Iterator[TableClaim]:
+    sums = None
+    if table.timed:
+        sums = best_reading(table, lambda x: judge(x.printed, row_sums_asked(x), 1))
+    if entry.order is not None:
+        known = _judged(table, entry.order)
+        yield from _of_order("order", f"order {entry.order}", table, known, entry.order)
+        if sums is not None:
+            yield _in_time(table, entry.order, known, sums)
+    claimed = entry.row_sums if entry.row_sums is not None else table.timed
+    if claimed:
+        sums = sums or best_reading(table, lambda x: judge(x.printed, row_sums_asked(x), 1))
+        form = (
+            "Σ_j a_ij = c_i^2/2" if table.nystrom else "the times are the row sums, c_i = Σ_j a_ij"
+        )
+        yield from condition_claims("row sums", form, "the row sums", sums, WRONG_CLOCK)
+    if embedded is not None and entry.embedded_order is not None:
+        order, other = entry.embedded_order, table.with_weights(embedded)
+        said = f"the embedded weights have order {order}"
+        found = _judged(other, order)
+        yield from _of_order("embedded order", said, other, found, order, WRONG_WEIGHTS)
+    if entry.symplectic:
+        found = best_reading(table, lambda x: judge_symplectic(x, separable))
+        yield from condition_claims("symplectic", "symplectic", "symplectic", found, NOT_SYMPLECTIC)
+    if entry.symmetric:
+        found = best_reading(table, judge_symmetric)
+        yield from condition_claims("symmetric", "symmetric", "symmetric", found, OF_WORDS)
+    if entry.stage_order is not None:
+        yield from _stage_orders(table, entry.stage_order)
+
+
+def _judged(table: TableauTable, order: int) -> Judged:
+    return best_reading(table, lambda x: judge(x.printed, order_asked(x, order), order))
+
+
+def _of_order(
+    kind: str,
+    statement: str,
+    table: TableauTable,
+    found: Judged,
+    order: int,
+    severity: str = WRONG_ORDER,
+) -> Iterator[TableClaim]:
+    yield from order_claims(kind, statement, found, order, _following(table, order), severity)
+
+
+def _following(table: TableauTable, order: int) -> Callable[[PrintedNumbers], Asked]:
+    return lambda numbers: order_asked(table.read(numbers), order + 1, first=order + 1)
+
+
+def _in_time(table: TableauTable, order: int, known: Judged, sums: Judged) -> TableClaim:
+    """Of the order alone: the digits of a and b are judged without time, and c by the row sums."""
+    kind, statement = "order in time", f"order {order}, too, where f depends on time"
+    exact = known.verdict is sums.verdict is Verdict.PROVED
+    if exact or (known.holds and sums.holds and known.checked > MANY):
+        verdict = Verdict.PROVED if exact else Verdict.MEASURED
+        said = prose("the times are the row sums, so that the order is that without time")
+        return TableClaim(kind, statement, verdict, said)
+    if known.verdict is Verdict.REFUTED:
+        said = prose("the order fails where f does not depend on time")
+        return TableClaim(kind, statement, Verdict.REFUTED, said, severity=WRONG_ORDER)
+    found = best_reading(table, lambda x: judge_in_time(x, order))
+    return next(order_claims(kind, statement, found, order, severity=WRONG_CLOCK))
+
+
+def _stage_orders(table: TableauTable, order: int) -> Iterator[TableClaim]:
+    found = best_reading(table, lambda x: judge(x.printed, stage_order_asked(x, order), 1))
+    yield from condition_claims(
+        "stage order", f"stage order {order}", f"of stage order {order}", found, OF_WORDS
+    )

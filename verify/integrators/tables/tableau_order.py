@@ -1,0 +1,199 @@
+"""Orders of Runge–Kutta tables: the conditions of trees, in time as well, and what implies them.
+
+Where the times are the row sums, c_i = Σ a_ij, a leaf of time is as any other, and the conditions
+without time do. Where they are not, those of trees with leaves of time tell.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache, partial
+
+import sympy
+
+from verify.arithmetic.number import E
+from verify.errors import InputError
+from verify.integrators.tables.asked import Asked, Named
+from verify.integrators.tables.judged import Judged, judge
+from verify.integrators.tables.tableau_table import TableauTable
+from verify.integrators.tables.tree_weights import Block, dot
+from verify.schemes.coloured_trees import (
+    Grammar,
+    Tree,
+    all_trees,
+    equation_text,
+    nystrom_text,
+    symmetry,
+    vertices,
+)
+from verify.verdict import Verdict
+
+_MOST_TREES = 2500
+_HIGHEST = 10
+MANY = 60  # conditions: of fewer a solution is looked for together with that of row sums
+
+
+@cache
+def most_order(grammar: Grammar) -> int:
+    """The highest order whose trees are looked at."""
+    trees = [len(all_trees(grammar, 1))]
+    while len(trees) < _HIGHEST and sum(trees) <= _MOST_TREES:
+        trees.append(len(all_trees(grammar, len(trees) + 1)))
+    return len(trees) if sum(trees) <= _MOST_TREES else len(trees) - 1
+
+
+def order_asked(table: TableauTable, order: int, timed: bool = False, first: int = 1) -> Asked:
+    """The conditions of orders `first` … `order`; `timed`: with leaves of time.
+
+    InputError beyond what is looked at.
+    """
+    grammar = replace(table.grammar, timed=timed)
+    if not 1 <= order <= most_order(grammar):
+        raise InputError(
+            "order", order, f"of such a table is looked at up to {most_order(grammar)}"
+        )
+    trees = [
+        tree
+        for n in range(first, order + 1)
+        for tree in all_trees(grammar, n)
+        if not _holds_by_form(table, tree)
+    ]
+    equations = tuple(Named(condition_text(table, tree), vertices(tree)) for tree in trees)
+    shares = tuple(Fraction(1, symmetry(tree)) for tree in trees)
+    return Asked(
+        table.entries, equations, partial(_of_trees, table, trees), 0, shares, table.labels
+    )
+
+
+def condition_text(table: TableauTable, tree: Tree) -> str:
+    """The tree's condition in the table's own letters."""
+    return nystrom_text(tree) if table.nystrom else equation_text(tree, table.names)
+
+
+def _holds_by_form(table: TableauTable, tree: Tree) -> bool:
+    """q' = q + h p + … of Nyström's kind has its first term."""
+    return table.nystrom and tree == (1, ())
+
+
+def _of_trees(
+    table: TableauTable, trees: Sequence[Tree], entries: Sequence[E], one: E, bound: bool = False
+) -> list[E]:
+    weights = table.weights(entries, one)
+    return [(weights.bound if bound else weights.gap)(tree) for tree in trees]
+
+
+# -- row sums -------------------------------------------------------------------------------------
+
+
+def row_sums_asked(table: TableauTable) -> Asked:
+    """c_i = Σ_j a_ij; of Nyström's kind c_i²/2 = Σ_j ā_ij."""
+    found = list(_sums(table, table.exprs))
+    equations = tuple(Named(name, 1) for name, *_ in found)
+
+    def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
+        sign = 1 if bound else -1
+        made = _sums(table, table.filled(entries))
+        return [zero_or(x, one) + zero_or(y, one) * sign for _, x, y in made]
+
+    return Asked(table.entries, equations, residues, labels=table.labels)
+
+
+def _sums(
+    table: TableauTable, blocks: Sequence[Block[E]]
+) -> Iterator[tuple[str, E | None, E | None]]:
+    """Each row's sum, and what it is to be."""
+    for colour, (block, name) in enumerate(zip(blocks, table.names, strict=True)):
+        if block.times is None or (table.nystrom and colour == 0):
+            continue
+        for i, (row, c) in enumerate(zip(block.matrix, block.times, strict=True)):
+            present = [x for x in row if x is not None]
+            total = sum(present[1:], present[0]) if present else None
+            if table.nystrom:
+                half = None if c is None else c * c / 2
+                yield f"Σ a_{i + 1}j = c_{i + 1}^2/2", total, half
+            else:
+                yield f"Σ a{name}_{i + 1}j = c{name}_{i + 1}", total, c
+
+
+def zero_or(x: E | None, one: E) -> E:
+    """An entry, 0 where it is that by its form."""
+    return one * 0 if x is None else x
+
+
+# -- in time --------------------------------------------------------------------------------------
+
+
+def judge_in_time(table: TableauTable, order: int) -> Judged:
+    """Whether it can have the order for z' = f(z, t), with its times as they are printed, which are
+    not the row sums; or with both."""
+    plain = order_asked(table, order)
+    if len(plain.equations) <= MANY:
+        found = judge(table.printed, both(plain, row_sums_asked(table)), order)
+        if found.verdict is not Verdict.REFUTED:
+            return found
+    most = most_order(replace(table.grammar, timed=True))
+    timed = judge(table.printed, order_asked(table, min(order, most), timed=True), order)
+    if timed.verdict is Verdict.REFUTED or order <= most:
+        return timed
+    return replace(timed, verdict=Verdict.UNDECIDED)
+
+
+def both(first: Asked, second: Asked) -> Asked:
+    """The conditions of both, on the same entries."""
+
+    def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
+        return [*first.residues(entries, one, bound), *second.residues(entries, one, bound)]
+
+    equations = (*first.equations, *second.equations)
+    return replace(first, equations=equations, residues=residues, shares=())
+
+
+# -- stage order ----------------------------------------------------------------------------------
+
+
+def stage_order_asked(table: TableauTable, order: int) -> Asked:
+    """B and C of Butcher's up to that order: b·c^(k−1) = 1/k and A(c^(k−1)) = c^k/k; of Nyström's
+    kind ā(c^(k−2)) = c^k/(k (k−1)). Without printed times c is that of the row sums.
+
+    (Hairer, Wanner, Solving Ordinary Differential Equations II, IV.15.)
+    """
+    made = [(name, k) for name, k, _ in _stages(table, table.exprs, order, sympy.S.One)]
+
+    def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
+        sign = 1 if bound else -1
+        found = _stages(table, table.filled(entries), order, one)
+        return [x + y * sign for _, _, (x, y) in found]
+
+    return Asked(
+        table.entries, tuple(Named(name, 1) for name, _ in made), residues, labels=table.labels
+    )
+
+
+def _stages(
+    table: TableauTable, blocks: Sequence[Block[E]], order: int, one: E
+) -> Iterator[tuple[str, int, tuple[E, E]]]:
+    """Each condition's name, its k, and its sides."""
+    own = list(zip(blocks, table.names, strict=True))
+    least = 2 if table.nystrom else 1
+    for block, name in own[1:] if table.nystrom else own:
+        powers = _powers(block, order, one)
+        for k in range(least, order + 1):
+            before, share = tuple(powers[k - least]), k * (k - 1) if table.nystrom else k
+            for i, row in enumerate(block.matrix):
+                label = f"stage {i + 1}{name}: A(c^{k - least}) = c^{k}/{share}"
+                yield label, k, (zero_or(dot(row, before), one), powers[k][i] / share)
+            if not table.nystrom:
+                left = zero_or(dot(block.weights, before), one)
+                yield f"b{name}·c^{k - 1} = 1/{k}", k, (left, one / k)
+
+
+def _powers(block: Block[E], most: int, one: E) -> list[list[E]]:
+    """c^0 … c^most, by component."""
+    times = block.times
+    if times is None:
+        times = tuple(dot(row, (one,) * len(row)) for row in block.matrix)
+    c = [zero_or(x, one) for x in times]
+    powers = [[one] * len(c)]
+    for _ in range(most):
+        powers.append([x * y for x, y in zip(powers[-1], c, strict=True)])
+    return powers

@@ -1,0 +1,282 @@
+"""Whether Runge–Kutta tables are symplectic, and symmetric: by conditions that suffice, and by some
+that are needed.
+
+Symplectic: b^k_i a^l_ij + b^l_j a^k_ji = b^k_i b^l_j suffices, for all parts k and l of a sum
+(Sanz-Serna 1988; Araújo, Murua, Sanz-Serna 1997), for p' and q' of a partitioned method with
+b_p = b_q beside it, which a separable H does not need (Hairer, Lubich, Wanner, VI.4); of Nyström's
+kind b̄_i = b_i (1 − c_i) and b_i (b̄_j − ā_ij) = b_j (b̄_i − ā_ji) (Suris 1989). Needed is
+b(u∘v) + b(v∘u) = b(u) b(v) for all pairs of trees, u∘v being u with v as one more branch of its
+root (Hairer, Lubich, Wanner, VI.7); of Nyström's kind, where q' = p is linear, the difference of
+the two conditions that have the tree [u, v] of q' in common.
+
+Symmetric: a_(s+1−i, s+1−j) + a_ij = b_j suffices (the same, V.2). Needed is that a step of −h after
+one of h is the identity: that is a Runge–Kutta method of 2 s stages, whose trees all have weight 0.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from functools import cache
+from itertools import product
+from typing import Any
+
+from verify.arithmetic.number import E
+from verify.integrators.tables.asked import Asked, Named
+from verify.integrators.tables.judged import Judged, judge
+from verify.integrators.tables.tableau_order import zero_or
+from verify.integrators.tables.tableau_table import TableauTable
+from verify.integrators.tables.tree_weights import Block, TreeWeights, Vector
+from verify.schemes.coloured_trees import Grammar, Tree, all_trees, product_text, trees, vertices
+from verify.verdict import Verdict
+
+_MOST_PAIR = 6  # vertices of two trees together
+_MOST_TREE = 6  # of the doubled method, beside trees without branching
+# Of blocks, the ring's one and what a minus is, −1 or for a bound 1: left sides, and right sides.
+Gaps = Callable[[Sequence[Block[Any]], Any, int], Iterator[tuple[Any, Any]]]
+
+
+def judge_symplectic(table: TableauTable, separable: bool = False) -> Judged:
+    """`separable`: claimed for H = T(p) + V(q) alone."""
+    enough = _suris(table) if table.nystrom else _symplectic(table, separable)
+    return _by_two(table, enough, _of_pairs(table, separable))
+
+
+def judge_symmetric(table: TableauTable) -> Judged:
+    """Whether a step of −h undoes one of h."""
+    return _by_two(table, _reversed(table), _doubled(table))
+
+
+def _by_two(table: TableauTable, enough: Asked, needed: Asked) -> Judged:
+    """REFUTED only where what is needed fails; where only what suffices does, not decided."""
+    found = judge(table.printed, enough, 1)
+    if found.verdict is not Verdict.REFUTED:
+        return found
+    against = judge(table.printed, needed, 1)
+    if against.verdict is Verdict.REFUTED:
+        return replace(against, misprint=found.misprint)
+    return replace(found, verdict=Verdict.UNDECIDED)
+
+
+def _asked(table: TableauTable, names: Sequence[str], gaps: Gaps) -> Asked:
+    def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
+        minus = 1 if bound else -1
+        return [x + y * minus for x, y in gaps(table.filled(entries), one, minus)]
+
+    return Asked(
+        table.entries, tuple(Named(name, 1) for name in names), residues, labels=table.labels
+    )
+
+
+# -- symplectic -----------------------------------------------------------------------------------
+
+
+def _symplectic(table: TableauTable, separable: bool) -> Asked:
+    stages, names = range(table.stages), table.names
+    partitioned = len(table.blocks) == 2 and "_p" in names
+    colours = range(len(names))
+    pairs = [(0, 1)] if partitioned else [(k, m) for k in colours for m in colours if k <= m]
+    places = [
+        (k, m, i, j) for k, m in pairs for i, j in product(stages, stages) if k != m or i <= j
+    ]
+    told = [
+        f"b{names[k]}_{i + 1} a{names[m]}_{i + 1}{j + 1} + b{names[m]}_{j + 1} "
+        f"a{names[k]}_{j + 1}{i + 1} = b{names[k]}_{i + 1} b{names[m]}_{j + 1}"
+        for k, m, i, j in places
+    ]
+    same = partitioned and not separable
+    told += [f"b_p{i + 1} = b_q{i + 1}" for i in stages] if same else []
+
+    def gaps(blocks: Sequence[Block[E]], one: E, _: int) -> Iterator[tuple[E, E]]:
+        a = [[[zero_or(x, one) for x in row] for row in block.matrix] for block in blocks]
+        b = [[zero_or(x, one) for x in block.weights] for block in blocks]
+        for k, m, i, j in places:
+            yield b[k][i] * a[m][i][j] + b[m][j] * a[k][j][i], b[k][i] * b[m][j]
+        if same:
+            yield from zip(b[0], b[1], strict=True)
+
+    return _asked(table, told, gaps)
+
+
+def _suris(table: TableauTable) -> Asked:
+    stages = range(table.stages)
+    places = [(i, j) for i in stages for j in stages if i < j]
+    told = [f"b_bar_{i + 1} = b_{i + 1} (1 - c_{i + 1})" for i in stages]
+    told += [
+        f"b_{i} (b_bar_{j} - a_{i}{j}) = b_{j} (b_bar_{i} - a_{j}{i})"
+        for i, j in ((i + 1, j + 1) for i, j in places)
+    ]
+
+    def gaps(blocks: Sequence[Block[E]], one: E, _: int) -> Iterator[tuple[E, E]]:
+        of_p, of_q = blocks
+        b, bar = ([zero_or(x, one) for x in block.weights] for block in (of_p, of_q))
+        c = [zero_or(x, one) for x in of_q.times or ()]
+        a = [[zero_or(x, one) for x in row] for row in of_q.matrix]
+        for x, y, t in zip(bar, b, c, strict=True):
+            yield x + y * t, y
+        for i, j in places:  # with plus signs on either side
+            yield b[i] * bar[j] + b[j] * a[j][i], b[j] * bar[i] + b[i] * a[i][j]
+
+    return _asked(table, told, gaps)
+
+
+def _of_pairs(table: TableauTable, separable: bool) -> Asked:
+    """b(u∘v) + b(v∘u) = b(u) b(v)."""
+    pairs = list(_pairs(table.grammar, table.nystrom, "_p" in table.names))
+    told = [_pair_text(u, v, table.names) for u, v in pairs]
+    swapped = [] if table.nystrom or separable or "_p" not in table.names else [
+        tree for n in range(1, _MOST_PAIR + 1) for tree in trees(table.grammar, n, 0)
+    ]  # fmt: skip
+    told += [f"b_p·({product_text(t, table.names)}) = b_q·the same" for _, t in swapped]
+
+    def gaps(blocks: Sequence[Block[E]], one: E, _: int) -> Iterator[tuple[E, E]]:
+        weights = TreeWeights(blocks, one, table.nystrom)
+        of = weights.weight
+        for u, v in pairs:
+            if not table.nystrom:
+                yield of(_joined(u, v)) + of(_joined(v, u)), of(u) * of(v)
+            elif v == (1, ()):
+                yield of(_joined(u, v)) + of((1, (u,))), of(u)
+            else:
+                w = v[1][0]
+                left, right = of(_joined(u, v)), of(_joined(w, (1, (u,))))
+                yield left + of(w) * of((1, (u,))), right + of(u) * of(v)
+        for _, branches in swapped:
+            yield of((0, branches)), of((1, branches))
+
+    return _asked(table, told, gaps)
+
+
+@cache
+def _pairs(grammar: Grammar, nystrom: bool, partitioned: bool) -> tuple[tuple[Tree, Tree], ...]:
+    """Of Nyström's kind u is of p' and v of q'; of p' and q' too; else of any two colours."""
+    crossed = nystrom or partitioned
+    found = []
+    for n in range(2, _MOST_PAIR + 1):
+        for k in range(1, n):
+            firsts = trees(grammar, k, 0) if crossed else all_trees(grammar, k)
+            seconds = trees(grammar, n - k, 1) if crossed else all_trees(grammar, n - k)
+            found += [(u, v) for u in firsts for v in seconds if crossed or u <= v]
+    return tuple(found)
+
+
+def _joined(u: Tree, v: Tree) -> Tree:
+    """u with v as one more branch of its root."""
+    root, branches = u
+    return root, tuple(sorted((*branches, v), key=lambda t: (-vertices(t), t)))
+
+
+def _pair_text(u: Tree, v: Tree, names: tuple[str, ...]) -> str:
+    one, other = (f"[{product_text(t[1], names)}]{names[t[0]]}" for t in (u, v))
+    return f"b(u∘v) + b(v∘u) = b(u) b(v) of u = {one}, v = {other}"
+
+
+# -- symmetric ------------------------------------------------------------------------------------
+
+
+def _reversed(table: TableauTable) -> Asked:
+    last, stages = table.stages - 1, range(table.stages)
+    told = [
+        f"a{name}_{last - i + 1}{last - j + 1} + a{name}_{i + 1}{j + 1} = b{name}_{j + 1}"
+        for name in (table.names[1:] if table.nystrom else table.names)
+        for i in stages
+        for j in stages
+    ]
+    if table.nystrom:
+        told = [x.replace(" = b", " of the step backwards, b") for x in told]
+        told += [f"c_{i + 1} + c_{last - i + 1} = 1" for i in stages]
+        told += [f"b_{i + 1} = b_{last - i + 1}" for i in stages]
+        told += [f"b_bar_{i + 1} + b_bar_{last - i + 1} = b_{i + 1}" for i in stages]
+
+    def gaps(blocks: Sequence[Block[E]], one: E, _: int) -> Iterator[tuple[E, E]]:
+        if table.nystrom:
+            yield from _reversed_nystrom(blocks, one)
+            return
+        for block in blocks:
+            a = [[zero_or(x, one) for x in row] for row in block.matrix]
+            for i in stages:
+                for j in stages:
+                    yield a[i][j] + a[last - i][last - j], zero_or(block.weights[j], one)
+
+    return _asked(table, told, gaps)
+
+
+def _reversed_nystrom(blocks: Sequence[Block[E]], one: E) -> Iterator[tuple[E, E]]:
+    """ā_(s+1−i, s+1−j) = b_j (1 − c_i) − b̄_j + ā_ij, and the weights of the step backwards."""
+    of_p, of_q = blocks
+    b, bar = ([zero_or(x, one) for x in block.weights] for block in (of_p, of_q))
+    c = [zero_or(x, one) for x in of_q.times or ()]
+    a = [[zero_or(x, one) for x in row] for row in of_q.matrix]
+    last, stages = len(b) - 1, range(len(b))
+    for i in stages:
+        for j in stages:
+            yield a[last - i][last - j] + b[j] * c[i] + bar[j], b[j] + a[i][j]
+    for i in stages:
+        yield c[i] + c[last - i], one
+    for i in stages:
+        yield b[i], b[last - i]
+    for i in stages:
+        yield bar[i] + bar[last - i], b[i]
+
+
+def _doubled(table: TableauTable) -> Asked:
+    """The weights of trees of Φ_(−h) after Φ_h, all of which are to be 0."""
+    stages = 2 * table.stages
+    some = [tree for n in range(1, _MOST_TREE + 1) for tree in all_trees(table.grammar, n)]
+    some = [tree for tree in some if not (table.nystrom and tree == (1, ()))]
+    tall = [tree for root in table.grammar.colours for tree in _tall(table.grammar, root, stages)]
+    every = list(dict.fromkeys((*some, *tall)))
+    told = [
+        f"b{table.names[root]}·({product_text(branches, table.names)}) = 0 of the step of -h "
+        "after that of h"
+        for root, branches in every
+    ]
+
+    def gaps(blocks: Sequence[Block[E]], one: E, minus: int) -> Iterator[tuple[E, E]]:
+        made = [_twice(block, minus) for block in blocks]
+        if table.nystrom:
+            made = _twice_nystrom(blocks, one, minus)
+        weights, zero = TreeWeights(made, one, table.nystrom), one * 0
+        for tree in every:
+            yield weights.weight(tree), zero
+
+    return _asked(table, told, gaps)
+
+
+def _tall(grammar: Grammar, root: int, most: int) -> Iterator[Tree]:
+    """Trees without branching, of up to so many vertices and two more."""
+    for n in range(_MOST_TREE + 1, most + 3):
+        colours = [root]
+        while len(colours) < n:
+            colours.append(grammar.upon[colours[-1]][0])
+        tree: Tree = (colours[-1], ())
+        for colour in colours[-2::-1]:
+            tree = (colour, (tree,))
+        yield tree
+
+
+def _twice(block: Block[E], minus: int) -> Block[E]:
+    """Φ_(−h) after Φ_h: [[A, 0], [1 bᵀ, −A]] and [b, −b]."""
+    b, none = block.weights, (None,) * len(block.weights)
+    upper = [(*row, *none) for row in block.matrix]
+    lower = [(*b, *_times(minus, row)) for row in block.matrix]
+    return Block((*upper, *lower), (*b, *_times(minus, b)))
+
+
+def _twice_nystrom(blocks: Sequence[Block[E]], one: E, minus: int) -> list[Block[E]]:
+    """The same; at its end q has no h p left, and b̄ is [b̄ − b, b̄]."""
+    of_p, of_q = blocks
+    none = (None,) * len(of_p.weights)
+    b, bar = ([zero_or(x, one) for x in block.weights] for block in (of_p, of_q))
+    c = tuple(zero_or(x, one) for x in of_q.times or ())
+    upper = [(*row, *none) for row in of_q.matrix]
+    lower = [
+        (*(x + y * t * minus for x, y in zip(bar, b, strict=True)), *row)
+        for t, row in zip(c, of_q.matrix, strict=True)
+    ]
+    clock = (*c, *(one + t * minus for t in c))
+    moved = tuple(x + y * minus for x, y in zip(bar, b, strict=True))
+    own = Block((*upper, *lower), (*moved, *bar), clock)
+    return [Block(own.matrix, (*b, *_times(minus, tuple(b))), clock), own]
+
+
+def _times(sign: int, x: Vector[E]) -> Vector[E]:
+    return tuple(None if each is None else each * sign for each in x)

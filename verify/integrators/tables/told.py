@@ -1,0 +1,132 @@
+"""What is told of one claim of a table, and the claims that orders and digits make."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import Protocol, Self, TypeVar
+
+from verify.errors import InputError
+from verify.integrators.tables.asked import Asked
+from verify.integrators.tables.cost import Cost, cost_of, exact_numbers, severity_of
+from verify.integrators.tables.judged import Judged
+from verify.integrators.tables.printed_numbers import PrintedNumbers, rounded_to
+from verify.integrators.tables.sentences import Details, of_conditions, of_digits, of_printed
+from verify.prose import Prose
+from verify.verdict import Verdict
+
+WRONG_ORDER = "wrong order"
+NOT_SYMPLECTIC = "not symplectic as claimed"
+WRONG_CLOCK = "wrong clock"
+WRONG_WEIGHTS = "embedded or step weights"
+OF_WORDS = "documentation"
+
+
+@dataclass(frozen=True)
+class TableClaim:
+    """`kind` is the end of its id. `severity`, `nearest` and `cost` are of what is wrong, and None
+    where nothing is; `nearest` are texts of exact numbers, by name."""
+
+    kind: str
+    statement: str
+    verdict: Verdict
+    evidence: Prose
+    details: Details = ()
+    severity: str | None = None
+    nearest: dict[str, str] | None = None
+    cost: Cost | None = None
+
+
+class Readable(Protocol):
+    """A table whose decimals may be read in more than one way."""
+
+    @property
+    def printed(self) -> PrintedNumbers: ...
+
+    def read(self, numbers: PrintedNumbers) -> Self: ...
+
+
+T = TypeVar("T", bound=Readable)
+
+
+def best_reading(table: T, found: Callable[[T], Judged]) -> Judged:
+    """As the table holds, if it does in one of its readings; else as it is read last, with short
+    decimals taken for rounded, too."""
+    told: Judged | None = None
+    for numbers in table.printed.readings():
+        told = found(table.read(numbers))
+        if told.holds and told.digits is not False:
+            break
+    assert told is not None  # noqa: S101 - there is one reading at least
+    return told
+
+
+def order_claims(
+    kind: str,
+    statement: str,
+    found: Judged,
+    order: int,
+    following: "Callable[[PrintedNumbers], Asked] | None" = None,
+    severity: str = WRONG_ORDER,
+) -> Iterator[TableClaim]:
+    """The claim of an order, and where it holds and numbers are rounded that of their digits."""
+    verdict, evidence, details = of_printed(found, order)
+    after = None
+    if following is not None and found.digits is False and found.read is not None:
+        try:
+            after = following(found.read)
+        except InputError:  # beyond the orders that are looked at
+            after = None
+    if verdict is Verdict.REFUTED:
+        yield TableClaim(kind, statement, verdict, evidence, details, severity,
+                         _nearest(found), cost_of(found, order, after))  # fmt: skip
+        return
+    yield TableClaim(kind, statement, verdict, evidence, details)
+    if found.read is not None and found.read.units:
+        digits, said, moved = of_digits(found)
+        wrong = digits is Verdict.REFUTED
+        yield TableClaim(
+            "digits" if kind == "order" else f"{kind} digits",
+            "every digit is right, to one unit of the last",
+            digits,
+            said,
+            moved,
+            severity_of(found, severity) if wrong else None,
+            _nearest(found) if wrong else None,
+            cost_of(found, order, after) if wrong else None,
+        )
+
+
+def condition_claims(
+    kind: str, statement: str, what: str, found: Judged, severity: str
+) -> Iterator[TableClaim]:
+    """A claim of conditions that are of no order; and of their digits, where these are wrong."""
+    verdict, evidence, details = of_conditions(found, what)
+    claim = TableClaim(kind, statement, verdict, evidence, details)
+    cost = cost_of(found, None) if exact_numbers(found) else None
+    if verdict is Verdict.REFUTED:
+        yield replace(claim, severity=severity, nearest=_nearest(found), cost=cost)
+        return
+    yield claim
+    if found.digits is False:
+        digits, said, moved = of_digits(found)
+        yield TableClaim(
+            f"{kind} digits",
+            f"{statement}: every digit is right, to one unit of the last",
+            digits,
+            said,
+            moved,
+            severity_of(found, severity),
+            _nearest(found),
+            cost,
+        )
+
+
+def _nearest(found: Judged) -> dict[str, str] | None:
+    """To a few digits more than are printed."""
+    numbers, read = exact_numbers(found), found.read
+    if not numbers or read is None:
+        return None
+    units = read.units
+    return {
+        name: rounded_to(x, units[name] / 10**6).replace("−", "-") if name in units else str(x)
+        for name, x in numbers.items()
+    }

@@ -1,0 +1,103 @@
+"""What a table's entries put into the conditions of trees, over any numbers.
+
+k_i = f(z + h Σ a_ij k_j), of each colour with a matrix, weights and times of its own: Φ_i(t) is the
+product over the root's branches of Σ_j a_ij Φ_j, a leaf of time being c_i, and a condition says
+Σ b_i Φ_i(t) = 1/γ(t). Of a Nyström method a vertex of q' = p is no stage: with
+Q_i = q + c_i h p + h² Σ ā_ij k_j it is c_i as a leaf, and Σ ā_ij Φ_j with a branch of its own.
+Entries that are 0 by their form are None, so that what they would be multiplied with is left out.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Generic
+
+from verify.arithmetic.number import E
+from verify.schemes.coloured_trees import TIME, Tree, density
+
+Vector = tuple[E | None, ...]
+Matrix = tuple[Vector[E], ...]
+
+
+@dataclass(frozen=True)
+class Block(Generic[E]):
+    """Of one colour: a_ij, b_i, and the stages' times c_i, None where there are none."""
+
+    matrix: Matrix[E]
+    weights: Vector[E]
+    times: Vector[E] | None = None
+
+
+class TreeWeights(Generic[E]):
+    """b·Φ(t) of trees, each vector made once; `nystrom`: colour 1 is of q' = p, with ā and b̄ as its
+    matrix and weights, and with c as its times."""
+
+    def __init__(self, blocks: Sequence[Block[E]], one: E, nystrom: bool = False) -> None:
+        self.blocks, self.one, self.nystrom = tuple(blocks), one, nystrom
+        self.stages = len(blocks[0].weights)
+        self._summed: dict[tuple[int, Tree], Vector[E]] = {}
+
+    def weight(self, tree: Tree) -> E:
+        """b·Φ(t)."""
+        root, branches = tree
+        if self.nystrom and root == 1:
+            if not branches:
+                return self.one
+            ((root, branches),) = branches
+            return self._or_zero(dot(self.blocks[1].weights, self.vector((root, branches))))
+        return self._or_zero(dot(self.blocks[root].weights, self.vector(tree)))
+
+    def gap(self, tree: Tree) -> E:
+        """b·Φ(t) − 1/γ(t)."""
+        return self.weight(tree) - self.one / density(tree)
+
+    def bound(self, tree: Tree) -> E:
+        """b·Φ(t) + 1/γ(t)."""
+        return self.weight(tree) + self.one / density(tree)
+
+    def _or_zero(self, x: E | None) -> E:
+        return self.one * 0 if x is None else x
+
+    def vector(self, tree: Tree) -> Vector[E]:
+        """Φ_i."""
+        root, branches = tree
+        product: Vector[E] = (self.one,) * self.stages
+        for k, branch in enumerate(branches):
+            sums = self._sums(root, branch)
+            product = sums if k == 0 else times(product, sums)
+        return product
+
+    def _sums(self, root: int, tree: Tree) -> Vector[E]:
+        """A branch's factor."""
+        key = (root, tree) if tree == TIME else (0, tree)
+        if key not in self._summed:
+            self._summed[key] = self._made(root, tree)
+        return self._summed[key]
+
+    def _made(self, root: int, tree: Tree) -> Vector[E]:
+        clock = self.blocks[root].times
+        if tree == TIME and clock is not None:
+            return clock
+        colour, branches = tree
+        block = self.blocks[colour]
+        if self.nystrom and colour == 1:
+            if not branches:
+                return block.times or ()
+            (tree,) = branches
+        inner = self.vector(tree)
+        return tuple(dot(row, inner) for row in block.matrix)
+
+
+def dot(x: Vector[E], y: Vector[E]) -> E | None:
+    """Σ x_i y_i; None where no product is there."""
+    total: E | None = None
+    for a, b in zip(x, y, strict=True):
+        if a is not None and b is not None:
+            term = a * b
+            total = term if total is None else total + term
+    return total
+
+
+def times(x: Vector[E], y: Vector[E]) -> Vector[E]:
+    """By component."""
+    pairs = zip(x, y, strict=True)
+    return tuple(None if a is None or b is None else a * b for a, b in pairs)

@@ -1,0 +1,79 @@
+"""Conditions on a step's coefficients of words, as they can be asked over any numbers.
+
+See `verify.schemes.timed.splitting`, which decides them in a ring.
+"""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
+from typing import Any
+
+from verify.schemes.timed.kinetic import Kinetic
+from verify.schemes.timed.quadratic import Combination, combinations
+from verify.schemes.timed.step_words import StepWords, factors
+from verify.schemes.timed.words import Word, lyndon, of_the_flow, text, weight
+
+_PLAIN = 3  # the weight up to which a quadratic T asks for as much as any T
+
+
+@dataclass(frozen=True)
+class TimedEquation:
+    """Of one word's coefficient in the step, or of a combination of some in its generator."""
+
+    name: str
+    order: int
+    terms: Combination
+    value: Fraction
+    of_generator: bool
+
+    @property
+    def needed(self) -> frozenset[Word]:
+        """The words whose coefficients are to be prepared."""
+        if not self.of_generator:
+            return frozenset(word for _, word in self.terms)
+        return frozenset(x for _, word in self.terms for x in factors(word))
+
+    def residue(self, words: StepWords) -> Any:
+        """Left side − right side; with every sign plus where the step's numbers are bounds."""
+        one = words.ring.one * self.value.numerator / self.value.denominator
+        total = one if words.bound else -one
+        for n, word in self.terms:
+            own = words.generator(word) if self.of_generator else words.coefficient(word)
+            total += own * (abs(n) if words.bound else n)
+        return total
+
+
+@cache
+def equations_of(kinetic: Kinetic, n: int) -> tuple[TimedEquation, ...]:
+    """Those of weight n for every V and every T of the class."""
+    if kinetic.quadratic and n > _PLAIN:
+        return tuple(map(_of_generator, combinations(kinetic.timed, n)))
+    return tuple(map(_of_word, lyndon(kinetic.timed, n)))
+
+
+def _of_word(word: Word) -> TimedEquation:
+    flow = of_the_flow(word)
+    return TimedEquation(_equation(word, flow), weight(word), ((1, word),), flow, False)
+
+
+def _of_generator(row: Combination) -> TimedEquation:
+    # Of the exact flow the generator has each letter once, and no longer word.
+    value = sum(n for n, word in row if len(word) == 1)
+    name = " + ".join(text(w) if n == 1 else f"({n}) {text(w)}" for n, w in row)
+    name = f"coefficient of {name} in the generator = {value}"
+    return TimedEquation(name, weight(row[0][1]), row, Fraction(value), True)
+
+
+def _equation(word: Word, flow: Fraction) -> str:
+    """The word's condition; of one letter also as a sum over the parts.
+
+    >>> _equation((("K", 1),), Fraction(1, 2))
+    'Σ kicks·time = 1/2, coefficient of K1 = 1/2'
+    """
+    name = f"coefficient of {text(word)} = {flow}"
+    if len(word) > 1:
+        return name
+    ((kind, n),) = word
+    parts = {"K": "kicks", "D": "drifts"}[kind]
+    time = "" if n == 0 else "·time" if n == 1 else f"·time^{n}"
+    return f"Σ {parts}{time} = {flow}, {name}"
