@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from verify.calls.bench import bench as bench
     from verify.calls.check import check as check
     from verify.calls.check_map import check_map as check_map
+    from verify.calls.check_table import check_table as check_table
     from verify.calls.export import export as export
     from verify.calls.flow import flow as flow
     from verify.calls.modified import modified_hamiltonian as modified_hamiltonian
@@ -66,6 +67,7 @@ _NAMES = {
     "bench": ("verify.calls.bench", "error against run time"),
     "check": ("verify.calls.check", "a step function of one's own: proved, else measured"),
     "check_map": ("verify.calls.check_map", "any map of one's own: symplectic or not"),
+    "check_table": ("verify.calls.check_table", "printed coefficients, by what they claim"),
     "plot_orbit": ("verify.pages.plotting_orbits", "an orbit's quantity over t, or in the plane"),
     "plot_energy_drift": ("verify.pages.plotting_energy", "the drift of H and of H̃ over t"),
     "plot_runs": ("verify.pages.plotting", "a quantity of runs against the step size"),

@@ -8,7 +8,7 @@ import shlex
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import takewhile
 from pathlib import Path
 from typing import Any
@@ -16,12 +16,25 @@ from unittest.mock import patch
 
 import click
 
+from tests.helpers.compilers import needed
 from tests.helpers.pages import Block, agrees, blocks, commands, difference
 from tests.paths import ROOT
 from verify.commands.main import cli, main
 
 # What else a page may tell to start, where nothing of it is run here.
-OTHERS = {"python3", "python", "pip", "pytest", "dask", ".", "eval", "cc", "gfortran", "julia"}
+OTHERS = {
+    "python3",
+    "python",
+    "pip",
+    "pytest",
+    "dask",
+    ".",
+    "eval",
+    "cc",
+    "gfortran",
+    "julia",
+    "rustc",
+}
 
 
 class PageError(AssertionError):
@@ -159,7 +172,21 @@ def _ls(arguments: list[str]) -> tuple[int, str]:
     return 0, "".join(f"{path.name}\n" for path in sorted(Path(*arguments).iterdir()))
 
 
-PROGRAMS = {"verify": _verify, "python": _python, "cat": _cat, "ls": _ls}
+def _compiler(name: str) -> Callable[[list[str]], tuple[int, str]]:
+    """Where it is missing the page's test is skipped, and fails in CI."""
+
+    def compiled(arguments: list[str]) -> tuple[int, str]:
+        command = [needed(name), *arguments]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        return done.returncode, done.stdout + done.stderr
+
+    return compiled
+
+
+PROGRAMS = {
+    "verify": _verify, "python": _python, "cat": _cat, "ls": _ls,
+    "gcc": _compiler("gcc"), "gfortran": _compiler("gfortran"),
+}  # fmt: skip
 
 
 def parse(arguments: list[str]) -> None:

@@ -19,7 +19,20 @@ _CLAIMED = click.IntRange(1, 12)
 
 
 @click.command("check-integrator")
-@click.argument("target", metavar="MODULE:FUNCTION")
+@click.argument("target", required=False, metavar="[MODULE:FUNCTION | LIB.so:SYMBOL]")
+@click.option(
+    "--command",
+    metavar="PROGRAM",
+    help="A program that answers each line `t h p1 … pn q1 … qn` with a line `p1 … pn q1 … qn`.",
+)
+@click.option(
+    "--type",
+    "number_type",
+    default="double",
+    show_default=True,
+    metavar="TYPE",
+    help="Of the numbers of a library or program: double, long-double, float128, double-double.",
+)
 @with_hamiltonian
 @click.option(
     "--arguments",
@@ -36,8 +49,10 @@ _CLAIMED = click.IntRange(1, 12)
 @time_limit_option
 @answering
 def check_integrator(
-    target: str,
+    target: str | None,
     exact: "Hamiltonian",
+    command: str | None,
+    number_type: str,
     arguments: str | None,
     q: str | None,
     p: str | None,
@@ -47,10 +62,16 @@ def check_integrator(
     area_order: int | None,
     time_limit: float,
 ) -> Answer:
-    """Check a Python function step(p, q, h) → (p', q') of your own: its order and that of ΔJ.
+    """Check a step of your own, in Python or any language: its order and that of ΔJ.
+
+    In Python a function step(p, q, h) → (p', q').
 
     Or step(p, q, t, h), for an H(p, q, t): then its order is that for the motion in time. For an H
     in p1 … pn, q1 … qn p and q are arrays, and S = JᵀΩJ − Ω is looked at in place of ΔJ.
+
+    Of a library in C, Fortran or another language LIB.so:SYMBOL, which changes p and q in place:
+    void step(int n, double t, double h, double *p, double *q). Or a program, by --command. Both
+    run in a process of their own, limited in time and memory.
 
     THIS RUNS YOUR CODE, which no other command does: MODULE is imported, from the current folder
     too, or file.py:FUNCTION is loaded, and the function is called.
@@ -61,10 +82,11 @@ def check_integrator(
     \b
     verify check-integrator mine:step --system pendulum
     verify check-integrator mine.py:step --hamiltonian 'p**2/2 + q**4/4' --order 2 --area-preserving
+    verify check-integrator ./libstep.so:step --system pendulum --order 2 --symplectic
+    verify check-integrator --command './step' --system pendulum --type long-double
     """
     from verify.arithmetic.exact import rational
     from verify.integrators.check import check_integrator as check
-    from verify.integrators.loading import load, step_from
     from verify.integrators.results import Claims
 
     begun = time.perf_counter()
@@ -73,20 +95,50 @@ def check_integrator(
     start = None if p is None or q is None else (rational(p, "--p"), rational(q, "--q"))
     if exact.symbols:
         raise InputError("--param", exact.symbols[0], "has no value; a step of one's own needs it")
-    step, notes = step_from(load(target), arguments, dict(exact.values), time_limit)
+    called = command or target or ""
+    step, notes = _step(target, command, number_type, arguments, exact, time_limit)
     claims = Claims(order, area_order, area_preserving, symplectic)
     claimed = claims != Claims()
     if not exact.planar:
         if start is not None:
             raise InputError("--p, --q", p or "", "go with one degree of freedom")
-        return _in_degrees(exact, target, step, claims, notes)
+        return _in_degrees(exact, called, step, claims, notes)
     found = check(step, exact, claims, start).noting(*notes)
     seconds = f"{time.perf_counter() - begun:.6f}"
     return Answer(
-        lambda: _json(exact, target, found, seconds),
-        lambda: _print(exact, target, found),
+        lambda: _json(exact, called, found, seconds),
+        lambda: _print(exact, called, found),
         failed=found.verdict.value == "REFUTED" or (claimed and not found.verdict.holds),
     )
+
+
+def _step(
+    target: str | None,
+    command: str | None,
+    number_type: str,
+    arguments: str | None,
+    exact: "Hamiltonian",
+    time_limit: float,
+) -> "tuple[Step, list[str]]":
+    """The step, and notes on how it is understood."""
+    from verify.integrators.foreign.called import is_library, of_command, of_library
+    from verify.integrators.loading import load, step_from
+    from verify.integrators.number_type import DOUBLE, type_of
+
+    if (target is None) == (command is None):
+        problem = "give MODULE:FUNCTION, LIB.so:SYMBOL, or --command 'PROGRAM'; one of them"
+        raise InputError("integrator", target or NOT_GIVEN, problem)
+    kind = type_of(number_type)
+    foreign = command is not None or is_library(target or "")
+    if foreign and arguments is not None:
+        raise InputError("--arguments", arguments, "goes with a Python function")
+    if command is not None:
+        return of_command(command, kind, time_limit), []
+    if foreign:
+        return of_library(target or "", exact.degrees, kind, time_limit), []
+    if kind is not DOUBLE:
+        raise InputError("--type", number_type, "goes with LIB.so:SYMBOL or --command")
+    return step_from(load(target or ""), arguments, dict(exact.values), time_limit)
 
 
 def _in_degrees(

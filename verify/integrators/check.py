@@ -99,14 +99,14 @@ def _no_step(faults: Sequence[Fault]) -> Finding:
 def _examine(trial: Trial, provable: bool) -> Finding:
     step, notes = trial.step, list[Prose]()
     try:
-        if provable:
+        if provable and not step.foreign:
             with within(_PROOF_SECONDS, "its proof takes too long"):
                 found, ends = _proved(trial)
             return found.noting(*_clock(trial.hamiltonian, *ends, found.convergence_order))
     except Exception as error:  # the user's code may raise anything
         notes.append(prose("no proof: ", why(error)))
-    kept = _KEPT * max(step.left, 0)
-    for how in ("duals", "floats"):
+    kept = 0.0 if step.foreign else _KEPT * max(step.left, 0)
+    for how in step.ways:
         step.left += -kept if how == "duals" else kept
         try:
             if how == "duals":

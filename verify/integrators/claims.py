@@ -56,7 +56,7 @@ def _but_for_area(found: Finding, held: Sequence[Prose]) -> Finding:
 
 
 def _counterexample(name: str, claims: Claims, trial: Trial) -> Counterexample | None:
-    for how in ("duals", "floats"):
+    for how in trial.step.ways:
         try:
             whole = measured(trial, how)
             row = whole.largest

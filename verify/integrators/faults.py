@@ -77,7 +77,7 @@ def _first(step: Step, p: float, q: float, h: float, try_arrays: bool) -> State:
     try:
         return step.at(p, q, h)
     except (TypeError, IndexError, AttributeError):
-        if not try_arrays or "numpy" not in sys.modules:
+        if not try_arrays or "numpy" not in sys.modules or step.foreign:
             raise
         step.arrays = True
         try:
@@ -117,7 +117,7 @@ def _as_a_map(step: Step, first: Mapping[State, State]) -> list[Fault]:
 
 def _with_arrays(step: Step, first: Mapping[State, State]) -> list[Fault]:
     """Whether it changes arrays that it is given. Without numpy in use there are none."""
-    if "numpy" not in sys.modules:
+    if "numpy" not in sys.modules or step.foreign:
         return []
     import numpy as np
 

@@ -101,9 +101,9 @@ def _consistent(found: Finding) -> Finding:
 def _notes(found: Measured) -> list[Prose]:
     notes: list[str] = [prose("measured at ", _where(found), ", and nowhere else")]
     if found.how == "floats":
-        unseen = f"`{found.unseen:.0e}`"
+        unseen = f"about `{found.unseen:.0e}`"
         notes.append(
-            f"in floats: an error of p' − p or q' − q below about {unseen} of them is not seen"
+            f"in {found.numbers}: an error of p' − p or q' − q below {unseen} of them is not seen"
         )
     if found.opaque and found.area.power is not None and len(found.steady) < len(found.rows):
         grows = float(found.rows[len(found.steady)].h)

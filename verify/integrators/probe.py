@@ -15,7 +15,8 @@ from verify.arithmetic.systems import mpfr
 from verify.flows.extrapolation import Flow, NoFlowError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.fitted_order import Fitted, fitted
-from verify.integrators.step import State, Step, StepError, Theirs, lifted
+from verify.integrators.number_type import DOUBLE, NumberType
+from verify.integrators.step import Step, StepError, Theirs, lifted
 from verify.integrators.tracing.dual import BITS, Duals
 from verify.integrators.tracing.functions import copied
 
@@ -23,11 +24,10 @@ if TYPE_CHECKING:
     import gmpy2
 
 Point = tuple[Fraction, Fraction]  # p, q
-_DIGITS = {"duals": 50, "floats": 20}
+_DIGITS = {"duals": 50}
+_MORE = 3  # digits of the exact flow than a number has that a step computes in
 _DUAL_NOISE = 2.0 ** -(BITS - 30)
-_EPSILON = 2.0**-52
 _STENCIL = ((1, 45), (2, -9), (3, 1))  # of the sixth order, over 60
-_WIDTH = 2.0**-7
 LADDERS = {
     "duals": [Fraction(1, 2**k) for k in range(2, 25)],
     "floats": [
@@ -92,6 +92,7 @@ class Measured:
     rounded: bool
     points: tuple[Point, ...]
     times: tuple[Fraction, ...] = ()
+    numbers: str = "floats"  # what the step's own are called
 
     @property
     def steady(self) -> tuple[Row, ...]:
@@ -144,7 +145,7 @@ def measured(trial: Trial, how: str, ladder: Sequence[Fraction] = ()) -> Measure
     Raises StepError, or what the user's code raises, where there are too few.
     """
     ladder, step = ladder or LADDERS[how], trial.step
-    flow, probe = flow_of(trial.hamiltonian, how), PROBES[how](step)
+    flow, probe = flow_of(trial.hamiltonian, how, step.numbers), PROBES[how](step)
     rows, lost = [], ""
 
     def at(point: Point, h: Fraction) -> Reading | None:
@@ -167,12 +168,13 @@ def measured(trial: Trial, how: str, ladder: Sequence[Fraction] = ()) -> Measure
     if len(rows) < _ENOUGH:
         raise StepError(lost or "it fails for most steps")
     times = tuple(step.clock(*point) for point in alive) if step.moving else ()
-    return Measured(how, tuple(rows), probe.opaque, probe.rounded, tuple(alive), times)
+    numbers = "floats" if step.numbers is DOUBLE else step.numbers.declared_as
+    return Measured(how, tuple(rows), probe.opaque, probe.rounded, tuple(alive), times, numbers)
 
 
-def flow_of(hamiltonian: Hamiltonian, how: str) -> Flow:
+def flow_of(hamiltonian: Hamiltonian, how: str, numbers: NumberType) -> Flow:
     """The exact flow, to the digits that a reading asks for."""
-    return Flow(hamiltonian.field()[0], _DIGITS[how])
+    return Flow(hamiltonian.field()[0], _DIGITS.get(how, numbers.digits + _MORE))
 
 
 def _row(h: Fraction, readings: dict[Point, Reading]) -> Row:
@@ -254,7 +256,7 @@ def dual_step(
 
 
 class _Floats:
-    """The step at floats."""
+    """The step at floats, or at numbers of another type; what is made of them is exact."""
 
     opaque = rounded = True
 
@@ -264,26 +266,29 @@ class _Floats:
     def at(
         self, point: Point, h: Fraction
     ) -> tuple[tuple["gmpy2.mpfr", "gmpy2.mpfr"], float, float, float]:
-        z, size = (float(point[0]), float(point[1])), (float(h), float(self.step.clock(*point)))
-        here = self.step.at(*z, *size)
-        width = _WIDTH * (1 + max(map(abs, z)))
-        one, two = (self._determinant(z, size, w) for w in (width, width / 2))
+        step, kind = self.step, self.step.numbers
+        p, q = map(step.rounded, point)
+        size = step.rounded(h), step.rounded(step.clock(*point))
+        here = step.exactly(p, q, *size)
+        width = Fraction(kind.width * float(1 + max(abs(p), abs(q))))
+        one, two = (self._determinant((p, q), size, w) for w in (width, width / 2))
         # The wider stencil's error is 2⁶ times the narrower's, whose rounding is twice as large.
-        reach = 1 + max(map(abs, (*here, *z)))
-        noise = abs(one - two) + 8 * _EPSILON * reach / width
-        number = mpfr.make(_DIGITS["floats"]).number
-        state = number(Fraction(here[0])), number(Fraction(here[1]))
-        return state, two, noise, 4 * _EPSILON * reach
+        reach = 1 + max(float(abs(x)) for x in (*here, p, q))
+        noise = float(abs(one - two)) + 8 * kind.epsilon * reach / float(width)
+        number = mpfr.make(kind.digits + _MORE).number
+        state = number(here[0]), number(here[1])
+        return state, float(two), noise, 4 * kind.epsilon * reach
 
-    def _determinant(self, z: State, size: State, width: float) -> float:
+    def _determinant(self, z: Point, size: tuple[Fraction, Fraction], width: Fraction) -> Fraction:
         """ΔJ by central differences of the increments, with h and t as they are."""
         columns = []
         for i in (0, 1):
-            total = [0.0, 0.0]
+            total = [Fraction(0), Fraction(0)]
             for k, weight in _STENCIL:
                 ahead, behind = list(z), list(z)
-                ahead[i], behind[i] = z[i] + k * width, z[i] - k * width
-                f, b = (self.step.at(x[0], x[1], *size) for x in (ahead, behind))
+                ahead[i] = self.step.rounded(z[i] + k * width)
+                behind[i] = self.step.rounded(z[i] - k * width)
+                f, b = (self.step.exactly(x[0], x[1], *size) for x in (ahead, behind))
                 for j in (0, 1):
                     total[j] += weight * ((f[j] - ahead[j]) - (b[j] - behind[j]))
             columns.append([x / (60 * width) for x in total])

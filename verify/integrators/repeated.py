@@ -43,10 +43,11 @@ def repeated(step: Step, points: Sequence[tuple[Fraction, Fraction]]) -> list[Fa
         for p, q in (map(float, point) for point in points)
         for x, y in _DIRECTIONS
     ]
-    before, others = kept_by(step.function), set[str]()
+    before, others = {} if step.foreign else kept_by(step.function), set[str]()
 
     def watch() -> None:
-        others.update(changed(before, kept_by(step.function)))
+        if not step.foreign:  # of another process it shows in what it returns alone
+            others.update(changed(before, kept_by(step.function)))
 
     known: dict[State, Outcome] = {}
     for ladder in ladders:

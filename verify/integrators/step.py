@@ -14,6 +14,7 @@ from fractions import Fraction
 from typing import Any, Protocol, TypeAlias, TypeVar
 
 from verify.errors import InputError
+from verify.integrators.number_type import DOUBLE, NumberType
 from verify.integrators.tracing.number import TracedNumber, UntraceableError
 from verify.prose import Number, Prose, prose, read_prose
 
@@ -55,7 +56,8 @@ class Step:
     `order`: its arguments by their names here, such as ("q", "p", "h"); what it returns stands in
     that order too. `moving`: whether it is for an H that depends on time; else its t, where it
     takes one, is 0. `given`: parameters of H that it takes by name. `arrays`: it wants p and q as
-    arrays, and gets them with one entry each. `left`: seconds left for its calls.
+    arrays, and gets them with one entry each. `left`: seconds left for its calls. `numbers`: the
+    type that it computes in. `foreign`: it is of another language, so that numbers alone go in.
     """
 
     function: Callable[..., Theirs]
@@ -64,6 +66,13 @@ class Step:
     arrays: bool = False
     left: float = TIME_LIMIT
     moving: bool = False
+    numbers: NumberType = DOUBLE
+    foreign: bool = False
+
+    @property
+    def ways(self) -> tuple[str, ...]:
+        """In which it can be measured, the clearest first."""
+        return ("floats",) if self.foreign else ("duals", "floats")
 
     @property
     def timed(self) -> bool:
@@ -103,6 +112,18 @@ class Step:
             found = prose(Number(f"{x:g}"), ", ", Number(f"{y:g}"))
             raise StepError(prose("it returns ", found, line_of_error(p, q, h)))
         return x, y
+
+    def rounded(self, x: Fraction) -> Fraction:
+        """The nearest number of its type, within its range."""
+        return self.numbers.rounded(x)
+
+    def exactly(self, p: Fraction, q: Fraction, h: Fraction, t: Fraction) -> list[Fraction]:
+        """(p', q') as the numbers of its type that they are. Raises StepError, as `at`."""
+        if self.numbers is DOUBLE:
+            return [Fraction(x) for x in self.at(*map(float, (p, q, h, t)))]
+        with self.limited():
+            found = self.pair(self.called(self.function, p, q, h, t))
+        return [Fraction(x) for x in found]
 
     def pair(self, result: Theirs) -> tuple[Theirs, Theirs]:
         """p' and q' of what was returned, each a single number. Raises StepError."""

@@ -41,7 +41,7 @@ def _order_at(trial: Trial, how: str, point: Point, part: Fraction) -> int | Non
     for h in LADDERS[how][_SIZES]:
         moment = trial.step.clock(*point) + part * h
         still = Hamiltonian(trial.hamiltonian.exact.subs(symbol("t"), moment))
-        told = reading(probe, flow_of(still, how), point, h)
+        told = reading(probe, flow_of(still, how, trial.step.numbers), point, h)
         rows.append((float(h), told.error, told.error_noise))
     found = fitted(rows, probe.opaque)
     return None if found.power is None or found.tail is not None else found.power - 1

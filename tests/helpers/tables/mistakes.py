@@ -92,7 +92,7 @@ def _changed(text: str, draw: random.Random) -> str | None:
             return text[1:] if text[:1] in "-−" and len(text) > 1 else None
         return f"-({text})" if any(x in text[1:] for x in "+-−") else f"-{text}"
     digits = [k for k, x in enumerate(text) if x.isdigit() and x.isascii()]
-    digits = [k for k in digits if "sqrt" not in text and text[k - 1 : k] not in "√e^" or k == 0]
+    digits = [k for k in digits if ("sqrt" not in text and text[k - 1 : k] not in "√e^") or k == 0]
     if not digits:
         return None
     k = draw.choice(digits)
@@ -129,7 +129,9 @@ def outcome(right: Table, wrong: Table, what: str) -> Outcome:
         if kind in refuted and holds is True:
             return Outcome(what, True, f"{kind} is refuted, and by its series it holds")
         if not refuted and holds is False:
-            return Outcome(what, False, f"by its series {kind} does not hold, and nothing is refuted")
+            return Outcome(
+                what, False, f"by its series {kind} does not hold, and nothing is refuted"
+            )
     return Outcome(what, bool(refuted))
 
 

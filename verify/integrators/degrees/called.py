@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from verify.integrators.maps.user_map import arrays, flat
+from verify.integrators.number_type import NumberType
 from verify.integrators.step import Step, Theirs
 
 
@@ -56,6 +57,11 @@ class StepAt:
     def names(self) -> tuple[str, ...]:
         """Of the coordinates."""
         return self.own.names
+
+    @property
+    def numbers(self) -> NumberType:
+        """What it computes in."""
+        return self.own.step.numbers
 
     def called(
         self,

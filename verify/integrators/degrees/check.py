@@ -24,7 +24,7 @@ from verify.integrators.maps.check import (
 )
 from verify.integrators.maps.probes import DualProbe, FloatProbe
 from verify.integrators.results import Claims
-from verify.integrators.step import Step, why, within
+from verify.integrators.step import Step, StepError, why, within
 from verify.integrators.tracing.domain import domain_of
 from verify.integrators.tracing.readings_of_floats import readings
 from verify.integrators.tracing.rounded_order import Compared, agreement
@@ -86,6 +86,8 @@ def check_step(step: Step, hamiltonian: Hamiltonian, claims: Claims) -> StepFind
     except Exception as error:  # the user's code may raise anything
         return StepFinding(Verdict.UNDECIDED, prose(why(error)), "calls", degrees)
     try:
+        if step.foreign:
+            raise StepError("it is of another language")
         with within(_SECONDS, "its proof takes too long"):
             found = _proved(own, hamiltonian, called)
     except Exception as error:  # as above
@@ -169,7 +171,7 @@ def _measured(
 ) -> StepFinding:
     """S at the points for some step sizes, and the order."""
     notes, degrees = list[Prose](), len(own.names) // 2
-    for how in ("duals", "floats"):
+    for how in own.step.ways:
         try:
             if how == "duals":
                 must_agree(DualProbe(own.at(_SIZES[0], _TIME)), called)

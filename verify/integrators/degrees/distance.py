@@ -15,8 +15,8 @@ from verify.integrators.probe import LADDERS
 from verify.integrators.tracing.dual import BITS
 
 _POINTS = 3  # at which it is looked
-_DIGITS = {"duals": 50, "floats": 20}  # of the exact flow
-_NOISE = {"duals": 2.0 ** -(BITS - 30), "floats": 2.0**-50}  # of z', in parts of its size
+_DIGITS, _MORE = 50, 3  # of the exact flow for dual numbers; and more than a step's own have
+_DUAL_NOISE = 2.0 ** -(BITS - 30)  # of z', in parts of its size
 _ENOUGH = 3  # rows in the noise, after which none is looked at
 Point = tuple[Fraction, ...]
 
@@ -38,13 +38,16 @@ def distance_of(
     own: StepOfArrays, hamiltonian: Hamiltonian, how: str, points: Sequence[Point], t: Fraction
 ) -> Distance:
     """With "duals" or "floats". Raises StepError, NoFlowError, and what the user's code raises."""
-    flow = FlowInDegrees(canonical_field(hamiltonian)[0], _DIGITS[how])
+    duals, numbers = how == "duals", own.step.numbers
+    digits = _DIGITS if duals else numbers.digits + _MORE
+    flow = FlowInDegrees(canonical_field(hamiltonian)[0], digits)
+    own_noise = _DUAL_NOISE if duals else 4 * numbers.epsilon
     rows: list[tuple[float, float, float]] = []
     quiet, compared = 0, how == "floats"
     for h in LADDERS[how]:
         here = own.at(h, t)
         probe = DualProbe(here) if how == "duals" else FloatProbe(here)
-        each = [_at(flow, probe, own.names, point, h, t, _NOISE[how]) for point in points[:_POINTS]]
+        each = [_at(flow, probe, own.names, point, h, t, own_noise) for point in points[:_POINTS]]
         known = [x for x in each if x is not None]
         if not known:
             continue

@@ -12,6 +12,7 @@ from itertools import combinations
 import gmpy2
 
 from verify.integrators.maps.user_map import CallableMap
+from verify.integrators.number_type import DOUBLE
 from verify.integrators.step import StepError, lifted, real
 from verify.integrators.tracing.dual import BITS, Dual, Duals
 from verify.integrators.tracing.functions import copied
@@ -20,7 +21,6 @@ Place = tuple[int, int]
 Columns = list[list[float]]
 Ends = tuple[list[Fraction], list[Fraction]]
 _STENCIL = ((1, 45), (2, -9), (3, 1))  # of the sixth order, over 60
-_WIDTH = 2.0**-7
 _EPSILON = 2.0**-52
 _DUAL = 2.0 ** -(BITS - 30)
 # Parts of an entry's terms: what a rounded coefficient, and the tolerance of a loop, may do to it.
@@ -96,52 +96,61 @@ class DualProbe:
 
 
 class FloatProbe:
-    """The map at floats, columns of J by central differences of the increments."""
+    """The map at floats, or at numbers of another type, columns of J by central differences of the
+    increments; what is made of them is exact."""
 
     how = "floats"
 
     def __init__(self, own: CallableMap) -> None:
-        self.map = own
+        self.map, self.numbers = own, own.numbers
 
     def value(self, point: Sequence[Fraction]) -> list[float]:
         """z' at the point."""
-        return self._at([float(x) for x in point])
+        return [float(x) for x in self._at([self.numbers.rounded(x) for x in point])]
 
     def exact(self, point: Sequence[Fraction]) -> Ends:
         """Where it is called, and z' there, as the rationals that they are."""
-        begun = [float(x) for x in point]
-        return [Fraction(x) for x in begun], [Fraction(x) for x in self._at(begun)]
+        begun = [self.numbers.rounded(x) for x in point]
+        return begun, self._at(begun)
 
-    def _at(self, z: Sequence[float]) -> list[float]:
-        found = [real(x) for x in self.map.called(self.map.function, z, float)]
+    def _at(self, z: Sequence[Fraction]) -> list[Fraction]:
+        if self.numbers is not DOUBLE:
+            return [Fraction(x) for x in self.map.called(self.map.function, z, _as_it_is)]
+        given = [float(x) for x in z]
+        found = [real(x) for x in self.map.called(self.map.function, given, float)]
         if not all(map(math.isfinite, found)):
             raise StepError("it returns what is not finite")
-        return found
+        return [Fraction(x) for x in found]
 
     def at(self, point: Sequence[Fraction]) -> Reading:
         """S at the point; its errors by a second width."""
-        z = [float(x) for x in point]
-        reach = 1 + max(map(abs, z + self._at(z)))
-        width = _WIDTH * reach
+        z, epsilon = [self.numbers.rounded(x) for x in point], self.numbers.epsilon
+        reach = 1 + max(float(abs(x)) for x in (*z, *self._at(z)))
+        width = Fraction(self.numbers.width * reach)
         one, two = (self._columns(z, w) for w in (width, width / 2))
+        rounding = 8 * epsilon * reach / float(width)
         noise = [
-            [abs(x - y) + 8 * _EPSILON * reach / width for x, y in zip(*pair, strict=True)]
+            [float(abs(x - y)) + rounding for x, y in zip(*pair, strict=True)]
             for pair in zip(one, two, strict=True)
         ]
-        return _reading(tuple(point), two, noise, 4 * _EPSILON)
+        return _reading(tuple(point), two, noise, 4 * epsilon)
 
-    def _columns(self, z: Sequence[float], width: float) -> Columns:
-        columns = []
+    def _columns(self, z: Sequence[Fraction], width: Fraction) -> list[list[Fraction]]:
+        columns, rounded = [], self.numbers.rounded
         for i in range(len(z)):
-            total = [float(60 * width * (k == i)) for k in range(len(z))]
+            total = [Fraction(60 * width * (k == i)) for k in range(len(z))]
             for k, weight in _STENCIL:
                 ahead, behind = list(z), list(z)
-                ahead[i], behind[i] = z[i] + k * width, z[i] - k * width
+                ahead[i], behind[i] = rounded(z[i] + k * width), rounded(z[i] - k * width)
                 f, b = self._at(ahead), self._at(behind)
                 for j in range(len(z)):
                     total[j] += weight * ((f[j] - ahead[j]) - (b[j] - behind[j]))
             columns.append([x / (60 * width) for x in total])
         return columns
+
+
+def _as_it_is(x: Fraction) -> Fraction:
+    return x
 
 
 Probe = DualProbe | FloatProbe
@@ -154,7 +163,7 @@ def _rational(x: "gmpy2.mpfr") -> Fraction:
 
 def _reading(
     point: tuple[Fraction, ...],
-    columns: Sequence[Sequence["gmpy2.mpfr | float"]],
+    columns: Sequence[Sequence["gmpy2.mpfr | Fraction"]],
     errors: Columns | None,
     share: float,
 ) -> Reading:
@@ -183,7 +192,7 @@ def _reading(
     return Reading(point, entries, noise, change, wrong)
 
 
-def _change_of_volume(columns: Sequence[Sequence["gmpy2.mpfr | float"]]) -> tuple[float, float]:
+def _change_of_volume(columns: Sequence[Sequence["gmpy2.mpfr | Fraction"]]) -> tuple[float, float]:
     """det J − 1 by elimination, the largest entries first, and how large the products in it are."""
     rows = [list(column) for column in columns]
     size, found, scale = len(rows), rows[0][0] * 0 + 1, 1.0

@@ -9,6 +9,7 @@ from typing import Protocol
 from verify.arithmetic.exact import rational
 from verify.errors import InputError
 from verify.hamiltonians.coordinates import PLANE, check_degrees, numbered
+from verify.integrators.number_type import DOUBLE, NumberType
 from verify.integrators.step import TIME_LIMIT, StepError, Theirs, limited, single
 
 _POSITIONAL = inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD
@@ -23,6 +24,11 @@ class CallableMap(Protocol):
 
     @property
     def names(self) -> tuple[str, ...]: ...
+
+    @property
+    def numbers(self) -> NumberType:
+        """What it computes in."""
+        ...
 
     def called(
         self,
@@ -49,6 +55,11 @@ class UserMap:
     def degrees(self) -> int:
         """Of freedom."""
         return len(self.names) // 2
+
+    @property
+    def numbers(self) -> NumberType:
+        """What it computes in: in Python that is floats."""
+        return DOUBLE
 
     def called(
         self,

@@ -61,7 +61,8 @@ def read_tables(path: Path) -> TableFile:
     data = read_toml(path)
     lines = lines_of(read_text(path))
     for key in sorted(set(data) - set(_ROOT)):
-        where = f"{path.name}:{lines.of('', 0, key) or lines.of(key)}: {key}"
+        at = lines.of("", 0, key) if lines.has("", 0, key) else lines.of(key)
+        where = f"{path.name}:{at}: {key}"
         raise InputError(where, data[key], f"unknown; allowed: {', '.join(_ROOT)}")
     tables = data.get("table")
     if not isinstance(tables, list) or not tables:
@@ -104,8 +105,10 @@ def located(name: str, lines: Lines, index: int, table: str, error: InputError) 
     """The error with the file, the table and the line of the key that it names."""
     said = error.name.removeprefix(f"table {table}").removeprefix(": ")
     key = said.split(".")[0].split(" ")[0].split(",")[0]
-    candidates = (key, key.rstrip("_pq0123456789"), "numbers" if lines else "")
-    line = lines.of("table", index, *(x for x in candidates[:2] if x))
+    keys = [key, key.rstrip("_pq0123456789")]
+    if error.value is not NOT_GIVEN:  # it may stand in a formula
+        keys += ["numbers", "sizes", "half", "tableau", "a"]
+    line = lines.of("table", index, *filter(None, keys))
     where = f"{name}:{line}: table {table}"
     return type(error)(f"{where}: {said}" if said else where, error.value, error.problem)
 

@@ -81,7 +81,12 @@ def _ulps(found: Judged) -> float | None:
     pairs = [(values.get(n), x) for n, x in exact_numbers(found).items()]
     if not pairs or any(y is None for y, _ in pairs):
         return None
-    return max(float(abs(y - x) / Fraction(math.ulp(float(x)))) for y, x in pairs if y is not None)
+    return max(_apart(y, x) for y, x in pairs if y is not None)
+
+
+def _apart(x: Fraction, y: Fraction) -> float:
+    """In ulps of the larger one."""
+    return float(abs(x - y) / Fraction(max(math.ulp(float(x)), math.ulp(float(y)))))
 
 
 def _constants(found: Judged, following: Asked) -> tuple[float | None, float | None]:

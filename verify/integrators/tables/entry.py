@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field, PrivateAttr
+from pydantic import BeforeValidator, Field, PrivateAttr, StrictBool
 
 from verify.algebra.formula import RESERVED
 from verify.errors import InputError
@@ -39,8 +39,8 @@ class TableEntry(Frozen):
     source: str = ""
     read: str = ""
     numbers: dict[str, Written] = Field(default_factory=dict)
-    symplectic: bool = False
-    symmetric: bool = False
+    symplectic: StrictBool = False
+    symmetric: StrictBool = False
     csv: str | None = None
     _folder: Path = PrivateAttr(default=Path())
 

@@ -21,7 +21,7 @@ from verify.errors import InputError
 from verify.files import read_text
 from verify.integrators.tables.signs import plain
 
-_RULE = re.compile(r"[\s|+:─━—_=\\-]*(?:\\hline)?[\s|+:─━—_=-]*|\\\\")
+_RULE = re.compile(r"[\s|+:─━—_=-]*")
 _BARS = "│┃∣"
 _MOST_BYTES = 1 << 20
 _BLANKS = re.compile(r"\s{2,}")
@@ -40,11 +40,10 @@ class Layout:
 def pasted(text: str, name: str = "tableau") -> Layout:
     """InputError where it is no tableau."""
     lines = []
-    for line in text.splitlines():
-        plainer = line.translate({ord(bar): "|" for bar in _BARS})
-        plainer = re.sub(r"\\\\\s*(\[[^]]*\])?\s*$", "", plainer.replace(r"\hline", "----"))
-        if plainer.strip():
-            lines.append(None if _is_rule(plainer) else plainer)
+    text = re.sub(r"\\\\\s*(\[[^]]*\])?", "\n", text).replace(r"\hline", "\n----\n")  # LaTeX's
+    for line in text.translate({ord(bar): "|" for bar in _BARS}).splitlines():
+        if line.strip():
+            lines.append(None if _is_rule(line) else line)
     return _made(*_parted([line if line is None else _cells(line) for line in lines]), name)
 
 

@@ -19,6 +19,7 @@ from verify.arithmetic.number import E
 from verify.errors import InputError
 
 FIRST, LAST = 7, 3  # places up to which a decimal is exact, as it is read first, and last
+LARGEST = 10**6
 _FEWER = 5  # digits than the longest number has
 _OF_DOUBLES = 16, 17  # digits of a double that is printed so that it is read back
 
@@ -51,7 +52,10 @@ class PrintedNumbers:
     @cached_property
     def values(self) -> dict[str, Fraction]:
         """The rounded numbers exactly as they are printed."""
-        return {name: rational(self.numbers[name].replace(" ", ""), name) for name in self.units}
+        found = {name: rational(self.numbers[name].replace(" ", ""), name) for name in self.units}
+        for name, x in found.items():
+            _check_size(x, name, self.numbers[name])
+        return found
 
     @cached_property
     def digits(self) -> int:
@@ -66,10 +70,13 @@ class PrintedNumbers:
             if name not in self.units
         }
 
-    def entry(self, text: str, source: str = "part") -> sympy.Expr:
+    def entry(self, text: str, source: str = "sizes") -> sympy.Expr:
         """A formula in the numbers, in the symbols of those that are rounded."""
         found = parse(text, self.numbers, source=source)
-        return sympy.expand(found.subs(self._exact)) if found.free_symbols else found
+        found = sympy.expand(found.subs(self._exact)) if found.free_symbols else found
+        if found.is_Rational:
+            _check_size(Fraction(int(found.p), int(found.q)), source, text)
+        return found
 
     def readings(self) -> list["PrintedNumbers"]:
         """The same as they may be read: with more of the decimals exact first."""
@@ -77,6 +84,12 @@ class PrintedNumbers:
         first = replace(self, exact_up_to=FIRST, exact_digits=longest - _FEWER)
         last = replace(self, exact_up_to=LAST)
         return [first] if first.units == last.units else [first, last]
+
+
+def _check_size(x: Fraction, name: str, text: str) -> None:
+    """InputError for a number that is beyond all coefficients, and would fill memory in powers."""
+    if abs(x) > LARGEST:
+        raise InputError(name, text, f"is beyond {LARGEST:,}, which no coefficient is")
 
 
 def unit_of(text: str) -> Fraction | None:

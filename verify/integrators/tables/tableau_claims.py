@@ -1,6 +1,7 @@
 """What Runge–Kutta tables of all kinds claim, each with its verdict."""
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from typing import Protocol
 
 from verify.errors import NOT_GIVEN, InputError
@@ -13,6 +14,7 @@ from verify.integrators.tables.tableau_order import (
     order_asked,
     row_sums_asked,
     stage_order_asked,
+    wrong_time,
 )
 from verify.integrators.tables.tableau_symmetry import judge_symmetric, judge_symplectic
 from verify.integrators.tables.tableau_table import TableauTable, Texts
@@ -75,6 +77,8 @@ def _claims(
     claimed = entry.row_sums if entry.row_sums is not None else table.timed
     if claimed:
         sums = sums or best_reading(table, lambda x: judge(x.printed, row_sums_asked(x), 1))
+        if sums.verdict is Verdict.REFUTED and not table.nystrom and sums.misprint is None:
+            sums = replace(sums, misprint=wrong_time(table))
         form = (
             "Σ_j a_ij = c_i^2/2" if table.nystrom else "the times are the row sums, c_i = Σ_j a_ij"
         )

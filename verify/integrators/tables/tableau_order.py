@@ -11,10 +11,12 @@ from functools import cache, partial
 
 import sympy
 
+from verify.algebra.formula import symbol
 from verify.arithmetic.number import E
 from verify.errors import InputError
 from verify.integrators.tables.asked import Asked, Named
 from verify.integrators.tables.judged import Judged, judge
+from verify.integrators.tables.misprint import Misprint
 from verify.integrators.tables.tableau_table import TableauTable
 from verify.integrators.tables.tree_weights import Block, dot
 from verify.schemes.coloured_trees import (
@@ -30,6 +32,7 @@ from verify.verdict import Verdict
 
 _MOST_TREES = 2500
 _HIGHEST = 10
+_WRONG = Fraction(1, 10**9)  # between a time and a row sum: more is no digit
 MANY = 60  # conditions: of fewer a solution is looked for together with that of row sums
 
 
@@ -96,6 +99,25 @@ def row_sums_asked(table: TableauTable) -> Asked:
         return [zero_or(x, one) + zero_or(y, one) * sign for _, x, y in made]
 
     return Asked(table.entries, equations, residues, labels=table.labels)
+
+
+def wrong_time(table: TableauTable) -> Misprint | None:
+    """The one time that is no row sum, and the sum; None where none is, or several are. Of a and b
+    that are right."""
+    values = {name: _sympy(x) for name, x in table.printed.values.items()}
+    at = {symbol(name): x for name, x in values.items()}
+    found = []
+    rows = _sums(table, table.exprs)
+    for name, total, time in rows:
+        sizes = [sympy.sympify(0 if x is None else x).subs(at) for x in (total, time)]
+        if all(x.is_Rational for x in sizes) and abs(sizes[0] - sizes[1]) > _WRONG:
+            label = name.partition(" = ")[2].replace("_", "", 1) if len(table.names) == 1 else name
+            found.append(Misprint(label, str(sizes[1]), Fraction(int(sizes[0].p), int(sizes[0].q))))
+    return found[0] if len(found) == 1 else None
+
+
+def _sympy(x: Fraction) -> sympy.Rational:
+    return sympy.Rational(x.numerator, x.denominator)
 
 
 def _sums(

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Annotated
 
-from pydantic import Field
+from pydantic import Field, StrictBool
 
 from verify.integrators.tables.blocks import Block, blocks_of, embedded_of
 from verify.integrators.tables.entry import Naming, Order, TableEntry
@@ -20,7 +20,7 @@ class Entry(TableEntry):
     parts: Annotated[tuple[Block, ...], Field(min_length=2, max_length=4)]
     embedded_order: Order | None = None
     stage_order: Order | None = None
-    row_sums: bool | None = None
+    row_sums: StrictBool | None = None
 
 
 def claims(entry: Entry) -> Iterator[TableClaim]:

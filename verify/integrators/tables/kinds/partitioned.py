@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator
 
+from pydantic import StrictBool
+
 from verify.integrators.tables.blocks import Block, blocks_of, embedded_of
 from verify.integrators.tables.entry import Naming, Order, TableEntry
 from verify.integrators.tables.tableau_claims import of_tableau
@@ -17,10 +19,10 @@ class Entry(TableEntry):
     order: Order | None = None
     p: Block
     q: Block
-    separable: bool = False
+    separable: StrictBool = False
     embedded_order: Order | None = None
     stage_order: Order | None = None
-    row_sums: bool | None = None
+    row_sums: StrictBool | None = None
 
 
 def claims(entry: Entry) -> Iterator[TableClaim]:

@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator
 
+from pydantic import StrictBool
+
 from verify.errors import NOT_GIVEN, InputError
 from verify.integrators.tables.blocks import Block, block_of
 from verify.integrators.tables.entry import Naming, Order, Row, TableEntry
@@ -24,7 +26,7 @@ class Entry(TableEntry):
     tableau: str | None = None
     embedded_order: Order | None = None
     stage_order: Order | None = None
-    row_sums: bool | None = None
+    row_sums: StrictBool | None = None
 
 
 def claims(entry: Entry) -> Iterator[TableClaim]:

@@ -6,6 +6,8 @@ q' = q + h p + h² Σ b_bar_i k_i, p' = p + h Σ b_i k_i.
 
 from collections.abc import Iterator
 
+from pydantic import StrictBool
+
 from verify.errors import NOT_GIVEN, InputError
 from verify.integrators.tables.entry import Naming, Order, Row, TableEntry
 from verify.integrators.tables.tableau_claims import of_tableau
@@ -27,7 +29,7 @@ class Entry(TableEntry):
     embedded_bar: Row | None = None
     embedded_order: Order | None = None
     stage_order: Order | None = None
-    row_sums: bool = False
+    row_sums: StrictBool = False
 
 
 def claims(entry: Entry) -> Iterator[TableClaim]:

@@ -1,0 +1,373 @@
+"""Files of tables: every kind is read and judged, and what is none is told with its line."""
+
+import random
+import time
+import tomllib
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.helpers.tables.by_series import gap
+from tests.helpers.tables.mistakes import judged, outcome, places, right_tables, with_mistake
+from tests.paths import ROOT
+from verify.errors import InputError
+from verify.integrators.tables import kinds
+from verify.integrators.tables.check import check_table, read_tables
+from verify.integrators.tables.told import TableClaim
+from verify.verdict import Verdict
+
+RIGHT = {table["name"]: table for table in right_tables()}
+ORDER_8 = tomllib.loads(
+    (ROOT / "tests" / "helpers" / "tables" / "order_8.toml").read_text(encoding="utf-8")
+)
+OF_FILE = [name for name in RIGHT if "read" not in RIGHT[name]]  # those of right.toml
+
+
+def claims(table: dict[str, Any]) -> dict[str, TableClaim]:
+    return {claim.kind: claim for claim in judged(table)}
+
+
+def changed(name: str, **keys: Any) -> dict[str, Any]:
+    return {**RIGHT[name], **keys}
+
+
+# -- right and wrong ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", OF_FILE)
+def test_no_claim_of_a_right_table_is_refuted(name: str) -> None:
+    found = judged(RIGHT[name])
+    assert found
+    assert {claim.verdict for claim in found} <= {
+        Verdict.PROVED, Verdict.ENCLOSED, Verdict.MEASURED,
+    }  # fmt: skip
+    assert all(claim.severity is claim.nearest is claim.cost is None for claim in found)
+
+
+@pytest.mark.parametrize("name", OF_FILE)
+def test_an_order_that_is_one_too_high_is_refuted(name: str) -> None:
+    table = RIGHT[name]
+    found = claims({**table, "order": table["order"] + 1})["order"]
+    assert found.verdict is Verdict.REFUTED
+    assert found.cost is not None
+    assert found.cost.order == table["order"]
+    assert found.severity == "wrong order"
+    assert gap(table, table["order"] + 1, seeds=1) > 1, "a power series of the step agrees"
+
+
+def test_every_kind_has_a_right_table() -> None:
+    assert {table["kind"] for table in RIGHT.values()} == set(kinds.names())
+
+
+DRAW = random.Random(11)  # noqa: S311
+SOME = [DRAW.choice([x for x in RIGHT.values() if places(x)]) for _ in range(40)]
+MISTAKES = [(table, *with_mistake(table, DRAW)) for table in SOME]
+
+
+@pytest.mark.parametrize(("right", "wrong", "what"), MISTAKES, ids=[m[2] for m in MISTAKES])
+def test_one_mistake_is_refuted_or_below_the_digits(
+    right: dict[str, Any], wrong: dict[str, Any], what: str
+) -> None:
+    found = outcome(right, wrong, what)
+    assert not found.problem
+    assert found.refuted
+
+
+def test_a_mistake_that_is_not_seen_would_be_told() -> None:
+    """The control of the test above: of a table that is called right and is not, it is told."""
+    right = RIGHT["Bogacki–Shampine 3(2)"]
+    assert not outcome(right, right, "nothing").refuted
+    other = {**right, "order": 2, "embedded_order": 1}
+    wrong = {**other, "embedded": ["7/24", "1/4", "1/3", "1/9"]}
+    claimed_less = outcome(other, wrong, "an embedded weight")
+    assert (claimed_less.refuted, claimed_less.problem) == (True, "")
+
+
+# -- each kind of mistake -------------------------------------------------------------------------
+
+
+def test_the_suzuki_yoshida_weights_in_several_libraries_are_refuted() -> None:
+    wrong = {
+        "name": "n = 3", "kind": "composition", "order": 4,
+        "sizes": ["0.8289815435887510", "−0.6579630871775020", "0.8289815435887510"],
+    }  # fmt: skip
+    (found,) = judged(wrong)
+    assert found.verdict is Verdict.REFUTED
+    assert found.cost is not None
+    assert (found.cost.order, found.cost.double, found.severity) == (2, True, "wrong order")
+    assert found.nearest is not None
+    root = 1 / (2 - 2 ** (1 / 3))
+    assert abs(float(found.nearest["w1"]) - root) < 1e-15
+    assert abs(float(found.nearest["w2"]) - (1 - 2 * root)) < 1e-15
+
+
+def test_a_lost_sign_of_an_exact_tableau_is_named_with_what_it_would_be() -> None:
+    table = {"name": "Kutta 3", "kind": "runge-kutta", "order": 3,
+             "a": [[], ["1/2"], ["1", "2"]], "b": ["1/6", "2/3", "1/6"]}  # fmt: skip
+    found = claims(table)["order"]
+    assert (found.verdict, found.nearest) == (Verdict.REFUTED, {"a31": "-1"})
+    assert "a31" in found.evidence
+    assert claims({**table, "a": [[], ["1/2"], ["-1", "2"]]})["order"].verdict is Verdict.PROVED
+
+
+def test_a_wrong_node_is_a_wrong_clock_and_not_a_wrong_order() -> None:
+    found = claims(changed("Dormand–Prince 5(4)", c=[0, "1/5", "3/10", "4/5", "7/9", 1, 1]))
+    assert found["order"].verdict is Verdict.PROVED
+    assert found["order in time"].verdict is found["row sums"].verdict is Verdict.REFUTED
+    assert found["row sums"].severity == found["order in time"].severity == "wrong clock"
+    assert found["row sums"].nearest == {"c5": "8/9"}
+    assert found["embedded order"].verdict is Verdict.PROVED
+
+
+def test_times_that_are_no_row_sums_may_keep_the_order() -> None:
+    """Two stages with weights 1/2 at times whose mean is 1/2 keep order 2, whatever they are."""
+    own = {"name": "x", "kind": "runge-kutta", "order": 2, "a": [[], ["1"]], "b": ["1/2", "1/2"],
+           "c": ["1/4", "3/4"]}  # fmt: skip
+    found = claims({**own, "row_sums": False})
+    assert found["order in time"].verdict is Verdict.PROVED
+    assert "row sums" not in found
+    assert gap(own, 2, timed=True) == 0
+    assert claims(own)["row sums"].verdict is Verdict.REFUTED
+
+
+def test_a_wrong_embedded_weight_is_one() -> None:
+    wrong = ["7/24", "1/4", "1/3", "1/9"]
+    found = claims(changed("Bogacki–Shampine 3(2)", embedded=wrong))["embedded order"]
+    assert found.verdict is Verdict.REFUTED
+    assert found.severity == "embedded or step weights"
+
+
+def test_a_wrong_clock_of_a_kick_is_refuted_and_the_right_one_told() -> None:
+    right = RIGHT["Forest–Ruth 4, with clocks"]
+    times = right["times"].replace("1.3512071919596576340", "0.6756035959798288170")
+    found = claims({**right, "times": times})["order in time"]
+    assert (found.verdict, found.severity) == (Verdict.REFUTED, "wrong clock")
+    assert "time of kick 3" in found.evidence
+    assert gap({**right, "times": times}, 4, timed=True) > 1
+
+
+def test_a_clock_that_is_not_the_right_one_may_keep_the_order() -> None:
+    """Verlet with both kicks at the middle of the step is of order 2 all the same."""
+    verlet = {"name": "x", "kind": "splitting", "order": 2, "first": "kick",
+              "sizes": ["1/2", "1", "1/2"]}  # fmt: skip
+    middle = {**verlet, "times": ["1/2", "-", "1/2"]}
+    assert claims(middle)["order in time"].verdict is Verdict.PROVED
+    assert claims({**verlet, "times": ["0", "-", "1"]})["order in time"].verdict is Verdict.PROVED
+    late = claims({**verlet, "times": ["0", "-", "0"]})["order in time"]
+    assert late.verdict is Verdict.REFUTED
+    assert gap({**middle, "times": ["1/2", "0", "1/2"]}, 2, timed=True) == 0
+
+
+def test_a_clock_of_drifts_counts_where_t_depends_on_time() -> None:
+    wrong = changed("Ruth 3, with clocks", times=["0", "0", "2/3", "0", "0", "0"])
+    assert claims(wrong)["order in time"].verdict is Verdict.REFUTED
+    of_v = {key: x for key, x in wrong.items() if key != "time_dependent"}
+    assert claims(of_v)["order in time"].verdict is Verdict.PROVED
+
+
+def test_a_quadratic_t_with_a_mass_that_depends_on_time_asks_for_more() -> None:
+    """Right clocks keep the order of a Nyström splitting for V(q, t), and not for p²/(2 m(t))."""
+    own = dict(RIGHT["McLachlan–Atela 4, for quadratic T"])
+    numbers = {name: Fraction(x) for name, x in own["numbers"].items()}
+    kicks = [sum((numbers[f"a{j}"] for j in range(1, k)), Fraction(0)) for k in range(1, 5)]
+    drifts = [sum((numbers[f"b{j}"] for j in range(1, k + 1)), Fraction(0)) for k in range(1, 5)]
+    texts = [f"{float(x):.16f}" for pair in zip(kicks, drifts, strict=True) for x in pair]
+    timed = {**own, "times": texts}
+    assert claims(timed)["order in time"].verdict in (Verdict.ENCLOSED, Verdict.MEASURED)
+    both = claims({**timed, "time_dependent": "T and V"})["order in time"]
+    assert both.verdict is Verdict.REFUTED
+
+
+def test_a_splitting_is_run_either_way() -> None:
+    ruth = {key: x for key, x in RIGHT["Ruth 3, with clocks"].items()
+            if key not in ("times", "time_dependent")}  # fmt: skip
+    found = claims({**ruth, "first": "both"})
+    assert found["order, kick first"].verdict is found["order, drift first"].verdict
+    calvo = claims({**RIGHT["Calvo–Sanz-Serna 4"], "first": "both"})
+    assert calvo["order, kick first"].verdict is Verdict.ENCLOSED
+    assert calvo["order, drift first"].verdict is Verdict.REFUTED, "of quadratic T it is not alike"
+
+
+# -- symplectic, symmetric ------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("name", "keys"),
+    [
+        ("Radau IIA 3", {}),
+        ("Kutta 4", {}),
+        ("Crouzeix SDIRK 3", {}),
+        ("Nyström 4", {}),
+    ],
+)
+def test_what_is_not_symplectic_or_symmetric_is_refuted(name: str, keys: dict[str, Any]) -> None:
+    found = claims(changed(name, symplectic=True, symmetric=True, **keys))
+    for kind, severity in (("symplectic", "not symplectic as claimed"),
+                           ("symmetric", "documentation")):  # fmt: skip
+        assert found[kind].verdict is Verdict.REFUTED, kind
+        assert found[kind].severity == severity
+
+
+def test_a_partitioned_method_for_separable_h_alone_is_not_symplectic_for_every_h() -> None:
+    euler = {"name": "x", "kind": "partitioned", "order": 1, "symplectic": True,
+             "p": {"a": [["1"]], "b": ["1"]}, "q": {"a": [["0"]], "b": ["1"]}}  # fmt: skip
+    assert claims(euler)["symplectic"].verdict is Verdict.PROVED
+    two = {**euler, "p": {"a": [["1/2", 0], ["1/2", "1/2"]], "b": ["1/2", "1/2"]},
+           "q": {"a": [["0", 0], ["1", "0"]], "b": ["1", "0"]}}  # fmt: skip
+    assert claims(two)["symplectic"].verdict is Verdict.REFUTED
+
+
+def test_a_method_with_stages_twice_is_not_refuted_though_what_suffices_fails() -> None:
+    """The midpoint rule with its stage written twice, and unlike weights that add up."""
+    doubled = {"name": "x", "kind": "runge-kutta", "order": 2, "symplectic": True,
+               "a": [["1/2", 0], ["1/2", 0]], "b": ["1/2", "1/2"]}  # fmt: skip
+    assert claims(doubled)["symplectic"].verdict is Verdict.UNDECIDED
+
+
+# -- digits ---------------------------------------------------------------------------------------
+
+
+def test_short_decimals_are_exact_and_rounded_ones_are_taken_so() -> None:
+    """0.5 is 1/2; of 1/6 to five digits it is said that exact numbers lie within them."""
+    rk4 = {"name": "x", "kind": "runge-kutta", "order": 4,
+           "a": [["0.5"], [0, "0.5"], [0, 0, "1.0"]]}  # fmt: skip
+    exact = claims({**rk4, "b": ["1/6", "1/3", "1/3", "1/6"]})["order"]
+    assert exact.verdict is Verdict.PROVED
+    rounded = claims({**rk4, "b": ["0.16667", "0.33333", "0.33333", "0.16667"]})["order"]
+    assert rounded.verdict in (Verdict.ENCLOSED, Verdict.MEASURED)
+    assert "5 decimals" in rounded.evidence
+    wrong = claims({**rk4, "b": ["0.16667", "0.33333", "0.33433", "0.16667"]})
+    assert Verdict.REFUTED in {claim.verdict for claim in wrong.values()}
+    other = {**rk4, "a": [["0.6"], [0, "0.5"], [0, 0, "1.0"]], "b": ["1/6", "1/3", "1/3", "1/6"]}
+    assert claims(other)["order"].verdict is Verdict.REFUTED
+
+
+def test_decimals_that_a_program_printed_are_known_to_half_an_ulp() -> None:
+    third, sixth = repr(1 / 3), repr(1 / 6)
+    rows = [["0.5"], [0, "0.5"], [0, 0, "1"]]
+    table = {"name": "x", "kind": "runge-kutta", "order": 4, "a": rows,
+             "b": [sixth, third, third, sixth]}  # fmt: skip
+    found = claims(table)
+    assert found["digits"].verdict in (Verdict.ENCLOSED, Verdict.MEASURED)
+    off = repr(1 / 3 + 4e-16)
+    wrong = claims({**table, "b": [sixth, third, off, sixth]})["digits"]
+    assert wrong.verdict is Verdict.REFUTED
+    assert wrong.severity == "digits that a double notices"
+
+
+def test_digits_below_a_double_are_told_apart_and_cost_nothing() -> None:
+    table = RIGHT["Yoshida 6, solution A, 40 digits"]
+    late = {**table["numbers"]}
+    name = next(iter(late))
+    late[name] = late[name][:-12] + ("1" if late[name][-12] != "1" else "2") + late[name][-11:]
+    found = claims({**table, "numbers": late})["digits"]
+    assert (found.verdict, found.severity) == (Verdict.REFUTED, "digits below that")
+    assert found.cost is not None
+    assert found.cost.double is False
+
+
+def test_an_order_8_tableau_of_doubles_is_judged_and_its_wrong_digit_named() -> None:
+    table = dict(ORDER_8)
+    begun = time.process_time()
+    found = claims(table)
+    assert time.process_time() - begun < 10
+    assert found["order"].verdict is Verdict.MEASURED
+    assert "200 conditions" in found["order"].evidence
+    wrong = claims({**table, "b": [x.replace("5.8012039600", "5.8012039800") for x in table["b"]]})
+    assert wrong["order"].verdict is Verdict.REFUTED
+    assert wrong["order"].nearest is not None
+    assert wrong["order"].nearest["b8"].startswith("-5.80120396001")
+
+
+# -- the file -------------------------------------------------------------------------------------
+
+GOOD = """title = "x"
+[[table]]
+name = "a"
+kind = "splitting"
+order = 2
+first = "kick"
+sizes = ["1/2", "1", "1/2"]
+"""
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "line", "message"),
+    [
+        ('kind = "splitting"', 'kind = "spliting"', 4, "splitting"),
+        ('kind = "splitting"\n', "", 2, "kind"),
+        ("order = 2", "order = 0", 5, "must be 1 or more"),
+        ("order = 2", "order = 9", 5, "up to 8"),
+        ("order = 2\n", "", 2, "order"),
+        ('first = "kick"', 'first = "kik"', 6, "kick"),
+        ('first = "kick"\n', "", 2, "first"),
+        ('sizes = ["1/2", "1", "1/2"]', 'sizes = ["1/2", "1/0", "1/2"]', 7, "1/0"),
+        ('sizes = ["1/2", "1", "1/2"]', 'sizes = ["1/2", "x", "1/2"]', 7, "x"),
+        ('sizes = ["1/2", "1", "1/2"]', "sizes = []", 7, "sizes"),
+        ('sizes = ["1/2", "1", "1/2"]\n', "", 2, "sizes"),
+        ("order = 2", 'order = 2\ntimes = ["0"]', 6, "3, one for each size"),
+        ("order = 2", "order = 2\nsize = 3", 6, "sizes"),
+        ("[[table]]", "[[tables]]", 2, "unknown"),
+        ("order = 2", "order = 2\nsymplectic = 1", 6, "true or false"),
+        ("order = 2", "order = 2\nnumbers = { sin = 1 }", 6, "sin"),
+    ],
+)
+def test_a_mistake_is_told_with_its_line(
+    tmp_path: Path, before: str, after: str, line: int, message: str
+) -> None:
+    assert before in GOOD
+    path = tmp_path / "tables.toml"
+    path.write_text(GOOD.replace(before, after), encoding="utf-8")
+    with pytest.raises(InputError, match=message) as error:
+        check_table(path)
+    assert f"tables.toml:{line}" in str(error.value), error.value
+    assert "\n" not in str(error.value)
+
+
+def test_a_name_stands_once(tmp_path: Path) -> None:
+    path = tmp_path / "t.toml"
+    path.write_text(GOOD + GOOD.partition("\n")[2], encoding="utf-8")
+    with pytest.raises(InputError, match="twice"):
+        read_tables(path)
+
+
+def test_pasted_tableaus_and_files_are_the_same_tables(tmp_path: Path) -> None:
+    (tmp_path / "rk.csv").write_text("0\n½,½\n1,−1,2\n,1/6,2/3,1/6\n", encoding="utf-8")
+    (tmp_path / "s.csv").write_text("kind,size,time\nkick,0.5,0\ndrift,1,-\nkick,0.5,1\n")
+    path = tmp_path / "t.toml"
+    path.write_text(
+        '[[table]]\nname = "a"\nkind = "runge-kutta"\norder = 3\ncsv = "rk.csv"\n'
+        '[[table]]\nname = "b"\nkind = "splitting"\norder = 2\ncsv = "s.csv"\n'
+        '[[table]]\nname = "c"\nkind = "runge-kutta"\norder = 3\ntableau = """\n'
+        "0 & \\\\\\\\\n\\\\frac12 & \\\\frac12 \\\\\\\\\n1 & -1 & 2 \\\\\\\\ \\\\hline\n"
+        ' & \\\\frac16 & \\\\frac23 & \\\\frac16\n"""\n',
+        encoding="utf-8",
+    )
+    found = {each.id: each.claim.verdict for each in check_table(path)}
+    assert set(found.values()) == {Verdict.PROVED}
+    assert {"a/order", "a/row sums", "b/order in time", "c/order in time"} <= set(found)
+
+
+@pytest.mark.parametrize("name", ["../t.csv", "/etc/passwd", "sub/t.csv", "none.csv"])
+def test_a_csv_file_lies_beside_the_table(tmp_path: Path, name: str) -> None:
+    path = tmp_path / "t.toml"
+    path.write_text(f'[[table]]\nname = "a"\nkind = "runge-kutta"\norder = 3\ncsv = "{name}"\n')
+    with pytest.raises(InputError):
+        check_table(path)
+
+
+@pytest.mark.parametrize(
+    "numbers", ["1e400", "0." + "1" * 5000, "9" * 300 + ".5", "1.5e-399", "((((1))))", "1**9**9"]
+)
+def test_numbers_of_any_size_are_judged_or_refused(tmp_path: Path, numbers: str) -> None:
+    path = tmp_path / "t.toml"
+    path.write_text(GOOD.replace('"1", ', f'"{numbers}", '))
+    if numbers == "((((1))))":
+        assert check_table(path)[0].claim.verdict is Verdict.PROVED
+    elif numbers == "1.5e-399":
+        assert check_table(path)[0].claim.verdict is Verdict.REFUTED
+    else:
+        with pytest.raises(InputError, match=r"t\.toml:7"):
+            check_table(path)
