@@ -47,15 +47,16 @@ def _decimal(x: Fraction, digits: int) -> str:
 
 
 def numbers_of(line: str, wanted: int, kind: NumberType) -> list[Fraction]:
-    """What a program gave back, so many numbers. Raises StepError where it is something else."""
+    """What a program gave back, so many numbers of its type. Raises StepError where it is something else."""
     words = line.split()
     if len(words) != wanted * kind.parts:
         told = f"{count(wanted, 'number')} of two doubles" if kind.parts > 1 else str(wanted)
         raise StepError(f"it answers {_quoted(line)}; wanted: {told}, p' and then q', in a line")
     found = [number_of(word) for word in words]
     if kind.parts == 1:
-        return found
-    return [high + low for high, low in zip(found[::2], found[1::2], strict=True)]
+        return [kind.rounded(x) for x in found]
+    doubles = [Fraction(float(x)) for x in found]
+    return [high + low for high, low in zip(doubles[::2], doubles[1::2], strict=True)]
 
 
 def number_of(word: str) -> Fraction:

@@ -39,7 +39,6 @@ class Program:
     seconds: float
     first_seconds: float = CALL_SECONDS
     greeting: str = ""
-    memory: int = MOST_MEMORY
     starts: int = 0
     waits: int = 0
     last: str = ""  # what it has done instead of an answer
@@ -162,9 +161,9 @@ class Program:
                 self.waits += 1
                 self.close()
                 raise StepError(f"a call of it does not end within {seconds:g} s")
-            if self._memory(own) > self.memory:
+            if self._memory(own) > MOST_MEMORY:
                 self.close()
-                raise StepError(f"it takes more than {self.memory / 2**30:g} GiB of memory")
+                raise StepError(f"it takes more than {MOST_MEMORY / 2**30:g} GiB of memory")
             if not self._readable(own, min(left, _WATCHED)):
                 continue
             chunk = self._read(own)
