@@ -39,15 +39,23 @@ def _decimal(x: Fraction, digits: int) -> str:
         return "0.0"
     size = abs(x)
     exponent = math.floor(math.log10(size.numerator) - math.log10(size.denominator))
+    # A logarithm may be rounded to the next whole number.
+    while size >= Fraction(10) ** (exponent + 1):
+        exponent += 1
+    while size < Fraction(10) ** exponent:
+        exponent -= 1
     scaled = round(size / Fraction(10) ** (exponent - digits + 1))
-    if scaled >= 10**digits:
-        exponent, scaled = exponent + 1, round(size / Fraction(10) ** (exponent - digits + 2))
-    text = str(scaled).ljust(digits, "0")
+    if scaled == 10**digits:
+        exponent, scaled = exponent + 1, scaled // 10
+    text = str(scaled)
     return f"{'-' if x < 0 else ''}{text[0]}.{text[1:]}e{exponent:+d}"
 
 
 def numbers_of(line: str, wanted: int, kind: NumberType) -> list[Fraction]:
-    """What a program gave back, so many numbers of its type. Raises StepError where it is something else."""
+    """What a program gave back, so many numbers of its type.
+
+    Raises StepError where it is something else.
+    """
     words = line.split()
     if len(words) != wanted * kind.parts:
         told = f"{count(wanted, 'number')} of two doubles" if kind.parts > 1 else str(wanted)
