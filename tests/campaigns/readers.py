@@ -25,6 +25,7 @@ from verify.arithmetic.exact import rational
 from verify.claims.file import load_claims
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.integrators.tables.check import check_table
 from verify.proof.certificates.every import of_every
 from verify.proof.certificates.file import checked
 from verify.proof.every import prove_every
@@ -44,6 +45,7 @@ TOKENS = (
     "1e-1000", "1e999999", "9" * 400, "1/0", "nan", "inf", "=", ";", "[", "]", "{", "}", '"', "'",
     "\n", ",", "\x00", "\x1b[31m", "é", "𝑝", "٣", "__import__('os')", "lambda", "p_next", "#",
     "...", "\\", "::", "true", "null", "1_000", "0x10", "[[claim]]",
+    "[[table]]", "×", "½", "√", "−",
 )  # fmt: skip
 FORMULAS = (
     "p**2/2 + q**2/2 + delta*q**4/4", "p**2/2 - cos(q)", "exp(-q)*p + 1/(1 + q**2)",
@@ -89,6 +91,13 @@ def _claims(path: Path) -> object:
     return load_claims(path)
 
 
+def _coefficients() -> tuple[str, ...]:
+    """Files of one printed table each."""
+    right = (ROOT / "tests/helpers/tables/right.toml").read_text("utf-8").split("[[table]]")[1:]
+    printed = (ROOT / "reports/audits/literature.toml").read_text("utf-8").split("[[table]]")[1:8]
+    return tuple(f"[[table]]{each}" for each in (*right, *printed))
+
+
 @cache
 def sorts() -> dict[str, tuple[Reader, tuple[str, ...]]]:
     """Each sort of input: who reads it, and valid ones."""
@@ -109,6 +118,7 @@ def sorts() -> dict[str, tuple[Reader, tuple[str, ...]]]:
         "claims": (_claims, short),
         "certificate": (checked, made),
         "table": (_table, (TABLE,)),
+        "coefficients": (check_table, _coefficients()),
         "report": (read_report, (report.model_dump_json(),)),
         "reference": (_reference, (data,)),
         "parquet": (_parquet, (parquet_bytes([("t", "q"), ("1", "2")]).decode("latin-1"),)),

@@ -200,11 +200,26 @@ class Program:
         return os.read(own.stdout.fileno(), _LONGEST)
 
     def _memory(self, own: "subprocess.Popen[bytes]") -> int:
-        """Bytes that it holds now, 0 where that is not known."""
+        """Bytes that it and what it has started hold now, 0 where that is not known."""
+        return sum(map(_resident, _with_children(own.pid)))
+
+
+def _with_children(pid: int) -> list[int]:
+    """The process, and those that it has started."""
+    found = [pid]
+    for each in found:  # it grows while it is walked
         try:
-            return int(Path(f"/proc/{own.pid}/statm").read_text().split()[1]) * _PAGE
-        except (OSError, ValueError, IndexError):
-            return 0
+            found += map(int, Path(f"/proc/{each}/task/{each}/children").read_text().split())
+        except (OSError, ValueError):
+            continue
+    return found[:100]
+
+
+def _resident(pid: int) -> int:
+    try:
+        return int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * _PAGE
+    except (OSError, ValueError, IndexError):
+        return 0
 
 
 def _shown(chunk: bytes) -> str:

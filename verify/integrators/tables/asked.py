@@ -49,7 +49,7 @@ class Asked:
     """`entries`: polynomials in the numbers that are rounded. `by_form`: how many conditions more
     there are, that hold by the form of the table alone. `shares`: with which each counts in an
     error constant, as 1/σ(t) of a tree; 1 where none are given. `labels`: what the entries are
-    called."""
+    called, where one is looked for that alone is wrong."""
 
     entries: tuple[sympy.Expr, ...]
     equations: tuple[Equation, ...]

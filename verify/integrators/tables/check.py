@@ -91,7 +91,7 @@ def _model(table: Any) -> type[TableEntry]:
     if kind is None:
         allowed = ", ".join(kinds.names())
         raise InputError("kind", NOT_GIVEN, f"is missing; allowed: {allowed}")
-    if kind not in kinds.CATALOGUE:
+    if not isinstance(kind, str) or kind not in kinds.CATALOGUE:
         raise unknown("kind", kind, kinds.names())
     model: type[TableEntry] = kinds.get(kind).Entry
     return model

@@ -9,12 +9,11 @@ from pydantic import BeforeValidator, Field, PrivateAttr, StrictBool
 from verify.algebra.formula import RESERVED
 from verify.errors import InputError
 from verify.integrators.tables.printed_numbers import PrintedNumbers, unit_of
-from verify.integrators.tables.signs import plain
+from verify.integrators.tables.signs import LONGEST, plain
 from verify.scenes.frozen import Frozen
 
 MOST_ENTRIES = 2000
 _SHARED = 8  # decimals from which two numbers that are printed alike are taken for one
-_LONGEST = 400  # characters of a number
 
 
 def written(value: Any) -> Any:
@@ -23,10 +22,10 @@ def written(value: Any) -> Any:
         return value
     if isinstance(value, int):
         return str(value)
-    return plain(value) if isinstance(value, str) and len(value) <= _LONGEST else value
+    return plain(value) if isinstance(value, str) and len(value) <= LONGEST else value
 
 
-Written = Annotated[str, BeforeValidator(written), Field(max_length=_LONGEST)]
+Written = Annotated[str, BeforeValidator(written), Field(max_length=LONGEST)]
 Row = tuple[Written, ...]
 Order = Annotated[int, Field(ge=1, le=20)]
 

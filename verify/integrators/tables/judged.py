@@ -92,7 +92,7 @@ def _of(near: Nearby, order: int) -> Judged:
     residues = tuple(zip(equations, near.at_print, strict=True))
     seen = Judged(Verdict.MEASURED, allowed, checked, condition, size, largest, residues=residues)
     if allowed < order and largest > OF_DIGITS:
-        one = misprint(near, own)
+        one = misprint(near, own) if near.asked.labels else None
         seen = replace(seen, verdict=Verdict.REFUTED, digits=False, misprint=one)
         found = near.nearest(own) or (near.far(own) if one is None else None)
         return seen if found is None else replace(seen, off=found.off, nearest=found.numbers)

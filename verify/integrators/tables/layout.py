@@ -19,7 +19,7 @@ from pathlib import Path
 
 from verify.errors import InputError
 from verify.files import read_text
-from verify.integrators.tables.signs import plain
+from verify.integrators.tables.signs import LONGEST, plain
 
 _RULE = re.compile(r"[\s|+:─━—_=-]*")
 _BARS = "│┃∣"
@@ -72,7 +72,11 @@ def columns(line: str) -> list[str]:
         closer = re.sub(r"\s*([/×·*])\s*", r"\1", line.strip())
         wide = _BLANKS.split(closer)
         parts = wide if any(" " in part for part in wide) and len(wide) > 1 else closer.split()
-    return [plain(part) for part in parts if part.strip()]
+    found = [plain(part) for part in parts if part.strip()]
+    for each in found:
+        if len(each) > LONGEST:
+            raise InputError("number", each, f"is longer than {LONGEST} characters")
+    return found
 
 
 def _parted(lines: Sequence[Line | None]) -> tuple[list[Line], list[Line]]:
@@ -134,7 +138,7 @@ def layout_of_csv(folder: Path, name: str) -> Layout:
     rows = csv_rows(folder, name)
     if rows and not any(x.isdigit() for x in "".join(rows[0])):
         rows = rows[1:]  # a header
-    lines: list[Line] = [(row[0], [plain(x) for x in row[1:] if x]) for row in rows]
+    lines: list[Line] = [(row[0], columns("\t".join(x for x in row[1:] if x))) for row in rows]
     stages = [x for x in lines if x[0]]
     return _made(stages, [x for x in lines if not x[0]], name)
 

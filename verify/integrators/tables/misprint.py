@@ -79,9 +79,9 @@ class _Unknowns:
 
 def exact_misprint(asked: Asked, order: int) -> Misprint | None:
     """The one rational entry, of those that are not 0, and the quotient it would have to be."""
-    if not all(x.is_Rational for x in asked.entries) or len(asked.entries) > _MOST:
+    labels = asked.labels
+    if not labels or len(labels) > _MOST or not all(x.is_Rational for x in asked.entries):
         return None
-    labels = asked.labels or tuple(f"entry {k + 1}" for k in range(len(asked.entries)))
     names = [f"x{k}" for k in range(len(labels))]
     values = {n: Fraction(int(x.p), int(x.q)) for n, x in zip(names, asked.entries, strict=True)}
     unknowns = _Unknowns(

@@ -6,6 +6,7 @@ seen, so it is a matter of reading. First what has few digits is exact, by itsel
 """
 
 import math
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -19,7 +20,9 @@ from verify.arithmetic.number import E
 from verify.errors import InputError
 
 FIRST, LAST = 7, 3  # places up to which a decimal is exact, as it is read first, and last
+_SHORTEST = 2  # and where it is a question whether even such as 0.333 are rounded
 LARGEST = 10**6
+_DECIMAL = re.compile(r"[+-]?(\d*)\.(\d*)(?:[eE]([+-]?\d{1,3}))?", re.ASCII)
 _FEWER = 5  # digits than the longest number has
 _OF_DOUBLES = 16, 17  # digits of a double that is printed so that it is read back
 
@@ -78,6 +81,11 @@ class PrintedNumbers:
             _check_size(Fraction(int(found.p), int(found.q)), source, text)
         return found
 
+    @property
+    def closely(self) -> "PrintedNumbers":
+        """With almost all of them rounded: then they must be so to half a unit."""
+        return replace(self, exact_up_to=_SHORTEST, exact_digits=0)
+
     def readings(self) -> list["PrintedNumbers"]:
         """The same as they may be read: with more of the decimals exact first."""
         longest = max((_digits(x) for x in self.numbers.values() if unit_of(x)), default=0)
@@ -98,14 +106,10 @@ def unit_of(text: str) -> Fraction | None:
     >>> unit_of("-1.250"), unit_of("3/4")
     (Fraction(1, 1000), None)
     """
-    mantissa, _, exponent = text.lower().replace(" ", "").lstrip("+-").partition("e")
-    whole, point, decimals = mantissa.partition(".")
-    if not point or not (whole + decimals).isdecimal() or not (whole + decimals).isascii():
+    found = _DECIMAL.fullmatch(text.replace(" ", ""))
+    if found is None or not found[1] + found[2]:
         return None
-    power = exponent.lstrip("+-") or "0"
-    if not power.isdecimal() or len(power) > 3:
-        return None
-    return Fraction(10) ** (int(exponent or 0) - len(decimals))
+    return Fraction(10) ** (int(found[3] or 0) - len(found[2]))
 
 
 def places_of(unit: Fraction) -> int:

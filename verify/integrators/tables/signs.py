@@ -8,6 +8,7 @@ plain("0.5d-1")              0.5e-1
 import re
 import unicodedata
 
+LONGEST = 400  # characters of a number
 _SIGNS = {
     **dict.fromkeys("−–‒‐‑﹣－", "-"),
     **dict.fromkeys("⁄∕÷", "/"),

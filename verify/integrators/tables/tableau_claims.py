@@ -11,8 +11,8 @@ from verify.integrators.tables.printed_numbers import PrintedNumbers
 from verify.integrators.tables.tableau_order import (
     MANY,
     judge_in_time,
+    judge_row_sums,
     order_asked,
-    row_sums_asked,
     stage_order_asked,
     wrong_time,
 )
@@ -68,7 +68,7 @@ def _claims(
 ) -> Iterator[TableClaim]:
     sums = None
     if table.timed:
-        sums = best_reading(table, lambda x: judge(x.printed, row_sums_asked(x), 1))
+        sums = best_reading(table, judge_row_sums)
     if entry.order is not None:
         known = _judged(table, entry.order)
         yield from _of_order("order", f"order {entry.order}", table, known, entry.order)
@@ -76,7 +76,7 @@ def _claims(
             yield _in_time(table, entry.order, known, sums)
     claimed = entry.row_sums if entry.row_sums is not None else table.timed
     if claimed:
-        sums = sums or best_reading(table, lambda x: judge(x.printed, row_sums_asked(x), 1))
+        sums = sums or best_reading(table, judge_row_sums)
         if sums.verdict is Verdict.REFUTED and not table.nystrom and sums.misprint is None:
             sums = replace(sums, misprint=wrong_time(table))
         form = (

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache, partial
+from itertools import product
 
 import sympy
 
@@ -32,6 +33,7 @@ from verify.verdict import Verdict
 
 _MOST_TREES = 2500
 _HIGHEST = 10
+_MOST_WORK = 3 * 10**8  # products: some minutes
 _WRONG = Fraction(1, 10**9)  # between a time and a row sum: more is no digit
 MANY = 60  # conditions: of fewer a solution is looked for together with that of row sums
 
@@ -61,6 +63,10 @@ def order_asked(table: TableauTable, order: int, timed: bool = False, first: int
         for tree in all_trees(grammar, n)
         if not _holds_by_form(table, tree)
     ]
+    work = len(trees) * len(table.entries) * (1 + len(table.printed.units))
+    if work > _MOST_WORK:
+        size = f"{len(trees)} conditions and {len(table.entries)} entries"
+        raise InputError("order", order, f"is too much to look at, of {size}")
     equations = tuple(Named(condition_text(table, tree), vertices(tree)) for tree in trees)
     shares = tuple(Fraction(1, symmetry(tree)) for tree in trees)
     return Asked(
@@ -88,17 +94,26 @@ def _of_trees(
 # -- row sums -------------------------------------------------------------------------------------
 
 
-def row_sums_asked(table: TableauTable) -> Asked:
-    """c_i = Σ_j a_ij; of Nyström's kind c_i²/2 = Σ_j ā_ij."""
-    found = list(_sums(table, table.exprs))
+def row_sums_asked(table: TableauTable, crossed: tuple[bool, ...] = ()) -> Asked:
+    """c_i = Σ_j a_ij; of Nyström's kind c_i²/2 = Σ_j ā_ij. `crossed`: of which parts of two the
+    other one's sums are meant."""
+    found = list(_sums(table, table.exprs, crossed))
     equations = tuple(Named(name, 1) for name, *_ in found)
 
     def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
         sign = 1 if bound else -1
-        made = _sums(table, table.filled(entries))
+        made = _sums(table, table.filled(entries), crossed)
         return [zero_or(x, one) + zero_or(y, one) * sign for _, x, y in made]
 
     return Asked(table.entries, equations, residues, labels=table.labels)
+
+
+def judge_row_sums(table: TableauTable) -> Judged:
+    """Whether the times are row sums: where there are two parts, of p' and of q', those of either
+    one, since time may go with each (`verify.schemes.timed.tableau`)."""
+    either = list(product((False, True), repeat=2)) if "_p" in table.names else [()]
+    found = [judge(table.printed, row_sums_asked(table, crossed), 1) for crossed in either]
+    return next((x for x in found if x.holds), found[0])
 
 
 def wrong_time(table: TableauTable) -> Misprint | None:
@@ -121,20 +136,21 @@ def _sympy(x: Fraction) -> sympy.Rational:
 
 
 def _sums(
-    table: TableauTable, blocks: Sequence[Block[E]]
+    table: TableauTable, blocks: Sequence[Block[E]], crossed: tuple[bool, ...] = ()
 ) -> Iterator[tuple[str, E | None, E | None]]:
     """Each row's sum, and what it is to be."""
     for colour, (block, name) in enumerate(zip(blocks, table.names, strict=True)):
         if block.times is None or (table.nystrom and colour == 0):
             continue
-        for i, (row, c) in enumerate(zip(block.matrix, block.times, strict=True)):
+        of = 1 - colour if crossed and crossed[colour] else colour
+        for i, (row, c) in enumerate(zip(blocks[of].matrix, block.times, strict=True)):
             present = [x for x in row if x is not None]
             total = sum(present[1:], present[0]) if present else None
             if table.nystrom:
                 half = None if c is None else c * c / 2
                 yield f"Σ a_{i + 1}j = c_{i + 1}^2/2", total, half
             else:
-                yield f"Σ a{name}_{i + 1}j = c{name}_{i + 1}", total, c
+                yield f"Σ a{table.names[of]}_{i + 1}j = c{name}_{i + 1}", total, c
 
 
 def zero_or(x: E | None, one: E) -> E:

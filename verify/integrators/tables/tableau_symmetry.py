@@ -28,8 +28,8 @@ from verify.integrators.tables.tree_weights import Block, TreeWeights, Vector
 from verify.schemes.coloured_trees import Grammar, Tree, all_trees, product_text, trees, vertices
 from verify.verdict import Verdict
 
-_MOST_PAIR = 6  # vertices of two trees together
-_MOST_TREE = 6  # of the doubled method, beside trees without branching
+_VERTICES = 6  # of two trees together; and of a tree of the doubled method, beside tall ones
+_MOST = 200  # pairs, or trees, of those
 # Of blocks, the ring's one and what a minus is, −1 or for a bound 1: left sides, and right sides.
 Gaps = Callable[[Sequence[Block[Any]], Any, int], Iterator[tuple[Any, Any]]]
 
@@ -56,14 +56,14 @@ def _by_two(table: TableauTable, enough: Asked, needed: Asked) -> Judged:
     return replace(found, verdict=Verdict.UNDECIDED)
 
 
-def _asked(table: TableauTable, names: Sequence[str], gaps: Gaps) -> Asked:
+def _asked(
+    table: TableauTable, names: Sequence[str], gaps: Gaps, labels: tuple[str, ...] = ()
+) -> Asked:
     def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
         minus = 1 if bound else -1
         return [x + y * minus for x, y in gaps(table.filled(entries), one, minus)]
 
-    return Asked(
-        table.entries, tuple(Named(name, 1) for name in names), residues, labels=table.labels
-    )
+    return Asked(table.entries, tuple(Named(name, 1) for name in names), residues, labels=labels)
 
 
 # -- symplectic -----------------------------------------------------------------------------------
@@ -93,7 +93,7 @@ def _symplectic(table: TableauTable, separable: bool) -> Asked:
         if same:
             yield from zip(b[0], b[1], strict=True)
 
-    return _asked(table, told, gaps)
+    return _asked(table, told, gaps, table.labels)
 
 
 def _suris(table: TableauTable) -> Asked:
@@ -115,7 +115,7 @@ def _suris(table: TableauTable) -> Asked:
         for i, j in places:  # with plus signs on either side
             yield b[i] * bar[j] + b[j] * a[j][i], b[j] * bar[i] + b[i] * a[i][j]
 
-    return _asked(table, told, gaps)
+    return _asked(table, told, gaps, table.labels)
 
 
 def _of_pairs(table: TableauTable, separable: bool) -> Asked:
@@ -123,7 +123,7 @@ def _of_pairs(table: TableauTable, separable: bool) -> Asked:
     pairs = list(_pairs(table.grammar, table.nystrom, "_p" in table.names))
     told = [_pair_text(u, v, table.names) for u, v in pairs]
     swapped = [] if table.nystrom or separable or "_p" not in table.names else [
-        tree for n in range(1, _MOST_PAIR + 1) for tree in trees(table.grammar, n, 0)
+        tree for n in (1, 2, 3) for tree in trees(table.grammar, n, 0)
     ]  # fmt: skip
     told += [f"b_p·({product_text(t, table.names)}) = b_q·the same" for _, t in swapped]
 
@@ -149,12 +149,16 @@ def _of_pairs(table: TableauTable, separable: bool) -> Asked:
 def _pairs(grammar: Grammar, nystrom: bool, partitioned: bool) -> tuple[tuple[Tree, Tree], ...]:
     """Of Nyström's kind u is of p' and v of q'; of p' and q' too; else of any two colours."""
     crossed = nystrom or partitioned
-    found = []
-    for n in range(2, _MOST_PAIR + 1):
+    found: list[tuple[Tree, Tree]] = []
+    for n in range(2, _VERTICES + 1):
+        of_n = []
         for k in range(1, n):
             firsts = trees(grammar, k, 0) if crossed else all_trees(grammar, k)
             seconds = trees(grammar, n - k, 1) if crossed else all_trees(grammar, n - k)
-            found += [(u, v) for u in firsts for v in seconds if crossed or u <= v]
+            of_n += [(u, v) for u in firsts for v in seconds if crossed or u <= v]
+        if len(found) + len(of_n) > _MOST:
+            break
+        found += of_n
     return tuple(found)
 
 
@@ -196,7 +200,7 @@ def _reversed(table: TableauTable) -> Asked:
                 for j in stages:
                     yield a[i][j] + a[last - i][last - j], zero_or(block.weights[j], one)
 
-    return _asked(table, told, gaps)
+    return _asked(table, told, gaps, table.labels)
 
 
 def _reversed_nystrom(blocks: Sequence[Block[E]], one: E) -> Iterator[tuple[E, E]]:
@@ -220,7 +224,10 @@ def _reversed_nystrom(blocks: Sequence[Block[E]], one: E) -> Iterator[tuple[E, E
 def _doubled(table: TableauTable) -> Asked:
     """The weights of trees of Φ_(−h) after Φ_h, all of which are to be 0."""
     stages = 2 * table.stages
-    some = [tree for n in range(1, _MOST_TREE + 1) for tree in all_trees(table.grammar, n)]
+    some = list[Tree]()
+    for n in range(1, _VERTICES + 1):
+        of_n = all_trees(table.grammar, n)
+        some += of_n if len(some) + len(of_n) <= _MOST else ()
     some = [tree for tree in some if not (table.nystrom and tree == (1, ()))]
     tall = [tree for root in table.grammar.colours for tree in _tall(table.grammar, root, stages)]
     every = list(dict.fromkeys((*some, *tall)))
@@ -243,7 +250,7 @@ def _doubled(table: TableauTable) -> Asked:
 
 def _tall(grammar: Grammar, root: int, most: int) -> Iterator[Tree]:
     """Trees without branching, of up to so many vertices and two more."""
-    for n in range(_MOST_TREE + 1, most + 3):
+    for n in range(3, most + 3):
         colours = [root]
         while len(colours) < n:
             colours.append(grammar.upon[colours[-1]][0])

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import Protocol, Self, TypeVar
 
 from verify.errors import InputError
@@ -44,18 +45,25 @@ class Readable(Protocol):
     def read(self, numbers: PrintedNumbers) -> Self: ...
 
 
+_HALF = Fraction(51, 100)  # of a unit, to which a number is rounded, as far as it is known
 T = TypeVar("T", bound=Readable)
 
 
 def best_reading(table: T, found: Callable[[T], Judged]) -> Judged:
     """As the table holds, if it does in one of its readings; else as it is read last, with short
     decimals taken for rounded, too."""
-    told: Judged | None = None
-    for numbers in table.printed.readings():
-        told = found(table.read(numbers))
+    readings = table.printed.readings()
+    told = found(table.read(readings[0]))
+    for numbers in readings[1:]:
         if told.holds and told.digits is not False:
-            break
-    assert told is not None  # noqa: S101 - there is one reading at least
+            return told
+        told = found(table.read(numbers))
+    closely = table.printed.closely
+    if told.verdict is Verdict.REFUTED and closely.units != readings[-1].units:
+        # Of numbers with three decimals ten units are no digits any more, and half a one is.
+        other = found(table.read(closely))
+        if other.holds and other.off is not None and other.off <= _HALF:
+            return other
     return told
 
 
