@@ -45,6 +45,7 @@ class Lines:
         return next((table.keys[key] for key in keys if key in table.keys), table.line)
 
     def has(self, name: str, index: int, key: str) -> bool:
+        """Whether that table, the root under "", has the key."""
         tables = self.tables.get(name, [])
         return index < len(tables) and key in tables[index].keys
 

@@ -146,7 +146,7 @@ def nystrom_text(tree: Tree) -> str:
     """The condition of a tree of `NYSTROM`, with A for ā and b_bar for b̄.
 
     >>> nystrom_text((0, ((1, ((0, ((1, ()),)),)), (1, ()))))
-    'b·(c A(c)) = 1/24'
+    'b·(c A(c)) = 1/30'
     """
     weights = "b"
     if tree[0] == 1 and tree[1]:

@@ -22,7 +22,7 @@ from verify.integrators.others.tableau import (
 )
 from verify.integrators.results import Finding
 from verify.integrators.tables.sentences import of_digits, of_printed
-from verify.integrators.tables.splitting_table import PrintedTable, judge_order
+from verify.integrators.tables.splittings.table import PrintedTable, judge_order
 from verify.prose import Formula, Number, Prose, joined, prose, read_prose
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict

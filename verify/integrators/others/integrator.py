@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.tables.splitting_table import PrintedTable
+from verify.integrators.tables.splittings.table import PrintedTable
 from verify.schemes.implicit_tableau import ImplicitTableau
 from verify.verdict import Verdict
 

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 from verify.arithmetic.exact import decimal
-from verify.integrators.tables.splitting_table import PrintedTable
+from verify.integrators.tables.splittings.table import PrintedTable
 
 _DIGITS = 45
 _WIDTH = 88

@@ -10,7 +10,7 @@ from typing import Any
 
 from verify.content import content
 from verify.integrators.others.integrator import ReleasedIntegrator
-from verify.integrators.tables.splitting_table import PrintedTable
+from verify.integrators.tables.splittings.table import PrintedTable
 
 TITLE = "printed tables"
 LIBRARY = None

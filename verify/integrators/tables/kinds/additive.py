@@ -5,10 +5,10 @@ from typing import Annotated
 
 from pydantic import Field, StrictBool
 
-from verify.integrators.tables.blocks import Block, blocks_of, embedded_of
 from verify.integrators.tables.entry import Naming, Order, TableEntry
-from verify.integrators.tables.tableau_claims import of_tableau
-from verify.integrators.tables.tableau_table import TableauTable
+from verify.integrators.tables.tableaux.blocks import Block, blocks_of, embedded_of
+from verify.integrators.tables.tableaux.claims import of_tableau
+from verify.integrators.tables.tableaux.table import TableauTable
 from verify.integrators.tables.told import TableClaim
 from verify.schemes.coloured_trees import of_all
 

@@ -5,14 +5,14 @@ from collections.abc import Iterator
 from verify.errors import InputError
 from verify.integrators.tables.entry import Naming
 from verify.integrators.tables.layout import named_columns
-from verify.integrators.tables.splitting_claims import (
+from verify.integrators.tables.splittings.claims import (
     SizesEntry,
     mirrored,
     of_order,
     sizes_of,
     symmetric_claims,
 )
-from verify.integrators.tables.splitting_table import PrintedTable
+from verify.integrators.tables.splittings.table import PrintedTable
 from verify.integrators.tables.told import TableClaim
 from verify.prose import prose
 from verify.verdict import Verdict

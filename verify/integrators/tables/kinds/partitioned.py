@@ -4,10 +4,10 @@ from collections.abc import Iterator
 
 from pydantic import StrictBool
 
-from verify.integrators.tables.blocks import Block, blocks_of, embedded_of
 from verify.integrators.tables.entry import Naming, Order, TableEntry
-from verify.integrators.tables.tableau_claims import of_tableau
-from verify.integrators.tables.tableau_table import TableauTable
+from verify.integrators.tables.tableaux.blocks import Block, blocks_of, embedded_of
+from verify.integrators.tables.tableaux.claims import of_tableau
+from verify.integrators.tables.tableaux.table import TableauTable
 from verify.integrators.tables.told import TableClaim
 from verify.schemes.coloured_trees import alternating, of_all
 

@@ -5,10 +5,10 @@ from collections.abc import Iterator
 from pydantic import StrictBool
 
 from verify.errors import NOT_GIVEN, InputError
-from verify.integrators.tables.blocks import Block, block_of
 from verify.integrators.tables.entry import Naming, Order, Row, TableEntry
-from verify.integrators.tables.tableau_claims import of_tableau
-from verify.integrators.tables.tableau_table import TableauTable
+from verify.integrators.tables.tableaux.blocks import Block, block_of
+from verify.integrators.tables.tableaux.claims import of_tableau
+from verify.integrators.tables.tableaux.table import TableauTable
 from verify.integrators.tables.told import TableClaim
 from verify.schemes.coloured_trees import of_all
 

@@ -10,8 +10,8 @@ from pydantic import StrictBool
 
 from verify.errors import NOT_GIVEN, InputError
 from verify.integrators.tables.entry import Naming, Order, Row, TableEntry
-from verify.integrators.tables.tableau_claims import of_tableau
-from verify.integrators.tables.tableau_table import PrintedBlock, TableauTable, square
+from verify.integrators.tables.tableaux.claims import of_tableau
+from verify.integrators.tables.tableaux.table import PrintedBlock, TableauTable, square
 from verify.integrators.tables.told import TableClaim
 from verify.schemes.coloured_trees import NYSTROM
 

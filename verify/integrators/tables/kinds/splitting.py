@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from verify.integrators.tables.splitting_claims import AlternatingEntry, of_alternating
+from verify.integrators.tables.splittings.claims import AlternatingEntry, of_alternating
 from verify.integrators.tables.told import TableClaim
 
 

@@ -8,7 +8,7 @@ from verify.errors import NOT_GIVEN, InputError
 from verify.integrators.tables.asked import Asked
 from verify.integrators.tables.judged import Judged, judge
 from verify.integrators.tables.printed_numbers import PrintedNumbers
-from verify.integrators.tables.tableau_order import (
+from verify.integrators.tables.tableaux.order import (
     MANY,
     judge_in_time,
     judge_row_sums,
@@ -16,8 +16,8 @@ from verify.integrators.tables.tableau_order import (
     stage_order_asked,
     wrong_time,
 )
-from verify.integrators.tables.tableau_symmetry import judge_symmetric, judge_symplectic
-from verify.integrators.tables.tableau_table import TableauTable, Texts
+from verify.integrators.tables.tableaux.symmetry import judge_symmetric, judge_symplectic
+from verify.integrators.tables.tableaux.table import TableauTable, Texts
 from verify.integrators.tables.told import (
     NOT_SYMPLECTIC,
     OF_WORDS,

@@ -10,11 +10,11 @@ import sympy
 from verify.arithmetic.number import E
 from verify.errors import NOT_GIVEN, InputError
 from verify.integrators.tables.asked import Asked, Named
-from verify.integrators.tables.clocks import TimedTable, judge_clocks, judge_in_time
 from verify.integrators.tables.entry import MOST_ENTRIES, Naming, Order, Row, TableEntry
 from verify.integrators.tables.judged import Judged, judge
 from verify.integrators.tables.layout import named_columns, one_column
-from verify.integrators.tables.splitting_table import PrintedTable, judge_order
+from verify.integrators.tables.splittings.clocks import TimedTable, judge_clocks, judge_in_time
+from verify.integrators.tables.splittings.table import PrintedTable, judge_order
 from verify.integrators.tables.told import (
     OF_WORDS,
     WRONG_CLOCK,

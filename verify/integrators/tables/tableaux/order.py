@@ -18,8 +18,8 @@ from verify.errors import InputError
 from verify.integrators.tables.asked import Asked, Named
 from verify.integrators.tables.judged import Judged, judge
 from verify.integrators.tables.misprint import Misprint
-from verify.integrators.tables.tableau_table import TableauTable
-from verify.integrators.tables.tree_weights import Block, dot
+from verify.integrators.tables.tableaux.table import TableauTable
+from verify.integrators.tables.tableaux.tree_weights import Block, dot
 from verify.schemes.coloured_trees import (
     Grammar,
     Tree,

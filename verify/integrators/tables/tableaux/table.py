@@ -12,7 +12,7 @@ import sympy
 from verify.arithmetic.number import E
 from verify.errors import InputError
 from verify.integrators.tables.printed_numbers import PrintedNumbers
-from verify.integrators.tables.tree_weights import Block, TreeWeights
+from verify.integrators.tables.tableaux.tree_weights import Block, TreeWeights
 from verify.schemes.coloured_trees import Grammar
 
 MOST_STAGES = 40
@@ -32,7 +32,7 @@ class PrintedBlock:
 @dataclass(frozen=True)
 class TableauTable:
     """`blocks`: one for each colour of the grammar. `names`: what stands after A, b and c of each.
-    `nystrom`: the second block is of q' = p: see `verify.integrators.tables.tree_weights`.
+    `nystrom`: the second block is of q' = p: see `verify.integrators.tables.tableaux.tree_weights`.
 
     InputError where the blocks do not fit together.
     """

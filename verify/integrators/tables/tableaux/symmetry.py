@@ -22,9 +22,9 @@ from typing import Any
 from verify.arithmetic.number import E
 from verify.integrators.tables.asked import Asked, Named
 from verify.integrators.tables.judged import Judged, judge
-from verify.integrators.tables.tableau_order import zero_or
-from verify.integrators.tables.tableau_table import TableauTable
-from verify.integrators.tables.tree_weights import Block, TreeWeights, Vector
+from verify.integrators.tables.tableaux.order import zero_or
+from verify.integrators.tables.tableaux.table import TableauTable
+from verify.integrators.tables.tableaux.tree_weights import Block, TreeWeights, Vector
 from verify.schemes.coloured_trees import Grammar, Tree, all_trees, product_text, trees, vertices
 from verify.verdict import Verdict
 

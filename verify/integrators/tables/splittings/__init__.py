@@ -1,0 +1,1 @@
+"""Tables of splittings and compositions: their conditions by words, and what they claim."""

@@ -1,0 +1,1 @@
+"""Runge–Kutta tables of all kinds: their conditions by trees, and what they claim."""
