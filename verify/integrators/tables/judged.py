@@ -73,10 +73,10 @@ def judge(numbers: PrintedNumbers, asked: Asked, order: int) -> Judged:
     if not numbers.units:
         return replace(_exactly(asked, order), read=numbers)
     with working_precision(BITS):
-        return replace(_of(Nearby(numbers, asked), order), read=numbers)
+        return replace(_of(Nearby(numbers, asked), order, numbers.slack), read=numbers)
 
 
-def _of(near: Nearby, order: int) -> Judged:
+def _of(near: Nearby, order: int, slack: int) -> Judged:
     equations, own = near.asked.equations, near.asked.up_to(order)
     every = range(len(equations))
     checked = len(own) + near.asked.by_form
@@ -96,20 +96,20 @@ def _of(near: Nearby, order: int) -> Judged:
         seen = replace(seen, verdict=Verdict.REFUTED, digits=False, misprint=one)
         found = near.nearest(own) or (near.far(own) if one is None else None)
         return seen if found is None else replace(seen, off=found.off, nearest=found.numbers)
-    return _with_nearest(seen, near, own, order)
+    return _with_nearest(seen, near, own, order, slack)
 
 
-def _with_nearest(seen: Judged, near: Nearby, own: Sequence[int], order: int) -> Judged:
+def _with_nearest(seen: Judged, near: Nearby, own: Sequence[int], order: int, slack: int) -> Judged:
     allowed, largest = seen.order, seen.largest
     found = near.nearest(own)
     if found is None:  # some conditions alone may show wrong digits
-        digits = False if near.excluded(own, 1) else None
+        digits = False if near.excluded(own, slack) else None
         one = misprint(near, own) if allowed < order else None
         return replace(seen, digits=digits, misprint=one)
     off = found.off
-    wrong_digits = off > 1 and (allowed < order or near.apart(own, 1))
+    wrong_digits = off > slack and (allowed < order or near.apart(own, slack))
     one = misprint(near, own) if wrong_digits and off > WITHIN else None
-    digits = True if off <= 1 else False if wrong_digits else None
+    digits = True if off <= slack else False if wrong_digits else None
     known = allowed >= order and off <= WITHIN
     verdict = Verdict.ENCLOSED if known or largest <= OF_DIGITS else Verdict.MEASURED
     if off > WITHIN and largest > OF_DIGITS and near.apart(own, WITHIN):

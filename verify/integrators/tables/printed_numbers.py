@@ -3,6 +3,9 @@
 A decimal that stands for an algebraic number is rounded; 0.5 is not. Of a short one it cannot be
 seen, so it is a matter of reading. First what has few digits is exact, by itself or beside others:
 0.037109375 among numbers of 17 digits has lost zeros at its end, or is 19/512. Then it is not.
+Quotients are exact, and yet some stand for irrational numbers, as 2365592473904/8146167614645 does:
+where a table does not hold with them they are taken to be known to 100/q² of what they are divided
+by, q: a continued fraction has 1/q², and some are less good.
 """
 
 import math
@@ -22,6 +25,9 @@ from verify.errors import InputError
 FIRST, LAST = 7, 3  # places up to which a decimal is exact, as it is read first, and last
 _SHORTEST = 2  # and where it is a question whether even such as 0.333 are rounded
 LARGEST = 10**6
+_OF_QUOTIENTS = 1000  # units
+_LONG = 10**6  # what a quotient is divided by that may stand for another number
+_QUOTIENT = re.compile(r"[+-]?\d{6,}/(\d{7,40})", re.ASCII)
 _DECIMAL = re.compile(r"[+-]?(\d*)\.(\d*)(?:[eE]([+-]?\d{1,3}))?", re.ASCII)
 _FEWER = 5  # digits than the longest number has
 _OF_DOUBLES = 16, 17  # digits of a double that is printed so that it is read back
@@ -32,25 +38,30 @@ class PrintedNumbers:
     """`numbers`: by name, decimals as printed, or exact formulas of numbers.
 
     `exact_up_to`: a decimal with so many places, or fewer, is exact; and so is one with so many
-    digits as `exact_digits`, or fewer.
+    digits as `exact_digits`, or fewer. `exact_quotients`: whether long quotients are.
     """
 
     numbers: Mapping[str, str]
     exact_up_to: int = 0
     exact_digits: int = 0
+    exact_quotients: bool = True
 
     @cached_property
     def units(self) -> dict[str, Fraction]:
         """One unit of the last digit of each number that is rounded."""
         found = ((name, unit_known(text)) for name, text in self.numbers.items())
         most = Fraction(1, 10**self.exact_up_to) if self.exact_up_to else None
-        return {
+        decimals = {
             name: unit
             for name, unit in found
             if unit is not None
             and (most is None or unit < most)
             and _digits(self.numbers[name]) > self.exact_digits
         }
+        if self.exact_quotients:
+            return decimals
+        quotients = ((name, unit_of_quotient(text)) for name, text in self.numbers.items())
+        return decimals | {name: unit for name, unit in quotients if unit is not None}
 
     @cached_property
     def values(self) -> dict[str, Fraction]:
@@ -64,6 +75,12 @@ class PrintedNumbers:
     def digits(self) -> int:
         """Decimals after the point of the number that has fewest."""
         return min(places_of(unit) for unit in self.units.values())
+
+    @cached_property
+    def slack(self) -> int:
+        """Units within which a number is right: many of quotients, which promise no digits."""
+        quotients = (unit_of_quotient(self.numbers[name]) for name in self.units)
+        return _OF_QUOTIENTS if any(quotients) else 1
 
     @cached_property
     def _exact(self) -> dict[sympy.Symbol, sympy.Expr]:
@@ -84,13 +101,13 @@ class PrintedNumbers:
     @property
     def closely(self) -> "PrintedNumbers":
         """With almost all of them rounded: then they must be so to half a unit."""
-        return replace(self, exact_up_to=_SHORTEST, exact_digits=0)
+        return replace(self, exact_up_to=_SHORTEST, exact_digits=0, exact_quotients=False)
 
     def readings(self) -> list["PrintedNumbers"]:
         """The same as they may be read: with more of the decimals exact first."""
         longest = max((_digits(x) for x in self.numbers.values() if unit_of(x)), default=0)
         first = replace(self, exact_up_to=FIRST, exact_digits=longest - _FEWER)
-        last = replace(self, exact_up_to=LAST)
+        last = replace(self, exact_up_to=LAST, exact_quotients=False)
         return [first] if first.units == last.units else [first, last]
 
 
@@ -140,6 +157,12 @@ def _digits(text: str) -> int:
     """How many significant digits a decimal has."""
     mantissa = text.lower().replace(" ", "").lstrip("+-").partition("e")[0]
     return len(mantissa.replace(".", "").lstrip("0"))
+
+
+def unit_of_quotient(text: str) -> Fraction | None:
+    """To what a long quotient is known that stands for another number; None for anything else."""
+    found = _QUOTIENT.fullmatch(text.replace(" ", ""))
+    return Fraction(100, int(found[1]) ** 2) if found and int(found[1]) >= _LONG else None
 
 
 def rounded_to(x: Fraction, unit: Fraction) -> str:

@@ -281,6 +281,17 @@ def test_an_order_8_tableau_of_doubles_is_judged_and_its_wrong_digit_named() -> 
     assert wrong["order"].nearest["b8"].startswith("-5.80120396001")
 
 
+def test_long_quotients_may_stand_for_irrational_numbers() -> None:
+    """As in tables of additive methods: taken for exact they have no order."""
+    near = "2744210/9369319", "6625109/9369319"  # (2 − √2)/2 and its rest, to 14 digits
+    table = {"name": "x", "kind": "runge-kutta", "order": 2, "a": [[near[0], 0], near[::-1]],
+             "b": [near[1], near[0]], "c": [near[0], 1]}  # fmt: skip
+    found = claims(table)
+    assert found["order"].verdict in (Verdict.ENCLOSED, Verdict.MEASURED), found["order"].evidence
+    wrong = {**table, "b": [near[1], "2744310/9369319"]}
+    assert claims(wrong)["order"].verdict is Verdict.REFUTED
+
+
 # -- the file -------------------------------------------------------------------------------------
 
 GOOD = """title = "x"

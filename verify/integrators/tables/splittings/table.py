@@ -38,6 +38,7 @@ class PrintedTable:
     numbers: Mapping[str, str]
     exact_up_to: int = 0
     exact_digits: int = 0
+    exact_quotients: bool = True
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
@@ -51,7 +52,9 @@ class PrintedTable:
     @cached_property
     def printed(self) -> PrintedNumbers:
         """The numbers as they are read."""
-        return PrintedNumbers(self.numbers, self.exact_up_to, self.exact_digits)
+        return PrintedNumbers(
+            self.numbers, self.exact_up_to, self.exact_digits, self.exact_quotients
+        )
 
     @cached_property
     def sizes(self) -> tuple[sympy.Expr, ...]:
@@ -86,7 +89,12 @@ class PrintedTable:
 
     def read(self, numbers: PrintedNumbers) -> "PrintedTable":
         """The same with its numbers read so."""
-        return replace(self, exact_up_to=numbers.exact_up_to, exact_digits=numbers.exact_digits)
+        return replace(
+            self,
+            exact_up_to=numbers.exact_up_to,
+            exact_digits=numbers.exact_digits,
+            exact_quotients=numbers.exact_quotients,
+        )
 
     def letters(self, sizes: Sequence[E]) -> list[Mapping[str, E]]:
         """The parts for `verify.schemes.free_lie_words.step`, with these sizes."""
