@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field, PrivateAttr, StrictBool
+from pydantic import BeforeValidator, Field, PrivateAttr, StrictBool, StringConstraints
 
 from verify.algebra.formula import RESERVED
 from verify.errors import InputError
@@ -26,7 +26,7 @@ def written(value: Any) -> Any:
     return plain(value) if isinstance(value, str) and len(value) <= LONGEST else value
 
 
-Written = Annotated[str, BeforeValidator(written), Field(max_length=LONGEST)]
+Written = Annotated[str, StringConstraints(max_length=LONGEST), BeforeValidator(written)]
 Row = tuple[Written, ...]
 Order = Annotated[int, Field(ge=1, le=20)]
 # Within a formula: a long decimal, or a long quotient that nothing before it takes apart.

@@ -157,10 +157,7 @@ def named_columns(folder: Path, name: str, allowed: Sequence[str]) -> dict[str, 
     }
 
 
-def one_column(given: Sequence[str] | str) -> Iterator[str]:
-    """Numbers from a list, or from one text with all of them."""
-    if isinstance(given, str):
-        for line in given.splitlines():
-            yield from columns(line)
-    else:
-        yield from given
+def one_column(text: str) -> Iterator[str]:
+    """All numbers of a text, line by line."""
+    for line in text.splitlines():
+        yield from columns(line)

@@ -8,7 +8,7 @@ plain("0.5d-1")              0.5e-1
 import re
 import unicodedata
 
-LONGEST = 400  # characters of a number
+LONGEST = 2000  # characters of a number, or of a formula of some
 _SIGNS = {
     **dict.fromkeys("−–‒‐‑﹣－", "-"),
     **dict.fromkeys("⁄∕÷", "/"),

@@ -3,9 +3,10 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import cycle, islice
-from typing import Literal
+from typing import Annotated, Literal
 
 import sympy
+from pydantic import BeforeValidator
 
 from verify.arithmetic.number import E
 from verify.errors import NOT_GIVEN, InputError
@@ -30,13 +31,21 @@ from verify.verdict import Verdict
 _EXCHANGED = {"kick": "drift", "drift": "kick"}
 
 
+def _listed(given: object) -> object:
+    """A list as it is, and one text as the numbers in it."""
+    return tuple(one_column(given)) if isinstance(given, str) else given
+
+
+Numbers = Annotated[Row, BeforeValidator(_listed)]
+
+
 class SizesEntry(TableEntry):
     """`sizes`: of all parts, as a list or one text; or `half` of them, read forth and back again,
     the last standing once."""
 
     order: Order | None = None
-    sizes: Row | str | None = None
-    half: Row | str | None = None
+    sizes: Numbers | None = None
+    half: Numbers | None = None
 
 
 class AlternatingEntry(SizesEntry):
@@ -45,7 +54,7 @@ class AlternatingEntry(SizesEntry):
     drifts too. A `csv` file has columns kind, size and time, or size alone."""
 
     first: Literal["kick", "drift", "both"] | None = None
-    times: Row | str | None = None
+    times: Numbers | None = None
     time_dependent: Literal["V", "T and V"] | None = None
 
 
@@ -54,7 +63,7 @@ def sizes_of(entry: SizesEntry) -> tuple[tuple[str, ...], bool]:
     if (entry.sizes is None) == (entry.half is None):
         problem = "is missing; write sizes, or half" if entry.sizes is None else "goes without half"
         raise InputError("sizes", NOT_GIVEN, problem)
-    found = tuple(one_column(entry.sizes if entry.sizes is not None else entry.half or ()))
+    found = entry.sizes if entry.sizes is not None else entry.half or ()
     if not 1 <= len(found) <= MOST_ENTRIES // 10:
         raise InputError("sizes", len(found), f"are 1 to {MOST_ENTRIES // 10}")
     return found, entry.half is not None
@@ -100,7 +109,7 @@ def _parts(
             raise InputError("kind", wrong[0], "is kick or drift")
     else:
         sizes, half = sizes_of(entry)
-        times = None if entry.times is None else tuple(one_column(entry.times))
+        times = entry.times
         kinds = _kinds(entry, 2 * len(sizes) - 1 if half else len(sizes))
     named = naming.entries(sizes, "size")
     named = mirrored(named) if half else named
