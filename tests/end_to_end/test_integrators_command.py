@@ -8,6 +8,7 @@ import pytest
 
 from verify.commands.main import main
 from verify.integrators.others import libraries as others
+from verify.integrators.others import printed_libraries
 
 
 @pytest.fixture(autouse=True)
@@ -15,6 +16,8 @@ def without_libraries(monkeypatch: pytest.MonkeyPatch) -> None:
     """As where the extra `peers` is not installed."""
     nothing: ModuleSpec | None = None
     monkeypatch.setattr(others, "find_spec", lambda name: nothing)
+    # The tables that libraries have in their sources take most of a minute; they have tests below.
+    monkeypatch.setattr(printed_libraries, "files", list)
 
 
 def run(*arguments: str) -> int:

@@ -21,8 +21,16 @@ from verify.integrators.others.tableau import (
     symplecticity,
 )
 from verify.integrators.results import Finding
+from verify.integrators.tables.cost import severity_of
 from verify.integrators.tables.sentences import of_digits, of_printed
 from verify.integrators.tables.splittings.table import PrintedTable, judge_order
+from verify.integrators.tables.told import (
+    NOT_SYMPLECTIC,
+    OF_WORDS,
+    WRONG_CLOCK,
+    WRONG_ORDER,
+    WRONG_WEIGHTS,
+)
 from verify.prose import Formula, Number, Prose, joined, prose, read_prose
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
@@ -34,13 +42,14 @@ _SYMPLECTIC = "symplectic: det J ≡ 1"
 _IN_TIME = "where the force depends on time"
 _UNSAID = f"its order {_IN_TIME}, of which nothing is said"
 _ALWAYS_TOLD = ("agreement", "in time")  # with its reproduction, whatever is found
-_Claim = tuple[str, str, _Judgement, str]  # its kind, the statement, and its reproduction at last
+# Its kind, the statement, its reproduction, and what kind of mistake it is where it is refuted.
+_Claim = tuple[str, str, _Judgement, str, str]
 
 
 def claims_of(integrator: ReleasedIntegrator, section: str, prefix: str) -> Iterator[ClaimResult]:
     """One claim for the order and one for symplecticity, where they are made; of a printed table
     one for the order and one for its digits. `prefix` begins the ids."""
-    for kind, statement, judgement, code in _claims(integrator.method, integrator):
+    for kind, statement, judgement, code, severity in _claims(integrator.method, integrator):
         verdict, evidence, details = judgement
         told = verdict in (Verdict.REFUTED, Verdict.UNDECIDED) or kind in _ALWAYS_TOLD
         yield ClaimResult(
@@ -54,6 +63,7 @@ def claims_of(integrator: ReleasedIntegrator, section: str, prefix: str) -> Iter
             evidence=prose(evidence, f". Driven: {integrator.driven}"),
             details=tuple(tuple(map(prose, row)) for row in details),
             reproduction=code if told else "",
+            severity=severity if verdict is Verdict.REFUTED else "",
         )
 
 
@@ -67,7 +77,7 @@ def _claims(method: object, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
 def _(method: Compared, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
     verdict, told, details = method.compare()
     judged = verdict, prose(told), details
-    yield "agreement", method.statement, judged, integrator.reproduction
+    yield "agreement", method.statement, judged, integrator.reproduction, OF_WORDS
 
 
 @_claims.register
@@ -75,11 +85,13 @@ def _(method: PrintedTable, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
     order = integrator.order
     assert order is not None  # noqa: S101 - of printed tables it is always claimed
     found = judge_order(method, order)
-    yield "order", f"order {order}", of_printed(found, order), integrator.reproduction
+    said = of_printed(found, order)
+    yield "order", f"order {order}", said, integrator.reproduction, WRONG_ORDER
     if found.verdict is not Verdict.REFUTED and method.units:
         code = reproductions.of_digits(method, found.nearest, order)
         exact = "every digit is right, to one unit of the last"
-        yield "digits", exact, of_digits(found), code
+        severity = severity_of(found, WRONG_ORDER) or OF_WORDS
+        yield "digits", exact, of_digits(found), code, severity
 
 
 @_claims.register
@@ -90,12 +102,13 @@ def _(method: ExactTableau, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
         wrong = order.order < claimed and not rounded
         repaired = repair(table, claimed) if wrong else NONE
         said = of_tableau(claimed, order, symplecticity(table, rounded), rounded, repaired)
-        yield "order", f"order {claimed}", said, integrator.reproduction
+        severity = WRONG_WEIGHTS if "embedded" in integrator.name else WRONG_ORDER
+        yield "order", f"order {claimed}", said, integrator.reproduction, severity
     if integrator.area_preserving:
         area = symplecticity(table, rounded)
         verdict = {True: Verdict.PROVED, False: Verdict.REFUTED, None: Verdict.UNDECIDED}
         judged = verdict[area.holds], area.said, ()
-        yield "area", _SYMPLECTIC, judged, integrator.reproduction
+        yield "area", _SYMPLECTIC, judged, integrator.reproduction, NOT_SYMPLECTIC
 
 
 @_claims.register
@@ -106,12 +119,14 @@ def _(method: FloatStep, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
     if order is not None:
         said = of_measured_order(order, finding(method), area)
         statement = f"order {order}, too, {_IN_TIME}" if timed else f"order {order}"
-        yield "order", statement, said, reproductions.of_order(code, point, order, timed)
+        script = reproductions.of_order(code, point, order, timed)
+        yield "order", statement, said, script, WRONG_CLOCK if timed else WRONG_ORDER
     elif timed:
-        yield "in time", _UNSAID, of_unsaid(finding(method)), reproductions.of_time(code, point)
+        script = reproductions.of_time(code, point)
+        yield "in time", _UNSAID, of_unsaid(finding(method)), script, ""
     if area:
         said = of_measured_area(finding(method))
-        yield "area", _SYMPLECTIC, said, reproductions.of_area(code, point)
+        yield "area", _SYMPLECTIC, said, reproductions.of_area(code, point), NOT_SYMPLECTIC
 
 
 # -- tableaux -------------------------------------------------------------------------------------

@@ -1,6 +1,7 @@
 """The integrators of others → a Report: what each claims, held against what is found."""
 
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from importlib import import_module
 from types import ModuleType
@@ -10,10 +11,12 @@ from sympy import S
 from verify.algebra.conditions import Condition
 from verify.execution.provenance import provenance
 from verify.integrators.others import libraries as others
+from verify.integrators.others import printed_libraries
 from verify.integrators.others.claims import claims_of
 from verify.integrators.others.integrator import ReleasedIntegrator
 from verify.integrators.others.measured import FAILURES
 from verify.integrators.step import last_line, quiet
+from verify.integrators.tables.check import read_tables
 from verify.prose import prose
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.report import Report
@@ -51,6 +54,12 @@ def make_integrators_report(command: str, on_library: _OnLibrary | None = None) 
         claims += own
         broken += [module.TITLE] if failed else []
         left_out += [*failed, *((f"{module.TITLE}: {what}", why) for what, why in module.LEFT_OUT)]
+    for path in printed_libraries.files():
+        tables = read_tables(path)
+        if on_library is not None:
+            on_library(f"{tables.title}, printed tables")
+        claims += printed_libraries.claims_of(tables)
+        left_out += [(f"{tables.title}: {what}", why) for what, why in tables.left_out]
     told = provenance(command, begun, kept=0, computed=len(claims))
     return Report(
         title=TITLE,
@@ -130,11 +139,15 @@ def _preface(
     unlike_claims = []
     for section in sections:
         own = [c for c in wrong if c.section == section]
-        digits = sum(c.kind == "digits" for c in own)
-        names = [c.source for c in own if c.kind != "digits"]
+        digits = sum(c.kind.endswith("digits") for c in own)
+        names = list(dict.fromkeys(c.source for c in own if not c.kind.endswith("digits")))
         if digits:
             names.append(f"the last digits of {digits} tables")
         unlike_claims.append(f"{section}: {', '.join(names)}")
     if unlike_claims:
         lines.append(f"Not as claimed: {'; '.join(unlike_claims)}.")
+    counts = Counter(c.severity or "not told" for c in wrong)
+    if counts:
+        each = ", ".join(f"{n} of {kind}" for kind, n in counts.most_common())
+        lines.append(f"Of {len(wrong)} that are refuted: {each}.")
     return lines

@@ -5,6 +5,8 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 from verify.arithmetic.exact import decimal
+from verify.integrators.tables.entry import TableEntry
+from verify.integrators.tables.splittings.claims import timed_parts
 from verify.integrators.tables.splittings.table import PrintedTable
 
 _DIGITS = 45
@@ -161,6 +163,32 @@ def of_time(code: str, point: tuple[Fraction, Fraction]) -> str:
 def of_area(code: str, point: tuple[Fraction, Fraction]) -> str:
     """`code`, which defines step(p, q, h), and the determinant of its Jacobian."""
     return _with(code, _AREA.format(p=float(point[0]), q=float(point[1])))
+
+
+def of_clock(entry: TableEntry) -> str:
+    """The step of a splitting with its printed clock, for a driven pendulum, and the slopes of its
+    error; empty for a table without one."""
+    parts = timed_parts(entry)
+    if not parts:
+        return ""
+    rows = ",\n".join(f'    ("{kind}", {size!r}, {time!r})' for kind, size, time in parts)
+    code = f"""\
+import math
+
+parts = [  # kick or drift, its size, and the time that it reads, in parts of h
+{rows},
+]
+
+
+def step(p, q, t, h):  # H = (1 + cos(t)/4) (p**4/4 + p**2/2) - (1 + cos(2*t)/2) cos(q)
+    for kind, a, s in parts:
+        if kind == "kick":
+            p -= a * h * (1 + math.cos(2 * (t + s * h)) / 2) * math.sin(q)
+        else:
+            q += a * h * (1 + math.cos(t + s * h) / 4) * (p + p**3)
+    return p, q
+"""
+    return _with(code, _ORDER_IN_TIME.format(p=1 / 3, q=3 / 5, claimed=""))
 
 
 def _with(code: str, tail: str) -> str:

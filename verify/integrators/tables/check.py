@@ -25,7 +25,7 @@ from verify.scenes.scene import read_toml
 from verify.scenes.toml_lines import Lines, lines_of
 
 MOST_TABLES = 1000
-_ROOT = ("table", "title", "about")
+_ROOT = ("table", "title", "about", "left_out")
 
 
 @dataclass(frozen=True)
@@ -40,11 +40,13 @@ class Judgement:
 
 @dataclass(frozen=True)
 class TableFile:
-    """The entries, each with its line."""
+    """The entries, each with its line. `left_out`: what of the whole is not there, and why."""
 
     name: str
+    title: str
     entries: tuple[tuple[TableEntry, int], ...]
     lines: Lines
+    left_out: tuple[tuple[str, str], ...] = ()
 
     def judged(self) -> Iterator[Judgement]:
         """Every claim of every table. InputError, with the line, for a table that is none."""
@@ -83,7 +85,19 @@ def read_tables(path: Path) -> TableFile:
         except InputError as error:
             raise located(path.name, lines, index, called, error) from None
         found[called] = entry, lines.of("table", index) or 1
-    return TableFile(path.name, tuple(found.values()), lines)
+    title = str(data.get("title", path.stem))
+    return TableFile(path.name, title, tuple(found.values()), lines, _left_out(path.name, data))
+
+
+def _left_out(name: str, data: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
+    """InputError where it is no list of tables with what and why."""
+    given = data.get("left_out", [])
+    rows = given if isinstance(given, list) else [given]
+    for row in rows:
+        if not isinstance(row, dict) or set(row) != {"what", "why"}:
+            problem = "is a list of tables, as [{ what = …, why = … }]"
+            raise InputError(f"{name}: left_out", row, problem)
+    return tuple((str(row["what"]), str(row["why"])) for row in rows)
 
 
 def _model(table: Any) -> type[TableEntry]:

@@ -28,7 +28,9 @@ class ClaimResult(WithProse):
     `proof`: the argument on paper that stands beside what the machine checked, where there is one.
     `statement_id`: of which statement of its paper it is a reading, `reading` how it is read there
     and `standing` how it stands to what is printed; empty where statements are not counted.
-    `reproduction`: a few lines of code that show what is said of someone else's code.
+    `reproduction`: a few lines of code that show what is said of someone else's code; `severity`:
+    what kind of mistake it is, where it is refuted: wrong order, not symplectic as claimed, wrong
+    clock, embedded or step weights, digits that a double notices, digits below that, documentation.
     """
 
     id: str
@@ -46,3 +48,4 @@ class ClaimResult(WithProse):
     details: tuple[tuple[Said, ...], ...] = ()
     proof: Said = Prose("")
     reproduction: str = ""
+    severity: str = ""

@@ -10,6 +10,7 @@ import pytest
 
 from tests.paths import ROOT
 from verify.integrators.others import libraries as others
+from verify.integrators.others import printed_libraries
 from verify.integrators.others import report as integrators_report
 from verify.integrators.others.claims import claims_of
 from verify.integrators.others.integrator import Compared, FloatStep, ReleasedIntegrator
@@ -28,6 +29,7 @@ def hide(monkeypatch: pytest.MonkeyPatch, *kept: str) -> None:
         return ModuleSpec(name, None) if name in kept else None
 
     monkeypatch.setattr(others, "find_spec", find)
+    monkeypatch.setattr(printed_libraries, "files", list)
 
 
 def test_every_file_says_what_it_is() -> None:

@@ -86,6 +86,24 @@ def of_alternating(entry: AlternatingEntry) -> Iterator[TableClaim]:
             yield _named(claim, f", {first} first") if both else claim
 
 
+def timed_parts(entry: TableEntry) -> list[tuple[str, float, float]]:
+    """Kind, size and time of each part, as floats; empty for what has no clock."""
+    if not isinstance(entry, AlternatingEntry):
+        return []
+    naming = Naming(entry.numbers)
+    kinds, sizes, times = _parts(entry, naming)
+    if times is None:
+        return []
+    printed = naming.printed
+    at = {sympy.Symbol(n, real=True): sympy.Rational(str(x)) for n, x in printed.values.items()}
+
+    def number(text: str) -> float:
+        return float(sympy.N(printed.entry(text).subs(at), 17))
+
+    pairs = zip(kinds, sizes, times, strict=True)
+    return [(kind, number(size), number(time or "0")) for kind, size, time in pairs]
+
+
 def _named(claim: TableClaim, more: str) -> TableClaim:
     return replace(claim, kind=claim.kind + more, statement=claim.statement + more)
 
@@ -183,9 +201,10 @@ def _in_time(timed: TimedTable, order: int, refuted: bool) -> Iterator[TableClai
     what = "T and V depend" if timed.both else "V depends"
     statement = f"order {order}, too, where {what} on time"
     found = best_reading(timed, lambda x: judge_in_time(x, order))
-    severity = WRONG_ORDER if refuted else WRONG_CLOCK
-    claim = next(order_claims("order in time", statement, found, order, severity=severity))
     right = best_reading(timed, judge_clocks)
+    wrong_clock = right.verdict is Verdict.REFUTED or not refuted
+    severity = WRONG_CLOCK if wrong_clock else WRONG_ORDER
+    claim = next(order_claims("order in time", statement, found, order, severity=severity))
     if claim.verdict is right.verdict is Verdict.REFUTED:
         clocks = next(condition_claims("clock", "", "the right clock", right, severity))
         more = prose(claim.evidence, "; ", clocks.evidence)
