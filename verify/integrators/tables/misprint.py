@@ -1,6 +1,6 @@
 """One number alone that is misprinted: which, and what it would have to be."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -10,7 +10,7 @@ from verify.algebra.formula import symbol
 from verify.arithmetic.arb import Ball, middle_and_radius
 from verify.arithmetic.flint_precision import working_precision
 from verify.integrators.tables.asked import BITS, Asked
-from verify.integrators.tables.nearby import Nearby, small
+from verify.integrators.tables.nearby import AnyNumbers, Nearby, small
 
 _TURNS = 9
 _HELD = flint.arb(2) ** -150  # a residue that is 0, where no number is rounded
@@ -49,9 +49,9 @@ def _single(near: Nearby, k: int, rows: Sequence[int]) -> Misprint | None:
         value = near.residues(at)
         if turn == 0 and not all(abs(value[i]) < largest for i in rows):
             return None  # no change of this number alone brings them down
-    others = [(d, u) for d, u in zip(range(len(near.names)), near.unit, strict=True)]
     for i in rows:
-        allowed = sum((abs(near.slope[i][d]) * u for d, u in others), _HELD)
+        pairs = zip(near.slope[i], near.unit, strict=True)
+        allowed = sum((abs(d) * u for d, u in pairs), _HELD)
         if not abs(value[i]) < allowed:
             return None
     name = near.names[k]
@@ -68,15 +68,6 @@ def _least_squares(slope: Sequence[Ball], value: Sequence[Ball]) -> Ball | None:
 # -- of exact tables ------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class _Unknowns:
-    """Exact entries as numbers of which any may be wrong."""
-
-    values: Mapping[str, Fraction]
-    units: Mapping[str, Fraction]
-    numbers: Mapping[str, str]
-
-
 def exact_misprint(asked: Asked, order: int) -> Misprint | None:
     """The one rational entry, of those that are not 0, and the quotient it would have to be."""
     labels = asked.labels
@@ -84,11 +75,8 @@ def exact_misprint(asked: Asked, order: int) -> Misprint | None:
         return None
     names = [f"x{k}" for k in range(len(labels))]
     values = {n: Fraction(int(x.p), int(x.q)) for n, x in zip(names, asked.entries, strict=True)}
-    unknowns = _Unknowns(
-        values,
-        dict.fromkeys(names, _CLOSE**2),
-        dict(zip(names, map(str, asked.entries), strict=True)),
-    )
+    texts = dict(zip(names, map(str, asked.entries), strict=True))
+    unknowns = AnyNumbers(texts, values, dict.fromkeys(names, _CLOSE**2))
     free = replace(asked, entries=tuple(map(symbol, names)))
     with working_precision(BITS):
         found = misprint(Nearby(unknowns, free), asked.up_to(order))

@@ -65,8 +65,8 @@ class Rounded(Protocol):
 
 
 @dataclass(frozen=True)
-class _Moved:
-    """The same numbers with other values."""
+class AnyNumbers:
+    """Those that no table has printed so: moved ones, or exact ones of which any may be wrong."""
 
     numbers: Mapping[str, str]
     values: Mapping[str, Fraction]
@@ -286,7 +286,7 @@ class Nearby:
         values = {n: middle_and_radius(x)[0] for n, x in zip(self.names, at, strict=True)}
         if not all(abs(x) < _FAR for x in at):
             return None
-        own = _Moved(self.numbers.numbers, values, self.numbers.units)
+        own = AnyNumbers(self.numbers.numbers, values, self.numbers.units)
         found = Nearby(own, self.asked).nearest(rows)
         if found is None or found.shown < len(self.names):
             return None

@@ -98,6 +98,12 @@ class PrintedNumbers:
             _check_size(Fraction(int(found.p), int(found.q)), source, text)
         return found
 
+    def at_print(self, entry: sympy.Expr) -> sympy.Expr:
+        """An entry with the rounded numbers as they are printed."""
+        values = self.values.items()
+        at = {symbol(n): sympy.Rational(x.numerator, x.denominator) for n, x in values}
+        return entry.subs(at)
+
     @property
     def closely(self) -> "PrintedNumbers":
         """With almost all of them rounded: then they must be so to half a unit."""

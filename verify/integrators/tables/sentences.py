@@ -42,7 +42,8 @@ def _held(found: Judged) -> str:
     if found.verdict is Verdict.UNDECIDED:
         return f"whether all {conditions} hold exactly is not decided"
     assert found.read is not None  # noqa: S101 - of rounded numbers it is known
-    if found.off is not None and found.digits is not False:
+    enclosed = found.verdict is Verdict.ENCLOSED  # then all are shown to hold there
+    if found.off is not None and (enclosed or found.digits is not False):
         rest = "" if found.shown in (None, found.checked) else (
             f"; of these {found.shown} are shown to hold there, and the others, which depend on "
             "them, to 60 digits"
@@ -51,12 +52,6 @@ def _held(found: Judged) -> str:
             f"exact coefficients that satisfy all {conditions} lie within {_far(found)} of those "
             f"printed to {found.read.digits} decimals, whose residues are up to "
             f"{_short(found.largest)}{rest}"
-        )
-    if found.verdict is Verdict.ENCLOSED:
-        return (
-            f"exact coefficients that satisfy all {conditions} lie within {_far(found)} of those "
-            f"printed to {found.read.digits} decimals, whose residues are up to "
-            f"{_short(found.largest)}"
         )
     small = "as small as the digits make them" if found.digits is None else "of wrong digits"
     near = "that exact ones exist nearby is not shown"

@@ -19,6 +19,7 @@ NOT_SYMPLECTIC = "not symplectic as claimed"
 WRONG_CLOCK = "wrong clock"
 WRONG_WEIGHTS = "embedded or step weights"
 OF_WORDS = "documentation"
+_DIGITS = "every digit is right, to one unit of the last"
 
 
 @dataclass(frozen=True)
@@ -89,18 +90,8 @@ def order_claims(
         return
     yield TableClaim(kind, statement, verdict, evidence, details)
     if found.read is not None and found.read.units:
-        digits, said, moved = of_digits(found)
-        wrong = digits is Verdict.REFUTED
-        yield TableClaim(
-            "digits" if kind == "order" else f"{kind} digits",
-            "every digit is right, to one unit of the last",
-            digits,
-            said,
-            moved,
-            severity_of(found, severity) if wrong else None,
-            _nearest(found) if wrong else None,
-            cost_of(found, order, after) if wrong else None,
-        )
+        name = "digits" if kind == "order" else f"{kind} digits"
+        yield _digits_claim(name, _DIGITS, found, severity, cost_of(found, order, after))
 
 
 def condition_claims(
@@ -115,17 +106,17 @@ def condition_claims(
         return
     yield claim
     if found.digits is False:
-        digits, said, moved = of_digits(found)
-        yield TableClaim(
-            f"{kind} digits",
-            f"{statement}: every digit is right, to one unit of the last",
-            digits,
-            said,
-            moved,
-            severity_of(found, severity),
-            _nearest(found),
-            cost,
-        )
+        yield _digits_claim(f"{kind} digits", f"{statement}: {_DIGITS}", found, severity, cost)
+
+
+def _digits_claim(
+    kind: str, statement: str, found: Judged, severity: str, cost: Cost | None
+) -> TableClaim:
+    """`severity` and `cost` are told where digits are wrong."""
+    claim = TableClaim(kind, statement, *of_digits(found))
+    if claim.verdict is not Verdict.REFUTED:
+        return claim
+    return replace(claim, severity=severity_of(found, severity), nearest=_nearest(found), cost=cost)
 
 
 def _nearest(found: Judged) -> dict[str, str] | None:

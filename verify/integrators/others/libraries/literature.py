@@ -5,11 +5,11 @@ The data are in `reports/audits/literature.toml`.
 
 import tomllib
 from collections.abc import Iterator, Mapping
-from itertools import cycle, islice
 from typing import Any
 
 from verify.content import content
 from verify.integrators.others.integrator import ReleasedIntegrator
+from verify.integrators.tables.splittings.claims import alternating, mirrored
 from verify.integrators.tables.splittings.table import PrintedTable
 
 TITLE = "printed tables"
@@ -46,16 +46,15 @@ def integrators() -> Iterator[ReleasedIntegrator]:
 
 def table_of(entry: Mapping[str, Any]) -> PrintedTable:
     """The table of one entry of the file."""
-    sizes = entry.get("sizes") or [*entry["half"], *entry["half"][-2::-1]]
+    sizes = entry.get("sizes") or mirrored(entry["half"])
     parts = tuple(zip(_names(entry, len(sizes)), sizes, strict=True))
     return PrintedTable(entry["kind"], parts, entry.get("numbers", {}))
 
 
-def _names(entry: Mapping[str, Any], count: int) -> list[str]:
+def _names(entry: Mapping[str, Any], count: int) -> tuple[str, ...]:
     if entry["kind"] == "composition":
-        return ["step"] * count
-    both = ["kick", "drift"] if entry["first"] == "kick" else ["drift", "kick"]
-    return list(islice(cycle(both), count))
+        return ("step",) * count
+    return alternating(entry["first"], count)
 
 
 def _script(entry: Mapping[str, Any]) -> str:

@@ -3,24 +3,20 @@
 from collections.abc import Iterator
 from typing import Annotated
 
-from pydantic import Field, StrictBool
+from pydantic import Field
 
-from verify.integrators.tables.entry import Naming, Order, TableEntry
+from verify.integrators.tables.entry import Naming
 from verify.integrators.tables.tableaux.blocks import Block, blocks_of, embedded_of
-from verify.integrators.tables.tableaux.claims import of_tableau
+from verify.integrators.tables.tableaux.claims import TableauEntry, of_tableau
 from verify.integrators.tables.tableaux.table import TableauTable
 from verify.integrators.tables.told import TableClaim
 from verify.schemes.coloured_trees import of_all
 
 
-class Entry(TableEntry):
+class Entry(TableauEntry):
     """`parts`: of each f_k `a`, `b`, and `c` and `embedded` where they are printed."""
 
-    order: Order | None = None
     parts: Annotated[tuple[Block, ...], Field(min_length=2, max_length=4)]
-    embedded_order: Order | None = None
-    stage_order: Order | None = None
-    row_sums: StrictBool | None = None
 
 
 def claims(entry: Entry) -> Iterator[TableClaim]:

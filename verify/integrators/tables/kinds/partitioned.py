@@ -4,25 +4,21 @@ from collections.abc import Iterator
 
 from pydantic import StrictBool
 
-from verify.integrators.tables.entry import Naming, Order, TableEntry
+from verify.integrators.tables.entry import Naming
 from verify.integrators.tables.tableaux.blocks import Block, blocks_of, embedded_of
-from verify.integrators.tables.tableaux.claims import of_tableau
+from verify.integrators.tables.tableaux.claims import TableauEntry, of_tableau
 from verify.integrators.tables.tableaux.table import TableauTable
 from verify.integrators.tables.told import TableClaim
 from verify.schemes.coloured_trees import alternating, of_all
 
 
-class Entry(TableEntry):
+class Entry(TableauEntry):
     """`p`, `q`: of each `a`, `b`, and `c` and `embedded` where they are printed. `separable`:
     whether it is claimed for H = T(p) + V(q) alone, of which fewer conditions are asked."""
 
-    order: Order | None = None
     p: Block
     q: Block
     separable: StrictBool = False
-    embedded_order: Order | None = None
-    stage_order: Order | None = None
-    row_sums: StrictBool | None = None
 
 
 def claims(entry: Entry) -> Iterator[TableClaim]:

@@ -2,31 +2,25 @@
 
 from collections.abc import Iterator
 
-from pydantic import StrictBool
-
 from verify.errors import NOT_GIVEN, InputError
-from verify.integrators.tables.entry import Naming, Order, Row, TableEntry
+from verify.integrators.tables.entry import Naming, Row
 from verify.integrators.tables.tableaux.blocks import Block, block_of
-from verify.integrators.tables.tableaux.claims import of_tableau
+from verify.integrators.tables.tableaux.claims import TableauEntry, of_tableau
 from verify.integrators.tables.tableaux.table import TableauTable
 from verify.integrators.tables.told import TableClaim
 from verify.schemes.coloured_trees import of_all
 
 
-class Entry(TableEntry):
+class Entry(TableauEntry):
     """`a`: rows of the full matrix, or of an explicit one up to the diagonal; or all as `tableau`,
     pasted, or in a `csv` file. `c` is judged where it is printed: as row sums, unless `row_sums` is
     false, and by the order for a force that depends on time."""
 
-    order: Order | None = None
     a: tuple[Row, ...] | None = None
     b: Row | None = None
     c: Row | None = None
     embedded: Row | None = None
     tableau: str | None = None
-    embedded_order: Order | None = None
-    stage_order: Order | None = None
-    row_sums: StrictBool | None = None
 
 
 def claims(entry: Entry) -> Iterator[TableClaim]:

@@ -6,30 +6,24 @@ q' = q + h p + h² Σ b_bar_i k_i, p' = p + h Σ b_i k_i.
 
 from collections.abc import Iterator
 
-from pydantic import StrictBool
-
 from verify.errors import NOT_GIVEN, InputError
-from verify.integrators.tables.entry import Naming, Order, Row, TableEntry
-from verify.integrators.tables.tableaux.claims import of_tableau
+from verify.integrators.tables.entry import Naming, Row
+from verify.integrators.tables.tableaux.claims import TableauEntry, of_tableau
 from verify.integrators.tables.tableaux.table import PrintedBlock, TableauTable, square
 from verify.integrators.tables.told import TableClaim
 from verify.schemes.coloured_trees import NYSTROM
 
 
-class Entry(TableEntry):
+class Entry(TableauEntry):
     """`embedded` and `embedded_bar` are the weights of an embedded method, as `b` and `b_bar`.
     `row_sums`: whether Σ_j a_ij = c_i²/2 is claimed, which need not be."""
 
-    order: Order | None = None
     a: tuple[Row, ...]
     b: Row
     b_bar: Row
     c: Row
     embedded: Row | None = None
     embedded_bar: Row | None = None
-    embedded_order: Order | None = None
-    stage_order: Order | None = None
-    row_sums: StrictBool = False
 
 
 def claims(entry: Entry) -> Iterator[TableClaim]:

@@ -95,10 +95,9 @@ def timed_parts(entry: TableEntry) -> list[tuple[str, float, float]]:
     if times is None:
         return []
     printed = naming.printed
-    at = {sympy.Symbol(n, real=True): sympy.Rational(str(x)) for n, x in printed.values.items()}
 
     def number(text: str) -> float:
-        return float(sympy.N(printed.entry(text).subs(at), 17))
+        return float(sympy.N(printed.at_print(printed.entry(text)), 17))
 
     pairs = zip(kinds, sizes, times, strict=True)
     return [(kind, number(size), number(time or "0")) for kind, size, time in pairs]
@@ -143,7 +142,11 @@ def _parts(
 def _kinds(entry: AlternatingEntry, count: int) -> tuple[str, ...]:
     if entry.first is None:
         raise InputError("first", NOT_GIVEN, 'is missing; write first = "kick", "drift" or "both"')
-    first = "drift" if entry.first == "drift" else "kick"
+    return alternating("drift" if entry.first == "drift" else "kick", count)
+
+
+def alternating(first: str, count: int) -> tuple[str, ...]:
+    """So many kicks and drifts in turn."""
     return tuple(islice(cycle((first, _EXCHANGED[first])), count))
 
 

@@ -2,10 +2,12 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from typing import Protocol
+
+from pydantic import StrictBool
 
 from verify.errors import NOT_GIVEN, InputError
 from verify.integrators.tables.asked import Asked
+from verify.integrators.tables.entry import Order, TableEntry
 from verify.integrators.tables.judged import Judged, judge
 from verify.integrators.tables.printed_numbers import PrintedNumbers
 from verify.integrators.tables.tableaux.order import (
@@ -33,25 +35,18 @@ from verify.prose import prose
 from verify.verdict import Verdict
 
 
-class Claimed(Protocol):
-    """What an entry claims."""
+class TableauEntry(TableEntry):
+    """What tableaux of every kind may claim. `row_sums`: without it claimed where there are
+    times."""
 
-    @property
-    def order(self) -> int | None: ...
-    @property
-    def embedded_order(self) -> int | None: ...
-    @property
-    def stage_order(self) -> int | None: ...
-    @property
-    def row_sums(self) -> bool | None: ...
-    @property
-    def symplectic(self) -> bool: ...
-    @property
-    def symmetric(self) -> bool: ...
+    order: Order | None = None
+    embedded_order: Order | None = None
+    stage_order: Order | None = None
+    row_sums: StrictBool | None = None
 
 
 def of_tableau(
-    entry: Claimed,
+    entry: TableauEntry,
     table: TableauTable,
     embedded: Sequence[Texts] | None = None,
     separable: bool = False,
@@ -64,7 +59,7 @@ def of_tableau(
 
 
 def _claims(
-    entry: Claimed, table: TableauTable, embedded: Sequence[Texts] | None, separable: bool
+    entry: TableauEntry, table: TableauTable, embedded: Sequence[Texts] | None, separable: bool
 ) -> Iterator[TableClaim]:
     sums = None
     if table.timed:

@@ -12,7 +12,6 @@ from itertools import product
 
 import sympy
 
-from verify.algebra.formula import symbol
 from verify.arithmetic.number import E
 from verify.errors import InputError
 from verify.integrators.tables.asked import Asked, Named
@@ -119,20 +118,13 @@ def judge_row_sums(table: TableauTable) -> Judged:
 def wrong_time(table: TableauTable) -> Misprint | None:
     """The one time that is no row sum, and the sum; None where none is, or several are. Of a and b
     that are right."""
-    values = {name: _sympy(x) for name, x in table.printed.values.items()}
-    at = {symbol(name): x for name, x in values.items()}
-    found = []
-    rows = _sums(table, table.exprs)
-    for name, total, time in rows:
-        sizes = [sympy.sympify(0 if x is None else x).subs(at) for x in (total, time)]
+    found, at_print = [], table.printed.at_print
+    for name, total, time in _sums(table, table.exprs):
+        sizes = [at_print(zero_or(x, sympy.S.One)) for x in (total, time)]
         if all(x.is_Rational for x in sizes) and abs(sizes[0] - sizes[1]) > _WRONG:
             label = name.partition(" = ")[2].replace("_", "", 1) if len(table.names) == 1 else name
             found.append(Misprint(label, str(sizes[1]), Fraction(int(sizes[0].p), int(sizes[0].q))))
     return found[0] if len(found) == 1 else None
-
-
-def _sympy(x: Fraction) -> sympy.Rational:
-    return sympy.Rational(x.numerator, x.denominator)
 
 
 def _sums(
@@ -195,22 +187,22 @@ def stage_order_asked(table: TableauTable, order: int) -> Asked:
 
     (Hairer, Wanner, Solving Ordinary Differential Equations II, IV.15.)
     """
-    made = [(name, k) for name, k, _ in _stages(table, table.exprs, order, sympy.S.One)]
+    names = [name for name, _ in _stages(table, table.exprs, order, sympy.S.One)]
 
     def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
         sign = 1 if bound else -1
         found = _stages(table, table.filled(entries), order, one)
-        return [x + y * sign for _, _, (x, y) in found]
+        return [x + y * sign for _, (x, y) in found]
 
     return Asked(
-        table.entries, tuple(Named(name, 1) for name, _ in made), residues, labels=table.labels
+        table.entries, tuple(Named(name, 1) for name in names), residues, labels=table.labels
     )
 
 
 def _stages(
     table: TableauTable, blocks: Sequence[Block[E]], order: int, one: E
-) -> Iterator[tuple[str, int, tuple[E, E]]]:
-    """Each condition's name, its k, and its sides."""
+) -> Iterator[tuple[str, tuple[E, E]]]:
+    """Each condition's name and its sides."""
     own = list(zip(blocks, table.names, strict=True))
     least = 2 if table.nystrom else 1
     for block, name in own[1:] if table.nystrom else own:
@@ -219,10 +211,10 @@ def _stages(
             before, share = tuple(powers[k - least]), k * (k - 1) if table.nystrom else k
             for i, row in enumerate(block.matrix):
                 label = f"stage {i + 1}{name}: A(c^{k - least}) = c^{k}/{share}"
-                yield label, k, (zero_or(dot(row, before), one), powers[k][i] / share)
+                yield label, (zero_or(dot(row, before), one), powers[k][i] / share)
             if not table.nystrom:
                 left = zero_or(dot(block.weights, before), one)
-                yield f"b{name}·c^{k - 1} = 1/{k}", k, (left, one / k)
+                yield f"b{name}·c^{k - 1} = 1/{k}", (left, one / k)
 
 
 def _powers(block: Block[E], most: int, one: E) -> list[list[E]]:
