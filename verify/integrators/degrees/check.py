@@ -23,6 +23,7 @@ from verify.integrators.maps.check import (
     points_of,
 )
 from verify.integrators.maps.probes import DualProbe, FloatProbe
+from verify.integrators.probe import LADDERS
 from verify.integrators.results import Claims
 from verify.integrators.step import Step, StepError, why, within
 from verify.integrators.tracing.domain import domain_of
@@ -93,6 +94,21 @@ def check_step(step: Step, hamiltonian: Hamiltonian, claims: Claims) -> StepFind
     except Exception as error:  # as above
         found = _measured(own, hamiltonian, points, called).noting("no proof: ", why(error))
     return _held_to(claims, found)
+
+
+def measure_step(
+    step: Step, hamiltonian: Hamiltonian, ladder: Sequence[Fraction] = ()
+) -> StepFinding:
+    """With floats alone, as a step needs of which nothing but its numbers is known. `ladder`: the
+    step sizes for the order, falling; else the usual."""
+    step.moving = hamiltonian.time_dependent
+    own, degrees = StepOfArrays(step, hamiltonian.coordinates), hamiltonian.degrees
+    at, points = own.at(_SIZES[0], _TIME), points_of(2 * degrees)
+    try:
+        called = called_at(FloatProbe(at), points)
+    except Exception as error:  # the user's code may raise anything
+        return StepFinding(Verdict.UNDECIDED, prose(why(error)), "calls", degrees)
+    return _measured(own, hamiltonian, points, called, ladder)
 
 
 # -- proved ---------------------------------------------------------------------------------------
@@ -168,6 +184,7 @@ def _measured(
     hamiltonian: Hamiltonian,
     points: Sequence[tuple[Fraction, ...]],
     called: Called,
+    ladder: Sequence[Fraction] = (),
 ) -> StepFinding:
     """S at the points for some step sizes, and the order."""
     notes, degrees = list[Prose](), len(own.names) // 2
@@ -191,7 +208,7 @@ def _measured(
             h=h,
             notes=tuple(notes),
         )
-        return _with_order(found, own, hamiltonian, how, points)
+        return _with_order(found, own, hamiltonian, how, points, ladder)
     neither = prose("it can be neither traced nor measured")
     return StepFinding(Verdict.UNDECIDED, neither, "calls", degrees, notes=tuple(notes))
 
@@ -202,11 +219,12 @@ def _with_order(
     hamiltonian: Hamiltonian,
     how: str,
     points: Sequence[tuple[Fraction, ...]],
+    ladder: Sequence[Fraction] = (),
 ) -> StepFinding:
     """The same with the order that is seen; REFUTED where it is none of a scheme for this H."""
     try:
         with within(_SECONDS, "its order takes too long to be measured"):
-            seen = distance_of(own, hamiltonian, how, points, _TIME)
+            seen = distance_of(own, hamiltonian, how, points, _TIME, ladder or LADDERS[how])
     except Exception as error:  # the user's code may raise anything
         return found.noting("its order is not measured: ", why(error))
     if seen.exact:

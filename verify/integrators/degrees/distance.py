@@ -11,7 +11,6 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.degrees.called import StepOfArrays
 from verify.integrators.fitted_order import Fitted, fitted
 from verify.integrators.maps.probes import DualProbe, FloatProbe
-from verify.integrators.probe import LADDERS
 from verify.integrators.tracing.dual import BITS
 
 _POINTS = 3  # at which it is looked
@@ -35,16 +34,21 @@ class Distance:
 
 
 def distance_of(
-    own: StepOfArrays, hamiltonian: Hamiltonian, how: str, points: Sequence[Point], t: Fraction
+    own: StepOfArrays,
+    hamiltonian: Hamiltonian,
+    how: str,
+    points: Sequence[Point],
+    t: Fraction,
+    ladder: Sequence[Fraction],
 ) -> Distance:
-    """With "duals" or "floats". Raises StepError, NoFlowError, and what the user's code raises."""
+    """With "duals" or "floats", for the step sizes of `ladder`, falling. Raises StepError, NoFlowError, and what the user's code raises."""
     duals, numbers = how == "duals", own.step.numbers
     digits = _DIGITS if duals else numbers.digits + _MORE
     flow = FlowInDegrees(canonical_field(hamiltonian)[0], digits)
     own_noise = _DUAL_NOISE if duals else 4 * numbers.epsilon
     rows: list[tuple[float, float, float]] = []
     quiet, compared = 0, how == "floats"
-    for h in LADDERS[how]:
+    for h in ladder:
         here = own.at(h, t)
         probe = DualProbe(here) if how == "duals" else FloatProbe(here)
         each = [_at(flow, probe, own.names, point, h, t, own_noise) for point in points[:_POINTS]]

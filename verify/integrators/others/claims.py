@@ -1,6 +1,6 @@
 """The claims that are made for an integrator of others, each with its verdict and evidence."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import singledispatch
 
 from verify.integrators.check import POINTS
@@ -12,6 +12,7 @@ from verify.integrators.others.integrator import (
     ReleasedIntegrator,
 )
 from verify.integrators.others.measured import finding
+from verify.integrators.others.tabled import FloatTable
 from verify.integrators.others.tableau import (
     WRONG,
     Symplecticity,
@@ -21,6 +22,7 @@ from verify.integrators.others.tableau import (
     symplecticity,
 )
 from verify.integrators.results import Finding
+from verify.integrators.tables import kinds
 from verify.integrators.tables.cost import severity_of
 from verify.integrators.tables.sentences import of_digits, of_printed
 from verify.integrators.tables.splittings.table import PrintedTable, judge_order
@@ -30,6 +32,7 @@ from verify.integrators.tables.told import (
     WRONG_CLOCK,
     WRONG_ORDER,
     WRONG_WEIGHTS,
+    TableClaim,
 )
 from verify.prose import Formula, Number, Prose, joined, prose, read_prose
 from verify.scenes.results.claim import ClaimResult
@@ -41,6 +44,7 @@ _NOT_CLAIMED = "Nothing is claimed of symplecticity"
 _SYMPLECTIC = "symplectic: det J ≡ 1"
 _IN_TIME = "where the force depends on time"
 _UNSAID = f"its order {_IN_TIME}, of which nothing is said"
+_FOLLOWING = ("order in time", "row sums", "symmetric", "stage order")
 _ALWAYS_TOLD = ("agreement", "in time")  # with its reproduction, whatever is found
 # Its kind, the statement, its reproduction, and what kind of mistake it is where it is refuted.
 _Claim = tuple[str, str, _Judgement, str, str]
@@ -65,6 +69,15 @@ def claims_of(integrator: ReleasedIntegrator, section: str, prefix: str) -> Iter
             reproduction=code if told else "",
             severity=severity if verdict is Verdict.REFUTED else "",
         )
+
+
+def separate(claims: Iterable[TableClaim]) -> Iterator[TableClaim]:
+    """Without those that fail since the order does: of one mistake one thing is told."""
+    wrong = False
+    for claim in claims:
+        if not (wrong and claim.kind in _FOLLOWING and claim.verdict is Verdict.REFUTED):
+            yield claim
+        wrong |= claim.kind == "order" and claim.verdict is Verdict.REFUTED
 
 
 @singledispatch
@@ -92,6 +105,14 @@ def _(method: PrintedTable, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
         exact = "every digit is right, to one unit of the last"
         severity = severity_of(found, WRONG_ORDER) or OF_WORDS
         yield "digits", exact, of_digits(found), code, severity
+
+
+@_claims.register
+def _(method: FloatTable, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
+    for found in separate(kinds.get(method.entry.kind).claims(method.entry)):
+        if not found.kind.endswith("digits"):  # of floats nothing is claimed of them
+            judged = found.verdict, found.evidence, found.details
+            yield found.kind, found.statement, judged, integrator.reproduction, found.severity or ""
 
 
 @_claims.register
@@ -176,6 +197,9 @@ def of_measured_order(claimed: int, found: Finding, area_claimed: bool | None) -
     notes = joined("", (prose(". ", _capital(note)) for note in found.notes[:1]))
     if known and (order is None or order >= claimed):
         return Verdict.MEASURED, prose(found.reason, beside, notes), ()
+    if known and order is not None and order < 1:
+        said = "nothing of H's flow is seen in it, as where it is driven in a wrong way; "
+        return Verdict.UNDECIDED, prose(said, found.reason), ()
     if known and order is not None:
         return Verdict.REFUTED, prose(found.reason, notes), ()
     return Verdict.UNDECIDED, prose(found.reason, notes), ()

@@ -3,13 +3,14 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.tables.splittings.table import PrintedTable
 from verify.schemes.implicit_tableau import ImplicitTableau
 from verify.verdict import Verdict
 
-Map = Callable[..., tuple[float, float]]  # of p, q, h; or of p, q, t, h
+Map = Callable[..., Any]  # of p, q, h, or of p, q, t, h; it returns p', q'
 Point = tuple[Fraction, Fraction]  # p, q
 FINE = tuple(Fraction(k, 32) for k in (*range(48, 16, -2), *range(16, 3, -1)))
 
@@ -17,7 +18,7 @@ FINE = tuple(Fraction(k, 32) for k in (*range(48, 16, -2), *range(16, 3, -1)))
 @dataclass(frozen=True)
 class FloatStep:
     """One step in floats, (p, q, h) → (p', q'), for one Hamiltonian, whose formula is given; where
-    that has t in it, (p, q, t, h) → (p', q').
+    that has t in it, (p, q, t, h) → (p', q'). Of several degrees of freedom p and q are arrays.
 
     `make` imports the library and returns the step. `points`, `ladder`: where it is tried and with
     which steps, falling; else the usual. A high order shows between a step that is too large for it
@@ -26,7 +27,7 @@ class FloatStep:
 
     hamiltonian: str
     make: Callable[[], Map]
-    points: tuple[Point, ...] = ()
+    points: tuple[tuple[Fraction, ...], ...] = ()
     ladder: tuple[Fraction, ...] = ()
 
     @property
@@ -58,12 +59,15 @@ class ReleasedIntegrator:
     convergence; `area_preserving`: whether it is claimed to be symplectic; None where nothing is
     claimed: of a force that depends on time the order is then told all the same. `source`: where.
     `reproduction`: a few lines of Python that show what was found with nothing but the library.
+    `again`: the same at a second problem, which is asked before anything is held against it; with
+    its own lines.
     """
 
     name: str
     driven: str
     source: str
-    method: FloatStep | ExactTableau | PrintedTable | Compared
+    method: Any  # one of those above, a PrintedTable or a FloatTable: each is judged by its kind
     order: int | None = None
     area_preserving: bool | None = None
     reproduction: str = ""
+    again: "tuple[FloatStep, str] | None" = None

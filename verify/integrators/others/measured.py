@@ -3,7 +3,9 @@
 from dataclasses import replace
 from functools import lru_cache
 
+from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.check import POINTS
+from verify.integrators.degrees.check import measure_step
 from verify.integrators.faults import examined
 from verify.integrators.measured import of_measured
 from verify.integrators.others.integrator import FloatStep
@@ -38,6 +40,8 @@ def finding(method: FloatStep) -> Finding:
     hamiltonian = method.exact
     timed = hamiltonian.time_dependent
     order = ("p", "q", "t", "h") if timed else ("p", "q", "h")
+    if hamiltonian.degrees > 1:
+        return _in_degrees(method, hamiltonian, order)
     try:
         step = Step(method.make(), order=order, left=_SECONDS, moving=timed)
         trial = Trial(step, hamiltonian, method.points or POINTS)
@@ -57,3 +61,25 @@ def finding(method: FloatStep) -> Finding:
     except FAILURES as error:
         said = error.said if isinstance(error, StepError) else last_line(error)
         return Finding(Verdict.UNDECIDED, prose("it cannot be measured: ", said), "calls")
+
+
+def _in_degrees(method: FloatStep, hamiltonian: Hamiltonian, order: tuple[str, ...]) -> Finding:
+    """The same of a step of arrays."""
+    try:
+        step = Step(method.make(), order=order, left=_SECONDS, foreign=True)
+        found = measure_step(step, hamiltonian, method.ladder)
+    except FAILURES as error:
+        said = error.said if isinstance(error, StepError) else last_line(error)
+        return Finding(Verdict.UNDECIDED, prose("it cannot be measured: ", said), "calls")
+    seen = found.measured
+    return Finding(
+        found.verdict,
+        found.reason,
+        found.how,
+        area_preserving=found.symplectic,
+        convergence_order=found.convergence_order,
+        order_decided=found.order_known,
+        largest=seen and seen.largest,
+        probe_error=seen and seen.probe_error,
+        notes=found.notes,
+    )

@@ -1,0 +1,97 @@
+"""A step of someone else's library by the few lines that drive it: what is shown is what is run."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from verify.integrators.check import POINTS
+from verify.integrators.others.integrator import FloatStep, Map, ReleasedIntegrator
+from verify.integrators.others.problems import AGAIN, AWAY, DRIVEN, EACH, LONG, USUAL, Problem
+
+_HIGH = 5  # an order of which few points and a fine ladder tell more
+_END = {
+    1: "return float(np.ravel(p)[0]), float(np.ravel(q)[0])",
+    2: "return np.ravel(p), np.ravel(q)",
+}
+
+
+@dataclass(frozen=True)
+class Script:
+    """Lines of Python that define step(p, q, h), or step(p, q, t, h), with nothing but the library
+    that they import. They are ours: nothing that is read from elsewhere is in them."""
+
+    text: str
+
+    def step(self) -> Map:
+        """Raises what the library raises."""
+        names: dict[str, Any] = {}
+        exec(compile(self.text, "<the lines shown>", "exec"), names)  # noqa: S102 - our own text
+        made: Map = names["step"]
+        return made
+
+
+@dataclass(frozen=True)
+class Driven:
+    """How the steps of a library are driven.
+
+    `head`: what its lines import, numpy as np among it, and define beside force(t, q). `body`: the lines of a step, from
+    p, q, t and h, of arrays, to p and q; `{method}` stands for the method. `said`: one sentence.
+    """
+
+    head: str
+    body: str
+    said: str
+
+    def script(self, problem: Problem, method: str) -> Script:
+        """The lines for one problem and one method."""
+        begin = [] if problem.timed else ["t = 0.0"]
+        inside = [*begin, *self.body.strip().splitlines(), _END[problem.degrees]]
+        lines = [
+            self.head.replace("{method}", method).strip(),
+            "",
+            "",
+            problem.force.strip(),
+            "",
+            "",
+            f"def step({problem.arguments}):",
+            *(f"    {line}".rstrip().replace("{method}", method) for line in inside),
+        ]
+        return Script("\n".join(lines) + "\n")
+
+
+def scripted(
+    name: str,
+    driven: Driven,
+    method: str,
+    source: str,
+    order: int | None,
+    symplectic: bool | None = None,
+    problems: Iterable[Problem] = EACH,
+    in_time: bool = True,
+    ladder: tuple[Fraction, ...] = (),
+) -> Iterator[ReleasedIntegrator]:
+    """One for each problem. `in_time`: whether the order is claimed of a force that depends on time
+    as well; else nothing is held against it there."""
+    for problem in problems:
+        claimed = order if in_time or not problem.timed else None
+        script = driven.script(problem, method)
+        second = driven.script(AGAIN[problem], method)
+        yield ReleasedIntegrator(
+            f"{name}{problem.tag}",
+            f"{driven.said}, for {problem.said}",
+            source,
+            _step(problem, script, order or 0, ladder),
+            claimed,
+            symplectic if problem is not DRIVEN else None,
+            script.text,
+            (_step(AGAIN[problem], second, order or 0, ladder), second.text),
+        )
+
+
+def _step(
+    problem: Problem, script: Script, order: int, ladder: tuple[Fraction, ...]
+) -> FloatStep:
+    high = order >= _HIGH
+    points = (AWAY if high else POINTS[:2]) if problem.degrees == 1 else ()
+    return FloatStep(problem.hamiltonian, script.step, points, ladder or (LONG if high else USUAL))
