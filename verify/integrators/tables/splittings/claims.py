@@ -77,7 +77,7 @@ def mirrored(half: Sequence[str]) -> tuple[str, ...]:
 def of_alternating(entry: AlternatingEntry) -> Iterator[TableClaim]:
     """Of kicks and drifts: order, in time, digits, symplectic, symmetric."""
     naming = Naming(entry.numbers)
-    kinds, sizes, times = _parts(entry, naming)
+    kinds, sizes, times = parts_of(entry, naming)
     both = entry.first == "both"
     for first in ("kick", "drift") if both else (kinds[0],):
         own = kinds if first == kinds[0] else tuple(_EXCHANGED[kind] for kind in kinds)
@@ -91,7 +91,7 @@ def timed_parts(entry: TableEntry) -> list[tuple[str, float, float]]:
     if not isinstance(entry, AlternatingEntry):
         return []
     naming = Naming(entry.numbers)
-    kinds, sizes, times = _parts(entry, naming)
+    kinds, sizes, times = parts_of(entry, naming)
     if times is None:
         return []
     printed = naming.printed
@@ -107,7 +107,7 @@ def _named(claim: TableClaim, more: str) -> TableClaim:
     return replace(claim, kind=claim.kind + more, statement=claim.statement + more)
 
 
-def _parts(
+def parts_of(
     entry: AlternatingEntry, naming: Naming
 ) -> tuple[tuple[str, ...], tuple[str, ...], tuple[str | None, ...] | None]:
     """Kinds, sizes and times, in names for their decimals."""

@@ -89,7 +89,8 @@ def judge_clocks(timed: TimedTable) -> Judged:
 
 def judge_in_time(timed: TimedTable, order: int) -> Judged:
     """Whether it can have the order for the class of T, with the times as they are printed."""
-    if timed.kinetic is not Kinetic.MASS:
+    right = judge_clocks(timed).verdict is not Verdict.REFUTED
+    if right and timed.kinetic is not Kinetic.MASS:
         plain = timed.table.asked(order)
         found = judge(timed.printed, _with_clocks(timed, plain), order)
         if found.verdict is not Verdict.REFUTED:

@@ -1,0 +1,69 @@
+"""Whether a second look shows what the first one found; where it does not, nothing is refuted."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from verify.integrators.others.integrator import FloatStep, ReleasedIntegrator
+from verify.integrators.others.measured import FAILURES, finding
+from verify.integrators.others.second.convergence import order_of_step
+from verify.integrators.others.second.slopes import Slopes, slopes_of
+from verify.integrators.tables.entry import TableEntry
+from verify.integrators.tables.told import WRONG_CLOCK, WRONG_ORDER, WRONG_WEIGHTS
+
+OF_ORDERS = (WRONG_ORDER, WRONG_CLOCK, WRONG_WEIGHTS)  # severities of which a step's slopes tell
+_FIRST = ", {} first"
+
+
+@dataclass(frozen=True)
+class Look:
+    """`shown`: whether all that was looked at has a lower order than is claimed. `said`: one clause
+    of what was seen. `slopes`: of a table's steps."""
+
+    shown: bool
+    said: str
+    slopes: tuple[Slopes, ...] = ()
+
+
+def at_table(entry: TableEntry, kind: str, claimed: int) -> Look:
+    """At a printed table's claim of that kind: its steps at 60 digits, for two systems."""
+    embedded, timed = kind.startswith("embedded"), kind.startswith(("order in time", "row sums"))
+    for first in ("kick", "drift"):
+        if kind.endswith(_FIRST.format(first)):
+            entry = entry.model_copy(update={"first": first})
+    try:
+        found = slopes_of(entry, timed, embedded)
+    except TypeError:
+        return Look(False, f"steps of a {entry.kind} are not made a second time")
+    return Look(*_seen(claimed, [x.order for x in found], "steps at 60 digits"), found)
+
+
+def at_step(integrator: ReleasedIntegrator, claimed: int) -> Look:
+    """At a step in floats: its own convergence, and the probe at a second problem if there is
+    one."""
+    method: FloatStep = integrator.method
+    orders: list[int | None] = []
+    try:
+        orders.append(order_of_step(method.make(), method.exact, method.points))
+        if integrator.again is not None:
+            second = integrator.again[0]
+            orders.append(order_of_step(second.make(), second.exact, second.points))
+            found = finding(second)
+            orders.append(found.convergence_order if found.order_decided else None)
+    except FAILURES as error:
+        return Look(False, f"a second look fails: {type(error).__name__}")
+    return Look(*_seen(claimed, orders, "its own steps, halved"))
+
+
+def _seen(claimed: int, orders: Sequence[int | None], how: str) -> tuple[bool, str]:
+    shown = all(x is not None and x < claimed for x in orders)
+    told = " and ".join("no order" if x is None else f"order {x}" for x in dict.fromkeys(orders))
+    return shown, f"a second look, by {how}, shows {told}"
+
+
+def claimed_of(entry: Any, kind: str) -> int | None:
+    """The order that an entry claims in its claim of that kind."""
+    if kind.startswith("embedded"):
+        found: int | None = entry.embedded_order
+        return found
+    return getattr(entry, "order", None)
