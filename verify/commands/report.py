@@ -1,5 +1,6 @@
 """The command `verify report`: a page, and the same results as JSON beside it."""
 
+import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
     from verify.scenes.scene import Scene
 
 _INTEGRATORS = "integrators"
+_MOST = 8  # processes, unless more are asked for
 _PAGE = "html"
 
 
@@ -60,6 +62,12 @@ _PAGE = "html"
 @click.option(
     "--full", is_flag=True, help="Unfold all that the page folds, on paper too: many pages."
 )
+@click.option(
+    "--findings",
+    type=PATH,
+    metavar="DIR",
+    help="Of integrators: a note for its maintainers on each mistake that matters, DIR/NAME.md.",
+)
 @click.option("--force", is_flag=True, help="Also into a folder with files that are not ours.")
 @with_placement
 @answering
@@ -68,6 +76,7 @@ def report(
     output: Path | None,
     formats: tuple[str, ...],
     full: bool,
+    findings: Path | None,
     force: bool,
     where: "Placement",
     **given: Any,
@@ -92,11 +101,15 @@ def report(
         if _PAGE not in formats:
             raise InputError("--full", ", ".join(formats), "is of --format html, which folds")
         more += " --full"
+    if findings is not None and scene != _INTEGRATORS:
+        raise InputError("--findings", str(findings), "is of `verify report integrators`")
     if scene == _INTEGRATORS:
         folder, made = _integrators(scene, output, more, where, force)
     else:
         folder, made = _scene(_asked(scene, given), output, more, where, force)
     written = [_writer(name, full)(made, folder) for name in dict.fromkeys(formats)]
+    if findings is not None:
+        written += _findings(made, findings)
     return Answer(lambda: made.model_dump(mode="json"), lambda: show.print_report(made, *written))
 
 
@@ -175,7 +188,7 @@ def _scene(
 def _integrators(
     scene: str, output: Path | None, more: str, where: "Placement", force: bool
 ) -> "tuple[Path, Report]":
-    """Other libraries run here, in this process: they are not sent to workers."""
+    """Other libraries run on this machine, one a process."""
     from verify.integrators.others.report import make_integrators_report
 
     if where.cluster is not None:
@@ -184,7 +197,19 @@ def _integrators(
     _check(folder, force)
     writable(folder)
     command = f"verify report {scene} -o {folder.name}{more}"
-    return folder, make_integrators_report(command, _tell)
+    workers = where.workers or min(_MOST, os.cpu_count() or 1)
+    return folder, make_integrators_report(command, _tell, workers)
+
+
+def _findings(made: "Report", folder: Path) -> list[Path]:
+    """The notes that were written; why any was not goes to standard error."""
+    from verify.integrators.others.findings.write import write_findings
+
+    writable(folder)
+    written, left = write_findings(made, folder, _tell)
+    for name, why in left.items():
+        click.echo(f"{name}.md is not written: {why}", err=True)
+    return written
 
 
 def _check(folder: Path, force: bool) -> None:

@@ -41,7 +41,8 @@ def distance_of(
     t: Fraction,
     ladder: Sequence[Fraction],
 ) -> Distance:
-    """With "duals" or "floats", for the step sizes of `ladder`, falling. Raises StepError, NoFlowError, and what the user's code raises."""
+    """With "duals" or "floats", for the step sizes of `ladder`, falling. Raises StepError,
+    NoFlowError, and what the user's code raises."""
     duals, numbers = how == "duals", own.step.numbers
     digits = _DIGITS if duals else numbers.digits + _MORE
     flow = FlowInDegrees(canonical_field(hamiltonian)[0], digits)

@@ -1,6 +1,7 @@
 """The claims that are made for an integrator of others, each with its verdict and evidence."""
 
 from collections.abc import Iterable, Iterator
+from fractions import Fraction
 from functools import singledispatch
 
 from verify.integrators.check import POINTS
@@ -13,7 +14,6 @@ from verify.integrators.others.integrator import (
 )
 from verify.integrators.others.measured import finding
 from verify.integrators.others.second.look import OF_ORDERS, Look, at_step, at_table, claimed_of
-from verify.integrators.others.tabled import FloatTable, tabled
 from verify.integrators.others.tableau import (
     WRONG,
     Symplecticity,
@@ -22,6 +22,7 @@ from verify.integrators.others.tableau import (
     repair,
     symplecticity,
 )
+from verify.integrators.others.tabled import FloatTable, tabled
 from verify.integrators.results import Finding
 from verify.integrators.tables import kinds
 from verify.integrators.tables.cost import severity_of
@@ -41,6 +42,7 @@ from verify.verdict import Verdict
 
 _Judgement = tuple[Verdict, Prose, tuple[tuple[str, ...], ...]]
 NONE = Prose()
+_PLACES = ((Fraction(1, 5), Fraction(-1, 4), Fraction(3, 10), Fraction(1, 7)),)  # p, then q
 _NOT_CLAIMED = "Nothing is claimed of symplecticity"
 _SYMPLECTIC = "symplectic: det J ≡ 1"
 _IN_TIME = "where the force depends on time"
@@ -181,7 +183,7 @@ def _(method: ExactTableau, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
 
 @_claims.register
 def _(method: FloatStep, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
-    point = (method.points or POINTS)[0]
+    point = (method.points or (POINTS if method.exact.degrees == 1 else _PLACES))[0]
     order, area, code = integrator.order, integrator.area_preserving, integrator.reproduction
     timed = method.exact.time_dependent
     if order is not None:

@@ -6,7 +6,6 @@ from fractions import Fraction
 from typing import Any
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.tables.splittings.table import PrintedTable
 from verify.schemes.implicit_tableau import ImplicitTableau
 from verify.verdict import Verdict
 

@@ -44,7 +44,7 @@ def finding(method: FloatStep) -> Finding:
         return _in_degrees(method, hamiltonian, order)
     try:
         step = Step(method.make(), order=order, left=_SECONDS, moving=timed)
-        trial = Trial(step, hamiltonian, method.points or POINTS)
+        trial = Trial(step, hamiltonian, [(p, q) for p, q in method.points or POINTS])
         faults, _ = examined(step, trial.points)
         fatal = next((fault for fault in faults if fault.fatal), None)
         if fatal is not None:
@@ -79,7 +79,7 @@ def _in_degrees(method: FloatStep, hamiltonian: Hamiltonian, order: tuple[str, .
         area_preserving=found.symplectic,
         convergence_order=found.convergence_order,
         order_decided=found.order_known,
-        largest=seen and seen.largest,
-        probe_error=seen and seen.probe_error,
+        largest=seen.largest if seen else None,
+        probe_error=seen.probe_error if seen else None,
         notes=found.notes,
     )

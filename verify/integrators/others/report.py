@@ -3,151 +3,74 @@
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from importlib import import_module
-from types import ModuleType
 
-from sympy import S
-
-from verify.algebra.conditions import Condition
 from verify.execution.provenance import provenance
-from verify.integrators.others import libraries as others
-from verify.integrators.others import printed_libraries
-from verify.integrators.others.claims import claims_of
-from verify.integrators.others.integrator import ReleasedIntegrator
-from verify.integrators.others.measured import FAILURES
-from verify.integrators.step import last_line, quiet
-from verify.integrators.tables.check import read_tables
-from verify.prose import prose
+from verify.integrators.others.parts import Found, look_at_each
+from verify.integrators.tables.cost import DIGITS_BELOW, DIGITS_SEEN
+from verify.integrators.tables.told import SEVERITIES
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.report import Report
-from verify.schemes.splitting_conditions import Splitting
 from verify.verdict import Verdict
 
 TITLE = "The integrators of others, verified"
-_OnLibrary = Callable[[str], None]
+_SLIGHT = (DIGITS_SEEN, DIGITS_BELOW)
 
 
-def make_integrators_report(command: str, on_library: _OnLibrary | None = None) -> Report:
+def make_integrators_report(
+    command: str, on_library: Callable[[str], None] = lambda _: None, workers: int = 1
+) -> Report:
     """The report of all libraries that are installed, and of the printed tables.
 
-    `on_library` is called with what each library is called before it is looked at.
+    `on_library` is called with what each part is called before it is looked at. `workers`:
+    processes; with one, all is looked at here.
     """
     begun = time.perf_counter()
-    claims: list[ClaimResult] = []
-    left_out: list[tuple[str, str]] = []
-    found: dict[str, str] = {}
-    missing: list[str] = []
-    broken: list[str] = []
-    for name in others.names():
-        module, version = others.get(name), others.installed(name)
-        if version is None:
-            missing.append(module.TITLE)
-            left_out.append((module.TITLE, "is not installed: pip install 'areaproof[peers]'"))
-            continue
-        if on_library is not None:
-            on_library(module.TITLE)
-        if module.LIBRARY is not None:
-            found[module.TITLE] = version
-        section = f"{module.TITLE} {version}".strip()
-        with quiet():
-            own, failed = _claims(module, section)
-        claims += own
-        broken += [module.TITLE] if failed else []
-        left_out += [*failed, *((f"{module.TITLE}: {what}", why) for what, why in module.LEFT_OUT)]
-    for path in printed_libraries.files():
-        tables = read_tables(path)
-        if on_library is not None:
-            on_library(f"{tables.title}, printed tables")
-        claims += printed_libraries.claims_of(tables)
-        left_out += [(f"{tables.title}: {what}", why) for what, why in tables.left_out]
+    parts = look_at_each(workers, on_library)
+    claims = [claim for part in parts for claim in part.claims]
     told = provenance(command, begun, kept=0, computed=len(claims))
+    versions = {part.title: part.version for part in parts if part.version}
     return Report(
         title=TITLE,
         claims=tuple(claims),
         scenes=(),
-        left_out=tuple(left_out),
-        preface=tuple(_preface(found, missing, broken, claims)),
-        provenance=told.model_copy(update={"versions": told.versions | found}),
+        left_out=tuple(row for part in parts for row in part.left_out),
+        preface=tuple(_preface(parts, claims)),
+        provenance=told.model_copy(update={"versions": told.versions | versions}),
     )
 
 
-def _claims(module: ModuleType, section: str) -> tuple[list[ClaimResult], list[tuple[str, str]]]:
-    """The claims of one file; and what of it could not be looked at since the library fails, each
-    with its error: that refutes nothing, and does not end the report."""
-    prefix = str(module.TITLE).replace(" ", "-")
-    failed: list[tuple[str, str]] = []
-    claims: list[ClaimResult] = []
-    for integrator in _integrators(module, failed):
-        try:
-            claims += claims_of(integrator, section, prefix)
-        except FAILURES as error:
-            if module.LIBRARY is None:
-                raise  # no one else's code was run: it is ours that is wrong
-            failed.append((f"{module.TITLE}: {integrator.name}", f"fails: {last_line(error)}"))
-    if module.LIBRARY is None:
-        claims.append(_shears(section, prefix))
-    return claims, failed
-
-
-def _integrators(module: ModuleType, failed: list[tuple[str, str]]) -> Iterator[ReleasedIntegrator]:
-    """Its integrators, up to where the library fails: most fail when they are imported."""
-    try:
-        if module.LIBRARY is not None:
-            import_module(module.LIBRARY)
-        yield from module.integrators()
-    except FAILURES as error:
-        if module.LIBRARY is None:
-            raise
-        failed.append((module.TITLE, f"is installed and fails: {last_line(error)}"))
-
-
-def _shears(section: str, prefix: str) -> ClaimResult:
-    """What holds of all tables at once, whatever their coefficients are."""
-    conditions: Sequence[Condition] = Splitting(
-        (("kick", S.One), ("drift", S.One))
-    ).area_conditions()
-    proved = all(c.holds for c in conditions)
-    return ClaimResult(
-        id=f"{prefix}/all/area",
-        kind="area",
-        source="all of them",
-        section=section,
-        statement=prose("kicks and drifts are symplectic, whatever their coefficients are"),
-        scene="",
-        verdict=Verdict.PROVED if proved else Verdict.UNDECIDED,
-        evidence=prose(
-            "every kick and every drift has determinant 1, for all a h V″ and a h T″; so "
-            "every composition of them has; a wrong coefficient costs order, not area"
-        ),
-    )
-
-
-def _preface(
-    found: dict[str, str],
-    missing: Sequence[str],
-    broken: Sequence[str],
-    claims: Sequence[ClaimResult],
-) -> list[str]:
-    installed = ", ".join(f"{name} {version}" for name, version in found.items()) or "none"
-    lines = [f"Installed here: {installed}; printed tables need no library."]
+def _preface(parts: Sequence[Found], claims: Sequence[ClaimResult]) -> Iterator[str]:
+    installed = ", ".join(f"{x.title} {x.version}" for x in parts if x.version) or "none"
+    yield f"Installed here: {installed}; printed tables need no library."
+    missing = [x.title for x in parts if x.version is None and not x.broken]
     if missing:
-        lines.append(f"Left out, as not installed: {', '.join(missing)}.")
+        yield f"Left out, as not installed: {', '.join(missing)}."
+    broken = [x.title for x in parts if x.broken]
     if broken:
-        lines.append(f"Left out, all or in part, as they fail here: {', '.join(broken)}.")
+        yield f"Left out, all or in part, as they fail here: {', '.join(broken)}."
     wrong = [c for c in claims if c.verdict is Verdict.REFUTED]
-    sections = dict.fromkeys(c.section for c in wrong)
-    unlike_claims = []
-    for section in sections:
-        own = [c for c in wrong if c.section == section]
-        digits = sum(c.kind.endswith("digits") for c in own)
-        names = list(dict.fromkeys(c.source for c in own if not c.kind.endswith("digits")))
-        if digits:
-            names.append(f"the last digits of {digits} tables")
-        unlike_claims.append(f"{section}: {', '.join(names)}")
-    if unlike_claims:
-        lines.append(f"Not as claimed: {'; '.join(unlike_claims)}.")
+    for section, said in matters(wrong):
+        yield f"{section}: {said}."
+    slight = Counter(c.section for c in wrong if c.severity in _SLIGHT)
+    if slight:
+        each = ", ".join(f"{n} of {section}" for section, n in slight.items())
+        yield f"Last digits alone are wrong in {sum(slight.values())} tables: {each}."
     counts = Counter(c.severity or "not told" for c in wrong)
     if counts:
-        each = ", ".join(f"{n} of {kind}" for kind, n in counts.most_common())
-        lines.append(f"Of {len(wrong)} that are refuted: {each}.")
-    return lines
+        ordered = [x for x in (*SEVERITIES, "not told") if x in counts]
+        yield (
+            f"Of {len(claims)} claims {len(wrong)} are refuted: "
+            + ", ".join(f"{counts[kind]} of {kind}" for kind in ordered) + "."
+        )  # fmt: skip
+
+
+def matters(wrong: Sequence[ClaimResult]) -> Iterator[tuple[str, str]]:
+    """By library, what is wrong and more than digits: each kind of mistake with its methods."""
+    grave = [c for c in wrong if c.severity not in _SLIGHT]
+    for section in dict.fromkeys(c.section for c in grave):
+        own = [c for c in grave if c.section == section]
+        kinds = []
+        for severity in dict.fromkeys(c.severity for c in own):
+            names = dict.fromkeys(c.source for c in own if c.severity == severity)
+            kinds.append(f"{severity} of {', '.join(names)}")
+        yield section, "; ".join(kinds)

@@ -9,6 +9,7 @@ from verify.integrators.tables.entry import TableEntry
 from verify.integrators.tables.splittings.claims import timed_parts
 from verify.integrators.tables.splittings.table import PrintedTable
 
+Point = tuple[Fraction, ...]  # p, then q
 _DIGITS = 45
 _WIDTH = 88
 _INTEGER = re.compile(r"(?<![\w.])\d+(?![\w.])")
@@ -60,7 +61,7 @@ def error(h):  # of one step, against 64 steps of h / 64
     x, y = step({p}, {q}, h), ({p}, {q})
     for _ in range(64):
         y = step(*y, h / 64)
-    return max(abs(x[0] - y[0]), abs(x[1] - y[1]))
+    return {distance}
 
 
 # the error of one step is O(h^r), r = order + 1{claimed}
@@ -73,7 +74,7 @@ def error(h, t=0.75):  # of one step, against 64 steps of h / 64
     x, y = step({p}, {q}, t, h), ({p}, {q})
     for k in range(64):
         y = step(*y, t + k * h / 64, h / 64)
-    return max(abs(x[0] - y[0]), abs(x[1] - y[1]))
+    return {distance}
 
 
 # the error of one step is O(h^r), r = order + 1{claimed}
@@ -90,6 +91,21 @@ def det_j(p, q, h, d=2.0**-10):  # by differences of the second order, so that d
 
 # claimed: 1
 print([(h, det_j({p}, {q}, h)) for h in (1.0, 0.5, 0.25)])"""
+
+_SYMPLECTIC = """
+
+
+def defect(p, q, h, d=2.0**-10):  # of J^T W J = W, by differences of the second order
+    z, n = np.concatenate([p, q]), len(p)
+    ends = [[np.concatenate(step(*np.split(z + s * d * e, 2), h)) for s in (1, -1)]
+            for e in np.eye(2 * n)]
+    J = np.array([(a - b) / (2 * d) for a, b in ends]).T
+    W = np.block([[np.zeros((n, n)), np.eye(n)], [-np.eye(n), np.zeros((n, n))]])
+    return np.abs(J.T @ W @ J - W).max()
+
+
+# claimed: 0
+print([(h, defect({p}, {q}, h)) for h in (1.0, 0.5, 0.25)])"""
 
 
 def of_digits(table: PrintedTable, nearest: Mapping[str, Fraction] | None, order: int) -> str:
@@ -148,21 +164,35 @@ def _exact(size: str) -> str:
     return _INTEGER.sub(r"F(\g<0>)", size)
 
 
-def of_order(code: str, point: tuple[Fraction, Fraction], order: int, timed: bool = False) -> str:
+def of_order(code: str, point: Point, order: int, timed: bool = False) -> str:
     """`code`, which defines step(p, q, h), or step(p, q, t, h), and the slopes of its error."""
     slopes = _ORDER_IN_TIME if timed else _ORDER
-    claimed = f"; claimed: order {order}"
-    return _with(code, slopes.format(p=float(point[0]), q=float(point[1]), claimed=claimed))
+    return _with(code, slopes.format(**_start(point), claimed=f"; claimed: order {order}"))
 
 
-def of_time(code: str, point: tuple[Fraction, Fraction]) -> str:
+def _start(point: Point) -> dict[str, str]:
+    """p and q as they are written, of several degrees of freedom as arrays, and how far two states
+    x and y are apart."""
+    half = len(point) // 2
+    if half == 1:
+        p, q = map(float, point)
+        apart = "max(abs(x[0] - y[0]), abs(x[1] - y[1]))"
+        return {"p": repr(p), "q": repr(q), "distance": apart}
+    one, other = ([float(x) for x in part] for part in (point[:half], point[half:]))
+    apart = "np.abs(np.subtract(x, y)).max()"
+    return {"p": f"np.array({one})", "q": f"np.array({other})", "distance": apart}
+
+
+def of_time(code: str, point: Point) -> str:
     """The same of step(p, q, t, h) where no order is claimed."""
-    return _with(code, _ORDER_IN_TIME.format(p=float(point[0]), q=float(point[1]), claimed=""))
+    return _with(code, _ORDER_IN_TIME.format(**_start(point), claimed=""))
 
 
-def of_area(code: str, point: tuple[Fraction, Fraction]) -> str:
-    """`code`, which defines step(p, q, h), and the determinant of its Jacobian."""
-    return _with(code, _AREA.format(p=float(point[0]), q=float(point[1])))
+def of_area(code: str, point: Point) -> str:
+    """`code`, which defines step(p, q, h), and the determinant of its Jacobian, or of several
+    degrees of freedom the largest entry of JᵀΩJ − Ω."""
+    tail = _AREA if len(point) == 2 else _SYMPLECTIC
+    return _with(code, tail.format(**_start(point)))
 
 
 def of_clock(entry: TableEntry) -> str:
@@ -188,7 +218,8 @@ def step(p, q, t, h):  # H = (1 + cos(t)/4) (p**4/4 + p**2/2) - (1 + cos(2*t)/2)
             q += a * h * (1 + math.cos(t + s * h) / 4) * (p + p**3)
     return p, q
 """
-    return _with(code, _ORDER_IN_TIME.format(p=1 / 3, q=3 / 5, claimed=""))
+    point = Fraction(1, 3), Fraction(3, 5)
+    return _with(code, _ORDER_IN_TIME.format(**_start(point), claimed=""))
 
 
 def _with(code: str, tail: str) -> str:

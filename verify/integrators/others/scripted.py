@@ -35,8 +35,9 @@ class Script:
 class Driven:
     """How the steps of a library are driven.
 
-    `head`: what its lines import, numpy as np among it, and define beside force(t, q). `body`: the lines of a step, from
-    p, q, t and h, of arrays, to p and q; `{method}` stands for the method. `said`: one sentence.
+    `head`: what its lines import, numpy as np among it, and define beside force(t, q). `body`: the
+    lines of a step, from p, q, t and h, of arrays, to p and q; `{method}` stands for the method.
+    `said`: one sentence.
     """
 
     head: str
@@ -89,9 +90,7 @@ def scripted(
         )
 
 
-def _step(
-    problem: Problem, script: Script, order: int, ladder: tuple[Fraction, ...]
-) -> FloatStep:
+def _step(problem: Problem, script: Script, order: int, ladder: tuple[Fraction, ...]) -> FloatStep:
     high = order >= _HIGH
     points = (AWAY if high else POINTS[:2]) if problem.degrees == 1 else ()
     return FloatStep(problem.hamiltonian, script.step, points, ladder or (LONG if high else USUAL))

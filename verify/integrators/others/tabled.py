@@ -38,7 +38,9 @@ def _texts(value: Any) -> Any:
     """Numbers as texts, within lists and arrays; the rest as it is."""
     if isinstance(value, str | bool | int):
         return value
-    if isinstance(value, float) or hasattr(value, "__float__") and not getattr(value, "shape", ()):
+    if isinstance(value, float) or (
+        hasattr(value, "__float__") and not getattr(value, "shape", ())
+    ):
         return text(float(value))
     return [_texts(float(x)) if isinstance(x, int) else _texts(x) for x in value]
 
@@ -48,7 +50,7 @@ def text(x: float) -> str:
     exact = Fraction(x)
     for most in _MOST:
         near = exact.limit_denominator(most)
-        if abs(near - exact) <= _ROUNDING * max(1, abs(exact)):
+        if abs(near - exact) <= _ROUNDING * max(Fraction(1), abs(exact)):
             return str(near)
     return repr(x)
 

@@ -21,6 +21,7 @@ from verify.integrators.tables.printed_numbers import entries_at
 from verify.prose import Prose, read_prose
 from verify.verdict import Verdict
 
+DIGITS_SEEN, DIGITS_BELOW = "digits that a double notices", "digits below that"
 _FAR = 1e9  # ulps: more is another number
 DOUBLE = Fraction(1, 2**53)  # of a double, half an ulp of 1
 
@@ -148,4 +149,4 @@ def severity_of(found: Judged, refuted_as: str) -> str | None:
     if found.digits is not False:
         return None
     cost = cost_of(found, None)
-    return "digits below that" if cost and cost.double is False else "digits that a double notices"
+    return DIGITS_BELOW if cost and cost.double is False else DIGITS_SEEN

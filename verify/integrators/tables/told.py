@@ -7,7 +7,14 @@ from typing import Protocol, Self, TypeVar
 
 from verify.errors import InputError
 from verify.integrators.tables.asked import Asked
-from verify.integrators.tables.cost import Cost, cost_of, exact_numbers, severity_of
+from verify.integrators.tables.cost import (
+    DIGITS_BELOW,
+    DIGITS_SEEN,
+    Cost,
+    cost_of,
+    exact_numbers,
+    severity_of,
+)
 from verify.integrators.tables.judged import Judged
 from verify.integrators.tables.printed_numbers import PrintedNumbers, rounded_to
 from verify.integrators.tables.sentences import Details, of_conditions, of_digits, of_printed
@@ -19,6 +26,15 @@ NOT_SYMPLECTIC = "not symplectic as claimed"
 WRONG_CLOCK = "wrong clock"
 WRONG_WEIGHTS = "embedded or step weights"
 OF_WORDS = "documentation"
+SEVERITIES = (
+    WRONG_ORDER,
+    NOT_SYMPLECTIC,
+    WRONG_CLOCK,
+    WRONG_WEIGHTS,
+    DIGITS_SEEN,
+    DIGITS_BELOW,
+    OF_WORDS,
+)  # the gravest first
 _DIGITS = "every digit is right, to one unit of the last"
 
 

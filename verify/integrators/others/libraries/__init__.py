@@ -2,9 +2,10 @@
 themselves.
 
 A file defines `TITLE`, what people call it; `LIBRARY`, the package that it needs and imports only
-where it is used, or None where it needs none; `LEFT_OUT`, what of it cannot be driven as a one-step
-map with one degree of freedom, each with the reason; and `integrators()`, which yields what is
-verified (see `verify.integrators.others.integrator`). Adding a library is adding one file.
+where it is used, or None where it needs none; `PACKAGE`, what pip calls it, where that is another
+name; `EXTRA`, of ours, that installs it, unless that is `peers`; `LEFT_OUT`, what of it cannot be
+driven as a one-step map, each with the reason; and `integrators()`, which yields what is verified
+(see `verify.integrators.others.integrator`). Adding a library is adding one file.
 """
 
 from functools import cache
@@ -38,6 +39,6 @@ def installed(name: str) -> str | None:
     if find_spec(library) is None:
         return None
     try:
-        return version(library)
+        return version(getattr(get(name), "PACKAGE", library))
     except PackageNotFoundError:
         return "unknown version"

@@ -54,9 +54,9 @@ def _methods() -> Iterator[Any]:
     from desolver.integrators.integrator_types import TableauIntegrator
 
     for name in dir(found):
-        each = getattr(found, name)
-        if isinstance(each, type) and issubclass(each, TableauIntegrator) and each.__order__:
-            yield each
+        each: Any = getattr(found, name)
+        if isinstance(each, type) and issubclass(each, TableauIntegrator):
+            yield from [each] if getattr(each, "__order__", None) else []
 
 
 def _splitting(method: Any, name: str, order: int, source: str) -> ReleasedIntegrator:

@@ -15,7 +15,10 @@ EXTRA = "heavy-peers"
 LEFT_OUT = (
     ("ReversibleHeun, LeapfrogMidpoint", "keep a second state from step to step"),
     ("Euler, ImplicitEuler", "have no tableau that can be read"),
-    ("KenCarp3 … KenCarp5, Sil3", "their pairs of tableaux are SUNDIALS's ARK tables, or like them"),
+    (
+        "KenCarp3 … KenCarp5, Sil3",
+        "their pairs of tableaux are SUNDIALS's ARK tables, or like them",
+    ),
     ("solvers of stochastic equations", "have no deterministic step"),
 )
 _STEP = Driven(

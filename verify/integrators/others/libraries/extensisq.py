@@ -1,4 +1,4 @@
-"""extensisq's solvers: the tables inside them, and steps by them with tolerances that accept any."""
+"""extensisq's solvers: the tables inside them, and their steps, of any error."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -67,7 +67,7 @@ def _table(name: str, solver: Any, source: str) -> ReleasedIntegrator:
     stages = int(solver.n_stages)
     second = int(solver.order_secondary)
     rows = full(solver.A, stages)
-    common = {"order": int(solver.order), "c": list(map(float, solver.C[:stages]))}
+    common: dict[str, Any] = {"order": int(solver.order), "c": list(map(float, solver.C[:stages]))}
     if hasattr(solver, "Bp"):
         return _nystrom(name, solver, source, rows, common)
     weights = [float(x) for x in solver.B][:stages]

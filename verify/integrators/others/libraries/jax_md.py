@@ -59,6 +59,7 @@ def _weights() -> Iterator[ReleasedIntegrator]:
                 _SOURCE.format(count, _ORDERS[count]),
                 _WEIGHTS_SCRIPT.replace("{count}", str(count)),
                 order=_ORDERS[count],
+                of_parts=True,
                 sizes=[repr(float(w)) for w in weights],
             )
 

@@ -77,9 +77,7 @@ class Slopes:
     order: int | None
 
 
-def slopes_of(
-    entry: TableEntry, timed: bool, embedded: bool = False
-) -> tuple[Slopes, Slopes]:
+def slopes_of(entry: TableEntry, timed: bool, embedded: bool = False) -> tuple[Slopes, Slopes]:
     """Of the table as it is printed, at both systems. `embedded`: with its embedded weights."""
     with mp.workdps(_DIGITS):
         step = _step(entry, embedded)
@@ -97,9 +95,7 @@ def _of(system: System, step: Callable[[System, Any, Any, Any, Any], Vector]) ->
         there = step(system, t, p, q, h)
         errors.append(max(abs(x - y) for x, y in zip(there, flow(t + h), strict=True)))
     powers = [float(mp.log(x / y, 2)) for x, y in pairwise(errors) if x and y]
-    return Slopes(
-        system.said, tuple(map(float, _SIZES)), tuple(map(float, errors)), _order(powers)
-    )
+    return Slopes(system.said, tuple(map(float, _SIZES)), tuple(map(float, errors)), _order(powers))
 
 
 def _order(powers: Sequence[float]) -> int | None:

@@ -1,6 +1,9 @@
 """Compositions of steps w h of any symmetric method of order 2."""
 
 from collections.abc import Iterator
+from dataclasses import replace
+
+from pydantic import StrictBool
 
 from verify.errors import InputError
 from verify.integrators.tables.entry import Naming
@@ -13,13 +16,16 @@ from verify.integrators.tables.splittings.claims import (
     symmetric_claims,
 )
 from verify.integrators.tables.splittings.table import PrintedTable
-from verify.integrators.tables.told import TableClaim
+from verify.integrators.tables.told import WRONG_ORDER, WRONG_WEIGHTS, TableClaim
 from verify.prose import prose
 from verify.verdict import Verdict
 
 
 class Entry(SizesEntry):
-    """`sizes` are the w; a `csv` file has them in a column size."""
+    """`sizes` are the w; a `csv` file has them in a column size. `of_parts`: they divide the steps
+    of a part of a method, such as a thermostat's, so that a mistake is one of step weights."""
+
+    of_parts: StrictBool = False
 
 
 def claims(entry: Entry) -> Iterator[TableClaim]:
@@ -34,7 +40,9 @@ def claims(entry: Entry) -> Iterator[TableClaim]:
     named = naming.entries(sizes, "w")
     parts = tuple(("step", size) for size in (mirrored(named) if half else named))
     table = PrintedTable(entry.kind, parts, naming.numbers)
-    yield from of_order(entry, table)
+    for claim in of_order(entry, table):
+        of_weights = entry.of_parts and claim.severity == WRONG_ORDER
+        yield replace(claim, severity=WRONG_WEIGHTS) if of_weights else claim
     if entry.symplectic:
         said = prose("a composition of symplectic steps is symplectic, whatever their sizes are")
         yield TableClaim("symplectic", "symplectic", Verdict.PROVED, said)

@@ -1,0 +1,95 @@
+"""A described mistake, with all that is measured of it; or why it is not told."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from verify.errors import InputError
+from verify.integrators.others.findings.changes import changed, entry_of
+from verify.integrators.others.findings.described import Changed, Description
+from verify.integrators.others.findings.programs import Ran, run
+from verify.integrators.others.second.look import claimed_of
+from verify.integrators.others.second.slopes import Slopes, slopes_of
+from verify.scenes.results.claim import ClaimResult
+from verify.verdict import Verdict
+
+_WITHIN = 0.3  # of the order that a program prints
+
+
+@dataclass(frozen=True)
+class Shown:
+    """One table: its claimed order, its steps' orders as printed, and with the mend."""
+
+    name: str
+    claimed: int
+    printed: tuple[Slopes, ...]
+    mended: tuple[Slopes, ...] = ()
+
+
+@dataclass(frozen=True)
+class Confirmed:
+    """All that a finding tells: the description, the refuted claims, and what was run."""
+
+    name: str
+    described: Description
+    claims: tuple[ClaimResult, ...]
+    tables: tuple[Shown, ...] = ()
+    program: Ran | None = None
+    mended: Ran | None = None
+
+
+class NotConfirmedError(Exception):
+    """Why it is not told, one clause."""
+
+
+def confirm(name: str, described: Description, claims: Sequence[ClaimResult]) -> Confirmed:
+    """Of the claims that were judged just now. Raises NotConfirmedError where one that it tells of
+    is not refuted, or where a table or a program does not show it, or not the mend."""
+    own = tuple(claim for claim in claims if described.tells_of(claim.id))
+    if not own:
+        raise NotConfirmedError("none of its claims was judged: its library is not installed")
+    for claim in own:
+        if claim.verdict is not Verdict.REFUTED:
+            raise NotConfirmedError(f"{claim.id} is {claim.verdict}, not refuted")
+    tables = tuple(_shown(each) for each in described.table)
+    made = None
+    mended = None
+    if described.language == "python":
+        made = _ran(described.program)
+        mended = _ran(described.mended) if described.mended else None
+        _compare(made, mended)
+    return Confirmed(name, described, own, tables, made, mended)
+
+
+def _shown(each: Changed) -> Shown:
+    try:
+        entry = entry_of(each.id)
+        claimed = claimed_of(entry, each.kind)
+        timed, embedded = each.kind.startswith("order in time"), each.kind.startswith("embedded")
+        if claimed is None:
+            raise NotConfirmedError(f"{each.id} claims no order")
+        printed = slopes_of(entry, timed, embedded)
+        mended: tuple[Slopes, ...] = ()
+        if each.changes:
+            mended = slopes_of(changed(entry, each.changes), timed, embedded)
+    except InputError as error:
+        raise NotConfirmedError(str(error)) from None
+    if not all(x.order is not None and x.order < claimed for x in printed):
+        raise NotConfirmedError(f"{each.id}: its steps do not show it")
+    if not all(x.order is None or x.order >= claimed for x in mended):
+        raise NotConfirmedError(f"{each.id}: with the mend its order is not {claimed}")
+    return Shown(each.id, claimed, printed, mended)
+
+
+def _ran(program: str) -> Ran:
+    found = run(program)
+    if found.failed:
+        raise NotConfirmedError(f"its program fails: {found.failed}")
+    return found
+
+
+def _compare(made: Ran, mended: Ran | None) -> None:
+    """With the mend every order must be higher by nearly one, at least."""
+    for problem, order in (mended.orders if mended else {}).items():
+        before = made.orders.get(problem)
+        if before is None or order < before + 1 - _WITHIN:
+            raise NotConfirmedError(f"the mend does not raise the order on {problem}")

@@ -1,0 +1,106 @@
+"""A finding as a Markdown note that can be sent as it is."""
+
+from collections.abc import Iterator, Sequence
+
+from verify.integrators.others.findings.confirmed import Confirmed, Shown
+from verify.integrators.others.second.slopes import Slopes
+
+_FENCES = {"c++": "cpp"}
+
+
+def note(found: Confirmed, versions: str) -> str:
+    """The text. `versions`: of the library, as it is judged here, and of what judges it."""
+    said = found.described
+    language = _FENCES.get(said.language, said.language)
+    lines = [
+        f"# {said.title}",
+        "",
+        f"**{said.library}**. {versions}",
+        "",
+        "## What is claimed",
+        "",
+        f"> {' '.join(said.quote.split())}",
+        "",
+        f"In {said.where}.",
+        "",
+        "## What holds",
+        "",
+        said.holds.strip(),
+        "",
+        *(f"- `{claim.source}`: {claim.evidence}" for claim in found.claims[:12]),
+        *_more(found),
+        "",
+        "## A program that shows it",
+        "",
+        f"```{language}",
+        said.program.strip("\n"),
+        "```",
+        "",
+        *_printed(found),
+        *_measured(found.tables),
+        "## Where it is",
+        "",
+        said.blame.strip(),
+        "",
+        "## A mend",
+        "",
+        said.mend.strip(),
+        "",
+        *_with_mend(found),
+    ]
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def _more(found: Confirmed) -> Iterator[str]:
+    if len(found.claims) > 12:
+        yield f"- and {len(found.claims) - 12} more, alike."
+
+
+def _printed(found: Confirmed) -> Iterator[str]:
+    said = found.described
+    if found.program is not None:
+        yield from ("It prints:", "", "```text", found.program.printed, "```", "")
+        return
+    if said.output:
+        yield from (f"It prints ({said.ran}):", "", "```text", said.output.strip("\n"), "```", "")
+    elif said.ran:
+        yield from (f"It was {said.ran.removeprefix('it was ').rstrip('.')}.", "")
+
+
+def _with_mend(found: Confirmed) -> Iterator[str]:
+    if found.mended is not None and found.described.mended:
+        yield from ("With it the program is:", "", "```python")
+        yield from (found.described.mended.strip("\n"), "```", "", "and prints:", "", "```text")
+        yield from (found.mended.printed, "```", "")
+    for table in found.tables:
+        if table.mended:
+            orders = sorted({x.order for x in table.mended if x.order is not None})
+            told = " and ".join(f"order {x}" for x in orders)
+            yield f"With it `{_last(table)}` shows {told}, for both systems of the table above."
+
+
+def _last(table: Shown) -> str:
+    return table.name.partition("/")[2]
+
+
+def _measured(tables: Sequence[Shown]) -> Iterator[str]:
+    """One step of each table at 60 digits, against the solution."""
+    if not tables:
+        return
+    yield from ("## Measured", "")
+    yield "The error of one step of size h, carried out with 60 digits as the library does it:"
+    yield ""
+    lines = list[str]()
+    for table in tables:
+        for k, slopes in enumerate(table.printed):
+            lines.append(_row(f"`{_last(table)}`", slopes, slopes.said))
+            if table.mended:
+                lines.append(_row(f"`{_last(table)}`, mended", table.mended[k], slopes.said))
+    head = "| table | system | h = 1/16 | 1/32 | 1/64 | 1/128 | order |"
+    yield from (head, "|---|---|---|---|---|---|---|", *lines, "")
+
+
+def _row(name: str, slopes: Slopes, said: str) -> str:
+    errors = " | ".join(f"{x:.1e}" for x in slopes.errors)
+    order = "–" if slopes.order is None else str(slopes.order)
+    return f"| {name} | {said} | {errors} | {order} |"
