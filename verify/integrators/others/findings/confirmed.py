@@ -73,7 +73,7 @@ def _shown(each: Changed) -> Shown:
             mended = slopes_of(changed(entry, each.changes), timed, embedded)
     except InputError as error:
         raise NotConfirmedError(str(error)) from None
-    if not all(x.order is not None and x.order < claimed for x in printed):
+    if not all(x.below(claimed) for x in printed):
         raise NotConfirmedError(f"{each.id}: its steps do not show it")
     if not all(x.order is None or x.order >= claimed for x in mended):
         raise NotConfirmedError(f"{each.id}: with the mend its order is not {claimed}")

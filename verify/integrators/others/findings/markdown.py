@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from verify.integrators.others.findings.confirmed import Confirmed, Shown
 from verify.integrators.others.second.slopes import Slopes
 
+_SHOWN = 4  # step sizes, the smallest
 _FENCES = {"c++": "cpp"}
 
 
@@ -101,6 +102,6 @@ def _measured(tables: Sequence[Shown]) -> Iterator[str]:
 
 
 def _row(name: str, slopes: Slopes, said: str) -> str:
-    errors = " | ".join(f"{x:.1e}" for x in slopes.errors)
+    errors = " | ".join(f"{error:.1e}" for _, error in slopes.rows[-_SHOWN:])
     order = "–" if slopes.order is None else str(slopes.order)
     return f"| {name} | {said} | {errors} | {order} |"

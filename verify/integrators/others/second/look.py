@@ -35,7 +35,9 @@ def at_table(entry: TableEntry, kind: str, claimed: int) -> Look:
         found = slopes_of(entry, timed, embedded)
     except TypeError:
         return Look(False, f"steps of a {entry.kind} are not made a second time")
-    return Look(*_seen(claimed, [x.order for x in found], "steps at 60 digits"), found)
+    orders = [x.order for x in found]
+    shown = all(x.below(claimed) for x in found) and orders != [None, None]
+    return Look(shown, _seen(orders, "steps at 60 digits"), found)
 
 
 def at_step(integrator: ReleasedIntegrator, claimed: int) -> Look:
@@ -52,13 +54,13 @@ def at_step(integrator: ReleasedIntegrator, claimed: int) -> Look:
             orders.append(found.convergence_order if found.order_decided else None)
     except FAILURES as error:
         return Look(False, f"a second look fails: {type(error).__name__}")
-    return Look(*_seen(claimed, orders, "its own steps, halved"))
-
-
-def _seen(claimed: int, orders: Sequence[int | None], how: str) -> tuple[bool, str]:
     shown = all(x is not None and x < claimed for x in orders)
-    told = " and ".join("no order" if x is None else f"order {x}" for x in dict.fromkeys(orders))
-    return shown, f"a second look, by {how}, shows {told}"
+    return Look(shown, _seen(orders, "its own steps, halved"))
+
+
+def _seen(orders: Sequence[int | None], how: str) -> str:
+    known = [f"order {x}" for x in dict.fromkeys(orders) if x is not None]
+    return f"a second look, by {how}, shows {' and '.join(known) or 'no order'}"
 
 
 def claimed_of(entry: Any, kind: str) -> int | None:

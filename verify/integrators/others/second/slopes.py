@@ -4,6 +4,7 @@ It shares no code with the conditions that tables are judged by: the step is car
 library does, and the solution is Taylor's, by `mpmath.odefun`.
 """
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import singledispatch
@@ -20,8 +21,13 @@ from verify.integrators.tables.tableaux.blocks import Block, block_of
 
 _DIGITS = 60
 _SIZES = tuple(mp.mpf(1) / 2**k for k in range(4, 8))
+_LARGE = tuple(
+    mp.mpf(k) / 16 for k in (16, 12, 8, 6, 4, 3, 2)
+)  # where rounded numbers allow no less
 _TURNS = 80  # of a fixed point: with h ≤ 1/16 each gains more than a digit
-_WITHIN = 0.25  # of a whole power
+_ABOVE = 20  # times the unit of the last digits an error must be, in parts of h
+_SHORT = 1e-7  # the unit of decimals that are taken for exact
+_WITHIN = 0.3  # of a whole power
 Vector = list[Any]
 Field = Callable[[Any, Any], Any]
 
@@ -66,51 +72,67 @@ def systems(timed: bool, quadratic: bool) -> tuple[System, System]:
     )
 
 
+Step = Callable[[System, Any, Any, Any, Any], Vector]  # of t, p, q, h
+
+
 @dataclass(frozen=True)
 class Slopes:
-    """Of one system: the errors of one step of these sizes, and the order that they show, or None
-    where no whole power is seen."""
+    """Of one system: step sizes with the errors of one step, and the order that those show which
+    are above what rounded numbers leave; None where no whole power is seen."""
 
     said: str
-    sizes: tuple[float, ...]
-    errors: tuple[float, ...]
+    rows: tuple[tuple[float, float], ...]
     order: int | None
+    last: tuple[float, ...] = ()
+
+    def below(self, claimed: int) -> bool:
+        """Whether the order is seen to be lower: a whole power, or slopes that stay below it."""
+        if self.order is not None:
+            return self.order < claimed
+        return len(self.last) > 1 and max(self.last) < claimed + 1 - _WITHIN
 
 
 def slopes_of(entry: TableEntry, timed: bool, embedded: bool = False) -> tuple[Slopes, Slopes]:
     """Of the table as it is printed, at both systems. `embedded`: with its embedded weights."""
     with mp.workdps(_DIGITS):
-        step = _step(entry, embedded)
-        found = tuple(_of(system, step) for system in systems(timed, entry.kind == "nystrom"))
+        step, naming = _step(entry, embedded)
+        units = [float(x) for x in naming.printed.units.values() if x < _SHORT]
+        noise = _ABOVE * max(units, default=0.0)  # what they leave in a step, in parts of h
+        pair = systems(timed, entry.kind == "nystrom")
+        found = [_of(system, step, noise, _SIZES) for system in pair]
+        if any(slopes.order is None for slopes in found):
+            found = [_of(system, step, noise, _LARGE) for system in pair]
     return found[0], found[1]
 
 
-def _of(system: System, step: Callable[[System, Any, Any, Any, Any], Vector]) -> Slopes:
+def _of(system: System, step: Step, noise: float, sizes: Sequence[Any]) -> Slopes:
     t, p, q = mp.mpf(3) / 4, mp.mpf(1) / 3, mp.mpf(3) / 5
     flow = mp.odefun(
         lambda s, z: [system.kick(s, *z), system.drift(s, *z)], t, [p, q], tol=mp.mpf(10) ** -45
     )
     errors = []
-    for h in _SIZES:
+    for h in sizes:
         there = step(system, t, p, q, h)
         errors.append(max(abs(x - y) for x, y in zip(there, flow(t + h), strict=True)))
-    powers = [float(mp.log(x / y, 2)) for x, y in pairwise(errors) if x and y]
-    return Slopes(system.said, tuple(map(float, _SIZES)), tuple(map(float, errors)), _order(powers))
+    rows = tuple((float(h), float(error)) for h, error in zip(sizes, errors, strict=True))
+    seen = [row for row in rows if row[1] > noise * row[0]]
+    powers = [math.log(x / y) / math.log(h / k) for (h, x), (k, y) in pairwise(seen)]
+    last = tuple(powers[-2:])
+    return Slopes(system.said, rows, _order(last), last)
 
 
 def _order(powers: Sequence[float]) -> int | None:
-    if len(powers) < 2 or any(abs(x - round(powers[-1])) > _WITHIN for x in powers[-2:]):
+    """Of two slopes that agree, at the smallest steps above the noise."""
+    if len(powers) < 2 or any(abs(x - round(powers[-1])) > _WITHIN for x in powers):
         return None
     return round(powers[-1]) - 1
 
 
 # -- one step, by the kind of its table -----------------------------------------------------------
 
-Step = Callable[[System, Any, Any, Any, Any], Vector]
-
 
 @singledispatch
-def _step(entry: TableEntry, embedded: bool) -> Step:
+def _step(entry: TableEntry, embedded: bool) -> tuple[Step, Naming]:
     raise TypeError(f"{entry.name}: no step is made of a {entry.kind}")
 
 
@@ -121,7 +143,7 @@ def _numbers(naming: Naming, texts: Sequence[str]) -> Vector:
 
 
 @_step.register
-def _(entry: AlternatingEntry, embedded: bool) -> Step:
+def _(entry: AlternatingEntry, embedded: bool) -> tuple[Step, Naming]:
     naming = Naming(entry.numbers)
     kinds, sizes, times = parts_of(entry, naming)
     own = _numbers(naming, sizes)
@@ -135,11 +157,11 @@ def _(entry: AlternatingEntry, embedded: bool) -> Step:
                 q += size * h * system.drift(t + moment * h, p, q)
         return [p, q]
 
-    return step
+    return step, naming
 
 
 @_step.register
-def _(entry: composition.Entry, embedded: bool) -> Step:
+def _(entry: composition.Entry, embedded: bool) -> tuple[Step, Naming]:
     naming = Naming(entry.numbers)
     half = entry.half is not None
     sizes = [*(entry.sizes or entry.half or ())]
@@ -154,27 +176,27 @@ def _(entry: composition.Entry, embedded: bool) -> Step:
             p += w * h / 2 * system.kick(t, p, q)
         return [p, q]
 
-    return step
+    return step, naming
 
 
 @_step.register
-def _(entry: runge_kutta.Entry, embedded: bool) -> Step:
+def _(entry: runge_kutta.Entry, embedded: bool) -> tuple[Step, Naming]:
     block = Block(a=entry.a, b=entry.b, c=entry.c, embedded=entry.embedded,
                   tableau=entry.tableau, csv=entry.csv)  # fmt: skip
     return _of_blocks(entry, (block,), embedded)
 
 
 @_step.register
-def _(entry: additive.Entry, embedded: bool) -> Step:
+def _(entry: additive.Entry, embedded: bool) -> tuple[Step, Naming]:
     return _of_blocks(entry, entry.parts, embedded)
 
 
 @_step.register
-def _(entry: partitioned.Entry, embedded: bool) -> Step:
+def _(entry: partitioned.Entry, embedded: bool) -> tuple[Step, Naming]:
     return _of_blocks(entry, (entry.p, entry.q), embedded)
 
 
-def _of_blocks(entry: TableEntry, given: Sequence[Block], embedded: bool) -> Step:
+def _of_blocks(entry: TableEntry, given: Sequence[Block], embedded: bool) -> tuple[Step, Naming]:
     """z' = f_1 + f_2 + …: of one part all of the field; of two the kicks and the drifts."""
     naming = Naming(entry.numbers)
     named = [block_of(x, naming, f"_{k}" if k else "", entry.folder) for k, x in enumerate(given)]
@@ -208,4 +230,4 @@ def _of_blocks(entry: TableEntry, given: Sequence[Block], embedded: bool) -> Ste
                             for j, b in enumerate(bs))
                 for n, x in enumerate((p, q))]  # fmt: skip
 
-    return step
+    return step, naming
