@@ -17,6 +17,7 @@ from verify.pages.sections.section import sections as found_sections
 from verify.pages.text.signs import SIGNS
 from verify.pages.text.typography import listed, superscript, whole
 from verify.pages.text.words import counts_of
+from verify.pages.wrong import Wrong, wrong_of
 from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.report import Report
 from verify.scenes.results.stability import KINDS, Kind, StabilityResult
@@ -58,7 +59,8 @@ class Refutation:
 
 @dataclass(frozen=True)
 class FirstScreen:
-    """`plot` stands here and nowhere else on the page; `place`: what it is of."""
+    """`wrong`: by library, in place of a refutation. `plot` stands here and nowhere else on the
+    page; `place`: what it is of."""
 
     finding: str
     tiles: tuple[Tile, ...]
@@ -66,6 +68,7 @@ class FirstScreen:
     refutation: Refutation | None
     plot: Plot | None
     place: Place | None
+    wrong: Wrong | None = None
 
 
 def first_screen(
@@ -79,7 +82,9 @@ def first_screen(
     said, tiles = _of_a_section(report)
     own = tuple(_tiles(report)) or tuple(tiles)
     told = finding(report, refutation) or said
-    return FirstScreen(told, own, answers(report, claims), refutation, plot, place)
+    wrong = wrong_of(claims)
+    telling = None if wrong else refutation
+    return FirstScreen(told, own, answers(report, claims), telling, plot, place, wrong)
 
 
 def _of_a_section(report: Report) -> tuple[str, Sequence[Tile]]:

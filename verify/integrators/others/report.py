@@ -6,14 +6,12 @@ from collections.abc import Callable, Iterator, Sequence
 
 from verify.execution.provenance import provenance
 from verify.integrators.others.parts import Found, look_at_each
-from verify.integrators.tables.cost import DIGITS_BELOW, DIGITS_SEEN
 from verify.integrators.tables.told import SEVERITIES
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.report import Report
 from verify.verdict import Verdict
 
 TITLE = "The integrators of others, verified"
-_SLIGHT = (DIGITS_SEEN, DIGITS_BELOW)
 
 
 def make_integrators_report(
@@ -49,12 +47,6 @@ def _preface(parts: Sequence[Found], claims: Sequence[ClaimResult]) -> Iterator[
     if broken:
         yield f"Left out, all or in part, as they fail here: {', '.join(broken)}."
     wrong = [c for c in claims if c.verdict is Verdict.REFUTED]
-    for section, said in matters(wrong):
-        yield f"{section}: {said}."
-    slight = Counter(c.section for c in wrong if c.severity in _SLIGHT)
-    if slight:
-        each = ", ".join(f"{n} of {section}" for section, n in slight.items())
-        yield f"Last digits alone are wrong in {sum(slight.values())} tables: {each}."
     counts = Counter(c.severity or "not told" for c in wrong)
     if counts:
         ordered = [x for x in (*SEVERITIES, "not told") if x in counts]
@@ -62,15 +54,3 @@ def _preface(parts: Sequence[Found], claims: Sequence[ClaimResult]) -> Iterator[
             f"Of {len(claims)} claims {len(wrong)} are refuted: "
             + ", ".join(f"{counts[kind]} of {kind}" for kind in ordered) + "."
         )  # fmt: skip
-
-
-def matters(wrong: Sequence[ClaimResult]) -> Iterator[tuple[str, str]]:
-    """By library, what is wrong and more than digits: each kind of mistake with its methods."""
-    grave = [c for c in wrong if c.severity not in _SLIGHT]
-    for section in dict.fromkeys(c.section for c in grave):
-        own = [c for c in grave if c.section == section]
-        kinds = []
-        for severity in dict.fromkeys(c.severity for c in own):
-            names = dict.fromkeys(c.source for c in own if c.severity == severity)
-            kinds.append(f"{severity} of {', '.join(names)}")
-        yield section, "; ".join(kinds)

@@ -17,9 +17,16 @@
   const claims = [...document.querySelectorAll(".claim[data-told]")];
   const tiles = [...document.querySelectorAll(".tile[data-told]")].filter((tile) =>
     claims.some((claim) => claim.dataset.told === tile.dataset.told));
+  const only = { told: null, severity: "", words: "" };
   const show = (told) => {
+    only.told = told;
     for (const tile of tiles) tile.querySelector("button").setAttribute("aria-pressed", tile.dataset.told === told);
-    for (const claim of claims) claim.hidden = told !== null && claim.dataset.told !== told;
+    for (const claim of claims) {
+      const of = claim.closest(".group")?.id + " " + claim.querySelector("summary").textContent + claim.dataset.in;
+      claim.hidden = (told !== null && claim.dataset.told !== told) ||
+        (only.severity !== "" && claim.dataset.severity !== only.severity) ||
+        !only.words.toLowerCase().split(/\s+/).every((word) => of.toLowerCase().includes(word));
+    }
     for (const group of document.querySelectorAll(".group"))
       group.hidden = !group.querySelector(".claim:not([hidden])");
   };
@@ -34,8 +41,13 @@
       if (told !== null) claims[0].closest(".group").parentElement.scrollIntoView();
     });
   }
+  const all = () => {
+    for (const field of document.querySelectorAll(".filters > *")) field.value = "";
+    only.severity = only.words = "";
+    show(null);
+  };
   addEventListener("hashchange", () => {
-    if (document.getElementById(location.hash.slice(1))?.closest("[hidden]")) show(null);
+    if (document.getElementById(location.hash.slice(1))?.closest("[hidden]")) all();
   }, { capture: true });
   // All statements with their readings in one list, what is refuted in each reading first.
   const groups = [...document.querySelectorAll(".group")];
@@ -47,6 +59,18 @@
     button.textContent = "Refuted first";
     button.setAttribute("aria-pressed", "false");
     groups[0].before(button, list);
+    const kinds = [...new Set(claims.map((claim) => claim.dataset.severity).filter(Boolean))];
+    if (kinds.length) {
+      const [filters, words, severity] = ["p", "input", "select"].map((name) => document.createElement(name));
+      filters.className = "filters";
+      Object.assign(words, { type: "search", placeholder: "library, method or words", ariaLabel: "Show claims with these words" });
+      severity.ariaLabel = "Show one kind of mistake";
+      severity.append(new Option("of every kind", ""), ...kinds.map((kind) => new Option(kind, kind)));
+      words.addEventListener("input", () => { only.words = words.value.trim(); show(only.told); });
+      severity.addEventListener("change", () => { only.severity = severity.value; show(only.told); });
+      filters.append(words, severity);
+      button.before(filters);
+    }
     list.className = "group";
     button.addEventListener("click", () => {
       const sorted = button.getAttribute("aria-pressed") === "false";
