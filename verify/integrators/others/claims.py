@@ -114,7 +114,7 @@ def _(method: ExactTableau, integrator: ReleasedIntegrator, kind: str) -> Look |
         integrator.name, "runge-kutta", "", "", order=integrator.order,
         a=[[str(x) for x in row] for row in table.rows], b=[str(x) for x in table.weights],
     ).method.entry  # fmt: skip
-    return at_table(entry, kind, integrator.order)
+    return at_table(entry, kind, integrator.order, exact=not method.rounded)
 
 
 def separate(claims: Iterable[TableClaim]) -> Iterator[TableClaim]:
@@ -139,7 +139,7 @@ def _claims(method: object, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
 def _(method: Compared, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
     verdict, told, details = method.compare()
     judged = verdict, prose(told), details
-    yield "agreement", method.statement, judged, integrator.reproduction, OF_WORDS
+    yield method.kind, method.statement, judged, integrator.reproduction, OF_WORDS
 
 
 @_claims.register

@@ -46,10 +46,12 @@ class ExactTableau:
 
 @dataclass(frozen=True)
 class Compared:
-    """What is compared as a whole: `compare` returns the verdict, the evidence and a table."""
+    """What is compared as a whole: `compare` returns the verdict, the evidence and a table. `kind`
+    ends the claim's id."""
 
     statement: str
     compare: Callable[[], tuple[Verdict, str, tuple[tuple[str, ...], ...]]]
+    kind: str = "agreement"
 
 
 @dataclass(frozen=True)

@@ -4,12 +4,14 @@ from collections.abc import Mapping
 from typing import Any
 
 import sympy
+from pydantic import ValidationError
 
 from verify.errors import InputError
 from verify.integrators.tables import kinds
 from verify.integrators.tables.check import read_tables
 from verify.integrators.tables.entry import Naming, TableEntry
 from verify.integrators.tables.splittings.claims import AlternatingEntry, parts_of
+from verify.scenes.mistakes.values import one_line
 
 RIGHT = "right"
 
@@ -36,8 +38,11 @@ def changed(entry: TableEntry, changes: Mapping[str, str]) -> TableEntry:
             data["times"] = _right_times(entry)
         else:
             _put(data, key, value)
-    made = kinds.get(entry.kind).Entry.model_validate(data)
-    return made.in_folder(entry.folder)  # type: ignore[no-any-return]
+    try:
+        made: TableEntry = kinds.get(entry.kind).Entry.model_validate(data)
+    except ValidationError as error:
+        raise one_line(error, "changes", type(entry)) from None
+    return made.in_folder(entry.folder)
 
 
 def _put(data: dict[str, Any], key: str, value: str) -> None:

@@ -75,7 +75,8 @@ def _shown(each: Changed) -> Shown:
         raise NotConfirmedError(str(error)) from None
     if not all(x.below(claimed) for x in printed):
         raise NotConfirmedError(f"{each.id}: its steps do not show it")
-    if not all(x.order is None or x.order >= claimed for x in mended):
+    seen = [x.order for x in mended if x.order is not None]
+    if each.changes and (not seen or min(seen) < claimed or any(x.below(claimed) for x in mended)):
         raise NotConfirmedError(f"{each.id}: with the mend its order is not {claimed}")
     return Shown(each.id, claimed, printed, mended)
 

@@ -2,8 +2,10 @@
 
 from collections.abc import Iterator
 
-from verify.integrators.others.integrator import ReleasedIntegrator
+from verify.integrators.others.integrator import Compared, ReleasedIntegrator
 from verify.integrators.others.scripted import Driven, scripted
+from verify.integrators.others.tabled import text
+from verify.verdict import Verdict
 
 TITLE = "gala"
 LIBRARY = "gala"
@@ -36,3 +38,38 @@ def integrators() -> Iterator[ReleasedIntegrator]:
     ):
         source = f"the documentation of gala.integrate.{method}: {said}"
         yield from scripted(method, _IN_PYTHON, method, source, order, symplectic)
+    yield ReleasedIntegrator(
+        "RK5Integrator's coefficients",
+        "A and C of gala.integrate.pyintegrators.rk5",
+        "its documentation: “using the Dormand-Prince coefficients”",
+        Compared("its nodes are those of Dormand and Prince", _nodes, "documentation"),
+        reproduction=_NODES,
+    )
+
+
+def _nodes() -> tuple[Verdict, str, tuple[tuple[str, ...], ...]]:
+    """Its nodes beside those of Dormand and Prince, and of Cash and Karp."""
+    from gala.integrate.pyintegrators import rk5
+
+    own = [text(float(x)) for x in rk5.A]
+    rows: tuple[tuple[str, ...], ...] = (
+        ("of", *(f"c{k + 1}" for k in range(len(own)))),
+        ("gala", *own),
+    )
+    others = {"Dormand and Prince": _DORMAND_PRINCE, "Cash and Karp": _CASH_KARP}
+    rows += tuple((name, *nodes) for name, nodes in others.items())
+    if own == [*_DORMAND_PRINCE]:
+        return Verdict.PROVED, "they are", rows
+    alike = " and are those of Cash and Karp" if own == [*_CASH_KARP] else ""
+    return Verdict.REFUTED, f"they are {', '.join(own)}{alike}", rows
+
+
+_DORMAND_PRINCE = ("0", "1/5", "3/10", "4/5", "8/9", "1")
+_CASH_KARP = ("0", "1/5", "3/10", "3/5", "1", "7/8")
+_NODES = """\
+from gala.integrate.pyintegrators import rk5
+
+print("gala              ", [float(x) for x in rk5.A])
+print("Dormand and Prince", [0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1])
+print("Cash and Karp     ", [0, 1 / 5, 3 / 10, 3 / 5, 1, 7 / 8])
+"""

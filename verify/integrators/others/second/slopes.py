@@ -24,6 +24,7 @@ _SIZES = tuple(mp.mpf(1) / 2**k for k in range(4, 8))
 _LARGE = tuple(
     mp.mpf(k) / 16 for k in (16, 12, 8, 6, 4, 3, 2)
 )  # where rounded numbers allow no less
+_SMALL = tuple(mp.mpf(1) / 2**k for k in (14, 16, 18, 20))  # where a small residue is seen
 _TURNS = 80  # of a fixed point: with h ≤ 1/16 each gains more than a digit
 _ABOVE = 20  # times the unit of the last digits an error must be, in parts of h
 _SHORT = 1e-7  # the unit of decimals that are taken for exact
@@ -92,15 +93,18 @@ class Slopes:
         return len(self.last) > 1 and max(self.last) < claimed + 1 - _WITHIN
 
 
-def slopes_of(entry: TableEntry, timed: bool, embedded: bool = False) -> tuple[Slopes, Slopes]:
-    """Of the table as it is printed, at both systems. `embedded`: with its embedded weights."""
+def slopes_of(
+    entry: TableEntry, timed: bool, embedded: bool = False, small: bool = False
+) -> tuple[Slopes, Slopes]:
+    """Of the table as it is printed, at both systems. `embedded`: with its embedded weights;
+    `small`: of steps so small that a small residue of a low order is seen."""
     with mp.workdps(_DIGITS):
         step, naming = _step(entry, embedded)
         units = [float(x) for x in naming.printed.units.values() if x < _SHORT]
         noise = _ABOVE * max(units, default=0.0)  # what they leave in a step, in parts of h
         pair = systems(timed, entry.kind == "nystrom")
-        found = [_of(system, step, noise, _SIZES) for system in pair]
-        if any(slopes.order is None for slopes in found):
+        found = [_of(system, step, noise, _SMALL if small else _SIZES) for system in pair]
+        if not small and any(slopes.order is None for slopes in found):
             found = [_of(system, step, noise, _LARGE) for system in pair]
     return found[0], found[1]
 
