@@ -71,7 +71,8 @@ BY_NAME = {
     "verify.integrators.kept_state": {"modules"},  # numpy as above, and where a function is from
     "verify.integrators.loading": {"import_module", "modules", "spec_from_file_location",
                                    "exec_module"},  # the user's code
-    "verify.integrators.others.report": {"import_module"},  # a library that may be broken
+    "verify.integrators.others.parts": {"import_module"},  # a library that may be broken
+    "verify.integrators.others.methods.scripted": {"exec"},  # lines of ours, which are shown
     "verify.arithmetic.number_system": {"exec"},  # kernels
     "verify.arithmetic.systems.float64": {"exec"},  # kernels
 }  # fmt: skip
@@ -297,6 +298,7 @@ def test_pages_compute_nothing_themselves() -> None:
 def test_only_what_is_declared_is_imported() -> None:
     declared = {"click", "flint", "mpmath", "numba", "numpy", "pydantic", "rich", "sympy", "gmpy2",
                 "greenlet", "llvmlite", "heyoka", "scipy", "galpy", "nodepy", "rebound",
+                "desolver", "diffrax", "extensisq", "gala", "jax_md", "pyhamsys", "torchdiffeq",
                 "matplotlib", "jinja2", "markupsafe", "hypothesis",
                 "distributed", "pandas", "pyarrow", "tqdm", "verify", "xarray"}  # fmt: skip
     for name, path in NAMES.items():

@@ -19,9 +19,10 @@ LEFT_OUT = {
     ROOT / "tests" / "mutants" / "README.md",  # made from results on an older source, by a program
 }
 BUILT = ROOT / "docs" / "_build"  # the manual, where it was built
+AUDITS = ROOT / "reports" / "audits"  # which name files of other libraries
 FILES = [
     *(p for name in FOLDERS for p in sorted((ROOT / name).rglob("*"))
-      if p.suffix in KINDS and BUILT not in p.parents),
+      if p.suffix in KINDS and not {BUILT, AUDITS} & {*p.parents}),
     *sorted(ROOT.glob("*.md")),
     ROOT / "pyproject.toml",
 ]  # fmt: skip

@@ -92,9 +92,9 @@ def report(
 
     What is finished is kept in DIR/kept; an interrupted report goes on from there.
 
-    `integrators` holds what other libraries claim of their integrators, order and symplecticity,
-    against what is found: scipy, heyoka, galpy, rebound and nodepy, where they are installed, and
-    coefficient tables of splitting methods as they are printed. It runs their code.
+    `integrators` holds what other libraries claim of their integrators, order, symplecticity and
+    clocks, against what is found: those of the extras peers and heavy-peers that are installed, and
+    coefficient tables as libraries and papers print them. It runs their code.
     """
     more = "" if formats == ("html",) else "".join(f" --format {name}" for name in formats)
     if full:

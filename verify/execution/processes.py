@@ -39,6 +39,7 @@ class Processes:
         self._busy: dict[Future[Any], ProcessPoolExecutor] = {}
 
     def submit(self, function: Callable[..., Any], *arguments: Any) -> "Future[Any]":
+        """Begins the call in an idle process, or in a new one."""
         context = self._context  # made before both are held, which workers would inherit
         # What is half begun could not be ended.
         with safe_path(), _held(signal.SIGINT, signal.SIGTERM):
@@ -56,6 +57,7 @@ class Processes:
         return _fork_server(self._modules)
 
     def release(self, future: "Future[Any]") -> None:
+        """Once for each call that has ended: its process is idle, or lost."""
         pool = self._busy.pop(future)
         if isinstance(future.exception(), BrokenExecutor):
             pool.shutdown(wait=False)

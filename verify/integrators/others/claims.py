@@ -6,15 +6,14 @@ from functools import singledispatch
 
 from verify.integrators.check import POINTS
 from verify.integrators.others import reproductions
-from verify.integrators.others.integrator import (
+from verify.integrators.others.methods.integrator import (
     Compared,
     ExactTableau,
     FloatStep,
     ReleasedIntegrator,
 )
-from verify.integrators.others.measured import finding
-from verify.integrators.others.second.look import OF_ORDERS, Look, at_step, at_table, claimed_of
-from verify.integrators.others.tableau import (
+from verify.integrators.others.methods.measured import finding
+from verify.integrators.others.methods.tableau import (
     WRONG,
     Symplecticity,
     TableauOrder,
@@ -22,7 +21,8 @@ from verify.integrators.others.tableau import (
     repair,
     symplecticity,
 )
-from verify.integrators.others.tabled import FloatTable, tabled
+from verify.integrators.others.methods.tabled import FloatTable, tabled
+from verify.integrators.others.second.look import OF_ORDERS, Look, at_step, at_table, claimed_of
 from verify.integrators.results import Finding
 from verify.integrators.tables import kinds
 from verify.integrators.tables.cost import severity_of

@@ -15,8 +15,8 @@ from verify.execution.processes import Processes
 from verify.integrators.others import libraries as others
 from verify.integrators.others import printed_libraries
 from verify.integrators.others.claims import claims_of
-from verify.integrators.others.integrator import ReleasedIntegrator
-from verify.integrators.others.measured import FAILURES
+from verify.integrators.others.methods.integrator import ReleasedIntegrator
+from verify.integrators.others.methods.measured import FAILURES
 from verify.integrators.step import last_line, quiet
 from verify.integrators.tables.check import read_tables
 from verify.prose import prose

@@ -12,9 +12,9 @@ from tests.paths import ROOT
 from verify.integrators.others import libraries as others
 from verify.integrators.others import parts, printed_libraries
 from verify.integrators.others.claims import claims_of
-from verify.integrators.others.integrator import Compared, FloatStep, ReleasedIntegrator
 from verify.integrators.others.libraries.nodepy import _order_method, claimed
-from verify.integrators.others.measured import finding
+from verify.integrators.others.methods.integrator import Compared, FloatStep, ReleasedIntegrator
+from verify.integrators.others.methods.measured import finding
 from verify.integrators.others.report import make_integrators_report
 from verify.verdict import Verdict
 

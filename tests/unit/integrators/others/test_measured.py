@@ -6,8 +6,8 @@ from collections.abc import Callable
 from contextlib import redirect_stdout
 
 from verify.integrators.others.claims import claims_of
-from verify.integrators.others.integrator import FINE, FloatStep, Map, ReleasedIntegrator
-from verify.integrators.others.measured import finding
+from verify.integrators.others.methods.integrator import FINE, FloatStep, Map, ReleasedIntegrator
+from verify.integrators.others.methods.measured import finding
 from verify.verdict import Verdict
 
 PENDULUM = "p**2/2 - cos(q)"

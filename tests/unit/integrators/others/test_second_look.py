@@ -7,12 +7,12 @@ from typing import Any
 import pytest
 
 from verify.integrators.others.claims import claims_of
-from verify.integrators.others.integrator import FloatStep, ReleasedIntegrator
+from verify.integrators.others.methods.integrator import FloatStep, ReleasedIntegrator
+from verify.integrators.others.methods.problems import AGAIN, EACH, Problem
+from verify.integrators.others.methods.scripted import Driven, scripted
+from verify.integrators.others.methods.tabled import tabled, text
 from verify.integrators.others.printed_libraries import files
-from verify.integrators.others.problems import AGAIN, EACH, Problem
-from verify.integrators.others.scripted import Driven, scripted
 from verify.integrators.others.second.look import at_step, at_table
-from verify.integrators.others.tabled import tabled, text
 from verify.integrators.tables.check import read_tables
 from verify.integrators.tables.entry import TableEntry
 from verify.verdict import Verdict

@@ -4,8 +4,8 @@ import pytest
 from sympy import Rational, S, sqrt
 
 from verify.integrators.others.claims import claims_of
-from verify.integrators.others.integrator import ExactTableau, ReleasedIntegrator
-from verify.integrators.others.tableau import order_of, repair, symplecticity
+from verify.integrators.others.methods.integrator import ExactTableau, ReleasedIntegrator
+from verify.integrators.others.methods.tableau import order_of, repair, symplecticity
 from verify.schemes.implicit_tableau import ImplicitTableau
 from verify.schemes.methods.runge_kutta.gauss4 import TABLEAU as GAUSS4
 from verify.schemes.methods.runge_kutta.gauss6 import TABLEAU as GAUSS6

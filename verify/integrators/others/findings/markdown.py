@@ -1,10 +1,15 @@
 """A finding as a Markdown note that can be sent as it is."""
 
+import re
 from collections.abc import Iterator, Sequence
 
 from verify.integrators.others.findings.confirmed import Confirmed, Shown
 from verify.integrators.others.second.slopes import Slopes
+from verify.scenes.results.claim import ClaimResult
 
+_CLAIMED, _HOLDS = re.compile(r"order (\d+)"), re.compile(r"order is (\d+)")
+_OFF = re.compile(r"of h\^(\d+), .*? fails by (-?\d+(?:\.\d+)?(?:e[+-]?\d+)?)")
+_WEIGHTS = ", embedded weights"
 _SHOWN = 4  # step sizes, the smallest
 _FENCES = {"c++": "cpp"}
 
@@ -28,9 +33,7 @@ def note(found: Confirmed, versions: str) -> str:
         "",
         said.holds.strip(),
         "",
-        *(f"- `{claim.source}`: {claim.evidence}" for claim in found.claims[:12]),
-        *_more(found),
-        "",
+        *_orders(found.claims),
         "## A program that shows it",
         "",
         f"```{language}",
@@ -52,9 +55,20 @@ def note(found: Confirmed, versions: str) -> str:
     return "\n".join(lines).rstrip() + "\n"
 
 
-def _more(found: Confirmed) -> Iterator[str]:
-    if len(found.claims) > 12:
-        yield f"- and {len(found.claims) - 12} more, alike."
+def _orders(claims: Sequence[ClaimResult]) -> Iterator[str]:
+    """Of each method the claimed order, the one that holds, and the first term that is off."""
+    rows = []
+    for claim in claims:
+        claimed, holds = _CLAIMED.search(str(claim.statement)), _HOLDS.search(str(claim.evidence))
+        off = _OFF.search(str(claim.evidence))
+        if claimed and holds:
+            term = f"h^{off[1]}" if off else "–"
+            by = f"{abs(float(off[2])):.1e}" if off else "–"
+            of = f"`{claim.source}`{_WEIGHTS if claim.kind.startswith('embedded') else ''}"
+            rows.append(f"| {of} | {claimed[1]} | {holds[1]} | {term} | {by} |")
+    if rows:
+        yield "| method | claimed order | order that holds | first term that is off | by |"
+        yield from ("|---|---|---|---|---|", *rows, "")
 
 
 def _printed(found: Confirmed) -> Iterator[str]:

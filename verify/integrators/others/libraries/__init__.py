@@ -5,7 +5,7 @@ A file defines `TITLE`, what people call it; `LIBRARY`, the package that it need
 where it is used, or None where it needs none; `PACKAGE`, what pip calls it, where that is another
 name; `EXTRA`, of ours, that installs it, unless that is `peers`; `LEFT_OUT`, what of it cannot be
 driven as a one-step map, each with the reason; and `integrators()`, which yields what is verified
-(see `verify.integrators.others.integrator`). Adding a library is adding one file.
+(see `verify.integrators.others.methods.integrator`). Adding a library is adding one file.
 """
 
 from functools import cache

@@ -7,9 +7,9 @@ of exact drifts. V is that of a quadrupole and a sextupole.
 from collections.abc import Iterator
 from fractions import Fraction
 
-from verify.integrators.others.integrator import FloatStep, ReleasedIntegrator
-from verify.integrators.others.problems import USUAL
-from verify.integrators.others.scripted import Script
+from verify.integrators.others.methods.integrator import FloatStep, ReleasedIntegrator
+from verify.integrators.others.methods.problems import USUAL
+from verify.integrators.others.methods.scripted import Script
 
 TITLE = "pyAT"
 LIBRARY = "at"

@@ -3,9 +3,9 @@ it says nothing."""
 
 from collections.abc import Iterator
 
-from verify.integrators.others.integrator import ReleasedIntegrator
-from verify.integrators.others.problems import HENON_HEILES, TWO_WAVES
-from verify.integrators.others.scripted import Driven, scripted
+from verify.integrators.others.methods.integrator import ReleasedIntegrator
+from verify.integrators.others.methods.problems import HENON_HEILES, TWO_WAVES
+from verify.integrators.others.methods.scripted import Driven, scripted
 
 TITLE = "blackjax"
 LIBRARY = "blackjax"

@@ -4,10 +4,10 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from verify.integrators.others.integrator import ReleasedIntegrator
-from verify.integrators.others.problems import EACH
-from verify.integrators.others.scripted import Driven, scripted
-from verify.integrators.others.tabled import tabled
+from verify.integrators.others.methods.integrator import ReleasedIntegrator
+from verify.integrators.others.methods.problems import EACH
+from verify.integrators.others.methods.scripted import Driven, scripted
+from verify.integrators.others.methods.tabled import tabled
 
 TITLE = "diffrax"
 LIBRARY = "diffrax"

@@ -3,10 +3,10 @@
 from collections.abc import Iterator
 from typing import Any
 
-from verify.integrators.others.integrator import ReleasedIntegrator
-from verify.integrators.others.problems import DRIVEN, HENON_HEILES
-from verify.integrators.others.scripted import Driven, scripted
-from verify.integrators.others.tabled import full, tabled
+from verify.integrators.others.methods.integrator import ReleasedIntegrator
+from verify.integrators.others.methods.problems import DRIVEN, HENON_HEILES
+from verify.integrators.others.methods.scripted import Driven, scripted
+from verify.integrators.others.methods.tabled import full, tabled
 
 TITLE = "extensisq"
 LIBRARY = "extensisq"

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator
 
-from verify.integrators.others.integrator import Compared, ReleasedIntegrator
-from verify.integrators.others.scripted import Driven, scripted
-from verify.integrators.others.tabled import text
+from verify.integrators.others.methods.integrator import Compared, ReleasedIntegrator
+from verify.integrators.others.methods.scripted import Driven, scripted
+from verify.integrators.others.methods.tabled import text
 from verify.verdict import Verdict
 
 TITLE = "gala"

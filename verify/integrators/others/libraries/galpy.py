@@ -11,8 +11,14 @@ from collections.abc import Iterator
 from fractions import Fraction
 from functools import partial
 
-from verify.integrators.others.integrator import FINE, FloatStep, Map, Point, ReleasedIntegrator
-from verify.integrators.others.problems import USUAL
+from verify.integrators.others.methods.integrator import (
+    FINE,
+    FloatStep,
+    Map,
+    Point,
+    ReleasedIntegrator,
+)
+from verify.integrators.others.methods.problems import USUAL
 
 TITLE = "galpy"
 LIBRARY = "galpy"

@@ -13,7 +13,12 @@ from typing import Any
 from verify.algebra.enclosure import enclosed
 from verify.arithmetic.arb import middle_and_radius
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.others.integrator import Compared, FloatStep, Map, ReleasedIntegrator
+from verify.integrators.others.methods.integrator import (
+    Compared,
+    FloatStep,
+    Map,
+    ReleasedIntegrator,
+)
 from verify.verdict import Verdict
 
 TITLE = "heyoka"

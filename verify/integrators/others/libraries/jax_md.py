@@ -2,10 +2,10 @@
 
 from collections.abc import Iterator
 
-from verify.integrators.others.integrator import ReleasedIntegrator
-from verify.integrators.others.problems import HENON_HEILES, TWO_WAVES
-from verify.integrators.others.scripted import Driven, scripted
-from verify.integrators.others.tabled import tabled
+from verify.integrators.others.methods.integrator import ReleasedIntegrator
+from verify.integrators.others.methods.problems import HENON_HEILES, TWO_WAVES
+from verify.integrators.others.methods.scripted import Driven, scripted
+from verify.integrators.others.methods.tabled import tabled
 
 TITLE = "jax-md"
 LIBRARY = "jax_md"

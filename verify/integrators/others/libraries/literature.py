@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from verify.content import content
-from verify.integrators.others.integrator import ReleasedIntegrator
+from verify.integrators.others.methods.integrator import ReleasedIntegrator
 from verify.integrators.tables.splittings.claims import alternating, mirrored
 from verify.integrators.tables.splittings.table import PrintedTable
 

@@ -15,14 +15,14 @@ from typing import Any
 
 import sympy
 
-from verify.integrators.others.integrator import (
+from verify.integrators.others.methods.integrator import (
     Compared,
     ExactTableau,
     FloatStep,
     Map,
     ReleasedIntegrator,
 )
-from verify.integrators.others.tableau import order_of
+from verify.integrators.others.methods.tableau import order_of
 from verify.schemes.implicit_tableau import ImplicitTableau
 from verify.verdict import Verdict
 

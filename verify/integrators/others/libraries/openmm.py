@@ -6,9 +6,9 @@ symplectic, and its order is not that of its positions.
 
 from collections.abc import Iterator
 
-from verify.integrators.others.integrator import ReleasedIntegrator
-from verify.integrators.others.problems import HENON_HEILES, TWO_WAVES, Problem
-from verify.integrators.others.scripted import Driven, scripted
+from verify.integrators.others.methods.integrator import ReleasedIntegrator
+from verify.integrators.others.methods.problems import HENON_HEILES, TWO_WAVES, Problem
+from verify.integrators.others.methods.scripted import Driven, scripted
 
 TITLE = "OpenMM"
 LIBRARY = "openmm"

@@ -8,10 +8,10 @@ orders ask for. All others are for either.
 import itertools
 from collections.abc import Iterator
 
-from verify.integrators.others.integrator import ReleasedIntegrator
-from verify.integrators.others.problems import EACH, HENON_HEILES, TWO_WAVES
-from verify.integrators.others.scripted import Driven, scripted
-from verify.integrators.others.tabled import tabled, text
+from verify.integrators.others.methods.integrator import ReleasedIntegrator
+from verify.integrators.others.methods.problems import EACH, HENON_HEILES, TWO_WAVES
+from verify.integrators.others.methods.scripted import Driven, scripted
+from verify.integrators.others.methods.tabled import tabled, text
 
 TITLE = "pyhamsys"
 LIBRARY = "pyhamsys"

@@ -14,7 +14,13 @@ from fractions import Fraction
 from functools import partial
 from typing import Any
 
-from verify.integrators.others.integrator import FINE, FloatStep, Map, Point, ReleasedIntegrator
+from verify.integrators.others.methods.integrator import (
+    FINE,
+    FloatStep,
+    Map,
+    Point,
+    ReleasedIntegrator,
+)
 
 TITLE = "rebound"
 LIBRARY = "rebound"

@@ -12,7 +12,7 @@ from typing import Any
 
 import sympy
 
-from verify.integrators.others.integrator import (
+from verify.integrators.others.methods.integrator import (
     FINE,
     ExactTableau,
     FloatStep,

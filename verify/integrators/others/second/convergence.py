@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import Any
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.others.integrator import Map
+from verify.integrators.others.methods.integrator import Map
 
 _SIZES = tuple(1 / 2**k for k in range(1, 9))
 _PARTS = 32

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from verify.integrators.others.integrator import FloatStep, ReleasedIntegrator
-from verify.integrators.others.measured import FAILURES, finding
+from verify.integrators.others.methods.integrator import FloatStep, ReleasedIntegrator
+from verify.integrators.others.methods.measured import FAILURES, finding
 from verify.integrators.others.second.convergence import order_of_step
 from verify.integrators.others.second.slopes import Slopes, slopes_of
 from verify.integrators.tables.entry import TableEntry

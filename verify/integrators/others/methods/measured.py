@@ -8,7 +8,7 @@ from verify.integrators.check import POINTS
 from verify.integrators.degrees.check import measure_step
 from verify.integrators.faults import examined
 from verify.integrators.measured import of_measured
-from verify.integrators.others.integrator import FloatStep
+from verify.integrators.others.methods.integrator import FloatStep
 from verify.integrators.probe import Trial, measured
 from verify.integrators.results import Finding
 from verify.integrators.step import Step, StepError, last_line

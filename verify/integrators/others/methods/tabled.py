@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from verify.integrators.others.integrator import ReleasedIntegrator
+from verify.integrators.others.methods.integrator import ReleasedIntegrator
 from verify.integrators.tables import kinds
 from verify.integrators.tables.entry import TableEntry
 

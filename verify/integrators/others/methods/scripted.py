@@ -6,8 +6,16 @@ from fractions import Fraction
 from typing import Any
 
 from verify.integrators.check import POINTS
-from verify.integrators.others.integrator import FloatStep, Map, ReleasedIntegrator
-from verify.integrators.others.problems import AGAIN, AWAY, DRIVEN, EACH, LONG, USUAL, Problem
+from verify.integrators.others.methods.integrator import FloatStep, Map, ReleasedIntegrator
+from verify.integrators.others.methods.problems import (
+    AGAIN,
+    AWAY,
+    DRIVEN,
+    EACH,
+    LONG,
+    USUAL,
+    Problem,
+)
 
 _HIGH = 5  # an order of which few points and a fine ladder tell more
 _END = {

@@ -1,0 +1,50 @@
+"""The second look at every printed table of libraries, right and wrong: does it agree with the first?
+
+    python -m tests.campaigns.audit
+
+Of each claim of an order that is proved, enclosed or measured the steps at 60 digits must not have a
+lower order; of each that is refuted they must. Anything else is listed and ends with status 1. All
+tables take a quarter of an hour.
+"""
+
+import sys
+import time
+
+from verify.integrators.others.printed_libraries import files
+from verify.integrators.others.second.look import OF_ORDERS, at_table, claimed_of
+from verify.integrators.tables.check import read_tables
+from verify.verdict import Verdict
+
+ORDERS = ("order", "order in time", "embedded order")
+
+
+def main() -> int:
+    """The status: 1 where the two do not agree."""
+    right, wrong, unseen, problems = 0, 0, 0, []
+    for path in files():
+        begun, found = time.perf_counter(), read_tables(path)
+        entries = {entry.name: entry for entry, _ in found.entries}
+        for each in found.judged():
+            entry, claim = entries[each.table], each.claim
+            claimed = claimed_of(entry, claim.kind)
+            plain = claim.kind.partition(", ")[0]
+            if plain not in ORDERS or claimed is None or claim.verdict is Verdict.UNDECIDED:
+                continue
+            look = at_table(entry, claim.kind, claimed)
+            if not look.slopes:
+                unseen += 1
+            elif claim.verdict is Verdict.REFUTED and claim.severity in OF_ORDERS:
+                wrong += 1
+                problems += [] if look.shown else [f"{each.id}: refuted, and {look.said}"]
+            elif claim.verdict is not Verdict.REFUTED:
+                right += 1
+                problems += [f"{each.id}: right, and {look.said}"] if look.shown else []
+        print(f"{found.title}: {time.perf_counter() - begun:.0f} s", flush=True)
+    print(f"{right} right and {wrong} wrong orders looked at twice, {unseen} of kinds once only")
+    for problem in problems:
+        print(problem)
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
