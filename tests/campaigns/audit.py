@@ -1,4 +1,4 @@
-"""The second look at every printed table of libraries, right and wrong: does it agree with the first?
+"""The second look at every printed table of libraries, right and wrong, beside the first.
 
     python -m tests.campaigns.audit
 
