@@ -10,6 +10,9 @@ from playwright.sync_api import Browser, sync_playwright
 
 from tests.browser.checks import Opened, opened
 from tests.browser.made_pages import EVIL, NAMES, page_of, planted
+from tests.unit.pages.test_page import report
+from tests.unit.pages.test_wrong import GIVEN
+from verify.pages.page import render
 
 PHONE, DESK = 360, 1280
 SHORT = "own scene"  # the page on which errors are planted
@@ -140,6 +143,26 @@ def test_a_tile_shows_the_claims_that_it_counts_and_all_again(
         tile.click()
         tile.click()
         assert found.page.evaluate(f"{seen}.length") == every
+
+
+def test_claims_are_filtered_by_words_and_by_kind_of_mistake(
+    browser: Browser, folder: Path
+) -> None:
+    page = render(report(claims=GIVEN))
+    for width, scheme in ((PHONE, "dark"), (DESK, "light")):
+        with opened(browser, file_of(folder, page), width=width, scheme=scheme) as found:
+            seen = "[...document.querySelectorAll('.claim')].filter(c => c.checkVisibility())"
+            ids = f"{seen}.map(c => c.querySelector('.foot').textContent.trim()).sort()"
+            assert found.sideways() == []
+            assert found.violations() == []
+            found.page.locator(".filters input").fill("BETA ruth")
+            assert found.page.evaluate(ids) == ["b/3"]
+            found.page.locator(".filters input").fill("")
+            found.page.locator(".filters select").select_option("wrong order")
+            assert found.page.evaluate(ids) == ["b/2", "b/3"]
+            found.page.locator("#wrong a").first.click()
+            found.page.wait_for_function(f"{seen}.length === {len(GIVEN)}", timeout=2000)
+            assert found.page.locator(".filters select").input_value() == ""
 
 
 def test_on_demand_the_refuted_statements_come_first_with_their_readings(

@@ -2,9 +2,9 @@
 
     python -m tests.campaigns.audit
 
-Of each claim of an order that is proved, enclosed or measured the steps at 60 digits must not have a
-lower order; of each that is refuted they must. Anything else is listed and ends with status 1. All
-tables take a quarter of an hour.
+Where an order is proved, enclosed or measured, the steps at 60 digits must not show a lower one;
+where it is refuted, they must. Anything else is listed and ends with status 1. It takes a quarter of
+an hour.
 """
 
 import sys
