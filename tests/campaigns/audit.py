@@ -3,8 +3,8 @@
     python -m tests.campaigns.audit
 
 Where an order is proved, enclosed or measured, the steps at 60 digits must not show a lower one;
-where it is refuted, they must. Anything else is listed and ends with status 1. It takes a quarter of
-an hour.
+where it is refuted, they must. Anything else is listed and ends with status 1. It takes a quarter
+of an hour.
 """
 
 import sys

@@ -18,7 +18,8 @@ from verify.integrators.others.methods.integrator import (
     Point,
     ReleasedIntegrator,
 )
-from verify.integrators.others.methods.problems import USUAL
+from verify.integrators.others.methods.problems import LONG, USUAL
+from verify.integrators.others.methods.scripted import Script
 
 TITLE = "galpy"
 LIBRARY = "galpy"
@@ -42,6 +43,26 @@ _STEPS = {
     4: USUAL[:14],
     6: tuple(Fraction(x, 64) for x in (64, 56, 48, 40, 32, 28, 24, 20, 16, 14, 12, 10, 8, 7, 6)),
 }
+_HALO = "p1**2/2 + p2**2/2 + log(q1**2 + q2**2/(4/5)**2 + 1/4)"
+_IN_THE_PLANE = """\
+import warnings
+
+import numpy as np
+from galpy.orbit import Orbit
+from galpy.potential import LogarithmicHaloPotential
+
+pot = LogarithmicHaloPotential(amp=2.0, q=1.0, b=0.8, core=0.5).toPlanar()
+
+
+def step(p, q, h):
+    r, angle = np.hypot(*q), np.arctan2(q[1], q[0])
+    ahead, aside = q / r, np.array([-q[1], q[0]]) / r
+    o = Orbit([r, p @ ahead, p @ aside, angle])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # it says of each orbit that C is used
+        o.integrate(np.array([0.0, h]), pot, method="{method}", dt=h, progressbar=False)
+    return np.array([o.vx(h), o.vy(h)]), np.array([o.x(h), o.y(h)])
+"""
 _SOURCE = "the documentation of galpy.orbit.Orbit.integrate"
 
 
@@ -58,6 +79,17 @@ def integrators() -> Iterator[ReleasedIntegrator]:
             _script(name),
         )
 
+    for name, order in _ORDERS.items():
+        text = _IN_THE_PLANE.replace("{method}", name)
+        yield ReleasedIntegrator(
+            f"{name}, two degrees",
+            "Orbit in the plane, its R, v_R, v_T, φ from x and y, integrate([0, h], …, dt=h)",
+            _SOURCE,
+            FloatStep(_HALO, Script(text).step, (), LONG if order > 4 else USUAL),
+            order,
+            None if name.startswith("rk") else True,
+            text,
+        )
     for name, order in _ORDERS.items():
         yield ReleasedIntegrator(
             f"{name}, driven",

@@ -19,6 +19,7 @@ from verify.integrators.others.methods.integrator import (
     Map,
     ReleasedIntegrator,
 )
+from verify.integrators.others.methods.scripted import Script
 from verify.verdict import Verdict
 
 TITLE = "heyoka"
@@ -29,6 +30,26 @@ _DRIVEN = "taylor_adaptive with tol = exp(3 − 2η) and step(max_delta_t = h)"
 # Slow, since heyoka takes a shorter step than it is given where its tolerance asks for one.
 _SLOW = "p**2/32 - cos(q)/16"
 _SLOWLY_DRIVEN = "p**2/32 - cos(q)/16 - q*cos(t/4)/16"
+_SLOW_IN_SPACE = "p1**2/32 + p2**2/32 - cos(q1)/16 - cos(q1 - q2)/16"
+_IN_SPACE = """\
+import math
+
+import heyoka as hy
+import numpy as np
+
+p1, p2, q1, q2 = hy.make_vars("p1", "p2", "q1", "q2")
+pull = hy.sin(q1 - q2) / 16
+equations = [(p1, -hy.sin(q1) / 16 - pull), (p2, pull), (q1, p1 / 16), (q2, p2 / 16)]
+y = hy.taylor_adaptive(equations, [0.0] * 4, tol=math.exp(3 - 2 * {eta}))
+assert y.order == {eta}
+
+
+def step(p, q, h):
+    y.time, y.state[:] = 0.0, (*p, *q)
+    _, taken = y.step(max_delta_t=h)
+    assert taken == h
+    return np.array(y.state[:2]), np.array(y.state[2:])
+"""
 _SYSTEMS = {
     "pendulum": "p**2/2 - cos(q)",
     "not separable": "p**2/2 + q**2/2 + p**2*q/4 + p*q**3/8",
@@ -59,6 +80,15 @@ def integrators() -> Iterator[ReleasedIntegrator]:
             FloatStep(_SLOWLY_DRIVEN, lambda eta=eta: _in_time(eta)),  # type: ignore[misc]
             eta,
             reproduction=_script_in_time(eta),
+        )
+    for eta in _ORDERS:
+        yield ReleasedIntegrator(
+            f"Taylor, order {eta}, two degrees",
+            _DRIVEN,
+            _SOURCE,
+            FloatStep(_SLOW_IN_SPACE, Script(_IN_SPACE.format(eta=eta)).step),
+            eta,
+            reproduction=_IN_SPACE.format(eta=eta),
         )
     yield ReleasedIntegrator(
         "Taylor and lieη",

@@ -21,6 +21,8 @@ from verify.integrators.others.methods.integrator import (
     Point,
     ReleasedIntegrator,
 )
+from verify.integrators.others.methods.problems import USUAL
+from verify.integrators.others.methods.scripted import Script
 
 TITLE = "rebound"
 LIBRARY = "rebound"
@@ -67,6 +69,33 @@ class _Problem:
         return replace(self, hamiltonian=formula, said=said, driven=True)
 
 
+# A star of mass 8 at (−3, 0), in whose frame the particle is; the softened one is at 0.
+_SOFT_IN_SPACE = "p1**2/2 + p2**2/2 - 8/sqrt(q1**2 + q2**2 + 4)"
+_NEAR = "p1**2/2 + p2**2/2 - 8/sqrt((q1 + 3)**2 + q2**2)"
+_PUSHED = f"{_NEAR} + q1**2/8"
+_IN_SPACE = """\
+import numpy as np
+import rebound
+
+
+def push(s):
+    b = s.contents.particles[1]
+    b.ax -= (b.x - 3) / 4
+
+
+def step(p, q, h):
+    s = rebound.Simulation()
+    s.integrator = "{name}"
+{settings}    away = 0.0 if s.softening else 3.0
+    s.add(m=8.0)
+    s.add(m=0.0, x=q[0] + away, y=q[1], vx=p[0], vy=p[1])
+    s.N_active = 1
+    s.dt = h
+    s.steps(1)
+    s.synchronize()
+    a, b = s.particles
+    return np.array([b.vx - a.vx, b.vy - a.vy]), np.array([b.x - a.x - away, b.y - a.y])
+"""
 _SOFT = _Problem(
     "p**2/2 - 8/sqrt(q**2 + 4)", 8.0, 2.0, False,
     "a massless particle on a line through a star of mass 8, softening 2",
@@ -90,7 +119,34 @@ def integrators() -> Iterator[ReleasedIntegrator]:
         yield _integrator(_FREE, "eos", f"EOS, phi1 = {name}", order, f"phi1 = '{name}'")
     for given in _with_forces():
         yield _integrator(_FORCED, *given)
+    yield from _in_space()
     yield from _in_time()
+
+
+def _in_space() -> Iterator[ReleasedIntegrator]:
+    """One of each kind, in the plane of two coordinates."""
+    for name, settings, order in (
+        ("leapfrog", "order = 2", 2), ("leapfrog", "order = 4", 4), ("janus", "order = 4", 4),
+        ("whfast", "", 2), ("saba", "type = '2'", 2), ("eos", "phi1 = 'LF4'", 4),
+    ):  # fmt: skip
+        softened = name in ("leapfrog", "janus")
+        text = _IN_SPACE.replace("{name}", name)
+        setting = f"    s.integrator.{settings}\n" if settings else ""
+        softening = "    s.softening = 2.0\n" if softened else ""
+        push = "" if softened else "    s.additional_forces = push\n"
+        if name == "eos":
+            push = ""
+        text = text.replace("{settings}", setting + softening + push)
+        formula = _SOFT_IN_SPACE if softened else _NEAR if name == "eos" else _PUSHED
+        yield ReleasedIntegrator(
+            f"{name.upper()}{', ' if settings else ''}{settings.replace(' = ', ' ')}, two degrees",
+            "one step of dt = h: a massless particle before a star of mass 8, in the plane",
+            _SOURCE,
+            FloatStep(formula, Script(text).step, (), USUAL),
+            order,
+            True,
+            text,
+        )
 
 
 def _with_forces() -> Iterator[tuple[Any, ...]]:

@@ -20,6 +20,8 @@ from verify.integrators.others.methods.integrator import (
     Point,
     ReleasedIntegrator,
 )
+from verify.integrators.others.methods.problems import HENON_HEILES
+from verify.integrators.others.methods.scripted import Driven, scripted
 from verify.schemes.implicit_tableau import ImplicitTableau
 
 TITLE = "scipy"
@@ -38,6 +40,23 @@ _DRIVEN = "p**2/2 - cos(q) - q*cos(t)/4"
 _POINTS: tuple[Point, ...] = ((Fraction(1, 2), Fraction(-3, 2)),)
 _PLAIN: tuple[Point, ...] = ((Fraction(1, 7), Fraction(6, 5)),)  # elsewhere h⁷ hides h⁶
 _SOURCE = "the documentation of scipy.integrate.{}"
+_IN_SPACE = Driven(
+    """\
+import numpy as np
+from scipy.integrate import {method}
+""",
+    """\
+def field(t, y):
+    q, p = np.split(y, 2)
+    return np.concatenate([p, force(t, q)])
+y = np.hstack([q, p])
+s = {method}(field, t, y, t + 2 * h, first_step=h, max_step=2 * h, rtol=1e6, atol=1e6)
+s.step()
+assert abs(s.t - t - h) < 1e-12
+q, p = np.split(s.y, 2)
+""",
+    "a single step of the solver, first_step = h, tolerances that accept any step",
+)
 _LOOSE = "a single step of scipy.integrate.{}, first_step = h, tolerances that accept any step"
 
 
@@ -62,6 +81,9 @@ def integrators() -> Iterator[ReleasedIntegrator]:
             None,
             _script_in_time(name),
         )
+    for name, order in (("RK23", 3), ("RK45", 5)):
+        said, title = _SOURCE.format(name), f"{name}, as a step"
+        yield from scripted(title, _IN_SPACE, name, said, order, None, (HENON_HEILES,))
     yield ReleasedIntegrator(
         "Radau, as a step",
         "the collocation equations of scipy's Radau, by its own solver, to rounding",
