@@ -18,11 +18,15 @@ def without_libraries(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(others, "find_spec", lambda name: nothing)
     # The tables that libraries have in their sources take most of a minute; they have tests below.
     monkeypatch.setattr(printed_libraries, "files", list)
+    tables = others.get("literature")
+    few = [x for x in tables.integrators() if x.name.startswith(("Ruth", "Yoshida 8, solution E"))]
+    monkeypatch.setattr(tables, "integrators", lambda: few)
 
 
 def run(*arguments: str) -> int:
     try:
-        main(["report", "integrators", *arguments])
+        # In this process, where what is hidden stays hidden.
+        main(["report", "integrators", "--workers", "1", *arguments])
     except SystemExit as done:
         return int(done.code or 0)
     return 0
@@ -40,21 +44,38 @@ def test_the_report_is_written_and_json_stands_alone(
     page = (folder / "index.html").read_text(encoding="utf-8")
     for text in ("Installed here: none", "Left out, as not installed: ", "rebound", "galpy"):
         assert text in page
-    assert "def step(p, q, h):" in page, "a refuted table has its reproduction"
+    assert "def parts(" in page, "a refuted table has its reproduction"
     assert "```python" in (folder / "report.md").read_text(encoding="utf-8")
 
 
-def test_the_first_lines_say_what_is_installed(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+def test_the_first_lines_say_what_is_installed_and_what_is_wrong(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    tables = others.get("literature")
-    one = [x for x in tables.integrators() if x.name == "OrdinaryDiffEq McAte4"]
-    monkeypatch.setattr(tables, "integrators", lambda: one)
     assert run("-o", str(tmp_path / "out")) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith("Installed here: none")
-    assert lines[1].startswith("Left out, as not installed: galpy")
-    assert lines[2].startswith("Not as claimed: printed tables: ")
+    assert lines[1].startswith("Left out, as not installed: ")
+    assert {"galpy", "OpenMM"} <= {*lines[1].removesuffix(".").replace(":", ",").split(", ")}
+    assert lines[2].startswith("Of 6 claims 2 are refuted: 1 of digits that a double notices, 1 of")
+
+
+def test_findings_are_of_what_was_judged_and_the_rest_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    notes = tmp_path / "notes"
+    assert run("-o", str(tmp_path / "out"), "--findings", str(notes), "--json") == 0
+    told = capsys.readouterr()
+    json.loads(told.out)
+    assert list(notes.iterdir()) == [], "none of them is told of these few tables"
+    assert told.err.count(".md is not written: none of its claims was judged") >= 15
+
+
+def test_findings_are_of_integrators_alone(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit):
+        main(["report", "stiff", "--findings", str(tmp_path / "notes")])
+    assert "--findings" in capsys.readouterr().err
 
 
 def test_a_cluster_is_bad_input(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
