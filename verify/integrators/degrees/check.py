@@ -4,7 +4,7 @@ Where its code lets no symbols through S is measured for some step sizes, and th
 distance from the exact flow, as the step size falls.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -39,6 +39,7 @@ from verify.verdict import Verdict
 _SECONDS = 40.0  # for a proof
 _SIZES = (Fraction(1, 8), Fraction(1, 64))
 _TIME = Fraction(1, 4)
+Points = Sequence[tuple[Fraction, ...]]
 _MOST = 8  # orders that are looked at but for rounding
 
 
@@ -79,21 +80,18 @@ def check_step(step: Step, hamiltonian: Hamiltonian, claims: Claims) -> StepFind
     """Runs the user's code. Raises InputError where a parameter of H has no value."""
     if hamiltonian.symbols:
         raise InputError("parameter", hamiltonian.symbols[0], "has no value; a step needs one")
-    step.moving = hamiltonian.time_dependent
-    own, degrees = StepOfArrays(step, hamiltonian.coordinates), hamiltonian.degrees
-    at, points = own.at(_SIZES[0], _TIME), points_of(2 * degrees)
-    try:
-        called = called_at(FloatProbe(at), points)
-    except Exception as error:  # the user's code may raise anything
-        return StepFinding(Verdict.UNDECIDED, prose(why(error)), "calls", degrees)
-    try:
-        if step.foreign:
-            raise StepError("it is of another language")
-        with within(_SECONDS, "its proof takes too long"):
-            found = _proved(own, hamiltonian, called)
-    except Exception as error:  # as above
-        found = _measured(own, hamiltonian, points, called).noting("no proof: ", why(error))
-    return _held_to(claims, found)
+
+    def examined(own: StepOfArrays, points: Points, called: Called) -> StepFinding:
+        try:
+            if step.foreign:
+                raise StepError("it is of another language")
+            with within(_SECONDS, "its proof takes too long"):
+                found = _proved(own, hamiltonian, called)
+        except Exception as error:  # the user's code may raise anything
+            found = _measured(own, hamiltonian, points, called).noting("no proof: ", why(error))
+        return _held_to(claims, found)
+
+    return _tried(step, hamiltonian, examined)
 
 
 def measure_step(
@@ -101,6 +99,19 @@ def measure_step(
 ) -> StepFinding:
     """With floats alone, as a step needs of which nothing but its numbers is known. `ladder`: the
     step sizes for the order, falling; else the usual."""
+    return _tried(
+        step,
+        hamiltonian,
+        lambda own, points, called: _measured(own, hamiltonian, points, called, ladder),
+    )
+
+
+def _tried(
+    step: Step,
+    hamiltonian: Hamiltonian,
+    examined: Callable[[StepOfArrays, Points, Called], StepFinding],
+) -> StepFinding:
+    """What is found of it where it can be called at the points."""
     step.moving = hamiltonian.time_dependent
     own, degrees = StepOfArrays(step, hamiltonian.coordinates), hamiltonian.degrees
     at, points = own.at(_SIZES[0], _TIME), points_of(2 * degrees)
@@ -108,7 +119,7 @@ def measure_step(
         called = called_at(FloatProbe(at), points)
     except Exception as error:  # the user's code may raise anything
         return StepFinding(Verdict.UNDECIDED, prose(why(error)), "calls", degrees)
-    return _measured(own, hamiltonian, points, called, ladder)
+    return examined(own, points, called)
 
 
 # -- proved ---------------------------------------------------------------------------------------
@@ -182,7 +193,7 @@ def _rounded_order(made: CanonicalMap) -> int:
 def _measured(
     own: StepOfArrays,
     hamiltonian: Hamiltonian,
-    points: Sequence[tuple[Fraction, ...]],
+    points: Points,
     called: Called,
     ladder: Sequence[Fraction] = (),
 ) -> StepFinding:
@@ -218,7 +229,7 @@ def _with_order(
     own: StepOfArrays,
     hamiltonian: Hamiltonian,
     how: str,
-    points: Sequence[tuple[Fraction, ...]],
+    points: Points,
     ladder: Sequence[Fraction] = (),
 ) -> StepFinding:
     """The same with the order that is seen; REFUTED where it is none of a scheme for this H."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
-from functools import singledispatch
+from functools import partial, singledispatch
 
 from verify.integrators.check import POINTS
 from verify.integrators.others import reproductions
@@ -22,7 +22,7 @@ from verify.integrators.others.methods.tableau import (
     symplecticity,
 )
 from verify.integrators.others.methods.tabled import FloatTable, tabled
-from verify.integrators.others.second.look import OF_ORDERS, Look, at_step, at_table, claimed_of
+from verify.integrators.others.second.look import Look, at_claim, at_step, at_table, looked_at_again
 from verify.integrators.results import Finding
 from verify.integrators.tables import kinds
 from verify.integrators.tables.cost import severity_of
@@ -57,7 +57,9 @@ def claims_of(integrator: ReleasedIntegrator, section: str, prefix: str) -> Iter
     """One claim for the order and one for symplecticity, where they are made; of a printed table
     one for the order and one for its digits. `prefix` begins the ids."""
     for kind, statement, judgement, code, severity in _claims(integrator.method, integrator):
-        verdict, evidence, details = _looked_at_again(integrator, kind, judgement, severity)
+        verdict, evidence, details = judgement
+        look = partial(second_look, integrator.method, integrator, kind)
+        verdict, evidence = looked_at_again(verdict, evidence, severity, look)
         told = verdict in (Verdict.REFUTED, Verdict.UNDECIDED) or kind in _ALWAYS_TOLD
         yield ClaimResult(
             id=f"{prefix}/{integrator.name}/{kind}",
@@ -74,20 +76,6 @@ def claims_of(integrator: ReleasedIntegrator, section: str, prefix: str) -> Iter
         )
 
 
-def _looked_at_again(
-    integrator: ReleasedIntegrator, kind: str, judgement: _Judgement, severity: str
-) -> _Judgement:
-    """UNDECIDED where an order is refuted and a second look does not show it."""
-    verdict, evidence, details = judgement
-    if verdict is not Verdict.REFUTED or severity not in OF_ORDERS:
-        return judgement
-    look = second_look(integrator.method, integrator, kind)
-    if look is None:
-        return judgement
-    stands = verdict if look.shown else Verdict.UNDECIDED
-    return stands, prose(evidence, f"; {look.said}"), details
-
-
 @singledispatch
 def second_look(method: object, integrator: ReleasedIntegrator, kind: str) -> Look | None:
     """By other means, which share no code; None where there are none."""
@@ -96,8 +84,7 @@ def second_look(method: object, integrator: ReleasedIntegrator, kind: str) -> Lo
 
 @second_look.register
 def _(method: FloatTable, integrator: ReleasedIntegrator, kind: str) -> Look | None:
-    claimed = claimed_of(method.entry, kind)
-    return None if claimed is None else at_table(method.entry, kind, claimed)
+    return at_claim(method.entry, kind)
 
 
 @second_look.register

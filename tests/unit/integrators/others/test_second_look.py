@@ -83,7 +83,7 @@ def test_a_method_that_is_right_on_the_harmonic_oscillator_alone_is_caught(order
 
 def test_what_a_second_look_does_not_show_is_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
     """As where our conditions were wrong: a right table, said to be of too low an order."""
-    from verify.integrators.others import claims
+    from verify.integrators.others.second import look
 
     rk4: dict[str, Any] = {
         "a": [[], ["1/2"], ["0", "1/2"], ["0", "0", "1"]],
@@ -91,7 +91,7 @@ def test_what_a_second_look_does_not_show_is_undecided(monkeypatch: pytest.Monke
     }
     right, wrong = (tabled("RK4", "runge-kutta", "", "", order=n, **rk4) for n in (4, 5))
     assert [c.verdict for c in claims_of(wrong, "mine", "mine")] == [Verdict.REFUTED]
-    monkeypatch.setattr(claims, "claimed_of", lambda entry, kind: 4)
+    monkeypatch.setattr(look, "claimed_of", lambda entry, kind: 4)
     (claim,) = claims_of(wrong, "mine", "mine")
     assert claim.verdict is Verdict.UNDECIDED
     assert not claim.severity
@@ -151,7 +151,7 @@ def test_a_step_that_is_wrong_at_one_problem_alone_is_not_refuted() -> None:
         raise RuntimeError("no second problem can be driven")
 
     other = FloatStep(right.hamiltonian, exact, right.points, right.ladder)
-    told = ReleasedIntegrator("mine", "", "", right, 3, None, "", (other, ""))
+    told = ReleasedIntegrator("mine", "", "", right, 3, None, "", other)
     assert not at_step(told, 3).shown
     (claim,) = claims_of(told, "m", "m")
     assert claim.verdict is Verdict.UNDECIDED

@@ -1,12 +1,14 @@
 """A table with entries changed, as a mend would have them."""
 
 from collections.abc import Mapping
+from functools import cache
 from typing import Any
 
 import sympy
 from pydantic import ValidationError
 
 from verify.errors import InputError
+from verify.integrators.others.printed_libraries import files
 from verify.integrators.tables import kinds
 from verify.integrators.tables.check import read_tables
 from verify.integrators.tables.entry import Naming, TableEntry
@@ -18,16 +20,17 @@ RIGHT = "right"
 
 def entry_of(name: str) -> TableEntry:
     """The printed table of that id. InputError for none."""
-    from verify.integrators.others.printed_libraries import files
+    found = _entries().get(name)
+    if found is None:
+        raise InputError("table", name, "is none of the printed tables in reports/audits")
+    return found
 
-    library, _, table = name.partition("/")
-    for path in files():
-        found = read_tables(path)
-        if found.title.split()[0] == library:
-            for entry, _line in found.entries:
-                if entry.name == table:
-                    return entry
-    raise InputError("table", name, "is none of the printed tables in reports/audits")
+
+@cache
+def _entries() -> dict[str, TableEntry]:
+    """All printed tables of libraries, by id; the files are read once."""
+    each = map(read_tables, files())
+    return {f"{x.title.split()[0]}/{entry.name}": entry for x in each for entry, _ in x.entries}
 
 
 def changed(entry: TableEntry, changes: Mapping[str, str]) -> TableEntry:

@@ -7,8 +7,8 @@ from verify.errors import InputError
 from verify.integrators.others.findings.changes import changed, entry_of
 from verify.integrators.others.findings.described import Changed, Description
 from verify.integrators.others.findings.programs import Ran, run
-from verify.integrators.others.second.look import claimed_of
-from verify.integrators.others.second.slopes import Slopes, slopes_of
+from verify.integrators.others.second.look import at_table, claimed_of
+from verify.integrators.others.second.slopes import Slopes
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
@@ -64,21 +64,20 @@ def _shown(each: Changed) -> Shown:
     try:
         entry = entry_of(each.id)
         claimed = claimed_of(entry, each.kind)
-        timed, embedded = each.kind.startswith("order in time"), each.kind.startswith("embedded")
         if claimed is None:
             raise NotConfirmedError(f"{each.id} claims no order")
-        printed = slopes_of(entry, timed, embedded)
+        printed = at_table(entry, each.kind, claimed)
         mended: tuple[Slopes, ...] = ()
         if each.changes:
-            mended = slopes_of(changed(entry, each.changes), timed, embedded)
+            mended = at_table(changed(entry, each.changes), each.kind, claimed).slopes
     except InputError as error:
         raise NotConfirmedError(str(error)) from None
-    if not all(x.below(claimed) for x in printed):
+    if not printed.shown:
         raise NotConfirmedError(f"{each.id}: its steps do not show it")
     seen = [x.order for x in mended if x.order is not None]
     if each.changes and (not seen or min(seen) < claimed or any(x.below(claimed) for x in mended)):
         raise NotConfirmedError(f"{each.id}: with the mend its order is not {claimed}")
-    return Shown(each.id, claimed, printed, mended)
+    return Shown(each.id, claimed, printed.slopes, mended)
 
 
 def _ran(program: str) -> Ran:

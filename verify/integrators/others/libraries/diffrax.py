@@ -7,7 +7,7 @@ from typing import Any
 from verify.integrators.others.methods.integrator import ReleasedIntegrator
 from verify.integrators.others.methods.problems import EACH
 from verify.integrators.others.methods.scripted import Driven, scripted
-from verify.integrators.others.methods.tabled import tabled
+from verify.integrators.others.methods.tabled import full, tabled
 
 TITLE = "diffrax"
 LIBRARY = "diffrax"
@@ -68,7 +68,7 @@ def _table(name: str, solver: Any) -> ReleasedIntegrator:
         f"diffrax.{name}: order(terms) = {order}" + (f", “{said[0]}”" if said else ""),
         order=order,
         embedded_order=int(said[1]) if said else None,
-        a=[(row + [0.0] * stages)[:stages] for row in rows],
+        a=full(rows, stages),
         b=weights,
         c=[float(table.c1), *map(float, table.c)],
         embedded=embedded if said else None,

@@ -22,6 +22,7 @@ from verify.integrators.others.methods.integrator import (
 )
 from verify.integrators.others.methods.problems import HENON_HEILES
 from verify.integrators.others.methods.scripted import Driven, scripted
+from verify.integrators.others.methods.tabled import full, quotient
 from verify.schemes.implicit_tableau import ImplicitTableau
 
 TITLE = "scipy"
@@ -185,8 +186,7 @@ def _tables(name: str, order: int, pair: int | None) -> Iterator[ReleasedIntegra
 
     solver = getattr(integrate, name)
     stages = len(solver.B)
-    padded = [[*row, *[0.0] * stages][:stages] for row in solver.A]
-    rows = [[float(x) for x in row] for row in padded[:stages]]
+    rows = full(solver.A, stages)
     weights = [float(x) for x in solver.B]
     quotients = pair is not None
     driven = f"scipy.integrate.{name}'s A and B, as the quotients that round to them"
@@ -212,12 +212,8 @@ def _tableau(rows: Any, weights: Any, quotients: bool) -> ImplicitTableau:
 
 
 def _quotient(x: float) -> sympy.Rational:
-    """The quotient of the smallest denominator that is x but for rounding."""
-    for most in (10, 100, 1000, 10**4, 10**5, 10**6):
-        near = Fraction(x).limit_denominator(most)
-        if abs(near - Fraction(x)) <= Fraction(1, 2**51) * max(Fraction(1), abs(Fraction(x))):
-            return sympy.Rational(near.numerator, near.denominator)
-    return _binary(x)
+    near = quotient(x, digits=6)
+    return _binary(x) if near is None else sympy.Rational(near.numerator, near.denominator)
 
 
 def _binary(x: float) -> sympy.Rational:

@@ -60,8 +60,7 @@ class ReleasedIntegrator:
     convergence; `area_preserving`: whether it is claimed to be symplectic; None where nothing is
     claimed: of a force that depends on time the order is then told all the same. `source`: where.
     `reproduction`: a few lines of Python that show what was found with nothing but the library.
-    `again`: the same at a second problem, which is asked before anything is held against it; with
-    its own lines.
+    `again`: the same at a second problem, which is asked before anything is held against it.
     """
 
     name: str
@@ -71,4 +70,4 @@ class ReleasedIntegrator:
     order: int | None = None
     area_preserving: bool | None = None
     reproduction: str = ""
-    again: "tuple[FloatStep, str] | None" = None
+    again: FloatStep | None = None

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Any
 
 from verify.integrators.check import POINTS
@@ -77,28 +76,24 @@ def scripted(
     order: int | None,
     symplectic: bool | None = None,
     problems: Iterable[Problem] = EACH,
-    in_time: bool = True,
-    ladder: tuple[Fraction, ...] = (),
 ) -> Iterator[ReleasedIntegrator]:
-    """One for each problem. `in_time`: whether the order is claimed of a force that depends on time
-    as well; else nothing is held against it there."""
+    """One for each problem."""
     for problem in problems:
-        claimed = order if in_time or not problem.timed else None
         script = driven.script(problem, method)
         second = driven.script(AGAIN[problem], method)
         yield ReleasedIntegrator(
             f"{name}{problem.tag}",
             f"{driven.said}, for {problem.said}",
             source,
-            _step(problem, script, order or 0, ladder),
-            claimed,
+            _step(problem, script, order or 0),
+            order,
             symplectic if problem is not DRIVEN else None,
             script.text,
-            (_step(AGAIN[problem], second, order or 0, ladder), second.text),
+            _step(AGAIN[problem], second, order or 0),
         )
 
 
-def _step(problem: Problem, script: Script, order: int, ladder: tuple[Fraction, ...]) -> FloatStep:
+def _step(problem: Problem, script: Script, order: int) -> FloatStep:
     high = order >= _HIGH
     points = (AWAY if high else POINTS[:2]) if problem.degrees == 1 else ()
-    return FloatStep(problem.hamiltonian, script.step, points, ladder or (LONG if high else USUAL))
+    return FloatStep(problem.hamiltonian, script.step, points, LONG if high else USUAL)

@@ -14,7 +14,6 @@ from verify.integrators.others.methods.integrator import ReleasedIntegrator
 from verify.integrators.tables import kinds
 from verify.integrators.tables.entry import TableEntry
 
-_MOST = (10, 100, 1000, 10**4, 10**5)  # of a denominator, the smallest first
 _ROUNDING = Fraction(1, 2**51)
 
 
@@ -46,13 +45,20 @@ def _texts(value: Any) -> Any:
 
 
 def text(x: float) -> str:
-    """The quotient of the smallest denominator that rounds to x, but for one unit; else x."""
+    """The quotient of a short denominator that rounds to x, but for one unit; else x."""
+    near = quotient(x)
+    return repr(x) if near is None else str(near)
+
+
+def quotient(x: float, digits: int = 5) -> Fraction | None:
+    """The one of the smallest denominator, of so many digits at most, that rounds to x but for one
+    unit; None where there is none."""
     exact = Fraction(x)
-    for most in _MOST:
-        near = exact.limit_denominator(most)
+    for n in range(1, digits + 1):
+        near = exact.limit_denominator(10**n)
         if abs(near - exact) <= _ROUNDING * max(Fraction(1), abs(exact)):
-            return str(near)
-    return repr(x)
+            return near
+    return None
 
 
 def full(rows: Iterable[Iterable[float]], stages: int) -> list[list[float]]:

@@ -14,7 +14,6 @@ _PARTS = 32
 _NOISE = 2.0**-44
 _WITHIN = 0.3  # of a whole power
 _TIME = 0.6875
-_FEWEST = 2  # neighbouring slopes that must agree
 
 
 def order_of_step(
@@ -49,8 +48,7 @@ def _error(step: Map, z: tuple[Any, Any], h: float, timed: bool, degrees: int) -
     """Of a step of size h against the same in parts, which are far smaller."""
 
     def made(z: tuple[Any, Any], t: float, size: float) -> tuple[Any, Any]:
-        found = step(*z, t, size) if timed else step(*z, size)
-        p, q = found
+        p, q = step(*z, t, size) if timed else step(*z, size)
         return p, q
 
     one, many = made(z, _TIME, h), z

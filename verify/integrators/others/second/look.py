@@ -1,6 +1,6 @@
 """Whether a second look shows what the first one found; where it does not, nothing is refuted."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,6 +10,8 @@ from verify.integrators.others.second.convergence import order_of_step
 from verify.integrators.others.second.slopes import Slopes, slopes_of
 from verify.integrators.tables.entry import TableEntry
 from verify.integrators.tables.told import WRONG_CLOCK, WRONG_ORDER, WRONG_WEIGHTS
+from verify.prose import Prose, prose
+from verify.verdict import Verdict
 
 OF_ORDERS = (WRONG_ORDER, WRONG_CLOCK, WRONG_WEIGHTS)  # severities of which a step's slopes tell
 _FIRST = ", {} first"
@@ -23,6 +25,23 @@ class Look:
     shown: bool
     said: str
     slopes: tuple[Slopes, ...] = ()
+
+
+def looked_at_again(
+    verdict: Verdict, evidence: Prose, severity: str, look: Callable[[], Look | None]
+) -> tuple[Verdict, Prose]:
+    """UNDECIDED where an order is refuted and a second look does not show it; with what it shows.
+    `look` is called for such an order alone, and returns None where there is no other means."""
+    told = look() if verdict is Verdict.REFUTED and severity in OF_ORDERS else None
+    if told is None:
+        return verdict, evidence
+    return verdict if told.shown else Verdict.UNDECIDED, prose(evidence, f"; {told.said}")
+
+
+def at_claim(entry: TableEntry, kind: str) -> Look | None:
+    """At the order that an entry claims in its claim of that kind; None where it claims none."""
+    claimed = claimed_of(entry, kind)
+    return None if claimed is None else at_table(entry, kind, claimed)
 
 
 def at_table(entry: TableEntry, kind: str, claimed: int, exact: bool = False) -> Look:
@@ -50,8 +69,8 @@ def at_step(integrator: ReleasedIntegrator, claimed: int) -> Look:
     orders: list[int | None] = []
     try:
         orders.append(order_of_step(method.make(), method.exact, method.points))
-        if integrator.again is not None:
-            second = integrator.again[0]
+        second = integrator.again
+        if second is not None:
             orders.append(order_of_step(second.make(), second.exact, second.points))
             found = finding(second)
             orders.append(found.convergence_order if found.order_decided else None)

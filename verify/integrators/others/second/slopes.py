@@ -30,18 +30,16 @@ _ABOVE = 20  # times the unit of the last digits an error must be, in parts of h
 _SHORT = 1e-7  # the unit of decimals that are taken for exact
 _WITHIN = 0.3  # of a whole power
 Vector = list[Any]
-Field = Callable[[Any, Any], Any]
 
 
 @dataclass(frozen=True)
 class System:
-    """H = a(t) T(p) + b(t) V(q), by T', V' and the two factors."""
+    """H = T(p) + b(t) V(q), by T', V' and b."""
 
     said: str
     speed: Callable[[Any], Any]
     slope: Callable[[Any], Any]
-    a: Callable[[Any], Any] = lambda t: mp.mpf(1)
-    b: Callable[[Any], Any] = lambda t: mp.mpf(1)
+    b: Callable[[Any], Any]
 
     def kick(self, t: Any, p: Any, q: Any) -> Any:
         """p' at that time."""
@@ -49,7 +47,7 @@ class System:
 
     def drift(self, t: Any, p: Any, q: Any) -> Any:
         """q' at that time."""
-        return self.a(t) * self.speed(p)
+        return self.speed(p)
 
 
 def _cubic(p: Any) -> Any:
@@ -68,8 +66,8 @@ def systems(timed: bool, quadratic: bool) -> tuple[System, System]:
     rate = (lambda t: 1 + mp.cos(2 * t) / 2) if timed else (lambda t: mp.mpf(1))
     said = "(1 + cos(2t)/2) " if timed else ""
     return (
-        System(f"H = {kinetic} − {said}cos q", speed, mp.sin, b=rate),
-        System(f"H = {kinetic} + {said}(q²/2 + q⁴/4)", speed, _cubic, b=rate),
+        System(f"H = {kinetic} − {said}cos q", speed, mp.sin, rate),
+        System(f"H = {kinetic} + {said}(q²/2 + q⁴/4)", speed, _cubic, rate),
     )
 
 
