@@ -79,13 +79,13 @@ Place = tuple[Any, Any]  # a list or an object, and an index or key in it
 NUMBERS = ("0", "1", "-1", "2", "1/2", "-3/7", "1/0", "1e999999999", "-", "9" * 2000, "٣", "0.5",
            "1/" + "7" * 1999, "nan", " 1", "1_0", "")  # fmt: skip
 WHOLES = (-1, -3, 0, 1, 2, 3, 4, 8, 64, 10**9, True, False, None, 2.0, "2", [], 10**4000)
-NAMES = ("p", "q", "t", "h", "d", "e", "#1", "#2", "#3", "#9", "H_", "H_p", "H_q", "H_pq", "H_qp",
-         "H_pp", "H_t", "H_pt", "H_qtt", "H_tp", "H_" + "q" * 300, "sin", "\x1b[2J", "x y", "𝑝",
-         "")  # fmt: skip
+NAMES = ("p", "q", "t", "h", "d", "e", "w", "#1", "#2", "#3", "#9", "H_", "H_p", "H_q", "H_pq",
+         "H_qp", "H_pp", "H_t", "H_pt", "H_qtt", "H_tp", "H_" + "q" * 300, "sin", "\x1b[2J", "x y",
+         "𝑝", "")  # fmt: skip
 KINDS = ("sin", "cos", "exp", "inverse", "log", "")
 KEYS = ("hamiltonian", "separable", "time_dependent", "parameters", "functions", "p_next",
         "q_next", "leading", "order", "convergence_order", "potential", "witness", "cofactors",
-        "stages", "scheme", "x",
+        "stages", "tableau", "numbers", "scheme", "x",
 )  # fmt: skip
 
 
@@ -195,6 +195,22 @@ def another_function(data: Data, rng: random.Random) -> None:
         cofactors[what] = {name: [["1"], ["1", name]]}
 
 
+def another_number(data: Data, rng: random.Random) -> None:
+    """A name stands for another root, or for none; or a coefficient is made of other powers."""
+    polynomials = (["-2", "0", "1"], ["-3", "0", "1"], ["2", "0", "1"], ["-4", "0", "1"], ["1"],
+                   ["0", "-1", "0", "1"], ["-2", "0", "0", "1"], ["-3", "2"], [])  # fmt: skip
+    ends = (["1", "2"], ["-2", "-1"], ["-2", "2"], ["0", "3"], ["2", "1"], ["3/2", "7/4"])
+    given = data.setdefault("numbers", [])
+    if isinstance(given, list) and given and rng.random() < 0.7:
+        number = rng.choice(given)
+        number[1:] = [rng.choice([number[1], *polynomials]), *rng.choice([number[2:], *ends])]
+        return
+    given.append([rng.choice(["w", "u", "p1"]), rng.choice(polynomials), *rng.choice(ends)])
+    inside, key = rng.choice(list(places(data.get("stages") or data["tableau"])))
+    factors = [["w"] * rng.randrange(4), ["u"], []]
+    inside[key] = [["1/2", *rng.choice(factors)], ["-1/3", *rng.choice(factors)]]
+
+
 def another_clock(data: Data, rng: random.Random) -> None:
     """t stands where a parameter stood, or the other way round, or is no longer said to be time."""
     timed = data.get("time_dependent") is True
@@ -230,7 +246,7 @@ def less_is_said(data: Data, rng: random.Random) -> None:
 
 WAYS: tuple[Callable[[Data, random.Random], None], ...] = (
     another_value, another_value, another_shape, another_term, another_entry, another_function,
-    another_clock, less_is_said,
+    another_number, another_clock, less_is_said,
 )  # fmt: skip
 
 

@@ -27,16 +27,17 @@ def test_order_area_and_every_condition_are_told(
     assert f"no further: of h^{order + 1}" in out
 
 
-def test_irrational_coefficients_have_no_certificate_and_that_is_said(
+def test_what_is_not_made_by_roots_has_no_certificate_and_that_is_said(
     capsys: pytest.CaptureFixture[str], tmp_path
 ) -> None:
-    file = tmp_path / "c.json"
-    status, _, err = here(capsys, *EVERY, "yoshida4", "--certificate", str(file))
+    file, own = tmp_path / "c.json", "kick pi; drift 1; kick 1 - pi"
+    status, _, err = here(capsys, *EVERY, own, "--certificate", str(file))
     assert status == 2
-    assert err.startswith("verify: --scheme=yoshida4: ")
-    assert err.count("\n") == 1
+    assert err == f"verify: --scheme={own}: pi is not made by roots: no certificate\n"
     assert not file.exists()
-    status, _, _ = here(capsys, *EVERY, "ruth3", "--certificate", str(file))
-    assert status == 0
-    status, out, _ = here(capsys, "certificate", "check", str(file))
-    assert (status, out.split(":")[0]) == (0, "holds")
+    for name in ("ruth3", "yoshida4", "kick sqrt(2); drift 1; kick 1 - sqrt(2)"):
+        status, _, _ = here(capsys, *EVERY, name, "--certificate", str(file))
+        assert status == 0
+        status, out, _ = here(capsys, "certificate", "check", str(file))
+        assert (status, out.split(":")[0]) == (0, "holds")
+        assert ("= the root of " in out) is (name != "ruth3")

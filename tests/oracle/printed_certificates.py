@@ -1,8 +1,9 @@
 """Whether what a checked certificate prints is true, from the printed formulas alone.
 
 In numbers of 100 digits, or more, at random points. Formulas are read by Python's own parser;
-values carry their derivatives by p, q and t, and powers of h as truncated series. Nothing here
-comes from `verify`: not the reading of formulas, not the arithmetic, not the flow.
+values carry their derivatives by p, q and t, and powers of h as truncated series; a number that is
+said to be a root is found by Newton's method. Nothing here comes from `verify`: not the reading of
+formulas, not the arithmetic, not the flow.
 """
 
 import ast
@@ -113,13 +114,14 @@ def is_true(said: Data, seed: int = 1, points: int = 3) -> bool:
 
 def _digits(said: Data) -> int:
     """Enough where coefficients of thousands of digits are multiplied, and cancel."""
-    longest = max(len(n) for name in ("p_next", "q_next") for n in re.findall(r"\d+", said[name]))
+    texts = (said["p_next"], said["q_next"], *said["numbers"])
+    longest = max(len(n) for text in texts for n in re.findall(r"\d+", text))
     return DIGITS + 12 * max(0, longest - 20)
 
 
 def _holds_at(said: Data, rng: random.Random) -> tuple[bool, bool]:
     """(whether all of it holds at a random point, whether L is other than 0 there)."""
-    if re.match(r"p1 = ", said["p_next"]):
+    if re.match(r"[pP]1 = ", said["p_next"]):
         return _stages_hold(said, rng), True
     every = said["hamiltonian"].startswith("every")
     timed = _timed(said)
@@ -206,20 +208,61 @@ def _stages_hold(said: Data, rng: random.Random) -> bool:
         "t": zero.like(_drawn(rng)) if _timed(said) else zero,
         "h": _series(Series([MP.mpf(n == 1) for n in range(length)]), zero),
     }
+    made: dict[Any, tuple[Dual, Any]] = {}  # with its point, which so keeps its identity
+
+    def derivative(orders: Sequence[int], *point: Dual) -> Dual:
+        key = orders, *map(id, point)
+        if key not in made:
+            made[key] = h_of.derivative(orders, *point), point
+        return made[key][0]
+
     for name, orders in {"H_p": (1, 0, 0), "H_q": (0, 1, 0)}.items():
-        names[name] = lambda p, q, t=names["t"], n=orders: h_of.derivative(n, p, q, t)
-    pairs = zip(said["p_next"].split("; "), said["q_next"].split("; "), strict=True)
-    last = ("p", "q")
-    for one, two in pairs:
-        (p_name, p_new), (q_name, q_new) = one.split(" = ", 1), two.split(" = ", 1)
-        names |= {p_name: names[last[0]], q_name: names[last[1]]}
-        for _ in range(length):  # each iteration makes one more power of h right
-            found = evaluate(p_new, names, zero), evaluate(q_new, names, zero)
-            names |= {p_name: found[0], q_name: found[1]}
-        last = p_name, q_name
-    p, q = names[last[0]], names[last[1]]
+        names[name] = lambda p, q, t=names["t"], n=orders: derivative(n, p, q, t)
+    for number in said["numbers"]:
+        name, value = _number(number)
+        names[name] = zero.like(value)
+    p, q = _solved(said, names, zero)
     det = (p.p * q.q + -(p.q * q.p)).c
     return all(_same(x, MP.mpf(n == 0)) for n, x in enumerate(det))
+
+
+def _solved(said: Data, names: dict[str, Any], zero: Dual) -> tuple[Dual, Dual]:
+    """The last p and q of equations: of stages one pair after the other, of a tableau all."""
+    formulas = [said[name].split("; ") for name in ("p_next", "q_next")]
+    pairs = [[x.split(" = ", 1) for x in pair] for pair in zip(*formulas, strict=True)]
+    together = said["p_next"].startswith("P1 = ")
+    before = ("p", "q")
+    for group in [pairs] if together else [[pair] for pair in pairs]:
+        for pair in group:
+            names |= {new: names[old] for (new, _), old in zip(pair, before, strict=True)}
+        for _ in range(len(zero.v.c)):  # each iteration makes one more power of h right
+            names |= {n: evaluate(formula, names, zero) for pair in group for n, formula in pair}
+        before = tuple(name for name, _ in group[-1])
+    return names[before[0]], names[before[1]]
+
+
+def _number(said: str) -> tuple[str, Any]:
+    """The name, and the root in the interval: by Newton's method, or halving where that leaves."""
+    found = re.fullmatch(r"(\w+) = the root of (.+) in \[(.+), (.+)\]", said)
+    assert found, said
+    name, polynomial, *ends = found.groups()
+    low, high = (MP.mpf(int(a)) / int(b or 1) for a, _, b in (x.partition("/") for x in ends))
+
+    def at(x: Any) -> Dual:
+        return evaluate(polynomial, {name: _variable(x, "p", _constant(0, 1))}, _constant(0, 1))
+
+    rising, x = at(high).v.c[0] > 0, (low + high) / 2
+    assert (at(low).v.c[0] < 0) is rising, "two signs at the ends"
+    for _ in range(100_000):
+        value = at(x)
+        low, high = (x, high) if (value.v.c[0] < 0) is rising else (low, x)
+        slope = value.p.c[0]
+        new = x - value.v.c[0] / slope if slope else low
+        new = new if low < new < high else (low + high) / 2
+        if abs(new - x) <= MP.eps * 100 * (1 + abs(x)):
+            return name, new
+        x = new
+    raise AssertionError(said)
 
 
 def _names(said: Data) -> set[str]:

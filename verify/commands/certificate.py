@@ -46,7 +46,8 @@ def _print(found: "Established") -> None:
         "map": found.scheme,
         "where": ", ".join(found.domain),
     }
-    for name, text in lines.items():
+    shown = [*lines.items(), *(("with", number) for number in found.numbers)]
+    for name, text in shown:
         if text:
             cut = f"{text[:_LONGEST]} … ({len(text):,} characters; all of it with --json)"
             click.echo(f"  {name:<5}  {text if len(text) <= _LONGEST else cut}")

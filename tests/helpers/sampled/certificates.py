@@ -41,8 +41,10 @@ EVERY = (
     "ruth3",
     "implicit-symplectic-euler",
     "explicit-midpoint",
+    "mclachlan-atela2",
+    "gauss4",
 )
-IN_TIME = ("lie1", "lie2", "lie3", "stormer-verlet", "implicit-midpoint", "ruth3")
+IN_TIME = ("lie1", "lie2", "lie3", "stormer-verlet", "implicit-midpoint", "ruth3", "forest-ruth")
 Data = dict[str, Any]
 
 

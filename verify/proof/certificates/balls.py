@@ -5,7 +5,7 @@ A ball holds the number that it stands for. ValueError where a number is beyond 
 
 from fractions import Fraction
 
-from verify.proof.certificates.entries import need
+from verify.proof.certificates.readers import need
 
 Ball = tuple[Fraction, Fraction]  # middle, radius
 

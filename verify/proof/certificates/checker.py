@@ -31,13 +31,23 @@ these equations by (p', q') have a determinant det A ≠ 0; and so for one stage
 `time_dependent` a stage has one time, t + c h with c any, at which both H_q and H_p are taken. With
 `degrees`, S = 0 in so many degrees of freedom.
 
+*Of a tableau* (a_ij; b_i), for every H: S = 0, and in the plane det J = 1, of each map
+(p, q) ↦ (p', q') with p' = p − h Σ b_i H_q and q' = q + h Σ b_i H_p, these taken at (P_i, Q_i), and
+with `time_dependent` at t + c_i h, wherever P_i, Q_i depend smoothly on (p, q) and solve
+P_i = p − h Σ a_ij H_q, Q_i = q + h Σ a_ij H_p, taken at (P_j, Q_j) and t + c_j h.
+
+Coefficients of stages and of a tableau may be polynomials in `numbers`: each name stands for the
+one real number that is a root of its polynomial in its interval.
+
 **Proof.** Names are differentiated by the rules for what they stand for, and the relations are true
 of that (sin² + cos² = 1, u · 1/u = 1): an identity up to Σ cofactor · relation is one of functions.
 For every H its derivatives are free: an identity of polynomials in them holds for each H, and at a
 point they take any values. With t as a coordinate, t' = 1, the flow is that of D. The entry ab of S
 is Σ_i (p_i',a q_i',b − p_i',b q_i',a) less that of Ω; in the plane its one entry is det J − 1, and
-the Lie derivative of G dp∧dq is (X·G) dp∧dq, as X preserves dp∧dq. For the stages see `_preserves`:
-at its own time the H of each is a function of p and q.
+the Lie derivative of G dp∧dq is (X·G) dp∧dq, as X preserves dp∧dq. For stages and tableaux see
+`verify.proof.certificates.coefficients`: at its own time the H of each stage is a function of p and
+q. That each number is one, and one alone, `verify.proof.certificates.numbers` shows; a polynomial
+in them that is a sum of multiples of their own polynomials has the value 0.
 """
 
 from collections.abc import Iterable
@@ -46,31 +56,21 @@ from itertools import combinations
 from math import factorial
 
 from verify.proof.certificates.balls import Ball, function, plus, times
-from verify.proof.certificates.entries import (
-    Expansion,
-    Form,
-    Monomial,
-    Poly,
-    Stages,
-    collected,
-    derived_by,
-    need,
-    read,
-)
+from verify.proof.certificates.coefficients import ONE, Stages, Tableau, check_coefficients
+from verify.proof.certificates.entries import Expansion, Form, derived_by, read
+from verify.proof.certificates.readers import Monomial, Poly, collected, need
 
-ONE: Poly = {(): Fraction(1)}
 Term = tuple[Monomial, Fraction]
 _MOST_WORK = 1_000_000  # terms that are made, more for long ones: some seconds
 
 
-def check(data: object) -> Stages | Expansion:
+def check(data: object) -> Stages | Tableau | Expansion:
     """The certificate's entries, of which the theorem holds; ValueError names what fails."""
     entries = read(data)
-    if isinstance(entries, Stages):
-        for row in entries.rows:
-            need(_preserves(*row, separable=entries.separable), "det A is not det B")
-    else:
+    if isinstance(entries, Expansion):
         Identities(entries).check()
+    else:
+        check_coefficients(entries)
     return entries
 
 
@@ -84,20 +84,6 @@ def see_witness(data: object) -> None:
 def single(name: str) -> Poly:
     """The polynomial that is one name."""
     return {(name,): Fraction(1)}
-
-
-def _preserves(k: Fraction, d: Fraction, s: Fraction, u: Fraction, *, separable: bool) -> bool:
-    """Whether det J = 1 of a stage for every H; with `degrees`, whether S = 0.
-
-    A J = B by implicit differentiation: both are I + h E D with det A = 1 + h b (k s − d u) +
-    h² k d s u (a c − b²), a, b, c = H_pp, H_pq, H_qq there, and det B the same of s − 1 and u − 1.
-
-    In n degrees of freedom: with K = k V + d T for H = T + V, or K = k H for k = d, the stage is
-    that of K with k = d = 1; where k d = 0, what moves does so by a gradient of what does not. With
-    P, Q the point and δ = d(z' − z), dP∧dK_P + dQ∧dK_Q = −d(dK) = 0 leaves
-    dp'∧dq' − dp∧dq = (1 − s − u) δp∧δq.
-    """
-    return (separable or k == d) and k * d * (1 - s - u) == 0
 
 
 class _Algebra:

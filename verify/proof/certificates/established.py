@@ -8,11 +8,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from verify.proof.certificates.entries import Expansion, Form, Monomial, Poly, Stages, need
+from verify.proof.certificates.coefficients import ONE, Stages, Tableau
+from verify.proof.certificates.entries import Expansion, Form, Function
+from verify.proof.certificates.numbers import Number
+from verify.proof.certificates.readers import Monomial, Poly, need
 
 _LONGEST = 1_000_000  # characters of a formula with its functions written out
 _ALMOST = "L does not vanish identically in p and q"
 _SYMPLECTIC = "S = JᵀΩJ − Ω"
+_SOLVABLE = "the stages have a solution that depends smoothly on (p, q)"
 _WHICH = {  # H, by (separable, timed)
     (False, False): "every smooth H",
     (True, False): "every smooth H = T(p) + V(q)",
@@ -29,7 +33,7 @@ class Established:
     None, with `area_preserving`: det J = 1. `agrees`: the map does so with the flow up to this
     power of h; None where nothing is said. `scheme`: where the entries are those of one. In n
     `degrees` of freedom `order` and `leading` are those of S, `symplectic` says whether that is 0,
-    and the map is a formula for each coordinate.
+    and the map is a formula for each coordinate. `numbers`: what each name of a number stands for.
     """
 
     statement: str
@@ -45,57 +49,101 @@ class Established:
     domain: tuple[str, ...]
     degrees: int = 1
     symplectic: bool | None = None
+    numbers: tuple[str, ...] = ()
 
 
-def established(entries: Stages | Expansion) -> Established:
+def established(entries: Stages | Tableau | Expansion) -> Established:
     """What the theorem of `verify.proof.certificates.checker` says of these entries.
 
     Raises ValueError where a formula is too long to be written out.
     """
-    return _of_stages(entries) if isinstance(entries, Stages) else _of_expansion(entries)
+    if isinstance(entries, Stages):
+        return _of_stages(entries)
+    return _of_tableau(entries) if isinstance(entries, Tableau) else _of_expansion(entries)
 
 
 def _of_stages(entries: Stages) -> Established:
-    times = [""] * len(entries.rows)
-    if entries.times is not None:
-        times = [f", t + ({c})*h" if c else ", t" for c in entries.times]
+    p, q, p_next, q_next, implicit = "p", "q", [], [], False
+    for n, (kick, drift, at_p, at_q) in enumerate(entries.rows, 1):
+        p_new, q_new = f"p{n}", f"q{n}"
+        time = _time(entries, n - 1)
+        at = f"({_between(p, p_new, at_p)}, {_between(q, q_new, at_q)}{time})"
+        p_next.append(f"{p_new} = {p}" + (f" - h*({_poly(kick)})*H_q{at}" if kick else ""))
+        q_next.append(f"{q_new} = {q}" + (f" + h*({_poly(drift)})*H_p{at}" if drift else ""))
+        mixed = not entries.separable and ((kick and at_p) or (drift and at_q))
+        implicit |= bool(mixed or (kick and drift and at_p and at_q))  # else det A is 1
+        p, q = p_new, q_new
+    end = f"(p, q) ↦ ({p}, {q})"
+    return _symplectic(entries, "the scheme of these stages", (p_next, q_next), end, implicit)
+
+
+def _of_tableau(entries: Tableau) -> Established:
+    at = [f"(P{j}, Q{j}{_time(entries, j - 1)})" for j in range(1, len(entries.weights) + 1)]
+    points = [(f"P{i}", f"Q{i}") for i in range(1, len(entries.weights) + 1)]
+    p_next, q_next = [], []
+    for (p, q), row in zip([*points, ("p1", "q1")], [*entries.rows, entries.weights], strict=True):
+        kept = [(_poly(a), place) for a, place in zip(row, at, strict=True) if a]
+        p_next.append(f"{p} = p" + "".join(f" - h*({a})*H_q{place}" for a, place in kept))
+        q_next.append(f"{q} = q" + "".join(f" + h*({a})*H_p{place}" for a, place in kept))
+    said = "the Runge–Kutta scheme of these stages"
+    return _symplectic(entries, said, (p_next, q_next), "(p, q) ↦ (p1, q1)", True)
+
+
+def _symplectic(
+    entries: Stages | Tableau,
+    scheme: str,
+    formulas: tuple[Sequence[str], Sequence[str]],
+    end: str,
+    implicit: bool,
+) -> Established:
     which, what = _WHICH[entries.separable, entries.times is not None], "det J = 1"
     if entries.degrees is not None:
         which, what = f"{which} in {entries.degrees} degrees of freedom", f"{_SYMPLECTIC} = 0"
-    p, q, p_next, q_next, implicit = "p", "q", [], [], False
-    for n, ((kick, drift, at_p, at_q), time) in enumerate(zip(entries.rows, times, strict=True), 1):
-        p_new, q_new = f"p{n}", f"q{n}"
-        at = f"({_between(p, p_new, at_p)}, {_between(q, q_new, at_q)}{time})"
-        p_next.append(f"{p_new} = {p}" + (f" - h*({kick})*H_q{at}" if kick else ""))
-        q_next.append(f"{q_new} = {q}" + (f" + h*({drift})*H_p{at}" if drift else ""))
-        mixed = 0 if entries.separable else kick * at_p - drift * at_q
-        implicit |= bool(mixed or kick * drift * at_p * at_q)  # else det A is 1
-        p, q = p_new, q_new
+    p_next, q_next = map("; ".join, formulas)
     return Established(
-        statement=f"{what} for {which} and the scheme of these stages",
-        scheme=f"(p, q) ↦ ({p}, {q})",
+        statement=f"{what} for {which} and {scheme}",
+        scheme=end,
         hamiltonian=which,
-        p_next="; ".join(p_next),
-        q_next="; ".join(q_next),
+        p_next=p_next,
+        q_next=q_next,
         area_preserving=True,
         order=None,
         leading=None,
         potential=None,
         convergence_order=None,
-        domain=("the stages have a solution that depends smoothly on (p, q)",) * implicit,
+        domain=(_SOLVABLE,) * implicit,
         degrees=entries.degrees or 1,
         symplectic=True,
+        numbers=tuple(map(_number, entries.numbers)),
     )
 
 
-def _between(start: str, end: str, share: Fraction) -> str:
-    if share in (0, 1):
+def _number(number: Number) -> str:
+    powers = enumerate(number.polynomial)
+    polynomial = _poly({(number.name,) * k: Fraction(c) for k, c in powers if c})
+    return f"{number.name} = the root of {polynomial} in {number.ends}"
+
+
+def _time(entries: Stages | Tableau, k: int) -> str:
+    """The time of a stage, beside the point that H is taken at."""
+    if entries.times is None:
+        return ""
+    time = entries.times[k]
+    return f", t + ({_poly(time)})*h" if time else ", t"
+
+
+def _poly(x: Poly) -> str:
+    return _Writer().poly(x)
+
+
+def _between(start: str, end: str, share: Poly) -> str:
+    if share in ({}, ONE):
         return end if share else start
-    return f"{start} + ({share})*({end} - {start})"
+    return f"{start} + ({_poly(share)})*({end} - {start})"
 
 
 def _of_expansion(entries: Expansion) -> Established:
-    written = _Writer(entries)
+    written = _Writer(entries.functions, planar=entries.planar)
     which, degrees = _WHICH[entries.separable, entries.timed], len(entries.coordinates) // 2
     what, less = ("det J", "det J − 1") if entries.planar else (_SYMPLECTIC, _SYMPLECTIC)
     if not entries.planar:
@@ -154,11 +202,11 @@ def _taylor_series(entries: Expansion) -> str | None:
 class _Writer:
     """Polynomials in names as formulas; a function stands written out in the place of its name."""
 
-    def __init__(self, entries: Expansion) -> None:
-        self.planar = entries.planar
+    def __init__(self, functions: Sequence[Function] = (), *, planar: bool = True) -> None:
+        self.planar = planar
         self.functions: dict[str, str] = {}
         self.below: dict[str, str] = {}  # what 1/u divides by
-        for made in entries.functions:
+        for made in functions:
             inner = self.poly(made.argument)
             self.functions[made.name] = f"{made.kind}({inner})"
             if made.kind == "inverse":

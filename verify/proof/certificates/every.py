@@ -17,32 +17,33 @@ number is a text such as "-3/2".
 - `witness`: for one H, a point at which `leading` and all denominators are other than 0.
 - `potential` G, where it is there: X·G = `leading`.
 - `cofactors`: what has to be zero is Σ cofactor·relation over the functions' relations.
-- `stages`, alone with `hamiltonian` and `separable`: rows (kick, drift, share of p', share of q')
-  of a scheme that is p' = p − h·kick·H_q, q' = q + h·drift·H_p, with H_p and H_q taken at those
-  shares of the way from (p, q) to (p', q'): det J = 1. Where H depends on t a row has a fifth
-  number c: both are taken at t + c h.
+- `stages`, alone with `hamiltonian`, `separable`, `time_dependent`, `degrees` and `numbers`: rows
+  (kick, drift, share of p', share of q') of a scheme that is p' = p − h·kick·H_q,
+  q' = q + h·drift·H_p, with H_p and H_q taken at those shares of the way from (p, q) to (p', q'):
+  det J = 1. Where H depends on t a row has a fifth number c: both are taken at t + c h.
+- `tableau`, as alone: an object of a Runge–Kutta method's `a`, a list of rows a_ij, and `b`, and
+  where H depends on t of `c`, the stages' times: det J = 1.
+- `numbers`, where the scheme's coefficients are irrational: `[name, polynomial, low, high]`, real
+  numbers, each the one root of a polynomial between two rational ends. The polynomial is the list
+  of its coefficients c₀, c₁, …, whole numbers. A coefficient of `stages` or `tableau` is a number,
+  or a polynomial in these names.
 
 `verify.proof.certificates.checker` recomputes derivatives, flow and determinant from these alone.
 """
 
-from collections.abc import Mapping
-
-from verify.algebra.generator import terms_of
 from verify.algebra.ring import Poly
 from verify.algebra.series.jets import JetRing, Jets, Series
 from verify.algebra.series.timed_jets import TimedJets
 from verify.errors import InputError
+from verify.proof.certificates.by_coefficients import by_coefficients, terms
 from verify.proof.certificates.file import FORMAT, Certificate
 from verify.proof.every import EveryProof, telescoping_of
 from verify.proof.telescoping import potential_of_lie
 from verify.schemes import get
-from verify.schemes.every_hamiltonian import BySeries, StageEquations, TaylorSeries
-from verify.schemes.scheme import Scheme
-from verify.schemes.splitting_conditions import Splitting
-from verify.schemes.timed.for_scheme import conditions_for
+from verify.schemes.every_hamiltonian import BySeries, TaylorSeries
 from verify.verdict import Verdict
 
-_BY_COEFFICIENTS = "is proved by its coefficients; the checker knows rational ones, of stages"
+NOT_KNOWN = "the checker knows coefficients of what preserves area, and Taylor polynomials"
 
 
 def of_every(proof: EveryProof) -> Certificate:
@@ -53,14 +54,11 @@ def of_every(proof: EveryProof) -> Certificate:
         raise InputError("scheme", proof.scheme, f"{proof.verdict}: there is nothing to certify")
     data: Certificate = {"format": FORMAT, "hamiltonian": "every", "separable": proof.separable}
     data |= {"time_dependent": True} if proof.timed else {}
-    stages = every_h.stages if isinstance(every_h, Splitting) else every_h
-    if isinstance(stages, StageEquations) and proof.area_preserving:
-        rows = [[*map(str, (s.kick, s.drift, s.at_p, s.at_q))] for s in stages.stages]
-        if proof.timed:
-            rows = [[*row, time] for row, time in zip(rows, clock_of(scheme), strict=True)]
-        return data | {"stages": rows}
+    given = by_coefficients(scheme, timed=proof.timed) if proof.area_preserving else None
+    if given is not None:
+        return data | given
     if proof.order is None or not isinstance(every_h, BySeries):
-        raise InputError("scheme", proof.scheme, _BY_COEFFICIENTS)
+        raise InputError("scheme", proof.scheme, NOT_KNOWN)
     most = proof.order
     jets: JetRing
     if proof.timed and isinstance(every_h, TaylorSeries):
@@ -85,14 +83,6 @@ def _potential(jets: JetRing, every_h: BySeries, leading: Poly) -> Poly | None:
     return potential_of_lie(jets, every_h.eta) if isinstance(every_h, TaylorSeries) else None
 
 
-def clock_of(scheme: Scheme) -> list[str]:
-    """The time of each stage, in parts of h."""
-    found = conditions_for(scheme.every_h).clock
-    if not all(time.is_Rational for time in found):
-        raise InputError("scheme", scheme.name, _BY_COEFFICIENTS)
-    return [*map(str, found)]
-
-
 def map_of(
     order: int | None,
     agreed: int,
@@ -107,11 +97,3 @@ def map_of(
         "p_next": [terms(x, names) for x in series[0]],
         "q_next": [terms(x, names) for x in series[1]],
     }
-
-
-def terms(x: Poly, names: Mapping[int, str]) -> list[list[str]]:
-    """The polynomial as a list of terms; `names`: of the variables by their index."""
-    return [
-        [str(c), *(names[k] for k, n in enumerate(monomial) for _ in range(int(n)))]
-        for monomial, c in terms_of(x)
-    ]

@@ -14,8 +14,9 @@ from verify.algebra.generator import terms_of
 from verify.algebra.ring import Poly, Ring
 from verify.errors import NOT_GIVEN, InputError
 from verify.hamiltonians.coordinates import PLANE
+from verify.proof.certificates.by_coefficients import terms
 from verify.proof.certificates.checker import see_witness
-from verify.proof.certificates.every import map_of, terms
+from verify.proof.certificates.every import map_of
 from verify.proof.certificates.file import FORMAT, Certificate
 from verify.proof.order_proof import Proof
 from verify.proof.potential import Potential

@@ -14,7 +14,8 @@ from typing import Any
 from verify.algebra.ring import Poly
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.certificates.every import clock_of, terms
+from verify.proof.certificates.by_coefficients import by_coefficients, terms
+from verify.proof.certificates.every import NOT_KNOWN
 from verify.proof.certificates.file import FORMAT, Certificate
 from verify.proof.certificates.one import Plain, witness_of
 from verify.proof.symplectic.defect import DefectSeries
@@ -25,13 +26,11 @@ from verify.proof.symplectic.telescoping import potential_of_lie
 from verify.proof.symplectic.two_form import TwoForm
 from verify.schemes.degrees import kind_of, map_in_degrees
 from verify.schemes.degrees.canonical_map import State, series_of
-from verify.schemes.every_hamiltonian import StageEquations, TaylorSeries
+from verify.schemes.every_hamiltonian import TaylorSeries
 from verify.schemes.scheme import Scheme
-from verify.schemes.splitting_conditions import Splitting
 from verify.verdict import Verdict
 
 _NOTHING = "there is nothing to certify"
-_NOT_KNOWN = "the checker knows stages with rational numbers, and Taylor polynomials"
 Names = Mapping[int, str]
 
 
@@ -89,15 +88,12 @@ def of_every_in_degrees(
         "separable": separable or scheme.needs_separable,
         **({"time_dependent": True} if timed else {}),
     }
-    stages = every_h.stages if isinstance(every_h, Splitting) else every_h
-    if isinstance(stages, StageEquations) and proof.symplectic:
-        rows = [[*map(str, (s.kick, s.drift, s.at_p, s.at_q))] for s in stages.stages]
-        if timed:
-            rows = [[*row, time] for row, time in zip(rows, clock_of(scheme), strict=True)]
-        return data | {"stages": rows}
+    given = by_coefficients(scheme, timed=timed) if proof.symplectic else None
+    if given is not None:
+        return data | given
     kind = kind_of(scheme)
     if proof.order is None or proof.convergence_order is None or not hasattr(kind, "step"):
-        raise InputError("scheme", scheme.name, _NOT_KNOWN)
+        raise InputError("scheme", scheme.name, NOT_KNOWN)
     flow = JetFlow(proof.degrees, proof.order + 2, separable=data["separable"], timed=timed)
     state: State = series_of(flow, kind.step(every_h), proof.order)
     columns = [list(series.coefficients) for series in state]

@@ -75,10 +75,11 @@ def test_a_file_says_what_was_certified_and_not_what_is_malformed(
         key = drawn.draw(st.sampled_from(sorted(set(data) - {"format"})))
         path.write_text(json.dumps({n: x for n, x in data.items() if n != key}))
         reason = checked(path)
-        assert key in ("potential", "stages", "time_dependent") or (
+        assert key in ("potential", "stages", "tableau", "time_dependent", "numbers") or (
             isinstance(reason, str) and key in reason
         )
-        assert key != "stages" or reason == "p_next is missing"
+        assert key not in ("stages", "tableau") or reason == "p_next is missing"
+        assert key != "numbers" or "'w' stands for nothing" in str(reason)
         for text in ("[]", "{", json.dumps({**data, "format": "another"})):
             path.write_text(text)
             with pytest.raises(InputError):

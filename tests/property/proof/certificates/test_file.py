@@ -62,17 +62,6 @@ def test_what_is_not_proved_for_every_h_has_no_certificate(
         assert f"{verdict}: there is nothing to certify" in refused(proof)
 
 
-@quick
-@given(st.sampled_from(["yoshida4", "suzuki4", "gauss4", "gauss6"]), verdicts)
-def test_what_is_proved_by_irrational_coefficients_has_none_either(
-    name: str, verdict: Verdict
-) -> None:
-    said = refused(replace(proofs(name), verdict=verdict))
-    proved = verdict is Verdict.PROVED
-    assert ("is proved by its coefficients" in said) == proved
-    assert ("there is nothing to certify" in said) != proved
-
-
 @drawn(15)
 @given(rationals(4), st.booleans())
 def test_two_explicit_stages_of_order_2_have_a_potential_that_is_certified(

@@ -40,7 +40,7 @@ def test_a_cofactor_or_a_number_that_is_needed_cannot_be_another(
     data: Data, drawn: st.DataObject
 ) -> None:
     """Of the leading coefficient, the flow's part of the map, the potential, a cofactor."""
-    if "stages" in data:
+    if "leading" not in data:
         return
     needed = [data["leading"], *data["p_next"][:2], *data["q_next"][:2], data.get("potential")]
     needed += [x for each in data.get("cofactors", {}).values() for x in each.values()]

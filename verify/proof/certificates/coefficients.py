@@ -1,0 +1,157 @@
+"""Schemes for every H that a certificate gives by coefficients, and what makes them symplectic.
+
+A coefficient is a rational number, or a polynomial in the certificate's `numbers`; what is said of
+it to be 0 is so by their polynomials.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import combinations_with_replacement
+
+from verify.proof.certificates.numbers import Number, Residues, read_numbers
+from verify.proof.certificates.readers import (
+    Left,
+    Poly,
+    array_of,
+    need,
+    number_of,
+    object_of,
+    poly_of,
+)
+
+ONE: Poly = {(): Fraction(1)}
+_MOST_ROWS = 1000
+_MOST_STAGES = 32  # of a tableau
+
+
+@dataclass(frozen=True)
+class Stages:
+    """Rows (kick, drift, share of p', share of q') of a scheme for every H.
+
+    `times`: one of each row, in parts of h from the step's start; None where H has no time.
+    `degrees` of freedom: None in the plane. Coefficients are reduced by the `numbers`.
+    """
+
+    separable: bool
+    rows: tuple[tuple[Poly, Poly, Poly, Poly], ...]
+    times: tuple[Poly, ...] | None
+    degrees: int | None
+    numbers: tuple[Number, ...]
+
+
+@dataclass(frozen=True)
+class Tableau:
+    """A Runge–Kutta method for every H: a_ij in `rows`, b_i in `weights`; the rest as `Stages`."""
+
+    separable: bool
+    rows: tuple[tuple[Poly, ...], ...]
+    weights: tuple[Poly, ...]
+    times: tuple[Poly, ...] | None
+    degrees: int | None
+    numbers: tuple[Number, ...]
+
+
+def read_coefficients(left: Left, kind: str) -> Stages | Tableau:
+    """The scheme that stands under `kind`, "stages" or "tableau"."""
+    need(left.take("hamiltonian") == "every", f"{kind}: are those of every hamiltonian")
+    reader = _Reader(left, kind)
+    found = reader.stages() if kind == "stages" else reader.tableau()
+    unused = min(reader.unused, default=None)
+    need(unused is None, f"numbers: nothing asks for {unused}")
+    return found
+
+
+class _Reader:
+    def __init__(self, left: Left, kind: str) -> None:
+        self.left, self.kind = left, kind
+        self.separable = left.flag("separable")
+        self.numbers = read_numbers(left.take("numbers")) if "numbers" in left.left else ()
+        self.residues = Residues(self.numbers)
+        self.unused = {number.name for number in self.numbers}
+
+    def stages(self) -> Stages:
+        rows = array_of(self.left.take("stages"), "stages")
+        need(0 < len(rows) <= _MOST_ROWS, f"stages: has 1 to {_MOST_ROWS} rows")
+        found, times = [], []
+        for row in rows:
+            kick, drift, at_p, at_q, *time = self.row(row, 4 + self.left.timed)
+            found.append((kick, drift, at_p, at_q))
+            times += time
+        own = tuple(times) if self.left.timed else None
+        return Stages(self.separable, tuple(found), own, self.left.degrees, self.numbers)
+
+    def tableau(self) -> Tableau:
+        entries = dict(object_of(self.left.take("tableau"), "tableau"))
+        wanted = ("a", "b", *("c",) * self.left.timed)
+        need(set(entries) == set(wanted), f"tableau: has {', '.join(wanted)}")
+        rows = array_of(entries["a"], "tableau")
+        need(0 < len(rows) <= _MOST_STAGES, f"tableau: has 1 to {_MOST_STAGES} rows")
+        found = tuple(self.row(row, len(rows)) for row in rows)
+        weights = self.row(entries["b"], len(rows))
+        times = self.row(entries["c"], len(rows)) if self.left.timed else None
+        return Tableau(self.separable, found, weights, times, self.left.degrees, self.numbers)
+
+    def row(self, data: object, length: int) -> tuple[Poly, ...]:
+        given = array_of(data, self.kind)
+        need(len(given) == length, f"{self.kind}: a row has {length} numbers")
+        return tuple(map(self.coefficient, given))
+
+    def coefficient(self, data: object) -> Poly:
+        if not isinstance(data, list):
+            number = number_of(data, self.kind)
+            return {(): number} if number else {}
+        return self.residues.reduced(poly_of(data, self.kind, self.known))
+
+    def known(self, name: str) -> bool:
+        self.unused.discard(name)
+        return any(name == number.name for number in self.numbers)
+
+
+# -- what makes them symplectic -------------------------------------------------------------------
+
+
+def check_coefficients(entries: Stages | Tableau) -> None:
+    """ValueError names what does not hold."""
+    residues = Residues(entries.numbers)
+    if isinstance(entries, Tableau):
+        for name, gap in _gaps(entries, residues):
+            need(not gap, f"tableau: {name} is not zero")
+        return
+    for row in entries.rows:
+        holds = _preserves(*row, separable=entries.separable, residues=residues)
+        need(holds, "det A is not det B")
+
+
+def _preserves(k: Poly, d: Poly, s: Poly, u: Poly, *, separable: bool, residues: Residues) -> bool:
+    """Whether det J = 1 of a stage for every H; with `degrees`, whether S = 0.
+
+    A J = B by implicit differentiation: both are I + h E D with det A = 1 + h b (k s − d u) +
+    h² k d s u (a c − b²), a, b, c = H_pp, H_pq, H_qq there, and det B the same of s − 1 and u − 1.
+
+    In n degrees of freedom: with K = k V + d T for H = T + V, or K = k H for k = d, the stage is
+    that of K with k = d = 1; where k d = 0, what moves does so by a gradient of what does not. With
+    P, Q the point and δ = d(z' − z), dP∧dK_P + dQ∧dK_Q = −d(dK) = 0 leaves
+    dp'∧dq' − dp∧dq = (1 − s − u) δp∧δq.
+    """
+    rest = residues.sum((1, ONE), (-1, s), (-1, u))
+    alike = separable or not residues.sum((1, k), (-1, d))
+    return alike and not residues.product(residues.product(k, d), rest)
+
+
+def _gaps(entries: Tableau, residues: Residues) -> Iterator[tuple[str, Poly]]:
+    """M_ij = b_i a_ij + b_j a_ji − b_i b_j; that all are 0 suffices for S = 0.
+
+    With F = −H_q and G = H_p at each stage's point (P, Q) and time, P_i = p + h Σ a_ij F_j and
+    p' = p + h Σ b_i F_i, likewise with Q, q and G:
+
+        dp'∧dq' − dp∧dq = h Σ b_i (dP_i∧dG_i + dF_i∧dQ_i) − h² Σ M_ij dF_i∧dG_j,
+
+    and dP∧dH_p + dQ∧dH_q = −d(dH) = 0 at each stage, where its time is one number for all (p, q).
+    """
+    a, b = entries.rows, entries.weights
+    for i, j in combinations_with_replacement(range(len(b)), 2):
+        one, two = residues.product(b[i], a[i][j]), residues.product(b[j], a[j][i])
+        gap = residues.sum((1, one), (1, two), (-1, residues.product(b[i], b[j])))
+        m, n = i + 1, j + 1
+        yield f"b_{m} a_{m}{n} + b_{n} a_{n}{m} - b_{m} b_{n}", gap

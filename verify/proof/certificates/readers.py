@@ -1,0 +1,114 @@
+"""How a certificate's JSON is read: a value of each kind, or a ValueError that names its entry."""
+
+import re
+from collections.abc import Callable, Iterable
+from fractions import Fraction
+
+Monomial = tuple[str, ...]  # names in order, a name once for each power
+Poly = dict[Monomial, Fraction]
+
+MOST_ORDERS = 128
+MOST_DEGREES = 16
+MOST_FACTORS = 256  # in a term
+_MOST_BITS = 1 << 15  # of a coefficient that several terms add up to
+RESERVED = {"p", "q", "h", "t", "sin", "cos", "exp", "log", "sqrt", "pi", "e", "i", "E", "I"}
+_NUMBER = re.compile(r"(-?[0-9]{1,2000})(?:/([1-9][0-9]{0,1999}))?")
+
+
+def need(holds: object, what: str) -> None:
+    """ValueError with these words, unless it holds."""
+    if not holds:
+        raise ValueError(what)
+
+
+class Left:
+    """The entries that have not been read yet, and what every certificate may have.
+
+    `timed`: H depends on t; `degrees` of freedom: None in the plane.
+    """
+
+    def __init__(self, data: object) -> None:
+        self.left = dict(object_of(data, "the certificate"))
+        self.left.pop("format", None)  # which who opens the file looks at
+        self.timed = "time_dependent" in self.left and self.flag("time_dependent")
+        self.degrees = self.whole("degrees", 1, MOST_DEGREES) if "degrees" in self.left else None
+
+    def take(self, name: str) -> object:
+        """The entry, which is then read."""
+        need(name in self.left, f"{name} is missing")
+        return self.left.pop(name)
+
+    def flag(self, name: str) -> bool:
+        """true or false."""
+        value = self.take(name)
+        need(isinstance(value, bool), f"{name}: {short(value)} is not true or false")
+        return value is True
+
+    def whole(self, name: str, least: int, most: int = MOST_ORDERS) -> int:
+        """A whole number in this range."""
+        value = self.take(name)
+        whole = isinstance(value, int) and not isinstance(value, bool)
+        said = f"{name}: {short(value)} is no whole number from {least} to {most}"
+        need(whole and least <= value <= most, said)  # type: ignore[operator]
+        return value  # type: ignore[return-value]
+
+
+def poly_of(data: object, what: str, known: Callable[[str], bool]) -> Poly:
+    """A list of terms in names that are known."""
+    total: Poly = {}
+    for term in array_of(data, what):
+        number, *names = array_of(term, what) or [None]
+        need(len(names) <= MOST_FACTORS, f"{what}: has more than {MOST_FACTORS} factors")
+        for name in names:
+            need(known(text_of(name, what)), f"{what}: {short(name)} stands for nothing")
+        key = tuple(sorted(map(str, names)))
+        total[key] = total.get(key, Fraction(0)) + number_of(number, what)
+        # Each of many denominators would make the sum longer, and the next one slower.
+        need(bits_of(total[key]) <= _MOST_BITS, f"{what}: a coefficient grows too long")
+    return {names: c for names, c in total.items() if c}
+
+
+def bits_of(x: Fraction) -> int:
+    """Of numerator and denominator together."""
+    return x.numerator.bit_length() + x.denominator.bit_length()
+
+
+def collected(terms: Iterable[tuple[Monomial, Fraction]]) -> Poly:
+    """The sum of the terms."""
+    total: Poly = {}
+    for names, c in terms:
+        key = tuple(sorted(names))
+        total[key] = total[key] + c if key in total else c
+    return {names: c for names, c in total.items() if c}
+
+
+def object_of(data: object, what: str) -> dict[str, object]:
+    """The data, if they are an object."""
+    need(isinstance(data, dict), f"{what}: {short(data)} is no object")
+    return data  # type: ignore[return-value]
+
+
+def array_of(data: object, what: str) -> list[object]:
+    """The data, if they are a list."""
+    need(isinstance(data, list), f"{what}: {short(data)} is no list")
+    return data  # type: ignore[return-value]
+
+
+def text_of(data: object, what: str) -> str:
+    """The data, if they are a text."""
+    need(isinstance(data, str), f"{what}: {short(data)} is no text")
+    return data  # type: ignore[return-value]
+
+
+def number_of(data: object, what: str) -> Fraction:
+    """A rational number, which is a text."""
+    found = _NUMBER.fullmatch(data) if isinstance(data, str) else None
+    need(found, f"{what}: {short(data)} is no rational number such as '-3/2'")
+    above, below = found.groups()  # type: ignore[union-attr]
+    return Fraction(int(above), int(below or 1))
+
+
+def short(data: object) -> str:
+    """The data as a message shows them."""
+    shown = ascii(data) if not isinstance(data, list | dict) else type(data).__name__
+    return shown if len(shown) <= 40 else f"{shown[:40]}…"
