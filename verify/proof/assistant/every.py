@@ -1,0 +1,133 @@
+"""The export of a certificate for every H: of elements of any ring with commuting derivations."""
+
+from collections.abc import Iterable, Iterator
+
+from verify.proof.assistant.formulas import Spelling, deep, form_list, list_of, rational, whole
+from verify.proof.assistant.nonzero import energy_that_shows
+from verify.proof.assistant.text import Export
+from verify.proof.certificates.entries import Expansion, Form, Poly, derived_by
+
+_NEEDS = "Rings Totals Flow Taylor Plane Formulas Identities EveryHamiltonian EveryClaims".split()
+_SMOOTH = ("Smooth", "Systems", "EveryNonzero")
+_WHICH = {  # by (separable, timed)
+    (False, False): "H(p, q)",
+    (True, False): "H = T(p) + V(q)",
+    (False, True): "H(p, q, t)",
+    (True, True): "H = T(p, t) + V(q, t)",
+}
+_SHALLOW = Spelling(
+    number=lambda c: f"rational {rational(c)}",
+    name=lambda name: name,
+    power=lambda base, n: f"{base} ^ {n}",
+    scope="F",
+)
+
+
+def of_every(entries: Expansion) -> Export:
+    """The theorems of such a certificate, and their proofs."""
+    names, n, order = _Names(entries), len(entries.coordinates) // 2, entries.order
+    spelled = names.deep
+    potential = entries.potential
+    shown = energy_that_shows(entries)
+    known = entries.last if order is not None else 2 * max(map(len, entries.after))
+    return Export(
+        needs=_NEEDS if shown is None else (*_NEEDS, *_SMOOTH),
+        template="every",
+        values={
+            "n": n,
+            "planar": entries.planar,
+            "which": _WHICH[entries.separable, entries.timed],
+            "timed": whole(entries.timed),
+            "separable": whole(entries.separable),
+            "derivatives": list_of(map(list_of, names.derived)),
+            "maps": [
+                {
+                    "coordinate": name,
+                    "name": f"{name}_next",
+                    "coefficients": names.bound(series, _SHALLOW.list(series)),
+                }
+                for name, series in zip(entries.coordinates, entries.after, strict=True)
+            ],
+            "agreement": entries.convergence_order,
+            "known": known,
+            "order": order,
+            "shown": shown
+            and {
+                "entry": tuple(names.coordinates[x] for x in shown[0]),
+                "energy": spelled.scoped(shown[1]),
+                "point": list_of("0" for _ in names.coordinates),
+            },
+            "leading": names.form(entries.leading),
+            "potential": None if potential is None else names.form(potential),
+            "deep": {
+                "series": _series(spelled, entries),
+                "leading": form_list(entries.leading, names.coordinates, spelled),
+                "potential": form_list(potential or {}, names.coordinates, spelled),
+            },
+        },
+    )
+
+
+class _Names:
+    """Coordinates and derivatives of H: their numbers, and how they are written."""
+
+    def __init__(self, entries: Expansion) -> None:
+        self.entries = entries
+        self.n = len(entries.coordinates) // 2
+        self.coordinates = {name: k for k, name in enumerate((*entries.coordinates, "t"))}
+        used = {name for x in self._polys() for names in x for name in names}
+        derived = {self._index(name) for name in used if name not in self.coordinates}
+        # The formulas are derived once more, and the slopes of H twice.
+        derived |= {(k,) for k in range(2 * self.n)}
+        self.derived = sorted(derived | set(self._slopes(derived)), key=lambda x: (len(x), x))
+        numbers = {name: k + 1 for name, k in self.coordinates.items()}
+        numbers |= {self._name(x): len(numbers) + k for k, x in enumerate(self.derived, start=1)}
+        self.deep = deep(numbers)
+
+    def bound(self, polys: Iterable[Poly], text: str) -> str:
+        """The text, in which the names that these have are bound to what they stand for."""
+        used = {name for x in polys for names in x for name in names}
+        plain = [name for name in self.coordinates if name in used]
+        derived = sorted((self._index(x) for x in used - {*plain}), key=lambda x: (len(x), x))
+        bound = [f"let {x} := coordinate s {self.coordinates[x]} in" for x in plain]
+        if derived:
+            bound.append("let H := hamiltonian s in")
+        for index in derived:
+            slopes = "".join(f"by_coordinate {k} (" for k in index)
+            bound.append(f"let {self._name(index)} := {slopes}H{')' * len(index)} in")
+        return "\n  ".join([*bound, text])
+
+    def form(self, x: Form) -> str:
+        """A 2-form as it is written: in the plane its one entry, else a list of them."""
+        if self.entries.planar:
+            return self.bound(x.values(), _SHALLOW.scoped(next(iter(x.values()), {})))
+        listed = form_list(x, self.coordinates, _SHALLOW)
+        return f"entry (rational 0) ({self.bound(x.values(), listed)})"
+
+    def _polys(self) -> Iterator[Poly]:
+        for series in self.entries.after:
+            yield from series
+        yield from self.entries.leading.values()
+        yield from (self.entries.potential or {}).values()
+
+    def _index(self, name: str) -> tuple[int, ...]:
+        """By which coordinates H is derived, in order."""
+        return tuple(sorted(self.coordinates[by] for by in derived_by(name)))
+
+    def _name(self, index: tuple[int, ...]) -> str:
+        letters = list(self.coordinates)
+        return "H_" + "".join(letters[k] for k in index)
+
+    def _slopes(self, derived: Iterable[tuple[int, ...]]) -> Iterator[tuple[int, ...]]:
+        """The derivatives of these by one coordinate more, those that are not 0 for all H meant."""
+        for index in derived:
+            for by in range(2 * self.n + self.entries.timed):
+                more = tuple(sorted((*index, by)))
+                mixed = min(more) < self.n and any(self.n <= k < 2 * self.n for k in more)
+                if not (self.entries.separable and mixed):
+                    yield more
+
+
+def _series(spelled: Spelling, entries: Expansion) -> str:
+    lists = ";\n   ".join(map(spelled.list, entries.after))
+    return f"[{lists}]"

@@ -1,0 +1,98 @@
+"""Factors by which the gaps of a certificate for one H are seen to be 0: gap = Σ factor·relation.
+
+The relations are those of the theory, one for each function: sin² + cos² = 1 and u·(1/u) = 1. The
+gaps are the theory's too (`Identities.v`), in its order. What the certificate holds of the like is
+of other gaps, where D is applied to a coordinate over and over.
+"""
+
+from collections.abc import Iterator
+from fractions import Fraction
+
+from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
+
+from verify.errors import NOT_GIVEN, InputError
+from verify.proof.certificates.checker import Identities
+from verify.proof.certificates.entries import Expansion, Poly
+
+Factors = list[tuple[int, Poly]]  # each with the number of its relation
+
+
+def factors_of(entries: Expansion) -> list[Factors]:
+    """Those of each gap, in order; of a gap that is 0 as it stands there are none.
+
+    Raises InputError where a gap is not seen to be 0.
+    """
+    gaps = list(_Gaps(entries).collected())
+    reducer = _Reducer(entries)
+    return [reducer.factors(gap) for gap in gaps]
+
+
+class _Gaps(Identities):
+    """The checker's identities: what has to be 0 is collected in place of being looked at."""
+
+    def __init__(self, entries: Expansion) -> None:
+        super().__init__(entries)
+        self.gaps: list[Poly] = []
+
+    def zero(self, x: Poly, what: str) -> None:
+        self.gaps.append(x)
+
+    def collected(self) -> Iterator[Poly]:
+        given = self.given
+        for by, series in zip(given.coordinates, given.after, strict=True):
+            own = [*series, *({} for _ in range(given.convergence_order + 1))]
+            yield self.add(own[0], {(by,): Fraction(1)}, -1)
+            for k in range(given.convergence_order):
+                scaled = {names: (k + 1) * c for names, c in own[k + 1].items()}
+                yield self.add(scaled, self.along_flow(own[k]), -1)
+        self.check_defect(2 * max(map(len, given.after)) if given.last is None else given.last)
+        if given.potential is not None:
+            self.check_potential(given.potential)
+        yield from self.gaps
+
+
+class _Reducer:
+    """Polynomials reduced by the relations, outer functions first."""
+
+    def __init__(self, entries: Expansion) -> None:
+        made = [f.name for f in entries.functions]
+        self.names = [*reversed(made), *entries.coordinates, "t", *entries.parameters]
+        # The ring's own names: what a certificate calls a function is no name there.
+        plain = [f"x{k}" for k in range(len(self.names))]
+        self.ring = fmpq_mpoly_ctx.get(plain, Ordering.lex)
+        found = Identities(entries).relations
+        self.relations = [
+            (made.index(name), self.element(found[name]))
+            for name in reversed(made)
+            if name in found
+        ]
+
+    def element(self, x: Poly) -> fmpq_mpoly:
+        terms = {
+            tuple(names.count(name) for name in self.names): fmpq(c.numerator, c.denominator)
+            for names, c in x.items()
+        }
+        return self.ring.from_dict(terms)
+
+    def poly(self, x: fmpq_mpoly) -> Poly:
+        return {
+            tuple(sorted(n for n, k in zip(self.names, m, strict=True) for _ in range(int(k)))): (
+                Fraction(int(c.numerator), int(c.denominator))
+            )
+            for m, c in x.to_dict().items()
+        }
+
+    def factors(self, gap: Poly) -> Factors:
+        """The factors of this gap; InputError where reducing does not end at 0."""
+        left, found = self.element(gap), dict[int, fmpq_mpoly]()
+        changed = True
+        while changed and not left.is_zero():
+            changed = False
+            for number, relation in self.relations:
+                quotient, left = divmod(left, relation)
+                if not quotient.is_zero():
+                    changed = True
+                    found[number] = found.get(number, self.ring.from_dict({})) + quotient
+        if not left.is_zero():
+            raise InputError("certificate", NOT_GIVEN, "an identity is not seen by reducing")
+        return [(number, self.poly(factor)) for number, factor in sorted(found.items())]

@@ -1,0 +1,119 @@
+"""Polynomials of a certificate as Rocq reads them: as formulas in numbered names, for the check,
+and as a person writes them, term by term the same, so that the values of one are the other.
+"""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from verify.proof.certificates.entries import Form, Poly
+
+_SIGNS = (" + ", " - ")
+_KEYWORDS = frozenset(
+    "as at cofix do else end exists fix for forall from fun if in let match mod of return "
+    "then using where with Prop SProp Set Type Axiom by IF".split()
+)
+
+
+@dataclass(frozen=True)
+class Spelling:
+    """How a number, a name and a power are written. A number is written without its sign."""
+
+    number: Callable[[Fraction], str]
+    name: Callable[[str], str]
+    power: Callable[[str, int], str]
+    scope: str = ""  # by whose rules Rocq reads it
+
+    def scoped(self, x: Poly) -> str:
+        """The polynomial, read by these rules wherever it stands."""
+        return f"({self.poly(x)})%{self.scope}" if self.scope else self.poly(x)
+
+    def poly(self, x: Poly) -> str:
+        """The sum of the terms, long ones first, one after the other."""
+        text = ""
+        for names, c in sorted(x.items(), key=lambda term: (-len(term[0]), term[0])):
+            first, term = not text, self._term(names, abs(c))
+            # What stands behind a sign alone is in brackets: else it is the first factor's.
+            text += f"- ({term})" if c < 0 and first else f"{'' if first else _SIGNS[c < 0]}{term}"
+        return text or self.number(Fraction(0))
+
+    def _term(self, names: Sequence[str], c: Fraction) -> str:
+        factors = [] if c == 1 and names else [self.number(c)]
+        for name in dict.fromkeys(sorted(names)):
+            n = names.count(name)
+            factors.append(self.name(name) if n == 1 else self.power(self.name(name), n))
+        return " * ".join(factors)
+
+    def list(self, series: Iterable[Poly]) -> str:
+        """A list of polynomials, one a line."""
+        return "[" + ";\n    ".join(self.scoped(x) for x in series) + "]"
+
+
+def deep(numbers: dict[str, int]) -> Spelling:
+    """Formulas in the names of these numbers."""
+    return Spelling(
+        number=lambda c: f"Number {rational(c)}",
+        name=lambda name: f"Name {numbers[name]}",
+        power=lambda base, n: f"({base}) ^ {n}",
+        scope="formula",
+    )
+
+
+def rational(c: Fraction) -> str:
+    """A rational number."""
+    return f"({c.numerator} # {c.denominator})"
+
+
+def real(c: Fraction) -> str:
+    """A number of at least 0 as a real one."""
+    return str(c.numerator) if c.denominator == 1 else f"{c.numerator} / {c.denominator}"
+
+
+def signed(c: Fraction) -> str:
+    """A number as a real one; Rocq reads a sign before digits as theirs."""
+    return f"-{real(-c)}" if c < 0 else real(c)
+
+
+def safe(names: Iterable[str], words: Iterable[str]) -> dict[str, str]:
+    """The names as they stand among these words, of which none may be hidden, nor a keyword.
+
+    An apostrophe stands in no name that a certificate has.
+    """
+    taken = _KEYWORDS | set(words)
+    return {name: f"{name}'" if name in taken else name for name in names}
+
+
+def lines(text: str, most: int = 96) -> str:
+    """The text with its long lines broken at blanks, as far as that goes."""
+    return "\n".join(part for line in text.split("\n") for part in _broken(line, most))
+
+
+def _broken(line: str, most: int) -> list[str]:
+    indent = " " * (len(line) - len(line.lstrip()))
+    parts = []
+    while len(line) > most:
+        cut = line.rfind(" ", len(indent) + 4, most)
+        if cut < 0:
+            break
+        parts.append(line[:cut])
+        line = f"{indent}  {line[cut + 1 :]}"
+    return [*parts, line]
+
+
+def whole(x: bool) -> str:
+    """A truth value."""
+    return "true" if x else "false"
+
+
+def list_of(items: Iterable[object]) -> str:
+    """A list."""
+    return f"[{'; '.join(map(str, items))}]"
+
+
+def form_list(x: Form, coordinates: Mapping[str, int], spelling: Spelling) -> str:
+    """A 2-form as a list of its entries, each with the numbers of its coordinates."""
+    entries = [
+        f"({coordinates[a]}%nat, {coordinates[b]}%nat, {spelling.scoped(c)})"
+        for (a, b), c in x.items()
+    ]
+    return "[" + ";\n    ".join(entries) + "]"

@@ -1,0 +1,192 @@
+"""The export of a certificate for one H: of real functions."""
+
+from collections.abc import Iterable
+
+from verify.proof.assistant.factors import factors_of
+from verify.proof.assistant.formulas import (
+    Spelling,
+    deep,
+    form_list,
+    list_of,
+    rational,
+    real,
+    safe,
+    signed,
+)
+from verify.proof.assistant.nonzero import Shown, point_that_shows
+from verify.proof.assistant.text import Export, template_words
+from verify.proof.certificates.checker import Identities
+from verify.proof.certificates.entries import Expansion, Form, Function, Poly
+
+_NEEDS = (
+    "Differential Rings Formulas Calculation Identities RealFormulas RealNames OneHamiltonian "
+    "RealDefect RealClaims MapClaims FlowClaims".split()
+)
+_OF_ORDER = ("RationalValues", "Nonzero")
+_EXACT = ("RealExact", "ExactClaims")
+_TELESCOPING = ("Flow", "Smooth", "RealPotential")
+_PARTNERS = {"sin": "cos", "cos": "sin"}
+_KINDS = {"sin": "Sine", "cos": "Cosine", "exp": "Exponential", "inverse": "Inverse"}
+
+
+def of_one(entries: Expansion) -> Export:
+    """The theorems of such a certificate, and their proofs."""
+    assert entries.hamiltonian is not None
+    names, order, potential = _Names(entries), entries.order, entries.potential
+    algebra = Identities(entries)
+    slopes = [algebra.slopes[by] for by in entries.coordinates]
+    known = 2 * max(map(len, entries.after)) if entries.last is None else entries.last
+    spelled, shallow = names.deep, names.shallow
+    needs = (*_NEEDS, *(_EXACT if order is None else _OF_ORDER))
+    return Export(
+        needs=needs if potential is None else (*needs, *_TELESCOPING),
+        template="one",
+        values={
+            "n": len(entries.coordinates) // 2,
+            "planar": entries.planar,
+            "timed": entries.timed,
+            "coordinates": [*entries.coordinates, *("t",) * entries.timed],
+            "parameters": [names.written[name] for name in entries.parameters],
+            "agreement": entries.convergence_order,
+            "known": known,
+            "degree": max(map(len, entries.after)) - 1,
+            "shown": names.shown(point_that_shows(entries)) if order is not None else None,
+            "order": order,
+            "potential": potential,
+            "domain": names.domain(),
+            "inverses": names.inside(),
+            "maps": [
+                {"name": f"{name}_next", "coefficients": shallow.list(series)}
+                for name, series in zip(entries.coordinates, entries.after, strict=True)
+            ],
+            "shallow": {
+                "energy": names.bound(shallow.poly(entries.hamiltonian)),
+                "slopes": [shallow.poly(x) for x in slopes],
+                "slope_list": names.bound(shallow.list(slopes)),
+                "series": names.bound(_series(shallow, entries)),
+                "leading": names.form(entries.leading),
+                "potential": names.form(potential or {}),
+            },
+            "deep": {
+                "functions": list_of(map(names.made, entries.functions)),
+                "energy": spelled.scoped(entries.hamiltonian),
+                "slopes": spelled.list(slopes),
+                "series": _series(spelled, entries),
+                "leading": form_list(entries.leading, names.coordinates, spelled),
+                "potential": form_list(potential or {}, names.coordinates, spelled),
+                "factors": list_of(map(names.factor_list, factors_of(entries))),
+            },
+        },
+    )
+
+
+def _series(spelling: Spelling, entries: Expansion) -> str:
+    lists = ";\n   ".join(map(spelling.list, entries.after))
+    return f"[{lists}]"
+
+
+class _Names:
+    """Coordinates, parameters and functions: their numbers, and how they are written."""
+
+    def __init__(self, entries: Expansion) -> None:
+        self.entries = entries
+        self.coordinates = {name: k for k, name in enumerate((*entries.coordinates, "t"))}
+        known = (*self.coordinates, *entries.parameters, *(f.name for f in entries.functions))
+        self.numbers = {name: k for k, name in enumerate(known, start=1)}
+        self.deep = deep(self.numbers)
+        self.written = safe(entries.parameters, template_words("one"))
+        self.shallow = Spelling(real, self._word, power=lambda base, n: f"{base} ^ {n}")
+        self.calls = dict[str, str]()
+        for function in entries.functions:  # inner ones first
+            argument = self.shallow.poly(function.argument)
+            inverse = f"(/ ({argument}))"
+            self.calls[function.name] = (
+                inverse if function.kind == "inverse" else f"{function.kind} ({argument})"
+            )
+
+    def _word(self, name: str) -> str:
+        return self.calls.get(name) or self.written.get(name, name)
+
+    def made(self, function: Function) -> str:
+        """A function of the vocabulary: its kind, with the number of its partner, and argument."""
+        partner = ""
+        if function.kind in _PARTNERS:
+            wanted = (_PARTNERS[function.kind], function.argument)
+            found = [f for f in self.entries.functions if (f.kind, f.argument) == wanted]
+            partner = f" {self.numbers[found[0].name]}"
+        return f"({_KINDS[function.kind]}{partner}, {self.deep.scoped(function.argument)})"
+
+    def _below(self) -> list[Poly]:
+        return [f.argument for f in self.entries.functions if f.kind == "inverse"]
+
+    def domain(self) -> str:
+        """That no denominator is 0."""
+        conditions = [f"({self.shallow.poly(x)}) <> 0" for x in self._below()]
+        return self.bound(" /\\ ".join(conditions) or "True")
+
+    def inside(self) -> list[str]:
+        """How `domain` shows that each function is defined, in their order."""
+        proofs, seen, count = [], 0, len(self._below())
+        for function in self.entries.functions:
+            if function.kind != "inverse":
+                proofs.append("discriminate F")
+                continue
+            proofs.append(f"exact ({_nested(seen, seen == count - 1)})")
+            seen += 1
+        return proofs
+
+    def bound(self, text: str) -> str:
+        """The text, in which the coordinates are those of z where there are several degrees."""
+        if self.entries.planar:
+            return text
+        lets = [
+            f"let {name} := z {k}%nat in"
+            for name, k in self.coordinates.items()
+            if name != "t" or self.entries.timed
+        ]
+        return "\n  ".join([*lets, text])
+
+    def form(self, x: Form) -> str:
+        """A 2-form as it is written: in the plane its one entry, else a list of them."""
+        if self.entries.planar:
+            return self.shallow.poly(next(iter(x.values()), {}))
+        return f"entry 0 ({self.bound(form_list(x, self.coordinates, self.shallow))})"
+
+    def shown(self, found: Shown | None) -> dict[str, object] | None:
+        """What the theorem that L is not 0 is written with."""
+        if found is None:
+            return None
+        values, names = found.values, list(self.numbers)
+        given = [values[name] for name in self.entries.parameters]
+        at = [f"({signed(x)})" for x in given]
+        moving = [*self.entries.coordinates, *("t",) * self.entries.timed]
+        proofs = [
+            f"(Y (nth {k} (made names) (Exponential, Number 0)) ltac:(simpl; tauto) eq_refl)"
+            for k, f in enumerate(self.entries.functions)
+            if f.kind == "inverse"
+        ]
+        return {
+            "at": " ".join([*at, *(moving if self.entries.planar else ["z"])]),
+            "entry": [f"{self.coordinates[x]}%nat" for x in found.entry],
+            "point": list_of(rational(values[name]) for name in self.coordinates),
+            "given": list_of(map(rational, given)),
+            "numbers": list_of(rational(values[name]) for name in names),
+            "by": list_of(self.coordinates[x] for x in found.by),
+            "defined": _conjunction(proofs) if proofs else "I",
+        }
+
+    def factor_list(self, factors: Iterable[tuple[int, Poly]]) -> str:
+        """The factors of a gap, each with the number of its relation."""
+        return list_of(f"({k}%nat, {self.deep.scoped(x)})" for k, x in factors)
+
+
+def _conjunction(proofs: list[str]) -> str:
+    return proofs[0] if len(proofs) == 1 else f"(conj {proofs[0]} {_conjunction(proofs[1:])})"
+
+
+def _nested(place: int, last: bool) -> str:
+    """That of this place in D : A /\\ (B /\\ (C /\\ …))."""
+    found = "D"
+    for _ in range(place):
+        found = f"proj2 ({found})"
+    return found if last else f"proj1 ({found})"

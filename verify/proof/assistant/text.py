@@ -1,0 +1,72 @@
+"""A file for Rocq: what it proves in words, the theory it stands on, and the proofs."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from textwrap import wrap
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from verify.proof.assistant.formulas import lines
+from verify.proof.assistant.theory import as_modules, imported
+from verify.proof.certificates.established import Established
+
+_LONGEST = 2000  # characters of a formula in the words
+_WIDTH = 88
+_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+_TEMPLATES = Path(__file__).parent / "templates"
+
+
+@dataclass(frozen=True)
+class Export:
+    """`needs`: files of the theory; `template`, with `values`: definitions, theorems, proofs."""
+
+    needs: Sequence[str]
+    template: str
+    values: dict[str, Any]
+
+
+def written(export: Export, of: Established, *, stands_alone: bool) -> str:
+    """The whole file."""
+    theory = as_modules(export.needs) if stands_alone else imported(export.needs)
+    said = [line for text in _said(of) for line in wrap(text, _WIDTH, subsequent_indent="  ")]
+    statement = "\n    ".join(wrap(_comment(of.statement), _WIDTH))
+    words = {"statement": statement, "said": said, "alone": stands_alone}
+    head = _environment().get_template("head.jinja").render(words)
+    body = _environment().get_template(f"{export.template}.jinja").render(export.values)
+    return lines(f"{head}{theory}\n{body}")
+
+
+@cache
+def template_words(template: str) -> frozenset[str]:
+    """The words of a template, which a name of the certificate's must not hide."""
+    return frozenset(_WORD.findall((_TEMPLATES / f"{template}.jinja").read_text(encoding="utf-8")))
+
+
+@cache
+def _environment() -> Environment:
+    return Environment(
+        loader=FileSystemLoader(_TEMPLATES, encoding="utf-8"),
+        autoescape=False,  # noqa: S701 - no page: what is set is numbers and names that were checked
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+
+
+def _said(of: Established) -> list[str]:
+    told = {"H": of.hamiltonian, "L": of.leading, "G": of.potential, "map": of.scheme}
+    return [
+        f"{name} = {_comment(text if len(text) <= _LONGEST else text[:_LONGEST] + ' ...')}"
+        for name, text in told.items()
+        if text
+    ] + [f"where {_comment(text)}" for text in of.domain]
+
+
+def _comment(text: str) -> str:
+    """The text with nothing in it that ends or begins a comment or a string of Rocq."""
+    return text.replace('"', "'").replace("(*", "( *").replace("*)", "* )")

@@ -1,0 +1,57 @@
+(** n degrees of freedom: the determinant of the Jacobian of a step of lie_eta, for every H and
+    every eta. *)
+
+From Coq Require Import Setoid Morphisms Ring Ring_theory QArith Lia.
+From AreaPreservation Require Import Rings Totals Flow LieScheme Step Determinants Values Volume.
+Open Scope nat_scope.
+
+Section Determinant.
+  Context (K : differential_ring) (s : system K) (eta : nat).
+  Add Ring determinant : (ring_laws K) (setoid (same_equivalence K) (operations_extend K)).
+  Open Scope ring_of_functions.
+
+  Notation n := (degrees s).
+  Notation d := by_coordinate.
+  Notation power := (power K).
+  Notation volume := (volume K s eta).
+  Notation first_coefficient := (first_coefficient K s eta).
+
+  (** The Jacobian of a step: row c, column a holds the slope of z_c' along z_a. *)
+  Definition jacobian (h : K) (c a : nat) : K := d a (new_value K s eta h c).
+
+  (** det J is the value at h of the series of its coefficients. *)
+  Lemma determinant_has_value : forall h, constant K h ->
+    has_value K h volume (determinant (2 * n) (jacobian h)).
+  Proof.
+    intros h C. apply value_of_determinant. intros c a _ _. exists (S eta). split.
+    - intros k L. unfold jacobian_series, scheme_series.
+      rewrite (proj2 (Nat.leb_gt _ _)) by lia. apply derivation_zero.
+    - unfold jacobian, new_value, partial_sum. rewrite derivation_total.
+      apply total_same. intros k L.
+      unfold jacobian_series, scheme_series. rewrite (proj2 (Nat.leb_le _ _)) by lia.
+      rewrite derivation_mul, (power_constant K h k C). ring.
+  Qed.
+
+  (** In n degrees of freedom, a step of lie_eta: the coefficients of the rest do not depend on h
+      and end. *)
+  Theorem determinant_of_jacobian : exists m, ends K volume m /\
+    forall h, constant K h -> determinant (2 * n) (jacobian h)
+      == one + power h (S eta) * first_coefficient
+         + power h (S (S eta)) * partial_sum K h (fun k => volume (S (S eta) + k)%nat) m.
+  Proof.
+    destruct (determinant_has_value zero) as [m [E _]]; [exact (derivation_zero K)|].
+    exists m. split; [exact E|]. intros h C.
+    rewrite (value_unique K h volume _ m (determinant_has_value h C) E).
+    rewrite <- (value_further K h volume m (S (S eta) + m)) by (try exact E; lia).
+    unfold partial_sum at 1. rewrite total_split.
+    change (total (S (S eta)) (fun k => power h k * volume k)) with
+      (total (S eta) (fun k => power h k * volume k) + power h (S eta) * volume (S eta)).
+    rewrite volume_first. rewrite (total_one K (S eta) 0) by
+      (first [lia | intros [|k] Lk N; [lia|rewrite volume_below by lia; ring]]).
+    rewrite volume_at_0. unfold partial_sum. rewrite <- total_scaled.
+    rewrite (total_same K m (fun i => power h (S (S eta) + i) * _)
+      (fun k => power h (S (S eta)) * (power h k * volume (S (S eta) + k)%nat))).
+    - simpl power at 1. ring.
+    - intros k _. rewrite power_add. ring.
+  Qed.
+End Determinant.

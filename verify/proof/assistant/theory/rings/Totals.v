@@ -1,0 +1,125 @@
+(** Finite sums of elements of a ring. *)
+
+From Coq Require Import Setoid Morphisms Ring Ring_theory QArith Lia.
+From AreaPreservation Require Import Rings.
+Open Scope nat_scope.
+
+Fixpoint total {K : rational_ring} (n : nat) (f : nat -> K) : K :=
+  match n with
+  | O => zero
+  | S k => add (total k f) (f k)
+  end.
+
+Section Totals.
+  Context (K : rational_ring).
+  Add Ring totals : (ring_laws K) (setoid (same_equivalence K) (operations_extend K)).
+  Open Scope ring_of_functions.
+
+  Lemma total_same : forall n (f g : nat -> K),
+    (forall i, (i < n)%nat -> f i == g i) -> total n f == total n g.
+  Proof.
+    induction n as [|n IH]; intros f g E; simpl; [reflexivity|].
+    rewrite (IH f g), (E n) by (intros; try apply E; lia). reflexivity.
+  Qed.
+
+  Lemma total_zero : forall n (f : nat -> K),
+    (forall i, (i < n)%nat -> f i == zero) -> total n f == zero.
+  Proof.
+    induction n as [|n IH]; intros f E; simpl; [reflexivity|].
+    rewrite IH, E by (intros; try apply E; lia). ring.
+  Qed.
+
+  Lemma total_add : forall n (f g : nat -> K),
+    total n (fun i => f i + g i) == total n f + total n g.
+  Proof. induction n as [|n IH]; intros f g; simpl; [ring|]. rewrite IH. ring. Qed.
+
+  Lemma total_opp : forall n (f : nat -> K), total n (fun i => - f i) == - total n f.
+  Proof. induction n as [|n IH]; intro f; simpl; [ring|]. rewrite IH. ring. Qed.
+
+  Lemma total_sub : forall n (f g : nat -> K),
+    total n (fun i => f i - g i) == total n f - total n g.
+  Proof. induction n as [|n IH]; intros f g; simpl; [ring|]. rewrite IH. ring. Qed.
+
+  Lemma total_scaled : forall n (x : K) f, total n (fun i => x * f i) == x * total n f.
+  Proof. induction n as [|n IH]; intros x f; simpl; [ring|]. rewrite IH. ring. Qed.
+
+  Lemma total_times_total : forall m n (f g : nat -> K),
+    total m f * total n g == total m (fun k => total n (fun l => f k * g l)).
+  Proof.
+    intros m n f g. transitivity (total n g * total m f); [ring|].
+    rewrite <- total_scaled. apply total_same. intros k _. rewrite total_scaled. ring.
+  Qed.
+
+  Lemma total_first : forall n (f : nat -> K),
+    total (S n) f == f 0%nat + total n (fun i => f (S i)).
+  Proof.
+    induction n as [|n IH]; intro f; [simpl; ring|].
+    transitivity (total (S n) f + f (S n)); [reflexivity|]. rewrite IH. simpl. ring.
+  Qed.
+
+  Lemma total_swap : forall m n (f : nat -> nat -> K),
+    total m (fun i => total n (f i)) == total n (fun j => total m (fun i => f i j)).
+  Proof.
+    induction m as [|m IH]; intros n f; simpl.
+    - symmetry. apply total_zero. reflexivity.
+    - rewrite IH, total_add. reflexivity.
+  Qed.
+
+  (** Terms that are zero from [n] on do not count. *)
+  Lemma total_cut : forall m n (f : nat -> K),
+    (n <= m)%nat -> (forall i, (n <= i)%nat -> f i == zero) -> total m f == total n f.
+  Proof.
+    intros m n f L Z. induction L as [|m L IH]; [reflexivity|].
+    simpl. rewrite IH, Z by exact L. ring.
+  Qed.
+
+  Lemma total_one : forall n k (f : nat -> K), (k < n)%nat ->
+    (forall i, (i < n)%nat -> i <> k -> f i == zero) -> total n f == f k.
+  Proof.
+    induction n as [|n IH]; intros k f L Z; [lia|]. simpl.
+    destruct (Nat.eq_dec k n) as [->|N].
+    - rewrite (total_zero n) by (intros; apply Z; lia). ring.
+    - rewrite (IH k), (Z n) by (intros; try apply Z; lia). ring.
+  Qed.
+
+  (** The terms of a product of two sums, by the sum of their numbers. *)
+  Lemma total_triangle : forall n (g : nat -> nat -> K),
+    total n (fun m => total (S m) (fun k => g k (m - k)%nat))
+    == total n (fun k => total (n - k)%nat (g k)).
+  Proof.
+    induction n as [|n IH]; intro g; [reflexivity|].
+    change (total n (fun m => total (S m) (fun k => g k (m - k)%nat))
+      + total (S n) (fun k => g k (n - k)%nat) == total (S n) (fun k => total (S n - k)%nat (g k))).
+    rewrite (IH g). symmetry.
+    change (total n (fun k => total (S n - k)%nat (g k)) + total (S n - n)%nat (g n)
+      == total n (fun k => total (n - k)%nat (g k))
+         + (total n (fun k => g k (n - k)%nat) + g n (n - n)%nat)).
+    rewrite (total_same n _ (fun k => total (n - k)%nat (g k) + g k (n - k)%nat)).
+    - rewrite total_add. replace (S n - n)%nat with 1%nat by lia.
+      replace (n - n)%nat with O by lia. simpl. ring.
+    - intros k L. replace (S n - k)%nat with (S (n - k)) by lia. reflexivity.
+  Qed.
+
+  Lemma total_product : forall n (g : nat -> nat -> K),
+    (forall k l, (n <= k \/ n <= l)%nat -> g k l == zero) ->
+    total n (fun k => total n (g k))
+    == total (n + n)%nat (fun m => total (S m) (fun k => g k (m - k)%nat)).
+  Proof.
+    intros n g Z. rewrite total_triangle. symmetry.
+    rewrite (total_cut (n + n) n) by
+      (try lia; intros i L; apply total_zero; intros; apply Z; lia).
+    apply total_same. intros k L. apply total_cut; [lia|]. intros i M. apply Z. lia.
+  Qed.
+End Totals.
+
+Section DerivedTotals.
+  Context (K : differential_ring).
+  Open Scope ring_of_functions.
+
+  Lemma derivation_total : forall i n (f : nat -> K),
+    by_coordinate i (total n f) == total n (fun k => by_coordinate i (f k)).
+  Proof.
+    intros i n f. induction n as [|n IH]; simpl; [apply derivation_zero|].
+    rewrite derivation_add, IH. reflexivity.
+  Qed.
+End DerivedTotals.
