@@ -1,4 +1,4 @@
-"""The command `verify certificate`: what a certificate establishes, checked by itself."""
+"""The command `verify certificate`: what a certificate establishes, checked by other code."""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -33,6 +33,62 @@ def check(file: Path) -> Answer:
         refused = {"accepted": False, "reason": found}
         return Answer(lambda: refused, lambda: click.echo(f"refused: {found}"), failed=True)
     return Answer(lambda: {"accepted": True, **asdict(found)}, lambda: _print(found))
+
+
+@certificate.command()
+@click.argument("file", type=PATH, metavar="FILE")
+@click.option("--coq", type=PATH, required=True, metavar="OUT.v", help="Write it there.")
+@click.option(
+    "--beside-theory",
+    is_flag=True,
+    help="Import the theory, which `verify certificate theory` installs, in place of holding it.",
+)
+@answering
+def export(file: Path, coq: Path, beside_theory: bool) -> Answer:
+    """Write what FILE certifies as a proof for Rocq, which `coqc OUT.v` accepts.
+
+    It stands alone: it begins with the theory that it needs.
+
+    \b
+    verify certificate export lie2.json --coq lie2.v
+    """
+    from verify.files import write_atomically
+    from verify.proof.assistant.export import check_file_name, exported
+
+    check_file_name(coq)
+    found = exported(file, stands_alone=not beside_theory)
+    write_atomically(coq, found.text)
+    data = {
+        "written": str(coq),
+        "statement": found.of.statement,
+        "theorems": list(found.theorems),
+        "stands_alone": not beside_theory,
+    }
+
+    def told() -> None:
+        click.echo(f"{coq}: {found.of.statement}")
+        click.echo(f"  proves {', '.join(found.theorems)}")
+        how = "coqc -Q THEORY AreaPreservation" if beside_theory else "coqc"
+        click.echo(f"  check  {how} {coq}")
+
+    return Answer(lambda: data, told)
+
+
+@certificate.command()
+@click.argument("folder", type=PATH, metavar="FOLDER")
+@answering
+def theory(folder: Path) -> Answer:
+    """Write the theory that exported certificates stand on to FOLDER, with a _CoqProject."""
+    from verify.proof.assistant.theory import LOGICAL, install
+
+    written = install(folder)
+    data = {"written": [str(path) for path in written], "logical_name": LOGICAL}
+
+    def told() -> None:
+        click.echo(f"{folder}: {len(written)} files, of the logical name {LOGICAL}")
+        click.echo(f"  compile  cd {folder} && coq_makefile -f _CoqProject -o Makefile && make")
+
+    return Answer(lambda: data, told)
 
 
 def _print(found: "Established") -> None:

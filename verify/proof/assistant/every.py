@@ -5,9 +5,20 @@ from collections.abc import Iterable, Iterator
 from verify.proof.assistant.formulas import Spelling, deep, form_list, list_of, rational, whole
 from verify.proof.assistant.nonzero import energy_that_shows
 from verify.proof.assistant.text import Export
-from verify.proof.certificates.entries import Expansion, Form, Poly, derived_by
+from verify.proof.certificates.entries import Expansion, Form, derived_by
+from verify.proof.certificates.readers import Poly
 
-_NEEDS = "Rings Totals Flow Taylor Plane Formulas Identities EveryHamiltonian EveryClaims".split()
+_NEEDS = [
+    "Rings",
+    "Totals",
+    "Flow",
+    "Taylor",
+    "Bracket",
+    "Formulas",
+    "Identities",
+    "EveryHamiltonian",
+    "EveryClaims",
+]
 _SMOOTH = ("Smooth", "Systems", "EveryNonzero")
 _WHICH = {  # by (separable, timed)
     (False, False): "H(p, q)",

@@ -5,14 +5,15 @@ gaps are the theory's too (`Identities.v`), in its order. What the certificate h
 of other gaps, where D is applied to a coordinate over and over.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from verify.errors import NOT_GIVEN, InputError
 from verify.proof.certificates.checker import Identities
-from verify.proof.certificates.entries import Expansion, Poly
+from verify.proof.certificates.entries import Expansion
+from verify.proof.certificates.readers import Poly
 
 Factors = list[tuple[int, Poly]]  # each with the number of its relation
 
@@ -22,9 +23,12 @@ def factors_of(entries: Expansion) -> list[Factors]:
 
     Raises InputError where a gap is not seen to be 0.
     """
-    gaps = list(_Gaps(entries).collected())
-    reducer = _Reducer(entries)
-    return [reducer.factors(gap) for gap in gaps]
+    made = [function.name for function in entries.functions]
+    # Outer functions first: they bring inner ones, which do not bring outer ones.
+    names = [*reversed(made), *entries.coordinates, "t", *entries.parameters]
+    found = Identities(entries).relations
+    relations = [(made.index(name), found[name]) for name in reversed(made) if name in found]
+    return Reducer(names, relations).all_factors(_Gaps(entries).collected())
 
 
 class _Gaps(Identities):
@@ -51,23 +55,25 @@ class _Gaps(Identities):
         yield from self.gaps
 
 
-class _Reducer:
-    """Polynomials reduced by the relations, outer functions first."""
+class Reducer:
+    """Polynomials reduced by relations, each with its number, in their order.
 
-    def __init__(self, entries: Expansion) -> None:
-        made = [f.name for f in entries.functions]
-        self.names = [*reversed(made), *entries.coordinates, "t", *entries.parameters]
+    `names`: what is made away with first stands first.
+    """
+
+    def __init__(self, names: Sequence[str], relations: Sequence[tuple[int, Poly]]) -> None:
+        self.names = names
         # The ring's own names: what a certificate calls a function is no name there.
-        plain = [f"x{k}" for k in range(len(self.names))]
+        plain = [f"x{k}" for k in range(len(names))]
         self.ring = fmpq_mpoly_ctx.get(plain, Ordering.lex)
-        found = Identities(entries).relations
-        self.relations = [
-            (made.index(name), self.element(found[name]))
-            for name in reversed(made)
-            if name in found
-        ]
+        self.relations = [(number, self.element(x)) for number, x in relations]
+
+    def all_factors(self, gaps: Iterable[Poly]) -> list[Factors]:
+        """Those of each gap; InputError where reducing one does not end at 0."""
+        return [self.factors(gap) for gap in gaps]
 
     def element(self, x: Poly) -> fmpq_mpoly:
+        """The polynomial in the ring."""
         terms = {
             tuple(names.count(name) for name in self.names): fmpq(c.numerator, c.denominator)
             for names, c in x.items()
@@ -75,15 +81,15 @@ class _Reducer:
         return self.ring.from_dict(terms)
 
     def poly(self, x: fmpq_mpoly) -> Poly:
-        return {
-            tuple(sorted(n for n, k in zip(self.names, m, strict=True) for _ in range(int(k)))): (
-                Fraction(int(c.numerator), int(c.denominator))
-            )
-            for m, c in x.to_dict().items()
-        }
+        """The element as a polynomial in the names."""
+        found: Poly = {}
+        for powers, c in x.to_dict().items():
+            names = (n for n, k in zip(self.names, powers, strict=True) for _ in range(int(k)))
+            found[tuple(sorted(names))] = Fraction(int(c.numerator), int(c.denominator))
+        return found
 
     def factors(self, gap: Poly) -> Factors:
-        """The factors of this gap; InputError where reducing does not end at 0."""
+        """The factors of this gap."""
         left, found = self.element(gap), dict[int, fmpq_mpoly]()
         changed = True
         while changed and not left.is_zero():

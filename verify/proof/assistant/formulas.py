@@ -6,12 +6,43 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from verify.proof.certificates.entries import Form, Poly
+from verify.proof.certificates.entries import Form
+from verify.proof.certificates.readers import Poly
 
 _SIGNS = (" + ", " - ")
-_KEYWORDS = frozenset(
-    "as at cofix do else end exists fix for forall from fun if in let match mod of return "
-    "then using where with Prop SProp Set Type Axiom by IF".split()
+KEYWORDS = frozenset(
+    [
+        "as",
+        "at",
+        "cofix",
+        "do",
+        "else",
+        "end",
+        "exists",
+        "fix",
+        "for",
+        "forall",
+        "from",
+        "fun",
+        "if",
+        "in",
+        "let",
+        "match",
+        "mod",
+        "of",
+        "return",
+        "then",
+        "using",
+        "where",
+        "with",
+        "Prop",
+        "SProp",
+        "Set",
+        "Type",
+        "Axiom",
+        "by",
+        "IF",
+    ]
 )
 
 
@@ -79,7 +110,7 @@ def safe(names: Iterable[str], words: Iterable[str]) -> dict[str, str]:
 
     An apostrophe stands in no name that a certificate has.
     """
-    taken = _KEYWORDS | set(words)
+    taken = KEYWORDS | set(words)
     return {name: f"{name}'" if name in taken else name for name in names}
 
 

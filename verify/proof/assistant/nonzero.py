@@ -11,7 +11,8 @@ from itertools import combinations_with_replacement, islice, product
 from math import factorial, prod
 
 from verify.proof.certificates.checker import Identities
-from verify.proof.certificates.entries import Expansion, Poly, derived_by
+from verify.proof.certificates.entries import Expansion, derived_by
+from verify.proof.certificates.readers import Poly
 
 _POINTS = 4000
 _NUMBERS = tuple(map(Fraction, ("0", "1", "-1", "2", "1/2", "-2", "3")))

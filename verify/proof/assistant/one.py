@@ -16,12 +16,23 @@ from verify.proof.assistant.formulas import (
 from verify.proof.assistant.nonzero import Shown, point_that_shows
 from verify.proof.assistant.text import Export, template_words
 from verify.proof.certificates.checker import Identities
-from verify.proof.certificates.entries import Expansion, Form, Function, Poly
+from verify.proof.certificates.entries import Expansion, Form, Function
+from verify.proof.certificates.readers import Poly
 
-_NEEDS = (
-    "Differential Rings Formulas Calculation Identities RealFormulas RealNames OneHamiltonian "
-    "RealDefect RealClaims MapClaims FlowClaims".split()
-)
+_NEEDS = [
+    "Differential",
+    "Rings",
+    "Formulas",
+    "Calculation",
+    "Identities",
+    "RealFormulas",
+    "RealNames",
+    "OneHamiltonian",
+    "RealDefect",
+    "RealClaims",
+    "MapClaims",
+    "FlowClaims",
+]
 _OF_ORDER = ("RationalValues", "Nonzero")
 _EXACT = ("RealExact", "ExactClaims")
 _TELESCOPING = ("Flow", "Smooth", "RealPotential")
@@ -29,9 +40,8 @@ _PARTNERS = {"sin": "cos", "cos": "sin"}
 _KINDS = {"sin": "Sine", "cos": "Cosine", "exp": "Exponential", "inverse": "Inverse"}
 
 
-def of_one(entries: Expansion) -> Export:
-    """The theorems of such a certificate, and their proofs."""
-    assert entries.hamiltonian is not None
+def of_one(entries: Expansion, hamiltonian: Poly) -> Export:
+    """The theorems of such a certificate, whose H this is, and their proofs."""
     names, order, potential = _Names(entries), entries.order, entries.potential
     algebra = Identities(entries)
     slopes = [algebra.slopes[by] for by in entries.coordinates]
@@ -60,7 +70,7 @@ def of_one(entries: Expansion) -> Export:
                 for name, series in zip(entries.coordinates, entries.after, strict=True)
             ],
             "shallow": {
-                "energy": names.bound(shallow.poly(entries.hamiltonian)),
+                "energy": names.bound(shallow.poly(hamiltonian)),
                 "slopes": [shallow.poly(x) for x in slopes],
                 "slope_list": names.bound(shallow.list(slopes)),
                 "series": names.bound(_series(shallow, entries)),
@@ -69,7 +79,7 @@ def of_one(entries: Expansion) -> Export:
             },
             "deep": {
                 "functions": list_of(map(names.made, entries.functions)),
-                "energy": spelled.scoped(entries.hamiltonian),
+                "energy": spelled.scoped(hamiltonian),
                 "slopes": spelled.list(slopes),
                 "series": _series(spelled, entries),
                 "leading": form_list(entries.leading, names.coordinates, spelled),

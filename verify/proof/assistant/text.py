@@ -36,8 +36,12 @@ def written(export: Export, of: Established, *, stands_alone: bool) -> str:
     statement = "\n    ".join(wrap(_comment(of.statement), _WIDTH))
     words = {"statement": statement, "said": said, "alone": stands_alone}
     head = _environment().get_template("head.jinja").render(words)
-    body = _environment().get_template(f"{export.template}.jinja").render(export.values)
-    return lines(f"{head}{theory}\n{body}")
+    return lines(f"{head}{theory}\n{body_of(export)}")
+
+
+def body_of(export: Export) -> str:
+    """The definitions, the theorems and their proofs."""
+    return _environment().get_template(f"{export.template}.jinja").render(export.values)
 
 
 @cache

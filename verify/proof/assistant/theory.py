@@ -9,10 +9,13 @@ from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
+from verify.files import write_atomically
+
 FOLDER = Path(__file__).parent / "theory"
 LOGICAL = "AreaPreservation"  # by which coqc knows the folder
 
 _IMPORT = re.compile(rf"^From {LOGICAL} Require Import ([^.]*)\.\n", re.MULTILINE)
+_LIBRARY = re.compile(r"^From Coq Require Import ([^.]*)\.\n", re.MULTILINE)
 
 
 @cache
@@ -29,7 +32,7 @@ def text_of(name: str) -> str:
 
 def imports_of(name: str) -> list[str]:
     """The files that it imports."""
-    return [word for found in _IMPORT.findall(text_of(name)) for word in found.split()]
+    return _words(_IMPORT, text_of(name))
 
 
 def in_order(names: Iterable[str]) -> list[str]:
@@ -55,9 +58,32 @@ def imported(names: Iterable[str]) -> str:
 def as_modules(names: Iterable[str]) -> str:
     """These files and what they stand on as modules in one file, and the line that imports them."""
     names = list(names)
-    modules = [f"Module {name}.\n{_inside(name)}End {name}.\n" for name in in_order(names)]
-    return "\n".join([*modules, f"Import {' '.join(names)}.\n"])
+    ordered = in_order(names)
+    # A library is loaded once, before the modules; each of them imports what it did.
+    library = sorted({word for name in ordered for word in _words(_LIBRARY, text_of(name))})
+    modules = [f"Module {name}.\n{_inside(name)}End {name}.\n" for name in ordered]
+    loaded = f"From Coq Require {' '.join(library)}.\n"
+    return "\n".join([loaded, *modules, f"Import {' '.join(names)}.\n"])
+
+
+def _words(pattern: re.Pattern[str], text: str) -> list[str]:
+    return [word for found in pattern.findall(text) for word in found.split()]
 
 
 def _inside(name: str) -> str:
-    return _IMPORT.sub(r"Import \1.\n", text_of(name))
+    return _LIBRARY.sub(r"Import \1.\n", _IMPORT.sub(r"Import \1.\n", text_of(name)))
+
+
+def install(folder: Path) -> list[Path]:
+    """Writes the theory there, with the project file that `coq_makefile` takes.
+
+    Raises InputError where a file cannot be written.
+    """
+    written = []
+    for name in in_order(files()):
+        path = folder / files()[name].relative_to(FOLDER)
+        write_atomically(path, text_of(name))
+        written.append(path)
+    listed = "".join(f"{path.relative_to(folder).as_posix()}\n" for path in written)
+    write_atomically(folder / "_CoqProject", f"-Q . {LOGICAL}\n{listed}")
+    return written

@@ -1,7 +1,7 @@
 (** The theorems of a certificate for every H, in every ring of functions. *)
 
 From Coq Require Import Setoid Morphisms Ring Ring_theory QArith List Bool Lia.
-From AreaPreservation Require Import Rings Totals Flow Taylor Plane Formulas Calculation Identities Certified EveryHamiltonian.
+From AreaPreservation Require Import Rings Totals Flow Taylor Bracket Formulas Calculation Identities Certified EveryHamiltonian.
 Import ListNotations.
 Open Scope nat_scope.
 

@@ -1,7 +1,7 @@
 (** A check of Determinant.v: with one degree of freedom it speaks of what Plane.v speaks of. *)
 
 From Coq Require Import Setoid Morphisms Ring Ring_theory QArith Lia.
-From AreaPreservation Require Import Rings Totals Flow LieScheme Plane Volume Determinant.
+From AreaPreservation Require Import Rings Totals Flow Bracket LieScheme Plane Volume Determinant.
 Open Scope nat_scope.
 
 Section DeterminantInPlane.

@@ -1,7 +1,7 @@
 (** One degree of freedom: the determinant of lie_eta for every H(p, q, t) and every eta. *)
 
 From Coq Require Import Setoid Morphisms Ring Ring_theory QArith Lia.
-From AreaPreservation Require Import Rings Totals Flow Taylor LieScheme Step.
+From AreaPreservation Require Import Rings Totals Flow Taylor Bracket LieScheme Step.
 Open Scope nat_scope.
 
 Section Plane.
@@ -15,18 +15,6 @@ Section Plane.
   Notation D := (along_flow K s).
   Notation X := (along_field K s).
   Notation iterated := (iterated K s).
-
-  (** {a, b} = a_p b_q - a_q b_p, which is what det J is of p' and q'. *)
-  Definition bracket (a b : K) : K := d 0%nat a * d 1%nat b - d 1%nat a * d 0%nat b.
-
-  Lemma pairs_in_plane : forall A B, pairs K s A B 0 1 == bracket (A 0%nat) (B 1%nat).
-  Proof. intros A B. unfold pairs. rewrite plane. simpl. unfold wedge, bracket. ring. Qed.
-
-  Lemma canonical_in_plane : canonical K s 0 1 == one.
-  Proof.
-    unfold canonical. rewrite pairs_in_plane. unfold bracket.
-    rewrite !own_slope, !other_slope by (rewrite ?plane; lia). ring.
-  Qed.
 
   Lemma field_of_p : D (z 0%nat) == - d 1%nat H.
   Proof.
@@ -55,7 +43,7 @@ Section Plane.
   Lemma leading_in_plane : leading K s eta 0 1 == first_of_determinant.
   Proof.
     unfold leading, first_of_determinant, divergence_of_field.
-    rewrite !pairs_in_plane. unfold bracket, flow_series.
+    rewrite !(pairs_in_plane K s plane). unfold bracket, flow_series.
     rewrite !coefficient_is, !iterated_next.
     rewrite (iterated_same eta _ _ field_of_p), (iterated_same eta _ _ field_of_q).
     unfold inverse_factorial. rewrite !derivation_mul, !derivation_rational.
@@ -63,7 +51,7 @@ Section Plane.
   Qed.
 
   (** det J of a step. *)
-  Definition determinant (h : K) : K := bracket (new_value K s eta h 0) (new_value K s eta h 1).
+  Definition determinant (h : K) : K := bracket K (new_value K s eta h 0) (new_value K s eta h 1).
 
   (** The first power of h in det J - 1 is h^(eta+1), with this coefficient. *)
   Theorem determinant_of_step : forall h, constant K h ->
@@ -74,13 +62,13 @@ Section Plane.
     assert (E := defect_of_step K s eta h 0 1 C).
     rewrite plane in E. specialize (E ltac:(lia) ltac:(lia)).
     rewrite leading_in_plane in E. unfold step_defect in E.
-    rewrite pairs_in_plane, canonical_in_plane in E. fold (determinant h) in E.
+    rewrite (pairs_in_plane K s plane), (canonical_in_plane K s plane) in E. fold (determinant h) in E.
     transitivity (determinant h - one + one); [ring|]. rewrite E. ring.
   Qed.
 
   (** - 1/(eta+1)! sum_k (-1)^k {D^(eta-k) p, D^k q}. *)
   Definition G : K := - (inverse_factorial K (S eta) * total (S eta) (fun k =>
-    sign K k * bracket (iterated (eta - k) (z 0%nat)) (iterated k (z 1%nat)))).
+    sign K k * bracket K (iterated (eta - k) (z 0%nat)) (iterated k (z 1%nat)))).
 
   (** For even eta the coefficient is D G, so that it telescopes along the flow. *)
   Theorem telescopes_for_even : Nat.Even eta -> D G == first_of_determinant.
@@ -91,7 +79,7 @@ Section Plane.
     rewrite <- E. unfold lie_derivative. rewrite plane. simpl total.
     assert (G_is : potential K s eta 0 1 == G).
     { unfold potential, G. apply opp_extends, mul_extends; [reflexivity|].
-      apply total_same. intros k _. rewrite pairs_in_plane. reflexivity. }
+      apply total_same. intros k _. rewrite (pairs_in_plane K s plane). reflexivity. }
     assert (none : forall a, potential K s eta a a == zero).
     { intro a. unfold potential. rewrite total_zero; [ring|]. intros k _.
       unfold pairs. rewrite total_zero; [ring|]. intros i _. unfold wedge. ring. }

@@ -52,7 +52,7 @@ Section Simplified.
   Proof.
     intros x y. unfold simple_sum.
     destruct (is_number x) as [a|] eqn:A, (is_number y) as [b|] eqn:B;
-      try (apply number_found in A; subst x); try (apply number_found in B; subst y); simpl.
+      try (apply number_found in A; subst x); try (apply number_found in B; subst y); cbn [value_of].
     - rewrite <- rational_add. apply rational_extends, Qred_correct.
     - destruct (Qeq_bool a 0) eqn:Z; [|reflexivity].
       rewrite (number_same _ _ Z), (rational_zero K). ring.
@@ -65,14 +65,14 @@ Section Simplified.
   Proof.
     intros x y. unfold simple_product.
     destruct (is_number x) as [a|] eqn:A, (is_number y) as [b|] eqn:B;
-      try (apply number_found in A; subst x); try (apply number_found in B; subst y); simpl.
+      try (apply number_found in A; subst x); try (apply number_found in B; subst y); cbn [value_of].
     - rewrite <- rational_mul. apply rational_extends, Qred_correct.
     - destruct (Qeq_bool a 0) eqn:Z.
-      + rewrite (number_same _ _ Z). simpl. rewrite (rational_zero K). ring.
+      + rewrite (number_same _ _ Z). cbn [value_of]. rewrite (rational_zero K). ring.
       + destruct (Qeq_bool a 1) eqn:U; [|reflexivity].
         rewrite (number_same _ _ U), rational_one. ring.
     - destruct (Qeq_bool b 0) eqn:Z.
-      + rewrite (number_same _ _ Z). simpl. rewrite (rational_zero K). ring.
+      + rewrite (number_same _ _ Z). cbn [value_of]. rewrite (rational_zero K). ring.
       + destruct (Qeq_bool b 1) eqn:U; [|reflexivity].
         rewrite (number_same _ _ U), rational_one. ring.
     - reflexivity.
@@ -85,9 +85,9 @@ Section Simplified.
   Proof.
     induction f as [a|i|x X y Y|x X y Y|x X y Y|x X|x X k]; simpl; try reflexivity.
     - rewrite value_of_simple_sum, X, Y. reflexivity.
-    - rewrite value_of_simple_sum, value_of_simple_product, X, Y. simpl. rewrite minus_one. ring.
+    - rewrite value_of_simple_sum, value_of_simple_product, X, Y. cbn [value_of]. rewrite minus_one. ring.
     - rewrite value_of_simple_product, X, Y. reflexivity.
-    - rewrite value_of_simple_product, X. simpl. rewrite minus_one. ring.
+    - rewrite value_of_simple_product, X. cbn [value_of]. rewrite minus_one. ring.
     - destruct k as [|[|k]].
       + simpl. apply rational_one.
       + simpl. rewrite X. ring.

@@ -1,0 +1,159 @@
+"""The export of a certificate by coefficients: kicks and drifts, stages, Runge–Kutta methods."""
+
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from itertools import product
+from typing import Any
+
+from verify.proof.assistant.factors import Reducer
+from verify.proof.assistant.formulas import Spelling, deep, list_of, rational, real, safe, signed
+from verify.proof.assistant.text import Export, template_words
+from verify.proof.certificates.coefficients import ONE, Stages, Tableau
+from verify.proof.certificates.numbers import Number
+from verify.proof.certificates.readers import Poly
+
+_NUMBERS = "AlgebraicNumbers"
+_SHEARS = ["Differential", "Symplectic", "Hamiltonians", "SymplecticMethods", "AlgebraicNumbers"]
+_FORMULAS = ["Rings", "Formulas", "Calculation", "RealFormulas", "Coefficients"]
+_STAGES = [*_SHEARS, *_FORMULAS, "StageSchemes"]
+_TABLEAU = [*_SHEARS, *_FORMULAS, "RungeKutta"]
+
+
+def of_stages(entries: Stages) -> Export:
+    """The theorems of such a certificate, and their proofs."""
+    names = _Numbers(entries, "stages")
+    shears = list(_shears(entries, names))
+    if None not in shears:
+        return Export(_SHEARS, "shears", {**names.values, "shears": shears})
+    zero: Poly = {}
+    times = entries.times or [zero] * len(entries.rows)
+    rows = [(*row, time) for row, time in zip(entries.rows, times, strict=True)]
+    gaps = [gap for row in entries.rows for gap in _stage_gaps(row, entries.separable)]
+    return Export(
+        needs=_STAGES,
+        template="stages",
+        values={
+            **names.values,
+            "separable": entries.separable,
+            "separable_": "true" if entries.separable else "false",
+            "rows": [[names.shallow.poly(x) for x in row] for row in rows],
+            "deep": names.checked(gaps) | {"rows": list_of(map(names.deep.list, rows))},
+        },
+    )
+
+
+def of_tableau(entries: Tableau) -> Export:
+    """The theorems of such a certificate, and their proofs."""
+    names, a, b = _Numbers(entries, "tableau"), entries.rows, entries.weights
+    gaps = [
+        _sum((1, _product(b[i], a[i][j])), (1, _product(b[j], a[j][i])), (-1, _product(b[i], b[j])))
+        for i, j in product(range(len(b)), repeat=2)
+    ]
+    return Export(
+        needs=_TABLEAU,
+        template="tableau",
+        values={
+            **names.values,
+            "m": len(b),
+            "rows": [[names.shallow.poly(x) for x in row] for row in a],
+            "weights": [names.shallow.poly(x) for x in b],
+            "deep": names.checked(gaps)
+            | {"rows": list_of(map(names.deep.list, a)), "weights": names.deep.list(b)},
+        },
+    )
+
+
+def _shears(entries: Stages, names: "_Numbers") -> Iterator[str | None]:
+    """Kicks and drifts, one after the other; None where a stage is not made of them."""
+    for k, (kick, drift, at_p, at_q) in enumerate(entries.rows):
+        time = ""
+        if entries.times is not None:
+            moment = names.shallow.poly(entries.times[k])
+            time = f" (t + ({moment}) * h)" if entries.times[k] else " t"
+        own = (time and "({}{})") or "{}"
+        by_v, by_t = (f"{own.format(x, time)} {own.format(f'{x}1', time)}" for x in "VT")
+        first = f"Kick ({names.shallow.poly(kick)}) {by_v}"
+        second = f"Drift ({names.shallow.poly(drift)}) {by_t}"
+        if not entries.separable:
+            yield None
+        elif not drift or not kick:
+            yield from [first] * bool(kick) + [second] * bool(drift)
+        elif not at_q or not at_p:  # one of them is taken where the other has been
+            yield from (first, second) if not at_q else (second, first)
+        else:
+            yield None
+
+
+def _stage_gaps(row: Sequence[Poly], separable: bool) -> list[Poly]:
+    kick, drift, at_p, at_q = row
+    rest = _sum((1, ONE), (-1, at_p), (-1, at_q))
+    alike = {} if separable else _sum((1, kick), (-1, drift))
+    return [_product(_product(kick, drift), rest), alike]
+
+
+def _product(x: Poly, y: Poly) -> Poly:
+    return _collected((m + n, c * d) for m, c in x.items() for n, d in y.items())
+
+
+def _sum(*parts: tuple[int, Poly]) -> Poly:
+    return _collected((m, sign * c) for sign, x in parts for m, c in x.items())
+
+
+def _collected(terms: Iterator[tuple[tuple[str, ...], Fraction]]) -> Poly:
+    total: Poly = {}
+    for names, c in terms:
+        key = tuple(sorted(names))
+        total[key] = total.get(key, Fraction(0)) + c
+    return {names: c for names, c in total.items() if c}
+
+
+class _Numbers:
+    """The algebraic numbers of a certificate: how they are written, and what is known of them."""
+
+    def __init__(self, entries: Stages | Tableau, template: str) -> None:
+        self.numbers = entries.numbers
+        words = frozenset().union(*map(template_words, (template, "numbers", "relations", "area")))
+        self.written = safe([number.name for number in self.numbers], words)
+        self.deep = deep({number.name: k for k, number in enumerate(self.numbers, start=1)})
+        self.shallow = Spelling(
+            real, lambda name: self.written[name], power=lambda base, n: f"{base} ^ {n}"
+        )
+        names = list(self.written.values())
+        self.values: dict[str, Any] = {
+            "n": entries.degrees or 1,
+            "timed": entries.times is not None,
+            "numbers": list(map(self._number, self.numbers)),
+            "names": names,
+            "parameters": f"({' '.join(names)} : R) " if names else "",
+            "arguments": "".join(f"{name} " for name in names),
+            "proofs": "".join(f"E_{name} " for name in names),
+            "introduced": "".join(f"{x} " for x in (*names, *(f"E_{name}" for name in names))),
+            "over": f"forall {' '.join(names)} : R, " * bool(names)
+            + "".join(f"is_{name} {name} -> " for name in names),
+        }
+
+    def checked(self, gaps: Sequence[Poly]) -> dict[str, str]:
+        """The relations as formulas, and the factors by which the gaps are 0."""
+        relations = list(map(_relation, self.numbers))
+        names = [number.name for number in self.numbers]
+        factors = Reducer(names, list(enumerate(relations))).all_factors(gaps)
+        return {
+            "relations": self.deep.list(relations),
+            "factors": list_of(
+                list_of(f"({k}%nat, {self.deep.scoped(x)})" for k, x in each) for each in factors
+            ),
+        }
+
+    def _number(self, number: Number) -> dict[str, Any]:
+        return {
+            "name": self.written[number.name],
+            "equation": self.shallow.poly(_relation(number)),
+            "low": signed(number.low),
+            "high": signed(number.high),
+            "polynomial": list_of(number.polynomial),
+            "ends": [rational(number.low), rational(number.high)],
+        }
+
+
+def _relation(number: Number) -> Poly:
+    return {(number.name,) * k: Fraction(c) for k, c in enumerate(number.polynomial) if c}
