@@ -23,6 +23,7 @@ from verify.commands.main import cli, main
 
 # What else a page may tell to start, where nothing of it is run here.
 OTHERS = {
+    "coqc",
     "python3",
     "python",
     "pip",
