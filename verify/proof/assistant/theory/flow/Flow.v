@@ -132,7 +132,7 @@ Section Flow.
        - d a B * (d b (d i H) * d (n + i)%nat A - d b (d (n + i)%nat H) * d i A))
       + (d a A * (d b (d i H) * d (n + i)%nat B - d b (d (n + i)%nat H) * d i B)
          - d b A * (d a (d i H) * d (n + i)%nat B - d a (d (n + i)%nat H) * d i B)))).
-    - rewrite total_add, !total_sub, !total_scaled, !total_sub. ring.
+    - rewrite total_of_four. ring.
     - intros i _. ring.
   Qed.
 

@@ -43,6 +43,11 @@ Section Totals.
   Lemma total_scaled : forall n (x : K) f, total n (fun i => x * f i) == x * total n f.
   Proof. induction n as [|n IH]; intros x f; simpl; [ring|]. rewrite IH. ring. Qed.
 
+  Lemma total_of_four : forall n (u v w x : K) f g h k,
+    total n (fun i => u * f i - v * g i + (w * h i - x * k i))
+    == u * total n f - v * total n g + (w * total n h - x * total n k).
+  Proof. induction n as [|n IH]; intros u v w x f g h k; simpl; [ring|]. rewrite IH. ring. Qed.
+
   Lemma total_times_total : forall m n (f g : nat -> K),
     total m f * total n g == total m (fun k => total n (fun l => f k * g l)).
   Proof.
