@@ -42,6 +42,7 @@ def _print(rows: list[dict[str, Any]]) -> None:
     for row in rows:
         flow = "exact flow in closed form" if row["exact_flow"] else "exact flow by numbers"
         flow = flow if row["degrees"] == 1 else f"{row['degrees']} degrees of freedom"
+        flow += ", more or fewer with n" if "n" in row["parameters"] else ""
         click.echo(f"{row['name']:{width}}  H = {row['hamiltonian']}; {flow}")
         for name, meaning in row["parameters"].items():
             click.echo(f"{'':{width}}  {name}: {meaning}")

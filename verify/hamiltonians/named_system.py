@@ -1,10 +1,13 @@
 """A named system: a Hamiltonian with its source, and what is known of its exact flow."""
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 
 from verify.arithmetic.exact import Exact, rational
+from verify.errors import InputError
+from verify.hamiltonians.coordinates import MOST_DEGREES, coordinates_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.motion import Flow, State, Values
 
@@ -22,6 +25,9 @@ class System:
     `goes` may say of (parameters, p, q) how the orbit goes to infinity as t grows: None where it
     stays bounded. `regimes` are examples of the kinds of orbits that it has; in several degrees of
     freedom p and q are lists in them.
+
+    A `family` is a system for each number n of degrees of freedom from 2 on: it gives the formula
+    for n, which is among the `parameters`, and `formula` is that where n is not given.
     """
 
     name: str
@@ -33,6 +39,7 @@ class System:
     flow_in_time: FlowInTime | None = None
     goes: Callable[[Values, Fraction, Fraction], str | None] | None = None
     regimes: Mapping[str, Regime] = field(default_factory=dict)
+    family: Callable[[int], str] | None = None
 
     def __repr__(self) -> str:
         return f"System({self.name}: {self.formula})"
@@ -41,8 +48,15 @@ class System:
         return self.hamiltonian()._repr_latex_()
 
     def hamiltonian(self, values: Mapping[str, Exact | None] | None = None) -> Hamiltonian:
-        """H with these parameter values; parameters without one stay symbols."""
-        return Hamiltonian.parse(self.formula, values)
+        """H with these parameter values; parameters without one stay symbols.
+
+        Of a family n is no symbol of H: InputError where it is no whole number, 2 … 32.
+        """
+        if self.family is None or not isinstance(values, Mapping):
+            return Hamiltonian.parse(self.formula, values)
+        size = values.get("n")
+        formula = self.formula if size is None else self.family(_whole_number(size))
+        return Hamiltonian.parse(formula, {n: x for n, x in values.items() if n != "n"})
 
     @property
     def time_dependent(self) -> bool:
@@ -51,8 +65,9 @@ class System:
 
     @property
     def degrees(self) -> int:
-        """Of freedom."""
-        return self.hamiltonian().degrees
+        """Of freedom; of a family, where n is not given."""
+        # By the text alone: whoever looks for the systems of the plane parses no others.
+        return len(coordinates_of(re.findall(r"[a-zA-Z]\w*", self.formula))) // 2
 
     @property
     def has_closed_form(self) -> bool:
@@ -63,3 +78,10 @@ class System:
         """The parameters, p and q of an example."""
         values = {key: rational(text, key) for key, text in self.regimes[name].items()}
         return values, values.pop("p"), values.pop("q")
+
+
+def _whole_number(given: Exact) -> int:
+    value = rational(given, "parameter n")
+    if value.denominator != 1 or not 2 <= value <= MOST_DEGREES:
+        raise InputError("parameter n", given, f"must be a whole number, 2 … {MOST_DEGREES}")
+    return int(value)

@@ -17,8 +17,10 @@ def text() -> str:
 def _section(system: System) -> Iterator[str]:
     how = "in closed form" if system.has_closed_form else "by numbers"
     flow = f"The exact flow is known {how}."
-    if system.degrees > 1:
-        flow = f"It has {system.degrees} degrees of freedom: proofs take it, and no runs as yet."
+    if system.family:
+        flow = f"It has n degrees of freedom, here {system.degrees}."
+    elif system.degrees > 1:
+        flow = f"It has {system.degrees} degrees of freedom."
     yield f"### {system.name}"
     yield f"{prose(system.title)}: H = {code(system.formula)}. {flow}"
     if system.parameters:

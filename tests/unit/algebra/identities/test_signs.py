@@ -5,10 +5,12 @@ from dataclasses import dataclass
 from random import Random
 
 import flint
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
+from verify.algebra.identities import signs
 from verify.algebra.identities.signs import definite
 
 CONTEXT = flint.fmpq_mpoly_ctx.get(["a", "b", "c"], flint.Ordering.lex)
@@ -55,3 +57,16 @@ def test_a_square_that_is_written_out_has_its_sign() -> None:
     assert definite((b + c) ** 2 + 1, Given(), strict=True) == 1
     assert definite((b + c) ** 2 - 1, Given()) is None
     assert definite(-(c**4) * (a + 1) - a, Given(), strict=True) == -1
+
+
+def test_that_a_squared_distance_vanishes_somewhere_is_seen_without_a_search(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The search for a proof ends in none, too, after thousands of polynomials in six letters."""
+    u, v, x, y, z, w = flint.fmpq_mpoly_ctx.get([*"uvxyzw"], flint.Ordering.lex).gens()
+    distance = (u - v) ** 2 + (x - y) ** 2 + (z - w) ** 2
+    assert definite(u * (1 + y**2), Given(), strict=True) == 1, "u is positive"
+    monkeypatch.setattr(Given, "positive", lambda *_: False)
+    assert definite(u**2 + 1, Given(), strict=True) == 1
+    monkeypatch.setattr(signs, "_definite", lambda *_: pytest.fail("searched"))
+    assert definite(distance, Given(), strict=True) is None

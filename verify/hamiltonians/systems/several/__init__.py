@@ -1,1 +1,1 @@
-"""Systems of two degrees of freedom."""
+"""Systems of several degrees of freedom."""

@@ -1,4 +1,4 @@
-"""Named systems of two degrees of freedom: what they are, and that proofs take them."""
+"""Named systems of several degrees of freedom: what they are, and that proofs take them."""
 
 from fractions import Fraction
 
@@ -8,28 +8,39 @@ import sympy
 import verify
 from verify.algebra.formula import symbol
 from verify.hamiltonians import systems
+from verify.hamiltonians.coordinates import numbered
+from verify.hamiltonians.start import check_start
 from verify.proof.symplectic.proof import SymplecticProof
 
 SEVERAL = systems.all_systems(2)
+ALL = {name: x for name, x in systems.all_systems(None).items() if x.degrees > 1}
 P1, P2, Q1, Q2, G = map(symbol, ("p1", "p2", "q1", "q2", "g"))
 
 
 def test_there_are_those_of_the_textbooks() -> None:
     assert {"henon-heiles", "kepler", "double-pendulum", "coupled-pendulums"} <= set(SEVERAL)
-    assert not set(SEVERAL) & set(systems.all_systems())
+    assert {"fput", "three-body", "outer-solar-system", "magnetic"} <= set(ALL)
+    assert not set(ALL) & set(systems.all_systems())
 
 
-@pytest.mark.parametrize("name", SEVERAL)
+@pytest.mark.parametrize("name", ALL)
 def test_a_system_explains_itself_and_its_examples_are_points(name: str) -> None:
-    system = SEVERAL[name]
+    system = ALL[name]
     assert system.title
     assert system.source
-    assert set(system.hamiltonian().parameters) == set(system.parameters)
+    assert system.regimes
+    assert system.hamiltonian().coordinates == numbered(system.degrees)
     for regime in system.regimes.values():
         assert set(regime) == {"p", "q", *system.parameters}
-        for letter in "pq":
-            assert len([Fraction(x) for x in regime[letter].split(",")]) == system.degrees
-    assert system.hamiltonian().coordinates == ("p1", "p2", "q1", "q2")
+        values = {name: regime[name] for name in system.parameters}
+        q, p = (regime[letter].split(", ") for letter in "qp")
+        check_start(system.hamiltonian(values), q, p)
+
+
+@pytest.mark.parametrize("name", systems.names())
+def test_the_degrees_that_its_text_says_are_those_of_its_hamiltonian(name: str) -> None:
+    system = systems.get(name)
+    assert system.degrees == system.hamiltonian().degrees
 
 
 def test_the_double_pendulum_is_that_of_its_lagrangian() -> None:
