@@ -17,7 +17,7 @@ from pathlib import Path
 from tests.campaigns.certificates import seeds
 from verify.errors import InputError
 from verify.proof.assistant.export import exported
-from verify.proof.assistant.theory import LOGICAL, install
+from verify.proof.assistant.shipped import LOGICAL, install
 
 SLOWEST = 60.0  # seconds for a file
 

@@ -79,7 +79,7 @@ def export(file: Path, coq: Path, beside_theory: bool) -> Answer:
 @answering
 def theory(folder: Path) -> Answer:
     """Write the theory that exported certificates stand on to FOLDER, with a _CoqProject."""
-    from verify.proof.assistant.theory import LOGICAL, install
+    from verify.proof.assistant.shipped import LOGICAL, install
 
     written = install(folder)
     data = {"written": [str(path) for path in written], "logical_name": LOGICAL}

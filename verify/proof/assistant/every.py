@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 
+from verify.proof.assistant.factors import known_power
 from verify.proof.assistant.formulas import Spelling, deep, form_list, list_of, rational, whole
 from verify.proof.assistant.nonzero import energy_that_shows
 from verify.proof.assistant.text import Export
@@ -40,7 +41,7 @@ def of_every(entries: Expansion) -> Export:
     spelled = names.deep
     potential = entries.potential
     shown = energy_that_shows(entries)
-    known = entries.last if order is not None else 2 * max(map(len, entries.after))
+    known = known_power(entries)
     return Export(
         needs=_NEEDS if shown is None else (*_NEEDS, *_SMOOTH),
         template="every",

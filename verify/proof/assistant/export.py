@@ -38,13 +38,14 @@ def exported(path: Path, *, stands_alone: bool = True) -> Exported:
     data = read_json(path, FORMAT)
     try:
         entries = check(data)
-        of = established(entries)
+        of, export = established(entries), _export(entries)
+    except InputError:
+        raise
     except ValueError as reason:
         raise InputError("file", str(path), f"is refused: {reason}") from None
     except RecursionError:
-        said = "is refused: its functions are nested too deeply"
+        said = "is refused: its functions are nested too deeply, or too many"
         raise InputError("file", str(path), said) from None
-    export = _export(entries)
     theorems = tuple(_THEOREM.findall(body_of(export)))
     return Exported(written(export, of, stands_alone=stands_alone), of, theorems)
 

@@ -2,7 +2,8 @@
 and as a person writes them, term by term the same, so that the values of one are the other.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+import re
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -19,6 +20,7 @@ KEYWORDS = frozenset(
         "else",
         "end",
         "exists",
+        "exists2",
         "fix",
         "for",
         "forall",
@@ -40,6 +42,9 @@ KEYWORDS = frozenset(
         "Set",
         "Type",
         "Axiom",
+        "CoFixpoint",
+        "Fixpoint",
+        "Variable",
         "by",
         "IF",
     ]
@@ -105,13 +110,15 @@ def signed(c: Fraction) -> str:
     return f"-{real(-c)}" if c < 0 else real(c)
 
 
-def safe(names: Iterable[str], words: Iterable[str]) -> dict[str, str]:
+def safe(names: Collection[str], words: Iterable[str]) -> dict[str, str]:
     """The names as they stand among these words, of which none may be hidden, nor a keyword.
 
     An apostrophe stands in no name that a certificate has.
     """
     taken = KEYWORDS | set(words)
-    return {name: f"{name}'" if name in taken else name for name in names}
+    # Of Rocq's commands some are keywords, and all of them begin with a capital letter.
+    clashes = {name for name in names if name in taken or re.match("[A-Z].", name)}
+    return {name: f"{name}'" if name in clashes else name for name in names}
 
 
 def lines(text: str, most: int = 96) -> str:

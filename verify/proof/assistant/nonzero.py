@@ -15,6 +15,7 @@ from verify.proof.certificates.entries import Expansion, derived_by
 from verify.proof.certificates.readers import Poly
 
 _POINTS = 4000
+_TRIED = 40  # of them, those where all is defined
 _NUMBERS = tuple(map(Fraction, ("0", "1", "-1", "2", "1/2", "-2", "3")))
 _DERIVATIVES = 6  # by how many coordinates the coefficient is derived
 _AT_ZERO = {"sin": Fraction(0), "cos": Fraction(1), "exp": Fraction(1)}
@@ -60,12 +61,15 @@ class Shown:
 
 def point_that_shows(entries: Expansion) -> Shown | None:
     """A derivative of an entry of L that is not 0 at such a point; None where none is found."""
-    algebra = Identities(entries)
-    for values in islice(_points(entries), _POINTS):
-        for entry, leading in entries.leading.items():
-            for by, derived in _derived(algebra, leading):
-                if _value(derived, values):
-                    return Shown(entry, by, values)
+    for values in islice(_points(entries), _TRIED):
+        algebra = Identities(entries)  # which counts its work, for each point anew
+        try:
+            for entry, leading in entries.leading.items():
+                for by, derived in _derived(algebra, leading):
+                    if _value(derived, values):
+                        return Shown(entry, by, values)
+        except ValueError:  # more work than a checker may have
+            continue
     return None
 
 
@@ -82,8 +86,9 @@ def _derived(algebra: Identities, x: Poly) -> Iterator[tuple[tuple[str, ...], Po
 def _points(entries: Expansion) -> Iterator[dict[str, Fraction]]:
     """Points, with values of the parameters, where all functions have rational values."""
     names = (*entries.coordinates, "t", *entries.parameters)
-    choices = [_NUMBERS if name in entries.parameters else _NUMBERS[:4] for name in names]
-    # The first number is 0, as arguments have to be; a parameter that is 0 may hide what is sought.
+    # 0 first, as arguments have to be; of a parameter last, as it may hide what is sought.
+    own = (*_NUMBERS[1:], _NUMBERS[0])
+    choices = [own if name in entries.parameters else _NUMBERS[:4] for name in names]
     for tried in islice(product(*choices), _POINTS):
         values = dict(zip(names, tried, strict=True))
         for made in entries.functions:

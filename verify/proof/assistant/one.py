@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from verify.proof.assistant.factors import factors_of
+from verify.proof.assistant.factors import factors_of, known_power
 from verify.proof.assistant.formulas import (
     Spelling,
     deep,
@@ -33,6 +33,7 @@ _NEEDS = [
     "MapClaims",
     "FlowClaims",
 ]
+_OWN = frozenset(("True", "I", "conj", "proj1", "proj2"))  # words that are written here
 _OF_ORDER = ("RationalValues", "Nonzero")
 _EXACT = ("RealExact", "ExactClaims")
 _TELESCOPING = ("Flow", "Smooth", "RealPotential")
@@ -45,7 +46,7 @@ def of_one(entries: Expansion, hamiltonian: Poly) -> Export:
     names, order, potential = _Names(entries), entries.order, entries.potential
     algebra = Identities(entries)
     slopes = [algebra.slopes[by] for by in entries.coordinates]
-    known = 2 * max(map(len, entries.after)) if entries.last is None else entries.last
+    known = known_power(entries)
     spelled, shallow = names.deep, names.shallow
     needs = (*_NEEDS, *(_EXACT if order is None else _OF_ORDER))
     return Export(
@@ -104,7 +105,7 @@ class _Names:
         known = (*self.coordinates, *entries.parameters, *(f.name for f in entries.functions))
         self.numbers = {name: k for k, name in enumerate(known, start=1)}
         self.deep = deep(self.numbers)
-        self.written = safe(entries.parameters, template_words("one"))
+        self.written = safe(entries.parameters, template_words("one") | _OWN)
         self.shallow = Spelling(real, self._word, power=lambda base, n: f"{base} ^ {n}")
         self.calls = dict[str, str]()
         for function in entries.functions:  # inner ones first

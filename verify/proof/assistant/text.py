@@ -11,7 +11,7 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from verify.proof.assistant.formulas import lines
-from verify.proof.assistant.theory import as_modules, imported
+from verify.proof.assistant.shipped import as_modules, imported
 from verify.proof.certificates.established import Established
 
 _LONGEST = 2000  # characters of a formula in the words

@@ -1,0 +1,128 @@
+"""Rocq in tests: what `coqc` takes, what it refuses and where it stops, and the theory it compiled.
+
+Where `coqc` is missing a test is skipped by name, and fails in CI.
+"""
+
+import fcntl
+import os
+import re
+import subprocess
+from collections.abc import Callable, Iterable, Mapping
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass
+from graphlib import TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+from tests.helpers.compilers import needed
+from verify.proof.assistant import shipped as theory
+
+PROCESSES = 2
+LONGEST = 300  # seconds for a file on a machine that does much else
+_STOPPED = re.compile(r'^File "[^"]*", line (\d+), characters', re.MULTILINE)
+_NAMED = re.compile(
+    r"^\s*(?:Local |Global )?(?:Theorem|Corollary|Lemma|Definition|Fixpoint|Record|Instance) (\w+)"
+)
+# What coqc says of a text that has no meaning: no proof of ours that it looked at.
+_MEANINGLESS = ("Syntax error", "Lexer", "was not found in", "Cannot find a", "Unable to locate")
+
+
+@dataclass(frozen=True)
+class Answer:
+    """`said`: on standard output; `complaints`: warnings and errors."""
+
+    status: int
+    said: str
+    complaints: str
+
+
+def coqc(path: Path, folders: Mapping[str, Path] | None = None) -> Answer:
+    """What coqc says of this file, where these names stand for folders of compiled ones."""
+    places = [part for name, place in (folders or {}).items() for part in ("-Q", str(place), name)]
+    command = [needed("coqc"), "-q", *places, path.name]
+    found = subprocess.run(
+        command, cwd=path.parent, capture_output=True, text=True, timeout=LONGEST
+    )
+    return Answer(found.returncode, found.stdout, found.stderr)
+
+
+def beside(compiled: Path) -> dict[str, Path]:
+    """The theory, compiled in that folder, under its name."""
+    return {theory.LOGICAL: compiled}
+
+
+def accepted(path: Path, text: str, folders: Mapping[str, Path] | None = None) -> str:
+    """What coqc prints of the text, which it has to take without a word of complaint."""
+    path.write_text(text, encoding="utf-8")
+    found = coqc(path, folders)
+    assert (found.status, found.complaints) == (0, ""), found.complaints
+    return found.said
+
+
+def stops_at(path: Path, text: str, folders: Mapping[str, Path] | None = None) -> str:
+    """The theorem or definition of the text at which coqc stops, having understood it so far."""
+    path.write_text(text, encoding="utf-8")
+    found = coqc(path, folders)
+    assert found.status != 0, f"coqc takes {path.name}"
+    *_, last = _STOPPED.finditer(found.complaints)
+    assert not any(words in found.complaints for words in _MEANINGLESS), found.complaints
+    lines = text.split("\n")[: int(last[1])]
+    return next(named[1] for line in reversed(lines) if (named := _NAMED.match(line)))
+
+
+def changed(text: str, old: str, new: str, times: int = 1) -> str:
+    """The text with `old` replaced, which stands there so many times; blanks are any white space."""
+    pattern = r"\s+".join(map(re.escape, old.split()))
+    result, count = re.subn(pattern, lambda _: new, text)
+    assert count == times, f"{old!r} stands {count} times in the text, and not {times}"
+    assert result != text
+    return result
+
+
+def each_after(needs: Mapping[str, Iterable[str]], work: Callable[[str], None]) -> None:
+    """Does the work of each name after that of the names it needs, two at a time."""
+    sorter = TopologicalSorter(needs)
+    sorter.prepare()
+    with ThreadPoolExecutor(PROCESSES) as pool:
+        running: dict[Future[None], str] = {}
+        while sorter.is_active():
+            running |= {pool.submit(work, name): name for name in sorter.get_ready()}
+            done, _ = wait(running, return_when=FIRST_COMPLETED)
+            for future in done:
+                future.result()
+                sorter.done(running.pop(future))
+
+
+def compile_theory(folder: Path) -> None:
+    """Installs the theory there, and has coqc compile all of it."""
+    theory.install(folder)
+
+    def compile_one(name: str) -> None:
+        path = folder / theory.files()[name].relative_to(theory.FOLDER)
+        found = coqc(path, beside(folder))
+        assert (found.status, found.complaints) == (0, ""), f"{name}.v: {found.complaints}"
+
+    each_after({name: theory.imports_of(name) for name in theory.files()}, compile_one)
+
+
+def made_once(paths: pytest.TempPathFactory, name: str, make: Callable[[Path], None]) -> Path:
+    """A folder that one of pytest's processes makes, while the others wait for it."""
+    base = paths.getbasetemp()
+    # The workers of pytest-xdist have folders of their own in one that is the session's.
+    shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+    folder, complete = shared / name, shared / f"{name}.complete"
+    failed = shared / f"{name}.failed"
+    with (shared / f"{name}.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if failed.exists():
+            pytest.fail(failed.read_text(encoding="utf-8"))
+        if not complete.exists():
+            folder.mkdir()
+            try:
+                make(folder)
+            except AssertionError as error:
+                failed.write_text(str(error), encoding="utf-8")
+                raise
+            complete.touch()
+    return folder

@@ -1,0 +1,37 @@
+"""The theory, and all exports beside it, compiled once a session for all of its processes."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.helpers.exports import ALL, export
+from tests.helpers.rocq import accepted, beside, compile_theory, each_after, made_once
+from tests.rocq import STAND_ALONE
+
+
+@pytest.fixture(scope="session")
+def theory(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Its folder, compiled."""
+    return made_once(tmp_path_factory, "theory", compile_theory)
+
+
+@pytest.fixture(scope="session")
+def exports(tmp_path_factory: pytest.TempPathFactory, theory: Path) -> Path:
+    """Those that `coqc` takes are compiled there; what it says of the others lies beside them."""
+
+    def compile_exports(folder: Path) -> None:
+        texts = {name: export(name).text for name in ALL}
+        alone = {f"{name}_alone": export(name, stands_alone=True).text for name in STAND_ALONE}
+
+        def compile_one(name: str) -> None:
+            folders = {} if name in alone else beside(theory)
+            try:
+                accepted(folder / f"{name}.v", {**texts, **alone}[name], folders)
+            except AssertionError as error:
+                (folder / f"{name}.refused").write_text(str(error), encoding="utf-8")
+
+        # What takes longest begins first.
+        each_after({name: () for name in [*alone, *sorted(texts, key=lambda x: -len(texts[x]))]},
+                   compile_one)  # fmt: skip
+
+    return made_once(tmp_path_factory, "exports", compile_exports)

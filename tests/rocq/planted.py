@@ -1,0 +1,42 @@
+"""One thing changed in an exported text, and where `coqc` has to stop for it."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from tests.helpers.exports import export
+from tests.helpers.rocq import beside, changed, stops_at
+
+
+@dataclass(frozen=True)
+class Planted:
+    """`edits`: (old, new), or with how often the old stands; `place`: what is then not proved.
+
+    That the export is taken without them is held by `test_exports`.
+    """
+
+    what: str
+    export: str
+    place: str
+    edits: tuple[tuple[str, str] | tuple[str, str, int], ...]
+
+    def text(self) -> str:
+        """The export with what is planted."""
+        found = export(self.export).text
+        for edit in self.edits:
+            found = changed(found, *edit)
+        return found
+
+
+def planted(
+    what: str, name: str, place: str, *edits: tuple[str, str] | tuple[str, str, int]
+) -> object:
+    """A parameter of a test, called after what is planted where."""
+    return pytest.param(Planted(what, name, place, edits), id=f"{name}: {what}")
+
+
+def check_refused(it: Planted, theory: Path, folder: Path) -> None:
+    """That coqc stops at the place, and refuses no more than it has to."""
+    place = stops_at(folder / f"{it.export}.v", it.text(), beside(theory))
+    assert place == it.place, f"coqc stops at {place}"

@@ -1,0 +1,66 @@
+"""What is wrong in an export for every H is refused where it is said, or where it is calculated."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.rocq.planted import Planted, check_refused, planted
+
+CHECKED, ORDER = "checked", "determinant_has_its_order"
+AGREES, TELESCOPES = "map_agrees_with_flow", "first_coefficient_telescopes"
+NOT_ZERO = "first_coefficient_is_not_zero"
+# A term of L, of G and of p', as a person reads it and as formulas; and each with another factor.
+L_READ = ("rational (1 # 2) * H_p * H_pp * H_qqq", "rational (1 # 3) * H_p * H_pp * H_qqq")
+L_TOLD = (
+    "Number (1 # 2) * Name 4 * Name 6 * Name 12",
+    "Number (1 # 3) * Name 4 * Name 6 * Name 12",
+)
+G_READ = ("rational (1 # 2) * H_pp * H_qq -", "rational (1 # 2) * H_pp * H_qq +")
+G_TOLD = ("Number (1 # 2) * Name 6 * Name 8 -", "Number (1 # 2) * Name 6 * Name 8 +")
+P_READ = ("rational (1 # 2) * H_pq * H_q)", "rational (2 # 3) * H_pq * H_q)")
+P_TOLD = ("Number (1 # 2) * Name 7 * Name 5)", "Number (2 # 3) * Name 7 * Name 5)")
+ERRORS = [
+    planted("a coefficient of L", "every_lie2", CHECKED, L_READ, L_TOLD),
+    planted("L as it is read", "every_lie2", ORDER, L_READ),
+    planted("a sign of G", "every_lie2", CHECKED, G_READ, G_TOLD),
+    planted("G as it is read", "every_lie2", TELESCOPES, G_READ),
+    planted("a coefficient of the map", "every_lie2", CHECKED, P_READ, P_TOLD),
+    planted("the map as it is read", "every_lie2", AGREES, P_READ),
+    planted(
+        "an order more", "every_lie2", CHECKED,
+        ("known := 3", "known := 4"), ("order := Some 3", "order := Some 4"),
+    ),
+    planted("an order less", "every_lie2", CHECKED, ("order := Some 3", "order := Some 2")),
+    planted("no order at all", "every_lie2", CHECKED, ("order := Some 3", "order := None")),
+    planted(
+        "an order more in the theorem", "every_lie2", ORDER,
+        ("determinant_coefficient P Q 3 == L s", "determinant_coefficient P Q 4 == L s"),
+    ),
+    planted(
+        "no coefficient below an order more", "every_lie2", ORDER, ("(1 <= m < 3)", "(1 <= m < 4)")
+    ),
+    planted("an agreement more", "every_lie2", CHECKED, ("agreement := 2", "agreement := 3")),
+    planted("an agreement more in the theorem", "every_lie2", AGREES, ("(k <= 2)", "(k <= 3)")),
+    planted("two derivatives exchanged", "every_lie2", CHECKED, ("[0; 0]; [0; 1]", "[0; 1]; [0; 0]")),
+    planted(
+        "an H for which L is 0", "every_lie2", NOT_ZERO, ("(Number (1 # 6) * (Name 1) ^ 3 +", "(")
+    ),
+    planted("every H for a separable one", "every_separable", CHECKED,
+            ("separable := true", "separable := false")),
+    planted("no time for an H with it", "every_in_time", CHECKED, ("timed := true", "timed := false")),
+    planted(
+        "a leading form of other coordinates", "every_two_odd", CHECKED,
+        ("(1%nat, 3%nat, (", "(1%nat, 2%nat, (", 2),
+    ),
+    planted("a form that is read of other coordinates", "every_two_odd", "defect_has_its_order",
+            ("(1%nat, 3%nat, (H_", "(1%nat, 2%nat, (H_")),
+    planted("a kick that is longer", "every_kick", "map_agrees_with_flow",
+            ("[(p)%F; (- (H_q))%F]", "[(p)%F; (- (H_q))%F; (H_q)%F]")),
+    planted("a kick by a function of p, too", "every_kick", CHECKED,
+            ("(- (Name 5))", "(- (Name 5 * Name 4))")),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("error", ERRORS)
+def test_a_planted_error_is_refused(error: Planted, theory: Path, tmp_path: Path) -> None:
+    check_refused(error, theory, tmp_path)

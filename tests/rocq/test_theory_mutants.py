@@ -1,0 +1,98 @@
+"""A statement of the theory, or a check that it trusts, with one thing changed has no proof.
+
+A file is compiled by itself, with what it stands on taken from the compiled theory.
+"""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.helpers.rocq import accepted, beside, changed, stops_at
+from verify.proof.assistant.shipped import text_of
+
+# Of a file: what is there, what is put in its place, and the proof that then fails.
+MUTANTS = [
+    ("LieScheme", "- (inverse_factorial (S eta) * total", "- (inverse_factorial eta * total",
+     "even_telescopes"),
+    ("LieScheme", "form K := fun a b => - (pairs (flow_series (S eta)) z a b + pairs",
+     "form K := fun a b => (pairs (flow_series (S eta)) z a b + pairs", "first_defect"),
+    ("LieScheme", "even_telescopes : Nat.Even eta ->", "even_telescopes : True ->",
+     "even_telescopes"),
+    ("LieScheme", "if (k <=? eta)%nat then", "if (k <? eta)%nat then", "defect_at_0"),
+    ("Step", "== power h (S eta) * leading K s eta a b +", "== power h eta * leading K s eta a b +",
+     "defect_of_step"),
+    ("Plane", "Definition G : K := - (", "Definition G : K := (", "telescopes_for_even"),
+    ("Bracket", ":= d 0%nat a * d 1%nat b -", ":= d 0%nat a * d 1%nat b +", "pairs_in_plane"),
+    ("RungeKutta", "b i * A i j + b j * A j i - b i * b j = 0.",
+     "b i * A i j - b j * A j i - b i * b j = 0.", "weights_cancel"),
+    ("StageSchemes", "(1 - share_p s - share_q s) = 0", "(1 - share_p s + share_q s) = 0",
+     "scheme_symplectic"),
+    ("SymplecticMethods", "| Kick _ V V1 => only_positions n V /\\",
+     "| Kick _ V V1 => only_momenta n V /\\", "shear_symplectic"),
+    ("Product", "Theorem product_near_one : forall N d eps, 0 <= eps -> (forall k, (k < N)%nat -> "
+     "Rabs (d k - 1) <= eps) -> Rabs (product N d - 1) <= (1 + eps) ^ N - 1.",
+     "Theorem product_near_one : forall N d eps, 0 <= eps -> (forall k, (k < N)%nat -> "
+     "Rabs (d k - 1) <= eps) -> Rabs (product N d - 1) <= (1 + eps / 2) ^ N - 1.",
+     "product_near_one"),
+    ("Oscillator", "Theorem odd_does_not_telescope : forall eta, Nat.Odd eta ->",
+     "Theorem odd_does_not_telescope : forall eta, Nat.Even eta ->", "odd_does_not_telescope"),
+    ("MapClaims", "* h ^ r) <= C * Rabs h ^ S r. Proof. intros r Er Lr short z",
+     "* h ^ r) <= C * Rabs h ^ S (S r). Proof. intros r Er Lr short z", "order_of_defect"),
+]  # fmt: skip
+# What a certificate is checked with: to ask less of it is to prove nothing by it.
+CHECKS = [
+    ("Calculation", "vanishes (reduced relations gap (hd [] factors)) && all_vanish",
+     "all_vanish", "calculated"),
+    ("AlgebraicNumbers", "Qle_bool (rational_value l low * rational_value l high) 0",
+     "Qle_bool (rational_value l low * rational_value l high) 1", "root_between"),
+    ("Coefficients", "Plus (Times (b_ i) (a_ i j)) (Times (b_ j) (a_ j i))",
+     "Plus (Times (b_ i) (a_ i j)) (Times (b_ j) (a_ i j))", "weights_are_symplectic"),
+    ("Coefficients", "then Number 0 else Minus (at_ 0) (at_ 1)]", "then Number 0 else Number 0]",
+     "stages_hold"),
+    ("Nonzero", "| Cosine _ | Exponential => Qeq_bool argument 0 && Qeq_bool u 1",
+     "| Cosine _ | Exponential => Qeq_bool argument 0 && Qeq_bool u 0", "known_value_is"),
+]  # fmt: skip
+# The identities of a certificate, which the file Certified trusts.
+IDENTITIES = [
+    ("Times (Number (Z.of_nat (S k) # 1)) (term x (S k) c)",
+     "Times (Number (Z.of_nat k # 1)) (term x (S k) c)", "agrees_with_flow"),
+    ("(pairs_of_coordinates (of_degrees x))) (seq 1 (known x)).",
+     "(pairs_of_coordinates (of_degrees x))) (seq 2 (known x)).", "defect_is_known"),
+    ("filter (fun ab => fst ab <? snd ab)", "filter (fun ab => S (fst ab) <? snd ab)",
+     "pair_listed"),
+    ("Plus (flow_formula x (turned w a b))", "Minus (flow_formula x (turned w a b))",
+     "value_of_lie"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "place"),
+    [pytest.param(*each, id=f"{each[0]}: {each[-1]}") for each in [*MUTANTS, *CHECKS]],
+)
+def test_a_changed_statement_has_no_proof(
+    theory: Path, tmp_path: Path, name: str, old: str, new: str, place: str
+) -> None:
+    text = changed(text_of(name), old, new)
+    assert stops_at(tmp_path / f"{name}.v", text, beside(theory)) == place
+
+
+def certified(identities: str) -> str:
+    """The file Certified with these identities before it, in one."""
+    loaded = re.findall(r"^From .*\n", identities, re.MULTILINE)
+    rest = changed(text_of("Certified"), "Taylor Formulas Identities.", "Taylor Formulas.")
+    inside = identities.replace("".join(loaded), "")
+    return f"{''.join(loaded)}Module Identities.\n{inside}\nEnd Identities.\nImport Identities.\n{rest}"
+
+
+@pytest.mark.parametrize(("old", "new", "place"), IDENTITIES, ids=lambda x: x.split()[0])
+def test_what_follows_from_identities_has_no_proof_from_others(
+    theory: Path, tmp_path: Path, old: str, new: str, place: str
+) -> None:
+    text = certified(changed(text_of("Identities"), old, new))
+    assert stops_at(tmp_path / "Certified.v", text, beside(theory)) == place
+
+
+def test_the_files_are_taken_as_they_are(theory: Path, tmp_path: Path) -> None:
+    accepted(tmp_path / "Product.v", text_of("Product"), beside(theory))
+    accepted(tmp_path / "Certified.v", certified(text_of("Identities")), beside(theory))
