@@ -1,4 +1,4 @@
-"""Certificates of all kinds, and their exports for Rocq: made once by a process, each by its name."""
+"""Certificates of all kinds, and their exports for Rocq, each made once by a process."""
 
 import contextlib
 import io
@@ -30,7 +30,7 @@ def _every(scheme: str, *more: str) -> list[str]:
     return [_EVERY, *more, "--scheme", scheme]
 
 
-# What `verify prove` is asked for. A name is that of the export's file: `EVERY` by derivatives of H,
+# What `verify prove` is asked for, by the names of the exports' files: `EVERY` by derivatives of H,
 # `ONE` of one H, `COEFFICIENTS` by the numbers of the scheme.
 EVERY = {
     **{f"every_lie{eta}": _every(f"lie{eta}") for eta in range(2, 7)},

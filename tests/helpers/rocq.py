@@ -72,7 +72,7 @@ def stops_at(path: Path, text: str, folders: Mapping[str, Path] | None = None) -
 
 
 def changed(text: str, old: str, new: str, times: int = 1) -> str:
-    """The text with `old` replaced, which stands there so many times; blanks are any white space."""
+    """The text with `old` replaced, which stands there so often; a blank is any white space."""
     pattern = r"\s+".join(map(re.escape, old.split()))
     result, count = re.subn(pattern, lambda _: new, text)
     assert count == times, f"{old!r} stands {count} times in the text, and not {times}"
@@ -80,12 +80,12 @@ def changed(text: str, old: str, new: str, times: int = 1) -> str:
     return result
 
 
-def each_after(needs: Mapping[str, Iterable[str]], work: Callable[[str], None]) -> None:
+def each_after(needs: Mapping[str, Iterable[str]], work: Callable[[str], object]) -> None:
     """Does the work of each name after that of the names it needs, two at a time."""
     sorter = TopologicalSorter(needs)
     sorter.prepare()
     with ThreadPoolExecutor(PROCESSES) as pool:
-        running: dict[Future[None], str] = {}
+        running: dict[Future[object], str] = {}
         while sorter.is_active():
             running |= {pool.submit(work, name): name for name in sorter.get_ready()}
             done, _ = wait(running, return_when=FIRST_COMPLETED)
@@ -118,10 +118,10 @@ def made_once(paths: pytest.TempPathFactory, name: str, make: Callable[[Path], N
         if failed.exists():
             pytest.fail(failed.read_text(encoding="utf-8"))
         if not complete.exists():
-            folder.mkdir()
+            folder.mkdir(exist_ok=True)
             try:
                 make(folder)
-            except AssertionError as error:
+            except Exception as error:
                 failed.write_text(str(error), encoding="utf-8")
                 raise
             complete.touch()

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.helpers.compilers import needed
 from tests.helpers.exports import ALL, export
 from tests.helpers.rocq import accepted, beside, compile_theory, each_after, made_once
 from tests.rocq import STAND_ALONE
@@ -12,6 +13,7 @@ from tests.rocq import STAND_ALONE
 @pytest.fixture(scope="session")
 def theory(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Its folder, compiled."""
+    needed("coqc")
     return made_once(tmp_path_factory, "theory", compile_theory)
 
 
@@ -31,7 +33,7 @@ def exports(tmp_path_factory: pytest.TempPathFactory, theory: Path) -> Path:
                 (folder / f"{name}.refused").write_text(str(error), encoding="utf-8")
 
         # What takes longest begins first.
-        each_after({name: () for name in [*alone, *sorted(texts, key=lambda x: -len(texts[x]))]},
-                   compile_one)  # fmt: skip
+        long_first = [*alone, *sorted(texts, key=lambda name: -len(texts[name]))]
+        each_after(dict.fromkeys(long_first, ()), compile_one)
 
     return made_once(tmp_path_factory, "exports", compile_exports)

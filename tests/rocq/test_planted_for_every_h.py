@@ -41,13 +41,15 @@ ERRORS = [
     ),
     planted("an agreement more", "every_lie2", CHECKED, ("agreement := 2", "agreement := 3")),
     planted("an agreement more in the theorem", "every_lie2", AGREES, ("(k <= 2)", "(k <= 3)")),
-    planted("two derivatives exchanged", "every_lie2", CHECKED, ("[0; 0]; [0; 1]", "[0; 1]; [0; 0]")),
+    planted("two derivatives exchanged", "every_lie2", CHECKED,
+            ("[0; 0]; [0; 1]", "[0; 1]; [0; 0]")),
     planted(
         "an H for which L is 0", "every_lie2", NOT_ZERO, ("(Number (1 # 6) * (Name 1) ^ 3 +", "(")
     ),
     planted("every H for a separable one", "every_separable", CHECKED,
             ("separable := true", "separable := false")),
-    planted("no time for an H with it", "every_in_time", CHECKED, ("timed := true", "timed := false")),
+    planted("no time for an H with it", "every_in_time", CHECKED,
+            ("timed := true", "timed := false")),
     planted(
         "a leading form of other coordinates", "every_two_odd", CHECKED,
         ("(1%nat, 3%nat, (", "(1%nat, 2%nat, (", 2),

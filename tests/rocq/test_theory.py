@@ -1,16 +1,18 @@
 """The theory compiles as it stands; its theorems assume what the library's reals do, or nothing."""
 
 import re
+import subprocess
 from pathlib import Path
 
-from tests.helpers.rocq import accepted, beside
+from tests.helpers.compilers import needed
+from tests.helpers.rocq import LONGEST, accepted, beside
 from tests.helpers.rocq_assumptions import (
     OF_THE_REALS,
     asked_together,
     assuming_words,
     printed_assumptions,
 )
-from verify.proof.assistant.shipped import FOLDER, files, in_order, text_of
+from verify.proof.assistant.shipped import FOLDER, files, in_order, install, text_of
 
 _THEOREM = re.compile(r"^ *(?:Theorem|Corollary|Lemma) (\w+)", re.MULTILINE)
 _LIBRARIES = re.compile(r"^From Coq Require Import ([^.]*)\.", re.MULTILINE)
@@ -39,6 +41,17 @@ def without_reals(name: str) -> bool:
 def test_all_files_of_the_theory_compile(theory: Path) -> None:
     compiled = {path.relative_to(theory).with_suffix(".v") for path in theory.rglob("*.vo")}
     assert compiled == {path.relative_to(FOLDER) for path in files().values()}
+
+
+def test_an_installed_theory_compiles_in_the_order_of_its_project_file(
+    tmp_path: Path,
+) -> None:
+    """The first files of it: all of them are compiled by what they import."""
+    install(tmp_path / "theory")
+    options, *listed = (tmp_path / "theory" / "_CoqProject").read_text().splitlines()
+    for line in listed[:3]:
+        command = [needed("coqc"), *options.split(), line]
+        subprocess.run(command, cwd=tmp_path / "theory", check=True, timeout=LONGEST)
 
 
 def test_theorems_of_the_theory_assume_what_the_reals_do_or_nothing(

@@ -80,9 +80,10 @@ def test_a_changed_statement_has_no_proof(
 def certified(identities: str) -> str:
     """The file Certified with these identities before it, in one."""
     loaded = re.findall(r"^From .*\n", identities, re.MULTILINE)
-    rest = changed(text_of("Certified"), "Taylor Formulas Identities.", "Taylor Formulas.")
     inside = identities.replace("".join(loaded), "")
-    return f"{''.join(loaded)}Module Identities.\n{inside}\nEnd Identities.\nImport Identities.\n{rest}"
+    module = f"Module Identities.\n{inside}\nEnd Identities.\nImport Identities.\n"
+    rest = changed(text_of("Certified"), "Taylor Formulas Identities.", "Taylor Formulas.")
+    return f"{''.join(loaded)}{module}{rest}"
 
 
 @pytest.mark.parametrize(("old", "new", "place"), IDENTITIES, ids=lambda x: x.split()[0])

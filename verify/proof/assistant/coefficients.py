@@ -113,11 +113,9 @@ class _Numbers:
     def __init__(self, entries: Stages | Tableau, template: str) -> None:
         self.numbers = entries.numbers
         words = frozenset().union(*map(template_words, (template, "numbers", "relations", "area")))
-        made = {word.removeprefix("is_") for word in words}  # `is_w` is what w is called to be
-        made |= {
-            number.name for number in self.numbers if number.name.startswith(("is_", "there_is_"))
-        }
-        self.written = safe([number.name for number in self.numbers], words | made)
+        # What is said of a number is called by its name, too.
+        said = ("is_", "there_is_", "E_")
+        self.written = safe([number.name for number in self.numbers], words, said)
         self.deep = deep({number.name: k for k, number in enumerate(self.numbers, start=1)})
         self.shallow = Spelling(
             real, lambda name: self.written[name], power=lambda base, n: f"{base} ^ {n}"

@@ -3,7 +3,7 @@ and as a person writes them, term by term the same, so that the values of one ar
 """
 
 import re
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -110,15 +110,24 @@ def signed(c: Fraction) -> str:
     return f"-{real(-c)}" if c < 0 else real(c)
 
 
-def safe(names: Collection[str], words: Iterable[str]) -> dict[str, str]:
+def safe(
+    names: Iterable[str], words: Iterable[str], prefixes: Iterable[str] = ()
+) -> dict[str, str]:
     """The names as they stand among these words, of which none may be hidden, nor a keyword.
 
+    `prefixes`: a name with one of these before it is none of the words and no other name, either.
     An apostrophe stands in no name that a certificate has.
     """
-    taken = KEYWORDS | set(words)
-    # Of Rocq's commands some are keywords, and all of them begin with a capital letter.
-    clashes = {name for name in names if name in taken or re.match("[A-Z].", name)}
-    return {name: f"{name}'" if name in clashes else name for name in names}
+    taken, own = KEYWORDS | set(words), ("", *prefixes)
+    found: dict[str, str] = {}
+    for name in names:
+        # Of Rocq's commands some are keywords, and all of them begin with a capital letter.
+        written = f"{name}'" if re.match("[A-Z].", name) else name
+        while taken & {f"{prefix}{written}" for prefix in own}:
+            written += "'"
+        taken |= {f"{prefix}{written}" for prefix in own}
+        found[name] = written
+    return found
 
 
 def lines(text: str, most: int = 96) -> str:

@@ -131,7 +131,8 @@ Section Certified.
     - apply (no_torsion_same K k). rewrite <- along_flow_coefficient, <- IH by lia.
       rewrite value_of_flow by apply term_ok.
       apply (gap_closed (Times (Number (Z.of_nat (S k) # 1)) (term x (S k) c))), E.
-      unfold flow_gaps. apply in_flat_map. exists c. rewrite in_seq. split; [lia|right]. apply in_map_iff. exists k. rewrite in_seq.
+      unfold flow_gaps. apply in_flat_map. exists c. rewrite in_seq. split; [lia|right].
+      apply in_map_iff. exists k. rewrite in_seq.
       split; [reflexivity|lia].
   Qed.
 

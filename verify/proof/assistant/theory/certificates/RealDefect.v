@@ -82,7 +82,8 @@ Section RealDefect.
       (fun m => value_at z (defect_formula x m a b)).
   Proof.
     intros z a b J E La Lb.
-    apply (expands_same _ (fun h => sum n (fun i => J i a h * J (n + i)%nat b h - J i b h * J (n + i)%nat a h))
+    apply (expands_same _
+      (fun h => sum n (fun i => J i a h * J (n + i)%nat b h - J i b h * J (n + i)%nat a h))
       _ (fun m => sum n (fun i =>
         sum (S m) (fun k => value_at z (slope x a (term x k i))
           * value_at z (slope x b (term x (m - k) (n + i))))
@@ -94,7 +95,8 @@ Section RealDefect.
         - value_at z (slope x b (term x k i)) * value_at z (slope x a (term x (m - k) (n + i)))))).
       + rewrite sum_swapped. apply sum_of_equals. intros i _. symmetry. apply sum_of_difference.
       + intros k _. rewrite (value_of_sum_up_to real_numbers), total_is_sum. reflexivity.
-    - apply (expands_finite_sum (known x) n (fun i h => J i a h * J (n + i)%nat b h - J i b h * J (n + i)%nat a h)
+    - apply (expands_finite_sum (known x) n
+        (fun i h => J i a h * J (n + i)%nat b h - J i b h * J (n + i)%nat a h)
         (fun i m => sum (S m) (fun k => value_at z (slope x a (term x k i))
             * value_at z (slope x b (term x (m - k) (n + i))))
           - sum (S m) (fun k => value_at z (slope x b (term x k i))

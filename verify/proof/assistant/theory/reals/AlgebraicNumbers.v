@@ -29,7 +29,8 @@ Proof.
   - apply continuity_pt_const. intros y z. reflexivity.
   - apply (continuity_pt_plus (fun _ => IZR c) (fun x => x * polynomial_at l x)).
     + apply continuity_pt_const. intros y z. reflexivity.
-    + apply (continuity_pt_mult (fun x => x) (polynomial_at l)); [apply derivable_continuous, derivable_id|apply IH].
+    + apply (continuity_pt_mult (fun x => x) (polynomial_at l));
+        [apply derivable_continuous, derivable_id|apply IH].
 Qed.
 
 Definition has_two_signs (l : list Z) (low high : Q) : bool :=
