@@ -2,20 +2,28 @@
 
     prose("ΔJ = ", Formula("-3*h**3*delta*p*q"), " + O(", Formula("h^4"), ")")
     read_prose("The coefficient of `h^m` in det J vanishes")   # what people write: formulas quoted
+    read_prose("so that ``|Λ| ≤ e^(Nε) − 1``.")                # on a line of its own, quoted twice
 
 A Prose is its own plain text, so whatever takes a string takes it; a page sets its `parts`.
 """
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Self
 
 _QUOTE = "`"
+_DISPLAY = re.compile("``([^`]+)``")
 _NUMBER = re.compile(r"[+-]?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?(/[0-9]+)?", re.ASCII)
 
 
 class Formula(str):
     """A formula: as users write it (`h**3*p`), or in the notation of prose (`H_qq`, `e^(Nε)`)."""
+
+    __slots__ = ()
+
+
+class Display(str):
+    """A formula on a line of its own, in the notation of prose."""
 
     __slots__ = ()
 
@@ -26,12 +34,13 @@ class Number(str):
     __slots__ = ()
 
 
-_KINDS: dict[str, type[str]] = {"formula": Formula, "number": Number}
+_KINDS: dict[str, type[str]] = {"formula": Formula, "display": Display, "number": Number}
 PartData = str | dict[str, str]
 
 
 class Prose(str):
-    """Plain text that knows its parts: `str`, `Formula` and `Number`; no two texts side by side.
+    """Plain text that knows its parts: `str`, `Formula`, `Display` and `Number`; no two texts side
+    by side.
 
     >>> found = Prose("at q = ", Number("0.5"), Prose(" it is ", Formula("h**2")))
     >>> str(found), found.parts
@@ -127,14 +136,20 @@ def read_prose(text: str) -> Prose:
     >>> read_prose("at q = `-0.5`").as_data()  # a quoted decimal is a Number
     ['at q = ', {'number': '-0.5'}]
 
-    A backtick without its partner is text; a Prose is itself.
+    What two backticks quote on either side is on a line of its own. A backtick without its partner
+    is text; a Prose is itself.
     """
     if isinstance(text, Prose):
         return text
+    pieces = _DISPLAY.split(text)
+    return Prose(*(Display(p) if i % 2 else Prose(*_in_line(p)) for i, p in enumerate(pieces)))
+
+
+def _in_line(text: str) -> Iterator[str]:
     pieces = text.split(_QUOTE)
     if len(pieces) % 2 == 0:
         pieces[-2:] = [_QUOTE.join(pieces[-2:])]
-    return Prose(*(_quoted(p) if i % 2 else p for i, p in enumerate(pieces)))
+    yield from (_quoted(p) if i % 2 else p for i, p in enumerate(pieces))
 
 
 def _quoted(text: str) -> str:
@@ -146,7 +161,7 @@ def _unpacked(parts: Iterable[str]) -> Iterable[str]:
         if isinstance(part, Prose):
             yield from part.parts
         else:
-            yield part if type(part) in (Formula, Number) else str(part)
+            yield part if type(part) in _KINDS.values() else str(part)
 
 
 def _part_of(data: object) -> str:

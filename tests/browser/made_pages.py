@@ -22,6 +22,7 @@ from verify.scenes.scene import scene_from
 EVIL = "<script>window.planted = 1</script><img src=x onerror='window.planted = 2'>"
 FLOW = "Figure 4 <script>window.planted = 3</script>"  # a label may be 80 characters long
 
+_ARGUED = ("eq-3", "eq-11", "convergence", "determinant-classification")  # with long formulas
 _GRID: dict[str, Any] = {
     "time": "0.2", "step_sizes": ["0.01", "0.02", "0.03"], "separate": True,
     "initial_values": [{"q": "1", "p": "0"}, {"q": "0", "p": "-1.5"}],
@@ -61,8 +62,8 @@ def paper() -> Report:
             common | {"id": "grows", "source": "Figure 9", "kind": "monotone", "quantity": "mse",
                       "direction": "increases", "statement": "MSE increases."}
         ),
-        TheoremClaim(id="eq-3", source="Eq. 3", section="2.1 Discretization", kind="theorem",
-                     statement="L_{H_p}(p_k) = H_p.", name="eq-3"),
+        *(TheoremClaim(id=name, source=f"{name}.", section="2.1 Discretization", kind="theorem",
+                       statement="L_{H_p}(p_k) = H_p.", name=name) for name in _ARGUED),
     ]  # fmt: skip
     figures = [
         PaperFigure(label="Figure 1", caption=f"Errors {EVIL}", scene="duffing", shows="runs",

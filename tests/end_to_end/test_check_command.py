@@ -122,7 +122,9 @@ def test_json_is_one_object_with_the_claims(
     assert [c["id"] for c in found] == ["map", "first-term", "order", "convergence", "area"]
     assert [c["verdict"] for c in found] == ["PROVED", "PROVED", "REFUTED", "PROVED", "PROVED"]
     keys = {"id", "kind", "source", "statement", "verdict", "evidence", "domain"}
-    assert all(set(c) == keys | {"statement_id", "reading", "standing"} for c in found)
+    keys |= {"statement_id", "reading", "standing", "checked_by"}
+    assert all(set(c) == keys for c in found)
+    assert [len(c["checked_by"]) > 0 for c in found] == [c["id"] != "map" for c in found]
     assert (found[0]["source"], found[0]["statement"]) == ("Eq. 19", "The scheme is this map.")
     assert all(c["evidence"] for c in found)
 

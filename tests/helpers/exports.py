@@ -59,6 +59,7 @@ COEFFICIENTS = {
     "yoshida4": _every("yoshida4"),
     "yoshida4_in_time": _every("yoshida4", *_IN_TIME),
     "implicit_euler": _every("implicit-symplectic-euler", "--time-dependent"),
+    "triple_jump6": _every("triple-jump6"),
     "midpoint": _every("implicit-midpoint"),
     "gauss4": _every("gauss4"),
     "gauss6": _every("gauss6", *_IN_TIME),

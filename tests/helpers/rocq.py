@@ -20,6 +20,8 @@ from verify.proof.assistant import shipped as theory
 
 PROCESSES = 2
 LONGEST = 300  # seconds for a file on a machine that does much else
+# By itself coqc has 256 MB for young objects, which takes longer to fill than most files to check.
+_MEMORY = {"OCAMLRUNPARAM": "s=4M,o=400"}
 _STOPPED = re.compile(r'^File "[^"]*", line (\d+), characters', re.MULTILINE)
 _NAMED = re.compile(
     r"^\s*(?:Local |Global )?(?:Theorem|Corollary|Lemma|Definition|Fixpoint|Record|Instance) (\w+)"
@@ -42,7 +44,12 @@ def coqc(path: Path, folders: Mapping[str, Path] | None = None) -> Answer:
     places = [part for name, place in (folders or {}).items() for part in ("-Q", str(place), name)]
     command = [needed("coqc"), "-q", *places, path.name]
     found = subprocess.run(
-        command, cwd=path.parent, capture_output=True, text=True, timeout=LONGEST
+        command,
+        cwd=path.parent,
+        env={**_MEMORY, **os.environ},
+        capture_output=True,
+        text=True,
+        timeout=LONGEST,
     )
     return Answer(found.returncode, found.stdout, found.stderr)
 

@@ -43,13 +43,11 @@ def test_all_files_of_the_theory_compile(theory: Path) -> None:
     assert compiled == {path.relative_to(FOLDER) for path in files().values()}
 
 
-def test_an_installed_theory_compiles_in_the_order_of_its_project_file(
-    tmp_path: Path,
-) -> None:
-    """The first files of it: all of them are compiled by what they import."""
+def test_an_installed_theory_compiles_in_the_order_of_its_project_file(tmp_path: Path) -> None:
+    """The first files of it; a test without coqc holds that the order is right for all."""
     install(tmp_path / "theory")
     options, *listed = (tmp_path / "theory" / "_CoqProject").read_text().splitlines()
-    for line in listed[:3]:
+    for line in listed[:2]:
         command = [needed("coqc"), *options.split(), line]
         subprocess.run(command, cwd=tmp_path / "theory", check=True, timeout=LONGEST)
 

@@ -33,7 +33,7 @@ HAMILTONIANS = {"duffing": "p**2/2 + q**2/2 + q**4/4", "pendulum": "p**2/2 - cos
 def test_theorems_are_marked(name: str) -> None:
     found = check_theorem(name)
     assert unmarked(found) == []
-    assert {found.evidence, found.proof} <= set(proses(found))
+    assert {found.evidence, *(each.text for each in found.steps)} <= set(proses(found))
 
 
 @pytest.mark.parametrize("separable", [False, True])

@@ -17,7 +17,7 @@ from verify.claims.findings import Findings
 from verify.errors import InputError
 from verify.execution.task import Task
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.prose import prose, read_prose
+from verify.prose import Prose, prose, read_prose
 from verify.scenes.frozen import Frozen
 from verify.scenes.results.claim import ClaimResult, Standing
 from verify.scenes.scene import Scene
@@ -99,6 +99,10 @@ class Claim(Frozen):
     @abstractmethod
     def judge(self, findings: Findings) -> ClaimResult:
         """The verdict with its evidence. Raises InputError where a scene or a run is missing."""
+
+    def checked_by(self, found: ClaimResult, findings: Findings) -> Sequence[Prose]:
+        """Who checked the proof by which it was `found`, one text each; none where nobody did."""
+        return ()
 
     def result(
         self,

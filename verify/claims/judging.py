@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
 from verify.claims.plan import add_claims
-from verify.errors import LimitError
+from verify.errors import InputError, LimitError
 from verify.execution.execute import Store, execute
 from verify.execution.executors import ANYWHERE, Placement
 from verify.execution.plan import Plan
@@ -38,7 +38,17 @@ def judged(
             found = claim.judge(Findings(scenes, _found(claim, scenes, store, where)))
     except LimitError as error:
         return claim.result(Verdict.UNDECIDED, prose(str(error)))
-    return found
+    return _marked(claim, found, Findings(scenes, results))
+
+
+def _marked(claim: Claim, found: ClaimResult, findings: Findings) -> ClaimResult:
+    """With who checked its proof; without, where nobody did, or it is too large for that."""
+    if found.verdict not in (Verdict.PROVED, Verdict.REFUTED) or found.checked_by:
+        return found
+    try:
+        return found.model_copy(update={"checked_by": tuple(claim.checked_by(found, findings))})
+    except InputError:
+        return found
 
 
 def _found(

@@ -1,7 +1,7 @@
 """Claims that say an order in h, and what is proved of such an order."""
 
 from abc import abstractmethod
-from typing import Annotated, Self
+from typing import TYPE_CHECKING, Annotated, Self
 
 from pydantic import Field
 
@@ -20,7 +20,14 @@ from verify.prose import Formula, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.schemes.step_map import StepMap
 
+if TYPE_CHECKING:
+    from verify.claims.checked import AboutAll
+
 Order = Annotated[int, Field(ge=1, le=64, strict=True)]
+OF_DELTA_J: "AboutAll" = frozenset({"volume"})
+OF_S: "AboutAll" = frozenset({"defect"})
+OF_MAP: "AboutAll" = frozenset({"map"})
+OF_LAMBDA: "AboutAll" = frozenset({"product"})
 
 
 class OrderedClaim(QuantifiedClaim):

@@ -7,16 +7,20 @@ not zero for some H; det J ≡ 1 is false where some H has another det J.
 """
 
 from abc import abstractmethod
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal, Self
 
+from verify.claims.checked import of_every, of_scene
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.prose import Prose
 from verify.scenes.results.claim import ClaimResult
 from verify.schemes import get
 
 if TYPE_CHECKING:
+    from verify.claims.checked import AboutAll
     from verify.proof.every import EveryProof
 
 EVERY_SEPARABLE = "separable hamiltonian"
@@ -51,6 +55,23 @@ class QuantifiedClaim(Claim):
         from verify.proof.every import prove_every
 
         return self.judge_every(prove_every(self.scheme, self.of_separable, self.looked_at))
+
+    @property
+    def about(self) -> "AboutAll":
+        """What of a proof it asks about; see `verify.proof.checked.proved`."""
+        return frozenset()
+
+    def checked_by(self, found: ClaimResult, findings: Findings) -> Sequence[Prose]:
+        """By the proof for every H that it is made of, or for the scene's."""
+        if self.every is None:
+            return of_scene(self, findings, self.about)
+        return of_every(
+            self.scheme,
+            self.about,
+            separable=self.of_separable,
+            timed=self.in_time,
+            least=self.looked_at,
+        )
 
     @property
     def of_separable(self) -> bool:

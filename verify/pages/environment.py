@@ -7,13 +7,13 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from verify.pages.figures.captioned_plot import Plot
-from verify.pages.text import mathml, notation, prose, steps, typography, words
+from verify.pages.text import mathml, notation, prose, typography, words
 from verify.pages.text.signs import SIGNS
 
 TEMPLATES = Path(__file__).parent / "templates"
 _FILTERS = (
     prose.prose, prose.quoted, prose.sentence, prose.cell, notation.notation, mathml.name,
-    mathml.formula, mathml.plain, steps.steps, typography.exact, typography.number,
+    mathml.formula, mathml.plain, typography.exact, typography.number,
     typography.whole, typography.listed, typography.every,
 )  # fmt: skip
 

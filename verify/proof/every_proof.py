@@ -4,26 +4,14 @@ from dataclasses import dataclass
 
 from verify.algebra.conditions import Condition
 from verify.algebra.domain import EVERYWHERE, Domain
-from verify.prose import Prose, read_prose
+from verify.proof.lie_argument import paragraph
+from verify.prose import Prose
 from verify.schemes import get
 from verify.schemes.every_hamiltonian import TaylorSeries
 from verify.schemes.step_map import SOLVABLE
 from verify.verdict import Verdict
 
 NONE = Prose()
-ARGUMENT = read_prose(
-    "For any η: the exact flow has det 1, so that all coefficients of h, h², … in its determinant "
-    "vanish. The scheme shares its terms up to `h^η`, so the coefficients of h … `h^η` vanish for "
-    "it too. In that of `h^(η+1)` the flow has one term more, which is linear: div(`X^η` f)/(η+1)!,"
-    " f = (−`H_q`, `H_p`); the scheme's coefficient is L = −div(`X^η` f)/(η+1)!. For even η it is "
-    "X·G, G = −1/(η+1)! `Σ_k` `(−1)^k` `P_(η−k, k)`, k = 0 … η, `P_(a, b)` = ∂(Xᵃp, `X^b` "
-    "q)/∂(p, q): the two-forms [a, b] = d(Xᵃp)∧d(`X^b` q) + d(`X^b` p)∧d(Xᵃq) are symmetric, the "
-    "Lie derivative takes [a, b] to [a+1, b] + [a, b+1], so that in its alternating sum over a + b "
-    "= η all but 2 [η+1, 0] cancel, and [η+1, 0] is div(`X^η` f) dp∧dq. Along an orbit the leading "
-    "term therefore sums to a boundary term, and Λ gains one order in h. For odd η it does not: "
-    "X·G vanishes at an equilibrium for every smooth G, and L is −2 `(−D)^((η+1)/2)`/(η+1)! there, "
-    "D = det Hess H. ∎"
-)
 
 
 @dataclass(frozen=True)
@@ -58,10 +46,9 @@ class EveryProof:
 
     @property
     def argument(self) -> Prose:
-        """What is proved on paper beside what the machine checked; see the module's text."""
-        if isinstance(get(self.scheme).every_h, TaylorSeries) and not self.timed:
-            return ARGUMENT
-        return NONE
+        """What is proved on paper, for every η, beside what the machine checked of this one."""
+        taylor = isinstance(get(self.scheme).every_h, TaylorSeries)
+        return paragraph() if taylor and not self.timed else NONE
 
     @property
     def domain(self) -> Domain:

@@ -150,6 +150,6 @@ def test_a_proof_for_reference_data_writes_no_formulas_out(tmp_path: Path) -> No
     brief, full = compute_task(short), compute_task(long)
     assert isinstance(brief, ProofResult)
     assert isinstance(full, ProofResult)
-    left = {"delta_j": None, "p_next": None, "q_next": None, "jacobian": None}
+    left = {"delta_j": None, "p_next": None, "q_next": None, "jacobian": None, "checked_by": ()}
     assert brief == full.model_copy(update=left | {"seconds": brief.seconds})
     assert None not in (full.delta_j, full.p_next, full.q_next, full.jacobian)

@@ -7,12 +7,13 @@ from pydantic import Field
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.claims.findings import Findings
 from verify.claims.formulas import within
-from verify.claims.orders import delta_j_of
+from verify.claims.orders import OF_DELTA_J, delta_j_of
 from verify.claims.quantified import QuantifiedClaim
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
 if TYPE_CHECKING:
+    from verify.claims.checked import AboutAll
     from verify.proof.every_proof import EveryProof
 
 
@@ -22,6 +23,10 @@ class AreaClaim(QuantifiedClaim):
     kind: Literal["area_preserving"]
     area_preserving: Annotated[bool, Field(strict=True)]
     """Whether det J ≡ 1 is claimed, or that it is not so."""
+
+    @property
+    def about(self) -> "AboutAll":
+        return OF_DELTA_J
 
     def judge_one(self, findings: Findings) -> ClaimResult:
         known = delta_j_of(self, findings)

@@ -6,13 +6,14 @@ The map agrees with the exact flow up to h to this power.
 from typing import TYPE_CHECKING, Literal
 
 from verify.claims.findings import Findings
-from verify.claims.orders import Order, OrderedClaim, flow_of
+from verify.claims.orders import OF_MAP, Order, OrderedClaim, flow_of
 from verify.claims.proved_order import ProvedOrder
 from verify.prose import Formula, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
 if TYPE_CHECKING:
+    from verify.claims.checked import AboutAll
     from verify.proof.every_proof import EveryProof
 
 
@@ -26,6 +27,10 @@ class ConvergenceOrderClaim(OrderedClaim):
     @property
     def claimed(self) -> int:
         return self.convergence_order
+
+    @property
+    def about(self) -> "AboutAll":
+        return OF_MAP
 
     @property
     def looked_at(self) -> int:

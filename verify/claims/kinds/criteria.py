@@ -1,14 +1,16 @@
 """The scheme satisfies these of the paper's criteria."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
+from verify.claims.checked import of_scene
 from verify.claims.findings import Findings
 from verify.claims.on_runs import RunClaim
+from verify.claims.orders import OF_DELTA_J, OF_LAMBDA
 from verify.execution.task import Task
-from verify.prose import joined, prose
+from verify.prose import Prose, joined, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.run_sections import Grid
 from verify.scenes.scene import Scene
@@ -53,6 +55,12 @@ class CriteriaClaim(RunClaim):
     def judge(self, findings: Findings) -> ClaimResult:
         """The weakest of the criteria's verdicts."""
         return self.compare(findings)
+
+    def checked_by(self, found: ClaimResult, findings: Findings) -> Sequence[Prose]:
+        """What is known of ΔJ, and what follows for Λ."""
+        if found.verdict is not Verdict.PROVED:
+            return ()
+        return of_scene(self, findings, OF_DELTA_J | OF_LAMBDA if 4 in self.numbers else OF_DELTA_J)
 
     def compare(self, findings: Findings) -> ClaimResult:
         scene = findings.scene(self.scene)

@@ -5,6 +5,7 @@
 names, up to the first term.
 """
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal, Self
 
 import sympy
@@ -13,18 +14,21 @@ from verify.algebra.domain import Domain
 from verify.algebra.embedding import embed
 from verify.algebra.formula import to_text
 from verify.claims import every_formula
+from verify.claims.checked import of_hamiltonian
 from verify.claims.findings import Findings
 from verify.claims.formulas import FormulaClaim, gaps, within
-from verify.claims.orders import Order
+from verify.claims.orders import OF_DELTA_J, Order
 from verify.claims.quantified import QuantifiedClaim
 from verify.errors import NOT_GIVEN, InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.prose import Formula, prose
+from verify.proof.order import leading_of
+from verify.prose import Formula, Prose, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.schemes.step_map import H_STEP, grouped
 from verify.verdict import Verdict
 
 if TYPE_CHECKING:
+    from verify.claims.checked import AboutAll
     from verify.proof.every_proof import EveryProof
 
 _PRINTED_AS = {
@@ -58,6 +62,24 @@ class DeltaJClaim(QuantifiedClaim, FormulaClaim):
     def _delta_j(self, formula: sympy.Expr) -> sympy.Expr:
         """ΔJ as the claim's formula prints it."""
         return formula - 1 if self.kind == "lambda_factor" else formula
+
+    # -- who checked it ---------------------------------------------------------------------------
+
+    @property
+    def about(self) -> "AboutAll":
+        return OF_DELTA_J
+
+    def checked_by(self, found: ClaimResult, findings: Findings) -> Sequence[Prose]:
+        """A certificate tells the first term alone: it says nothing of what is printed beyond."""
+        if self.up_to is None:
+            return ()
+        if self.every is not None:
+            return super().checked_by(found, findings)
+        step_map = self.read(findings).step_map  # with the formula's own symbols
+        power = leading_of(step_map).power
+        if power is None or self.up_to > power + 1:
+            return ()
+        return of_hamiltonian(step_map.hamiltonian, self.scheme, self.about)
 
     # -- of one H ---------------------------------------------------------------------------------
 

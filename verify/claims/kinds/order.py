@@ -3,12 +3,13 @@
 from typing import TYPE_CHECKING, Literal
 
 from verify.claims.findings import Findings
-from verify.claims.orders import Order, OrderedClaim, delta_j_of
+from verify.claims.orders import OF_DELTA_J, Order, OrderedClaim, delta_j_of
 from verify.claims.proved_order import ProvedOrder
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
 if TYPE_CHECKING:
+    from verify.claims.checked import AboutAll
     from verify.proof.every_proof import EveryProof
 
 
@@ -22,6 +23,10 @@ class OrderClaim(OrderedClaim):
     @property
     def claimed(self) -> int:
         return self.order
+
+    @property
+    def about(self) -> "AboutAll":
+        return OF_DELTA_J
 
     def judge_one(self, findings: Findings) -> ClaimResult:
         return self.judge_known(delta_j_of(self, findings))

@@ -1,13 +1,16 @@
 """S = JᵀΩJ − Ω ≡ 0; or, where `symplectic` is false, not so. In the plane that is det J ≡ 1."""
 
+from collections.abc import Sequence
 from typing import Annotated, Literal
 
 from pydantic import Field
 
+from verify.claims.checked import of_scene
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
 from verify.claims.formulas import within
-from verify.claims.orders import defect_of
+from verify.claims.orders import OF_S, defect_of
+from verify.prose import Prose
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
@@ -28,6 +31,9 @@ class SymplecticClaim(Claim):
             return self.result(Verdict.UNDECIDED, evidence, domain=domain)
         holds = known.vanishes == self.symplectic
         return self.result(Verdict.PROVED if holds else Verdict.REFUTED, evidence, domain=domain)
+
+    def checked_by(self, found: ClaimResult, findings: Findings) -> Sequence[Prose]:
+        return of_scene(self, findings, OF_S)
 
 
 CLAIM = SymplecticClaim

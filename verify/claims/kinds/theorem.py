@@ -30,7 +30,9 @@ class TheoremClaim(Claim):
 
     def judge(self, findings: Findings) -> ClaimResult:
         found = theorems.check_theorem(self.name)
-        return self.result(found.verdict, found.evidence, found.details, found.proof)
+        result = self.result(found.verdict, found.evidence, found.details, found.proof)
+        own = {name: getattr(found, name) for name in ("checked_by", "given", "steps", "remark")}
+        return result.model_copy(update=own)
 
 
 CLAIM = TheoremClaim

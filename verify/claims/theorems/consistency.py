@@ -17,11 +17,13 @@ import sympy
 
 from verify.arithmetic.exact import text
 from verify.arithmetic.flint_precision import working_precision
-from verify.claims.theorems.argument import Argument, Check, concluded, vanishes
-from verify.claims.theorems.differential import Differential, Poly, flow_of_every_hamiltonian
+from verify.claims.theorems.argument import Argument, concluded, step
+from verify.claims.theorems.checks.check import BALLS, NUMBERS, Check, vanishes
+from verify.claims.theorems.checks.differential import Differential, Poly, flow_of_every_hamiltonian
 from verify.claims.theorems.exact_maps import Point, areas, map_from_formulas
 from verify.claims.theorems.oscillator import PRECISION
 from verify.hamiltonians import systems
+from verify.proof.assistant.stated import Shipped
 from verify.schemes.methods.taylor.lie import lie_map
 from verify.schemes.step_map import H_STEP, P, StepMap
 from verify.verdict import Verdict
@@ -48,20 +50,17 @@ def consistent_map(hamiltonian: bool = True) -> dict[int, Poly]:
     return ring.powers(u_p + v_q + u_p * v_q - u_q * v_p, "h")
 
 
+def small_determinant(hamiltonian: bool = True) -> Check:
+    """ΔJ = O(h²) for every smoothly consistent map of a generic H."""
+    powers, zero = consistent_map(hamiltonian), flow_of_every_hamiltonian(1).ring.zero
+    return vanishes(
+        "the coefficients of h⁰ and h¹ in ΔJ of a generic smoothly consistent map of a generic H",
+        *(powers.get(n, zero) for n in (0, 1)),
+    )
+
+
 def of_smooth_schemes(hamiltonian: bool = True) -> Argument:
     """Criteria 2, 3 and 4 hold for explicit Euler too, which blows every area up."""
-    powers = consistent_map(hamiltonian)
-    zero = flow_of_every_hamiltonian(1).ring.zero
-    over_time = [_over_time(h) for h in STEP_SIZES]
-    checks = [
-        vanishes(
-            "the coefficients of h⁰ and h¹ in ΔJ of a generic smoothly consistent map of a "
-            "generic H",
-            *(powers.get(n, zero) for n in (0, 1)),
-        ),
-        _euler(),
-        *over_time,
-    ]
     grown = enclosed_growth(STEP_SIZES[0])[1]
     return concluded(
         "criteria-of-consistent-schemes",
@@ -69,19 +68,46 @@ def of_smooth_schemes(hamiltonian: bool = True) -> Argument:
         "every smoothly consistent scheme has ΔJ = O(h²), hence MSE = O(h⁴) and Λ = O(h) on every "
         "[0, T]: all satisfy all three, explicit Euler too, whose Λ for the oscillator at h = "
         f"{text(STEP_SIZES[0])}, T = {TIME} is {grown}",
-        f"""A step Φ is smoothly consistent with Eq. 1 where Φ(z) = φ(z) + `h^(m+1)` ρ(z, h), m ≥ 1,
-        φ the exact flow over h, with a ρ whose values and first derivatives in z are continuous up
-        to h = 0. Since det φ' = 1 (Liouville), det Φ' = 1 + O(`h^(m+1)`) uniformly on compact sets.
-        On every [0, T] on which the exact solution exists the run stays in a compact set for small
-        h, so `ΔJ_k` = O(h²) = o(h), MSE = O(h⁴) = o(h) and |Λ| ≤ exp(T O(h)) − 1 → 0: criteria 2, 3
-        and 4 hold for every smoothly consistent scheme, whatever it does to areas otherwise, and
-        say no more than that. (They are asymptotic in h, and for a given h they say nothing.) The
-        explicit Euler scheme, lie1, for H = (p² + q²)/2 has ΔJ = h² at every point, so 1 + Λ = `(1
-        + h²)^(T/h)`, and for h = {text(STEP_SIZES[0])} and T = {TIME} the Λ of every region is
-        {grown}; yet Λ → 0 as h → 0, and criteria 2 to 4 are satisfied. What tells schemes apart is
-        the order r of ΔJ = O(`h^r`), the growth of Λ with T, and criterion 1. That ρ is smooth is
-        needed: see the counterexample of order 1 for H = q. ∎""",
-        checks,
+        [
+            step(
+                "Since det φ' = 1 (Liouville), ``det Φ' = 1 + O(h^2)`` uniformly on compact sets.",
+                small_determinant(hamiltonian),
+            ),
+            step(
+                "On every [0, T] on which the exact solution exists the run stays in a compact set "
+                "for small h, so `ΔJ_k` = O(h²) = o(h): criterion 2 holds.",
+            ),
+            step(
+                "A mean is at most its greatest term, so ``MSE = O(h^4) = o(h)``: criterion 3 "
+                "holds.",
+                Shipped("Sums", "sum_of_less"),
+            ),
+            step(
+                "``|Λ| ≤ e^(T O(h)) − 1 → 0``: criterion 4 holds.",
+                Shipped("Theorems", "error_over_many_steps"),
+            ),
+            step(
+                "So they hold for every smoothly consistent scheme, whatever it does to areas "
+                "otherwise. The explicit Euler scheme, lie1, for H = (p² + q²)/2 has ΔJ = h² at "
+                f"every point, so ``1 + Λ = (1 + h^2)^(T/h)``, and for h = {text(STEP_SIZES[0])} "
+                f"and T = {TIME} the Λ of every region is {grown}.",
+                _euler(),
+                _over_time(STEP_SIZES[0]),
+            ),
+            step(
+                "Yet Λ → 0 as h → 0, by ``(1 + h^2)^(T/h) ≤ e^(Th)``, and criteria 2 to 4 are "
+                "satisfied.",
+                Shipped("Product", "power_below_exp"),
+                tried=[_over_time(h) for h in STEP_SIZES[1:]],
+            ),
+        ],
+        given="""A step Φ is smoothly consistent with Eq. 1 where ``Φ(z) = φ(z) + h^(m+1)
+        ρ(z, h)``, m ≥ 1, φ the exact flow over h, with a ρ whose values and first
+        derivatives in z are continuous up to h = 0.""",
+        remark="""For m > 1 ΔJ is even O(`h^(m+1)`). The criteria are asymptotic in h, and
+        for a given h they say nothing. What tells schemes apart is the order r of ΔJ =
+        O(`h^r`), the growth of Λ with T, and criterion 1. That ρ is smooth is needed: see
+        the counterexample of order 1 for H = q.""",
     )
 
 
@@ -104,7 +130,7 @@ def enclosed_growth(h: Fraction) -> tuple[bool, str]:
 def _over_time(h: Fraction) -> Check:
     holds, lam = enclosed_growth(h)
     what = f"lie1, oscillator, h = {text(h)}, T = {TIME}: Λ, and 1 + Λ ≤ `e^(Th)`"
-    return Check(what, holds, f"Λ = {lam}")
+    return Check(what, holds, f"Λ = {lam}", BALLS)
 
 
 # -- without it ------------------------------------------------------------------------------------
@@ -116,67 +142,96 @@ STEPS = (4, 16)
 
 def alone(ripple: str = RIPPLE) -> Argument:
     """A consistent scheme of any order that fails criteria 2 and 4; `ripple` is its p'."""
-    checks = [check for m in ORDERS for check in _rippled(ripple.format(n=m + 1, m=m), m)]
+    found = [_rippled(ripple.format(n=m + 1, m=m), m) for m in ORDERS]
+    local, whole, run = zip(*found, strict=True)
     limit, growth = _tends_to_e(STEPS)
     return concluded(
         "consistency-is-not-enough",
         Verdict.PROVED,
         "for H = q the scheme p' = p − h + h² sin(2πp/h)/(2π), q' = q is of order 1, and along its "
         "run from (0, 0) every `ΔJ_k` is h, so that Λ = `(1 + h)^N` − 1 → e − 1 on [0, 1]",
-        """Let H = q, whose exact flow is p ↦ p − h, q ↦ q, and Φ the map p' = p − h + `h^(m+1)`
-        sin(2πp/`h^m`)/(2π), q' = q. Its local error is `h^(m+1)` sin(2πp/`h^m`)/(2π), at most
-        `h^(m+1)`/(2π) everywhere, and p' = p + hψ(p) with ψ' = cos(2πp/`h^m`), which is at most 1
-        in size: by the standard argument the scheme converges with order m. From (p, q) = (0, 0)
-        with h = 1/N the run is `p_k` = −kh exactly, for there 2πp/`h^m` = −2πk `N^(m−1)` and the
-        sine is 0; the cosine is 1, so `ΔJ_k` = h cos(2πp/`h^m`) = h for every k. Hence |`ΔJ_k`| is
-        no higher-order infinitesimal of h, criterion 2 fails, MSE = h² is, so that criterion 3
-        holds, and Λ = `(1 + h)^N` − 1 ≥ 1, which tends to e − 1: criterion 4 fails. The local error
-        is `h^(m+1)` ρ with ρ = sin(2πp/`h^m`)/(2π), whose derivative in p is not bounded as h → 0:
-        the scheme is consistent, and not smoothly so. ∎""",
-        [*checks, Check("Λ tends to e − 1 on [0, 1]", limit, growth)],
+        [
+            step(
+                "The exact flow is p ↦ p − h, q ↦ q. The local error is ``h^(m+1) "
+                "sin(2πp/h^m)/(2π)``, at most `h^(m+1)`/(2π) everywhere, and p' = p + hψ(p) with "
+                "``ψ' = cos(2πp/h^m)``, which is at most 1 in size; here for m = 1, 2, 3.",
+                *local,
+            ),
+            step("By the standard argument the scheme converges with order m (see convergence)."),
+            step(
+                "From (p, q) = (0, 0) with h = 1/N the run is `p_k` = −kh exactly, for there "
+                "2πp/`h^m` = −2πk `N^(m−1)` and the sine is 0. The cosine is 1, so that for every "
+                "k ``ΔJ_k = h cos(2πp/h^m) = h``.",
+                *whole,
+                *run,
+            ),
+            step(
+                "Hence |`ΔJ_k`| is no higher-order infinitesimal of h: criterion 2 fails. MSE = h² "
+                "is, so that criterion 3 holds.",
+                *whole,
+            ),
+            step(
+                "``Λ = (1 + h)^N − 1 ≥ 1``: criterion 4 fails.",
+                Shipped("Product", "bound_attained"),
+                Shipped("Product", "product_above_sum"),
+            ),
+            step(
+                "It tends to e − 1.",
+                tried=[Check("Λ tends to e − 1 on [0, 1]", limit, growth, BALLS)],
+            ),
+            step(
+                "The local error is `h^(m+1)` ρ with ``ρ = sin(2πp/h^m)/(2π), ∂ρ/∂p = "
+                "cos(2πp/h^m)/h^m``, which is not bounded as h → 0: the scheme is consistent, and "
+                "not smoothly so.",
+                *local,
+            ),
+        ],
+        given="Let H = q, and Φ the map p' = p − h + `h^(m+1)` sin(2πp/`h^m`)/(2π), q' = q.",
     )
 
 
-def _rippled(formula: str, m: int) -> list[Check]:
+def _rippled(formula: str, m: int) -> tuple[Check, Check, Check]:
     """Order m by its local error, and ΔJ_k = h along the run, for all k and exactly for some N."""
-    step = map_from_formulas(formula, "q")
+    found = map_from_formulas(formula, "q")
     k = sympy.Symbol("k", integer=True)
-    ripple = sympy.simplify((step.p_next - P + H_STEP) / H_STEP ** (m + 1))
-    slope = sympy.simplify(sympy.diff(step.p_next - P, P) / H_STEP)
+    ripple = sympy.simplify((found.p_next - P + H_STEP) / H_STEP ** (m + 1))
+    slope = sympy.simplify(sympy.diff(found.p_next - P, P) / H_STEP)
+    steep = sympy.simplify(sympy.diff(ripple, P) * H_STEP**m - slope)
     along = {P: -k * H_STEP}
     whole = {H_STEP: 1 / sympy.Symbol("N", integer=True, positive=True)}
-    moved = sympy.simplify((step.p_next - P + H_STEP).subs(along).subs(whole))
-    area = sympy.simplify((step.delta_j / H_STEP).subs(along).subs(whole))
-    runs = [_run_of(step, n) for n in STEPS]
-    return [
+    moved = sympy.simplify((found.p_next - P + H_STEP).subs(along).subs(whole))
+    area = sympy.simplify((found.delta_j / H_STEP).subs(along).subs(whole))
+    runs = [_run_of(found, n) for n in STEPS]
+    return (
         Check(
-            f"H = q, p' = `{formula}`: the local error over `h^{m + 1}` is a sine over 2π, and "
-            "ψ' is a cosine",
-            (2 * sympy.pi * ripple).func is sympy.sin and slope.func is sympy.cos,
+            f"H = q, p' = `{formula}`: the local error over `h^{m + 1}` is a sine over 2π, ψ' is a "
+            f"cosine, and `h^{m}` ∂ρ/∂p that cosine",
+            (2 * sympy.pi * ripple).func is sympy.sin and slope.func is sympy.cos and steep == 0,
             f"`{ripple}`, `{slope}`",
         ),
         Check(
-            "the same at p = −kh, h = 1/N, for all integers k and N: p' − p + h = 0, ΔJ = h",
+            f"m = {m}, at p = −kh, h = 1/N, for all integers k and N: p' − p + h = 0, ΔJ = h",
             moved == 0 and area == 1,
             f"{moved}, ΔJ/h = {area}",
         ),
         Check(
-            f"the same, run from (0, 0) to T = 1 with N = {', '.join(map(str, STEPS))}: all "
+            f"m = {m}, run from (0, 0) to T = 1 with N = {', '.join(map(str, STEPS))}: all "
             "`ΔJ_k` = h, so that Λ = `(1 + h)^N` − 1 ≥ 1",
             all(runs),
             "exactly",
+            NUMBERS,
         ),
-    ]
+    )
 
 
-def _run_of(step: StepMap, steps: int) -> bool:
+def _run_of(found: StepMap, steps: int) -> bool:
     """Exactly; a run whose numbers are not rational is none with ΔJ = h."""
     h = Fraction(1, steps)
     try:
-        found = areas(step, Point(Fraction(0), Fraction(0)), h, steps)
+        run = areas(found, Point(Fraction(0), Fraction(0)), h, steps)
     except ValueError:
         return False
-    return set(found.delta_j) == {h} and found.lam == (1 + h) ** steps - 1 >= 1
+    return set(run.delta_j) == {h} and run.lam == (1 + h) ** steps - 1 >= 1
 
 
 def _tends_to_e(steps: Sequence[int]) -> tuple[bool, str]:

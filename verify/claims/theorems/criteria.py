@@ -7,7 +7,9 @@ criterion 4 is Λ = o(1), as h → 0.
 from collections.abc import Sequence
 from fractions import Fraction
 
-from verify.claims.theorems.argument import Argument, Check, concluded
+from verify.claims.theorems.argument import Argument, concluded, step
+from verify.claims.theorems.checks.check import NUMBERS, Check
+from verify.claims.theorems.checks.sums import compensated_changes, mean_of_fourth_powers
 from verify.claims.theorems.criteria_examples import (
     COMPENSATED,
     FRICTION,
@@ -15,13 +17,17 @@ from verify.claims.theorems.criteria_examples import (
     TO_AND_FRO,
     TO_AND_FRO_ODD,
     ExampleMap,
+    shrinks_to,
+    turns_to_and_fro,
 )
 from verify.claims.theorems.exact_maps import Areas
+from verify.proof.assistant.stated import Shipped
 from verify.verdict import Verdict
 
-_SETTING = """Fix T, let h = T/N, and write `x_k` = `ΔJ_k`, k = 0 … N − 1, m = max |`x_k`|.
+SETTING = """Fix T, let h = T/N, and write `x_k` = `ΔJ_k`, k = 0 … N − 1, m = max |`x_k`|.
 Criterion 2 is m = o(h), criterion 3 is MSE = (1/N) Σ `x_k²` = o(h), criterion 4 is Λ = Π (1 +
 `x_k`) − 1 = o(1), h → 0."""
+BY_MANY_STEPS = Shipped("Theorems", "error_over_many_steps")
 
 
 def inequalities_of(example: ExampleMap) -> Check:
@@ -31,6 +37,7 @@ def inequalities_of(example: ExampleMap) -> Check:
         f"MSE ≤ m², |Λ| ≤ Π(1 + |`x_k`|) − 1 and (Σ |`x_k`|)² ≤ N² MSE for “{example.name}”",
         holds,
         f"N = {', '.join(map(str, example.steps))}, exactly",
+        NUMBERS,
     )
 
 
@@ -53,20 +60,34 @@ def two_implies_three(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
         Verdict.PROVED,
         "MSE ≤ (max |`ΔJ_k`|)², so criterion 2 gives even MSE = o(h²); “higher-order "
         "infinitesimal” must be meant uniformly in k, else it fails",
-        f"""{_SETTING} A mean is at most the greatest of its terms, so MSE ≤ m² = o(h²), which is
-        more than criterion 3 asks for. Criterion 2 must be read uniformly in k, as its maximum over
-        [0, T]: for the map p' = p(1 + q²), q' = q + h from (0, 0) one has `ΔJ_k` = (kh)² = O(h²)
-        for each fixed k, but MSE → T⁴/5. For a scheme whose step depends smoothly on (p, q, h) the
-        uniform reading is no restriction: if ΔJ = o(h) at every point of a compact set, then its
-        Taylor coefficients of h⁰ and h¹ vanish on it, and ΔJ = O(h²) uniformly. The converse is
-        false: MSE = o(h), and criterion 2 fails, for p' = p − h(q + p), q' = q + hp, where ΔJ = −h
-        + h². ∎""",
         [
-            inequalities_of(FRICTION),
-            inequalities_of(not_uniform),
-            not_uniform.check(),
-            FRICTION.check(),
+            step(
+                "A mean is at most the greatest of its terms: "
+                "``MSE = (1/N) Σ_{k} x_k^2 ≤ m^2 = o(h^2)``, more than criterion 3 asks for.",
+                Shipped("Sums", "sum_of_less"),
+                tried=[inequalities_of(FRICTION), inequalities_of(not_uniform)],
+            ),
+            step(
+                "Criterion 2 must be read uniformly in k, as its maximum over [0, T]: for the map "
+                "p' = p(1 + q²), q' = q + h from (0, 0) one has `ΔJ_k` = (kh)² = O(h²) for each "
+                "fixed k, but MSE → T⁴/5.",
+                not_uniform.changes(),
+                mean_of_fourth_powers(),
+                not_uniform.check(),
+            ),
+            step(
+                "For a scheme whose step depends smoothly on (p, q, h) the uniform reading is no "
+                "restriction: if ΔJ = o(h) at every point of a compact set, then its Taylor "
+                "coefficients of h⁰ and h¹ vanish on it, and ΔJ = O(h²) uniformly.",
+            ),
+            step(
+                "The converse is false: MSE = o(h), and criterion 2 fails, for p' = p − h(q + p), "
+                "q' = q + hp, where ``ΔJ = −h + h^2``.",
+                FRICTION.changes(),
+                FRICTION.check(),
+            ),
         ],
+        given=SETTING,
     )
 
 
@@ -75,24 +96,49 @@ def connection(
     alternating: Sequence[ExampleMap] = (TO_AND_FRO, TO_AND_FRO_ODD),
 ) -> Argument:
     """Criterion 4 follows from 2, and from MSE = o(h²), but not from 3; it implies neither."""
-    examples = (friction, *alternating)
+    tried = [inequalities_of(e) for e in (friction, *alternating)]
     return concluded(
         "criterion-4-connection",
         Verdict.REFUTED,
         "criterion 2 implies criterion 4, by |Λ| ≤ exp(T max|`ΔJ_k`|/h) − 1; so does MSE = o(h²), "
         "by |Λ| ≤ exp(T √MSE/h) − 1; only for criterion 3 as stated, MSE = o(h), is there none",
-        f"""{_SETTING} For all real `x_k`, |Π(1 + `x_k`) − 1| ≤ Π(1 + |`x_k`|) − 1 ≤ exp(Σ |`x_k`|)
-        − 1. Since Σ |`x_k`| ≤ N m = T m/h, criterion 2 gives |Λ| ≤ exp(T m/h) − 1 → 0: criterion 2
-        implies criterion 4. By Cauchy and Schwarz Σ |`x_k`| ≤ N √MSE = T √MSE/h, so MSE = o(h²)
-        implies criterion 4 as well, and this is the right scale for criterion 3: MSE = o(h) does
-        not imply criterion 4, nor does MSE = O(h²). The explicit Euler step of an oscillator with
-        friction, p' = p − h(q + p), q' = q + hp, has ΔJ = −h + h² at every point, so MSE = h²(1 −
-        h)² = o(h), and Λ = `(1 − h + h²)^(T/h)` − 1 → `e^(−T)` − 1: criterion 3 calls a map nearly
-        area-preserving that shrinks every area to a fraction `e^(−T)`. In the other direction
-        criterion 4 implies neither 2 nor 3: for p' = −p (1 − √h q)/(1 + √h q), q' = −q from q = 1,
-        det J is (1 − √h)/(1 + √h) and its reciprocal in turn, so Λ is 0 or −2√h/(1 + √h), which
-        tends to 0, while max |`ΔJ_k`| > 2√h and MSE > 4h for even N. ∎""",
-        [example.check() for example in examples] + [inequalities_of(e) for e in examples],
+        [
+            step(
+                "Criterion 2 implies criterion 4: ``|Λ| ≤ e^(Nm) − 1 = e^(T m/h) − 1 → 0``.",
+                BY_MANY_STEPS,
+            ),
+            step(
+                "For all real `x_k`, more precisely, "
+                "``|Π_{k} (1 + x_k) − 1| ≤ e^(Σ_k |x_k|) − 1``.",
+                Shipped("Product", "product_near_one_by_sum"),
+                tried=tried,
+            ),
+            step(
+                "By Cauchy and Schwarz ``Σ_{k} |x_k| ≤ N √MSE = T √MSE/h``, so MSE = o(h²) implies "
+                "criterion 4 as well, and this is the right scale for criterion 3.",
+                Shipped("Sums", "square_of_sum"),
+            ),
+            step(
+                "MSE = o(h) does not imply criterion 4, nor does MSE = O(h²). The explicit Euler "
+                "step of an oscillator with friction, p' = p − h(q + p), q' = q + hp, has ΔJ = −h "
+                "+ h² at every point, so ``MSE = h^2(1 − h)^2 = o(h)``, and ``Λ = (1 − h + "
+                "h^2)^(T/h) − 1 → e^(−T) − 1``: criterion 3 calls a map nearly area-preserving "
+                "that shrinks every area to a fraction `e^(−T)`.",
+                friction.changes(),
+                shrinks_to(),
+                friction.check(),
+            ),
+            step(
+                "In the other direction criterion 4 implies neither 2 nor 3: for p' = −p (1 − √h "
+                "q)/(1 + √h q), q' = −q from q = 1, det J is (1 − √h)/(1 + √h) and its reciprocal "
+                "in turn, so Λ is 0 or −2√h/(1 + √h), which tends to 0, while max |`ΔJ_k`| > 2√h "
+                "and MSE > 4h for even N.",
+                *(each.changes() for each in alternating[:1]),
+                turns_to_and_fro(),
+                *(each.check() for each in alternating),
+            ),
+        ],
+        given=SETTING,
     )
 
 
@@ -102,31 +148,55 @@ def stronger(
 ) -> Argument:
     """Criterion 4 is weaker than criterion 2, and neither weaker nor stronger than criterion 3."""
     between = [0 < compensated.run(n).lam < Fraction(1, n) for n in compensated.steps]
+    small = Check(
+        "0 < Λ < h for the compensated map", all(between), f"{len(between)} step sizes", NUMBERS
+    )
     return concluded(
         "criterion-4-stronger",
         Verdict.REFUTED,
         "criterion 2 implies criterion 4 and not the other way round, so 4 is the weaker one of "
-        "the "
-        "two; criteria 3 and 4 imply each other in neither direction",
-        f"""{_SETTING} Criterion 2 implies 4, by |Λ| ≤ exp(T m/h) − 1, and 4 does not imply 2: so
-        criterion 4 is strictly weaker than criterion 2. A global number can vanish by cancellation.
-        It does so for a smooth map near the identity: p' = p(1 + h(1/2 − q)), q' = q + h from (0,
-        0) on [0, 1] has `ΔJ_k` = h(1/2 − kh), hence max |`ΔJ_k`| = h/2, which is not o(h), but Σ
-        `ΔJ_k` = h/2, 0 < Λ < h, so Λ → 0. And it does so far from the identity, where criterion 3
-        fails as well: p' = −p (1 − √h q)/(1 + √h q), q' = −q. Criterion 3 does not imply 4
-        (friction: ΔJ = −h + h²), so 3 and 4 cannot be ordered. What can be said in favour of
-        criterion 4: let the step be Φ(z) = z + hg(z) + h²r(z, h) with smooth g and r, and let the
-        orbit of z' = g(z) exist on [0, T]. Then ΔJ = h div g + O(h²), Σ log(1 + `ΔJ_k`) = Σ h div
-        g(`z_k`) + O(h), and, since Φ converges to the orbit, Λ → exp(∫₀ᵀ div g dt) − 1 along it. So
-        if criterion 4 holds on [0, t] for every t ≤ T, then div g = 0 along the orbit, div g(`z_k`)
-        = O(h), and criterion 2 follows: for such maps, and for all times, criteria 2 and 4 are
-        equivalent, and criterion 3, which then always holds (MSE = O(h²)), says nothing. ∎""",
+        "the two; criteria 3 and 4 imply each other in neither direction",
         [
-            compensated.check(),
-            Check("0 < Λ < h for the compensated map", all(between), f"{len(between)} step sizes"),
-            *(example.check() for example in alternating),
-            FRICTION.check(),
+            step(
+                "Criterion 2 implies 4: ``|Λ| ≤ e^(T m/h) − 1 → 0``.",
+                BY_MANY_STEPS,
+            ),
+            step(
+                "4 does not imply 2, for a global number can vanish by cancellation. It does so "
+                "for a smooth map near the identity: p' = p(1 + h(1/2 − q)), q' = q + h from (0, "
+                "0) on [0, 1] has `ΔJ_k` = h(1/2 − kh), hence max |`ΔJ_k`| = h/2, which is not "
+                "o(h).",
+                compensated.changes(),
+                compensated.check(),
+            ),
+            step(
+                "But Σ `ΔJ_k` = h/2, so that ``1 + Λ = Π_{k} (1 + x_k) ≤ e^(Σ_k x_k) = e^(h/2)``.",
+                compensated_changes(),
+                Shipped("Product", "one_plus_below_exp"),
+            ),
+            step(
+                "`x_k` and `x_{N−k}` are opposite, so Λ > 0: "
+                "``1 + Λ ≥ (1 + h/2)(1 − Σ_{k} x_k^2) > 1``, and Λ → 0.",
+                tried=[small],
+            ),
+            step(
+                "And it does so far from the identity, where criterion 3 fails as well: p' = −p (1 "
+                "− √h q)/(1 + √h q), q' = −q.",
+                *(each.changes() for each in alternating[:1]),
+                turns_to_and_fro(),
+                *(example.check() for example in alternating),
+            ),
+            step(
+                "Criterion 3 does not imply 4 (friction: ΔJ = −h + h²), so 3 and 4 cannot be "
+                "ordered.",
+                FRICTION.changes(),
+                shrinks_to(),
+                FRICTION.check(),
+            ),
         ],
+        given=SETTING,
+        remark="What can be said in favour of criterion 4 is of smooth steps and all times: see "
+        "the other reading.",
     )
 
 

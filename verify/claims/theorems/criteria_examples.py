@@ -9,8 +9,12 @@ from fractions import Fraction
 from functools import cache
 from math import prod
 
+import sympy
+
+from verify.algebra.formula import parse
 from verify.arithmetic.exact import decimal
-from verify.claims.theorems.argument import Check
+from verify.claims.theorems.checks.check import NUMBERS, Check
+from verify.claims.theorems.checks.formulas import same
 from verify.claims.theorems.exact_maps import Areas, Point, areas, map_from_formulas
 
 Numbers = tuple[Fraction, Fraction, Fraction]  # max |ΔJ|, MSE, Λ
@@ -20,7 +24,8 @@ Numbers = tuple[Fraction, Fraction, Fraction]  # max |ΔJ|, MSE, Λ
 class ExampleMap:
     """A map from `start`, run over T = 1 with N steps for each N in `steps`.
 
-    `closed(h)`: what max |ΔJ|, MSE and Λ are; `says`: the same in words, and what follows.
+    `delta_j`: its ΔJ as a formula in p, q and h. `closed(h)`: what max |ΔJ|, MSE and Λ are; `says`:
+    the same in words, and what follows.
     """
 
     name: str
@@ -30,6 +35,7 @@ class ExampleMap:
     steps: tuple[int, ...]
     closed: Callable[[Fraction], Numbers]
     says: str
+    delta_j: str
 
     def run(self, steps: int) -> Areas:
         return _run(self.p_next, self.q_next, self.start, steps)
@@ -45,7 +51,14 @@ class ExampleMap:
                 f"Λ = {_short(found.lam)}"
             )
         what = f"{self.name}: p' = `{self.p_next}`, q' = `{self.q_next}`, from {self.start}, T = 1"
-        return Check(f"{what}: {self.says}", holds, "; ".join(shown))
+        return Check(f"{what}: {self.says}", holds, "; ".join(shown), NUMBERS)
+
+    def changes(self) -> Check:
+        """Whether its ΔJ is what is said, at every point and for every h."""
+        names = ("p", "q", "h")
+        told = parse(self.delta_j, names, source=self.name)
+        found = map_from_formulas(self.p_next, self.q_next).delta_j
+        return same(f"{self.name}: ΔJ − (`{self.delta_j}`)", [found - told], names)
 
 
 @cache
@@ -55,6 +68,29 @@ def _run(p_next: str, q_next: str, start: Point, steps: int) -> Areas:
 
 def _short(x: Fraction) -> str:
     return f"`{decimal(x, 3)}`"
+
+
+def shrinks_to(limit: sympy.Expr = -sympy.S.One) -> Check:
+    """log(1 − h + h²)/h → −1: with friction every area shrinks to 1/e over [0, 1]."""
+    h = sympy.Symbol("h", positive=True)
+    found = sympy.limit(sympy.log(1 - h + h**2) / h, h, 0)
+    return Check("friction: log(1 − h + h²)/h for h → 0", found == limit, f"`{found}`")
+
+
+def turns_to_and_fro(sign: int = 1) -> Check:
+    """Of a step and the next, e = √h: their factors multiply to 1, and the sizes of their ΔJ."""
+    e = sympy.Symbol("e", positive=True)
+    down, up = -2 * e / (1 + e), sign * 2 * e / (1 - e)
+    gaps = [
+        (1 + down) * (1 + up) - 1,
+        (down**2 + up**2) / 2 - 4 * e**2 * (1 + e**2) / (1 - e**2) ** 2,
+        -down - e - e * (1 - e) / (1 + e),
+    ]
+    what = (
+        "to and fro, e = √h: the product of two factors less 1, the MSE less 4e²(1 + e²)/(1 − "
+        "e²)², and |`ΔJ_0`| − e less e(1 − e)/(1 + e)"
+    )
+    return same(what, gaps, ("e",))
 
 
 def _root(h: Fraction) -> Fraction:
@@ -112,6 +148,7 @@ FRICTION = ExampleMap(
     (4, 16, 64),
     _friction,
     "ΔJ = −h + h², so MSE = o(h) while Λ → 1/e − 1",
+    "-h + h**2",
 )
 TO_AND_FRO = ExampleMap(
     "to and fro",
@@ -121,6 +158,7 @@ TO_AND_FRO = ExampleMap(
     (4, 16, 64),
     _to_and_fro,
     "max |ΔJ| > 2√h and MSE > 4h, while Λ = 0 for even N",
+    "-2*sqrt(h)*q/(1 + sqrt(h)*q)",
 )
 TO_AND_FRO_ODD = ExampleMap(
     "to and fro, odd N",
@@ -130,6 +168,7 @@ TO_AND_FRO_ODD = ExampleMap(
     (9, 25, 81),
     _to_and_fro_odd,
     "Λ = −2√h/(1 + √h) → 0 for odd N",
+    TO_AND_FRO.delta_j,
 )
 COMPENSATED = ExampleMap(
     "near the identity, compensated",
@@ -139,6 +178,7 @@ COMPENSATED = ExampleMap(
     (4, 16, 64),
     _compensated,
     "max |ΔJ| = h/2, Σ ΔJ = h/2 and 0 < Λ < h, so that Λ → 0",
+    "h*(1/2 - q)",
 )
 NOT_UNIFORM = ExampleMap(
     "small for each k, not uniformly",
@@ -148,4 +188,5 @@ NOT_UNIFORM = ExampleMap(
     (4, 16, 64),
     _not_uniform,
     "`ΔJ_k` = (kh)², which is O(h²) for each fixed k, while MSE → 1/5",
+    "q**2",
 )

@@ -7,7 +7,9 @@ the letter, of each k by itself, which is weaker; and criterion 4 of all [0, t],
 from collections.abc import Sequence
 from fractions import Fraction
 
-from verify.claims.theorems.argument import Argument, Check, concluded, vanishes
+from verify.claims.theorems.argument import Argument, concluded, step
+from verify.claims.theorems.checks.check import NUMBERS, Check, vanishes
+from verify.claims.theorems.checks.sums import mean_of_fourth_powers, squares_of_times
 from verify.claims.theorems.consistency import consistent_map
 from verify.claims.theorems.criteria_examples import (
     FRICTION,
@@ -15,7 +17,10 @@ from verify.claims.theorems.criteria_examples import (
     TO_AND_FRO,
     TO_AND_FRO_ODD,
     ExampleMap,
+    shrinks_to,
+    turns_to_and_fro,
 )
+from verify.proof.assistant.stated import Shipped
 from verify.verdict import Verdict
 
 _FIXED = (0, 1, 2)  # k
@@ -29,6 +34,7 @@ def _small_for_each_k(example: ExampleMap) -> Check:
         f"{', '.join(map(str, _FIXED))}",
         all(len(each) == 1 for each in ratios),
         ", ".join(str(min(each)) for each in ratios),
+        NUMBERS,
     )
 
 
@@ -43,6 +49,7 @@ def _grows(example: ExampleMap) -> Check:
         f"{example.name}: Λ ≥ Σ `ΔJ_k` ≥ N/8, MSE ≥ 1/12",
         holds,
         f"N = {', '.join(map(str, example.steps))}, exactly",
+        NUMBERS,
     )
 
 
@@ -54,12 +61,24 @@ def pointwise_two_not_three(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
         "for p' = p(1 + q²), q' = q + h from (0, 0) each `ΔJ_k` = (kh)² = O(h²), but over [0, 1] "
         "MSE → 1/5; for a step that depends smoothly on (p, q, h), as lieη does, the two senses "
         "agree",
-        """With `q_k` = kh one has `ΔJ_k` = (kh)², for each fixed k a higher-order infinitesimal of
-        h. But the last steps of [0, 1] have kh near 1, and MSE = (1/N) Σ (kh)⁴ → 1/5. For a scheme
-        whose step depends smoothly on (p, q, h) this cannot happen: if ΔJ = o(h) at every point of
-        a compact set, its Taylor coefficients of h⁰ and h¹ vanish there, and ΔJ = O(h²) uniformly.
-        ∎""",
-        [not_uniform.check(), _small_for_each_k(not_uniform), _grows(not_uniform)],
+        [
+            step(
+                "With `q_k` = kh one has ``ΔJ_k = (kh)^2``, for each fixed k a higher-order "
+                "infinitesimal of h.",
+                not_uniform.changes(),
+                _small_for_each_k(not_uniform),
+            ),
+            step(
+                "But the last steps of [0, 1] have kh near 1, and "
+                "``MSE = (1/N) Σ_{k} (kh)^4 → 1/5``.",
+                mean_of_fourth_powers(),
+                not_uniform.check(),
+                _grows(not_uniform),
+            ),
+        ],
+        remark="For a scheme whose step depends smoothly on (p, q, h) this cannot happen: if ΔJ = "
+        "o(h) at every point of a compact set, its Taylor coefficients of h⁰ and h¹ vanish there, "
+        "and ΔJ = O(h²) uniformly.",
     )
 
 
@@ -70,23 +89,44 @@ def pointwise_connection(
 ) -> Argument:
     """Of each k alone: 2 does not imply 4, nor does 3; and 4 implies neither."""
     first = [abs(e.run(n).delta_j[0]) ** 2 * n >= 1 for e in alternating for n in e.steps]
+    at_first = Check(
+        "to and fro: |`ΔJ_0`| ≥ √h", all(first), f"{len(first)} step sizes, exactly", NUMBERS
+    )
     return concluded(
         "criterion-4-connection-pointwise",
         Verdict.PROVED,
         "read for each fixed k, criterion 2 does not imply criterion 4 (p' = p(1 + q²), q' = q + "
         "h), criterion 3 does not (friction), and 4 implies neither: none of the four "
         "implications holds",
-        """2 and not 4: for p' = p(1 + q²), q' = q + h from (0, 0) each `ΔJ_k` = (kh)² = O(h²), but
-        Λ ≥ Σ (kh)² ≥ N/8 over [0, 1]. 3 and not 4: p' = p − h(q + p), q' = q + hp has MSE = h²(1 −
-        h)² = o(h) and Λ → 1/e − 1. 4, and neither 2 nor 3: p' = −p (1 − √h q)/(1 + √h q), q' = −q
-        from q = 1 has Λ → 0, |`ΔJ_0`| = 2√h/(1 + √h) ≥ √h, and MSE > 4h for even N. ∎""",
         [
-            not_uniform.check(),
-            _small_for_each_k(not_uniform),
-            _grows(not_uniform),
-            friction.check(),
-            *(example.check() for example in alternating),
-            Check("to and fro: |`ΔJ_0`| ≥ √h", all(first), f"{len(first)} step sizes, exactly"),
+            step(
+                "2 and not 4: for p' = p(1 + q²), q' = q + h from (0, 0) each `ΔJ_k` = (kh)² = "
+                "O(h²).",
+                not_uniform.changes(),
+                _small_for_each_k(not_uniform),
+            ),
+            step(
+                "But over [0, 1] ``Λ = Π_{k} (1 + (kh)^2) − 1 ≥ Σ_{k} (kh)^2 ≥ N/8``.",
+                Shipped("Product", "product_above_sum"),
+                squares_of_times(),
+                not_uniform.check(),
+                _grows(not_uniform),
+            ),
+            step(
+                "3 and not 4: p' = p − h(q + p), q' = q + hp has ``MSE = h^2(1 − h)^2 = o(h)``, "
+                "and Λ → 1/e − 1.",
+                friction.changes(),
+                shrinks_to(),
+                friction.check(),
+            ),
+            step(
+                "4, and neither 2 nor 3: p' = −p (1 − √h q)/(1 + √h q), q' = −q from q = 1 has Λ → "
+                "0, ``|ΔJ_0| = 2√h/(1 + √h) ≥ √h``, and MSE > 4h for even N.",
+                *(each.changes() for each in alternating[:1]),
+                turns_to_and_fro(),
+                *(example.check() for example in alternating),
+                at_first,
+            ),
         ],
     )
 
@@ -108,19 +148,35 @@ def stronger_for_smooth_steps(
         "for steps z + hg(z) + h²r(z, h) with smooth g and r, criterion 4 on [0, t] for every t ≤ "
         "T implies criteria 2 and 3, and criterion 3, which always holds then, does not imply it: "
         "4 is as strong as 2 and stronger than 3",
-        """Let the orbit of z' = g(z) exist on [0, T]. Then ΔJ = h div g + O(h²), Σ log(1 + `ΔJ_k`)
-        = Σ h div g(`z_k`) + O(h), and, as Φ converges to the orbit, Λ → exp(∫₀ᵗ div g dt) − 1 over
-        [0, t]. If that is 0 for every t ≤ T, then div g = 0 along the orbit, div g(`z_k`) = O(h),
-        and `ΔJ_k` = O(h²) uniformly: criteria 2 and 3 follow. Criterion 3 always holds, as MSE =
-        O(h²), and criterion 4 does not for the oscillator with friction, where div g = −1. ∎""",
         [
-            vanishes(
-                "ΔJ of a generic map z + hg + h²r is h div g + O(h²), g generic",
-                powers.get(1, none) - divergence,
-                powers.get(0, none),
+            step(
+                "``ΔJ = h div g + O(h^2)``, for any g.",
+                vanishes(
+                    "ΔJ of a generic map z + hg + h²r is h div g + O(h²), g generic",
+                    powers.get(1, none) - divergence,
+                    powers.get(0, none),
+                ),
             ),
-            friction.check(),
+            step(
+                "So Σ log(1 + `ΔJ_k`) = Σ h div g(`z_k`) + O(h), and, as Φ converges to the orbit, "
+                "over [0, t] ``Λ → e^(∫_0^t div g dt) − 1``.",
+            ),
+            step(
+                "If that is 0 for every t ≤ T, then div g = 0 along the orbit, div g(`z_k`) = "
+                "O(h), and `ΔJ_k` = O(h²) uniformly: criteria 2 and 3 follow.",
+            ),
+            step(
+                "Criterion 3 always holds: the mean of `ΔJ_k²` is at most its maximum, O(h²).",
+                Shipped("Sums", "sum_of_less"),
+            ),
+            step(
+                "Criterion 4 does not hold for the oscillator with friction, where div g = −1.",
+                friction.changes(),
+                shrinks_to(),
+                friction.check(),
+            ),
         ],
+        given="Let the orbit of z' = g(z) exist on [0, T].",
     )
 
 

@@ -2,24 +2,26 @@
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from itertools import product
 
 import flint
 import sympy
 
 from verify.arithmetic.exact import text
 from verify.arithmetic.flint_precision import working_precision
-from verify.claims.theorems.argument import Argument, Check, concluded, vanishes
+from verify.claims.theorems.argument import Argument, concluded, step
+from verify.claims.theorems.checks.check import BALLS, NUMBERS, Check, vanishes
+from verify.claims.theorems.checks.differential import Differential
+from verify.claims.theorems.checks.sums import bound_of_eq_11, geometric
+from verify.claims.theorems.checks.triangle import difference, triangle
 from verify.claims.theorems.convergence import STEPS, local_orders
-from verify.claims.theorems.differential import Differential
 from verify.claims.theorems.exact_maps import Point, next_point
 from verify.claims.theorems.oscillator import PRECISION
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.proof.assistant.stated import Shipped
 from verify.schemes.methods.taylor.lie import lie_map
 from verify.schemes.step_map import P, Q
 from verify.verdict import Verdict
 
-SIGNED = tuple(Fraction(n, 3) for n in (-5, -1, 0, 2, 7))
 _RATES = (Fraction(1, 2), Fraction(1), Fraction(3))  # L
 _ORDER = 2
 _TIME = sympy.Symbol("t")
@@ -33,13 +35,21 @@ def local_error(shift: int = 0) -> Argument:
         "one step from the exact solution, Eq. 6, is its Taylor polynomial of degree η, so that "
         "the local error is C `h^(η+1)` with |C| ≤ max |`X^(η+1)` z|/(η+1)!, of that order "
         "exactly for both systems and η = 1 … 4",
-        """Eq. 6 is Eq. 2 from a point of the exact solution. By Eq. 2, 4 and 5 its right side is Σ
-        hⁿ/n! Xⁿz, n = 0 … η, the Taylor polynomial of degree η, as a function of h, of the exact
-        flow from `z̄_k` to `z̄_{k+1}`. Taylor’s remainder bounds what is left by M `h^(η+1)`/(η+1)!
-        for each component, with M the maximum of |`X^(η+1)` z| along the solution: these are the
-        coefficients C of the local truncation error, bounded on [t₀, `t_end`], with η in the
-        exponent where Eq. 10 and 11 write n. ∎""",
-        local_orders(shift),
+        [
+            step(
+                "Eq. 6 is Eq. 2 from a point of the exact solution. By Eq. 2, 4 and 5 its right "
+                "side is the Taylor polynomial of degree η of the exact flow from `z̄_k` to "
+                "`z̄_{k+1}`, ``Σ_{n=0}^{η} h^n/n! X^n z``, and off by C `h^(η+1)` at most.",
+                Shipped("Theorems", "flow_has_taylor_series"),
+            ),
+            step(
+                "Taylor’s remainder bounds what is left by ``M h^(η+1)/(η+1)!`` for each "
+                "component, with M the maximum of |`X^(η+1)` z| along the solution: these are the "
+                "coefficients C of the local truncation error, bounded on [t₀, `t_end`].",
+            ),
+            step("For both systems and η = 1 … 4 it is of no higher order.", *local_orders(shift)),
+        ],
+        remark="η stands in the exponent where Eq. 10 and 11 write n.",
     )
 
 
@@ -48,30 +58,38 @@ def local_error(shift: int = 0) -> Argument:
 
 def eq_7(formula: str = "p**2/2 + q", steps: Sequence[int] = (1, 2)) -> Argument:
     """|p̃ − p| is 0 after the first step, and the global error is not: H = p²/2 + q, lie1."""
+    solves, first, later = _after_steps(formula, steps)
     return concluded(
         "eq-7",
         Verdict.REFUTED,
         "`p̃_1` is one step from the exact initial value, and so is `p_1`: Eq. 7 is 0 after the "
         "first step, where the global error, `z̄_1` − `z_1`, is the local error (h²/2 in q for H = "
         "p²/2 + q and η = 1)",
-        """The global error at step k + 1 is `z̄_{k+1}` − `z_{k+1}`, the exact solution less the
-        computed one; it stands on the left of Eq. 8. In Eq. 7 stands `z̃_{k+1}`, by Eq. 6 one step
-        from the exact solution, in place of `z̄_{k+1}`. For k = 0 both steps begin at the same
-        point, so that Eq. 7 is 0 for every scheme, order and H, while the global error is the local
-        error of the first step. For H = p²/2 + q, whose solution from (0, 0) is p = −t, q = −t²/2,
-        lie1 gives (−h, 0) after one step: the global error in q is h²/2. ∎""",
-        _after_steps(formula, steps),
+        [
+            step("For H = p²/2 + q the solution from (0, 0) is ``p = −t, q = −t^2/2``.", solves),
+            step(
+                "lie1 gives (−h, 0) after one step. It begins where the step of Eq. 6 begins, so "
+                "that Eq. 7 is 0; the global error in q is h²/2.",
+                first,
+            ),
+            step("After each step the two differ by h²/2, the local error.", later),
+        ],
+        given="The global error at step k + 1 is `z̄_{k+1}` − `z_{k+1}`, the exact solution less "
+        "the computed one; it stands on the left of Eq. 8. In Eq. 7 stands `z̃_{k+1}`, by Eq. 6 "
+        "one step from the exact solution, in place of `z̄_{k+1}`.",
+        remark="For k = 0 both steps begin at the same point whatever the scheme, its order and H "
+        "are, so that Eq. 7 is always 0 there, and the global error is the local one.",
     )
 
 
 def _after_steps(formula: str, steps: Sequence[int]) -> list[Check]:
     """Eq. 7 and the global error in q, on p = −t, q = −t²/2, which solves H = p²/2 + q alone."""
     hamiltonian = Hamiltonian.parse(formula)
-    step, h = lie_map(hamiltonian, 1), Fraction(1, 10)
+    scheme, h = lie_map(hamiltonian, 1), Fraction(1, 10)
     found, point = [], Point(Fraction(0), Fraction(0))
     for n in range(max(steps)):
         exact = [Point(-t, -t * t / 2) for t in (n * h, (n + 1) * h)]
-        from_exact, point = next_point(step, exact[0], h), next_point(step, point, h)
+        from_exact, point = next_point(scheme, exact[0], h), next_point(scheme, point, h)
         found.append((abs(from_exact.q - point.q), abs(exact[1].q - point.q)))
     (by_eq_7, globally), *_ = found
     on_it = {P: -_TIME, Q: -(_TIME**2) / 2}
@@ -88,36 +106,37 @@ def _after_steps(formula: str, steps: Sequence[int]) -> list[Check]:
             "is 0, the global error |q̄ − q| is h²/2",
             by_eq_7 == 0 and globally == h * h / 2,
             f"{text(by_eq_7)} and {text(globally)}",
+            NUMBERS,
         ),
         Check(
             "after each step they differ by h²/2, the local error",
             all(abs(b - a) == h * h / 2 for a, b in found),
             "; ".join(f"{text(a)} and {text(b)}" for a, b in found),
+            NUMBERS,
         ),
     ]
 
 
-def eq_7_meant() -> Argument:
-    """Eq. 7 differs from the global error by the local error at most."""
+def eq_7_meant(of: str = "ab") -> Argument:
+    """Eq. 7 differs from the global error by the local error at most; `of`: see `difference`."""
     return concluded(
         "eq-7-meant",
         Verdict.PROVED,
         "by the triangle inequality Eq. 7 and the global error differ by |`z̄_{k+1}` − "
         "`z̃_{k+1}`|, one local error, `O(h^(η+1))`: the one is `O(h^η)` where the other is",
-        """| |z̃ − z| − |z̄ − z| | ≤ |z̄ − z̃| for each component, by the triangle inequality, and
-        z̄ − z̃ is the local error of the last step, `O(h^(η+1))`. So in every estimate up to
-        `O(h^η)`, as Eq. 11 is, one may stand for the other. ∎""",
-        [_second_triangle(), *local_orders(0)],
-    )
-
-
-def _second_triangle() -> Check:
-    triples = list(product(SIGNED, repeat=3))
-    holds = all(abs(abs(b - c) - abs(a - c)) <= abs(a - b) for a, b, c in triples)
-    return Check(
-        "| |b − c| − |a − c| | ≤ |a − b| in all orders of three numbers, also equal ones",
-        holds,
-        f"{len(triples)} triples, exactly",
+        [
+            step(
+                "For each component ``| |z̃ − z| − |z̄ − z| | ≤ |z̄ − z̃|``, by the triangle "
+                "inequality.",
+                difference(of),
+            ),
+            step(
+                "z̄ − z̃ is the local error of the last step, `O(h^(η+1))`.",
+                Shipped("Theorems", "flow_has_taylor_series"),
+                *local_orders(0),
+            ),
+        ],
+        remark="So in every estimate up to `O(h^η)`, as Eq. 11 is, one may stand for the other.",
     )
 
 
@@ -127,25 +146,22 @@ def _second_triangle() -> Check:
 def eq_8(middle_sign: int = 1) -> Argument:
     """The triangle inequality; `middle_sign` −1 makes one of its sides wrong."""
     ring = Differential(["exact", "step", "run"])
-    exact, step, run = (ring[name] for name in ring.names)
-    triples = list(product(SIGNED, repeat=3))
-    holds = all(abs(a - c) <= abs(a - b) + abs(middle_sign * b - c) for a, b, c in triples)
+    exact, stepped, run = (ring[name] for name in ring.names)
+    split = vanishes(
+        "(p̄ − p̃) + (p̃ − p) − (p̄ − p)",
+        (exact - stepped) + (middle_sign * stepped - run) - (exact - run),
+    )
     return concluded(
         "eq-8",
         Verdict.PROVED,
         "it is the triangle inequality: p̄ − p = (p̄ − p̃) + (p̃ − p), the local error of the last "
         "step and what the step makes of the error before it",
-        """p̄ − p = (p̄ − p̃) + (p̃ − p) identically, and |x + y| ≤ |x| + |y| for real numbers. The
-        left side is the global error. ∎""",
         [
-            vanishes(
-                "(p̄ − p̃) + (p̃ − p) − (p̄ − p)",
-                (exact - step) + (middle_sign * step - run) - (exact - run),
-            ),
-            Check(
-                "|a − c| ≤ |a − b| + |b − c| in all orders of three numbers, also equal ones",
-                holds,
-                f"{len(triples)} triples, exactly",
+            step("Identically ``p̄ − p = (p̄ − p̃) + (p̃ − p)``.", split),
+            step(
+                "|x + y| ≤ |x| + |y| for real numbers. The left side is the global error.",
+                triangle(middle_sign),
+                Shipped("Sums", "size_of_sum"),
             ),
         ],
     )
@@ -159,23 +175,35 @@ def eq_10_meant(slope: int = 1) -> Argument:
     with working_precision(PRECISION):
         sizes = [flint.arb(flint.fmpq(int(10 * rate), 10 * n)) for rate in _RATES for n in STEPS]
         exponentials = [bool(1 + slope * x <= x.exp()) for x in sizes]
+    example = Check(
+        "1 + hL ≤ `e^(hL)`",
+        all(exponentials),
+        f"L = {', '.join(map(text, _RATES))}, N = {', '.join(map(str, STEPS))}, enclosed",
+        BALLS,
+    )
     return concluded(
         "eq-10-meant",
         Verdict.PROVED,
         "with `e_k` for `e_n` and the plane’s norm for the two components, the first inequality is "
         "Eq. 8 with the local error, the second 1 + hL ≤ `e^(hL)`",
-        """Let e be the norm of the error of (p, q), and Φ have the Lipschitz constant 1 + hL near
-        the exact solution (Eq. 9 for both components together). Then Eq. 8 reads `e_{k+1}` ≤
-        |local error| + |Φ(`z̄_k`) − Φ(`z_k`)| ≤ C `h^(η+1)` + (1 + hL) `e_k`, the first inequality,
-        and the second follows from 1 + x ≤ `e^x` for x = hL ≥ 0. ∎""",
         [
-            Check(
-                "1 + hL ≤ `e^(hL)`",
-                all(exponentials),
-                f"L = {', '.join(map(text, _RATES))}, N = {', '.join(map(str, STEPS))}, enclosed",
+            step(
+                "The local error is at most C `h^(η+1)`.",
+                Shipped("Theorems", "flow_has_taylor_series"),
+                *local_orders(0),
             ),
-            *local_orders(0),
+            step(
+                "So Eq. 8 reads, and this is the first inequality, "
+                "``e_{k+1} ≤ C h^(η+1) + |Φ(z̄_k) − Φ(z_k)| ≤ C h^(η+1) + (1 + hL) e_k``.",
+            ),
+            step(
+                "The second follows from ``1 + x ≤ e^x`` for x = hL.",
+                Shipped("Product", "one_plus_below_exp"),
+                tried=[example],
+            ),
         ],
+        given="Let e be the norm of the error of (p, q), and Φ have the Lipschitz constant 1 + hL "
+        "near the exact solution (Eq. 9 for both components together).",
     )
 
 
@@ -183,22 +211,38 @@ def eq_11(factor: Callable[[Fraction, int], Fraction] | None = None) -> Argument
     """Eq. 11 for every sequence with the first inequality of Eq. 10; `factor`: in place of
     (1 + hL)^k, to see that the sum notices."""
     power = factor or (lambda rate, k: rate**k)
-    checks = [_worst_sequence(rate, power) for rate in _RATES]
     return concluded(
         "eq-11",
         Verdict.PROVED,
         "for every sequence with `e_{k+1}` ≤ (1 + hL) `e_k` + C `h^(n+1)`, n = η, both "
         "inequalities hold, with C̃ = (`e^(LT)` − 1)/L + h `e^(LT)` (the term m = 1 of the sum "
         "counts the first step twice, which only weakens it)",
-        """Let `e_{k+1}` ≤ (1 + hL) `e_k` + |`C_{k+1}`| `h^(n+1)`. Iterated from `e_1` this is
-        `e_{k+1}` ≤ `(1 + hL)^k` `e_1` + Σ `(1 + hL)^(k+1−m)` |`C_m`| `h^(n+1)`, m = 2 … k + 1; the
-        term m = 1 that Eq. 11 has besides is not negative. As `e_1` ≤ |`C_1`| `h^(n+1)` and `(1 +
-        hL)^j` ≤ `e^(LT)` for jh ≤ T, the right side is at most max |`C_m`| `h^(n+1)` (`e^(LT)` +
-        (`(1 + hL)^(k+1)` − 1)/(hL)) ≤ C̃ max |`C_m`| `h^n` with C̃ = (`e^(LT)` − 1)/L + h `e^(LT)`,
-        which depends on the length of the interval and on L alone, as the paper says (and, for h ≤
-        h₀, not on h). The recursion itself is the first inequality of Eq. 10, which needs both
-        components together. ∎""",
-        checks,
+        [
+            step(
+                "Iterated from `e_1` the recursion gives ``e_{k+1} ≤ (1 + hL)^k e_1 + "
+                "Σ_{m=2}^{k+1} (1 + hL)^(k+1−m) |C_m| h^(n+1)``. The term m = 1 that Eq. 11 has "
+                "besides is not negative, so its first inequality holds.",
+                Shipped("Product", "errors_sum_up"),
+                tried=[_worst_sequence(rate, power) for rate in _RATES],
+            ),
+            step(
+                "`e_1` ≤ |`C_1`| `h^(n+1)`, and ``(1 + hL)^j ≤ e^(LT)`` for jh ≤ T.",
+                Shipped("Product", "power_below_exp"),
+            ),
+            step(
+                "The powers add up to ``((1 + hL)^(k+1) − 1)/(hL)``.",
+                geometric(),
+            ),
+            step(
+                "So the right side is at most max |`C_m`| times ``h^(n+1) (e^(LT) + (e^(LT) − "
+                "1)/(hL)) = C̃ h^n`` with C̃ = (`e^(LT)` − 1)/L + h `e^(LT)`.",
+                bound_of_eq_11(),
+            ),
+        ],
+        given="Let `e_{k+1}` ≤ (1 + hL) `e_k` + |`C_{k+1}`| `h^(n+1)`.",
+        remark="C̃ depends on the length of the interval and on L alone, as the paper says (and, "
+        "for h ≤ h₀, not on h). The recursion itself is the first inequality of Eq. 10, which "
+        "needs both components together.",
     )
 
 
@@ -222,6 +266,7 @@ def _worst_sequence(rate: Fraction, power: Callable[[Fraction, int], Fraction]) 
         "recursion ≤ the sum ≤ C̃ max |`C_m`| `h^n`",
         holds,
         "exactly",
+        NUMBERS,
     )
 
 

@@ -40,6 +40,11 @@ class Areas:
         return prod((1 + x for x in self.delta_j), start=Fraction(1)) - 1
 
 
+def squared(one: Point, other: Point) -> Fraction:
+    """The square of their distance."""
+    return (one.p - other.p) ** 2 + (one.q - other.q) ** 2
+
+
 def value(expression: sympy.Expr, point: Point, h: Fraction) -> Fraction:
     """The expression at a rational point; ValueError where its value is not rational."""
     put = {P: point.p, Q: point.q, H_STEP: h}

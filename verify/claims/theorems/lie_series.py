@@ -4,12 +4,14 @@ from collections.abc import Callable
 
 import sympy
 
-from verify.algebra.embedding import embed
 from verify.algebra.formula import symbol
-from verify.claims.theorems.argument import Argument, Check, concluded, vanishes
-from verify.claims.theorems.differential import Flow, Poly, flow_of_every_hamiltonian
+from verify.claims.theorems.argument import Argument, concluded, step
+from verify.claims.theorems.checks.check import Check, vanishes
+from verify.claims.theorems.checks.differential import Flow, Poly, flow_of_every_hamiltonian
+from verify.claims.theorems.checks.formulas import same
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.proof.assistant.stated import Shipped
 from verify.schemes.methods.taylor.lie import lie_map
 from verify.schemes.step_map import H_STEP, P, Q
 from verify.verdict import Verdict
@@ -42,27 +44,57 @@ def printed_step(hamiltonian: Hamiltonian, eta: int) -> tuple[sympy.Expr, sympy.
 def lie_exponential(recursion: Recursion = eq_4, eta: int = 4) -> Argument:
     """Eq. 2 with Eq. 4 and 5 is the exponential series of hX, cut off after h^η."""
     flow = flow_of_every_hamiltonian(MOST)
-    checks = [_for_every_hamiltonian(flow, name, recursion) for name in ("p", "q")]
+    powers = [_for_every_hamiltonian(flow, name, recursion) for name in ("p", "q")]
+    for_systems = []
     for name in SYSTEMS:
         hamiltonian = Hamiltonian(systems.get(name).hamiltonian().expression)
         for order in range(1, eta + 1):
-            checks.append(_same(name, hamiltonian, order))
+            for_systems.append(_same(name, hamiltonian, order))
     return concluded(
         "lie-exponential",
         Verdict.PROVED,
         "with L p = −`H_q` and L q = `H_p` to start from, Eq. 4 and 5 say Lⁿ = X Lⁿ⁻¹, so that Eq. "
         f"2 is exp(hX) cut off after `h^η`; checked for a generic H up to `X^{MOST}`",
-        """By Eq. 5 the two operators are `L_{H_p}` = `H_p` `∂_q` and `L_{−H_q}` = −`H_q` `∂_p`;
-        their sum is the Lie derivative X = `H_p` `∂_q` − `H_q` `∂_p` of the Hamiltonian vector
-        field. Eq. 4 applies this same sum in both of its lines, Lⁿ = X Lⁿ⁻¹. Starting from L¹ =
-        `H_p` = X q in the line of q and from L¹ = −`H_q` = X p in the line of p, induction gives
-        `Lⁿ_{H_p}` = Xⁿ q and `Lⁿ_{−H_q}` = Xⁿ p for every n ≥ 1. Along a solution d/dt y(z(t)) = (X
-        y)(z(t)), so that Xⁿ p and Xⁿ q are the n-th time derivatives of p and q, and Eq. 2 is the
-        Taylor polynomial of degree η of the exact flow: exp(hX) applied to the two coordinates and
-        cut off after `h^η`. Nothing in this uses that H is separable. (`Lⁿ_{H_p}` is not the n-th
-        power of the operator `L_{H_p}` of Eq. 5, although it is written so: Eq. 4 mixes the two
-        operators.) ∎""",
-        checks,
+        [
+            step(
+                "By Eq. 5 the two operators are `L_{H_p}` = `H_p` `∂_q` and `L_{−H_q}` = −`H_q` "
+                "`∂_p`. Their sum is the derivative along the motion: ``X = H_p ∂_q − H_q ∂_p``.",
+                _operators(recursion),
+            ),
+            step(
+                "Eq. 4 applies this sum in both of its lines, Lⁿ = X Lⁿ⁻¹, from L¹ = `H_p` = X q "
+                "in the line of q and from L¹ = −`H_q` = X p in that of p. So, for every n ≥ 1, "
+                "``L^n_{H_p} = X^n q, L^n_{−H_q} = X^n p``.",
+                _operators(recursion),
+                *powers,
+            ),
+            step(
+                "Along a solution ``d/dt y(z(t)) = (Xy)(z(t))``, so that Xⁿp and Xⁿq are the n-th "
+                "time derivatives of p and q.",
+                Shipped("Solutions", "rate_along_solution"),
+                Shipped("Solutions", "derivatives_along_solution"),
+            ),
+            step(
+                "Hence Eq. 2 is the Taylor polynomial of degree η of the exact flow, exp(hX) "
+                "applied to the two coordinates and cut off: ``z_{k+1} = Σ_{n=0}^{η} h^n/n! X^n "
+                "z``.",
+                Shipped("Theorems", "flow_has_taylor_series"),
+                *for_systems,
+            ),
+        ],
+        remark="Nothing in this uses that H is separable. (`Lⁿ_{H_p}` is not the n-th power of the "
+        "operator `L_{H_p}` of Eq. 5, although it is written so: Eq. 4 mixes the two operators.)",
+    )
+
+
+def _operators(recursion: Recursion) -> Check:
+    """Both operators of Eq. 5 together are X, whatever they are applied to."""
+    flow = flow_of_every_hamiltonian(1, ["y", "y_p", "y_q"])
+    ring = flow.ring
+    ring.set_gradient("y", p=ring["y_p"], q=ring["y_q"])
+    return vanishes(
+        "Eq. 4 and 5 applied to a generic y, less X y",
+        recursion(flow, ring["y"]) - flow.derive(ring["y"]),
     )
 
 
@@ -73,13 +105,11 @@ def _for_every_hamiltonian(flow: Flow, name: str, recursion: Recursion) -> Check
 
 
 def _same(name: str, hamiltonian: Hamiltonian, eta: int) -> Check:
-    step = lie_map(hamiltonian, eta)
+    found = lie_map(hamiltonian, eta)
     printed = printed_step(hamiltonian, eta)
-    gaps = [x - y for x, y in zip(printed, (step.p_next, step.q_next), strict=True)]
-    ring, elements = embed(gaps, ("p", "q", "h", *hamiltonian.parameters))
-    wrong = [x for x in elements if ring.decide(x).zero is not True]
+    gaps = [x - y for x, y in zip(printed, (found.p_next, found.q_next), strict=True)]
     what = f"{name}: Eq. 2–5 by plain differentiation against the step map of lie{eta}"
-    return Check(what, not wrong, "the same" if not wrong else "different")
+    return same(what, gaps, ("p", "q", "h", *hamiltonian.parameters), "the same")
 
 
 def eq_3(coordinate: str = "p") -> Argument:
@@ -91,35 +121,54 @@ def eq_3(coordinate: str = "p") -> Argument:
     ring, h_p = flow.ring, flow.h_p
     literal = h_p * ring.diff(ring["q"], coordinate)
     by_eq_5 = h_p * ring.diff(ring[coordinate], "q")
-    checks = [
-        Check(
-            f"`H_p` ∂q/∂{coordinate} is not `H_p`, p and q being independent",
-            literal != h_p,
-            f"`{literal}`",
-        ),
-        Check(
-            f"by Eq. 5, `L_{{H_p}}`({coordinate}) = `H_p` ∂{coordinate}/∂q is not `H_p`",
-            by_eq_5 != h_p,
-            f"`{by_eq_5}`",
-        ),
-        vanishes(
-            "by Eq. 5, `L_{H_p}`(q) = `H_p` ∂q/∂q is `H_p`", h_p * ring.diff(ring["q"], "q") - h_p
-        ),
-        _example(),
-    ]
+    as_printed = Check(
+        f"`H_p` ∂q/∂{coordinate} is not `H_p`, p and q being independent",
+        literal != h_p,
+        f"`{literal}`",
+    )
+    operator = Check(
+        f"by Eq. 5, `L_{{H_p}}`({coordinate}) = `H_p` ∂{coordinate}/∂q is not `H_p`",
+        by_eq_5 != h_p,
+        f"`{by_eq_5}`",
+    )
     return concluded(
         "eq-3",
         Verdict.REFUTED,
         "p and q are independent coordinates, so ∂q/∂p = 0 and the right side is 0, not `H_p`; "
         "with q for p, `L_{H_p}`(`q_k`) = `H_p` ∂q/∂q = `H_p`, it is what Eq. 2 needs",
-        """In Eq. 3 p and q are the independent coordinates of the phase plane, so ∂q/∂p = 0 and
-        `H_p` ∂q/∂p = 0. By Eq. 5, too, `L_{H_p}`(p) = `H_p` ∂p/∂q = 0. The printed equality
-        therefore holds only where `H_p` = 0. Taken at its word it would give `L_{H_p}` = 0, and
-        with Eq. 2 `q_{k+1}` = `q_k`: no scheme for Eq. 1. What is meant is `L_{H_p}`(`q_k`) = `H_p`
-        ∂q/∂q = `H_p`; so read, Eq. 2–5 are consistent with each other and with Eq. 19 and 27, and
-        nothing that follows in the paper is affected. The second line, `L_{−H_q}`(`p_k`) = −`H_q`
-        ∂p/∂p = −`H_q`, is right. ∎""",
-        checks,
+        [
+            step(
+                "In Eq. 3 p and q are the independent coordinates of the phase plane, so ∂q/∂p = 0 "
+                "and ``H_p ∂q/∂p = 0``.",
+                as_printed,
+            ),
+            step("By Eq. 5, too, ``L_{H_p}(p) = H_p ∂p/∂q = 0``.", operator),
+            step(
+                "So the printed equality holds only where `H_p` = 0, and not everywhere.",
+                _example(),
+            ),
+            step(
+                "Taken at its word it would give `L_{H_p}` = 0, and with Eq. 4 Lⁿ = 0 and with Eq. "
+                "2 `q_{k+1}` = `q_k`: no scheme for Eq. 1.",
+                vanishes("Eq. 4 from L¹ = 0", eq_4(flow, ring.zero)),
+            ),
+            step(
+                "What is meant is ``L_{H_p}(q_k) = H_p ∂q/∂q = H_p``, and the second line, "
+                "`L_{−H_q}`(`p_k`) = −`H_q` ∂p/∂p = −`H_q`, is right.",
+                _meant(flow, "q"),
+            ),
+        ],
+        remark="So read, Eq. 2–5 are consistent with each other and with Eq. 19 and 27, and "
+        "nothing that follows in the paper is affected.",
+    )
+
+
+def _meant(flow: Flow, coordinate: str) -> Check:
+    diff = flow.ring.diff
+    return vanishes(
+        f"by Eq. 5, `L_{{H_p}}`({coordinate}) − `H_p` and `L_{{−H_q}}`(p) + `H_q`",
+        flow.h_p * diff(flow.ring[coordinate], "q") - flow.h_p,
+        -flow.h_q * diff(flow.ring["p"], "p") + flow.h_q,
     )
 
 
@@ -138,22 +187,22 @@ def _example() -> Check:
 
 def eq_3_meant(coordinate: str = "q") -> Argument:
     """Eq. 3 with q for p in its first line: L_{H_p}(q) = H_p, L_{−H_q}(p) = −H_q, by Eq. 5."""
-    flow = flow_of_every_hamiltonian(2)
-    diff = flow.ring.diff
+    found = [Hamiltonian(systems.get(name).hamiltonian().expression) for name in SYSTEMS]
     return concluded(
         "eq-3-meant",
         Verdict.PROVED,
         "`L_{H_p}`(`q_k`) = `H_p` ∂q/∂q = `H_p` and `L_{−H_q}`(`p_k`) = −`H_q` ∂p/∂p = −`H_q` are "
         "Eq. 5 for y = q and y = p, and what Eq. 2 begins with",
-        """By Eq. 5 `L_{H_p}`(y) = `H_p` ∂y/∂q and `L_{−H_q}`(y) = −`H_q` ∂y/∂p. With y = q the one
-        is `H_p`, with y = p the other is −`H_q`; these are the first terms of Eq. 2, by which Eq.
-        19 and 27 are right. ∎""",
         [
-            vanishes(
-                f"by Eq. 5, `L_{{H_p}}`({coordinate}) − `H_p` and `L_{{−H_q}}`(p) + `H_q`",
-                flow.h_p * diff(flow.ring[coordinate], "q") - flow.h_p,
-                -flow.h_q * diff(flow.ring["p"], "p") + flow.h_q,
-            )
+            step(
+                "By Eq. 5 `L_{H_p}`(y) = `H_p` ∂y/∂q and `L_{−H_q}`(y) = −`H_q` ∂y/∂p. With y = q "
+                "and with y = p these are ``L_{H_p}(q) = H_p, L_{−H_q}(p) = −H_q``.",
+                _meant(flow_of_every_hamiltonian(2), coordinate),
+            ),
+            step(
+                "They are the first terms of Eq. 2, by which Eq. 19 and 27 are right.",
+                *(_same(name, each, 2) for name, each in zip(SYSTEMS, found, strict=True)),
+            ),
         ],
     )
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from verify.scenes.results.claim import ClaimResult
     from verify.scenes.results.statement import StatementResult
 
-_KEYS = ("id", "kind", "source", "statement", "verdict", "evidence", "domain")
+_KEYS = ("id", "kind", "source", "statement", "verdict", "evidence", "checked_by", "domain")
 _OF_READINGS = ("statement_id", "reading", "standing")
 _OF_STATEMENTS = ("id", "source", "statement", "outcome", "readings")
 

@@ -63,6 +63,8 @@ def _html(node: Node | str) -> str:
     inner = "".join(_html(child) for child in node.children)
     if node.attributes.get("aria-hidden"):
         inner += " "
+    if "who" in node.classes:
+        inner = f"({inner})"
     kept = "b" if "badge" in node.classes else _KEPT.get(node.tag)
     return f"<{kept}>{inner}</{kept}>" if kept else inner
 

@@ -14,11 +14,17 @@ from verify.pages.text.mathml import GREEK
 _OTHERWISE = {"ε": "varepsilon", "λ": "lambda", "π": "pi", "φ": "varphi"}
 _GREEK = {letter: name for name, letter in GREEK.items() if letter != "ο"} | _OTHERWISE
 _FUNCTIONS = {"sin", "cos", "tan", "exp", "ln", "log", "sinh", "cosh", "tanh", "arctan"}
+_LARGE = {"max": r"\max ", "min": r"\min ", "lim": r"\lim ", "∑": r"\sum ", "∏": r"\prod "}
 _SIGNS = {
     "−": "-", "\u2061": "", "\u2062": r"\,", "′": "'", "≡": r"\equiv ", "≤": r"\le ",
     "·": r"\cdot ", "±": r"\pm ", "×": r"\times ", "|": r"\vert ", "⟨": r"\langle ",
-    "⟩": r"\rangle ", "ο": "o",
+    "⟩": r"\rangle ", "ο": "o", "≥": r"\ge ", "≠": r"\ne ", "→": r"\to ", "↦": r"\mapsto ",
+    "∘": r"\circ ", "∧": r"\wedge ", "∈": r"\in ", "≈": r"\approx ", "⇒": r"\Rightarrow ",
+    "⇔": r"\Leftrightarrow ", "…": r"\dots ", "∂": r"\partial ", "∇": r"\nabla ",
+    "∞": r"\infty ", "∑": r"\sum ", "∏": r"\prod ", "∫": r"\int ", "‖": r"\Vert ",
+    "<": r"\lt ", ">": r"\gt ", "\u00a0": r"\ ", "∪": r"\cup ", "∩": r"\cap ",
 }  # fmt: skip
+_ACCENTS = {"\u0304": "bar", "\u0303": "tilde", "\u0307": "dot", "\u0308": "ddot"}
 _PLAIN = re.compile(r"[A-Za-z0-9+\-=/().,;:! ]")
 _ESCAPED = set("#%&_{}")
 
@@ -35,6 +41,14 @@ def tex(node: Node) -> str:
             return f"{_group(base)}^{{{upper}}}"
         case "msub", [base, lower]:
             return f"{_group(base)}_{{{lower}}}"
+        case "munder", [_, lower]:
+            return f"{_large(node)}_{{{lower}}}"
+        case "msubsup", [base, lower, upper]:
+            return f"{_group(base)}_{{{lower}}}^{{{upper}}}"
+        case "munderover", [_, lower, upper]:
+            return f"{_large(node)}_{{{lower}}}^{{{upper}}}"
+        case "mspace", _:
+            return r"\,"
         case "mfrac", [above, below]:
             return rf"\frac{{{above}}}{{{below}}}"
         case "msqrt", _:
@@ -69,6 +83,8 @@ def _leaf(text: str) -> str:
         return f"\\{text} "
     if over := re.fullmatch("([0-9]+)\N{FRACTION SLASH}([0-9]+)", normalize("NFKC", text)):
         return rf"\tfrac{{{over[1]}}}{{{over[2]}}}"
+    if len(text) == 2 and text[1] in _ACCENTS:
+        return rf"\{_ACCENTS[text[1]]}{{{_character(text[0])}}}"
     shown = "".join(_character(c) for c in text)
     if len(text) > 1 and not re.fullmatch(r"[0-9.]+", text):
         return rf"\mathrm{{{shown}}}"
@@ -85,3 +101,9 @@ def _character(c: str) -> str:
 
 def _group(base: str) -> str:
     return base if len(base) == 1 else f"{{{base}}}"
+
+
+def _large(node: Node) -> str:
+    """What has its limits above and below it."""
+    base = node.elements()[0]
+    return _LARGE.get(base.text) or _group(tex(base))

@@ -69,6 +69,11 @@ class ClaimView:
         return _STANDINGS[self.result.standing]
 
     @property
+    def who(self) -> str:
+        """Who checked its proof, in a word each."""
+        return ", ".join(dict.fromkeys(re.split("[:,]", by)[0] for by in self.result.checked_by))
+
+    @property
     def name(self) -> str:
         """What the page calls it."""
         return self.result.source or self.result.id

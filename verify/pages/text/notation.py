@@ -65,7 +65,7 @@ def _unbracketed(text: str) -> str:
 # A letter, with an accent or not, and its index: H_qq, z̄_(k+1), L_{H_p}.
 INDEX: Rule = (
     re.compile(
-        r"((?<![A-Za-z0-9_.])(?:ΔJ|[A-Za-zΔΣ])[\u0300-\u036f]?|(?<=[a-z])[A-Z])_"
+        r"((?<![A-Za-z0-9_.])(?:ΔJ|[A-Za-zΔΣ∇])[\u0300-\u036f]?|(?<=[a-z])[A-Z])_"
         r"(\{[^{}]*\}|\([^()]*\)|[A-Za-z0-9]{1,3}(?![A-Za-z0-9_]))"
     ),
     _lowered,

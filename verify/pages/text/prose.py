@@ -9,11 +9,13 @@ from collections.abc import Sequence
 from markupsafe import Markup, escape
 
 from verify.pages.text import mathml
+from verify.pages.text.displayed import displayed
 from verify.pages.text.notation import notation
 from verify.pages.text.typography import NBSP, is_number, number
-from verify.prose import Formula, Number, Prose, read_prose
+from verify.prose import Display, Formula, Number, Prose, read_prose
 
 _EQUALS = " = "
+_STOPS = tuple(".,;:")
 _NAME = 12  # characters of a formula that is given a value
 _ONE_LINE = 40  # characters of a formula that is not broken; a phone has room for them
 
@@ -32,9 +34,20 @@ def prose(text: str) -> Markup:
             made.append(Markup('<span class="nowrap">{} = {}</span>').format(named, value))
             at += 3
         else:
-            made.append(_set(parts[at], parts[at + 1] if at + 1 < len(parts) else ""))
+            following = parts[at + 1] if at + 1 < len(parts) else ""
+            made.append(_set(_without_stop(parts, at), following))
             at += 1
     return Markup("").join(made)
+
+
+def _without_stop(parts: Sequence[str], at: int) -> str:
+    """The part, but for a stop or a comma that belongs to a formula on the line above it."""
+    stopped = at and isinstance(parts[at - 1], Display) and _stop(parts[at])
+    return parts[at][1:] if stopped else parts[at]
+
+
+def _stop(text: str) -> str:
+    return text[:1] if type(text) is str and text[:1] in _STOPS else ""
 
 
 def _is_value(parts: Sequence[str]) -> bool:
@@ -50,6 +63,8 @@ def quoted(text: str) -> Markup:
 
 
 def _set(part: str, following: str) -> Markup:
+    if isinstance(part, Display):
+        return displayed(part, _stop(following))
     if isinstance(part, Number):
         return escape(number(part))
     if isinstance(part, Formula):

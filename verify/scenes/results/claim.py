@@ -4,6 +4,7 @@ from typing import Literal
 
 from verify.prose import Prose
 from verify.scenes.frozen import Said, WithProse
+from verify.scenes.results.step import StepResult
 from verify.verdict import Verdict
 
 Standing = Literal["fair", "strict", "misprint", "ours"]  # see `verify.scenes.results.statement`
@@ -25,7 +26,12 @@ class ClaimResult(WithProse):
     such as "4.1 The Duffing system"; a report groups its claims by it.
     `domain`: conditions on p, q, h and the parameters under which the verdict holds, one a text,
     beyond what the claim itself says; none where that is everywhere.
-    `proof`: the argument on paper that stands beside what the machine checked, where there is one.
+    `checked_by`: who checked the proof that decides it, one text each: the small checker, with what
+    a certificate of it establishes; Rocq, with its theorems; and of an argument on paper how many
+    of its steps a machine checked. None where nobody did.
+    `proof`: the argument on paper that stands beside what the machine checked, where there is one,
+    as one paragraph; `steps`: the same step by step, with who checked each, after what is `given`
+    and before a `remark`.
     `statement_id`: of which statement of its paper it is a reading, `reading` how it is read there
     and `standing` how it stands to what is printed; empty where statements are not counted.
     `reproduction`: a few lines of code that show what is said of someone else's code; `severity`:
@@ -44,8 +50,12 @@ class ClaimResult(WithProse):
     scene: str
     verdict: Verdict
     evidence: Said
+    checked_by: tuple[Said, ...] = ()
     domain: tuple[str, ...] = ()
     details: tuple[tuple[Said, ...], ...] = ()
     proof: Said = Prose("")
+    given: Said = Prose("")
+    steps: tuple[StepResult, ...] = ()
+    remark: Said = Prose("")
     reproduction: str = ""
     severity: str = ""

@@ -3,6 +3,7 @@
 from verify.algebra.conditions import Condition
 from verify.prose import Prose
 from verify.scenes.frozen import Frozen, OfScheme, Said, Seconds, WithProse
+from verify.scenes.results.step import StepResult
 from verify.verdict import Verdict
 
 
@@ -38,7 +39,8 @@ class ProofResult(OfScheme, WithProse):
 
     In n degrees of freedom `form` is there; `order` and `leading` are then those of S. `domain`:
     where it holds, one condition a text, and `where` in words; none where everywhere. `symbolic`:
-    the same formulas for people to read, where values are long numbers.
+    the same formulas for people to read, where values are long numbers. `checked_by`: who else
+    checked it, as of a claim; none where formulas were not asked for.
     """
 
     verdict: Verdict
@@ -57,6 +59,7 @@ class ProofResult(OfScheme, WithProse):
     jacobian: tuple[tuple[str, str], tuple[str, str]] | None
     symbolic: Formulas | None = None
     form: FormResult | None = None
+    checked_by: tuple[Said, ...] = ()
     seconds: Seconds
 
     @property
@@ -81,7 +84,8 @@ class ProofResult(OfScheme, WithProse):
 
 
 class EveryResult(WithProse):
-    """A `verify.proof.every.EveryProof`; `argument`: what is proved on paper beside it.
+    """A `verify.proof.every.EveryProof`; `argument`: what is proved on paper beside it, and `steps`
+    it is made of. `checked_by`: who else checked it, as of a claim.
 
     `timed`: it is for every H that depends on time. `degrees` of freedom: where there are more than
     one, order and leading coefficient are those of S.
@@ -104,3 +108,5 @@ class EveryResult(WithProse):
     checked: tuple[Said, ...]
     conditions: tuple[Condition, ...] = ()
     argument: Said
+    steps: tuple[StepResult, ...] = ()
+    checked_by: tuple[Said, ...] = ()

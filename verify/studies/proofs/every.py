@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Literal
 from verify.execution.keeping import Keeper
 from verify.execution.task import Task
 from verify.scenes.results.proof import EveryResult
+from verify.scenes.results.step import StepResult
 
 if TYPE_CHECKING:
     from verify.proof.every_proof import EveryProof
@@ -30,13 +31,21 @@ class EveryTask(Task):
 
     def compute(self, keeper: Keeper) -> EveryResult:
         """The proof for every H, as a result."""
+        from verify.proof.checked import marks
+        from verify.proof.checked.paper_steps import steps_of
+        from verify.proof.checked.proved import ALL, of_every_hamiltonian
         from verify.proof.every import prove_every
+        from verify.schemes import get
 
         if self.degrees > 1:
             return _in_degrees(self.scheme, self.degrees, self.timed)
         proof = _in_time(self.scheme) if self.timed else prove_every(self.scheme)
-        known = EveryResult.model_fields.keys() - {"degrees"}
-        return EveryResult(**{name: getattr(proof, name) for name in known})
+        known = EveryResult.model_fields.keys() - {"degrees", "steps", "checked_by"}
+        return EveryResult(
+            **{name: getattr(proof, name) for name in known},
+            steps=tuple(StepResult(text=x.text, checked_by=x.checked_by) for x in steps_of(proof)),
+            checked_by=marks(of_every_hamiltonian(proof, get(self.scheme), ALL)),
+        )
 
 
 def _in_time(scheme: str) -> "EveryProof":
@@ -46,6 +55,8 @@ def _in_time(scheme: str) -> "EveryProof":
 
 
 def _in_degrees(name: str, degrees: int, timed: bool) -> EveryResult:
+    from verify.proof.checked import marks
+    from verify.proof.checked.proved import ALL, of_degrees
     from verify.proof.symplectic.every import prove_every_in_degrees, quantifier
     from verify.prose import Prose
     from verify.schemes import get
@@ -69,4 +80,5 @@ def _in_degrees(name: str, degrees: int, timed: bool) -> EveryResult:
         checked=proof.checked,
         conditions=proof.conditions,
         argument=Prose(),
+        checked_by=marks(of_degrees(proof, get(name), ALL, timed=timed)),
     )

@@ -11,6 +11,8 @@ from verify.execution.keeping import Keeper
 from verify.execution.task import SchemeTask
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
+from verify.proof.order_proof import Proof
+from verify.prose import Prose
 from verify.scenes.results.proof import Formulas, ProofResult
 from verify.schemes import get
 from verify.schemes.scheme import Scheme
@@ -25,7 +27,8 @@ _FORMULAS = ("delta_j", "p_next", "q_next", "jacobian")
 class ProofTask(SchemeTask):
     """Prove the order of ΔJ and of the map for one H and one scheme.
 
-    `formulas`: ΔJ, the map and its Jacobian are also written out, which may take longer.
+    `formulas`: ΔJ, the map and its Jacobian are also written out, and it is told who else checked
+    the proof, which may take longer.
     """
 
     result = ProofResult
@@ -42,7 +45,7 @@ class ProofTask(SchemeTask):
         hamiltonian, scheme = self.exact_hamiltonian(), get(self.scheme)
         begun = time.perf_counter()
         if not hamiltonian.planar:
-            found = in_degrees(hamiltonian, scheme)
+            found = in_degrees(hamiltonian, scheme, marked=self.formulas)
             return found.model_copy(update={"seconds": time.perf_counter() - begun})
         step_map = scheme.step_map(hamiltonian)
         proof = prove(step_map, scheme)
@@ -62,8 +65,17 @@ class ProofTask(SchemeTask):
             where=proof.domain.prose,
             **written,
             symbolic=_symbolic(hamiltonian, scheme, proof.order) if self.formulas else None,
+            checked_by=_marks(proof, scheme) if self.formulas else (),
             seconds=time.perf_counter() - begun,
         )
+
+
+def _marks(proof: Proof, scheme: Scheme) -> tuple[Prose, ...]:
+    """Who else checked it."""
+    from verify.proof.checked import marks
+    from verify.proof.checked.proved import DEFECT, MAP, of_one_hamiltonian
+
+    return marks(of_one_hamiltonian(proof, scheme, DEFECT | MAP))
 
 
 def _written(step_map: StepMap) -> dict[str, Any]:

@@ -3,13 +3,17 @@
 from verify.arithmetic.exact import text
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.symplectic.order import prove_symplectic
-from verify.proof.symplectic.proof import MOST_TERMS
+from verify.proof.symplectic.proof import MOST_TERMS, SymplecticProof
+from verify.prose import Prose
 from verify.scenes.results.proof import FormResult, ProofResult
 from verify.schemes.scheme import Scheme
 
 
-def in_degrees(hamiltonian: Hamiltonian, scheme: Scheme) -> ProofResult:
-    """The proof; closed forms are not written out. Raises InputError."""
+def in_degrees(hamiltonian: Hamiltonian, scheme: Scheme, *, marked: bool = True) -> ProofResult:
+    """The proof, `marked` with who else checked it; closed forms are not written out.
+
+    Raises InputError.
+    """
     proof = prove_symplectic(hamiltonian, scheme)
     leading = proof.leading
     entries: tuple[tuple[str, str], ...] = ()
@@ -44,5 +48,14 @@ def in_degrees(hamiltonian: Hamiltonian, scheme: Scheme) -> ProofResult:
         q_next=None,
         jacobian=None,
         form=form,
+        checked_by=_marks(proof, hamiltonian, scheme) if marked else (),
         seconds=0.0,
     )
+
+
+def _marks(proof: SymplecticProof, hamiltonian: Hamiltonian, scheme: Scheme) -> tuple[Prose, ...]:
+    """Who else checked it."""
+    from verify.proof.checked import marks
+    from verify.proof.checked.proved import DEFECT, MAP, of_degrees
+
+    return marks(of_degrees(proof, scheme, DEFECT | MAP, hamiltonian))

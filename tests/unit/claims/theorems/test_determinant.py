@@ -4,7 +4,8 @@ import pytest
 import sympy
 
 from tests.helpers.theorem_controls import refused
-from verify.claims.theorems import determinant, developables, families
+from verify.claims.theorems import classification, determinant
+from verify.claims.theorems.checks import developables, families
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
 from verify.schemes import get
@@ -32,7 +33,7 @@ def test_families_that_are_none_are_not_taken_for_such(u: str, rest: str) -> Non
 
 
 def test_the_classification_notices_a_flaw_in_its_equations() -> None:
-    assert refused(determinant.classification(flaw=1))
+    assert refused(classification.classification(flaw=1))
     assert not developables.Conic(1).exists().holds
     assert not developables.Conic(1).preserves_area().holds
 

@@ -11,6 +11,7 @@ from verify.claims.theorems import (
     area_criteria,
     check_theorem,
     consistency,
+    criteria_of_the_scheme,
     criteria_read_otherwise,
     error_measures,
     error_recursion,
@@ -18,6 +19,7 @@ from verify.claims.theorems import (
     lipschitz,
     matrix_vector,
     motion,
+    two_norm,
 )
 from verify.claims.theorems.criteria_examples import COMPENSATED, FRICTION, TO_AND_FRO
 
@@ -104,7 +106,7 @@ def test_a_lipschitz_constant_that_is_too_small_is_not_taken(norm: float) -> Non
 
 
 def test_a_norm_that_is_too_small_bounds_no_step() -> None:
-    assert refused(lipschitz.norm_of_the_step(Fraction(9, 10)))
+    assert refused(two_norm.norm_of_the_step(Fraction(9, 10)))
 
 
 # -- Eq. 12 and area ------------------------------------------------------------------------------
@@ -159,9 +161,11 @@ def test_the_chain_rule_notices_another_determinant() -> None:
 
 
 def test_criteria_2_and_3_are_not_those_of_another_field_or_map() -> None:
-    assert refused(error_measures.criterion_3(hamiltonian=False))
-    assert refused(error_measures.criterion_2(_planted(FRICTION, q_next="q")))
-    assert refused(error_measures.criterion_3_of_any_map(_planted(FRICTION, p_next="p - h*q")))
+    assert refused(criteria_of_the_scheme.criterion_3(hamiltonian=False))
+    assert refused(criteria_of_the_scheme.criterion_2(_planted(FRICTION, q_next="q")))
+    assert refused(
+        criteria_of_the_scheme.criterion_3_of_any_map(_planted(FRICTION, p_next="p - h*q"))
+    )
 
 
 def test_the_smaller_lambda_is_the_worse_only_where_areas_change_more_in_each_step() -> None:

@@ -19,10 +19,12 @@ from verify.claims.theorems import (
     matrix_vector,
     names,
     total_error,
+    two_norm,
 )
-from verify.claims.theorems.argument import Argument, Check, concluded, vanishes
+from verify.claims.theorems.argument import Argument, concluded, step
+from verify.claims.theorems.checks.check import Check, vanishes
+from verify.claims.theorems.checks.differential import Flow, flow_of_every_hamiltonian
 from verify.claims.theorems.criteria_examples import ExampleMap
-from verify.claims.theorems.differential import Flow, flow_of_every_hamiltonian
 from verify.claims.theorems.exact_maps import Areas, Point, value
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -97,7 +99,8 @@ def test_an_argument_is_one_line_a_paragraph_and_a_table(name: str) -> None:
     assert argument.id == name
     assert "\n" not in argument.evidence + argument.proof
     assert argument.evidence
-    assert argument.proof.endswith("∎")
+    assert argument.proof.count("∎") == 1
+    assert argument.proof.endswith(f"∎ {argument.remark}".strip())
     assert "  " not in argument.proof
     head, *rows = argument.details
     assert rows
@@ -119,7 +122,7 @@ def test_an_unknown_theorem_is_named() -> None:
 
 
 def argued(*checks: Check) -> Argument:
-    return concluded("x", PROVED, "because", "proof ∎", checks)
+    return concluded("x", PROVED, "because", [step("so it is", each) for each in checks])
 
 
 def test_an_argument_with_a_failed_check_or_none_is_undecided_and_has_no_proof() -> None:
@@ -208,8 +211,8 @@ def test_a_pair_with_different_p_or_the_same_q_does_not_refute_eq_9(
 
 
 def test_the_two_norm_is_not_refuted_where_the_step_does_not_stretch() -> None:
-    assert refused(lipschitz.two_norm(Point(Fraction(0), Fraction(0))))
-    assert refused(lipschitz.two_norm(Point(Fraction(0), Fraction(1, 2))))
+    assert refused(two_norm.two_norm(Point(Fraction(0), Fraction(0))))
+    assert refused(two_norm.two_norm(Point(Fraction(0), Fraction(1, 2))))
 
 
 # -- Eq. 12 ---------------------------------------------------------------------------------------

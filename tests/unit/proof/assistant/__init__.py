@@ -1,0 +1,1 @@
+"""The proof assistant: its theory, and what is exported for it."""

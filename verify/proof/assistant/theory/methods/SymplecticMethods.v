@@ -126,3 +126,12 @@ Proof.
   induction l as [ | s rest IH ]; intros x E; simpl; [ exact I | ].
   destruct E as (Here & There). split; [ apply shear_symplectic, Here | apply IH, There ].
 Qed.
+
+(** Where V and T are so everywhere, it is enough to look at each shear by itself. *)
+Corollary shears_symplectic_everywhere : forall n h l,
+  List.Forall (fun s => forall x, shear_of_hamiltonian n s x) l ->
+  forall x, symplectic_at n (steps_of (map (shear_map n h) l)) x.
+Proof.
+  intros n h l E x. apply shears_symplectic. revert x.
+  induction E as [ | s rest Here _ IH ]; intro x; simpl; [ exact I | split; [ apply Here | apply IH ] ].
+Qed.

@@ -1,6 +1,7 @@
 (** The determinant of many steps: how far a product of numbers near one can lie from one. *)
 
 From Coq Require Import Reals Lra Lia.
+From AreaPreservation Require Import Sums.
 Open Scope R_scope.
 
 (** The product of the first [n] numbers. *)
@@ -81,4 +82,88 @@ Proof.
   intros eps He. exists (fun _ => 1 + eps). split.
   - intros _. rewrite Rabs_right; lra.
   - rewrite bound_attained by lra. simpl. nra.
+Qed.
+
+(** * Steps of different errors *)
+
+(** What all steps add up to bounds what they make of a product. *)
+Theorem product_near_one_by_sum : forall N d,
+  Rabs (product N d - 1) <= exp (sum N (fun k => Rabs (d k - 1))) - 1.
+Proof.
+  induction N as [|N IH]; intro d; simpl.
+  - rewrite Rminus_eq_0, Rabs_R0, exp_0. lra.
+  - specialize (IH d). set (s := sum N (fun k => Rabs (d k - 1))) in *. rewrite exp_plus.
+    pose proof (one_plus_below_exp (Rabs (d N - 1))) as E. pose proof (Rabs_pos (d N - 1)) as P.
+    replace (product N d * d N - 1) with ((product N d - 1) * d N + (d N - 1)) by ring.
+    eapply Rle_trans; [apply Rabs_triang|]. rewrite Rabs_mult.
+    assert (B : Rabs (d N) <= 1 + Rabs (d N - 1)).
+    { replace (d N) with (1 + (d N - 1)) at 1 by ring.
+      eapply Rle_trans; [apply Rabs_triang|]. rewrite Rabs_R1. lra. }
+    pose proof (Rabs_pos (d N)). pose proof (Rabs_pos (product N d - 1)). pose proof (exp_pos s).
+    assert (Rabs (product N d - 1) * Rabs (d N) <= (exp s - 1) * (1 + Rabs (d N - 1)))
+      by (apply Rmult_le_compat; assumption).
+    assert (exp s * (1 + Rabs (d N - 1)) <= exp s * exp (Rabs (d N - 1)))
+      by (apply Rmult_le_compat_l; lra).
+    lra.
+Qed.
+
+(** Where no step shrinks, the product is above what they add up to. *)
+Theorem product_above_sum : forall N x, (forall k, (k < N)%nat -> 0 <= x k) ->
+  1 + sum N x <= product N (fun k => 1 + x k).
+Proof.
+  induction N as [|N IH]; intros x P; simpl; [lra|].
+  specialize (IH x (fun k Hk => P k ltac:(lia))). specialize (P N ltac:(lia)) as last.
+  assert (0 <= sum N x) by (apply sum_nonnegative; intros; apply P; lia). nra.
+Qed.
+
+(** An error that each step multiplies by 1 + x, and adds c to. *)
+Theorem errors_add_up : forall N e x c, 0 < x -> e O <= 0 ->
+  (forall k, (k < N)%nat -> e (S k) <= (1 + x) * e k + c) ->
+  e N <= c * (((1 + x) ^ N - 1) / x).
+Proof.
+  induction N as [|N IH]; intros e x c Hx E0 E; simpl.
+  - unfold Rdiv. rewrite Rminus_eq_0. lra.
+  - specialize (IH e x c Hx E0 (fun k Hk => E k ltac:(lia))). specialize (E N ltac:(lia)).
+    assert ((1 + x) * e N <= (1 + x) * (c * (((1 + x) ^ N - 1) / x)))
+      by (apply Rmult_le_compat_l; lra).
+    replace (c * (((1 + x) * (1 + x) ^ N - 1) / x))
+      with ((1 + x) * (c * (((1 + x) ^ N - 1) / x)) + c) by (field; lra).
+    lra.
+Qed.
+
+(** The same with an own c for each step. *)
+Theorem errors_sum_up : forall N e a c, 0 <= a ->
+  (forall k, (k < N)%nat -> e (S k) <= a * e k + c k) ->
+  e N <= a ^ N * e O + sum N (fun k => a ^ (N - 1 - k) * c k).
+Proof.
+  induction N as [|N IH]; intros e a c Ha E; simpl; [lra|].
+  specialize (IH e a c Ha (fun k Hk => E k ltac:(lia))). specialize (E N ltac:(lia)).
+  assert (shifts : sum N (fun k => a ^ (N - 0 - k) * c k)
+    = a * sum N (fun k => a ^ (N - 1 - k) * c k)).
+  { rewrite <- sum_of_multiple. apply sum_of_equals. intros k Hk.
+    replace (N - 0 - k)%nat with (S (N - 1 - k)) by lia. simpl. ring. }
+  rewrite shifts. replace (N - 0 - N)%nat with O by lia. simpl.
+  assert (a * e N <= a * (a ^ N * e O + sum N (fun k => a ^ (N - 1 - k) * c k)))
+    by (apply Rmult_le_compat_l; assumption).
+  lra.
+Qed.
+
+(** Control: it is attained, so no smaller number will do. *)
+Lemma errors_add_up_attained : forall N x, 0 < x ->
+  exists e : nat -> R, e O = 0 /\ (forall k, e (S k) = (1 + x) * e k + 1) /\
+    e N = ((1 + x) ^ N - 1) / x.
+Proof.
+  intros N x Hx. exists (fun k => ((1 + x) ^ k - 1) / x).
+  split; [simpl; field; lra|]. split; [|reflexivity]. intro k. simpl. field. lra.
+Qed.
+
+Corollary errors_below_exp : forall N e x c, 0 < x -> 0 <= c -> e O <= 0 ->
+  (forall k, (k < N)%nat -> e (S k) <= (1 + x) * e k + c) ->
+  e N <= c * ((exp (INR N * x) - 1) / x).
+Proof.
+  intros N e x c Hx Hc E0 E. pose proof (errors_add_up N e x c Hx E0 E) as B.
+  pose proof (power_below_exp N x (Rlt_le _ _ Hx)) as P.
+  assert (c * (((1 + x) ^ N - 1) / x) <= c * ((exp (INR N * x) - 1) / x)); [|lra].
+  apply Rmult_le_compat_l; [assumption|]. unfold Rdiv. apply Rmult_le_compat_r; [|lra].
+  left. now apply Rinv_0_lt_compat.
 Qed.

@@ -98,3 +98,27 @@ Proof.
   induction n; intros f; simpl; [ rewrite Rabs_R0; lra | ].
   apply Rle_trans with (1 := Rabs_triang _ _). specialize (IHn f). lra.
 Qed.
+
+(** Cauchy and Schwarz, against ones: what the mean of squares says of the sum. *)
+Theorem square_of_sum : forall n f, sum n f ^ 2 <= INR n * sum n (fun i => f i ^ 2).
+Proof.
+  induction n as [ | n IH ]; intros f; [ simpl; lra | ].
+  rewrite S_INR. change (sum (S n) f) with (sum n f + f n).
+  change (sum (S n) (fun i => f i ^ 2)) with (sum n (fun i => f i ^ 2) + f n ^ 2).
+  specialize (IH f). set (a := sum n f) in *. set (s := sum n (fun i => f i ^ 2)) in *.
+  assert (both : 2 * a * f n <= s + INR n * f n ^ 2).
+  { destruct n as [ | n ]; [ subst a s; simpl in *; lra | ].
+    assert (P : 0 < INR (S n)) by (apply lt_0_INR; lia).
+    assert (square : 0 <= (a - INR (S n) * f (S n)) ^ 2) by apply pow2_ge_0.
+    apply (Rmult_le_reg_l (INR (S n)) _ _ P). nra. }
+  nra.
+Qed.
+
+(** Control: it is attained, so no smaller factor than n will do. *)
+Lemma square_of_sum_attained : forall n c,
+  sum n (fun _ => c) ^ 2 = INR n * sum n (fun _ => c ^ 2).
+Proof.
+  assert (constant : forall n c, sum n (fun _ => c) = INR n * c).
+  { induction n as [ | n IH ]; intros c; [ simpl; ring | ]. rewrite S_INR. simpl. rewrite IH. ring. }
+  intros n c. rewrite !constant. ring.
+Qed.

@@ -4,8 +4,8 @@ Notation: w = ∇H = (H_p, H_q), D = det Hess H, N = −X²z, the negative of th
 the plane N = adj(Hess H) w, and J = 1 + hA − (h²/2) N' with A = (−H_q, H_p)'.
 """
 
-from verify.claims.theorems.argument import Check, vanishes
-from verify.claims.theorems.differential import (
+from verify.claims.theorems.checks.check import Check, vanishes
+from verify.claims.theorems.checks.differential import (
     Differential,
     Flow,
     flow_of_every_hamiltonian,
@@ -30,6 +30,24 @@ def linear() -> Check:
 
 def parabolic() -> Check:
     return family("H = F(ap + bq + (cp + dq)²/2)", *PARABOLIC)
+
+
+def moves_by_a_constant(rest: str = LINEAR[1]) -> Check:
+    """H = F(ℓ) + m with linear ℓ and m: X ℓ is a constant, Xz and X²z are functions of ℓ; `rest`
+    stands for m."""
+    flow = of_one_function(_CONSTANTS, LINEAR[0], rest)
+    names = (*_CONSTANTS, "p", "q", "F1", "F2")
+    a, b, c, d, p, q, f1, f2 = (flow.ring[name] for name in names)
+    steady = b * c - a * d
+    return vanishes(
+        "H = F(ℓ) + cp + dq, ℓ = ap + bq, F generic: Xℓ − (bc − ad), Xp + bF' + d, Xq − aF' − c, "
+        "X²p + bF''(bc − ad), X²q − aF''(bc − ad)",
+        flow.derive(a * p + b * q) - steady,
+        flow.derive(p) + b * f1 + d,
+        flow.derive(q) - a * f1 - c,
+        flow.derive(flow.derive(p)) + b * f2 * steady,
+        flow.derive(flow.derive(q)) - a * f2 * steady,
+    )
 
 
 def exact_flow() -> Check:
@@ -100,4 +118,30 @@ def acceleration() -> Check:
         n_p - (qq * flow.h_p - pq * flow.h_q),
         n_q - (-pq * flow.h_p + pp * flow.h_q),
         flow.ring.diff(n_p, "p") + flow.ring.diff(n_q, "q") - 2 * flow.hessian_determinant,
+    )
+
+
+def by_acceleration(half: int = 4) -> Check:
+    """The coefficient of h⁴ in ΔJ is det N'/4, N = −X²z, for a generic H; `half` is that 4."""
+    flow = flow_of_every_hamiltonian(4)
+    ring = flow.ring
+    n_p, n_q = (-flow.lie_derivatives(z, 2)[2] for z in ("p", "q"))
+    fourth = flow.delta_j(*flow.lie(2))[4]
+    return vanishes(
+        "the coefficient of h⁴ in ΔJ of lie2 less det N'/4 for a generic H, N = −X²z",
+        fourth - ring.bracket(n_p, n_q) / half,
+    )
+
+
+def twice(factor: int = 2) -> Check:
+    """λT'' = cT'² and T''' = cT'T'' give λT''' = 2T''', by one derivative; `factor` is that 2."""
+    ring = Differential(["p", "T1", "T2", "c", "lambda"])
+    t1, t2, c, constant = (ring[name] for name in ring.names[1:])
+    third = c * t1 * t2
+    ring.set_gradient("T1", p=t2)
+    ring.set_gradient("T2", p=third)
+    derived = ring.diff(constant * t2 - c * t1 * t1, "p")
+    return vanishes(
+        "the derivative of λT'' − cT'² less (λ − 2) T''', where T''' = cT'T''",
+        derived - (constant - factor) * third,
     )

@@ -4,8 +4,8 @@ A function with det Hess = 0 and Hess ≠ 0 has a gradient (a(s), b(s)) that is 
 lines; see `families` for the notation.
 """
 
-from verify.claims.theorems.argument import Check, vanishes
-from verify.claims.theorems.differential import Differential, Flow, Poly
+from verify.claims.theorems.checks.check import Check, vanishes
+from verify.claims.theorems.checks.differential import Differential, Flow, Poly
 
 
 def adjugate_identity() -> Check:
@@ -20,6 +20,98 @@ def adjugate_identity() -> Check:
         size * y12 - image[0] * image[1] + det * v1 * v2,
         size * y22 - image[1] ** 2 - det * v1 * v1,
     )
+
+
+def contracted(turned: int = 1) -> Check:
+    """(v·Yv)(u·Yu) = (u·Yv)² + det Y (u·Sv)²; `turned` is how often the last term counts.
+
+    With v = (a, b), u = (a', b'), w = Yv: v·w = Ψ − c, u·w = −c', u·Sv = −ω, and tr (Y Hess Ψ) = 2
+    says u·Yu = −2W. That is (3).
+    """
+    ring = Differential(["y11", "y12", "y22", "v1", "v2", "u1", "u2"])
+    y11, y12, y22, v1, v2, u1, u2 = (ring[n] for n in ring.names)
+
+    def form(a: tuple[Poly, Poly], b: tuple[Poly, Poly]) -> Poly:
+        return y11 * a[0] * b[0] + y12 * (a[0] * b[1] + a[1] * b[0]) + y22 * a[1] * b[1]
+
+    v, u, det = (v1, v2), (u1, u2), y11 * y22 - y12 * y12
+    side = (u2 * v1 - u1 * v2) ** 2
+    return vanishes(
+        "(v·Yv)(u·Yu) − (u·Yv)² − det Y (u·Sv)² for every symmetric Y, every u and v",
+        form(v, v) * form(u, u) - form(u, v) ** 2 - turned * det * side,
+    )
+
+
+def legendre(sign: int = 1) -> Check:
+    """∇(w·∇L − L) = (Hess L) w for a generic L(w); `sign` is that of L."""
+    ring = Differential(["x", "y", "L", "L_x", "L_y", "L_xx", "L_xy", "L_yy"])
+    x, y, transform, l_x, l_y, xx, xy, yy = (ring[n] for n in ring.names)
+    one, zero = ring.context.constant(1), ring.zero
+    ring.set_gradient("x", x=one, y=zero)
+    ring.set_gradient("y", x=zero, y=one)
+    ring.set_gradient("L", x=l_x, y=l_y)
+    ring.set_gradient("L_x", x=xx, y=xy)
+    ring.set_gradient("L_y", x=xy, y=yy)
+    energy = x * l_x + y * l_y - sign * transform
+    return vanishes(
+        "∇(w·∇L − L) − (Hess L) w for a generic L",
+        ring.diff(energy, "x") - (xx * x + xy * y),
+        ring.diff(energy, "y") - (xy * x + yy * y),
+    )
+
+
+def radial(bent: int = 0) -> Check:
+    """κ and ω of (a, b) = r(s) (α, β) are 0; `bent` s is added to b."""
+    ring = Differential(["r", "r1", "r2", "alpha", "beta", "s"])
+    r, r1, r2, alpha, beta, s = (ring[n] for n in ring.names)
+    (a, a1, a2), (b, b1, b2) = ([k * x for x in (r, r1, r2)] for k in (alpha, beta))
+    b, b1 = b + bent * s, b1 + bent
+    return vanishes(
+        "κ and ω of a gradient curve (a, b) = r(s) (α, β)", a1 * b2 - a2 * b1, a1 * b - a * b1
+    )
+
+
+def ruled_hessian(sign: int = 1) -> Check:
+    """Hess Ψ = −(a', b')ᵀ(a', b')/W where ∇Ψ = (a(s), b(s)) on xa' + yb' + c' = 0: that gives s, so
+    W s_x = −a' and W s_y = −b'; `sign` is that of the last."""
+    ring = Differential(["W", "V", "a", "a1", "b", "b1"])  # V = 1/W
+    w, v, _, a1, _, b1 = (ring[n] for n in ring.names)
+    ring.relate(w * v - 1)
+    slope = {"x": -a1 * v, "y": -sign * b1 * v}
+    ring.set_gradient("a", **{z: a1 * slope[z] for z in slope})
+    ring.set_gradient("b", **{z: b1 * slope[z] for z in slope})
+    entries = [("a", "x", a1 * a1), ("a", "y", a1 * b1), ("b", "x", a1 * b1), ("b", "y", b1 * b1)]
+    gaps = [ring.reduce(w * ring.diff(ring[name], by) + entry) for name, by, entry in entries]
+    return vanishes("W Hess Ψ + (a', b')ᵀ(a', b')", *gaps)
+
+
+def compared(double: int = 2) -> Check:
+    """With ω = 1: (3) is P(Ψ) = −2κ(Ψ − c)² − 2c''(Ψ − c) − c'²; so P(c) = −c'², P'(c) = −2c'',
+    and k₂ = −2κ; `double` is the 2 of the first term of (3). As ω' = a''b − ab'' = 0, (a, b)'' is
+    some multiple of (a, b), and that is κ."""
+    ring = Differential(["k", "c", "c1", "c2", "Psi", "a", "a1", "b", "b1"])  # k stands for κ
+    kappa, c, c1, c2, psi, a, a1, b, b1 = (ring[n] for n in ring.names)
+    ring.set_gradient("Psi", Psi=ring.context.constant(1))
+    e = psi - c
+    p = -double * e * (c2 + kappa * e) - c1 * c1  # W = c'' + κ(Ψ − c)
+    at_c: dict[str | int, Poly] = {"Psi": c}
+    slope = ring.diff(p, "Psi")
+    return vanishes(
+        "P(c) + c'², P'(c) + 2c'' and P'' + 4κ of the P that (3) gives, ω = 1; and a'b'' − a''b' − "
+        "κω for (a, b)'' = κ(a, b)",
+        a1 * kappa * b - kappa * a * b1 - kappa * (a1 * b - a * b1),
+        _put(p, at_c) + c1 * c1,
+        _put(slope, at_c) + 2 * c2,
+        ring.diff(slope, "Psi") + 4 * kappa,
+    )
+
+
+def _put(x: Poly, values: dict[str | int, Poly]) -> Poly:
+    context = x.context()
+    gens = [
+        values.get(name, gen) for name, gen in zip(context.names(), context.gens(), strict=True)
+    ]
+    return x.compose(*gens)
 
 
 def ruling() -> Check:

@@ -1,0 +1,126 @@
+"""The mark of the small checker: of a certificate that it accepted in this run, and of no other."""
+
+from typing import Any
+
+import pytest
+
+from verify.errors import InputError
+from verify.hamiltonians import systems
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.proof.certificates.every import of_every
+from verify.proof.checked import small_checker
+from verify.proof.checked.proved import (
+    ALL,
+    DEFECT,
+    Proved,
+    of_degrees,
+    of_every_hamiltonian,
+    of_one_hamiltonian,
+)
+from verify.proof.every import prove_every
+from verify.proof.every_in_time import prove_every_in_time
+from verify.proof.order import prove
+from verify.proof.symplectic.every import prove_every_in_degrees
+from verify.proof.symplectic.order import prove_symplectic
+from verify.schemes import get
+
+
+def marks(proved: Proved) -> list[str]:
+    return [str(mark) for mark in small_checker.marks(proved)]
+
+
+def one(system: str, scheme: str, **values: int) -> Proved:
+    hamiltonian = systems.get(system).hamiltonian().with_values(values)
+    return of_one_hamiltonian(
+        prove(get(scheme).step_map(hamiltonian), get(scheme)), get(scheme), ALL
+    )
+
+
+def every(scheme: str) -> Proved:
+    return of_every_hamiltonian(prove_every(scheme), get(scheme), ALL)
+
+
+def made_by(*certificates: Any, about: Any = DEFECT) -> Proved:
+    return Proved(get("lie2"), about, False, True, False, 1, certificates=certificates)
+
+
+def forged() -> Any:
+    """The certificate of lie2, with another leading coefficient."""
+    data = of_every(prove_every("lie2"))
+    (first, *names), *others = data["leading"]
+    return {**data, "leading": [[f"{first}1", *names], *others]}
+
+
+def test_the_mark_is_what_the_certificate_establishes() -> None:
+    assert marks(one("pendulum", "lie2")) == [
+        "small checker: det J − 1 = L h^3 + O(h^4), L not zero, for this H and this map, which "
+        "agrees with the flow up to h^2; L = -p*sin(q)/2"
+    ]
+    assert marks(every("symplectic-euler")) == [
+        "small checker: det J = 1 for every smooth H = T(p) + V(q) and the scheme of these stages"
+    ]
+    (timed,) = marks(of_every_hamiltonian(prove_every_in_time("lie2"), get("lie2"), ALL))
+    assert "for every smooth H(p, q, t)" in timed
+
+
+def test_a_parameter_without_a_value_is_a_symbol_in_the_mark() -> None:
+    hamiltonian = Hamiltonian(systems.get("duffing").hamiltonian().expression)
+    scheme = get("lie2")
+    (mark,) = marks(of_one_hamiltonian(prove(scheme.step_map(hamiltonian), scheme), scheme, ALL))
+    assert mark.endswith("L = 3*delta*p*q")
+
+
+def test_where_the_map_has_no_certificate_that_of_every_h_tells_of_preserved_area() -> None:
+    for scheme in ("stormer-verlet", "implicit-midpoint", "gauss4"):
+        (mark,) = marks(one("pendulum", scheme))
+        assert mark.startswith("small checker: det J = 1 for every smooth H")
+
+
+def test_a_map_that_is_no_polynomial_in_h_and_changes_area_has_no_mark() -> None:
+    assert marks(one("pendulum", "rk4")) == []
+
+
+def test_in_degrees_s_is_certified_and_of_det_j_nothing() -> None:
+    hamiltonian = systems.get("henon-heiles").hamiltonian()
+    proof, scheme = prove_symplectic(hamiltonian, get("lie2")), get("lie2")
+    (mark,) = marks(of_degrees(proof, scheme, DEFECT, hamiltonian))
+    assert "S = JᵀΩJ − Ω = L h^3" in mark
+    assert marks(of_degrees(proof, scheme, frozenset({"volume"}), hamiltonian)) == []
+    verlet = prove_every_in_degrees("stormer-verlet", 2)
+    (mark,) = marks(of_degrees(verlet, get("stormer-verlet"), frozenset({"volume"})))
+    assert "S = JᵀΩJ − Ω = 0" in mark
+
+
+# -- planted errors -------------------------------------------------------------------------------
+
+
+def test_a_certificate_that_is_refused_makes_no_mark() -> None:
+    true = made_by(lambda: of_every(prove_every("lie2")))
+    assert len(marks(true)) == 1
+    assert marks(made_by(forged)) == []
+
+
+def test_after_one_that_is_refused_no_other_is_tried() -> None:
+    """It is of this proof, and wrong: a mark by another way would hide that."""
+    assert marks(made_by(forged, lambda: of_every(prove_every("lie2")))) == []
+
+
+def test_what_cannot_be_certified_leaves_the_next_or_nothing() -> None:
+    def none() -> Any:
+        raise InputError("map", "x", "no certificate")
+
+    assert len(marks(made_by(none, lambda: of_every(prove_every("lie2"))))) == 1
+    assert marks(made_by(none)) == []
+    assert marks(made_by()) == []
+
+
+def test_what_is_not_asked_is_not_certified() -> None:
+    def never() -> Any:
+        pytest.fail("a certificate was made")
+
+    assert marks(made_by(never, about=frozenset({"product"}))) == []
+
+
+def test_a_proof_that_takes_long_to_certify_is_not() -> None:
+    assert every("lie6").certificates
+    assert not every("lie7").certificates

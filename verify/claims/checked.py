@@ -1,0 +1,50 @@
+"""Who checked the proof that decides a claim: by what the claim asks of it, and of which H."""
+
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from verify.claims.claim import Claim
+from verify.claims.findings import Findings
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.prose import Prose
+from verify.schemes import get
+
+if TYPE_CHECKING:
+    from verify.proof.checked.proved import About
+
+    AboutAll = frozenset[About]
+
+
+def of_scene(claim: Claim, findings: Findings, about: "AboutAll") -> tuple[Prose, ...]:
+    """The marks of the proof for the H of the claim's scene."""
+    return of_hamiltonian(findings.scene_of(claim).exact_hamiltonian(), claim.scheme, about)
+
+
+@lru_cache(maxsize=64)
+def of_hamiltonian(hamiltonian: Hamiltonian, name: str, about: "AboutAll") -> tuple[Prose, ...]:
+    """The marks of the proof for this H."""
+    from verify.claims.formulas import step_map_of
+    from verify.claims.orders_in_degrees import proof_of
+    from verify.proof.checked import marks
+    from verify.proof.checked.proved import of_degrees, of_one_hamiltonian
+    from verify.proof.order import prove
+
+    scheme = get(name)
+    if hamiltonian.planar:
+        proof = prove(step_map_of(hamiltonian, name), scheme)
+        return marks(of_one_hamiltonian(proof, scheme, about))
+    return marks(of_degrees(proof_of(hamiltonian, name), scheme, about, hamiltonian))
+
+
+@lru_cache(maxsize=64)
+def of_every(
+    name: str, about: "AboutAll", *, separable: bool, timed: bool, least: int
+) -> tuple[Prose, ...]:
+    """The marks of the proof for every H that is meant; `least` as for `prove_every`."""
+    from verify.proof.checked import marks
+    from verify.proof.checked.proved import of_every_hamiltonian
+    from verify.proof.every import prove_every
+    from verify.proof.every_in_time import prove_every_in_time
+
+    proof = prove_every_in_time(name, least) if timed else prove_every(name, separable, least)
+    return marks(of_every_hamiltonian(proof, get(name), about))

@@ -1,0 +1,1 @@
+"""Identities that several arguments rest on, each with what spoils it."""

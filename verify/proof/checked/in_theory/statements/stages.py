@@ -1,0 +1,45 @@
+"""That a stage whose weights fulfil the condition is symplectic, and so are stages in turn."""
+
+from verify.proof.assistant.stated import Shipped
+from verify.proof.checked.in_theory.applies import Applies
+from verify.proof.checked.proved import Proved
+from verify.schemes.every_hamiltonian import Stage, StageEquations
+
+
+def _theorems(proved: Proved) -> tuple[Shipped, ...]:
+    found = (
+        Shipped("SymplecticMethods", "stage_of_hamiltonian"),
+        Shipped("Symplectic", "steps_symplectic"),
+    )
+    return (
+        (*found, Shipped("Theorems", "symplectic_is_area_preserving")) if proved.planar else found
+    )
+
+
+def fulfilled(every_h: object) -> bool:
+    """Whether the theorem's condition on a stage's weights holds of each, exactly."""
+    if not isinstance(every_h, StageEquations):
+        return False
+    return all(_fulfils(stage, separable=every_h.separable) for stage in every_h.stages)
+
+
+def _fulfils(stage: Stage, *, separable: bool) -> bool:
+    """k d (1 − s − u) = 0, and k = d or H = T(p) + V(q)."""
+    weight = stage.kick * stage.drift * (1 - stage.at_p - stage.at_q)
+    return weight == 0 and (separable or stage.kick == stage.drift)
+
+
+def _says(proved: Proved) -> str:
+    det = ", so that det J = 1" if proved.planar else ""
+    return (
+        "stages of such weights in turn are symplectic wherever they have a differentiable "
+        f"solution{det}"
+    )
+
+
+APPLIES = Applies(
+    about="defect",
+    applies=lambda proved: fulfilled(proved.scheme.every_h),
+    theorems=_theorems,
+    says=_says,
+)

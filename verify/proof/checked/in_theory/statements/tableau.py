@@ -1,0 +1,36 @@
+"""That a Runge–Kutta method with b_i a_ij + b_j a_ji = b_i b_j is symplectic."""
+
+from verify.proof.assistant.stated import Shipped
+from verify.proof.checked.in_theory.applies import Applies
+from verify.proof.checked.proved import Proved
+from verify.schemes.tree_conditions import TreeConditions
+
+
+def _theorems(proved: Proved) -> tuple[Shipped, ...]:
+    method = Shipped("Theorems", "runge_kutta_is_symplectic")
+    area = Shipped("Theorems", "symplectic_is_area_preserving")
+    return (method, area) if proved.planar else (method,)
+
+
+def fulfilled(every_h: object) -> bool:
+    """Whether the theorem's condition on the coefficients holds, exactly."""
+    if not isinstance(every_h, TreeConditions):
+        return False
+    conditions = every_h.area_conditions()
+    return bool(conditions) and all(condition.holds for condition in conditions)
+
+
+def _says(proved: Proved) -> str:
+    what = "det J = 1" if proved.planar else "S = 0"
+    return (
+        f"{what} for every twice differentiable H wherever the stages have a differentiable "
+        "solution, by `b_i` `a_ij` + `b_j` `a_ji` = `b_i` `b_j`"
+    )
+
+
+APPLIES = Applies(
+    about="defect",
+    applies=lambda proved: fulfilled(proved.scheme.every_h),
+    theorems=_theorems,
+    says=_says,
+)

@@ -1,0 +1,113 @@
+"""What a proof says of a scheme, as those ask for it that say who checked it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.proof.certificates.every import of_every
+from verify.proof.certificates.file import Certificate
+from verify.proof.certificates.one import of_one
+from verify.proof.certificates.several import of_every_in_degrees, of_one_in_degrees
+from verify.proof.every import prove_every
+from verify.proof.every_in_time import prove_every_in_time
+from verify.proof.every_proof import EveryProof
+from verify.proof.order_proof import Proof
+from verify.proof.potential import Potential
+from verify.proof.symplectic.every import prove_every_in_degrees
+from verify.proof.symplectic.proof import SymplecticProof
+from verify.schemes.scheme import Scheme
+
+About = Literal["defect", "volume", "map", "telescopes", "product"]
+DEFECT: frozenset[About] = frozenset({"defect"})
+MAP: frozenset[About] = frozenset({"map"})
+ALL: frozenset[About] = frozenset({"defect", "map", "telescopes"})
+_NOT_LOOKED_FOR = Potential(None, "is not looked for")
+_LONGEST = 25_000  # characters of a leading coefficient whose certificate takes under half a second
+
+
+@dataclass(frozen=True)
+class Proved:
+    """What is proved of a scheme, and what of it is asked about.
+
+    `about`: the order of ΔJ (of S in n degrees of freedom) or that it is 0, `defect`; in n degrees
+    of freedom that of det J − 1, `volume`; the order of the `map`; whether the leading coefficient
+    `telescopes`; what small ΔJ make of Λ, `product`. `preserves`: whether ΔJ ≡ 0, or S ≡ 0.
+    `every`: for every H, else for one. `timed`: H depends on time. `certificates`: what makes a
+    certificate of it, each tried after the one before; none where it would take long.
+    """
+
+    scheme: Scheme
+    about: frozenset[About]
+    preserves: bool | None
+    every: bool
+    timed: bool
+    degrees: int
+    telescopes: bool | None = None
+    certificates: tuple[Callable[[], Certificate], ...] = ()
+
+    @property
+    def planar(self) -> bool:
+        """Whether there is one degree of freedom."""
+        return self.degrees == 1
+
+
+def of_every_hamiltonian(proof: EveryProof, scheme: Scheme, about: frozenset[About]) -> Proved:
+    """By a proof for every H of the plane."""
+    short = len(proof.leading) <= _LONGEST
+    return Proved(
+        scheme, _in_plane(about), proof.area_preserving, every=True, timed=proof.timed, degrees=1,
+        telescopes=proof.telescopes, certificates=(lambda: of_every(proof),) if short else (),
+    )  # fmt: skip
+
+
+def of_one_hamiltonian(proof: Proof, scheme: Scheme, about: frozenset[About]) -> Proved:
+    """By a proof for one H of the plane.
+
+    Where its own map has no certificate, that of every H tells as much if area is preserved.
+    """
+    timed = proof.step_map.hamiltonian.time_dependent
+    makers: list[Callable[[], Certificate]] = [lambda: of_one(proof, _NOT_LOOKED_FOR)]
+    if proof.area_preserving and scheme.every_h is not None:
+        every = prove_every_in_time if timed else prove_every
+        makers.append(lambda: of_every(every(scheme.name)))
+    short = proof.area_preserving or len(proof.first.text) <= _LONGEST
+    return Proved(
+        scheme, _in_plane(about), proof.area_preserving, every=False, timed=timed, degrees=1,
+        certificates=tuple(makers) if short else (),
+    )  # fmt: skip
+
+
+def of_degrees(
+    proof: SymplecticProof,
+    scheme: Scheme,
+    about: frozenset[About],
+    hamiltonian: Hamiltonian | None = None,
+    *,
+    separable: bool = False,
+    timed: bool = False,
+) -> Proved:
+    """By a proof in n degrees of freedom, for this H or for every one."""
+    timed = hamiltonian.time_dependent if hamiltonian is not None else timed
+
+    def own() -> Certificate:
+        if hamiltonian is not None:
+            return of_one_in_degrees(proof, hamiltonian, scheme)
+        return of_every_in_degrees(proof, scheme, separable=separable, timed=timed)
+
+    def every() -> Certificate:
+        general = prove_every_in_degrees(scheme.name, proof.degrees, timed=timed)
+        return of_every_in_degrees(general, scheme, separable=False, timed=timed)
+
+    fallback = hamiltonian is not None and proof.symplectic and scheme.every_h is not None
+    short = proof.leading is None or len(proof.leading_text) <= _LONGEST
+    return Proved(
+        scheme, about, proof.symplectic, every=hamiltonian is None, timed=timed,
+        degrees=proof.degrees, telescopes=proof.telescopes,
+        certificates=(own, *(every,) * bool(fallback)) if short else (),
+    )  # fmt: skip
+
+
+def _in_plane(about: frozenset[About]) -> frozenset[About]:
+    """There S is ΔJ, and one certificate tells of both."""
+    return (about - {"volume"}) | DEFECT if "volume" in about else about

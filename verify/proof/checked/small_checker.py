@@ -1,0 +1,51 @@
+"""The mark of the small checker: a certificate of the proof, made and accepted in this run."""
+
+import re
+from collections.abc import Iterator
+
+from verify.errors import InputError
+from verify.proof.certificates.checker import check
+from verify.proof.certificates.established import Established, established
+from verify.proof.certificates.file import Certificate
+from verify.proof.checked.proved import Proved
+from verify.prose import Formula, Prose, prose, read_prose
+
+_POWER = re.compile(r"h\^[0-9]+")
+_CERTIFIED = {"defect", "map", "telescopes"}
+_SHORT = 60  # characters of a leading coefficient that is told
+
+
+def marks(proved: Proved) -> Iterator[Prose]:
+    """What the first certificate that can be made establishes; nothing where none can, and nothing
+    where the checker refuses it."""
+    if not (_CERTIFIED & proved.about) and not ("volume" in proved.about and proved.preserves):
+        return
+    for made in proved.certificates:
+        try:
+            data = made()
+        except InputError:  # of this proof there is none
+            continue
+        found = accepted(data)
+        if found is not None:
+            yield prose("small checker: ", read_prose(_statement(found)), _leading(found))
+        return
+
+
+def accepted(data: Certificate) -> Established | None:
+    """What it establishes; None where the checker refuses it."""
+    try:
+        return established(check(data))
+    except (ValueError, RecursionError):
+        return None
+
+
+def _statement(found: Established) -> str:
+    """Its own words, with the powers of h as formulas."""
+    return _POWER.sub(r"`\g<0>`", found.statement)
+
+
+def _leading(found: Established) -> Prose:
+    """L itself, where it is short."""
+    if found.leading is None or len(found.leading) > _SHORT:
+        return Prose()
+    return prose("; L = ", Formula(found.leading))
