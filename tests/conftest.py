@@ -7,10 +7,15 @@ import tempfile
 
 import pytest
 
+from tests import sampling
 from verify.code_cache import VARIABLE
 
 # Objects; most of what an expression or a compiler makes on the way is gone by then.
 gc.set_threshold(50_000, 20, 20)
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    sampling.add_option(parser)
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -18,6 +23,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
     All its processes share it: each kernel is compiled by the first of them that calls it.
     """
+    sampling.add_marker(config)
     if not hasattr(config, "workerinput"):  # which a worker has, and the environment besides
         folder = tempfile.mkdtemp(prefix="verify-tests-")
         os.environ[VARIABLE] = folder
@@ -29,6 +35,10 @@ def pytest_xdist_auto_num_workers() -> int:
     time, and leaves a core to another one."""
     asked = os.environ.get("PYTEST_XDIST_AUTO_NUM_WORKERS")
     return int(asked) if asked else max(1, (os.cpu_count() or 1) * 3 // 2)
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    sampling.leave_out(config, items)
 
 
 @pytest.hookimpl(trylast=True)

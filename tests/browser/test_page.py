@@ -60,6 +60,7 @@ SEEN = [
 ]
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize(("name", "width", "scheme"), SEEN)
 def test_the_page_is_quiet_closed_seen_in_full_and_kept_from_nobody(
     browser: Browser, folder: Path, name: str, width: int, scheme: str
@@ -223,6 +224,7 @@ def test_the_contents_stand_at_the_side_and_fold_on_a_phone(browser: Browser, fo
         assert found.page.locator(link).is_visible()
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("full", [True, False])
 @pytest.mark.parametrize("name", NAMES)
 def test_on_paper_a_full_page_is_unfolded_another_says_what_was_found(
@@ -280,6 +282,7 @@ def test_a_planted_error_is_seen(browser: Browser, folder: Path, error: str) -> 
         assert check(found.open_all())
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize(("check", "policy"), TWINS)
 def test_without_a_planted_error_none_is_seen(
     browser: Browser, folder: Path, check: str, policy: bool

@@ -25,6 +25,7 @@ def shell(text: str, tmp_path: Path, **more: str) -> subprocess.CompletedProcess
     )  # fmt: skip
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize(
     ("text", "status", "said"),
     [
@@ -43,6 +44,7 @@ def test_what_cannot_be_written_is_status_2_and_what_nobody_reads_141(
     assert (done.returncode, done.stderr) == (status, said)
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("encoding", ["latin-1", "ascii", "cp1252"])
 def test_a_terminal_without_greek_letters_is_given_their_escapes(
     encoding: str, tmp_path: Path

@@ -50,6 +50,7 @@ RIGHT = [
 NAMES = [row[0].__name__ for row in RIGHT]
 
 
+@pytest.mark.sample(8)
 @pytest.mark.parametrize(("function", "how", "verdict", "order", "area"), RIGHT, ids=NAMES)
 def test_a_right_step_is_told_its_orders_and_its_claims_hold(
     function: Function, how: str, verdict: str, order: int, area: int | None
@@ -61,6 +62,7 @@ def test_a_right_step_is_told_its_orders_and_its_claims_hold(
     assert found.counterexample is None
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize(
     ("function", "order", "area"), [(r[0], r[3], r[4]) for r in RIGHT], ids=NAMES
 )
@@ -252,6 +254,7 @@ def test_exchanged_arguments_are_told() -> None:
     assert not any("in the order" in note for note in found_of(own_steps.flipped).notes)
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("name", ["duffing", "pendulum", "morse", "toda", "lennard-jones", "twist"])
 @pytest.mark.parametrize("scheme", ["euler", "rk4", "explicit-midpoint"])
 def test_a_traced_scheme_is_proved_as_the_scheme_itself_is(name: str, scheme: str) -> None:

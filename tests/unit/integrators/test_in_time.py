@@ -86,6 +86,7 @@ WRONG = {
 }
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("name", RIGHT)
 def test_a_right_clock_is_proved_at_its_order(name: str) -> None:
     step, order = RIGHT[name]
@@ -95,6 +96,7 @@ def test_a_right_clock_is_proved_at_its_order(name: str) -> None:
     assert not any("stands still" in str(note) for note in found.notes)
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("name", WRONG)
 def test_a_wrong_clock_is_refuted_at_its_order_and_named(name: str) -> None:
     step, claimed, words = WRONG[name]
@@ -176,6 +178,7 @@ def solved(middle: float) -> Callable[..., Any]:
     return step
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("how", ["duals", "floats"])
 @pytest.mark.parametrize(
     ("middle", "order", "words"),
@@ -196,6 +199,7 @@ def test_what_cannot_be_traced_is_measured_and_its_clock_is_named(
     assert any("≤ t ≤" in text for text in found.domain)
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("name", RIGHT)
 def test_in_floats_a_right_clock_is_measured_at_its_order(name: str) -> None:
     step, order = RIGHT[name]
@@ -204,6 +208,7 @@ def test_in_floats_a_right_clock_is_measured_at_its_order(name: str) -> None:
     assert (found.convergence_order, found.area_preserving) == (order, name != "RK4")
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("name", WRONG)
 def test_in_floats_a_wrong_clock_is_refuted_at_its_order(name: str) -> None:
     step, claimed, words = WRONG[name]

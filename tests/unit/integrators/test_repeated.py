@@ -61,6 +61,7 @@ COARSE = [
 ]
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("step", COARSE)
 def test_coarse_numbers_are_no_order(step: Any) -> None:
     steps.NEARBY.clear()
@@ -77,6 +78,7 @@ def test_the_same_shape_without_the_fault_is_proved(step: Any) -> None:
     assert (found.verdict, found.faults) == ("PROVED", ())
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("digits", [4, 6, 8, 10, 12, 14])
 def test_a_loop_with_a_tolerance_is_not_coarse(digits: int) -> None:
     assert found_of(own_steps.midpoint_to(10.0**-digits)).faults == ()

@@ -25,6 +25,7 @@ def cloud(count: int) -> tuple[np.ndarray, np.ndarray]:
     return p, q
 
 
+@pytest.mark.sample(11)
 @pytest.mark.parametrize("scheme", ["lie2", "stormer-verlet", "gauss4"])
 @pytest.mark.parametrize("count", [1, 63, 64, 65, 257, 600])
 def test_points_in_lanes_have_the_bits_of_runs_one_by_one(scheme: str, count: int) -> None:

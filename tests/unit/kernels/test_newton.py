@@ -50,6 +50,7 @@ def apart(x: tuple[Fraction, ...], y: tuple[Fraction, ...]) -> Fraction:
 # -- the equations hold ---------------------------------------------------------------------------
 
 
+@pytest.mark.sample(34)
 @each_arithmetic
 @each_h
 @each_scheme
@@ -195,6 +196,7 @@ def test_few_updates_are_needed(
         assert needed >= 2, "they were counted"
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("arithmetic", ["float64", "mpfr", "mpmath"])
 @pytest.mark.parametrize("name", [*TABLEAUS, "implicit-symplectic-euler"])
 @pytest.mark.parametrize(

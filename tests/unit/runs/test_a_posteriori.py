@@ -61,6 +61,7 @@ EXACTLY = {
 }
 
 
+@pytest.mark.sample(12)
 @systems
 @pytest.mark.parametrize("name", EXACTLY)
 def test_a_few_steps_contain_what_rational_numbers_give(name: str, arithmetic: Arithmetic) -> None:

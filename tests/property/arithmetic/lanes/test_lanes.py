@@ -106,6 +106,7 @@ def operands(width: int, seed: int, count: int) -> list[Any]:
     ]
 
 
+@pytest.mark.sample(8)
 @pytest.mark.parametrize("way", IN_LANES)
 @pytest.mark.parametrize("width", WIDTHS)
 def test_operations_have_the_bits_of_one_orbit(width: int, way: str) -> None:
@@ -135,6 +136,7 @@ WAYS = [(width, way) for width in WIDTHS[:4] for way in IN_LANES]
 WAYS = [x for x in WAYS if x[1] == IN_LANES[0] or x[0] in (WIDTHS[0], WIDTHS[3])]
 
 
+@pytest.mark.sample(8)
 @pytest.mark.parametrize(("width", "way"), WAYS)
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_functions_have_the_bits_of_one_orbit(name: str, width: int, way: str) -> None:
@@ -192,6 +194,7 @@ def test_exp_that_never_asks_for_the_last_bit_is_caught(monkeypatch: pytest.Monk
     assert differing(pair, [(number(draws.bits(244), 256),) for _ in range(20_000)])
 
 
+@pytest.mark.sample(8)
 @pytest.mark.parametrize("name", ["circle", "exp", "sinh", "sqrt", "inverse"])
 def test_most_lanes_do_not_ask_one_orbit(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Where what one orbit's function gives is thrown away, few values are wrong, or none."""

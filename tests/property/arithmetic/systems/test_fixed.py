@@ -49,6 +49,7 @@ powers = near("octave", 256 * 70) | near("octave", 3 * 256) | shapes
 POINTS = {"sin": angles, "cos": angles, "exp": powers, "sinh": powers, "cosh": powers}
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("form", ALL_FORMATS, ids=lambda form: form.width)
 def test_operations_are_right_where_carries_run_through_all_limbs(
     form: fixed_checks.Format,
@@ -113,6 +114,7 @@ def test_every_function_that_is_compiled_is_checked() -> None:
     assert all(f"{name}(" in sources for name in translate.FUNCTIONS if name != "cos_sin")
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("kind", KINDS)
 @drawn(150)
 @given(data=st.data())

@@ -68,6 +68,7 @@ def assert_caught(check: Callable[[Format], None]) -> None:
         check(fresh())
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("check", CHECKS)
 def test_without_a_loss_every_check_passes(check: Callable[[Format], None]) -> None:
     check(fresh())
@@ -176,6 +177,7 @@ def test_numbers_with_bits_less_than_promised_are_caught(
 # -- functions ------------------------------------------------------------------------------------
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize(
     ("table", "entry", "kind"),
     [("sines", 1, "sin"), ("sines", 4095, "sin"), ("sines", 5119, "cos"), ("powers", 255, "exp")],

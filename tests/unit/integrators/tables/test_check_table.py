@@ -43,6 +43,7 @@ def test_no_claim_of_a_right_table_is_refuted(name: str) -> None:
     assert all(claim.severity is claim.nearest is claim.cost is None for claim in found)
 
 
+@pytest.mark.sample(11)
 @pytest.mark.parametrize("name", OF_FILE)
 def test_an_order_that_is_one_too_high_is_refuted(name: str) -> None:
     table = RIGHT[name]
@@ -63,6 +64,7 @@ SOME = [DRAW.choice([x for x in RIGHT.values() if places(x)]) for _ in range(40)
 MISTAKES = [(table, *with_mistake(table, DRAW)) for table in SOME]
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize(("right", "wrong", "what"), MISTAKES, ids=[m[2] for m in MISTAKES])
 def test_one_mistake_is_refuted_or_below_the_digits(
     right: dict[str, Any], wrong: dict[str, Any], what: str

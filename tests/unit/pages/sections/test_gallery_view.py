@@ -120,6 +120,7 @@ def test_a_mantissa_that_rounds_up_to_ten_is_one() -> None:
 # -- Λ in float64 ---------------------------------------------------------------------------------
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize(
     ("made", "said"),
     [

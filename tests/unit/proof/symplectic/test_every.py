@@ -57,6 +57,7 @@ CASES = [
 ]  # fmt: skip
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize(("scheme", "formula", "timed"), CASES)
 def test_it_is_that_of_one_h(scheme: str, formula: str, timed: bool) -> None:
     hamiltonian = Hamiltonian.parse(formula)

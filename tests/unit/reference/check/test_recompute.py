@@ -61,6 +61,7 @@ def again(of: Data, kind: str, index: int) -> Findings:
     return recomputed(of, "file", kind, index)
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("name", ["mine", "leaves", "other", "not-separable", "driven"])
 def test_all_that_is_made_is_found_again(name: str) -> None:
     rows = 0

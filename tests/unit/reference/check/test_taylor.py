@@ -48,6 +48,7 @@ def test_values_and_derivatives_are_those_of_sympy(formula: str) -> None:
             assert known.value(node).overlaps(flint.arb(f"{exact} +/- 1e-50")), names
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("formula", FORMULAS)
 def test_taylor_coefficients_are_those_of_sympy(formula: str) -> None:
     tape = Tape({"a": A})

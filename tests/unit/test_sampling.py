@@ -1,0 +1,65 @@
+"""Which parameters of a costly test are run."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.paths import ROOT
+
+CONFTEST = f"""
+import sys
+sys.path.insert(0, {str(ROOT)!r})
+from tests import sampling
+
+def pytest_addoption(parser):
+    sampling.add_option(parser)
+
+def pytest_configure(config):
+    sampling.add_marker(config)
+
+def pytest_collection_modifyitems(config, items):
+    sampling.leave_out(config, items)
+"""
+TEST = """
+import pytest
+
+@pytest.mark.sample(3)
+@pytest.mark.parametrize("a", range(3))
+@pytest.mark.parametrize("b", range(3))
+def test_much(a, b): ...
+
+@pytest.mark.parametrize("a", range(4))
+def test_little(a): ...
+
+@pytest.mark.sample(3)
+@pytest.mark.parametrize("a", range(2))
+def test_less(a): ...
+"""
+
+
+def collected(folder: Path, *options: str) -> list[str]:
+    """What pytest would run there."""
+    (folder / "conftest.py").write_text(CONFTEST)
+    (folder / "test_it.py").write_text(TEST)
+    command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "-q", "--collect-only"]
+    done = subprocess.run([*command, *options], cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return [line for line in done.stdout.splitlines() if "::" in line]
+
+
+def test_a_sample_has_so_many_and_each_value_of_a_parameter_if_it_can(tmp_path: Path) -> None:
+    found = collected(tmp_path)
+    much = [x.partition("[")[2].rstrip("]").split("-") for x in found if "much" in x]
+    assert len(much) == 3
+    assert [{x[k] for x in much} for k in (0, 1)] == [{"0", "1", "2"}] * 2
+    assert len([x for x in found if "little" in x]) == 4
+    assert len([x for x in found if "less" in x]) == 2
+    assert collected(tmp_path) == found, "the same each time"
+
+
+@pytest.mark.parametrize("option", ["--whole", "test_it.py::test_much[0-1]"])
+def test_all_are_run_where_they_are_asked_for(tmp_path: Path, option: str) -> None:
+    much = [x for x in collected(tmp_path, option) if "much" in x]
+    assert len(much) == (9 if option == "--whole" else 1)
