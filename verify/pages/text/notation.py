@@ -21,6 +21,8 @@ def notation(text: str) -> Markup:
     'f = (−H<sub>q</sub>, H<sub>p</sub>)'
     >>> str(notation("L_{H_p}(q_k) + O(h^12)"))
     'L<sub>H<sub>p</sub></sub>(q<sub>k</sub>) + O(h¹²)'
+    >>> str(notation("Lⁿ_{H_p} = H_p ∂_q"))
+    'Lⁿ<sub>H<sub>p</sub></sub> = H<sub>p</sub> ∂<sub>q</sub>'
     >>> str(notation("10^-6.3010"))
     '10<sup>−6.3010</sup>'
     """
@@ -65,7 +67,7 @@ def _unbracketed(text: str) -> str:
 # A letter, with an accent or not, and its index: H_qq, z̄_(k+1), L_{H_p}.
 INDEX: Rule = (
     re.compile(
-        r"((?<![A-Za-z0-9_.])(?:ΔJ|[A-Za-zΔΣ∇])[\u0300-\u036f]?|(?<=[a-z])[A-Z])_"
+        r"((?<![A-Za-z0-9_.])(?:ΔJ|[A-Za-zΔΣ∇∂])[\u0300-\u036f]?ⁿ?|(?<=[a-z])[A-Z])_"
         r"(\{[^{}]*\}|\([^()]*\)|[A-Za-z0-9]{1,3}(?![A-Za-z0-9_]))"
     ),
     _lowered,
