@@ -76,6 +76,7 @@ def by_python(folder: Path, source: str) -> str:
     return subprocess.run(command, cwd=folder, check=True, capture_output=True, text=True).stdout
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("name", "run"), [("lie2.c", by_c), ("lie2.f90", by_fortran), ("lie2.py", by_python)]
 )

@@ -16,6 +16,7 @@ SCENES = strategies.scenes(steps=(1, 8))
 IN_TIME = strategies.scenes(steps=(1, 8), time_dependent=True)
 
 
+@pytest.mark.sample(15)
 @pytest.mark.parametrize("scenes", [SCENES, IN_TIME], ids=["still", "in time"])
 @pytest.mark.parametrize("name", properties.names())
 def test_a_property_holds_of_drawn_scenes(name: str, scenes: SearchStrategy[Scene]) -> None:

@@ -31,6 +31,7 @@ def flow(formula: str, time: object, t0: object, digits: int = 25, **start: Frac
     )  # fmt: skip
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("formula", CASES)
 @pytest.mark.parametrize(("t0", "time"), [("0", "1.5"), ("1/3", "-0.7")])
 def test_it_is_that_of_mpmath(formula: str, t0: str, time: str) -> None:

@@ -121,6 +121,7 @@ def differences(made: StepMap, digits: int) -> Fraction:
     return entries[0][0] * entries[1][1] - entries[0][1] * entries[1][0]
 
 
+@pytest.mark.sample(13)
 @each_h
 @pytest.mark.parametrize("name", [*TABLEAUS, "radau"])
 def test_the_jacobian_is_the_one_of_finite_differences(name: str, text: str) -> None:

@@ -125,6 +125,7 @@ def test_lie2_has_the_potential_of_half_the_hessian() -> None:
     assert prove_every("lie2").potential == "-1/2*H_pq**2 + 1/2*H_pp*H_qq"
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("eta", [1, 2, 3, 4])
 def test_the_leading_coefficient_is_that_of_one_hamiltonian(eta: int) -> None:
     """By sympy: the map of one H, its Jacobian, its determinant."""

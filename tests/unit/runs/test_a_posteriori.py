@@ -93,6 +93,7 @@ WINDOWS = {
 }
 
 
+@pytest.mark.sample(10)
 @systems
 @pytest.mark.parametrize("name", WINDOWS)
 def test_a_window_contains_what_balls_give(name: str, arithmetic: Arithmetic) -> None:
@@ -123,6 +124,7 @@ def test_ball_arithmetic_and_every_checkpoint_of_a_certified_run_overlap(name: s
 # -- values from elsewhere ------------------------------------------------------------------------
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("given", VECTORS, ids=["duffing-lie2", "pendulum", "duffing-lie3"])
 @pytest.mark.parametrize("arithmetic", [fixed.at_bits(240), mpfr.at_bits(200), mpmath.at_bits(90)],
                          ids=lambda a: a.name)  # fmt: skip
@@ -160,6 +162,7 @@ LONG = {
 }  # fmt: skip
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("name", LONG)
 def test_a_long_run_contains_what_64_more_bits_give_and_keeps_its_digits(name: str) -> None:
     at, state, product, others = LONG[name]
@@ -204,6 +207,7 @@ EXPONENTIAL = {
 }  # fmt: skip
 
 
+@pytest.mark.sample(10)
 @pytest.mark.parametrize("arithmetic", [fixed.at_bits(112), mpfr.at_bits(60), mpmath.at_bits(60)],
                          ids=lambda a: a.name)  # fmt: skip
 @pytest.mark.parametrize("name", EXPONENTIAL)

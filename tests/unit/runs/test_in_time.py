@@ -96,6 +96,7 @@ def ran(case: str, name: str, **more: Any) -> RunResult:
     return run(Hamiltonian.parse(formula), scheme, **asked | more)
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_a_run_is_that_of_the_loop_by_hand(name: str, case: str) -> None:

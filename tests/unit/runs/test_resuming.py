@@ -61,6 +61,7 @@ def calls(name: str, **more: Any) -> int:
     return len(told)
 
 
+@pytest.mark.sample(4)
 @every
 @pytest.mark.parametrize("observables", [CLOSED_FORM, REPORTED], ids=["certified", "plain-too"])
 def test_a_run_that_is_interrupted_anywhere_goes_on_to_the_same_bits(

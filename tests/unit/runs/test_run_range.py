@@ -123,6 +123,7 @@ def test_an_orbit_that_leaves_the_domain_of_h_is_stopped_or_stays_real(
 CHAOTIC = {"q": "0.01", "p": "-0.5", "step_size": 1, "steps": 1000}
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("name", arithmetic.names())
 def test_a_product_of_astronomical_size_is_not_written_out(name: str) -> None:
     """Λ = (1 + h²)^N − 1 is known in closed form, and has billions of digits."""
@@ -161,6 +162,7 @@ def test_an_underflow_is_not_given_as_an_exact_zero(steps: int, h: str) -> None:
 # -- series ---------------------------------------------------------------------------------------
 
 
+@pytest.mark.sample(13)
 @pytest.mark.parametrize("name", arithmetic.names())
 @pytest.mark.parametrize(
     ("steps", "points"),
@@ -202,6 +204,7 @@ def test_the_extremes_of_a_series_are_those_of_a_plain_loop(
     assert float(found.values["lambda"].value) == pytest.approx(lam, rel=1e-9)
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("name", arithmetic.names())
 def test_points_do_not_change_the_values(name: str) -> None:
     plain = duffing_run(name, 1200, q=1, p=0, h=Fraction(1, 100), observables=REPORTED)
@@ -231,6 +234,7 @@ def named_a() -> RunResult:
     return named("a", "mpmath")
 
 
+@pytest.mark.sample(22)
 @pytest.mark.parametrize("parameter", OWN_NAMES)
 def test_the_name_of_a_parameter_does_not_change_what_is_found(parameter: str) -> None:
     found, expected = named(parameter, "mpmath"), named_a()

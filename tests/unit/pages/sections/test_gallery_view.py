@@ -253,6 +253,7 @@ def test_hostile_text_stays_text() -> None:
     assert EVIL in "".join(Reader(page).texts)
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("text", WORST)
 def test_hostile_text_stays_text_in_a_repository(text: str) -> None:
     assert not list(strange(render_text(report(gallery=evil(text)))[0]))

@@ -146,6 +146,7 @@ def shown_with(text: str) -> str:
     return render(evil(text))[0]
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("text", WORST)
 def test_what_others_wrote_stays_text_in_a_whole_report(text: str) -> None:
     assert len(WORST) == 6

@@ -131,6 +131,7 @@ def check(functions: Functions, system: str, name: str) -> None:
     assert abs(delta_j(*given) - wanted[-1]) < max(1e-13 * abs(wanted[-1]), 1e-30)
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize(("system", "name"), CASES)
 @pytest.mark.parametrize("language", [python_code, julia_code])
 def test_the_code_is_the_map(
@@ -139,6 +140,7 @@ def test_the_code_is_the_map(
     check(language(system, name), system, name)
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize(("system", "name"), CASES)
 def test_the_c_code_is_the_map(
     c_code: Callable[[str, str], Functions], system: str, name: str
