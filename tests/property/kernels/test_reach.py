@@ -164,6 +164,7 @@ def assert_agree(found: RunResult, true: RunResult) -> None:
         assert error <= Fraction(value.bound) + Fraction(true.values[name].bound), name
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case[0]}-{case[2]}-{case[5]}")
 def test_a_result_is_the_one_of_mpfr_and_says_where_it_fell_back(
     case: tuple[str, dict[str, Any], Any, Any, str, int, bool],
@@ -197,6 +198,7 @@ SCHEMES = {
 }
 
 
+@pytest.mark.sample(6)
 @pytest.mark.parametrize("kind", SCHEMES)
 @pytest.mark.parametrize("observables", [(), CLOSED_FORM])
 def test_a_function_that_has_no_value_before_the_loop_is_seen(

@@ -98,6 +98,7 @@ def one_step(made: Hamiltonian, scheme: str, t0: Fraction, steps: int = 1) -> li
     return [(Fraction(found.values[n].value), Fraction(found.values[n].bound)) for n in ("p", "q")]
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("scheme", BY_HAND)
 @few
 @given(made=separable, t0=moments)

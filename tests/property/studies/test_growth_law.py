@@ -150,6 +150,7 @@ def test_the_controls_law_itself_holds(case: Case) -> None:
     assert stays_bounded(gaps), gaps
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("name", ["lie2", "lie4", "round"])
 @pytest.mark.parametrize("change", WRONG.values(), ids=WRONG)
 def test_a_law_with_one_thing_changed_is_caught(

@@ -37,6 +37,7 @@ def measured(scheme: Scheme, system: str) -> float:
     return slope(points)[0]
 
 
+@pytest.mark.sample(10)
 @pytest.mark.parametrize("system", SYSTEMS)
 @pytest.mark.parametrize("name", schemes.names())
 def test_the_measured_order_is_the_claimed_one(name: str, system: str) -> None:

@@ -120,6 +120,7 @@ def test_the_map_and_delta_j_are_those_of_the_stages_by_hand(text: str, name: st
             assert abs(ball - theirs) < mpmath.mpf(10) ** -60
 
 
+@pytest.mark.sample(10)
 @every_scheme
 @every_system
 def test_the_whole_map_has_that_jacobian_too_in_stages_or_not(text: str, name: str) -> None:
@@ -215,6 +216,7 @@ def test_a_parameter_stays_a_symbol_in_the_closed_form() -> None:
 # -- runs -------------------------------------------------------------------------------------
 
 
+@pytest.mark.sample(3)
 @every_scheme
 @pytest.mark.parametrize("arithmetic_name", ["fixed", "mpfr", "ball", "float64"])
 @pytest.mark.parametrize("text", [SYSTEMS["duffing"], SYSTEMS["transcendental, not separable"]])

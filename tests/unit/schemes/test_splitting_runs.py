@@ -28,6 +28,7 @@ def true_values(step_map: StepMap) -> tuple[Fraction, Fraction]:
     return stepper.arithmetic.exact(p), stepper.arithmetic.exact(q)
 
 
+@pytest.mark.sample(10)
 @pytest.mark.parametrize("text", SYSTEMS)
 @pytest.mark.parametrize("name", SPLITTINGS)
 def test_runs_in_every_arithmetic_hold_the_true_values(name: str, text: str) -> None:

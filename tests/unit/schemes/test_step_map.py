@@ -81,6 +81,7 @@ SMOOTH = [
 ]
 
 
+@pytest.mark.sample(18)
 @pytest.mark.parametrize("eta", [1, 2, 3])
 @pytest.mark.parametrize("text", SMOOTH)
 def test_delta_j_is_the_determinant_minus_one_to_40_digits(text: str, eta: int) -> None:

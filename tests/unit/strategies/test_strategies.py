@@ -74,6 +74,7 @@ def kind_of(expression: sympy.Expr) -> str:
     return "trigonometric" if expression.has(sympy.sin, sympy.cos) else "exponential"
 
 
+@pytest.mark.sample(3)
 @every_kind
 def test_a_kind_is_what_it_says(kind: str) -> None:
     for h in fuzzed(s.hamiltonians([kind]), 80):
@@ -83,6 +84,7 @@ def test_a_kind_is_what_it_says(kind: str) -> None:
         assert not h.parameters
 
 
+@pytest.mark.sample(3)
 @every_kind
 @pytest.mark.parametrize("separable", [True, False])
 def test_the_ring_finds_separable_what_was_asked_to_be(kind: str, separable: bool) -> None:
@@ -127,6 +129,7 @@ def least_on_circle(value: Callable[[Any, Any], Any], radius: int) -> Any:
     return min(value(radius * mpmath.cos(a), radius * mpmath.sin(a)) for a in angles)
 
 
+@pytest.mark.sample(3)
 @every_kind
 def test_bounded_grows_in_every_direction(kind: str) -> None:
     for h in fuzzed(s.hamiltonians([kind], bounded=True), 25):
@@ -335,6 +338,7 @@ def test_what_does_not_fit_is_rejected_not_drawn() -> None:
 # -- how it is drawn --------------------------------------------------------------------------
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     "strategy",
     [s.scenes(), s.hamiltonians(with_parameters=True), s.initial_values(extreme=True)],

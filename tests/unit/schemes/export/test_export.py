@@ -202,6 +202,7 @@ def test_latex_has_the_parts_the_jacobian_and_delta_j() -> None:
     assert "in [6.7560359597982881" in text
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("name", "order"), [("lie2", 2), ("stormer-verlet", 2), ("forest-ruth", 4)]
 )

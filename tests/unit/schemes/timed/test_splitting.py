@@ -76,6 +76,7 @@ def drawn(seed: int) -> list[tuple[str, Fraction, Fraction]]:
     return [(*part, s) for part, s in zip(parts, clock, strict=True)]
 
 
+@pytest.mark.sample(10)
 @pytest.mark.parametrize("seed", range(24))
 def test_the_order_is_that_of_the_steps_series(seed: int) -> None:
     parts, most = drawn(seed), 4

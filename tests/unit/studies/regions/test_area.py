@@ -139,6 +139,7 @@ def test_a_linear_map_changes_areas_by_its_determinant(scheme: str, outline: Out
 SYMPLECTIC = ("symplectic-euler", "stormer-verlet", "gauss4", "yoshida4")
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("scheme", "hamiltonian"),
     zip(SYMPLECTIC, (DUFFING, PENDULUM, DUFFING, PENDULUM), strict=True),
@@ -189,6 +190,7 @@ CARRIED = [
 ]
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize(("place", "stepped"), CARRIED)
 def test_float64_lies_within_its_bound_of_33_digits(place: Any, stepped: Any) -> None:
     hamiltonian, where, asked = place
