@@ -31,6 +31,7 @@ SYSTEMS = {
 }  # fmt: skip
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("name", ["mpfr", "fixed"])
 @pytest.mark.parametrize(("hamiltonian", "scheme", "steps"), SYSTEMS.values(), ids=SYSTEMS)
 def test_states_and_products_have_the_bits_of_the_compiled_float64_kernel(
