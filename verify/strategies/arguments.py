@@ -4,6 +4,8 @@ given, not when something is drawn."""
 from verify.arithmetic.exact import whole as whole
 from verify.errors import InputError
 
+MOST_DEGREES = 8  # of freedom, of what is drawn: its formulas are to be read
+
 
 def yes_no(name: str, value: object) -> bool:
     """True or False; else InputError."""

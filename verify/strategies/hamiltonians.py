@@ -7,10 +7,11 @@ from hypothesis import strategies as st
 from verify.algebra.limits import MAX_EXPONENT
 from verify.errors import InputError, unknown
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.strategies.arguments import whole, yes_no, yes_no_either
+from verify.strategies.arguments import MOST_DEGREES, whole, yes_no, yes_no_either
 from verify.strategies.drives import driven
 from verify.strategies.formulas import KINDS as KINDS
 from verify.strategies.formulas import Formula, formulas
+from verify.strategies.formulas_in_degrees import Wanted, formulas_in_degrees
 from verify.strategies.terms import Limits
 
 _MOST_TERMS, _MOST_SIZE = 50, 10**9
@@ -26,6 +27,8 @@ def hamiltonians(
     bounded: bool | None = None,
     with_parameters: bool = False,
     time_dependent: bool = False,
+    degrees: int = 1,
+    coupled: bool | None = None,
 ) -> st.SearchStrategy[Hamiltonian]:
     """Hamiltonians H(p, q) with rational coefficients, short enough to be read; never constant.
 
@@ -48,12 +51,19 @@ def hamiltonians(
     q, at each t; so is `bounded`, which must not be False: H → ∞ in every direction at each t, but
     a force in resonance drives an orbit to infinity.
 
+    `degrees`: of freedom, 1 … 8; for more than one H(p1 … pn, q1 … qn), the sum of an H of the
+    plane for each of them, of which `terms` are told, the first of the kind that is drawn, and of
+    up to n − 1 terms of two degrees. `coupled`: True for one such term at least, False for a sum of
+    planes, None for either. `bounded=False` is known along an axis of the first degree.
+
     >>> from hypothesis import find, settings
     >>> quietly = settings(database=None)
     >>> find(hamiltonians(), lambda h: True, settings=quietly).formula
     'p**2/2 + q**2/2'
     >>> find(hamiltonians(time_dependent=True), lambda h: True, settings=quietly).formula
     'p**2/2 + q**2/2 + q*t'
+    >>> find(hamiltonians(degrees=2, coupled=True), lambda h: True, settings=quietly).formula
+    'p1**2/2 + p2**2/2 + q1**2/2 + q1*q2 + q2**2/2'
 
     Shrinks towards p**2/2 + q**2/2. Raises InputError for a bad argument, and where no such H
     exists, when it is called and not when it draws.
@@ -74,6 +84,15 @@ def hamiltonians(
     yes_no("time_dependent", time_dependent)
     if time_dependent and bounded is False:
         raise InputError("bounded", bounded, "is not known of an H in time; allowed: True, None")
+    several = whole("degrees", degrees, 1, MOST_DEGREES) > 1
+    if yes_no_either("coupled", coupled) and not several:
+        raise InputError("coupled", coupled, "wants two degrees of freedom or more")
+    if several:
+        wanted = Wanted(
+            degrees, tuple(kinds), limits, separable, bounded, coupled, with_parameters,
+            time_dependent,
+        )  # fmt: skip
+        return formulas_in_degrees(wanted).map(Formula.hamiltonian)
     drawn = formulas(
         kinds, limits, separable=separable, bounded=bounded, with_parameters=with_parameters
     )

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable
 from fractions import Fraction
+from typing import Literal, overload
 
 from hypothesis import strategies as st
 
@@ -10,8 +11,8 @@ from verify.algebra.formula import parameter_name
 from verify.arithmetic.exact import Exact, magnitude, rational
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.scenes.values import InitialValue
-from verify.strategies.arguments import whole, yes_no
+from verify.scenes.values import InitialState, InitialValue
+from verify.strategies.arguments import MOST_DEGREES, whole, yes_no
 from verify.strategies.terms import signed_quotient
 
 _FARTHEST = 300  # the exponent of the tiniest and the greatest initial values
@@ -44,8 +45,20 @@ def parameters(
     return st.fixed_dictionaries(dict.fromkeys(names, values))
 
 
-def initial_values(*, most: Exact = 2, extreme: bool = False) -> st.SearchStrategy[InitialValue]:
+@overload
+def initial_values(
+    *, most: Exact = ..., extreme: bool = ..., degrees: Literal[1] = ...
+) -> st.SearchStrategy[InitialValue]: ...
+@overload
+def initial_values(
+    *, most: Exact = ..., extreme: bool = ..., degrees: int
+) -> st.SearchStrategy[InitialValue] | st.SearchStrategy[InitialState]: ...
+def initial_values(
+    *, most: Exact = 2, extreme: bool = False, degrees: int = 1
+) -> st.SearchStrategy[InitialValue] | st.SearchStrategy[InitialState]:
     """(q, p) as exact rationals with |q|, |p| ≤ most: decimals, halves, thirds and sevenths.
+
+    `degrees`: of freedom, 1 … 8; for more than one q and p are tuples of so many.
 
     `extreme`: also exact zeros, 10^−300 … 10^300 of either sign, numbers that differ from whole
     ones by 10^−300 … 0.1, and numbers of 40 digits, all of which may be beyond `most`. Raises
@@ -61,7 +74,10 @@ def initial_values(*, most: Exact = 2, extreme: bool = False) -> st.SearchStrate
     if bound <= 0:
         raise InputError("most", most, "must be greater than 0")
     numbers = _coordinates(bound, yes_no("extreme", extreme))
-    return st.builds(InitialValue, q=numbers, p=numbers)
+    if whole("degrees", degrees, 1, MOST_DEGREES) == 1:
+        return st.builds(InitialValue, q=numbers, p=numbers)
+    of_each = st.tuples(*[numbers] * degrees)
+    return st.builds(InitialState, q=of_each, p=of_each)
 
 
 def initial_times(*, most: Exact = 2) -> st.SearchStrategy[Fraction]:

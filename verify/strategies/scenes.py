@@ -1,6 +1,7 @@
 """Whole scenes: an H, a scheme that takes it, and a run of a few steps."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from typing import Any, NamedTuple
@@ -12,24 +13,31 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.run_sections import Grid
 from verify.scenes.scene import Scene
-from verify.scenes.values import MAX_STEPS, InitialValue
+from verify.scenes.values import MAX_STEPS, InitialState, InitialValue
+from verify.schemes.methods.taylor.lie import eta_of
 from verify.schemes.scheme import Scheme
 from verify.strategies import numbers
-from verify.strategies.arguments import whole, yes_no
+from verify.strategies.arguments import MOST_DEGREES, whole, yes_no
 from verify.strategies.drives import driven
 from verify.strategies.formulas import KINDS, USUAL, Formula, formulas
+from verify.strategies.formulas_in_degrees import Wanted, formulas_in_degrees
 from verify.strategies.schemes import named, takers
+from verify.strategies.terms import Limits
+
+_SHORT = Limits(degree=4, terms=2)  # of each of several degrees of freedom
+_LONG_MAPS = (5, 6)  # the η of lieη
 
 
 def scenes(
     *,
     hamiltonians: st.SearchStrategy[Hamiltonian] | None = None,
     schemes: st.SearchStrategy[Scheme] | None = None,
-    initial_values: st.SearchStrategy[InitialValue] | None = None,
+    initial_values: st.SearchStrategy[InitialValue] | st.SearchStrategy[InitialState] | None = None,
     initial_times: st.SearchStrategy[Fraction] | None = None,
     step_sizes: st.SearchStrategy[Fraction] | None = None,
     steps: tuple[int, int] = (1, 40),
     time_dependent: bool = False,
+    degrees: int = 1,
 ) -> st.SearchStrategy[Scene]:
     """Valid scenes with one scheme and a `[grid]` of one step size, one initial value and at least
     steps[0] and at most steps[1] steps.
@@ -43,8 +51,13 @@ def scenes(
     `time_dependent`: H(p, q, t), as `verify.strategies.hamiltonians` draws them; of those that are
     given it is not to be said. Wherever H depends on t, a t₀ is drawn.
 
+    `degrees`: of freedom, 1 … 8, of H and of the initial values that are drawn here; of those that
+    are given it has to be theirs. In more than one, H has two terms a degree and powers up to 4,
+    and lie5 and lie6, whose maps are long there, are drawn only where they are given.
+
     Raises InputError for a bad argument when it is called.
     """
+    whole("degrees", degrees, 1, MOST_DEGREES)
     given = {"hamiltonians": hamiltonians, "schemes": schemes, "initial_values": initial_values,
              "initial_times": initial_times, "step_sizes": step_sizes}  # fmt: skip
     for name, strategy in given.items():
@@ -58,7 +71,7 @@ def scenes(
     least, most = (whole("steps", value, 1, MAX_STEPS) for value in steps)
     if least > most:
         raise InputError("steps", steps, "the first is greater than the second")
-    values = numbers.initial_values() if initial_values is None else initial_values
+    values = numbers.initial_values(degrees=degrees) if initial_values is None else initial_values
     times = numbers.initial_times() if initial_times is None else initial_times
     sizes = numbers.step_sizes() if step_sizes is None else step_sizes
     # One number needs no draw, nor may it hang on whether a loaded module has it as a constant.
@@ -66,10 +79,11 @@ def scenes(
     runs = _Runs(st.builds(_grid, counts, sizes, values), times)
     if hamiltonians is not None:
         return _of_hamiltonians(hamiltonians, schemes, runs)
-    formula = partial(_formulas, time_dependent=time_dependent)
+    formula = partial(_formulas, time_dependent=time_dependent, degrees=degrees)
     if schemes is not None:
         return _of_schemes(schemes, formula, runs)
-    return _of_formulas(formula, runs)
+    found = named() if degrees == 1 else [x for x in named() if eta_of(x.name) not in _LONG_MAPS]
+    return _of_formulas(formula, runs, found)
 
 
 class _Runs(NamedTuple):
@@ -84,15 +98,16 @@ class _Runs(NamedTuple):
         return found | {"t0": draw(self.times)} if timed else found
 
 
-def _grid(steps: int, step_size: Fraction, initial_value: InitialValue) -> Grid:
+def _grid(steps: int, step_size: Fraction, initial_value: InitialValue | InitialState) -> Grid:
     return Grid(steps=steps, step_sizes=(step_size,), initial_values=(initial_value,))
 
 
 _Formulas = Callable[..., st.SearchStrategy[Formula]]
 
 
-def _of_formulas(formula_of: _Formulas, runs: _Runs) -> st.SearchStrategy[Scene]:
-    found = named()
+def _of_formulas(
+    formula_of: _Formulas, runs: _Runs, found: Sequence[Scheme]
+) -> st.SearchStrategy[Scene]:
     of_any = st.sampled_from([scheme for scheme in found if not scheme.needs_separable])
     of_separable = st.sampled_from(found)
     any_formula = formula_of()
@@ -144,8 +159,14 @@ def _of_hamiltonians(
 
 
 def _formulas(
-    separable: bool | None = None, time_dependent: bool = False
+    separable: bool | None = None, time_dependent: bool = False, degrees: int = 1
 ) -> st.SearchStrategy[Formula]:
+    if degrees > 1:
+        wanted = Wanted(degrees, KINDS, _SHORT, separable=separable, time_dependent=time_dependent)
+        bare, with_names = (
+            formulas_in_degrees(replace(wanted, with_parameters=x)) for x in (False, True)
+        )
+        return st.one_of(bare, bare, with_names)
     plain, named = (formulas(separable=separable, with_parameters=named) for named in (False, True))
     still = st.one_of(plain, plain, named)
     return driven(still, KINDS, USUAL) if time_dependent else still

@@ -8,7 +8,9 @@ from hypothesis import strategies as st
 from verify import schemes as catalogue
 from verify.algebra.formula import symbol
 from verify.errors import InputError
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.schemes.degrees import check_takes
 from verify.schemes.methods.taylor.lie import eta_of
 from verify.schemes.scheme import Scheme
 from verify.strategies.arguments import whole, yes_no_either
@@ -79,7 +81,7 @@ def takes(scheme: Scheme, hamiltonian: Hamiltonian, separable: bool) -> bool:
     if scheme.every_h is not None:
         return separable or not scheme.needs_separable
     try:  # a scheme of the user's own: nothing else is known of it
-        scheme.step_map(hamiltonian)
+        check_takes(scheme, hamiltonian)
     except InputError:
         return False
     return True
@@ -92,7 +94,14 @@ def separable_for(names: Iterable[str]) -> bool | None:
 
 def is_separable(hamiltonian: Hamiltonian) -> bool:
     """Whether H = T(p) + V(q); terms of one variable each need no algebra."""
-    both = {symbol("p"), symbol("q")}
-    if not any(both <= term.free_symbols for term in sympy.Add.make_args(hamiltonian.exact)):
+    half = hamiltonian.degrees
+    momenta, places = (
+        set(map(symbol, own))
+        for own in (hamiltonian.coordinates[:half], hamiltonian.coordinates[half:])
+    )
+    terms = sympy.Add.make_args(hamiltonian.exact)
+    if not any(momenta & term.free_symbols and places & term.free_symbols for term in terms):
         return True
-    return hamiltonian.field()[0].separable()
+    if hamiltonian.planar:
+        return hamiltonian.field()[0].separable()
+    return canonical_field(hamiltonian)[0].separable
