@@ -5,6 +5,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TypeVar
 
+from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.sample import Sample
 
 T = TypeVar("T")
@@ -45,19 +46,24 @@ class Property:
     """`check(sample)` raises Violation where the sentence is wrong for it, and Silent where it does
     not speak of it.
 
+    `in_degrees` does so of a sample in n degrees of freedom; a property without one speaks of none.
     Any other exception is an error of the code under test, too. `scheme`: that of which it speaks,
     where this is not the sample's.
     """
 
     name: str
     sentence: str
-    check: Callable[[Sample], None]
+    check: Callable[[Sample], None] | None
     scheme: str = ""
+    in_degrees: Callable[[SampleInDegrees], None] | None = None
 
-    def holds(self, sample: Sample) -> bool:
+    def holds(self, sample: Sample | SampleInDegrees) -> bool:
         """True, or False where the sentence does not speak of the sample; else as `check`."""
         try:
-            self.check(sample)
+            if isinstance(sample, Sample):
+                known(self.check)(sample)
+            else:
+                known(self.in_degrees)(sample)
         except Silent:
             return False
         return True

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from verify.claims.scenes import slug
 from verify.exploration import properties as catalogue
 from verify.exploration.claims import claim_property
+from verify.exploration.degrees.sample import SampleInDegrees, sample_of
 from verify.exploration.property import Property, Violation
 from verify.exploration.sample import Sample
 from verify.exploration.sample_space import SampleSpace
@@ -29,7 +30,7 @@ def check_properties(
     looked_at, failed = Counter[str](), Counter[str]()
     first: dict[str, Failure] = {}
     for number in numbers:
-        sample = Sample.of(sample_scene(space, seed, number))
+        sample = sample_of(sample_scene(space, seed, number))
         for each in properties:
             spoke, wrong = outcome(each, sample)
             looked_at[each.name] += spoke
@@ -45,7 +46,7 @@ def check_properties(
     )
 
 
-def outcome(asked: Property, sample: Sample) -> tuple[bool, str]:
+def outcome(asked: Property, sample: Sample | SampleInDegrees) -> tuple[bool, str]:
     """Whether the property speaks of the sample, and what is wrong; empty where nothing is."""
     try:
         return asked.holds(sample), ""
@@ -58,7 +59,7 @@ def outcome(asked: Property, sample: Sample) -> tuple[bool, str]:
 def shrink(asked: Property, space: SampleSpace, seed: int, number: int) -> ShrunkResult:
     """The simplest scene for which the property fails as for that scene of the seed."""
     scene, message = simplest(
-        space, seed, number, lambda scene: outcome(asked, Sample.of(scene))[1]
+        space, seed, number, lambda scene: outcome(asked, sample_of(scene))[1]
     )
     # Another scheme may have been drawn than the one that a claim speaks of.
     named = scene.model_copy(

@@ -1,21 +1,18 @@
-"""One drawn scene as properties look at it: one H, scheme, step size, initial value, t₀ and N."""
+"""A drawn scene of the plane as properties look at it: an H, scheme, step size, start, t₀ and N."""
 
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
-from verify import arithmetic as number_systems
 from verify.errors import InputError
-from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.exploration.any_sample import AnySample
 from verify.hamiltonians.vector_field import VectorField
-from verify.kernels.stepping import KernelRun, Outcome
 from verify.proof.order import prove
 from verify.proof.order_proof import Proof
 from verify.scenes.scene import Scene
 from verify.schemes import get
 from verify.schemes.every_hamiltonian import TaylorSeries
-from verify.schemes.scheme import Scheme
 from verify.schemes.step_map import StepMap
 
 # Terms of a map in all its parts, so that a kernel is written, a proof made, a point looked at.
@@ -23,21 +20,15 @@ _MOST_OF_KERNELS, _MOST_TERMS, _MOST_OF_POINTS = 20, 40, 150
 
 
 @dataclass(frozen=True)
-class Sample:
+class Sample(AnySample):
     """What a property is asked about; the map and its proof are made once for all of them."""
 
-    hamiltonian: Hamiltonian
-    scheme: Scheme
     p: Fraction
     q: Fraction
-    step_size: Fraction
-    steps: int
-    t0: Fraction
-    scene: Scene
 
     @classmethod
     def of(cls, scene: Scene) -> "Sample":
-        """The first scheme, step size and initial value of a scene that has a [grid].
+        """The first scheme, step size and initial value of a scene of the plane that has a [grid].
 
         Raises InputError for one that has none.
         """
@@ -54,6 +45,11 @@ class Sample:
             t0=scene.t0,
             scene=scene,
         )
+
+    @property
+    def point(self) -> dict[str, Fraction]:
+        """p and q at the start."""
+        return {"p": self.p, "q": self.q}
 
     @property
     def field(self) -> VectorField:
@@ -115,45 +111,8 @@ class Sample:
         """A number by which properties choose what they look at of a sample."""
         return 7 * self.steps + abs(self.p.numerator) + self.q.denominator
 
-    def is_turn(self, one_in: int, after: int = 0) -> bool:
-        """Whether a property that takes long looks at this sample: at one in so many.
-
-        `after`: properties with different ones look at different samples.
-        """
-        return self.turn % one_in == after
-
-    @property
-    def kernel_inputs(self) -> tuple[Hamiltonian, str, dict[str, Fraction], int]:
-        """What a `KernelRun` and a `Separation` begin with."""
-        return self.hamiltonian, self.scheme.name, self.start, self.steps
-
-    def run(
-        self,
-        number_system: str,
-        digits: int,
-        *observables: str,
-        start: dict[str, Fraction] | None = None,
-        steps: int | None = None,
-    ) -> Outcome:
-        """Its run in a kernel; `start` and `steps` where they are not its own."""
-        begin, count = start or self.start, self.steps if steps is None else steps
-        asked = frozenset(observables)
-        run = KernelRun(self.hamiltonian, self.scheme.name, begin, count, asked, 0)
-        return run.run(number_systems.get(number_system, digits))
-
     @property
     def run_arguments(self) -> dict[str, Any]:
         """What `run` and `separate` are called with beside H and the scheme."""
         own = {"q": self.q, "p": self.p, "step_size": self.step_size, "steps": self.steps}
         return own | {"t0": self.t0}
-
-    @property
-    def timed(self) -> bool:
-        """Whether H depends on t."""
-        return self.hamiltonian.time_dependent
-
-    @property
-    def start(self) -> dict[str, Fraction]:
-        """p, q and h by name, and t where H depends on it, as a run and an enclosure want them."""
-        own = {"p": self.p, "q": self.q, "h": self.step_size}
-        return own | {"t": self.t0} if self.timed else own

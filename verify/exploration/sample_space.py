@@ -4,8 +4,8 @@ from verify.scenes.frozen import Frozen
 
 
 class SampleSpace(Frozen):
-    """From what scenes are drawn: these kinds of H up to a degree, these schemes (empty: all), and
-    whether H depends on t.
+    """From what scenes are drawn: these kinds of H up to a degree, these schemes (empty: all),
+    whether H depends on t, and in how many degrees of freedom.
 
     >>> SampleSpace(kinds=("polynomial",), schemes=("lie2",)).degree
     6
@@ -15,3 +15,4 @@ class SampleSpace(Frozen):
     degree: int = 6
     schemes: tuple[str, ...] = ()
     time_dependent: bool = False
+    degrees: int = 1

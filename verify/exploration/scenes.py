@@ -23,6 +23,7 @@ from verify.strategies.schemes import separable_for
 _BYTES = 4096
 _MOST_STEPS = 12
 _ATTEMPTS = 100
+_TERMS, _TERMS_IN_DEGREES = 4, 2  # the latter of each of several degrees of freedom
 
 Fault = Callable[[Scene], str]  # what is wrong with a scene; empty where nothing is
 
@@ -39,12 +40,15 @@ def scenes_of(drawn: SampleSpace) -> st.SearchStrategy[Scene]:
             degree=drawn.degree,
             separable=separable_for(drawn.schemes),
             time_dependent=drawn.time_dependent,
+            terms=_TERMS if drawn.degrees == 1 else _TERMS_IN_DEGREES,
+            degrees=drawn.degrees,
         )
     return strategies.scenes(
         hamiltonians=hamiltonians,
         schemes=given_schemes,
         steps=(1, _MOST_STEPS),
-        time_dependent=drawn.time_dependent,
+        time_dependent=drawn.time_dependent and hamiltonians is None,
+        degrees=drawn.degrees,
     )
 
 

@@ -9,7 +9,7 @@ and whether it is bounded on every axis (`flat`), so that an H that is open alon
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-from verify.strategies.terms import Drawer, power
+from verify.strategies.terms import Drawer, power, times
 
 
 class Coupling(NamedTuple):
@@ -53,11 +53,11 @@ def _rotation(d: Drawer) -> Coupling:
 
 
 def _magnetic(d: Drawer) -> Coupling:
-    return Coupling(f"(p - {d.inner()}*Q)**2", positive=True)
+    return Coupling(f"(p - {times(d.inner(), 'Q')})**2", positive=True)
 
 
 def _mixed_power(d: Drawer) -> Coupling:
-    return Coupling(f"{power('q', d.whole(1, 2))}*P", positive=False)
+    return Coupling(f"{power('q', d.whole(1, 2))}*P")
 
 
 def _mixed_squares(d: Drawer) -> Coupling:
@@ -70,7 +70,7 @@ def _waves(d: Drawer) -> Coupling:
 
 
 def _mixed_waves(d: Drawer) -> Coupling:
-    return Coupling(f"{d.pick(('cos', 'sin'))}(p + {d.inner()}*Q)")
+    return Coupling(f"{d.pick(('cos', 'sin'))}(p + {times(d.inner(), 'Q')})")
 
 
 def _bumps(d: Drawer) -> Coupling:

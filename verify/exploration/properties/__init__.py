@@ -1,8 +1,9 @@
 """What holds of every scene: the properties that `verify explore` looks at, one file each.
 
-A file's first line of text is the property's sentence; `holds(sample)` looks at one sample, and
-raises what is to be said of it (see `verify.exploration.property`). Adding a property is adding one
-file.
+A file's first line of text is the property's sentence. `holds(sample)` looks at one sample of the
+plane, and raises what is to be said of it (see `verify.exploration.property`);
+`holds_in_degrees(sample)` does so in n degrees of freedom. A file that has one of the two speaks of
+no other samples. Adding a property is adding one file.
 """
 
 from functools import cache
@@ -30,4 +31,5 @@ def get(name: str) -> Property:
         raise unknown("property", name, names())
     module = _FILES.module(name)
     sentence = (module.__doc__ or "").strip().splitlines()[0]
-    return Property(name, sentence, module.holds)
+    plane, several = (getattr(module, x, None) for x in ("holds", "holds_in_degrees"))
+    return Property(name, sentence, plane, in_degrees=several)

@@ -56,7 +56,8 @@ def of_one_in_degrees(
     plain = Plain(field.ring, field.names)
     leading = None if proof.order is None else defect.form(proof.order)
     eta = step.flow_up_to
-    potential = potential_of_lie(field, eta) if proof.telescopes and eta > 0 else None
+    has_potential = proof.telescopes and eta > 0 and eta % 2 == 0  # of odd η S ≡ 0 does, without
+    potential = potential_of_lie(field, eta) if has_potential else None
     columns = [[row[k] for row in rows] for k in range(len(field.names))]
     data = {
         "format": FORMAT,

@@ -4,19 +4,26 @@ from collections.abc import Mapping
 from fractions import Fraction
 
 from verify.arithmetic.exact import decimal
+from verify.exploration.any_sample import AnySample
+from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
 
 _DIGITS = 50
+_IN_DEGREES = 4  # one in so many samples in n degrees of freedom
 _KNOWN = Fraction(1, 10**30)
 
 
 def holds(sample: Sample) -> None:
     only_if(sample.steps > 1 and sample.short and not sample.step_map.preserves_area)
+    _must_compose(sample)
+
+
+def _must_compose(sample: AnySample) -> None:
     middle = sample.steps // 2
     whole = _run(sample, sample.start, sample.steps)
     first = _run(sample, sample.start, middle)
-    after = sample.start | {"p": first["p"], "q": first["q"]}
+    after = sample.start | {name: first[name] for name in sample.point}
     if sample.timed:
         after["t"] += middle * sample.step_size
     second = _run(sample, after, sample.steps - middle)
@@ -27,8 +34,15 @@ def holds(sample: Sample) -> None:
         raise Violation(f"Λ over {sample.steps} steps is {found}, and composed {wanted}")
 
 
-def _run(sample: Sample, start: dict[str, Fraction], steps: int) -> Mapping[str, Fraction]:
-    """p, q and Λ after the steps; Silent where they leave the range in which digits are kept."""
+def _run(sample: AnySample, start: dict[str, Fraction], steps: int) -> Mapping[str, Fraction]:
+    """The state and Λ after the steps; Silent where they leave the range of the digits."""
     found = sample.run("mpfr", _DIGITS, "lambda", start=start, steps=steps)
     only_if(found.done == steps and max(map(abs, found.values.values())) <= 10**6)
     return found.values
+
+
+def holds_in_degrees(sample: SampleInDegrees) -> None:
+    """The same of Π det J − 1."""
+    only_if(sample.is_turn(_IN_DEGREES) and sample.steps > 1 and sample.short)
+    only_if(not sample.step_map.symplectic_by_conditions)
+    _must_compose(sample)

@@ -15,6 +15,8 @@ from verify import arithmetic as number_systems
 from verify.arithmetic.arb import Ball, around, rational_ball, shown
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, BallState, ball_steps
+from verify.exploration.degrees import ball_steps as several
+from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
 from verify.runs.run import run
@@ -83,4 +85,49 @@ def _run(sample: Sample, arithmetic: str, digits: int) -> RunResult:
         observables=_OBSERVABLES,
     )
     only_if(found.status == "finished")
+    return found
+
+
+# -- in n degrees of freedom ----------------------------------------------------------------------
+
+_OF_FORM = ("symplectic_defect_max", "symplectic_defect", "lambda", "delta_j_max")
+_IN_DEGREES = 4  # one in so many samples
+_STEPS_IN_DEGREES = 4
+
+
+def holds_in_degrees(sample: SampleInDegrees) -> None:
+    """The state, S, W, ΔJ and Λ of a few steps; W from the Jacobian of the run, not its sum."""
+    only_if(sample.is_turn(_IN_DEGREES, _AFTER) and sample.short and sample.scheme.explicit)
+    systems = [n for n in number_systems.names() if not number_systems.about(n).compiles]
+    name = systems[sample.turn // _IN_DEGREES % len(systems)]
+    steps = min(sample.steps, _STEPS_IN_DEGREES)
+    states = [s.sharp() for s in several.ball_steps(sample.step_map, sample.start, steps)]
+    found = run(
+        sample.hamiltonian,
+        sample.scheme.name,
+        **sample.run_arguments | {"steps": steps},
+        arithmetic=name,
+        digits=number_systems.about(name).digits or _DIGITS,
+        observables=_OF_FORM,
+    )
+    only_if(found.status == "finished")
+    with working_precision(BITS):
+        wanted = _of_run(states)
+        for quantity, value in found.values.items():
+            if not _ball(value).overlaps(wanted[quantity]):
+                within = f"{value.value} ± {value.bound}"
+                true = shown(wanted[quantity], 20)
+                raise Violation(f"{quantity} is {within} in {found.arithmetic}, and truly {true}")
+
+
+def _of_run(states: Sequence[several.BallState]) -> dict[str, Ball]:
+    """The values of a run, from balls of its states."""
+    last = states[-1]
+    forms = [several.largest(several.defect(state.own)) for state in states[1:]]
+    changes = [abs(state.own.det() - 1) for state in states[1:]]
+    found = {name: x for name, x in last.point.items() if name != "t"}
+    found["symplectic_defect_max"] = reduce(flint.arb.max, forms)
+    found["symplectic_defect"] = several.largest(several.defect(last.matrix))
+    found["delta_j_max"] = reduce(flint.arb.max, changes)
+    found["lambda"] = last.matrix.det() - 1
     return found

@@ -6,8 +6,10 @@ from verify.algebra.enclosure import enclose
 from verify.algebra.formula import to_text
 from verify.arithmetic.arb import shown
 from verify.exploration.ball_steps import BITS
+from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.property import Violation
 from verify.exploration.sample import Sample
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.scene import Scene, scene_from
 from verify.scenes.toml_text import scene_text
@@ -54,3 +56,19 @@ def _must_be_same_map(sample: Sample) -> None:
                         for step in (closed, read))  # fmt: skip
         if ours is not None and theirs is not None and not ours.overlaps(theirs):
             raise Violation(f"{name} reads back as {shown(theirs)}, and is {shown(ours)}")
+
+
+def holds_in_degrees(sample: SampleInDegrees) -> None:
+    """The scene, or H."""
+    if sample.is_turn(_SCENES):
+        _must_be_same_scene(sample.scene)
+        return
+    given, values = sample.hamiltonian, []
+    read = Hamiltonian.parse(given.formula, dict(given.values))
+    for hamiltonian in (given, read):
+        field, _ = canonical_field(hamiltonian)
+        elements = (field.energy, *field.slopes)
+        values.append([enclose(field.ring, x, sample.start, BITS) for x in elements])
+    for x, y in zip(*values, strict=True):
+        if (x is None) != (y is None) or (x is not None and not x.overlaps(y)):
+            raise Violation(f"H reads back as another: {given.formula}")

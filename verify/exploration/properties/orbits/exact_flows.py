@@ -12,8 +12,10 @@ from verify.algebra.enclosure import enclose
 from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.arb import Ball, rational_ball, shown
 from verify.arithmetic.flint_precision import working_precision
+from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.property import Silent, Violation, known, only_if, silent_at
 from verify.exploration.sample import Sample
+from verify.flows.degrees.extrapolation import FlowInDegrees
 from verify.flows.extrapolation import Flow, NoFlowError
 from verify.proof.potential import potential_of
 
@@ -88,3 +90,42 @@ def _flow_to(flow: Flow, start: Point, time: Fraction) -> dict[str, Fraction]:
 def _value(element: Element, point: Point) -> Ball:
     ring, x = element
     return known(enclose(ring, x, point, _BITS))
+
+
+# -- in n degrees of freedom ----------------------------------------------------------------------
+
+
+def holds_in_degrees(sample: SampleInDegrees) -> None:
+    """It keeps H, or of an H in time moves H by ∂H/∂t, and comes back."""
+    only_if(sample.is_turn(_IN) and sample.short)
+    field = sample.field
+    flow = FlowInDegrees(field, _DIGITS)
+    start = sample.start
+    after = _followed(flow, start, _TIME)
+    back = _followed(flow, after, -_TIME)
+    for name in field.names:
+        x, y = start[name], back[name]
+        if abs(x - y) > _KNOWN * (1 + abs(x)):
+            raise Violation(f"{name} comes back as {float(y)!r}, from {float(x)!r}")
+    ring = field.ring
+    if not sample.timed:
+        before, then = (_value((ring, field.energy), point) for point in (start, after))
+        with working_precision(_BITS):
+            if abs(then - before) > rational_ball(_KNOWN) * 10**6 * (1 + abs(before)):
+                raise Violation(f"H is {shown(before, 12)}, and after {_TIME} {shown(then, 12)}")
+        return
+    end = _followed(FlowInDegrees(field, 2 * _DIGITS), start, _INSTANT)
+    grown = [_value((ring, field.energy), point) for point in (start, end)]
+    wanted = _value((ring, ring.diff(field.energy, "t")), start)
+    with working_precision(_BITS):
+        rate = (grown[1] - grown[0]) / rational_ball(_INSTANT)
+        if abs(rate - wanted) > (1 + abs(wanted)) * rational_ball(_WITHIN):
+            raise Violation(f"H grows by {shown(rate, 12)} a time, and ∂H/∂t is {shown(wanted)}")
+
+
+def _followed(flow: FlowInDegrees, start: Point, time: Fraction) -> dict[str, Fraction]:
+    """Where the flow is after the time, and when where H depends on it."""
+    with silent_at(NoFlowError):
+        z = flow.follow(flow.state(start), time, _MOST_STEPS)
+    found = dict(zip(flow.names, map(flow.arithmetic.exact, z), strict=True))
+    return found | {"t": start["t"] + time} if flow.timed else found

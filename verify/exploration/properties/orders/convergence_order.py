@@ -11,8 +11,11 @@ from fractions import Fraction
 from verify.arithmetic.arb import Ball, around, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import ball_steps
+from verify.exploration.degrees import ball_steps as several
+from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.property import Violation, known, only_if, silent_at
 from verify.exploration.sample import Sample
+from verify.flows.degrees.extrapolation import FlowInDegrees
 from verify.flows.extrapolation import Flow, NoFlowError
 
 _STEP = Fraction(1, 2**96)
@@ -55,9 +58,7 @@ def _orders(sample: Sample, point: Mapping[str, Fraction], order: int) -> dict[s
     with working_precision(64):
         for name, large, small in zip("pq", whole, half, strict=True):
             known = not (small.contains(0) or large.contains(0))
-            found[name] = (
-                abs(large / small).log() / rational_ball(Fraction(2)).log() if known else None
-            )
+            found[name] = _power(large, small) if known else None
     return found
 
 
@@ -78,3 +79,46 @@ def _error(sample: Sample, start: Mapping[str, Fraction], order: int) -> tuple[B
 def _with_error(x: Fraction, bits: int) -> Ball:
     """A value that the flow gives to so many bits."""
     return around(x, (1 + abs(x)) / 2**bits)
+
+
+# -- in n degrees of freedom ----------------------------------------------------------------------
+
+_IN_DEGREES = 3  # one in so many samples
+_ASIDE = Fraction(3, 70)
+
+
+def holds_in_degrees(sample: SampleInDegrees) -> None:
+    """The same of each coordinate."""
+    only_if(sample.is_turn(_IN_DEGREES) and sample.ordinary and not sample.step_map.implicit)
+    order = known(sample.proof.convergence_order)
+    beside = {name: x + _ASIDE / (k + 2) for k, (name, x) in enumerate(sample.start.items())}
+    for point in (sample.start, beside):
+        whole, half = (_gap(sample, {**point, "h": h}, order) for h in (_STEP, _STEP / 2))
+        with working_precision(64):
+            found = {
+                name: None if x.contains(0) or half[name].contains(0) else _power(x, half[name])
+                for name, x in whole.items()
+            }
+        _must_reach(found, order + 1)
+        if not _passes(found, order + 1):
+            return
+    raise Violation(f"the step's error has a higher order than {order + 1}, that proved")
+
+
+def _power(large: Ball, small: Ball) -> Ball:
+    return abs(large / small).log() / rational_ball(Fraction(2)).log()
+
+
+def _gap(sample: SampleInDegrees, start: Mapping[str, Fraction], order: int) -> dict[str, Ball]:
+    """Step minus flow in each coordinate."""
+    bits = _BITS_A_POWER * (order + 3) + _SPARE
+    after = several.ball_steps(sample.step_map, start, 1, bits)[-1]
+    flow = FlowInDegrees(sample.field, int(bits * _DIGITS_A_BIT))
+    arithmetic = flow.arithmetic
+    with silent_at(NoFlowError), arithmetic.context():
+        end = flow.advance(flow.state(start), arithmetic.number(start["h"]))
+    with working_precision(bits):
+        return {
+            name: after.point[name] - _with_error(arithmetic.exact(x), bits - _LOST)
+            for name, x in zip(sample.field.names, end, strict=False)
+        }

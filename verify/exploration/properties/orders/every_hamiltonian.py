@@ -2,16 +2,21 @@
 
 from functools import lru_cache
 
-from verify.exploration.property import Violation, only_if
+from verify.errors import LimitError
+from verify.exploration.degrees.sample import SampleInDegrees
+from verify.exploration.property import Violation, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.proof.every import prove_every
 from verify.proof.every_in_time import prove_every_in_time
 from verify.proof.every_proof import EveryProof
 from verify.proof.order_proof import Proof
 from verify.proof.potential import potential_of
+from verify.proof.symplectic.every import prove_every_in_degrees
+from verify.proof.symplectic.proof import SymplecticProof
 from verify.verdict import Verdict
 
 _MOST_ORDER = 4  # of a scheme that is proved for every H here
+_MOST_IN_DEGREES = 3  # whose proof for every H in 3 degrees takes seconds, once
 _IN = 3  # one in so many samples is asked whether its leading coefficient telescopes
 
 
@@ -46,3 +51,30 @@ def _contradiction(every: EveryProof, proof: Proof) -> str:
     if own is not None and agreed is not None and own < agreed:
         return f"the map agrees with the flow up to h^{own}, not h^{agreed}"
     return ""
+
+
+@lru_cache(maxsize=128)
+def _proved_in_degrees(scheme: str, degrees: int, timed: bool) -> SymplecticProof:
+    return prove_every_in_degrees(scheme, degrees, timed=timed)
+
+
+def holds_in_degrees(sample: SampleInDegrees) -> None:
+    """The same of S in place of ΔJ, and of det J − 1."""
+    scheme = sample.scheme
+    only_if(scheme.every_h is not None and scheme.order <= _MOST_IN_DEGREES and sample.ordinary)
+    with silent_at(LimitError):
+        every = _proved_in_degrees(scheme.name, sample.hamiltonian.degrees, sample.timed)
+    only_if(every.verdict is Verdict.PROVED)
+    proof = sample.proof
+    wrong = ""
+    if every.symplectic and proof.symplectic is False:
+        wrong = f"S has order {proof.order}"
+    elif every.order is not None and proof.order is not None and proof.order < every.order:
+        wrong = f"S has order {proof.order}, not {every.order}"
+    elif every.convergence_order is not None and proof.convergence_order is not None:
+        if proof.convergence_order < every.convergence_order:
+            wrong = f"the map agrees with the flow up to h^{proof.convergence_order}"
+    elif every.telescopes and proof.order == every.order and proof.telescopes is False:
+        wrong = "S does not begin with a Lie derivative"
+    if wrong:
+        raise Violation(f"{wrong}, against what is proved for every H")

@@ -1,9 +1,16 @@
 """A map with one term too many is refuted, at the very power of h where the term was planted."""
 
+from fractions import Fraction
+from typing import Any
+
 from verify.errors import InputError
+from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.property import Violation, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.proof.order import prove
+from verify.proof.symplectic.order import Claimed, prove_map
+from verify.schemes.degrees.canonical_map import CanonicalMap
+from verify.schemes.degrees.step_algebra import StepAlgebra
 from verify.schemes.step_map import Expanded, StepMap
 from verify.schemes.substep import Substep
 from verify.verdict import Verdict
@@ -40,3 +47,37 @@ def _planted(sample: Sample, power: int) -> StepMap:
         return field, p + q.shifted(power), q
 
     return StepMap(sample.hamiltonian, parts, expansion)
+
+
+def holds_in_degrees(sample: SampleInDegrees) -> None:
+    """With h^order f1 added to q1', f1 = −∂H/∂q1."""
+    order = sample.scheme.order
+    only_if(sample.is_turn(_IN) and sample.ordinary and not sample.step_map.implicit)
+    only_if(sample.proof.verdict is Verdict.PROVED)
+    field = sample.field
+    only_if(field.ring.vanishes(field.slopes[0]) is False)
+    claimed = Claimed(sample.scheme.name, order, sample.scheme.area_preserving)
+    with silent_at(InputError):
+        found = prove_map(_planted_in_degrees(sample.step_map, order), claimed)
+    if found.verdict is not Verdict.REFUTED:
+        raise Violation(f"with h^{order} f1 added to q1' it is {found.verdict.value}")
+    if found.convergence_order != order - 1:
+        told = f"agrees with the flow up to h^{found.convergence_order}"
+        raise Violation(f"with h^{order} f1 added to q1' it {told}, and truly up to h^{order - 1}")
+
+
+def _planted_in_degrees(true: CanonicalMap, power: int) -> CanonicalMap:
+    """The map with h^power f1 added to q1', f1 the slope of p1."""
+    step = true.step
+    assert step is not None  # noqa: S101 - the schemes of the catalogue have one
+    zero = Fraction(0)
+
+    def changes(algebra: StepAlgebra[Any]) -> list[Any]:
+        found, first = step(algebra), algebra.slopes([algebra.nothing] * algebra.size, zero, [0])
+        for _ in range(power):  # each is h times what was added before
+            first = [algebra.moved(algebra.nothing, [Fraction(1)], first)]
+        n = algebra.size // 2
+        found[n] = algebra.between(found[n], first[0], Fraction(1))
+        return found
+
+    return CanonicalMap(true.hamiltonian, true.field, changes)

@@ -9,6 +9,7 @@ from fractions import Fraction
 from functools import lru_cache
 from math import factorial
 
+import flint
 import sympy
 
 from verify.algebra.enclosure import enclose
@@ -17,9 +18,13 @@ from verify.arithmetic.arb import middle_and_radius, rational_ball
 from verify.arithmetic.exact import short
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, sharp, unlike
+from verify.exploration.degrees import ball_steps as several
+from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.property import Silent, Violation, known, only_if
 from verify.exploration.sample import Sample
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.schemes.degrees import map_in_degrees
 from verify.schemes.every_hamiltonian import RungeKutta, TaylorSeries
 
 _UNIT = 100  # coefficients are whole multiples of 1/100
@@ -80,3 +85,60 @@ def _product(coefficients: Sequence[Fraction], square: Fraction) -> Fraction:
         for first in (0, 1)
     )
     return even**2 - square * odd**2
+
+
+# -- in n degrees of freedom ----------------------------------------------------------------------
+
+_IN_DEGREES = 2  # one in so many samples
+
+
+def holds_in_degrees(sample: SampleInDegrees) -> None:
+    """J = R(hL) and S = JᵀΩJ − Ω exactly, z' = Lz the equations of motion."""
+    generic = sample.scheme.every_h
+    if not isinstance(generic, TaylorSeries | RungeKutta) or not sample.is_turn(_IN_DEGREES):
+        raise Silent
+    names = sample.hamiltonian.coordinates
+    form = _form(sample)
+    symbols = list(map(symbol, names))
+    quadratic = sympy.Add(
+        *(
+            sympy.Rational(form[a][b]) * x * y / 2
+            for a, x in enumerate(symbols)
+            for b, y in enumerate(symbols)
+        )
+    )
+    hamiltonian = Hamiltonian(quadratic)
+    only_if(hamiltonian.coordinates == names)
+    wanted = _stability_matrix(_stability_function(generic), form, sample.step_size)
+    step = map_in_degrees(sample.scheme, hamiltonian)
+    start = {name: x for name, x in sample.start.items() if name != "t"}
+    found = several.ball_steps(step, start, 1)[-1].sharp()
+    with working_precision(BITS):
+        if not several.overlap(found.own, wanted):
+            raise Violation(f"J is not R(hL) for Hess H = {[[short(x) for x in r] for r in form]}")
+
+
+def _form(sample: SampleInDegrees) -> list[list[Fraction]]:
+    """The Hessian of H at the initial value, rounded; Silent where it has no usual numbers."""
+    field, _ = canonical_field(sample.hamiltonian)
+    found = []
+    for a in field.gradient(field.energy):
+        values = [known(enclose(field.ring, x, sample.start, 128)) for x in field.gradient(a)]
+        only_if(all(abs(x) < 10**6 for x in values))
+        found.append([Fraction(round(middle_and_radius(x)[0] * _UNIT), _UNIT) for x in values])
+    return found
+
+
+def _stability_matrix(
+    coefficients: Sequence[Fraction], form: list[list[Fraction]], h: Fraction
+) -> several.Matrix:
+    """R(hL), where L has −∂²H/∂q∂z in its upper half and ∂²H/∂p∂z in its lower."""
+    n = len(form) // 2
+    slopes = [[-h * x for x in row] for row in form[n:]] + [[h * x for x in r] for r in form[:n]]
+    exact = flint.fmpq_mat([[flint.fmpq(x.numerator, x.denominator) for x in r] for r in slopes])
+    one = flint.fmpq_mat([[int(a == b) for b in range(2 * n)] for a in range(2 * n)])
+    total, power = exact * 0, one
+    for c in coefficients:
+        total, power = total + power * flint.fmpq(c.numerator, c.denominator), power * exact
+    with working_precision(BITS):
+        return several.Matrix(total)

@@ -3,6 +3,8 @@
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, ball_steps, stepped, unlike
+from verify.exploration.degrees import ball_steps as several
+from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
 from verify.proof.symmetry import by_series
@@ -23,3 +25,15 @@ def holds(sample: Sample) -> None:
     for name, ball, start in (("p", back.p, first.p), ("q", back.q, first.q)):
         if not ball.overlaps(start):
             raise Violation(f"{name} comes back as {unlike(ball, start)}")
+
+
+def holds_in_degrees(sample: SampleInDegrees) -> None:
+    """By balls alone."""
+    only_if(sample.scheme.symmetric and sample.brief)
+    first, last = several.ball_steps(sample.step_map, sample.start, 1)
+    with working_precision(BITS):
+        back = several.stepped(sample.step_map, last, rational_ball(-sample.step_size)).sharp()
+    for name in sample.point:
+        if not back.point[name].overlaps(first.point[name]):
+            told = unlike(back.point[name], first.point[name])
+            raise Violation(f"{name} comes back as {told}")

@@ -9,11 +9,17 @@ from fractions import Fraction
 
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.exact import decimal
-from verify.exploration.ball_steps import ball_steps, unlike
+from verify.arithmetic.flint_precision import working_precision
+from verify.exploration.ball_steps import BITS, ball_steps, unlike
+from verify.exploration.degrees import ball_steps as several
+from verify.exploration.degrees.differences import jacobian_of_run
+from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
 
 _DIGITS, _STEPS = 80, 2
+_BY_DIFFERENCES = 8  # one in so many samples of several degrees of freedom that solves equations
+_BITS_OF_DIFFERENCES = 700
 _SMALL = Fraction(1, 10**30)  # where H is steep, the entries lose twenty digits in a step
 
 
@@ -47,3 +53,29 @@ def _run(sample: Sample, digits: int) -> Mapping[str, Fraction]:
 
 def _size(found: Mapping[str, Fraction]) -> Fraction:
     return 1 + abs(found["p"]) + abs(found["q"])
+
+
+def holds_in_degrees(sample: SampleInDegrees) -> None:
+    """S ≡ 0 by the proof, and S of a step by balls; where equations are solved of the Jacobian of
+    two steps that differences of runs give."""
+    only_if(sample.scheme.area_preserving and sample.brief)
+    if sample.ordinary and sample.proof.symplectic is False:
+        raise Violation(f"the proof says that S has order {sample.proof.order}")
+    if sample.step_map.implicit:
+        _by_differences(sample)
+        return
+    after = several.ball_steps(sample.step_map, sample.start, 1)[-1].sharp()
+    with working_precision(BITS):
+        form = several.defect(after.own)
+    if not all(x.contains(0) for x in several.entries(form)):
+        raise Violation(f"S is not 0; its greatest |entry| is {several.largest(form).str(6)}")
+
+
+def _by_differences(sample: SampleInDegrees) -> None:
+    only_if(sample.is_turn(_BY_DIFFERENCES) and sample.short)
+    found, known = jacobian_of_run(sample)
+    with working_precision(_BITS_OF_DIFFERENCES):
+        largest = several.largest(several.defect(found))
+        wrong = largest > known
+    if wrong:
+        raise Violation(f"W is {largest.str(6)} after {_STEPS} steps, by differences of runs")

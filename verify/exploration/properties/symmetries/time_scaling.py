@@ -6,6 +6,9 @@ c·H is at t/c.
 
 from fractions import Fraction
 
+from verify.exploration.degrees import equivariance as several
+from verify.exploration.degrees.sample import SampleInDegrees
+from verify.exploration.degrees.symplectic_matrices import identity
 from verify.exploration.equivariance import Change, must_be_same_step
 from verify.exploration.property import only_if
 from verify.exploration.sample import Sample
@@ -17,3 +20,11 @@ _FACTOR = Fraction(-2, 3)
 def holds(sample: Sample) -> None:
     only_if(sample.is_turn(_IN))
     must_be_same_step(sample, Change(factor=_FACTOR, pace=1 / _FACTOR))
+
+
+def holds_in_degrees(sample: SampleInDegrees) -> None:
+    """The same for S."""
+    only_if(sample.is_turn(_IN))
+    same = identity(2 * sample.hamiltonian.degrees)
+    change = several.Change(same, factor=_FACTOR, pace=1 / _FACTOR)
+    several.must_be_same_steps(sample, change)

@@ -1,0 +1,125 @@
+"""Steps in other coordinates, or in another time, are the same steps, in n degrees of freedom.
+
+As `verify.exploration.equivariance` in the plane. Where MᵀΩM = cΩ and K = c·H∘M⁻¹, M carries the
+flow of H to that of K; of a scheme that knows of no coordinates it carries each step along, too:
+Φ_K∘M = M∘Φ_H, J becomes M J M⁻¹, and with A = M⁻¹ the defect S becomes c AᵀSA.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+
+import flint
+import sympy
+
+from verify.algebra.formula import symbol
+from verify.arithmetic.flint_precision import working_precision
+from verify.exploration.ball_steps import BITS, unlike
+from verify.exploration.degrees.ball_steps import (
+    BallState,
+    Matrix,
+    ball_steps,
+    defect,
+    omega,
+    overlap,
+)
+from verify.exploration.degrees.sample import SampleInDegrees
+from verify.exploration.degrees.symplectic_matrices import Exact, exact
+from verify.exploration.property import Violation, only_if
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.schemes.degrees import map_in_degrees
+from verify.schemes.every_hamiltonian import RungeKutta, TaylorSeries
+
+_MOST_STEPS = 3
+
+
+@dataclass(frozen=True)
+class Change:
+    """K = `factor` · H in the coordinates M z, at the time `pace` · t + `shift`; MᵀΩM = cΩ with
+    c = `factor` · `pace`."""
+
+    matrix: Exact
+    factor: Fraction = Fraction(1)
+    pace: Fraction = Fraction(1)
+    shift: Fraction = Fraction(0)
+
+    @cached_property
+    def inverse(self) -> Exact:
+        """M⁻¹."""
+        return self.matrix.inv()
+
+
+def knows_no_coordinates(sample: SampleInDegrees) -> bool:
+    """Whether the scheme treats all coordinates alike, so that each linear map may be asked for."""
+    return isinstance(sample.scheme.every_h, TaylorSeries | RungeKutta)
+
+
+def transformed_hamiltonian(sample: SampleInDegrees, change: Change) -> Hamiltonian:
+    """K(z, t) = factor · H(M⁻¹ z, (t − shift)/pace)."""
+    names = sample.hamiltonian.coordinates
+    symbols = [symbol(name) for name in names]
+    put = {
+        x: sympy.Add(*(_rational(change.inverse[a, b]) * y for b, y in enumerate(symbols)))
+        for a, x in enumerate(symbols)
+    }
+    t = symbol("t")
+    put[t] = (t - sympy.Rational(change.shift)) / sympy.Rational(change.pace)
+    expression = sample.hamiltonian.exact.xreplace(put)
+    return Hamiltonian(sympy.Rational(change.factor) * expression)
+
+
+def must_be_same_steps(sample: SampleInDegrees, change: Change) -> None:
+    """Violation where the run of K from M z is not the image of that of H, or S not that of S;
+    Silent where one is not known."""
+    only_if(sample.brief and sample.scheme.explicit)
+    steps = min(sample.steps, _MOST_STEPS)
+    ours = [state.sharp() for state in ball_steps(sample.step_map, sample.start, steps)]
+    other = SampleInDegrees(
+        hamiltonian=transformed_hamiltonian(sample, change),
+        scheme=sample.scheme,
+        step_size=sample.step_size * change.pace,
+        steps=steps,
+        t0=sample.t0 * change.pace + change.shift,
+        scene=sample.scene,
+        **_halves(moved(change, sample.point)),
+    )
+    # A part of H may have vanished with a coordinate: K is of fewer degrees then.
+    only_if(other.hamiltonian.coordinates == sample.hamiltonian.coordinates and other.brief)
+    step = map_in_degrees(other.scheme, other.hamiltonian)
+    theirs = [state.sharp() for state in ball_steps(step, other.start, steps)]
+    with working_precision(BITS):
+        for mine, found in zip(ours[1:], theirs[1:], strict=True):
+            _must_be_image(change, sample.hamiltonian.coordinates, mine, found)
+
+
+def moved(change: Change, point: Mapping[str, Fraction]) -> list[Fraction]:
+    """M z, of a point's coordinates in their order."""
+    column = change.matrix * Exact([[exact(x)] for x in point.values()])
+    return [Fraction(int(x.p), int(x.q)) for x in column.entries()]
+
+
+def _must_be_image(
+    change: Change, names: tuple[str, ...], mine: BallState, found: BallState
+) -> None:
+    there, back = Matrix(change.matrix), Matrix(change.inverse)
+    wanted = there * Matrix([[mine.point[name]] for name in names])
+    for k, name in enumerate(names):
+        if not found.point[name].overlaps(wanted[k, 0]):
+            raise Violation(f"{name}' is {unlike(found.point[name], wanted[k, 0])}")
+    if not overlap(found.matrix, there * mine.matrix * back):
+        raise Violation("J is not M J M⁻¹")
+    # Of c AᵀSA, A = M⁻¹, c by AᵀΩA = Ω/c.
+    canonical = omega(len(names))
+    scale = (back.transpose() * canonical * back)[0, len(names) // 2]
+    if not overlap(defect(found.own) * scale, back.transpose() * defect(mine.own) * back):
+        raise Violation("S is not c AᵀSA, A = M⁻¹")
+
+
+def _halves(values: list[Fraction]) -> dict[str, tuple[Fraction, ...]]:
+    half = len(values) // 2
+    return {"p": tuple(values[:half]), "q": tuple(values[half:])}
+
+
+def _rational(x: flint.fmpq) -> sympy.Rational:
+    return sympy.Rational(int(x.p), int(x.q))

@@ -1,0 +1,1 @@
+"""Properties that only n degrees of freedom have."""
