@@ -19,9 +19,9 @@ from verify.execution.executors import ANYWHERE, Placement
 from verify.execution.keeping import name_of
 from verify.execution.plan import Plan
 from verify.exploration.claims import claim_property
-from verify.exploration.degrees.sample import sample_of
 from verify.exploration.property import Property
 from verify.exploration.property_checks import outcome, properties_of
+from verify.exploration.sample_in_degrees import sample_of
 from verify.exploration.sample_space import SampleSpace
 from verify.exploration.scenes import scenes_of
 from verify.exploration.tasks import ExploreTask, ShrinkTask

@@ -6,9 +6,9 @@ from collections.abc import Iterable, Sequence
 from verify.claims.scenes import slug
 from verify.exploration import properties as catalogue
 from verify.exploration.claims import claim_property
-from verify.exploration.degrees.sample import SampleInDegrees, sample_of
 from verify.exploration.property import Property, Violation
 from verify.exploration.sample import Sample
+from verify.exploration.sample_in_degrees import SampleInDegrees, sample_of
 from verify.exploration.sample_space import SampleSpace
 from verify.exploration.scenes import sample_scene, simplest
 from verify.scenes.results.exploration import ExploreResult, Failure, ShrunkResult

@@ -1,1 +1,1 @@
-"""Drawn scenes in n degrees of freedom, and steps of their maps in ball arithmetic."""
+"""Steps in n degrees of freedom in ball arithmetic, and in other coordinates: oracles."""

@@ -9,7 +9,7 @@ from verify.arithmetic.arb import Ball, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.degrees.ball_steps import Matrix
 from verify.exploration.degrees.mpfr_runs import RunInDegrees
-from verify.exploration.degrees.sample import SampleInDegrees
+from verify.exploration.sample_in_degrees import SampleInDegrees
 
 _DIGITS, _BITS = 160, 700
 _APART = Fraction(1, 10**50)  # the derivatives' error is its square, times the third derivatives

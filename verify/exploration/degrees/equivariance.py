@@ -24,9 +24,9 @@ from verify.exploration.degrees.ball_steps import (
     omega,
     overlap,
 )
-from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.degrees.symplectic_matrices import Exact, exact
 from verify.exploration.property import Violation, only_if
+from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.degrees import map_in_degrees
 from verify.schemes.every_hamiltonian import RungeKutta, TaylorSeries

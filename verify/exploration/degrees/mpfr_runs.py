@@ -7,8 +7,8 @@ from fractions import Fraction
 
 from verify import arithmetic as number_systems
 from verify.arithmetic.exact import decimal
-from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.property import Violation, only_if
+from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
 

@@ -12,9 +12,9 @@ from verify.exploration.degrees.equivariance import (
     transformed_hamiltonian,
 )
 from verify.exploration.degrees.mpfr_runs import RunInDegrees, must_agree
-from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.degrees.symplectic_matrices import cycled
 from verify.exploration.property import only_if
+from verify.exploration.sample_in_degrees import SampleInDegrees
 
 _IN, _OF_EQUATIONS = 2, 4  # one in so many samples
 

@@ -16,8 +16,8 @@ from verify.exploration.ball_steps import BITS, BallState, unlike
 from verify.exploration.ball_steps import ball_steps as steps_in_plane
 from verify.exploration.degrees import ball_steps as several
 from verify.exploration.degrees.mpfr_runs import RunInDegrees, must_agree
-from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.property import Violation, only_if
+from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.degrees import map_in_degrees
 

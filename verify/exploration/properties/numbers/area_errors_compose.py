@@ -5,9 +5,9 @@ from fractions import Fraction
 
 from verify.arithmetic.exact import decimal
 from verify.exploration.any_sample import AnySample
-from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
+from verify.exploration.sample_in_degrees import SampleInDegrees
 
 _DIGITS = 50
 _IN_DEGREES = 4  # one in so many samples in n degrees of freedom

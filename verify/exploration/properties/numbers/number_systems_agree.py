@@ -16,9 +16,9 @@ from verify.arithmetic.arb import Ball, around, rational_ball, shown
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, BallState, ball_steps
 from verify.exploration.degrees import ball_steps as several
-from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
+from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.runs.run import run
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.run import RunResult

@@ -6,9 +6,9 @@ from verify.algebra.enclosure import enclose
 from verify.algebra.formula import to_text
 from verify.arithmetic.arb import shown
 from verify.exploration.ball_steps import BITS
-from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.property import Violation
 from verify.exploration.sample import Sample
+from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.scene import Scene, scene_from

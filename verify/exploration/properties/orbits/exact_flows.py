@@ -12,9 +12,9 @@ from verify.algebra.enclosure import enclose
 from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.arb import Ball, rational_ball, shown
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.property import Silent, Violation, known, only_if, silent_at
 from verify.exploration.sample import Sample
+from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.flows.degrees.extrapolation import FlowInDegrees
 from verify.flows.extrapolation import Flow, NoFlowError
 from verify.proof.potential import potential_of

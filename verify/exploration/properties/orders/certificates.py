@@ -9,9 +9,9 @@ from collections.abc import Iterator
 from typing import Any
 
 from verify.errors import InputError
-from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.property import Violation, only_if, silent_at
 from verify.exploration.sample import Sample
+from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.proof.certificates.checker import check
 from verify.proof.certificates.one import of_one
 from verify.proof.certificates.several import of_one_in_degrees

@@ -3,9 +3,9 @@
 Its ΔJ then has at least one order more than the scheme, as the exact flow has det J = 1.
 """
 
-from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
+from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.verdict import Verdict
 
 

@@ -12,9 +12,9 @@ from verify.arithmetic.arb import Ball, around, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import ball_steps
 from verify.exploration.degrees import ball_steps as several
-from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.property import Violation, known, only_if, silent_at
 from verify.exploration.sample import Sample
+from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.flows.degrees.extrapolation import FlowInDegrees
 from verify.flows.extrapolation import Flow, NoFlowError
 

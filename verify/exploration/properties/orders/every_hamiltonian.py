@@ -3,9 +3,9 @@
 from functools import lru_cache
 
 from verify.errors import LimitError
-from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.property import Violation, only_if, silent_at
 from verify.exploration.sample import Sample
+from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.proof.every import prove_every
 from verify.proof.every_in_time import prove_every_in_time
 from verify.proof.every_proof import EveryProof

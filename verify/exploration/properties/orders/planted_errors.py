@@ -4,9 +4,9 @@ from fractions import Fraction
 from typing import Any
 
 from verify.errors import InputError
-from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.property import Violation, only_if, silent_at
 from verify.exploration.sample import Sample
+from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.proof.order import prove
 from verify.proof.symplectic.order import Claimed, prove_map
 from verify.schemes.degrees.canonical_map import CanonicalMap

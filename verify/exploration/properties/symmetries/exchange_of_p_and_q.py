@@ -6,11 +6,11 @@ Asked of schemes that treat p and q alike.
 from fractions import Fraction
 
 from verify.exploration.degrees import equivariance as several
-from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.degrees.symplectic_matrices import exchanged
 from verify.exploration.equivariance import Change, knows_no_coordinates, must_be_same_step
 from verify.exploration.property import only_if
 from verify.exploration.sample import Sample
+from verify.exploration.sample_in_degrees import SampleInDegrees
 
 _IN = 2  # one in so many samples
 _EXCHANGED = (Fraction(0), Fraction(1)), (Fraction(1), Fraction(0))

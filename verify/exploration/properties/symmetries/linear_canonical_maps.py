@@ -6,11 +6,11 @@ Schemes that step p and q by turns are asked for M that scales p and q only.
 from fractions import Fraction
 
 from verify.exploration.degrees import equivariance as several
-from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.degrees.symplectic_matrices import of_places, symplectic
 from verify.exploration.equivariance import Change, knows_no_coordinates, must_be_same_step
 from verify.exploration.property import only_if
 from verify.exploration.sample import Sample
+from verify.exploration.sample_in_degrees import SampleInDegrees
 
 _IN, _AFTER = 2, 1  # one in so many samples, and not those whose time is scaled
 _SCALED = (Fraction(3, 2), Fraction(0)), (Fraction(0), Fraction(2, 3))

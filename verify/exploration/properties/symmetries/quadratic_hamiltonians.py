@@ -19,9 +19,9 @@ from verify.arithmetic.exact import short
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, sharp, unlike
 from verify.exploration.degrees import ball_steps as several
-from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.property import Silent, Violation, known, only_if
 from verify.exploration.sample import Sample
+from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.degrees import map_in_degrees

@@ -4,9 +4,9 @@ from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, ball_steps, stepped, unlike
 from verify.exploration.degrees import ball_steps as several
-from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
+from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.proof.symmetry import by_series
 from verify.verdict import Verdict
 

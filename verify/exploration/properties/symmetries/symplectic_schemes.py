@@ -13,9 +13,9 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, ball_steps, unlike
 from verify.exploration.degrees import ball_steps as several
 from verify.exploration.degrees.differences import jacobian_of_run
-from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
+from verify.exploration.sample_in_degrees import SampleInDegrees
 
 _DIGITS, _STEPS = 80, 2
 _BY_DIFFERENCES = 8  # one in so many samples of several degrees of freedom that solves equations

@@ -7,11 +7,11 @@ c·H is at t/c.
 from fractions import Fraction
 
 from verify.exploration.degrees import equivariance as several
-from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.degrees.symplectic_matrices import identity
 from verify.exploration.equivariance import Change, must_be_same_step
 from verify.exploration.property import only_if
 from verify.exploration.sample import Sample
+from verify.exploration.sample_in_degrees import SampleInDegrees
 
 _IN = 2  # one in so many samples
 _FACTOR = Fraction(-2, 3)

@@ -14,9 +14,9 @@ from verify.arithmetic.arb import Ball, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.ball_steps import BITS, ball_steps, sharp, unlike
 from verify.exploration.degrees import ball_steps as several
-from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.property import Silent, Violation, known, only_if
 from verify.exploration.sample import Sample
+from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.schemes.every_hamiltonian import RungeKutta
 from verify.schemes.splitting_conditions import Splitting
 

@@ -3,11 +3,11 @@
 from fractions import Fraction
 
 from verify.exploration.degrees import equivariance as several
-from verify.exploration.degrees.sample import SampleInDegrees
 from verify.exploration.degrees.symplectic_matrices import identity
 from verify.exploration.equivariance import Change, must_be_same_step
 from verify.exploration.property import only_if
 from verify.exploration.sample import Sample
+from verify.exploration.sample_in_degrees import SampleInDegrees
 
 _IN, _AFTER = 2, 1  # one in so many samples, and not those whose time is scaled
 _SHIFT = Fraction(-5, 3)
