@@ -46,6 +46,14 @@ _SEEDS = 2**32
     help="polynomial, trigonometric, exponential or rational H only; repeatable.",
 )
 @click.option("--degree", type=int, default=6, metavar="D", help="Of polynomials, at most.")
+@click.option(
+    "--degrees",
+    "degrees_of_freedom",
+    type=int,
+    default=1,
+    metavar="N",
+    help="Of freedom, 1 … 8: H(p1 … pN, q1 … qN).",
+)
 @click.option("--time-dependent", is_flag=True, help="H(p, q, t), from a drawn t₀ on.")
 @click.option(
     "--maximise",
@@ -72,6 +80,7 @@ def explore(
     schemes: tuple[str, ...],
     kinds: tuple[str, ...],
     degree: int,
+    degrees_of_freedom: int,
     time_dependent: bool,
     maximise: str | None,
     steps: int | None,
@@ -109,6 +118,7 @@ def explore(
         degree=degree,
         schemes=schemes or _spoken_of(looks),
         time_dependent=time_dependent,
+        degrees=degrees_of_freedom,
     )
     if maximise is not None:
         if claims or names:

@@ -63,6 +63,8 @@ def _command(asked: "Hunt") -> str:
     own += [f"--kind {name}" for name in asked.drawn.kinds]
     if asked.drawn.degree != type(asked.drawn)().degree:
         own.append(f"--degree {asked.drawn.degree}")
+    if asked.drawn.degrees > 1:
+        own.append(f"--degrees {asked.drawn.degrees}")
     if asked.drawn.time_dependent:
         own.append("--time-dependent")
     return f"verify explore {' '.join(own)}"

@@ -6,10 +6,10 @@ are left out, each with the reason.
 """
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from typing import Any
+from typing import Any, TypeVar
 
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
@@ -21,8 +21,10 @@ from verify.errors import InputError
 from verify.execution.execute import Store, execute
 from verify.execution.executors import THIS_PROCESS
 from verify.execution.plan import Plan
+from verify.exploration.any_sample import AnySample
 from verify.exploration.property import Property, Violation, only_if, silent_at
 from verify.exploration.sample import Sample
+from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.prose import read_prose
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.scene import Scene
@@ -30,6 +32,7 @@ from verify.schemes import get
 from verify.verdict import Verdict
 
 _NAME = "drawn"
+S = TypeVar("S", Sample, SampleInDegrees)
 
 
 def claims_left_out(claims: Sequence[Claim]) -> dict[str, list[str]]:
@@ -69,13 +72,25 @@ def claim_property(text: str) -> Property:
     sentence = (
         str(read_prose(claim.statement)) or f"{claim.kind} of {claim.scheme}, as {claim.id} says"
     )
-    return Property(claim.id, sentence, lambda sample: _check(claim, sample), claim.scheme)
+    return Property(
+        claim.id,
+        sentence,
+        lambda sample: _check(claim, sample, sample.field.separable),
+        claim.scheme,
+        lambda sample: _check_in_degrees(claim, sample),
+    )
 
 
-def _check(claim: Claim, sample: Sample) -> None:
+def _check_in_degrees(claim: Claim, sample: SampleInDegrees) -> None:
+    """Of claims that algebra decides; a run's are of the plane."""
+    only_if(not claim.run_keys and sample.brief)
+    _check(claim, sample, lambda: sample.field.separable)
+
+
+def _check(claim: Claim, sample: S, is_separable: Callable[[], bool]) -> None:
     """Raises Violation where the claim is refuted for the sample's H and run."""
     separable = isinstance(claim, QuantifiedClaim) and claim.of_separable
-    only_if(not separable or sample.field.separable())
+    only_if(not separable or is_separable())
     asked = _of_scheme(sample, claim.scheme)
     only_if(asked.ordinary)
     with silent_at(InputError):  # too long a formula, or an end of the run that cannot be had
@@ -85,7 +100,7 @@ def _check(claim: Claim, sample: Sample) -> None:
     only_if(found.verdict is not Verdict.UNDECIDED)
 
 
-def _of_scheme(sample: Sample, name: str) -> Sample:
+def _of_scheme(sample: S, name: str) -> S:
     """The sample with that scheme; Silent where the scheme does not take its H."""
     scene = sample.scene.model_copy(update={"schemes": (name,), "name": _NAME})
     asked = replace(sample, scheme=get(name), scene=scene)
@@ -94,7 +109,7 @@ def _of_scheme(sample: Sample, name: str) -> Sample:
     return asked
 
 
-def _verdict_on(claim: Claim, sample: Sample) -> ClaimResult:
+def _verdict_on(claim: Claim, sample: AnySample) -> ClaimResult:
     """The claim's result for the sample."""
     claim = claim.of_one(sample.hamiltonian).model_copy(update={"scene": _NAME})
     scenes = {_NAME: _scene(claim, sample)}
@@ -104,10 +119,11 @@ def _verdict_on(claim: Claim, sample: Sample) -> ClaimResult:
     return claim.judge(Findings(scenes, {**known, **results}))
 
 
-def _scene(claim: Claim, sample: Sample) -> Scene:
+def _scene(claim: Claim, sample: AnySample) -> Scene:
     """The sample's scene, with the runs that the claim speaks of."""
     scene = sample.scene
     if not claim.run_keys:
         return scene
-    runs = {"q": sample.q, "p": sample.p, **claim.drawn_runs(sample.step_size, sample.steps)}
+    start = {name: sample.run_arguments[name] for name in ("q", "p")}
+    runs = {**start, **claim.drawn_runs(sample.step_size, sample.steps)}
     return scene_for(claim, {"scene": _NAME}, runs, lambda _: scene)[1]

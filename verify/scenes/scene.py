@@ -178,7 +178,7 @@ class Scene(Frozen):
     def _check_no_plane(self, exact: Hamiltonian) -> None:
         """InputError where something of the plane is asked for."""
         own = {name for name in Scene.model_fields if name not in _IDENTITY and getattr(self, name)}
-        asked = own - {"name", "every_hamiltonian", "grid", "series"}
+        asked = own - {"name", "every_hamiltonian", "grid", "series", "reference"}
         asked |= {f"grid.{name}" for name in ("separate", "growth") if getattr(self.grid, name, 0)}
         if asked:
             names = ", ".join(exact.coordinates)

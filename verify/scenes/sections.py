@@ -35,6 +35,7 @@ from verify.scenes.values import (
     Digits,
     InitialValue,
     SchemeName,
+    Start,
     StepSize,
     Time,
     distinct,
@@ -99,10 +100,11 @@ class Reference(Section):
 
     step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=1, max_length=1000)]
     """The step sizes h, each once."""
-    initial_values: Annotated[tuple[InitialValue, ...], Field(min_length=1, max_length=1000)]
-    """Where the runs start, each once."""
+    initial_values: Annotated[tuple[Start, ...], Field(min_length=1, max_length=1000)]
+    """Where the runs start, each once; in n degrees of freedom with lists."""
     steps: Annotated[tuple[Chosen, ...], Field(min_length=1, max_length=1000)]
-    """After how many steps the state, ΔJ, MSE and Λ are given; ascending."""
+    """After how many steps the state, ΔJ, MSE and Λ are given; ascending. In n degrees of freedom
+    the state, H, S, W and Λ."""
     digits: Annotated[int, Field(ge=1, le=_MOST_DIGITS, strict=True)] = 30
     """Significant digits of every number, correctly rounded."""
     schemes: Annotated[tuple[SchemeName, ...], Field(max_length=100)] = ()

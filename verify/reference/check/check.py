@@ -30,12 +30,15 @@ from verify.formats import check_format
 from verify.reference.check import consistency
 from verify.reference.check.difference import Findings, Place
 from verify.reference.check.recompute import recomputed
+from verify.reference.check.recompute_in_degrees import recomputed_in_degrees
 from verify.reference.make.models import DATA_FORMAT, MANIFEST_FORMAT, Data, Manifest
+from verify.reference.make.models_in_degrees import DATA_IN_DEGREES_FORMAT, DataInDegrees
 from verify.reference.make.reading import json_of, rows_of
 from verify.reference.make.scene_plan import size_of
 from verify.reference.make.writing import (
     MANIFEST,
     SCHEMAS,
+    AnyData,
     digest,
     json_text,
     listed,
@@ -46,8 +49,11 @@ from verify.reference.make.writing import (
 from verify.scenes.scene import Scene, scene_from_toml
 
 M = TypeVar("M", bound=BaseModel)
-Unit = tuple[Data, str, str, int]  # what `recomputed` takes
+OF_PLANE: tuple[type[AnyData], str] = Data, DATA_FORMAT
+OF_SEVERAL: tuple[type[AnyData], str] = DataInDegrees, DATA_IN_DEGREES_FORMAT
+Unit = tuple[AnyData, str, str, int]  # what `recomputed` takes
 _MOST_BYTES_OF_ALL = 8 * MOST_BYTES  # of the files that are listed; they are held in memory
+_HEAD = 100  # bytes of a file, in which its format stands
 _WORTH_A_POOL = 150  # recomputations, below which starting workers costs more than it gains
 _VERSION = re.compile(r"[0-9]+(\.[0-9a-z+]+)*")
 
@@ -89,7 +95,7 @@ def check(
     if found.differences:  # what is asked for may not even be known
         return found
     chosen = _affordable(_chosen(units, share, seed), most_steps, found)
-    calls = [FunctionCall(str(k), recomputed, unit) for k, unit in enumerate(chosen)]
+    calls = [FunctionCall(str(k), _again(unit), unit) for k, unit in enumerate(chosen)]
     parts: dict[str, Findings] = {}
     few = where == ANYWHERE and len(calls) < _WORTH_A_POOL
     with open_place(THIS_PROCESS if few else where, [recomputed.__module__]) as place:
@@ -100,6 +106,11 @@ def check(
     for call in calls:  # in the order of the files, whoever was first
         found.add(parts[call.name])
     return found
+
+
+def _again(unit: Unit) -> Callable[..., Findings]:
+    """What computes it again."""
+    return recomputed_in_degrees if isinstance(unit[0], DataInDegrees) else recomputed
 
 
 def _chosen(units: Sequence[Unit], share: float, seed: int) -> list[Unit]:
@@ -129,7 +140,7 @@ def _affordable(units: Sequence[Unit], most_steps: int | None, found: Checked) -
 # -- by itself ------------------------------------------------------------------------------------
 
 
-def _by_itself(folder: Path, own: Path | None, found: Checked) -> Iterator[tuple[Data, str]]:
+def _by_itself(folder: Path, own: Path | None, found: Checked) -> Iterator[tuple[AnyData, str]]:
     if not folder.is_dir():
         raise InputError(
             "DIR", str(folder), "is no folder; give one that `verify reference make` wrote"
@@ -142,10 +153,13 @@ def _by_itself(folder: Path, own: Path | None, found: Checked) -> Iterator[tuple
         contents[name] = read_bytes(folder / name)
         if sum(map(len, contents.values())) > _MOST_BYTES_OF_ALL:
             raise InputError("DIR", str(folder), f"has more than {_MOST_BYTES_OF_ALL} bytes")
-    read = {}
+    read: dict[str, AnyData | None] = {}
     for name, content in contents.items():  # all are read before one is held against another
         if name.endswith(".json") and name not in SCHEMAS:
-            read[name] = _model(Data, DATA_FORMAT, content, name, found)
+            # A key that comes first; where it does not, the file is none of ours.
+            several = DATA_IN_DEGREES_FORMAT.encode() in content[:_HEAD]
+            model, form = OF_SEVERAL if several else OF_PLANE
+            read[name] = _model(model, form, content, name, found)
         elif name.endswith(".csv"):
             rows_of(content, name)
     for each in manifest.files:
@@ -168,8 +182,8 @@ def _by_itself(folder: Path, own: Path | None, found: Checked) -> Iterator[tuple
 
 
 def _of_scene(
-    data: Data, file: str, scene: Scene, contents: dict[str, bytes], found: Checked
-) -> Iterator[tuple[Data, str]]:
+    data: AnyData, file: str, scene: Scene, contents: dict[str, bytes], found: Checked
+) -> Iterator[tuple[AnyData, str]]:
     consistency.of_data(data, scene, Place(found, file))
     for name, rows in tables(data).items():
         content = contents.get(f"{name}.csv")
@@ -272,7 +286,8 @@ def _other_command(manifest: Manifest, scenes: dict[str, Scene]) -> str | None:
 
 def _complete(manifest: Manifest, scenes: dict[str, Scene], found: Checked) -> None:
     """Whether each scene has its files, and each file its scene."""
-    wanted = names_of(scenes, parquet="--parquet" in manifest.command.split())
+    planar = {name: scene.exact_hamiltonian().planar for name, scene in scenes.items()}
+    wanted = names_of(planar, parquet="--parquet" in manifest.command.split())
     names = [each.name for each in manifest.files]
     one_each = len(scenes) == len(manifest.scenes)
     Place(found, MANIFEST, "scenes").must(one_each, "", "one of each name", "two")

@@ -7,7 +7,7 @@ since the same data always give the same bytes, every file follows from its scen
 
 import ast
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from itertools import zip_longest
 from typing import Any
@@ -17,6 +17,7 @@ from verify.arithmetic.exact import magnitude, text
 from verify.errors import InputError
 from verify.files import text_of
 from verify.reference.check.difference import Place
+from verify.reference.make.cells import Row
 from verify.reference.make.correct_rounding import correctly_rounded
 from verify.reference.make.models import (
     Data,
@@ -27,20 +28,31 @@ from verify.reference.make.models import (
     RunInTime,
     values_of,
 )
+from verify.reference.make.models_in_degrees import (
+    AFTER_A_STEP,
+    MAY_LACK,
+    DataInDegrees,
+    FlowInDegrees,
+    RunInDegrees,
+    values_in_degrees,
+)
 from verify.reference.make.reading import rows_of
 from verify.reference.make.scene_plan import orbit_tasks, proof_tasks, solution_tasks
-from verify.reference.make.writing import Row, csv_text
+from verify.reference.make.tables_in_degrees import state_columns
+from verify.reference.make.writing import AnyData, csv_text
 from verify.scenes.results.reference import FlowPoint, OrbitPoint, Rounded
+from verify.scenes.results.reference_in_degrees import FlowPointInDegrees, OrbitPointInDegrees
 from verify.scenes.scene import Scene
 
 # A number's text is looked at as a text: as a rational, 1e+999999999 would fill all memory.
+ENTRY = re.compile(r"d([pq][0-9]+)∧d([pq][0-9]+)")
 _NUMBER = re.compile(r"-?([1-9](?:\.[0-9]+)?)e([+-][0-9]{2,9})")
 
 
 # -- one scene's data -----------------------------------------------------------------------------
 
 
-def of_data(data: Data, scene: Scene, file: Place) -> None:
+def of_data(data: AnyData, scene: Scene, file: Place) -> None:
     """What in the data is not what the scene asks for, or is not printed as it must be.
 
     The rows are looked at only where their inputs are those of the scene, and so of bounded size.
@@ -49,17 +61,23 @@ def of_data(data: Data, scene: Scene, file: Place) -> None:
     _inputs(data, scene, file)
     if len(file.findings.differences) > before:
         return
+    if isinstance(data, DataInDegrees):
+        rows_in_degrees(data, file)
+        return
     for proof in data.proofs:
         _proof(data, proof, file.at(f"proof of {proof.scheme}"))
     tables: tuple[Run | Flow, ...] = (*data.runs, *data.flow)
     for of in tables:
         for row in of.rows:
-            _row(of, row, file.at(f"{of.label}, step {row.step}"))
+            start = {name: of.start[name] for name in ("p", "q")}
+            at = file.at(f"{of.label}, step {row.step}")
+            of_row(row, values_of(row), start, of.digits, at)
 
 
-def _inputs(data: Data, scene: Scene, file: Place) -> None:
+def _inputs(data: AnyData, scene: Scene, file: Place) -> None:
     """Names and inputs, against those of the scene."""
-    written = scene.exact_hamiltonian().texts
+    exact = scene.exact_hamiltonian()
+    written = exact.texts | ({} if exact.planar else {"degrees": exact.degrees})
     wanted: dict[str, Any] = {"name": scene.name, **written}
     wanted["proofs"] = [task.scheme for task in proof_tasks(scene)]
     wanted["runs"] = [(t.scheme, *t.inputs.values(), t.steps) for t in orbit_tasks(scene)]
@@ -67,7 +85,7 @@ def _inputs(data: Data, scene: Scene, file: Place) -> None:
         (*t.inputs.values(), tuple((n, text(n * t.step_size)) for n in t.steps))
         for t in solution_tasks(scene)
     ]
-    found: dict[str, Any] = {name: getattr(data, name) for name in ("name", *written)}
+    found: dict[str, Any] = {name: getattr(data, name, None) for name in ("name", *written)}
     found["proofs"] = [proof.scheme for proof in data.proofs]
     found["runs"] = [(r.scheme, *_given(r), tuple(x.step for x in r.rows)) for r in data.runs]
     found["flow"] = [(*_given(f), tuple((x.step, x.time) for x in f.rows)) for f in data.flow]
@@ -81,8 +99,10 @@ def _inputs(data: Data, scene: Scene, file: Place) -> None:
                 break
 
 
-def _given(of: Run | Flow) -> tuple[str | int, ...]:
+def _given(of: Run | Flow | RunInDegrees | FlowInDegrees) -> tuple[Any, ...]:
     """Its inputs, in the order of a task's."""
+    if isinstance(of, RunInDegrees | FlowInDegrees):
+        return of.step_size, of.q, of.p, of.t0, of.digits
     times = (of.t0,) if isinstance(of, RunInTime | FlowInTime) else ()
     return of.step_size, of.q, of.p, *times, of.digits
 
@@ -94,44 +114,84 @@ def _proof(data: Data, proof: Proof, row: Place) -> None:
     row.must(zero or not preserving, "area_preserving", "no order, and leading 0", found)
     ordered = preserving is not False or proof.order is not None
     row.must(ordered, "order", "a number, since ΔJ is not 0", "null")
+    time = ["t"] if data.timed else []
+    of_formula(proof.leading, ["p", "q", *time, *data.parameters], "leading", row)
+
+
+def of_formula(formula: str, names: Sequence[str], column: str, row: Place) -> None:
+    """A formula in these names that is not one, or not written as it must be."""
     try:
-        time = ["t"] if data.timed else []
-        parse(proof.leading, ["p", "q", *time, *data.parameters])
-        tight = ast.unparse(ast.parse(proof.leading, mode="eval")).replace(" ", "")
+        parse(formula, names)
+        tight = ast.unparse(ast.parse(formula, mode="eval")).replace(" ", "")
     except InputError as error:
-        row.differs("leading", f"a formula ({error.problem})", proof.leading)
+        row.differs(column, f"a formula ({error.problem})", formula)
         return
-    spaced = re.sub(r" [+-] ", "", proof.leading)  # the only place where a formula has spaces
-    written = tight == proof.leading.replace(" ", "") and " " not in spaced
-    row.must(written, "leading", tight, proof.leading)
+    spaced = re.sub(r" [+-] ", "", formula)  # the only place where a formula has spaces
+    written = tight == formula.replace(" ", "") and " " not in spaced
+    row.must(written, column, tight, formula)
 
 
-def _row(of: Run | Flow, row: OrbitPoint | FlowPoint, at: Place) -> None:
-    values = values_of(row)
-    start = {name: of.start[name] for name in ("p", "q")}
+_AFTER_A_STEP = ("mse", *AFTER_A_STEP)
+_MAY_LACK = ("delta_j", *MAY_LACK)
+_AT_FIRST = {"lambda": Fraction(0), "symplectic_defect": Fraction(0)}
+
+
+def of_row(
+    row: OrbitPoint | FlowPoint | OrbitPointInDegrees | FlowPointInDegrees,
+    values: Mapping[str, Rounded | None],
+    start: Mapping[str, Fraction],
+    digits: int,
+    at: Place,
+) -> None:
+    """What of a row is not as it must be, by its values and its run's initial values by column."""
     size = max(map(abs, start.values()))
     finished = row.status == "finished"
     for name, value in values.items():
-        must = finished and not (name == "mse" and row.step == 0)
+        must = finished and not (name in _AFTER_A_STEP and row.step == 0)
         if value is None:
-            at.must(not must or name == "delta_j", name, "a number", "null")
+            at.must(not must or name in _MAY_LACK, name, "a number", "null")
         else:
             at.must(must, name, "null", value.value)
-            _cell(name, value, of.digits, size if name in start else Fraction(1), at)
+            _cell(name, value, digits, size if name in start else Fraction(1), at)
     wanted = "enclosed or estimated" if row.kind is None else "null"
     at.must((row.kind is not None) == finished, "kind", wanted, str(row.kind))
-    if isinstance(row, OrbitPoint):
+    if isinstance(row, OrbitPoint | OrbitPointInDegrees):
         _failed_step(row, at)
     if row.step == 0:  # the initial value
         known = finished and row.kind == "enclosed"
         at.must(known, "status", "finished, enclosed", f"{row.status}, {row.kind}")
-        for name, exact in (start | {"lambda": Fraction(0)}).items():
-            value, rounded = values.get(name), correctly_rounded(exact, Fraction(0), of.digits)
+        for name, exact in ({**start} | _AT_FIRST).items():
+            value, rounded = values.get(name), correctly_rounded(exact, Fraction(0), digits)
             if value and rounded:
                 at.must(value.value == rounded.value, name, rounded.value, value.value)
 
 
-def _failed_step(row: OrbitPoint, at: Place) -> None:
+def rows_in_degrees(data: DataInDegrees, file: Place) -> None:
+    """The same of data in n degrees of freedom."""
+    names = [*state_columns(data.degrees), *(["t"] if data.timed else []), *data.parameters]
+    for proof in data.proofs:
+        row = file.at(f"proof of {proof.scheme}")
+        keeps = proof.symplectic
+        none = proof.order is None and not proof.leading
+        told = f"order {proof.order}, leading {proof.leading}"
+        row.must(none or not keeps, "symplectic", "no order, and no leading entries", told)
+        row.must(keeps is not False or proof.order is not None, "order", "a number", "null")
+        weaker = not (keeps and proof.area_preserving is False)
+        row.must(weaker, "area_preserving", "true, since S is 0", "false")
+        for entry, formula in proof.leading.items():
+            known = ENTRY.fullmatch(entry)
+            there = known and set(known.groups()) <= set(names[: 2 * data.degrees])
+            row.must(there, "leading", "entries such as dp1∧dq1", entry)
+            of_formula(formula, names, f"leading {entry}", row)
+    tables: tuple[RunInDegrees | FlowInDegrees, ...] = (*data.runs, *data.flow)
+    for of in tables:
+        start = {name: x for name, x in of.start.items() if name != "t"}
+        for point in of.rows:
+            at = file.at(f"{of.label}, step {point.step}")
+            of_row(point, values_in_degrees(point, data.degrees), start, of.digits, at)
+
+
+def _failed_step(row: OrbitPoint | OrbitPointInDegrees, at: Place) -> None:
     left, step = row.status == "left range", row.failed_step
     at.must((step is not None) == left, "failed_step", "a step" if left else "null", str(step))
     within = step is None or 1 <= step <= row.step

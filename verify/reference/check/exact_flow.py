@@ -58,7 +58,7 @@ def _taylor_solution(
 ) -> tuple[list[State], NoSolutionError | None]:
     order = digits + digits // 4 + 10
     p, q = (flint.arb(number(start[name])) for name in ("p", "q"))
-    first, done, found = _largest((p, q)), Fraction(0), []
+    first, done, found = largest((p, q)), Fraction(0), []
     waiting = list(times)
     shortest: float | None = None
     for _ in range(_MOST_STEPS):
@@ -73,9 +73,9 @@ def _taylor_solution(
         if not all(x.is_finite() for x in (*ps, *qs)):
             return found, NoSolutionError("H is not defined there")
         shortest = reach if shortest is None else shortest
-        if _largest((p, q)) > first + _BURST and reach < shortest - _STOPPED:
+        if largest((p, q)) > first + _BURST and reach < shortest - _STOPPED:
             return found, BlowsUpError("the solution blows up before")
-        after = done + _power_of_two(reach)
+        after = done + power_of_two(reach)
         while waiting and waiting[0] <= after:
             at = flint.arb(number(waiting.pop(0) - done))
             found.append((_sum(ps, at), _sum(qs, at)))
@@ -86,17 +86,17 @@ def _taylor_solution(
 
 def _reach(ps: list[Number], qs: list[Number], digits: int) -> float:
     """lg₂ of a step whose last terms are 10^−digits of the state, or of its speed where it is 0."""
-    sizes = map(_largest, zip(ps, qs, strict=True))
+    sizes = map(largest, zip(ps, qs, strict=True))
     scale = next((size for size in sizes if size > -math.inf), 0.0)
     found = []
     for k in (len(ps) - 1, len(ps) - 2):
-        last = _largest((ps[k], qs[k]))
+        last = largest((ps[k], qs[k]))
         if last > -math.inf:
             found.append((scale - 3.3219281 * digits - last) / k)
     return min(found, default=60.0)  # a polynomial in t
 
 
-def _power_of_two(exponent: float) -> Fraction:
+def power_of_two(exponent: float) -> Fraction:
     """2^exponent, rounded down a little, with few bits."""
     whole = math.floor(exponent)
     return Fraction(math.floor(1024 * 2 ** (exponent - whole)), 1024) * Fraction(2) ** whole
@@ -107,7 +107,7 @@ def _sum(coefficients: list[Number], h: Number) -> Number:
     return polynomial(coefficients, h).mid()
 
 
-def _largest(z: Sequence[Any]) -> float:
+def largest(z: Sequence[Any]) -> float:
     return max(_size(x) for x in z)
 
 

@@ -24,13 +24,13 @@ from verify.reference.check.textbook import Field, Step, UnknownSchemeError, ste
 from verify.reference.make.models import VALUES, Data, Flow, Run, values_of
 from verify.scenes.results.reference import FlowPoint, OrbitPoint, Rounded
 
-_FIRST_BITS, _MORE_PER_DIGIT, _DOUBLINGS = 320, 4, 5
+FIRST_BITS, MORE_PER_DIGIT, DOUBLINGS = 320, 4, 5
 _SHARP = 5  # digits beyond those printed to which an exact value must be met
 _ESCAPED = 4000  # bits of |z| at which an orbit is said to have left
 _FLOW_DIGITS = (8, 40, 100)  # beyond those printed, in turn
 
 
-class _TooWide(Exception):  # noqa: N818 - no error: the same is done with more bits
+class TooWideError(Exception):
     """A ball too wide to tell."""
 
 
@@ -56,19 +56,19 @@ def recomputed(data: Data, file: str, kind: str, index: int) -> Findings:
 
 def _run(known: Field, run: Run, file: str, found: Findings) -> None:
     step = step_of(run.scheme, known)
-    bits = _FIRST_BITS + _MORE_PER_DIGIT * run.digits
-    for attempt in range(_DOUBLINGS):
+    bits = FIRST_BITS + MORE_PER_DIGIT * run.digits
+    for attempt in range(DOUBLINGS):
         again = Findings()
-        with suppress(_TooWide), flint.ctx.workprec(bits << attempt):
-            _orbit(step, run, Place(again, file), final=attempt == _DOUBLINGS - 1)
+        with suppress(TooWideError), flint.ctx.workprec(bits << attempt):
+            _orbit(step, run, Place(again, file), final=attempt == DOUBLINGS - 1)
             found.add(again)
             return
     last = Place(found, file, f"{run.label}, step {run.rows[-1].step}")
-    last.is_left_out(f"{bits << (_DOUBLINGS - 1)} bits do not tell")
+    last.is_left_out(f"{bits << (DOUBLINGS - 1)} bits do not tell")
 
 
 def _orbit(step: Step, run: Run, file: Place, *, final: bool) -> None:
-    """Every row of a run; _TooWide where a ball does not tell. `final`: there is no further try."""
+    """Every row of a run; TooWideError where a ball does not tell. `final`: no further try is made."""
     orbit = _Orbit(step, run.start, Fraction(run.step_size))
     size = max(abs(Fraction(run.p)), abs(Fraction(run.q)))
     left: int | None = None
@@ -94,12 +94,12 @@ def _orbit(step: Step, run: Run, file: Place, *, final: bool) -> None:
                 continue
             if name == "delta_j" and not all(x.is_finite() for x in orbit.ahead()[0]):
                 if not final:
-                    raise _TooWide
+                    raise TooWideError
                 if cell is not None:  # no step begins there
                     at.differs(name, "null", cell.value)
                 continue
             scale = size if name in ("p", "q") else Fraction(1)
-            _compare(name, cell, values[name], run.digits, scale, at)
+            compare_cell(name, cell, values[name], run.digits, scale, at)
 
 
 class _Orbit:
@@ -120,14 +120,14 @@ class _Orbit:
         return self._next
 
     def to(self, count: int) -> None:
-        """Goes on to the state after so many steps; _TooWide where a ball is not finite."""
+        """Goes on to the state after so many steps; TooWideError where a ball is not finite."""
         while self.done < count:
             (self.p, self.q), change = self.ahead()
             self.squares += change * change
             self.lam += change + self.lam * change
             self.done, self._next = self.done + 1, None
             if not (self.p.is_finite() and self.q.is_finite()):
-                raise _TooWide
+                raise TooWideError
 
     def values(self) -> dict[str, Number]:
         mean = self.squares / self.done if self.done else self.squares
@@ -144,7 +144,7 @@ def _leaves_range(orbit: _Orbit, row: OrbitPoint, at: Place, final: bool) -> int
     while orbit.done < (row.failed_step or 0):
         try:
             orbit.to(orbit.done + 1)
-        except _TooWide:
+        except TooWideError:
             if not final:
                 raise
             break
@@ -152,7 +152,7 @@ def _leaves_range(orbit: _Orbit, row: OrbitPoint, at: Place, final: bool) -> int
         if any(x > limit for x in sizes):
             break
         if not all(x < limit for x in sizes):
-            raise _TooWide
+            raise TooWideError
     else:
         at.differs("status", f"defined after {orbit.done} steps", row.status)
         return None
@@ -162,7 +162,7 @@ def _leaves_range(orbit: _Orbit, row: OrbitPoint, at: Place, final: bool) -> int
     return orbit.done
 
 
-def _compare(
+def compare_cell(
     name: str,
     cell: Rounded | None,
     ball: Number,
@@ -192,7 +192,7 @@ def _compare(
     else:
         inside = ball >= low and ball <= high
     if not inside:
-        raise _TooWide
+        raise TooWideError
 
 
 # -- the exact flow -------------------------------------------------------------------------------
@@ -207,7 +207,7 @@ def _flow(known: Field, flow: Flow, file: str, found: Findings) -> None:
     for more in _FLOW_DIGITS:
         again, digits = Findings(), flow.digits + more
         states, why = states_at(known, flow.start, times, digits)
-        with suppress(_TooWide), flint.ctx.workprec(_MORE_PER_DIGIT * digits + _FIRST_BITS):
+        with suppress(TooWideError), flint.ctx.workprec(MORE_PER_DIGIT * digits + FIRST_BITS):
             for row, state in zip_longest(rows, states):
                 at = Place(again, file, f"{flow.label}, step {row.step}")
                 if state is None:
@@ -228,7 +228,7 @@ def _reached(flow: Flow, row: FlowPoint, state: State, at: Place) -> None:
         return
     size, places = max(abs(Fraction(flow.p)), abs(Fraction(flow.q))), flow.digits + _SHARP
     for (name, cell), ball in zip(values_of(row).items(), state, strict=True):
-        _compare(name, cell, ball, flow.digits, size, at, places)
+        compare_cell(name, cell, ball, flow.digits, size, at, places)
 
 
 def _not_reached(

@@ -15,9 +15,9 @@ from verify.reference.check.taylor import Expansion, Number, number
 from verify.reference.check.textbook import Field, Step, flow_series, step_of
 from verify.reference.make.models import Data, Proof
 
-_MOST_ORDER = 12  # to which a map is looked at that agrees with another
-_ANY_ORDER = 100  # beyond which no proof goes
-_BITS = 512
+MOST_ORDER = 12  # to which a map is looked at that agrees with another
+ANY_ORDER = 100  # beyond which no proof goes
+BITS = 512
 
 
 def proof_again(known: Field, data: Data, proof: Proof, file: Place) -> None:
@@ -28,13 +28,13 @@ def proof_again(known: Field, data: Data, proof: Proof, file: Place) -> None:
     order, convergence = proof.order, proof.convergence_order
     row = file.at(f"proof of {proof.scheme}")
     for column, given in (("order", order), ("convergence_order", convergence)):
-        if (given or 0) > _ANY_ORDER:
-            row.differs(column, f"at most {_ANY_ORDER}", str(given))
+        if (given or 0) > ANY_ORDER:
+            row.differs(column, f"at most {ANY_ORDER}", str(given))
             return
-    most = max(_MOST_ORDER if order is None else order, (convergence or 0) + 1)
+    most = max(MOST_ORDER if order is None else order, (convergence or 0) + 1)
     looking = _Looking(known, proof, row, most)
     for p, q, t in _points(data):
-        with flint.ctx.workprec(_BITS), _cap(most + 1):
+        with flint.ctx.workprec(BITS), length_of_series(most + 1):
             looking.at(p, q, t)
     looking.end()
 
@@ -97,8 +97,8 @@ def _powers(
     ps, qs = flow_series(known, x, y, t, most)
     value = Expansion(known.tape, [leading])
     value.begin(x, y, t)
-    area = _coefficients(a * d - b * c - 1 + zero, most)
-    along = [_coefficients(z + zero, most) for z in (p_next, q_next)]
+    area = coefficients_of(a * d - b * c - 1 + zero, most)
+    along = [coefficients_of(z + zero, most) for z in (p_next, q_next)]
     apart = [
         max(u - v, w - s, key=lambda ball: not ball.contains(0))
         for u, v, w, s in zip(along[0], ps, along[1], qs, strict=True)
@@ -106,7 +106,7 @@ def _powers(
     return area, apart, value.value(leading)
 
 
-def _coefficients(series: Any, most: int) -> list[Number]:
+def coefficients_of(series: Any, most: int) -> list[Number]:
     return [series[k] for k in range(most + 1)]
 
 
@@ -131,7 +131,7 @@ def _points(data: Data) -> list[tuple[Fraction, Fraction, Fraction]]:
 
 
 @contextmanager
-def _cap(length: int) -> Iterator[None]:
+def length_of_series(length: int) -> Iterator[None]:
     """flint's length of power series, set for a while and given back."""
     before, flint.ctx.cap = flint.ctx.cap, length
     try:

@@ -20,15 +20,17 @@ class NotReadError(ValueError):
 
 
 class Tape:
-    """Operations in p, q and t; each node comes after its operands.
+    """Operations in p, q and t, or in other `variables`; each node comes after its operands.
 
-    Kinds: const, pi, p, q, t, add, mul, scale (by a Fraction), power (by one), sin, cos, exp, log,
-    sinh, cosh, atan (with 1 + u² as second operand). sin and cos of a node come together, and so do
-    sinh and cosh.
+    Kinds: const, pi, the variables' names, add, mul, scale (by a Fraction), power (by one), sin,
+    cos, exp, log, sinh, cosh, atan (with 1 + u² as second operand). sin and cos of a node come
+    together, and so do sinh and cosh.
     """
 
-    def __init__(self, parameters: Mapping[str, Fraction]) -> None:
-        self.parameters = parameters
+    def __init__(
+        self, parameters: Mapping[str, Fraction], variables: Sequence[str] = ("p", "q", "t")
+    ) -> None:
+        self.parameters, self.variables = parameters, tuple(variables)
         self.nodes: list[Node] = []
         self._known: dict[Node, int] = {}
         self._derived: dict[tuple[int, str], int] = {}
@@ -113,7 +115,7 @@ class Tape:
     # -- reading --------------------------------------------------------------------------------
 
     def read(self, formula: str) -> int:
-        """The node of a formula in p, q, t and the parameters. NotReadError for what is not
+        """The node of a formula in the variables and the parameters. NotReadError for what is not
         known."""
         try:
             return self._read(ast.parse(formula, mode="eval").body, formula)
@@ -126,8 +128,8 @@ class Tape:
                 return self.const(value)
             case ast.Constant(value=float()):
                 return self.const(Fraction(ast.get_source_segment(source, node) or ""))
-            case ast.Name(id="p" | "q" | "t" | "pi"):
-                return self.node(node.id)
+            case ast.Name(id=name) if name in self.variables or name == "pi":
+                return self.node(name)
             case ast.Name(id=name) if name in self.parameters:
                 return self.const(self.parameters[name])
             case ast.UnaryOp(op=ast.USub()):
@@ -161,14 +163,14 @@ class Tape:
     # -- derivatives ----------------------------------------------------------------------------
 
     def diff(self, x: int, name: str) -> int:
-        """The node of ∂x/∂p, ∂x/∂q or ∂x/∂t."""
+        """The node of ∂x by a variable."""
         if (x, name) not in self._derived:
             self._derived[x, name] = self._diff(self.nodes[x], x, name)
         return self._derived[x, name]
 
     def _diff(self, node: Node, x: int, name: str) -> int:
         kind, *args = node
-        if kind in ("const", "pi", "p", "q", "t"):
+        if kind in ("const", "pi", *self.variables):
             return self.const(int(kind == name))
         if kind == "add":
             return self.add(*(self.diff(a, name) for a in args))

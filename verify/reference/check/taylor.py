@@ -6,7 +6,7 @@ another variable. flint's own functions of series want all coefficients of u at 
 solution each is known only when those before it have gone through H's derivatives.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -24,9 +24,10 @@ def number(x: Fraction) -> Any:
 
 
 class Expansion:
-    """The coefficients of some nodes along p(t) and q(t), as far as those have been given, and t.
+    """The coefficients of some nodes along p(t) and q(t), or the tape's other variables, as far as
+    those have been given, and t.
 
-    `constant`: nodes that do not depend on p, q and t; they have a first coefficient and no others.
+    `constant`: nodes that depend on none of them; they have a first coefficient and no others.
     """
 
     def __init__(self, tape: Tape, roots: Sequence[int]) -> None:
@@ -39,35 +40,40 @@ class Expansion:
         for x in tape.needed(*roots):
             kind, *args = tape.nodes[x]
             inner = [a for a in args if not isinstance(a, Fraction)]
-            if kind not in ("p", "q", "t") and all(a in self.constant for a in inner):
+            if kind not in tape.variables and all(a in self.constant for a in inner):
                 self.constant.add(x)
             if kind in PAIRS:
                 args.append(tape.node(PAIRS[kind], args[0]))
             self._work.append((x, kind, *[*args, None, None][:2]))
 
     def begin(self, p: Number, q: Number, t: Number = 0) -> None:
-        """The first coefficients: the nodes' values at (p, q) and t, in flint's present
-        precision."""
+        """As `begin_at`, of p, q and t."""
+        self.begin_at({"p": p, "q": q, "t": t})
+
+    def begin_at(self, point: Mapping[str, Number]) -> None:
+        """The first coefficients: the nodes' values at a point, in flint's present precision."""
         if self._bits != flint.ctx.prec:
             self._fixed, self._bits = {}, flint.ctx.prec
         c: dict[int, list[Number]] = {}
         for x, kind, a, b in self._work:
             value = self._fixed.get(x)
             if value is None:
-                value = t if kind == "t" else _first(kind, a, b, c, p, q)
+                value = point[kind] if kind in point else _first(kind, a, b, c)
                 if x in self.constant:
                     self._fixed[x] = value
             c[x] = [value]
         self.c, self.count = c, 1
 
     def more(self, p: Number, q: Number) -> None:
-        """The next coefficient of every node, p and q being those of p(t) and q(t)."""
+        """As `more_at`, of p and q."""
+        self.more_at({"p": p, "q": q})
+
+    def more_at(self, point: Mapping[str, Number]) -> None:
+        """The next coefficient of every node, the point's being those of its variables."""
         c, k, constant = self.c, self.count, self.constant
         for x, kind, a, b in self._work:
-            if kind == "p":
-                c[x].append(p)
-            elif kind == "q":
-                c[x].append(q)
+            if kind in point:
+                c[x].append(point[kind])
             elif kind == "t":
                 c[x].append(flint.arb(int(k == 1)))
             elif x in constant:
@@ -89,9 +95,7 @@ class Expansion:
         return self.c[x][k] if k == 0 or x not in self.constant else None
 
 
-def _first(kind: str, a: Any, b: Any, c: dict[int, list[Number]], p: Number, q: Number) -> Number:
-    if kind in ("p", "q"):
-        return p if kind == "p" else q
+def _first(kind: str, a: Any, b: Any, c: dict[int, list[Number]]) -> Number:
     if kind == "const":
         return flint.arb(number(a))
     if kind == "pi":

@@ -24,18 +24,27 @@ from verify.reference.make.models import (
     RunInTime,
     SceneFile,
 )
+from verify.reference.make.models_in_degrees import (
+    DATA_IN_DEGREES_FORMAT,
+    DataInDegrees,
+    FlowInDegrees,
+    ProofInDegrees,
+    RunInDegrees,
+)
 from verify.reference.make.scene_plan import orbit_tasks, proof_tasks, size_of, solution_tasks
 from verify.reference.make.writing import (
     MANIFEST,
-    SCHEMAS,
+    AnyData,
     csv_text,
     digest,
     json_text,
     listed,
     names_of,
     schema_text,
+    schemas_for,
     tables,
 )
+from verify.scenes.results.proof import ProofResult
 from verify.scenes.scene import Scene, load_scene
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,79}")
@@ -76,8 +85,10 @@ def committed_scenes() -> list[Path]:
     return sorted(SCENES.glob("*.toml"))
 
 
-def data_of(scene: Scene, results: Mapping[str, Any]) -> Data:
+def data_of(scene: Scene, results: Mapping[str, Any]) -> AnyData:
     """A scene's data from the results of its tasks, by their keys."""
+    if not scene.exact_hamiltonian().planar:
+        return _in_degrees(scene, results)
     timed = scene.exact_hamiltonian().time_dependent
     run, flow = (RunInTime, FlowInTime) if timed else (Run, Flow)
     return Data(
@@ -95,11 +106,42 @@ def data_of(scene: Scene, results: Mapping[str, Any]) -> Data:
     )
 
 
+def _in_degrees(scene: Scene, results: Mapping[str, Any]) -> DataInDegrees:
+    exact = scene.exact_hamiltonian()
+
+    def proof(scheme: str, found: ProofResult) -> ProofInDegrees:
+        form = found.form
+        assert form is not None  # noqa: S101 - a proof in n degrees of freedom
+        alike = ("verdict", "area_preserving", "order", "convergence_order")
+        return ProofInDegrees(
+            scheme=scheme, symplectic=form.symplectic, leading=dict(form.entries),
+            **{name: getattr(found, name) for name in alike},
+        )  # fmt: skip
+
+    return DataInDegrees(
+        format=DATA_IN_DEGREES_FORMAT,
+        name=scene.name,
+        **exact.texts,
+        degrees=exact.degrees,
+        proofs=tuple(proof(t.scheme, results[t.key]) for t in proof_tasks(scene)),
+        runs=tuple(
+            RunInDegrees(scheme=t.scheme, **t.inputs, rows=results[t.key].points)
+            for t in orbit_tasks(scene)
+        ),
+        flow=tuple(
+            FlowInDegrees(**t.inputs, rows=results[t.key].points) for t in solution_tasks(scene)
+        ),
+    )
+
+
 def alone(folder: Path, asked: Sequence[SceneText], *, parquet: bool) -> None:
     """InputError where the folder holds what is not made again, and would be extra in a check, or
     a file of one of our names that is not ours."""
-    made = {MANIFEST, *names_of((each.scene.name for each in asked), parquet=parquet)}
-    forms = {MANIFEST: MANIFEST_FORMAT} | {f"{x.scene.name}.json": DATA_FORMAT for x in asked}
+    planar = {each.scene.name: each.scene.exact_hamiltonian().planar for each in asked}
+    made = {MANIFEST, *names_of(planar, parquet=parquet)}
+    forms: dict[str, str] = {f"{name}.json": DATA_FORMAT if planar[name] else DATA_IN_DEGREES_FORMAT
+             for name in planar}  # fmt: skip
+    forms |= {MANIFEST: MANIFEST_FORMAT}
     there = {path.name: path for path in folder.iterdir()}
     other = sorted(there.keys() - made)
     other += [x for x, form in forms.items() if x in there and not names_format(there[x], form)]
@@ -110,9 +152,10 @@ def alone(folder: Path, asked: Sequence[SceneText], *, parquet: bool) -> None:
         raise InputError("--output", str(folder), problem)
 
 
-def files_of(data: Sequence[Data], *, parquet: bool = False) -> dict[str, bytes]:
+def files_of(data: Sequence[AnyData], *, parquet: bool = False) -> dict[str, bytes]:
     """The content of all files but the manifest, by name."""
-    files = {name: schema_text(name).encode() for name in SCHEMAS}
+    schemas = schemas_for(isinstance(each, Data) for each in data)
+    files = {name: schema_text(name).encode() for name in schemas}
     for each in data:
         files[f"{each.name}.json"] = json_text(each).encode()
         for name, rows in tables(each).items():

@@ -31,13 +31,15 @@ def values_of(row: OrbitPoint | FlowPoint) -> dict[str, Rounded | None]:
     return dict(zip(VALUES, numbers, strict=True))
 
 
-class _OfScheme(Frozen):
+class OfScheme(Frozen):
+    """A row that is of one scheme."""
+
     scheme: Annotated[
         str, Field(description="the scheme, by the name that `verify run --scheme` takes")
     ]
 
 
-class Proof(_OfScheme):
+class Proof(OfScheme):
     """What is proved of one scheme for this H, by exact algebra."""
 
     verdict: Annotated[Verdict, Field(description="PROVED where all of this row is proved")]
@@ -90,7 +92,7 @@ class _FromTime(_FromStart):
         return f"{super().told}, t0 = {self.t0}"
 
 
-class Run(_FromStart, _OfScheme):
+class Run(_FromStart, OfScheme):
     """One scheme's orbit from one initial value with one step size."""
 
     rows: Annotated[tuple[OrbitPoint, ...], Field(description="one a chosen step, ascending")]

@@ -38,7 +38,7 @@ from verify.scenes.results.run import RunResult
 from verify.scenes.values import AUTO
 from verify.schemes.step_map import StepMap
 
-_GUARDS = (10, 25, 60, 150)  # digits beyond those asked for, in turn
+GUARDS = (10, 25, 60, 150)  # digits beyond those asked for, in turn
 _BITS = 64  # beyond the digits, for the roundings of one step
 _ZERO = Fraction(0), Fraction(0)
 Bounded = tuple[Fraction, Fraction]  # a value and its bound
@@ -51,7 +51,7 @@ def orbit_points(orbit: Orbit, *, steps: Sequence[int], digits: int) -> OrbitRes
 
 def _point(orbit: Orbit, step: int, digits: int) -> OrbitPoint:
     step_map = step_map_of(orbit.hamiltonian, orbit.scheme)
-    for guard in _GUARDS:
+    for guard in GUARDS:
         known = {"p": (orbit.p, Fraction(0)), "q": (orbit.q, Fraction(0)), "lambda": _ZERO}
         kind: Kind = "enclosed"
         if step > 0:
@@ -65,7 +65,7 @@ def _point(orbit: Orbit, step: int, digits: int) -> OrbitPoint:
         change = delta_j_at(step_map, known, orbit, step, digits + guard)
         if change is not None:
             known["delta_j"] = change
-        last = guard == _GUARDS[-1]
+        last = guard == GUARDS[-1]
         values = {
             n: _rounded(x, digits, last, _size(orbit.q, orbit.p, n)) for n, x in known.items()
         }
@@ -154,12 +154,12 @@ def _flow_point(
     hamiltonian: Hamiltonian, start: dict[str, Fraction], step: int, time: Fraction, digits: int
 ) -> FlowPoint:
     try:
-        for guard in _GUARDS:
+        for guard in GUARDS:
             if step == 0:  # the initial value itself, also where H is not defined
                 at = Solution(start["p"], start["q"], Fraction(0), "the initial value itself")
             else:
                 at = exact_solution(hamiltonian, **start, time=time, digits=digits + guard)
-            last = guard == _GUARDS[-1]
+            last = guard == GUARDS[-1]
             size = _size(start["q"], start["p"])
             p, q = (_rounded((x, at.bound), digits, last, size) for x in (at.p, at.q))
             if p and q:

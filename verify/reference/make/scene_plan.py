@@ -6,6 +6,7 @@ from typing import Any
 
 from verify.execution.plan import Plan
 from verify.reference.make.tasks import OrbitTask, SolutionTask
+from verify.reference.make.tasks_in_degrees import OrbitInDegreesTask, SolutionInDegreesTask
 from verify.scenes.scene import Scene
 from verify.scenes.sections import Reference
 from verify.studies.kinds.proofs import proof_task
@@ -23,7 +24,7 @@ def plan_references(scenes: Sequence[Scene]) -> Plan:
         for proof in proof_tasks(scene):
             plan.need(proof, f"{name}: orders and leading coefficients")
         for orbit in orbit_tasks(scene):
-            plan.need(orbit, f"{name}: state, ΔJ, MSE and Λ at chosen steps")
+            plan.need(orbit, f"{name}: state, {orbit.numbers} at chosen steps")
         for solution in solution_tasks(scene):
             plan.need(solution, f"{name}: the exact flow at their times")
     return plan
@@ -31,11 +32,12 @@ def plan_references(scenes: Sequence[Scene]) -> Plan:
 
 def size_of(scene: Scene) -> int:
     """About how many bytes the file of its data will have, without listing what it asks for."""
-    size = 0
+    size, degrees = 0, scene.exact_hamiltonian().degrees
     for section in scene.reference:
         rows = len(section.initial_values) * len(section.step_sizes) * len(section.steps)
-        size += rows * len(schemes_of(scene, section)) * (5 * section.digits + 300)
-        size += rows * section.flow * (2 * section.digits + 200)
+        numbers = 2 * degrees + (3 if degrees == 1 else 4)
+        size += rows * len(schemes_of(scene, section)) * (numbers * section.digits + 300 * degrees)
+        size += rows * section.flow * (2 * degrees * section.digits + 200 * degrees)
     return size
 
 
@@ -51,18 +53,20 @@ def proof_tasks(scene: Scene) -> Iterator[ProofTask]:
         yield proof_task(scene, name, formulas=False)
 
 
-def orbit_tasks(scene: Scene) -> Iterator[OrbitTask]:
+def orbit_tasks(scene: Scene) -> Iterator[OrbitTask | OrbitInDegreesTask]:
     """Section by section: scheme, initial value, step size."""
+    kind = OrbitTask if scene.exact_hamiltonian().planar else OrbitInDegreesTask
     for section in scene.reference:
         for scheme, given in product(schemes_of(scene, section), _starts(scene, section)):
-            yield OrbitTask(scheme=scheme, **given)
+            yield kind(scheme=scheme, **given)
 
 
-def solution_tasks(scene: Scene) -> Iterator[SolutionTask]:
+def solution_tasks(scene: Scene) -> Iterator[SolutionTask | SolutionInDegreesTask]:
     """Section by section, where the flow is asked for: initial value, step size."""
+    kind = SolutionTask if scene.exact_hamiltonian().planar else SolutionInDegreesTask
     for section in (x for x in scene.reference if x.flow):
         for given in _starts(scene, section):
-            yield SolutionTask(**given)
+            yield kind(**given)
 
 
 def _starts(scene: Scene, section: Reference) -> Iterator[dict[str, Any]]:

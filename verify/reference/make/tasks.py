@@ -1,7 +1,7 @@
 """The tasks of reference data: an orbit and the exact flow, every number correctly rounded."""
 
 from fractions import Fraction
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from verify.arithmetic import automatic
 from verify.arithmetic.exact import text
@@ -11,8 +11,8 @@ from verify.kernels.orbit import Orbit
 from verify.scenes.results.reference import OrbitResult, SolutionResult
 from verify.scenes.values import Number, StepSize
 
-_ROW_COST = 1_000_000  # of a row of reference data, however few its steps
-_FLOW_ROW_COST = 10 * _ROW_COST
+ROW_COST = 1_000_000  # of a row of reference data, however few its steps
+FLOW_ROW_COST = 10 * ROW_COST
 
 
 class AtSteps(HamiltonianTask):
@@ -38,11 +38,12 @@ class OrbitTask(AtSteps, InitialValueTask):
     """State, ΔJ, MSE and Λ after each of these numbers of steps, correctly rounded."""
 
     result = OrbitResult
+    numbers: ClassVar[str] = "ΔJ, MSE and Λ"
     kind: Literal["orbit"] = "orbit"
 
     @property
     def cost(self) -> int:
-        return _ROW_COST * len(self.steps) + automatic()[-1].cost * sum(self.steps)
+        return ROW_COST * len(self.steps) + automatic()[-1].cost * sum(self.steps)
 
     @property
     def ensemble(self) -> str | None:
@@ -65,7 +66,7 @@ class SolutionTask(AtSteps):
 
     @property
     def cost(self) -> int:
-        return _FLOW_ROW_COST * len(self.steps)
+        return FLOW_ROW_COST * len(self.steps)
 
     def compute(self, keeper: Keeper) -> SolutionResult:
         from verify.reference.make.orbit_points import solution_points

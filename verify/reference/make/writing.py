@@ -4,11 +4,12 @@ import csv
 import hashlib
 import io
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from pydantic import BaseModel
 
+from verify.reference.make.cells import Row, cell
 from verify.reference.make.models import (
     VALUES,
     Data,
@@ -19,15 +20,19 @@ from verify.reference.make.models import (
     Run,
     values_of,
 )
+from verify.reference.make.models_in_degrees import DataInDegrees
+from verify.reference.make.tables_in_degrees import tables_in_degrees
 from verify.scenes.results.reference import FlowPoint, OrbitPoint
 
 MANIFEST = "manifest.json"
+AnyData = Data | DataInDegrees
+OF_DEGREES = "data-in-degrees.schema.json"
 SCHEMAS: dict[str, type[BaseModel]] = {
     "data.schema.json": Data,
     "manifest.schema.json": Manifest,
+    OF_DEGREES: DataInDegrees,
 }
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
-Row = tuple[str, ...]
 _GIVEN: Row = ("step_size", "q", "p", "digits")
 _GIVEN_IN_TIME: Row = ("step_size", "q", "p", "t0", "digits")
 _OF_ORBIT: Row = ("step", "status", "failed_step", "kind")
@@ -70,8 +75,10 @@ def schema_text(name: str) -> str:
 # -- tables ---------------------------------------------------------------------------------------
 
 
-def tables(data: Data) -> dict[str, list[Row]]:
+def tables(data: AnyData) -> dict[str, list[Row]]:
     """The same as tables of texts, by file name without its ending; the first row names columns."""
+    if isinstance(data, DataInDegrees):
+        return tables_in_degrees(data)
     given = _GIVEN_IN_TIME if data.timed else _GIVEN
     return {
         f"{data.name}-proofs": list(_proof_rows(data)),
@@ -80,9 +87,18 @@ def tables(data: Data) -> dict[str, list[Row]]:
     }
 
 
-def names_of(scenes: Iterable[str], *, parquet: bool) -> set[str]:
-    """The files that scenes of these names have, with the schemas and without the manifest."""
-    found = set(SCHEMAS)
+def schemas_for(planar: Iterable[bool]) -> tuple[str, ...]:
+    """The schemas of a folder whose scenes are of the plane, or not: those that it needs, and the
+    manifest's."""
+    kinds = set(planar)
+    needed = {"data.schema.json": True in kinds or not kinds, OF_DEGREES: False in kinds}
+    return tuple(name for name in SCHEMAS if needed.get(name, True))
+
+
+def names_of(scenes: Mapping[str, bool], *, parquet: bool) -> set[str]:
+    """The files that scenes of these names have, with the schemas and without the manifest; of each
+    it is said whether it is of the plane."""
+    found = set(schemas_for(scenes.values()))
     for name in scenes:
         found.add(f"{name}.json")
         for ending in ("csv", "parquet") if parquet else ("csv",):
@@ -103,7 +119,7 @@ def _proof_rows(data: Data) -> Iterator[Row]:
     given = "; ".join(f"{name} = {value}" for name, value in data.parameters.items())
     for proof in data.proofs:
         found = proof.model_dump(mode="json")
-        yield (data.hamiltonian, given, *(_cell(found[n]) for n in names))
+        yield (data.hamiltonian, given, *(cell(found[n]) for n in names))
 
 
 def _rows(tables: tuple[Run | Flow, ...], given: Row, told: Row, numbers: Row) -> Iterator[Row]:
@@ -111,20 +127,14 @@ def _rows(tables: tuple[Run | Flow, ...], given: Row, told: Row, numbers: Row) -
     pairs = (x for name in numbers for x in (name, f"{name}_radius"))
     yield (*({"q": "q0", "p": "p0"}.get(name, name) for name in given), *told, *pairs)
     for of in tables:
-        inputs = [_cell(getattr(of, name)) for name in given]
+        inputs = [cell(getattr(of, name)) for name in given]
         for row in of.rows:
-            yield (*inputs, *(_cell(getattr(row, name)) for name in told), *_numbers(row))
+            yield (*inputs, *(cell(getattr(row, name)) for name in told), *_numbers(row))
 
 
 def _numbers(row: OrbitPoint | FlowPoint) -> Row:
     values = values_of(row).values()
     return tuple(x for v in values for x in ((v.value, v.radius) if v else ("", "")))
-
-
-def _cell(value: Any) -> str:
-    if value is None:
-        return ""
-    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 # -- the manifest ---------------------------------------------------------------------------------

@@ -13,8 +13,8 @@ _DECIMAL = r"^-?[0-9](\.[0-9]+)?(e[+-][0-9]{2,})?$"
 Decimal = Annotated[str, Field(pattern=_DECIMAL)]
 Kind = Literal["enclosed", "estimated"]
 
-_STEP = "N: how many steps of size h have been done; 0 is the initial value"
-_KIND = (
+STEP_SAID = "N: how many steps of size h have been done; 0 is the initial value"
+KIND_SAID = (
     "enclosed: the radii are rigorous bounds; estimated: they hold unless an evaluation with more "
     "digits errs as the first did"
 )
@@ -40,7 +40,7 @@ class OrbitPoint(Frozen):
 
     model_config = ConfigDict(populate_by_name=True)
 
-    step: int = Field(ge=0, description=_STEP)
+    step: int = Field(ge=0, description=STEP_SAID)
     status: Literal["finished", "left range", "unresolved"] = Field(
         description="finished: the values are there; left range: the scheme's orbit has passed "
         "2^4000, or is not defined any more; unresolved: the digits asked for could not be had"
@@ -48,7 +48,7 @@ class OrbitPoint(Frozen):
     failed_step: int | None = Field(
         description="the step that left the range, 1 being the first; else null"
     )
-    kind: Kind | None = Field(description=f"{_KIND}; null where there are no values")
+    kind: Kind | None = Field(description=f"{KIND_SAID}; null where there are no values")
     p: Rounded | None = Field(description=f"{_P} after N steps")
     q: Rounded | None = Field(description=f"{_Q} after N steps")
     delta_j: Rounded | None = Field(
@@ -78,7 +78,7 @@ class FlowPoint(Frozen):
         description="finished: p and q are there; blows up: the exact solution has left every "
         "bound by then; not followed: it could not be had"
     )
-    kind: Kind | None = Field(description=f"{_KIND}; null where there are no values")
+    kind: Kind | None = Field(description=f"{KIND_SAID}; null where there are no values")
     p: Rounded | None = Field(description=f"{_P} at that time")
     q: Rounded | None = Field(description=f"{_Q} at that time")
 
