@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from verify.reference.compare.compare import Column, Compared, Explained, Separated
     from verify.reference.compare.submitted import Theirs
+    from verify.reference.compare.submitted_in_degrees import TheirsInDegrees
 
 _MOST_SHOWN = 5
 _MOST_NAMED = 4  # mistakes of which one fits
@@ -67,18 +68,32 @@ def compare(
     more than rounding differs.
 
     verify reference compare mine.csv --scene duffing --scheme lie2
+
+    A table of p1 … pn, q1 … qn, energy, symplectic_defect_max, symplectic_defect and lambda is held
+    against data in n degrees of freedom, with q0_1 … q0_n, p0_1 … p0_n, or --q 0.3,0.1 --p 0,0.2.
     """
     from verify.commands.shared.progress import progress_bar
     from verify.reference.compare.compare import compare as compared
+    from verify.reference.compare.compare_in_degrees import compare_in_degrees
     from verify.reference.compare.published import load
+    from verify.reference.compare.published_in_degrees import load_in_degrees
     from verify.reference.compare.submitted import read
+    from verify.reference.compare.submitted_in_degrees import has_degrees, read_in_degrees
     from verify.reference.make.make import PUBLISHED
 
-    ours = load(data or PUBLISHED, scene)
     said = {name: x for name, x in {"scene": scene, **given}.items() if x is not None}
-    table = read(theirs, ours, said, _names(columns))
-    with progress_bar("compared", len(table.runs), unit="run") as advance:
-        found = compared(ours, table, lambda *_: advance(1))
+    names, folder = _names(columns), data or PUBLISHED
+    table: Theirs | TheirsInDegrees
+    if has_degrees(theirs, names):
+        of_degrees = load_in_degrees(folder, scene)
+        table = several = read_in_degrees(theirs, of_degrees, said, names)
+        with progress_bar("compared", len(table.runs), unit="run") as advance:
+            found = compare_in_degrees(of_degrees, several, lambda *_: advance(1))
+    else:
+        ours = load(folder, scene)
+        table = planar = read(theirs, ours, said, names)
+        with progress_bar("compared", len(table.runs), unit="run") as advance:
+            found = compared(ours, planar, lambda *_: advance(1))
     return Answer(
         lambda: _as_json(table, found), lambda: _print(table, found), failed=not found.agrees
     )
@@ -99,7 +114,7 @@ def _names(columns: tuple[str, ...]) -> dict[str, str]:
 # -- for programs ---------------------------------------------------------------------------------
 
 
-def _as_json(table: "Theirs", found: "Compared") -> dict[str, Any]:
+def _as_json(table: "Theirs | TheirsInDegrees", found: "Compared") -> dict[str, Any]:
     return {
         **picked(found, "agrees", "rows", "runs"),
         "rows_read": table.rows,
@@ -142,7 +157,7 @@ def _separation_json(x: "Separated") -> dict[str, Any]:
 # -- for people -----------------------------------------------------------------------------------
 
 
-def _print(table: "Theirs", found: "Compared") -> None:
+def _print(table: "Theirs | TheirsInDegrees", found: "Compared") -> None:
     from verify.arithmetic.exact import short
 
     of = f"{_count(found.rows, 'row')} of {_count(found.runs, 'run')} compared"

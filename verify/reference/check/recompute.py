@@ -68,7 +68,7 @@ def _run(known: Field, run: Run, file: str, found: Findings) -> None:
 
 
 def _orbit(step: Step, run: Run, file: Place, *, final: bool) -> None:
-    """Every row of a run; TooWideError where a ball does not tell. `final`: no further try is made."""
+    """Every row of a run; TooWideError where a ball does not tell. `final`: the last try."""
     orbit = _Orbit(step, run.start, Fraction(run.step_size))
     size = max(abs(Fraction(run.p)), abs(Fraction(run.q)))
     left: int | None = None

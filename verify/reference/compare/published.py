@@ -17,6 +17,7 @@ from verify.formats import check_format
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.orbit import Orbit
 from verify.kernels.step.tangent_map import nearest_double
+from verify.reference.compare.published_in_degrees import is_of_degrees
 from verify.reference.make.models import DATA_FORMAT, Data, Run, values_of
 from verify.reference.make.reading import json_of
 from verify.reference.make.writing import MANIFEST, SCHEMAS
@@ -116,7 +117,8 @@ def load(folder: Path, scene: str | None) -> Published:
         raise InputError(
             "--data", str(folder), "is no folder; give one that `verify reference make` wrote"
         )
-    names = {path.name for path in folder.glob("*.json")} - {MANIFEST, *SCHEMAS}
+    paths = (path for path in folder.glob("*.json") if path.name not in (MANIFEST, *SCHEMAS))
+    names = {path.name for path in paths if not is_of_degrees(path)}
     if scene is not None and f"{scene}.json" in names:
         names = {f"{scene}.json"}
     if not names:
