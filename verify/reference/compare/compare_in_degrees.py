@@ -9,6 +9,8 @@ it.
 import math
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from fractions import Fraction
+from functools import cache
 from itertools import combinations
 
 from verify.errors import InputError
@@ -19,7 +21,11 @@ from verify.reference.compare.findings import Named, Of, RunFindings, Verdict
 from verify.reference.compare.published_in_degrees import Bounded, RunOfDegrees
 from verify.reference.compare.submitted import Row
 from verify.reference.compare.submitted_in_degrees import TheirsInDegrees
+from verify.reference.make.models_in_degrees import values_in_degrees
+from verify.reference.make.points_in_degrees import OrbitInDegrees, orbit_points
 
+_DIGITS = 25  # of a run with a mistake
+_MOST_STEPS = 20_000  # of it
 Reading = Callable[[int], Mapping[str, Bounded] | None]  # what a row of a step should then hold
 
 
@@ -130,10 +136,16 @@ def _of(own: Sequence[tuple[int, Cell, Verdict]]) -> Of:
 
 
 def _fits(judge: _Judged, reading: Reading) -> bool:
-    """Whether it foretells every number, and one at least."""
-    found = [verdict for *_, verdict in judge.cells(reading)]
-    wanted = [verdict for *_, verdict in judge.cells(judge.run.numbers)]
-    return len(found) == len(wanted) > 0 and max(found) <= Verdict.PERHAPS
+    """Whether it foretells every number of the rows that it knows, and one at least that the right
+    reading does not."""
+    right = {(step, name): v for step, name, _, v in judge.cells(judge.run.numbers)}
+    known = {at: v for at, v in right.items() if reading(at[0]) is not None}
+    every = {(step, name): v for step, name, _, v in judge.cells(reading)}
+    return (
+        known.keys() <= every.keys()
+        and max(known.values(), default=Verdict.AGREES) is Verdict.MORE
+        and max(every[at] for at in known) <= Verdict.PERHAPS
+    )
 
 
 # -- mistakes -------------------------------------------------------------------------------------
@@ -157,6 +169,8 @@ def _mistakes(run: RunOfDegrees, ours: Sequence[RunOfDegrees]) -> Iterator[tuple
         ("defects", "your symplectic_defect is that of one step, the greatest, and not that of N"),
         _renamed(run, both),
     )
+    for late, says in ((1, "later"), (-1, "earlier")):
+        yield (f"late{late:+d}", f"your rows are those of one step {says}"), _late(run, late)
     for other in ours:
         if other.scene == run.scene and other is not run and _same_start(run, other):
             says = f"your numbers are those of {other.run.scheme}, and not of {run.run.scheme}"
@@ -170,6 +184,27 @@ def _same_start(run: RunOfDegrees, other: RunOfDegrees) -> bool:
 
 def _of_other(other: RunOfDegrees) -> Reading:
     return lambda step: other.numbers(step) if step in other.rows else None
+
+
+def _late(run: RunOfDegrees, late: int) -> Reading:
+    """Computed where the data do not have that step."""
+    given = run.run
+    half = run.hamiltonian.degrees
+    start = [x for name, x in given.start.items() if name != "t"]
+    orbit = OrbitInDegrees(
+        run.hamiltonian, given.scheme, Fraction(given.step_size), tuple(start[half:]),
+        tuple(start[:half]), Fraction(given.t0 or 0),
+    )  # fmt: skip
+
+    @cache
+    def read(step: int) -> dict[str, Bounded] | None:
+        if step + late < 0 or step > _MOST_STEPS:
+            return None
+        (point,) = orbit_points(orbit, (step + late,), _DIGITS)
+        known = values_in_degrees(point, half).items()
+        return {name: (Fraction(x.value), Fraction(x.radius)) for name, x in known if x}
+
+    return read
 
 
 def _renamed(run: RunOfDegrees, names: Mapping[str, str]) -> Reading:
