@@ -58,7 +58,7 @@ _SEEDS = 2**32
 @click.option(
     "--maximise",
     metavar="MEASURE",
-    help="Hunt for the worst scenes instead: rounding-share, digits-lost or growth.",
+    help="Hunt for the worst scenes instead: rounding-share, digits-lost, growth or defect.",
 )
 @click.option(
     "--steps", type=int, metavar="N", help="Of each scene that is hunted.  [default: 100]"
@@ -101,7 +101,8 @@ def explore(
 
     With --maximise scenes are sought, of |q|, |p| up to 2 and step sizes 1/1000 … 1/10, in which
     float64 or the scheme (lie2, or those of --scheme) does worst: rounding against truncation in Λ,
-    digits of p and q that float64 loses, |Λ|. DIR/index.html shows them.
+    digits of p and q that float64 loses, |Λ|, |ΔJ| over its proved power of h (in n degrees of
+    freedom W and S). DIR/index.html shows them.
 
     \b
     verify explore --maximise rounding-share --examples 2000 --seed 7 -o worst

@@ -44,6 +44,10 @@ class Hunt:
     def __post_init__(self) -> None:
         if self.measure not in MEASURES:
             raise unknown("maximise", self.measure, MEASURES)
+        if self.drawn.degrees > 1 and MEASURES[self.measure].in_degrees is None:
+            allowed = ", ".join(name for name, x in MEASURES.items() if x.in_degrees)
+            problem = f"is of one degree of freedom; allowed in more: {allowed}"
+            raise InputError("maximise", self.measure, problem)
         if not 1 <= self.examples <= MOST_EXAMPLES:
             raise InputError("examples", self.examples, f"must be 1 … {MOST_EXAMPLES}")
         if self.seed < 0:

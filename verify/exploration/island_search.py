@@ -16,12 +16,12 @@ from verify import strategies
 from verify.exploration.different_scenes import by_shape, scene_of, shape_of
 from verify.exploration.measures import DIGITS, MEASURES, Measure
 from verify.exploration.neighbouring_scenes import neighbours
-from verify.exploration.sample import Sample
+from verify.exploration.sample_in_degrees import sample_of
 from verify.exploration.sample_space import SampleSpace
 from verify.scenes.results.exploration import HuntResult, Worst
 from verify.scenes.scene import Scene
 from verify.scenes.toml_text import scene_text
-from verify.scenes.values import InitialValue
+from verify.scenes.values import InitialState, InitialValue
 from verify.strategies.schemes import separable_for
 
 REACH, STEP_SIZES = Fraction(2), (Fraction(1, 1000), Fraction(1, 10))
@@ -57,7 +57,7 @@ class MeasuredScenes:
         """What a scene measures; None too where there is nothing left to measure it with."""
         text = scene_text(scene)
         if text not in self.seen and self.left:
-            self.seen[text] = self.measure.value(Sample.of(scene), DIGITS)
+            self.seen[text] = self.measure.of(sample_of(scene), DIGITS)
         return self.seen.get(text)
 
     @property
@@ -85,7 +85,7 @@ def _confirmed(look: MeasuredScenes) -> Iterator[Worst]:
             return
         if shape in found:
             continue
-        again = look.measure.value(Sample.of(scene_of(each)), 2 * DIGITS)
+        again = look.measure.of(sample_of(scene_of(each)), 2 * DIGITS)
         if again is not None and abs(again - each.value) <= _AGREEMENT:
             found.add(shape)
             yield Worst(value=again, scene=each.scene)
@@ -137,6 +137,15 @@ def _climb(begin: Worst, look: MeasuredScenes) -> None:
                 break
 
 
+def _starts(
+    numbers: st.SearchStrategy[Fraction], degrees: int
+) -> st.SearchStrategy[InitialValue] | st.SearchStrategy[InitialState]:
+    if degrees == 1:
+        return st.builds(InitialValue, q=numbers, p=numbers)
+    of_each = st.tuples(*[numbers] * degrees)
+    return st.builds(InitialState, q=of_each, p=of_each)
+
+
 def hunted_scenes(drawn: SampleSpace, steps: int) -> st.SearchStrategy[Scene]:
     """Ordinary-looking ones: a few terms, initial values in tenths, h from 1/1000 to 1/10."""
     # No whole number that is drawn may be 100 or more: hypothesis likes to try those that stand in
@@ -149,11 +158,12 @@ def hunted_scenes(drawn: SampleSpace, steps: int) -> st.SearchStrategy[Scene]:
             degree=drawn.degree,
             separable=separable_for(drawn.schemes),
             time_dependent=drawn.time_dependent,
-            terms=3,
+            terms=3 if drawn.degrees == 1 else 2,
             size=SIZE,
+            degrees=drawn.degrees,
         ),
         schemes=strategies.schemes(names=drawn.schemes or ("lie2",)),
-        initial_values=st.builds(InitialValue, q=tenths, p=tenths),
+        initial_values=_starts(tenths, drawn.degrees),
         initial_times=tenths,
         step_sizes=st.sampled_from([Fraction(n, 1000) for n in _THOUSANDTHS]),
         steps=(steps, steps),

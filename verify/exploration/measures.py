@@ -11,7 +11,9 @@ from fractions import Fraction
 
 from verify import arithmetic as number_systems
 from verify.arithmetic.exact import magnitude
+from verify.exploration.any_sample import AnySample
 from verify.exploration.sample import Sample
+from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.studies.separation.chain import separated_chains
 from verify.studies.separation.working import Stopped
@@ -25,10 +27,24 @@ _ROUNDOFF = Fraction(1, 2**53)
 
 @dataclass(frozen=True)
 class Measure:
-    """`value(sample, digits)`: lg of it, or None; `sentence`: what it is."""
+    """`value(sample, digits)`: lg of it, or None; `sentence`: what it is. `in_degrees`: the same in
+    n degrees of freedom, and `several` what it is there; None and "" of one that is of the plane.
+    """
 
     sentence: str
     value: Callable[[Sample, int], float | None]
+    in_degrees: Callable[[SampleInDegrees, int], float | None] | None = None
+    several: str = ""
+
+    def of(self, sample: Sample | SampleInDegrees, digits: int) -> float | None:
+        """Its value for a sample of either kind."""
+        if isinstance(sample, Sample):
+            return self.value(sample, digits)
+        return self.in_degrees(sample, digits) if self.in_degrees else None
+
+    def said(self, degrees: int) -> str:
+        """What it is, in so many degrees of freedom."""
+        return self.sentence if degrees == 1 else self.several
 
 
 def rounding_share(sample: Sample, digits: int = DIGITS) -> float | None:
@@ -64,9 +80,13 @@ def digits_lost(sample: Sample, digits: int = DIGITS) -> float | None:
     found = sample.run("float64", 17)
     if found.done < sample.steps:
         return None
-    points = ({"p": sample.p, "q": sample.q}, *exact.trail)
-    size = max(abs(x[n]) for x in points for n in "pq")
-    error = max(abs(found.values[n] - exact.values[n]) for n in "pq")
+    return _lost(sample, exact, found)
+
+
+def _lost(sample: AnySample, exact: Outcome, found: Outcome) -> float | None:
+    names = tuple(sample.point)
+    size = max(abs(x[n]) for x in (sample.point, *exact.trail) for n in names)
+    error = max(abs(found.values[n] - exact.values[n]) for n in names)
     return None if not size or not error else _lg(error / (size * _ROUNDOFF))
 
 
@@ -78,6 +98,57 @@ def growth(sample: Sample, digits: int = DIGITS) -> float | None:
     return _lg(found.values["lambda_max"])
 
 
+def defect_of_step(sample: Sample, digits: int = DIGITS) -> float | None:
+    """lg of the greatest |ΔJ| of the run over h to the power that is proved of it."""
+    order = sample.proof.order if sample.ordinary else None
+    found = _stays(sample, digits, "delta_j_max")
+    if found is None or order is None or not found.values["delta_j_max"]:
+        return None
+    return _lg(found.values["delta_j_max"] / sample.step_size**order)
+
+
+# -- in n degrees of freedom ----------------------------------------------------------------------
+
+
+def digits_lost_in_degrees(sample: SampleInDegrees, digits: int = DIGITS) -> float | None:
+    """As `digits_lost`, of all coordinates."""
+    exact = _stays_in_degrees(sample, digits)
+    if exact is None:
+        return None
+    found = sample.run("float64", 17)
+    return None if found.done < sample.steps else _lost(sample, exact, found)
+
+
+def growth_in_degrees(sample: SampleInDegrees, digits: int = DIGITS) -> float | None:
+    """lg of the greatest |entry| of W of the whole run."""
+    found = _stays_in_degrees(sample, digits, "symplectic_defect")
+    if found is None or not found.values["symplectic_defect"]:
+        return None
+    return _lg(found.values["symplectic_defect"])
+
+
+def defect_in_degrees(sample: SampleInDegrees, digits: int = DIGITS) -> float | None:
+    """lg of the greatest |entry| of S of any step over h to the power that is proved of S."""
+    order = sample.proof.order if sample.ordinary else None
+    if order is None:
+        return None
+    found = _stays_in_degrees(sample, digits, "symplectic_defect_max")
+    if found is None or not found.values["symplectic_defect_max"]:
+        return None
+    return _lg(found.values["symplectic_defect_max"] / sample.step_size**order)
+
+
+def _stays_in_degrees(sample: SampleInDegrees, digits: int, *observables: str) -> Outcome | None:
+    """The run with so many digits; None where it goes far, or its kernel is long."""
+    if not sample.short or (sample.step_map.symplectic_by_conditions and observables):
+        return None
+    found = sample.run("mpfr", digits, *observables)
+    if found.done < sample.steps:
+        return None
+    near = all(abs(x[name]) <= _FAR for x in found.trail for name in sample.point)
+    return found if near else None
+
+
 def orbit(sample: Sample) -> list[tuple[Fraction, Fraction]]:
     """Points (q, p) of the run with 40 digits, from the initial value on."""
     run = KernelRun(*sample.kernel_inputs, frozenset(), 0, sections=_POINTS)
@@ -85,9 +156,9 @@ def orbit(sample: Sample) -> list[tuple[Fraction, Fraction]]:
     return [(sample.q, sample.p), *((x["q"], x["p"]) for x in trail)]
 
 
-def _stays(sample: Sample, digits: int) -> Outcome | None:
+def _stays(sample: Sample, digits: int, observable: str = "lambda_max") -> Outcome | None:
     """The run with so many digits; None where it goes far."""
-    found = sample.run("mpfr", digits, "lambda_max")
+    found = sample.run("mpfr", digits, observable)
     if found.done < sample.steps:
         return None
     near = all(max(abs(x["p"]), abs(x["q"])) <= _FAR for x in found.trail)
@@ -103,6 +174,19 @@ MEASURES = {
     "rounding-share": Measure(
         "greatest rounding part of Λ over its greatest truncation part", rounding_share
     ),
-    "digits-lost": Measure("error of float64's p and q at the end, in roundoffs", digits_lost),
-    "growth": Measure("greatest |Λ| of the run", growth),
+    "digits-lost": Measure(
+        "error of float64's p and q at the end, in roundoffs",
+        digits_lost,
+        digits_lost_in_degrees,
+        "error of float64's coordinates at the end, in roundoffs",
+    ),
+    "growth": Measure(
+        "greatest |Λ| of the run", growth, growth_in_degrees, "greatest |entry| of W of the run"
+    ),
+    "defect": Measure(
+        "greatest |ΔJ| of a step over its proved power of h",
+        defect_of_step,
+        defect_in_degrees,
+        "greatest |entry| of S of a step over its proved power of h",
+    ),
 }
