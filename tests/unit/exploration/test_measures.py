@@ -63,4 +63,4 @@ def test_passing_the_origin_loses_no_digits() -> None:
 
 def test_an_orbit_that_goes_far_has_no_measure() -> None:
     far = sample("p*q", "2", "1", "0.1", 100)
-    assert [each.value(far, 40) for each in MEASURES.values()] == [None] * 3
+    assert [each.value(far, 40) for each in MEASURES.values()] == [None] * len(MEASURES)

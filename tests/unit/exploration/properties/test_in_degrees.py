@@ -1,0 +1,192 @@
+"""Every property of n degrees of freedom: it holds, and a planted error makes it fail."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+from importlib import import_module
+from typing import Any
+
+import pytest
+
+from tests.unit.exploration.properties.test_properties import OF_TIME_ALONE, PLANTED
+from verify.exploration import properties
+from verify.exploration.any_sample import AnySample
+from verify.exploration.property import Violation
+from verify.exploration.sample_in_degrees import SampleInDegrees, sample_of
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.kernel import Writer, kernel_for
+from verify.scenes.scene import scene_from
+from verify.schemes import get
+from verify.schemes.degrees import map_in_degrees
+from verify.schemes.degrees.canonical_map import CanonicalMap
+
+Patch = pytest.MonkeyPatch
+Plant = Callable[[SampleInDegrees, Patch], Any]
+HENON_HEILES = "p1**2/2 + p2**2/2 + q1**2/2 + q2**2/2 + q1**2*q2 - q2**3/3"
+DRIVEN = f"{HENON_HEILES} + q1*cos(3*t)/5"
+THREE = "p1**2/2 + p2**2 + p3**2/2 + q1**4/4 - cos(q2) + q3**2 + q1*q3"
+MIXED = "p1**2/2 + p2**2/2 + q1**2/2 + q2**4/4 + p1*q2/3"
+
+
+def example_of(scheme: str, hamiltonian: str = HENON_HEILES) -> SampleInDegrees:
+    degrees = Hamiltonian.parse(hamiltonian).degrees
+    start = {"q": ["0.3", "-0.2", "0.5"][:degrees], "p": ["0.1", "1/3", "-0.4"][:degrees]}
+    grid = {"steps": 3, "step_sizes": ["0.05"], "initial_values": [start]}
+    data = {"hamiltonian": hamiltonian, "schemes": [scheme], "grid": grid}
+    if Hamiltonian.parse(hamiltonian).time_dependent:
+        data["t0"] = "0.7"
+    found = sample_of(scene_from(data, "scene"))
+    assert isinstance(found, SampleInDegrees)
+    return found
+
+
+@pytest.fixture(autouse=True)
+def _every_turn(monkeypatch: Patch) -> None:
+    monkeypatch.setattr(SampleInDegrees, "turn", 0)
+    monkeypatch.setattr(AnySample, "is_turn", lambda self, one_in, after=0: True)
+
+
+def wrong_map(true: CanonicalMap, power: int = 3) -> CanonicalMap:
+    """h^power f2/100 added to q1'."""
+
+    def changes(algebra: Any) -> list[Any]:
+        found = true.step(algebra)
+        added = algebra.slopes([algebra.nothing] * algebra.size, Fraction(0), [1])
+        for _ in range(power):
+            added = [algebra.moved(algebra.nothing, [Fraction(1)], added)]
+        n = algebra.size // 2
+        found[n] = algebra.between(found[n], added[0], Fraction(1, 100))
+        return found
+
+    return CanonicalMap(true.hamiltonian, true.field, changes)
+
+
+def another_map(sample: SampleInDegrees, patch: Patch) -> None:
+    patch.setitem(sample.__dict__, "step_map", wrong_map(sample.step_map))
+
+
+def in_module(name: str) -> Plant:
+    """The map that the property's own module makes is another."""
+    module = import_module(f"verify.exploration.properties.{name}")
+
+    def plant(_: SampleInDegrees, patch: Patch) -> None:
+        patch.setattr(module, "map_in_degrees", lambda *asked: wrong_map(map_in_degrees(*asked)))
+
+    return plant
+
+
+def one_more_order(sample: SampleInDegrees, patch: Patch) -> None:
+    order = sample.proof.convergence_order or 0
+    patch.setitem(sample.__dict__, "proof", replace(sample.proof, convergence_order=order + 1))
+
+
+def one_order_less(sample: SampleInDegrees, patch: Patch) -> None:
+    order = sample.proof.order or 0
+    patch.setitem(sample.__dict__, "proof", replace(sample.proof, order=order - 1))
+
+
+def sums_for_products(_: SampleInDegrees, patch: Patch) -> None:
+    patch.setattr(Writer, "product_of_factors", lambda self: self.sum_up("lam", "dj"))
+
+
+def boasting(sample: SampleInDegrees, _: Patch) -> SampleInDegrees:
+    return replace(sample, scheme=replace(sample.scheme, order=sample.scheme.order + 1))
+
+
+def believes_all(_: SampleInDegrees, patch: Patch) -> None:
+    module = import_module("verify.exploration.properties.orders.certificates")
+    patch.setattr(module, "check", lambda data: None)
+
+
+def blind(sample: SampleInDegrees, patch: Patch) -> None:
+    module = import_module("verify.exploration.properties.orders.planted_errors")
+    patch.setattr(module, "prove_map", lambda *_: sample.proof)
+
+
+def half_a_flow(_: SampleInDegrees, patch: Patch) -> None:
+    """Forwards, by half the time."""
+    module = import_module("verify.exploration.properties.orbits.exact_flows")
+    true = module.FlowInDegrees.follow
+    patch.setattr(
+        module.FlowInDegrees,
+        "follow",
+        lambda self, z, time, most: true(self, z, time / 2 if time > 0 else time, most),
+    )
+
+
+def a_lost_step(_: SampleInDegrees, patch: Patch) -> None:
+    module = import_module("verify.exploration.properties.numbers.results_read_back")
+    true = module.scene_text
+    patch.setattr(module, "scene_text", lambda scene: true(scene).replace("steps = 3", "steps = 2"))
+
+
+def a_second_drive(sample: SampleInDegrees, patch: Patch) -> None:
+    """Of another H, which is not periodic."""
+    other = Hamiltonian.parse(f"{DRIVEN} + q2*t/100")
+    patch.setitem(sample.__dict__, "step_map", map_in_degrees(sample.scheme, other))
+
+
+PLANTED_IN_DEGREES: dict[str, tuple[str, str, Plant]] = {
+    "area-errors-compose": ("lie2", HENON_HEILES, sums_for_products),
+    "certificates": ("lie2", HENON_HEILES, believes_all),
+    "claims-of-schemes": ("lie2", HENON_HEILES, boasting),
+    "convergence-order": ("lie2", HENON_HEILES, one_more_order),
+    "every-hamiltonian": ("lie2", HENON_HEILES, one_order_less),
+    "exact-flows": ("lie2", HENON_HEILES, half_a_flow),
+    "exchange-of-degrees": ("stormer-verlet", HENON_HEILES, another_map),
+    "exchange-of-p-and-q": ("rk4", MIXED, another_map),
+    "extended-system": ("stormer-verlet", DRIVEN, another_map),
+    "linear-canonical-maps": ("lie2", THREE, another_map),
+    "number-systems-agree": ("lie2", HENON_HEILES, another_map),
+    "periodic-hamiltonians": ("lie2", DRIVEN, a_second_drive),
+    "planted-errors": ("lie2", HENON_HEILES, blind),
+    "quadratic-hamiltonians": ("lie2", MIXED, in_module("symmetries.quadratic_hamiltonians")),
+    "results-read-back": ("lie2", HENON_HEILES, a_lost_step),
+    "shift-of-time": ("rk4", DRIVEN, another_map),
+    "symmetric-schemes": ("stormer-verlet", HENON_HEILES, another_map),
+    "symplectic-schemes": ("stormer-verlet", THREE, another_map),
+    "time-scaling": ("lie2", HENON_HEILES, another_map),
+    "uncoupled-systems": ("lie2", THREE, in_module("degrees.uncoupled_systems")),
+}
+
+
+def test_every_property_in_degrees_has_a_planted_error() -> None:
+    speaking = {x for x in properties.names() if properties.get(x).in_degrees}
+    assert set(PLANTED_IN_DEGREES) == speaking
+    alone = {x for x in properties.names() if not properties.get(x).check}
+    assert alone == set(properties.names()) - set(PLANTED) - set(OF_TIME_ALONE)
+
+
+@pytest.mark.parametrize("name", sorted(PLANTED_IN_DEGREES))
+def test_it_holds_and_fails_with_an_error_planted(name: str, monkeypatch: Patch) -> None:
+    scheme, hamiltonian, plant = PLANTED_IN_DEGREES[name]
+    asked = properties.get(name)
+    assert asked.holds(example_of(scheme, hamiltonian)), "it speaks of the example, and holds"
+    kernel_for.cache_clear()
+    sample = example_of(scheme, hamiltonian)
+    planted = plant(sample, monkeypatch) or sample
+    try:
+        with pytest.raises(Violation) as found:
+            asked.holds(planted)
+    finally:
+        kernel_for.cache_clear()
+    assert "\n" not in str(found.value)
+
+
+@pytest.mark.parametrize("scheme", ["implicit-midpoint", "gauss4"])
+def test_steps_that_solve_equations_are_held_by_runs(scheme: str) -> None:
+    for name in ("exchange-of-degrees", "uncoupled-systems", "symplectic-schemes"):
+        assert properties.get(name).holds(example_of(scheme, THREE)), name
+
+
+def test_a_property_of_the_plane_speaks_of_no_degrees_and_the_other_way_round() -> None:
+    several = example_of("lie2")
+    assert not properties.get("separated-parts-add-up").holds(several)
+    plane = {"hamiltonian": "p**2/2 + q**4", "schemes": ["lie2"],
+             "grid": {"steps": 2, "step_sizes": ["0.1"],
+                      "initial_values": [{"q": 1, "p": 0}]}}  # fmt: skip
+    assert not properties.get("uncoupled-systems").holds(sample_of(scene_from(plane, "scene")))
+
+
+def test_a_scheme_is_that_of_the_sample() -> None:
+    assert example_of("lie2").scheme is get("lie2")
