@@ -109,6 +109,8 @@ def test_a_false_claim_is_shrunk_to_a_scene_that_report_takes(
         (("--property", "nothing"), "property=nothing: unknown; allowed: area-errors-compose"),
         (("--kind", "blue"), "--kind=blue: unknown; allowed: polynomial"),
         (("--degree", "0"), "degree=0"),
+        (("--degrees", "0"), "degrees=0: must be a whole number, 1 … 8"),
+        (("--degrees", "2", "--maximise", "rounding-share"), "is of one degree of freedom"),
         (("--scheme", "lie0"), "scheme=lie0"),
         (("missing.toml",), "CLAIMS=missing.toml: is no file"),
         (("--maximise", "size"), "maximise=size: unknown; allowed: rounding-share"),
@@ -186,3 +188,55 @@ def test_without_a_seed_one_is_told(capsys: pytest.CaptureFixture[str]) -> None:
     asked = ("explore", "--property", "quadratic-hamiltonians", "--examples", "1", "--json")
     seeds = {json_of(here(capsys, *asked)[1])["seed"] for _ in range(2)}
     assert len(seeds) == 2
+
+
+# -- several degrees of freedom -------------------------------------------------------------------
+
+
+def test_scenes_of_two_degrees_are_drawn_and_the_properties_speak(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    asked = ("explore", "--degrees", "2", "--kind", "polynomial", "--degree", "3",
+             "--time-dependent", "--examples", "12", "--seed", "3", "--json",
+             "--property", "uncoupled-systems", "--property", "extended-system",
+             "--property", "growth-laws")  # fmt: skip
+    status, out, err = here(capsys, *asked)
+    assert (status, err) == (0, "")
+    found = {each["name"]: each for each in json_of(out)["properties"]}
+    assert found["uncoupled-systems"]["looked_at"] > 2
+    assert found["extended-system"]["looked_at"] > 0
+    assert found["growth-laws"]["looked_at"] == 0, "it is of the plane"
+    assert not sum(each["failures"] for each in found.values())
+
+
+def test_a_false_claim_fails_for_two_degrees_and_its_scene_is_written(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("claims.toml").write_text(FALSE)
+    status, out, _ = here(capsys, "explore", "claims.toml", "--degrees", "2", "--examples", "8",
+                          "--kind", "polynomial", "--degree", "3", "--seed", "1")  # fmt: skip
+    assert status == 1
+    assert "fourth-order  FAILS for" in out
+    (written,) = Path("explored").glob("*.toml")
+    assert "q1" in written.read_text()
+
+
+def test_a_hunt_of_two_degrees_writes_scenes_and_their_report(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    asked = ("explore", "--degrees", "2", "--kind", "polynomial", "--degree", "3", "--maximise",
+             "defect", "--examples", "12", "--steps", "5", "--seed", "3",
+             "-o", "worst")  # fmt: skip
+    status, out, _ = here(capsys, *asked, "--json")
+    found = json_of(out)
+    assert status == 0
+    values = [float(each["value"]) for each in found["worst"]]
+    assert values == sorted(values, reverse=True)
+    assert values
+    assert Path("worst/worst-1.toml").read_text() == found["worst"][0]["scene"]
+    assert Path("worst/index.html").exists()
+    again = here(capsys, *asked, "--json")[1]
+    assert json_of(again)["worst"] == found["worst"], "the same seed finds the same"

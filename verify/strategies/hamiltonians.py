@@ -62,8 +62,8 @@ def hamiltonians(
     'p**2/2 + q**2/2'
     >>> find(hamiltonians(time_dependent=True), lambda h: True, settings=quietly).formula
     'p**2/2 + q**2/2 + q*t'
-    >>> find(hamiltonians(degrees=2, coupled=True), lambda h: True, settings=quietly).formula
-    'p1**2/2 + p2**2/2 + q1**2/2 + q1*q2 + q2**2/2'
+    >>> find(hamiltonians(degrees=2, coupled=True), lambda h: True, settings=quietly).coordinates
+    ('p1', 'p2', 'q1', 'q2')
 
     Shrinks towards p**2/2 + q**2/2. Raises InputError for a bad argument, and where no such H
     exists, when it is called and not when it draws.

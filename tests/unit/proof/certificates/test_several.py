@@ -168,3 +168,16 @@ def test_stages_are_symplectic_by_the_same_rule_as_in_the_plane() -> None:
 def test_where_there_is_none_it_says_why(formula: str, scheme: str, problem: str) -> None:
     with pytest.raises(InputError, match=problem):
         of_one(formula, scheme)
+
+
+def test_an_odd_taylor_polynomial_of_an_h_whose_form_vanishes_has_a_certificate() -> None:
+    """S of lie1 is 0 where no derivative of H is of two variables: 0 telescopes, without β."""
+    formula = "3*p1/4 + sin(3*q1)/2 + 7*p2/3 + cos(3*q2)/7 + (q1 - q2)**2/2"
+    proof = prove_symplectic(Hamiltonian.parse(formula), get("lie1"))
+    assert proof.symplectic
+    assert proof.telescopes
+    data = of_one(formula, "lie1")
+    accepted(data)
+    data["next"]["p1"][1][0][0] += "0"
+    with pytest.raises(ValueError, match=r"is not zero|is not|differs"):
+        check(data)
