@@ -271,3 +271,23 @@ def test_tables_that_cannot_be_taken_are_refused_in_one_line(folder: Path, tmp_p
 def test_a_start_of_another_length_is_refused() -> None:
     with pytest.raises(InputError, match="of 2 numbers"):
         scene_from_toml(SCENES["heiles"].replace("[0.3, 0.1]", "[0.3]"), "heiles")
+
+
+@pytest.mark.parametrize(
+    ("change", "problem"),
+    [
+        (lambda run: run["rows"][2]["energy"].update(value="1e+9999999"), "beyond all sizes"),
+        (lambda run: run.update(q=["1/0", "1"]), "1/0"),
+        (lambda run: run.update(q=["1", "1", "1"]), "of 2 numbers"),
+        (lambda run: run.update(q="1"), "is no reference data"),
+    ],
+)
+def test_hostile_data_are_refused_in_one_line(
+    change: Callable[[Any], Any], problem: str, folder: Path, tmp_path: Path
+) -> None:
+    data = json.loads((folder / "heiles.json").read_text())
+    change(data["runs"][0])
+    (tmp_path / "heiles.json").write_text(json.dumps(data))
+    with pytest.raises(InputError, match=problem) as found:
+        load_in_degrees(tmp_path, None)
+    assert "\n" not in str(found.value)

@@ -32,7 +32,11 @@ from verify.reference.check.difference import Findings, Place
 from verify.reference.check.recompute import recomputed
 from verify.reference.check.recompute_in_degrees import recomputed_in_degrees
 from verify.reference.make.models import DATA_FORMAT, MANIFEST_FORMAT, Data, Manifest
-from verify.reference.make.models_in_degrees import DATA_IN_DEGREES_FORMAT, DataInDegrees
+from verify.reference.make.models_in_degrees import (
+    DATA_IN_DEGREES_FORMAT,
+    DataInDegrees,
+    is_of_degrees,
+)
 from verify.reference.make.reading import json_of, rows_of
 from verify.reference.make.scene_plan import size_of
 from verify.reference.make.writing import (
@@ -53,7 +57,6 @@ OF_PLANE: tuple[type[AnyData], str] = Data, DATA_FORMAT
 OF_SEVERAL: tuple[type[AnyData], str] = DataInDegrees, DATA_IN_DEGREES_FORMAT
 Unit = tuple[AnyData, str, str, int]  # what `recomputed` takes
 _MOST_BYTES_OF_ALL = 8 * MOST_BYTES  # of the files that are listed; they are held in memory
-_HEAD = 100  # bytes of a file, in which its format stands
 _WORTH_A_POOL = 150  # recomputations, below which starting workers costs more than it gains
 _VERSION = re.compile(r"[0-9]+(\.[0-9a-z+]+)*")
 
@@ -156,9 +159,7 @@ def _by_itself(folder: Path, own: Path | None, found: Checked) -> Iterator[tuple
     read: dict[str, AnyData | None] = {}
     for name, content in contents.items():  # all are read before one is held against another
         if name.endswith(".json") and name not in SCHEMAS:
-            # A key that comes first; where it does not, the file is none of ours.
-            several = DATA_IN_DEGREES_FORMAT.encode() in content[:_HEAD]
-            model, form = OF_SEVERAL if several else OF_PLANE
+            model, form = OF_SEVERAL if is_of_degrees(content) else OF_PLANE
             read[name] = _model(model, form, content, name, found)
         elif name.endswith(".csv"):
             rows_of(content, name)

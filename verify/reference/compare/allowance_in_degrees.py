@@ -53,21 +53,21 @@ class AllowanceInDegrees:
         if any(self.unit * step * self._carried.get(n, Fraction(0)) > _LARGE * size for n in names):
             return None
         found = {}
-        products = self._entries**2
         for name, x in known.items():
-            own = size if name in names else abs(x) + (products if name in OBSERVED else 0)
-            by = self._carried.get(name, Fraction(0))
-            if name == "symplectic_defect_max":  # of one step
-                by, own = by, abs(x) + self._of_step()
+            own, by = self._size(name, abs(x), size), self._carried.get(name, Fraction(0))
             found[name] = AllowedInDegrees(
                 self.unit * (_FEW * own * many + _USUAL * many * by),
                 self.unit * (_FEW * own * many**2 + _WORST * (step + 1) * by),
             )
         return found
 
-    def _of_step(self) -> Fraction:
-        """The size of products in S of a step: its Jacobian is near 1."""
-        return Fraction(4 * self.ours.hamiltonian.degrees)
+    def _size(self, name: str, x: Fraction, size: Fraction) -> Fraction:
+        """What is rounded on the way to a number x of that name."""
+        if name in self.ours.hamiltonian.coordinates:
+            return size
+        if name == "symplectic_defect_max":  # products of a step, whose Jacobian is near 1
+            return x + 4 * self.ours.hamiltonian.degrees
+        return x + (self._entries**2 if name in OBSERVED else 0)
 
     def _start(self) -> dict[str, Fraction]:
         return {n: x for n, x in self.ours.run.start.items() if n != "t"}

@@ -17,14 +17,13 @@ from verify.formats import check_format
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.orbit import Orbit
 from verify.kernels.step.tangent_map import nearest_double
-from verify.reference.compare.published_in_degrees import is_of_degrees
+from verify.reference.compare.published_in_degrees import check_exponents, is_file_of_degrees
 from verify.reference.make.models import DATA_FORMAT, Data, Run, values_of
 from verify.reference.make.reading import json_of
 from verify.reference.make.writing import MANIFEST, SCHEMAS
 from verify.scenes.results.reference import OrbitPoint
 
 KEYS = ("scheme", "step_size", "q0", "p0")  # what a run of a scene is told by
-_EXPONENT_DIGITS = 6
 Inputs = tuple[str, float, float, float]  # scheme, h, q0, p0: the numbers to the nearest double
 
 
@@ -117,10 +116,10 @@ def load(folder: Path, scene: str | None) -> Published:
         raise InputError(
             "--data", str(folder), "is no folder; give one that `verify reference make` wrote"
         )
-    paths = (path for path in folder.glob("*.json") if path.name not in (MANIFEST, *SCHEMAS))
-    names = {path.name for path in paths if not is_of_degrees(path)}
+    names = {path.name for path in folder.glob("*.json")} - {MANIFEST, *SCHEMAS}
     if scene is not None and f"{scene}.json" in names:
         names = {f"{scene}.json"}
+    names = {name for name in names if not is_file_of_degrees(folder / name)}
     if not names:
         raise InputError(
             "--data",
@@ -151,7 +150,4 @@ def _check_exponents(run: Run, name: str) -> None:
     """InputError for an exponent whose power of ten would fill the memory."""
     for row in run.rows:
         for known in values_of(row).values():
-            for text in (known.value, known.radius) if known else ():
-                exponent = text.partition("e")[2].lstrip("+-0")
-                if len(exponent) > _EXPONENT_DIGITS:
-                    raise InputError("file", name, f"has the number {text[:40]}, beyond all sizes")
+            check_exponents(known, name)

@@ -8,21 +8,26 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
+from verify.arithmetic.exact import rational
 from verify.errors import InputError
-from verify.files import read_bytes
+from verify.files import opened, read_bytes
 from verify.formats import check_format
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.start import point_of
 from verify.kernels.step.tangent_map import nearest_double
 from verify.reference.make.models_in_degrees import (
     DATA_IN_DEGREES_FORMAT,
     DataInDegrees,
     RunInDegrees,
+    is_of_degrees,
     values_in_degrees,
 )
 from verify.reference.make.reading import json_of
+from verify.scenes.results.reference import Rounded
 from verify.scenes.results.reference_in_degrees import OrbitPointInDegrees
 
-HEAD = 100  # bytes of a file, in which its format stands
+_HEAD = 200  # bytes of a file
+_EXPONENT_DIGITS = 6
 Bounded = tuple[Fraction, Fraction]  # a value and its radius
 
 
@@ -68,10 +73,21 @@ class RunOfDegrees:
         return {name: (Fraction(x.value), Fraction(x.radius)) for name, x in known if x}
 
 
-def is_of_degrees(path: Path) -> bool:
+def check_exponents(known: Rounded | None, name: str) -> None:
+    """InputError for an exponent whose power of ten would fill the memory."""
+    for text in (known.value, known.radius) if known else ():
+        exponent = text.partition("e")[2].lstrip("+-0")
+        if len(exponent) > _EXPONENT_DIGITS:
+            raise InputError("file", name, f"has the number {text[:40]}, beyond all sizes")
+
+
+def is_file_of_degrees(path: Path) -> bool:
     """Whether a file's format is that of data in n degrees of freedom."""
-    with path.open("rb") as file:
-        return DATA_IN_DEGREES_FORMAT.encode() in file.read(HEAD)
+    try:
+        with opened(path) as file:
+            return is_of_degrees(file.read(_HEAD))
+    except InputError:  # whoever reads it says so
+        return False
 
 
 def load_in_degrees(folder: Path, scene: str | None) -> list[RunOfDegrees]:
@@ -79,7 +95,7 @@ def load_in_degrees(folder: Path, scene: str | None) -> list[RunOfDegrees]:
 
     InputError for a folder that has none, and for a file that is not as it must be.
     """
-    found = [run for path in sorted(folder.glob("*.json")) if is_of_degrees(path)
+    found = [run for path in sorted(folder.glob("*.json")) if is_file_of_degrees(path)
              for run in _runs(path)]  # fmt: skip
     names = sorted({run.scene for run in found})
     if not found:
@@ -101,4 +117,10 @@ def _runs(path: Path) -> Iterator[RunOfDegrees]:
         raise InputError("file", path.name, problem) from None
     hamiltonian = Hamiltonian.parse(data.hamiltonian, data.parameters)
     for run in data.runs:
+        point_of(hamiltonian, run.q, run.p)
+        for text in (run.step_size, run.t0 or "0"):
+            rational(text, path.name)
+        for row in run.rows:
+            for known in values_in_degrees(row, hamiltonian.degrees).values():
+                check_exponents(known, path.name)
         yield RunOfDegrees(data.name, hamiltonian, run)

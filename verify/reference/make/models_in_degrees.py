@@ -20,6 +20,7 @@ DATA_IN_DEGREES_FORMAT: DataInDegreesFormat = "areaproof reference data in degre
 OF_ORBIT = ("energy", "symplectic_defect_max", "symplectic_defect", "lambda")
 AFTER_A_STEP = ("symplectic_defect_max",)  # what there is not for N = 0
 MAY_LACK = ("energy",)
+_HEAD = 100  # bytes of a file, in which its format stands: a key that comes first
 _List = Annotated[tuple[Exact, ...], Field(min_length=2)]
 
 
@@ -34,6 +35,11 @@ def values_in_degrees(
     if isinstance(row, OrbitPointInDegrees):
         found |= {name: getattr(row, name) for name in OF_ORBIT[:-1]} | {"lambda": row.lam}
     return found
+
+
+def is_of_degrees(content: bytes) -> bool:
+    """Whether a file that begins so has the format of data in n degrees of freedom."""
+    return DATA_IN_DEGREES_FORMAT.encode() in content[:_HEAD]
 
 
 class ProofInDegrees(OfScheme):
