@@ -24,6 +24,7 @@ Progress = Callable[[int], None]  # called with the number of steps done
 _ACCUMULATORS = {"lambda": "lam", "lambda_max": "lam_top", "mse": "mse", "delta_j_max": "top",
                  "lambda_plain": "plain", "symplectic_defect_max": "s_top"}  # fmt: skip
 _FORM = "symplectic_defect"  # the greatest entry of W
+ENTRIES = "symplectic_defect_entries"  # with it W's own entries are noted in `tangents`
 # Powers of the 2^s that the kernel carries.
 _SCALED = {"lam": 1, "lam_top": 1, "mse": 2, "top": 1, "dj": 1, "s_top": 1, "w": 1}
 _EXTREMES = ("dj_low", "dj_high", "lam_low", "lam_high")
@@ -58,7 +59,7 @@ class Reached:
 
     `trail` has p, q and the observables at points on the way and at the last step done, as the
     exact rationals that they are; `tangents` what `verify.kernels.step.tangent_map` notes, at the
-    same points. `state`: all that is carried; `seen`: extremes since the last note.
+    same points, with the entries of W (`w_a_b`, a < b) where `ENTRIES` are asked for. `state`: all that is carried; `seen`: extremes since the last note.
     """
 
     done: int = 0
@@ -106,6 +107,7 @@ class ChunkedLoop:
         noted = tangent_map.names_of(kernel.coordinates)
         known = (*(name for name in noted if name in self._at), "done")
         self._tangent = known if "growth" in self._at else ()
+        self._tangent += tuple(self._form) if ENTRIES in run.observables else ()
         self._doubles = [k for k, x in enumerate(self.state) if isinstance(x, float)]
         self.section = -(-run.steps // run.sections)  # steps between two notes
         kinds = f"{arithmetic.name} {arithmetic.bits} {shift} {' '.join(kernel.state_names)}"
@@ -225,6 +227,8 @@ class ChunkedLoop:
         return found
 
     def _of_tangent(self, name: str, state: State, done: int) -> Fraction:
+        if name in self._form:
+            return self._unscaled("w", self._total(name, state, self._exact))
         return Fraction(done) if name == "done" else self._exact(state[self._at[name]])
 
     def _final(self, name: str, state: State, done: int) -> Fraction:

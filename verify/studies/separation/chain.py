@@ -99,15 +99,15 @@ class Chain:
         last = len(self.parts)
         return {"lambda_working": (None, last), "truncation": (None, 0), "total": (0, last)}[name]
 
-    def lacking(self, digits: int) -> list[int]:
+    def lacking(self, digits: int, least: Fraction = Fraction(0)) -> list[int]:
         """How many digits each link lacks for those wanted of the parts at its ends.
 
-        A part of 0 may stay unknown.
+        A part that is not greater than `least` may stay unknown.
         """
         lacking = [0] * len(self.links)
         for name in self.quantities:
             value, bound = self.final(name)
-            if not (value and bound):
+            if not (abs(value) > least and bound):
                 continue
             allowed = abs(value) / (4 * Fraction(10) ** digits)
             for k in (end for end in self._ends(name) if end is not None):
@@ -186,7 +186,7 @@ class _Links:
         self.marks = marks_of(kernel_run.steps)
         self.digits = {"first": digits, "second": digits, "beside": digits}
         self.inputs = rounded_inputs(kernel_run)
-        self.rounded = _rounded(kernel_run, self.inputs)
+        self.rounded = with_inputs(kernel_run, self.inputs)
         self.same = (
             self.rounded.start == kernel_run.start
             and self.rounded.parameters == kernel_run.parameters
@@ -242,7 +242,7 @@ class _Links:
             self.kernel_run, self.inputs, self.constant is None and self.kernel_run.steps > 1
         )
         digits = working_digits(self.digits["beside"], self.kernel_run.steps)
-        asked, last = number_systems.get(self._name(digits), digits), _last().make(digits)
+        asked, last = number_systems.get(self._name(digits), digits), last_system().make(digits)
         try:
             return run.step_through(asked if asked.rounding else last, self.advance)
         except UnsupportedError:
@@ -257,10 +257,10 @@ class _Links:
     def _name(self, digits: int) -> str:
         """The arithmetic for so many digits: one that compiles takes ever longer to do it."""
         asked = number_systems.about(self.arithmetic)
-        return asked.name if digits <= asked.most_digits else _last().name
+        return asked.name if digits <= asked.most_digits else last_system().name
 
 
-def _last() -> NumberSystem:
+def last_system() -> NumberSystem:
     """The number system that has every range and function."""
     return number_systems.automatic()[-1]
 
@@ -289,7 +289,7 @@ def _proved(step_map: StepMap | None, kernel_run: KernelRun, digits: int) -> Lin
     return Link(tuple(x for x, _ in found), worst, "enclosed", "ΔJ is constant")
 
 
-def _rounded(kernel_run: KernelRun, inputs: dict[str, float]) -> KernelRun:
+def with_inputs(kernel_run: KernelRun, inputs: dict[str, float]) -> KernelRun:
     """The same run from the rounded inputs; parameters that the kernel has inside stay exact."""
     rounded = copy.copy(kernel_run)
     rounded.start = {n: Fraction(inputs[n]) for n in kernel_run.start}
@@ -333,5 +333,5 @@ def _reference(kernel_run: KernelRun, arithmetic: str, digits: int, advance: Adv
             kind: Kind = "enclosed" if found.rigorous else "estimated"
             return Link(trail, bound, kind, found.method)
         more *= 2
-        run = kernel_run.run(_last().make(more))
+        run = kernel_run.run(last_system().make(more))
     raise Stopped("unresolved", None, f"in exact arithmetic: {found.method}")

@@ -39,6 +39,7 @@ from verify.kernels.kernel import PARTIAL, Kernel, Writer
 from verify.kernels.step import newton
 from verify.kernels.step.computation import step_map_of
 from verify.kernels.step.lowering import Lowering
+from verify.kernels.step.program import Program
 from verify.schemes.step_map import StepMap
 
 WORKING = frozenset({"lambda", "lambda_plain"})  # with these `verify run` steps in float64, too
@@ -164,11 +165,17 @@ def _lines(
     kernel: Kernel, outputs: Sequence[str], arithmetic: Arithmetic, prefix: str
 ) -> tuple[list[str], list[str]]:
     """The kernel's lines before the loop and in it that make these outputs, names prefixed."""
+    roots = [kernel.outputs[name] for name in outputs]
+    return prefixed_lines(kernel.lowering.program, roots, arithmetic, prefix)
+
+
+def prefixed_lines(
+    program: Program, roots: Sequence[int], arithmetic: Arithmetic, prefix: str
+) -> tuple[list[str], list[str]]:
+    """A program's lines before the loop and in it that make these values, names prefixed."""
     bare = _BARE if prefix == "f_" else _BARE | set(arithmetic.functions)
-    fresh = Lowering(
-        kernel.lowering.program, arithmetic.functions, bits=arithmetic.bits, guard=arithmetic.guard
-    )
-    before, inside = fresh.lines([kernel.outputs[name] for name in outputs])
+    fresh = Lowering(program, arithmetic.functions, bits=arithmetic.bits, guard=arithmetic.guard)
+    before, inside = fresh.lines(roots)
 
     def prefixed(line: str) -> str:
         return _NAME.sub(lambda m: m[0] if m[0] in bare else prefix + m[0], line)

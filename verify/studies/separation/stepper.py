@@ -2,13 +2,12 @@
 
 import math
 from bisect import bisect_left
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import takewhile
-from typing import Any
+from typing import Any, Protocol
 
 from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic
-from verify.studies.separation.kernel import MixedKernel
 
 State = Mapping[str, Any]  # a float or a wide number; its name begins with f or with w
 
@@ -29,13 +28,30 @@ class Carried(Mapping[str, Any]):
         return len(self._at)
 
 
+class Stepped(Protocol):
+    """A kernel whose function takes and returns what is carried, in the order of its names."""
+
+    @property
+    def function(self) -> Callable[..., tuple[int, *tuple[Number, ...]]]: ...
+
+    @property
+    def state_names(self) -> tuple[str, ...]: ...
+
+
 class Stepper:
-    """A mixed kernel with all that stays the same from step to step."""
+    """A mixed kernel with all that stays the same from step to step.
+
+    `also`: what must hold of a state in range beside that its float64 numbers are finite.
+    """
 
     def __init__(
-        self, kernel: MixedKernel, arithmetic: Arithmetic, fixed: Sequence[Number]
+        self,
+        kernel: Stepped,
+        arithmetic: Arithmetic,
+        fixed: Sequence[Number],
+        also: Callable[[State], bool] = lambda _: True,
     ) -> None:
-        self.kernel, self.arithmetic, self.fixed = kernel, arithmetic, fixed
+        self.kernel, self.arithmetic, self.fixed, self.also = kernel, arithmetic, fixed, also
         self._at = {name: k for k, name in enumerate(kernel.state_names)}
         # The sums of logarithms may be undefined while the orbit and the plain way go on.
         self._vital = [n for n in self._at if n[0] == "f" and n not in ("f_sum", "f_rest")]
@@ -48,7 +64,7 @@ class Stepper:
         return list(takewhile(self._finite, (Carried(self._at, x) for x in found)))
 
     def _finite(self, state: State) -> bool:
-        return all(math.isfinite(state[name]) for name in self._vital)
+        return all(math.isfinite(state[name]) for name in self._vital) and self.also(state)
 
     def last_good(self, state: State, count: int) -> int:
         """The greatest number of steps below `count` that stays in range, by bisection."""

@@ -82,9 +82,9 @@ def exact_link(trail: Sequence[Fraction], method: str) -> Link:
     return Link(tuple(trail), Fraction(0), "enclosed", method)
 
 
-def marks_of(steps: int) -> tuple[int, ...]:
-    """The numbers of steps at the checkpoints, as `Job.go` makes them for `POINTS`."""
-    section = -(-steps // POINTS)
+def marks_of(steps: int, points: int = POINTS) -> tuple[int, ...]:
+    """The numbers of steps at the checkpoints, as `Job.go` makes them for so many points."""
+    section = -(-steps // points)
     return tuple(min(k, steps) for k in range(section, steps + section, section))
 
 

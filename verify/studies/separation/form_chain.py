@@ -1,0 +1,225 @@
+"""The chain of every entry of W, in n degrees of freedom.
+
+W_N = MᵀΩM − Ω, M the product of N steps' Jacobians, is to n degrees what Λ is to one. Each of its
+n (2n − 1) entries above the diagonal has a chain (`verify.studies.separation.chain`) of its own:
+
+    W₀  exact arithmetic at the exact inputs
+    W₁  exact arithmetic at the inputs rounded to float64
+    W₂  the states that float64 steps to, bit by bit; the Jacobians at them and W exactly
+    W₃  the Jacobians, or S, as float64 computes them, bit by bit; their products and W exactly
+    W₄  products and W in float64 too, `w_working`
+
+    W₄ = W₀ + (W₁ − W₀) + (W₂ − W₁) + (W₃ − W₂) + (W₄ − W₃)
+       = truncation + input + trajectory + derivatives + product,
+
+an equation of rationals, entry by entry. Where H depends on time `clock` stands after W₁, as in one
+degree of freedom. What is known is not run: where S ≡ 0 is proved, W₀, W₁ and W₂ are exactly 0, and
+so are all links of the closed form; where every input is a float64, W₁ = W₀; after one step
+W₂ = W₁.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from verify import arithmetic as number_systems
+from verify import lockstep
+from verify.arithmetic import AUTO
+from verify.errors import InputError
+from verify.execution.keeping import NOTHING, Keeper
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.chunked_loop import ENTRIES
+from verify.kernels.step.in_degrees import map_of, preserves
+from verify.kernels.stepping import KernelRun
+from verify.runs.digits_on_demand import choose, measure
+from verify.runs.estimated import working_digits
+from verify.studies.separation.chain import Chain, clock_is_exact, last_system, with_inputs
+from verify.studies.separation.form_run import POINTS, FormRun, FormWorking, Links, links_of
+from verify.studies.separation.working import (
+    Advance,
+    Kind,
+    Link,
+    Stopped,
+    exact_link,
+    marks_of,
+    rounded_inputs,
+)
+
+PARTS = ("input", "trajectory", "derivatives", "product")  # of rounding, in the chain's order
+PARTS_IN_TIME = ("input", "clock", "trajectory", "derivatives", "product")
+_CANCELLED = 20  # digits that the differences between links cancel
+_PRODUCTS = 20  # and those that MᵀΩM − Ω does
+_HIDDEN = 25  # digits further below the greatest entry a part is taken for noise
+_ATTEMPTS = 4
+_DOUBLINGS = 6
+
+
+@dataclass(frozen=True)
+class FormChains:
+    """The chains of the plain way and of the closed form, one for each entry above the diagonal.
+
+    `arithmetic` stood for exact arithmetic; `norms`: of M at the checkpoints.
+    """
+
+    plain: tuple[Chain, ...]
+    closed_form: tuple[Chain, ...]
+    norms: tuple[float, ...]
+    arithmetic: str
+    seconds: float
+
+    @property
+    def marks(self) -> tuple[int, ...]:
+        """The numbers of steps at the checkpoints."""
+        return self.plain[0].marks
+
+
+def form_chains(
+    hamiltonian: Hamiltonian,
+    scheme: str,
+    start: dict[str, Fraction],
+    steps: int,
+    digits: int,
+    arithmetic: str = AUTO,
+    advance: Advance = lambda _: None,
+    keeper: Keeper = NOTHING,
+) -> FormChains:
+    """Of a scheme's run from exact inputs, every part of every entry of W to so many digits, where
+    that can be had; arguments as in `verify.studies.separation.chain.separated_chains`.
+
+    Raises Stopped where W has no value, and InputError for a scheme that solves equations.
+    """
+    asked = frozenset({"symplectic_defect", ENTRIES})
+    kernel_run = KernelRun(hamiltonian, scheme, start, steps, asked, 0, keeper, sections=POINTS)
+    if kernel_run.implicit:
+        problem = "solves equations; in n degrees of freedom its Jacobian is not followed"
+        raise InputError("scheme", scheme, problem)
+    begun = lockstep.clock()
+    if arithmetic == AUTO:
+        arithmetic = choose(kernel_run, digits + _CANCELLED)
+    links = _Links(kernel_run, arithmetic, digits + _CANCELLED, advance)
+    for _ in range(_ATTEMPTS):
+        plain, closed = links.chains()
+        if not links.refine(_lacking((*plain, *closed), digits)):
+            break
+    return FormChains(plain, closed, links.norms, arithmetic, lockstep.clock() - begun)
+
+
+def _lacking(chains: Sequence[Chain], digits: int) -> list[int]:
+    """How many digits each link lacks, for the entry that lacks most."""
+    largest = max(abs(chain.final(name)[0]) for chain in chains for name in chain.quantities)
+    least = largest / Fraction(10) ** (digits + _HIDDEN)
+    return [max(each) for each in zip(*(x.lacking(digits, least) for x in chains), strict=True)]
+
+
+class _Links:
+    """The links of all entries, each made when it is asked for, at its own number of digits."""
+
+    def __init__(
+        self, kernel_run: KernelRun, arithmetic: str, digits: int, advance: Advance
+    ) -> None:
+        self.kernel_run, self.arithmetic, self.advance = kernel_run, arithmetic, advance
+        self.marks = marks_of(kernel_run.steps, POINTS)
+        self.digits = {"first": digits, "second": digits, "beside": digits + _PRODUCTS}
+        self.inputs = rounded_inputs(kernel_run)
+        self.rounded = with_inputs(kernel_run, self.inputs)
+        self.same = (
+            self.rounded.start == kernel_run.start
+            and self.rounded.parameters == kernel_run.parameters
+        )
+        self.zero: Links | None = None
+        if preserves(map_of(kernel_run.hamiltonian, kernel_run.scheme)):
+            nothing = exact_link([Fraction(0)] * len(self.marks), "S ≡ 0")
+            size = len(kernel_run.hamiltonian.coordinates)
+            self.zero = (nothing,) * (size * (size - 1) // 2)
+        self.made: dict[str, Links] = {}
+        self.working: FormWorking | None = None
+
+    @property
+    def norms(self) -> tuple[float, ...]:
+        assert self.working is not None  # noqa: S101 - after `chains`
+        return self.working.norms
+
+    def chains(self) -> tuple[tuple[Chain, ...], tuple[Chain, ...]]:
+        """Those of the plain way and of the closed form."""
+        # Before the longer runs: where float64 leaves its range there is nothing to separate.
+        working = self.working = self.working or self._beside()
+        first = self.zero or self._reference(self.kernel_run, "first")
+        second = first if self.same else self.zero or self._reference(self.rounded, "second")
+        shared = [first, second]
+        if self.kernel_run.hamiltonian.time_dependent:
+            known = clock_is_exact(self.rounded)
+            shared.append(second if known or working.clock is None else working.clock)
+        shared.append(working.trajectory or second)
+        parts = PARTS_IN_TIME if len(shared) > 3 else PARTS
+        closed = working.closed_derivatives or first, working.closed_form or first
+
+        def chains(*links: Links) -> tuple[Chain, ...]:
+            each = zip(*shared, *links, strict=True)
+            return tuple(Chain(self.marks, own, parts) for own in each)
+
+        return chains(working.derivatives, working.plain), chains(*closed)
+
+    def refine(self, lacking: Sequence[int]) -> bool:
+        """Asks for so many more digits of the links; False where no run lacks any."""
+        first, second, *beside = lacking
+        if self.same:
+            first, second = max(first, second), 0
+        wanted = {"first": first, "second": second, "beside": max(beside)}
+        if self.zero:
+            wanted |= {"first": 0, "second": 0}
+        self.advance = lambda _: None  # what was foreseen is done
+        for name, more in wanted.items():
+            if more:
+                self.digits[name] += more + 2
+                self.made.pop(name, None)
+        if wanted["beside"]:
+            self.working = None
+        return any(wanted.values())
+
+    def _beside(self) -> FormWorking:
+        """The float64 run, beside what has every range and function."""
+        follow = self.zero is None and self.kernel_run.steps > 1
+        digits = working_digits(self.digits["beside"], self.kernel_run.steps)
+        name = self.arithmetic
+        asked = number_systems.get(name, digits)
+        own = last_system().make(digits) if asked.absolute or asked.radius else asked
+        return FormRun(self.kernel_run, self.inputs, follow).step_through(own, self.advance)
+
+    def _reference(self, kernel_run: KernelRun, name: str) -> Links:
+        if name not in self.made:
+            digits = self.digits[name]
+            about = number_systems.about(self.arithmetic)
+            own = about.name if digits <= about.most_digits else last_system().name
+            self.made[name] = _reference(kernel_run, own, digits, self.advance)
+        return self.made[name]
+
+
+def _reference(kernel_run: KernelRun, arithmetic: str, digits: int, advance: Advance) -> Links:
+    """W in exact arithmetic's stead, its greatest entry to so many digits; Stopped where a run
+    cannot give it."""
+    last = 0
+
+    def progress(done: int) -> None:
+        nonlocal last
+        advance(max(done - last, 0))
+        last = max(done, last)
+
+    measured = measure(kernel_run, arithmetic, digits, progress)
+    found, run = measured.bounds, measured.outcome
+    if found.status != "finished":
+        reason = f"in exact arithmetic: {found.method}"
+        raise Stopped(found.status, found.failed_step, reason)
+    value, bound = found.values["symplectic_defect"]
+    kind: Kind = "enclosed" if found.rigorous else "estimated"
+    # As for Λ: the bound is that of the entries at every checkpoint, and where it is an estimate
+    # they must be those of a run that agrees with it.
+    more = working_digits(digits, kernel_run.steps)
+    for _ in range(_DOUBLINGS):
+        own = run.values["symplectic_defect"] if run.done == kernel_run.steps else None
+        if own is not None and abs(own - value) <= bound:
+            names = [n for n in run.tangents[0] if n.startswith("w_")]
+            trail = [tuple(note[n] for n in names) for note in run.tangents]
+            return links_of(trail, lambda each: Link(each, bound, kind, found.method))
+        more *= 2
+        run = kernel_run.run(last_system().make(more))
+    raise Stopped("unresolved", None, f"in exact arithmetic: {found.method}")

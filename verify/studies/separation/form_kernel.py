@@ -1,0 +1,268 @@
+"""One loop in which float64 and exact arithmetic stand side by side, in n degrees of freedom.
+
+At each float64 state z̃ of a run it has K = J − 1 of the step, by the derivatives of the step's own
+operations, and the symplectic defect S of the step, as the float64 kernel of `verify run` has them,
+bit for bit, and the links of `verify.studies.separation.form_chain`:
+
+    w_t  M ← M + K M with K exactly at z̃ (trajectory)
+    w_n  M ← J̃ M exactly, J̃ the float64 matrix 1 + K̃, each entry rounded once (derivatives, plain)
+    f_n  M ← J̃ M in float64: products of rows and columns, added from the left (plain)
+    w_m  M ← M + K̃ M exactly, and w_w  W ← W + MᵀS̃M exactly (derivatives, closed form)
+    f_m  M ← M + K̃ M, and f_w  W ← W + MᵀS̃M in float64 (closed form)
+
+Of the first three W = MᵀΩM − Ω, which holds exactly for exact products and so cancels nothing that
+more digits do not give back; the third takes it in float64, as a program would.
+
+Where H depends on time float64 has a clock, f_t ← f_t + f_h; a wide state of its own that steps by
+it (names that begin with `w_at_`) has the product w_c.
+
+The source's language is that of `verify.studies.separation.kernel`; names of entries end in their
+row and column, M₁₂ of w_t is w_t_0_1.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+
+from verify.arithmetic.number import Number
+from verify.arithmetic.number_system import Arithmetic
+from verify.arithmetic.systems import float64
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.step.computation import Computation, Observed
+from verify.kernels.step.in_degrees import computed_in_degrees, map_of, preserves
+from verify.kernels.step.lowering import Lowering
+from verify.kernels.step.partials import Partials
+from verify.kernels.step.program import Program
+from verify.schemes.step_map import StepMap
+from verify.studies.separation.kernel import AT, prefixed_lines
+
+Rows = Sequence[Sequence[str]]  # of names; an empty one is 0
+
+
+@dataclass(frozen=True)
+class FormKernel:
+    """`function(steps, f_h, *f_parameters, w_h, *w_parameters, *state_names)` → (steps done,
+    *state_names).
+
+    `products`: the letters of the matrices that are carried, as `w_t`; `closed`: whether S is not
+    constantly 0. `wide`: what the wide lines compute at z̃, with K's entries `slopes`.
+    """
+
+    function: Callable[..., tuple[int, *tuple[Number, ...]]]
+    parameters: tuple[str, ...]
+    coordinates: tuple[str, ...]
+    state_names: tuple[str, ...]
+    products: tuple[str, ...]
+    timed: bool
+    closed: bool
+    wide: "Step"
+    source: str
+
+
+@dataclass(frozen=True)
+class Step:
+    """A step's program, with the indices of K's entries."""
+
+    made: Computation
+    program: Program
+    slopes: tuple[tuple[int, ...], ...]
+
+    @classmethod
+    def of(cls, hamiltonian: Hamiltonian, scheme: str, *, pipelined: bool, form: bool) -> "Step":
+        """The step of a scheme; `form`: with S, M and W.
+
+        Raises NotImplementedError where a step solves equations."""
+        step = map_of(hamiltonian, scheme)
+        assert not isinstance(step, StepMap)  # noqa: S101 - the caller has n degrees of freedom
+        asked = Observed(
+            pipelined=pipelined, scaled=False, delta_j=False, determinant=False, tangent=False,
+            symplectic=form, carried=form,
+        )  # fmt: skip
+        made = computed_in_degrees(step, asked)
+        program = made.program.copy()
+        partials = Partials(program, [program.input(n, static=False) for n in made.coordinates])
+        changes = [made.outputs[f"d{name}"] for name in made.coordinates]
+        return cls(made, program, tuple(tuple(partials.gradient(at)) for at in changes))
+
+    def names(self, prefix: str) -> Rows:
+        """K's entries by their names in the source."""
+        zero = self.program.is_constant
+        return [["" if zero(at, 0) else f"{prefix}v{at}" for at in row] for row in self.slopes]
+
+    def roots(self) -> list[int]:
+        return [at for row in self.slopes for at in row]
+
+
+@lru_cache(maxsize=16)
+def form_kernel(
+    hamiltonian: Hamiltonian, scheme: str, arithmetic: Arithmetic, follow: bool
+) -> FormKernel:
+    """The kernel for a generic Hamiltonian; `follow`: with K exactly at the float64 states.
+
+    Raises NotImplementedError where a step solves equations.
+    """
+    working, closed = float64.make(17), not preserves(map_of(hamiltonian, scheme))
+    narrow = Step.of(hamiltonian, scheme, pipelined=working.pipelined, form=closed)
+    wide = Step.of(hamiltonian, scheme, pipelined=arithmetic.pipelined, form=False)
+    names, timed = narrow.made.coordinates, hamiltonian.time_dependent
+    outputs = narrow.made.outputs
+    roots = [*narrow.roots(), *outputs.values(), *narrow.made.defect.values()]
+    before, inside = prefixed_lines(narrow.program, roots, working, "f_")
+    products = ["f_n", "w_n"]
+    moves: list[str] = []
+    if follow:
+        static, dynamic = prefixed_lines(wide.program, wide.roots(), arithmetic, "w_")
+        before += static
+        inside += [f"w_{n} = wide(f_{n})" for n in (*names, *("t" * timed))] + dynamic
+        moves += _moved("w_t", wide.names("w_"))
+        products.append("w_t")
+    if follow and timed:
+        before += [f"{AT}{n} = w_{n}" for n in _given(narrow)]
+        roots = [*wide.roots(), *(wide.made.outputs[f"d{n}"] for n in names)]
+        static, dynamic = prefixed_lines(wide.program, roots, arithmetic, AT)
+        before, inside = before + static, [*inside, f"{AT}t = w_t", *dynamic]
+        moves += _moved("w_c", wide.names(AT))
+        moves += [f"{AT}{n} = {AT}{n} + ({AT}v{wide.made.outputs[f'd{n}']})" for n in names]
+        products.append("w_c")
+    moves += _plain(narrow)
+    if closed:
+        moves += _closed(narrow)
+        products += ["f_m", "w_m"]
+    moves += [f"f_{n} = f_{n} + (f_v{outputs[f'd{n}']})" for n in names]
+    moves += ["f_t = f_t + f_h"] * timed
+    states = (
+        *(f"f_{n}" for n in (*names, *("t" * timed))),
+        *(f"{AT}{n}" for n in names if follow and timed),
+        *(f"{matrix}_{a}_{b}" for matrix in products for a, b in _places(names)),
+        *(f"{w}_{a}_{b}" for w in ("f_w", "w_w") * closed for a, b in _places(names) if a < b),
+    )
+    source = _assemble(narrow, states, before, [*inside, *moves])
+    scope = _scope(narrow, working, wide, arithmetic)
+    function = arithmetic.compile(source, "kernel", scope)
+    return FormKernel(
+        function, narrow.made.parameters, names, states, tuple(products), timed, closed, wide,
+        source,
+    )  # fmt: skip
+
+
+def _given(narrow: Step) -> list[str]:
+    return ["h", *(f"x{k}" for k in range(len(narrow.made.parameters)))]
+
+
+def _places(names: Sequence[str]) -> list[tuple[int, int]]:
+    every = range(len(names))
+    return [(a, b) for a in every for b in every]
+
+
+def _sum(row: Sequence[str], column: Sequence[str]) -> str:
+    """The sum of products, from the left; terms that are 0 for certain are left out."""
+    pairs = zip(row, column, strict=True)
+    return " + ".join(f"{a} * {b}" for a, b in pairs if a and b)
+
+
+def _product(rows: Rows, matrix: str) -> list[list[str]]:
+    every = range(len(rows))
+    columns = [[f"{matrix}_{c}_{b}" for c in every] for b in every]
+    return [[_sum(row, column) for column in columns] for row in rows]
+
+
+def _moved(matrix: str, slopes: Rows) -> list[str]:
+    """M ← M + K M."""
+    changed = _product(slopes, matrix)
+    return _assigned(matrix, changed, lambda name, change: f"{name} + ({change})")
+
+
+def _assigned(
+    matrix: str, entries: Sequence[Sequence[str]], made: Callable[[str, str], str]
+) -> list[str]:
+    """All entries are made before the first is assigned; those that do not change are left."""
+    places = [(a, b) for a, row in enumerate(entries) for b, entry in enumerate(row) if entry]
+    kind = matrix[:2]
+    return [
+        *(f"{kind}new_{a}_{b} = {made(f'{matrix}_{a}_{b}', entries[a][b])}" for a, b in places),
+        *(f"{matrix}_{a}_{b} = {kind}new_{a}_{b}" for a, b in places),
+    ]
+
+
+def _plain(narrow: Step) -> list[str]:
+    """J̃ = 1 + K̃ and its products, in float64 and exactly."""
+    lines, slopes, rows = [], narrow.names("f_"), []
+    for a, row in enumerate(slopes):
+        own = []
+        for b, entry in enumerate(row):
+            if a == b or entry:
+                lines.append(f"f_j_{a}_{b} = " + (f"1.0 + {entry or '0.0'}" if a == b else entry))
+                lines.append(f"w_j_{a}_{b} = wide(f_j_{a}_{b})")
+            own.append(f"j_{a}_{b}" if a == b or entry else "")
+        rows.append(own)
+    for kind in ("w_", "f_"):
+        named = [[name and kind + name for name in row] for row in rows]
+        lines += _assigned(f"{kind}n", _product(named, f"{kind}n"), lambda _, entry: entry)
+    return lines
+
+
+def _closed(narrow: Step) -> list[str]:
+    """M ← M + K̃ M and W ← W + MᵀS̃M, exactly and in float64."""
+    slopes, outputs, defect = narrow.names("f_"), narrow.made.outputs, narrow.made.defect
+    size = len(slopes)
+    lines, exact = [], [["" for _ in range(size)] for _ in range(size)]
+    for a, row in enumerate(slopes):
+        for b, entry in enumerate(row):
+            if entry:
+                lines.append(f"w_k_{a}_{b} = wide({entry})")
+                exact[a][b] = f"w_k_{a}_{b}"
+    form = [["" for _ in range(size)] for _ in range(size)]
+    for name, at in defect.items():
+        _, a, b = name.split("_")
+        if not narrow.program.is_constant(at, 0):
+            lines += [f"w_{name} = wide(f_v{at})", f"w_s_{b}_{a} = -w_{name}"]
+            form[int(a)][int(b)], form[int(b)][int(a)] = f"w_{name}", f"w_s_{b}_{a}"
+    right = _product(form, "w_m")
+    lines += [f"w_r_{a}_{b} = {right[a][b]}" for a in range(size) for b in range(size) if right[a][b]]
+    for a in range(size):
+        for b in range(a + 1, size):
+            terms = [f"w_m_{c}_{a} * w_r_{c}_{b}" for c in range(size) if right[c][b]]
+            if terms:
+                lines.append(f"w_w_{a}_{b} = w_w_{a}_{b} + ({' + '.join(terms)})")
+            lines.append(f"f_w_{a}_{b} = f_w_{a}_{b} + (f_v{outputs[f'dw_{a}_{b}']})")
+    lines += _moved("w_m", exact)
+    every = range(size)
+    lines += [
+        f"f_m_{a}_{b} = f_m_{a}_{b} + (f_v{outputs[f'dm_{a}_{b}']})" for a in every for b in every
+    ]
+    return lines
+
+
+def _assemble(
+    narrow: Step, states: Sequence[str], before: Sequence[str], inside: Sequence[str]
+) -> str:
+    given = [prefix + name for prefix in ("f_", "w_") for name in _given(narrow)]
+    names = ", ".join(states)
+    return "\n".join(
+        [
+            f"def kernel(steps, {', '.join(given)}, {names}):",
+            *(f"    {line}" for line in before),
+            "    for _ in range(steps):",
+            *(f"        {line}" for line in inside),
+            f"    return steps, {names}",
+            "",
+        ]
+    )
+
+
+def _scope(
+    narrow: Step, working: Arithmetic, wide: Step, arithmetic: Arithmetic
+) -> dict[str, Number]:
+    """The constants and functions that the source names."""
+
+    def constants(step: Step, own: Arithmetic) -> dict[str, Number]:
+        return Lowering(step.program, own.functions, bits=own.bits).named_constants(own.number)
+
+    exact = constants(wide, arithmetic)
+    return {
+        "wide": lambda x: arithmetic.number(Fraction(x)),
+        **arithmetic.functions,
+        **{f"f_{n}": x for n, x in {**working.functions, **constants(narrow, working)}.items()},
+        **{f"{prefix}{name}": x for prefix in ("w_", AT) for name, x in exact.items()},
+    }

@@ -1,0 +1,198 @@
+"""The float64 run of a separation in n degrees of freedom, with exact products beside it.
+
+What `verify.studies.separation.form_kernel` carries becomes the links of W here, at every
+checkpoint: W = MᵀΩM − Ω of a wide M as exact rationals, and of float64's M in float64, each entry a
+sum of 2n products from the left, p's row first, and then less 1 where Ω has one.
+
+How far they are known: what float64 made is exact. A wide link is held against a rerun with 15 more
+digits; twice the greatest difference of any entry at any checkpoint is its bound, an estimate.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import combinations
+from typing import Any
+
+from verify import arithmetic as number_systems
+from verify.arithmetic.number_system import Arithmetic
+from verify.execution.keeping import fraction_of, fraction_text
+from verify.kernels.stepping import KernelRun
+from verify.runs.estimated import digits_of
+from verify.studies.separation.form_kernel import FormKernel, form_kernel
+from verify.studies.separation.kernel import AT
+from verify.studies.separation.stepper import State, Stepper
+from verify.studies.separation.working import Advance, Link, Stopped, exact_link, marks_of
+
+POINTS = 512  # checkpoints of a run; each has a matrix for each link
+MORE_DIGITS = 15
+Entries = tuple[Fraction, ...]  # of W above its diagonal, row by row
+Links = tuple[Link, ...]  # one for each of these entries
+METHOD = f"rerun with {MORE_DIGITS} more digits"
+
+
+@dataclass(frozen=True)
+class FormWorking:
+    """What one run of the kernel found; links are None where they were not followed.
+
+    `norms`: Frobenius' norm of float64's M at every checkpoint.
+    """
+
+    clock: Links | None
+    trajectory: Links | None
+    derivatives: Links
+    plain: Links
+    closed_derivatives: Links | None  # None: S ≡ 0
+    closed_form: Links | None
+    norms: tuple[float, ...]
+
+
+def links_of(trail: Sequence[Entries], make: Callable[[tuple[Fraction, ...]], Link]) -> Links:
+    """A link for each entry, from all entries at every checkpoint."""
+    return tuple(make(each) for each in zip(*trail, strict=True))
+
+
+class FormRun:
+    """The float64 run of a run, with exact arithmetic beside it; `follow` as in the kernel.
+
+    `inputs`: h, the coordinates and the kernel's parameters, as float64 numbers.
+    """
+
+    def __init__(self, run: KernelRun, inputs: dict[str, float], follow: bool) -> None:
+        self.run, self.inputs, self.follow = run, inputs, follow
+        self.marks = marks_of(run.steps, POINTS)
+
+    def step_through(self, arithmetic: Arithmetic, advance: Advance) -> FormWorking:
+        """All steps; raises Stopped where float64 leaves its range."""
+        kernel = self._kernel(arithmetic)
+        states = self._states(kernel, arithmetic, advance)
+        finer = number_systems.get(arithmetic.name, digits_of(arithmetic) + MORE_DIGITS)
+        again = self._states(self._kernel(finer), finer, lambda _: None)
+
+        def wide(matrix: str, of: Callable[[State, str, Arithmetic], Entries]) -> Links:
+            coarse = [of(state, matrix, arithmetic) for state in states]
+            fine = [of(state, matrix, finer) for state in again]
+            pairs = zip(coarse, fine, strict=True)
+            apart = 2 * max(abs(x - y) for a, b in pairs for x, y in zip(a, b, strict=True))
+            # Where both agree by chance, what their last bits may hide.
+            size = max(abs(_exact(s[n], finer)) for s in again for n in s if n[:3] == matrix)
+            bound = apart + (1 + size * size) / 2 ** (arithmetic.bits - 4)
+            return links_of(fine, lambda trail: Link(trail, bound, "estimated", METHOD))
+
+        def product(state: State, matrix: str, own: Arithmetic) -> Entries:
+            return of_product(lambda a, b: _exact(state[f"{matrix}_{a}_{b}"], own), self._size)
+
+        def followed(matrix: str) -> Links | None:
+            return wide(matrix, product) if matrix in kernel.products else None
+
+        plain = [tuple(map(Fraction, self._plain(state))) for state in states]
+        closed = [self._entries(state, "f_w", arithmetic) for state in states if kernel.closed]
+        return FormWorking(
+            clock=followed("w_c"),
+            trajectory=followed("w_t"),
+            derivatives=wide("w_n", product),
+            plain=links_of(plain, _of_float64),
+            closed_derivatives=wide("w_w", self._entries) if kernel.closed else None,
+            closed_form=links_of(closed, _of_float64) if kernel.closed else None,
+            norms=tuple(self._norm(state) for state in states),
+        )
+
+    @property
+    def _size(self) -> int:
+        return len(self.run.hamiltonian.coordinates)
+
+    def _kernel(self, arithmetic: Arithmetic) -> FormKernel:
+        return form_kernel(self.run.hamiltonian, self.run.scheme, arithmetic, self.follow)
+
+    # -- stepping -----------------------------------------------------------------------------
+
+    def _states(
+        self, kernel: FormKernel, arithmetic: Arithmetic, advance: Advance
+    ) -> list[State]:
+        """What the kernel carries, at every checkpoint."""
+        given = [self.inputs[n] for n in ("h", *kernel.parameters)]
+        fixed = [*given, *(arithmetic.number(Fraction(x)) for x in given)]
+        label = f"form beside {arithmetic.name} {arithmetic.bits} {self.inputs} {kernel.source}"
+        found = self._kept(label, arithmetic)
+        stepper = Stepper(kernel, arithmetic, fixed, self._in_range)
+        state = found[-1] if found else self._first_state(kernel, arithmetic)
+        done = self.marks[len(found) - 1] if found else 0
+        while done < self.run.steps:
+            every = min(arithmetic.chunk, self.marks[len(found)] - done)
+            states = stepper.states(state, every, 1)
+            if not states:
+                done += stepper.last_good(state, every)
+                raise Stopped("left range", done + 1, "float64 leaves its range")
+            (state,) = states
+            done += every
+            advance(every)
+            if done == self.marks[len(found)]:
+                found.append(state)
+            self._keep(label, found, arithmetic)
+        return found
+
+    def _in_range(self, state: State) -> bool:
+        return all(map(math.isfinite, (*self._plain(state), self._norm(state))))
+
+    def _first_state(self, kernel: FormKernel, arithmetic: Arithmetic) -> State:
+        state: dict[str, Any] = {}
+        for name in kernel.state_names:
+            matrix, *place = name.removeprefix(AT).split("_")[-3:]
+            if name.startswith(AT):
+                value = Fraction(self.inputs[name.removeprefix(AT)])
+            elif name.removeprefix("f_") in self.inputs:
+                value = Fraction(self.inputs[name.removeprefix("f_")])
+            else:
+                value = Fraction(int(matrix != "w" and place[0] == place[1]))
+            state[name] = float(value) if name[0] == "f" else arithmetic.number(value)
+        return state
+
+    def _keep(self, label: str, found: Sequence[State], arithmetic: Arithmetic) -> None:
+        """Writes the checkpoints so far, where that is due."""
+        if self.run.keeper.due(label):
+            texts = [{n: fraction_text(_exact(x, arithmetic)) for n, x in s.items()} for s in found]
+            self.run.keeper.save(label, {"found": texts})
+
+    def _kept(self, label: str, arithmetic: Arithmetic) -> list[State]:
+        """The checkpoints that an interrupted run has left."""
+        kept = self.run.keeper.load(label) or {"found": []}
+        exact = ({n: fraction_of(x) for n, x in state.items()} for state in kept["found"])
+        return [
+            {n: float(x) if n[0] == "f" else arithmetic.number(x) for n, x in state.items()}
+            for state in exact
+        ]
+
+    # -- what is read of a state --------------------------------------------------------------
+
+    def _plain(self, state: State) -> tuple[float, ...]:
+        """W = MᵀΩM − Ω of float64's M, in float64."""
+        return of_product(lambda a, b: state[f"f_n_{a}_{b}"], self._size)
+
+    def _norm(self, state: State) -> float:
+        every = range(self._size)
+        return math.hypot(*(state[f"f_n_{a}_{b}"] for a in every for b in every))
+
+    def _entries(self, state: State, matrix: str, own: Arithmetic) -> Entries:
+        places = combinations(range(self._size), 2)
+        return tuple(_exact(state[f"{matrix}_{a}_{b}"], own) for a, b in places)
+
+
+def of_product(entry: Callable[[int, int], Any], size: int) -> tuple[Any, ...]:
+    """The entries of MᵀΩM − Ω above the diagonal, row by row, in the arithmetic of M's entries."""
+    n, found = size // 2, []
+    for a, b in combinations(range(size), 2):
+        total = entry(0, a) * entry(n, b) - entry(n, a) * entry(0, b)
+        for i in range(1, n):
+            total = total + entry(i, a) * entry(n + i, b)
+            total = total - entry(n + i, a) * entry(i, b)
+        found.append(total - 1 if b == n + a else total)
+    return tuple(found)
+
+
+def _of_float64(trail: tuple[Fraction, ...]) -> Link:
+    return exact_link(trail, "a float64")
+
+
+def _exact(x: Any, own: Arithmetic) -> Fraction:
+    return Fraction(x) if isinstance(x, float) else own.exact(x)
