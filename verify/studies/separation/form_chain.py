@@ -34,7 +34,7 @@ from verify.kernels.stepping import KernelRun
 from verify.runs.digits_on_demand import choose, measure
 from verify.runs.estimated import working_digits
 from verify.studies.separation.chain import Chain, clock_is_exact, last_system, with_inputs
-from verify.studies.separation.form_run import POINTS, FormRun, FormWorking, Links, links_of
+from verify.studies.separation.form_run import POINTS, FormRun, FormWorking, Links, Size, links_of
 from verify.studies.separation.working import (
     Advance,
     Kind,
@@ -58,12 +58,12 @@ _DOUBLINGS = 6
 class FormChains:
     """The chains of the plain way and of the closed form, one for each entry above the diagonal.
 
-    `arithmetic` stood for exact arithmetic; `norms`: of M at the checkpoints.
+    `arithmetic` stood for exact arithmetic; `sizes`: of M at the checkpoints.
     """
 
     plain: tuple[Chain, ...]
     closed_form: tuple[Chain, ...]
-    norms: tuple[float, ...]
+    sizes: tuple[Size, ...]
     arithmetic: str
     seconds: float
 
@@ -101,7 +101,7 @@ def form_chains(
         plain, closed = links.chains()
         if not links.refine(_lacking((*plain, *closed), digits)):
             break
-    return FormChains(plain, closed, links.norms, arithmetic, lockstep.clock() - begun)
+    return FormChains(plain, closed, links.sizes, arithmetic, lockstep.clock() - begun)
 
 
 def _lacking(chains: Sequence[Chain], digits: int) -> list[int]:
@@ -135,9 +135,9 @@ class _Links:
         self.working: FormWorking | None = None
 
     @property
-    def norms(self) -> tuple[float, ...]:
+    def sizes(self) -> tuple[Size, ...]:
         assert self.working is not None  # noqa: S101 - after `chains`
-        return self.working.norms
+        return self.working.sizes
 
     def chains(self) -> tuple[tuple[Chain, ...], tuple[Chain, ...]]:
         """Those of the plain way and of the closed form."""

@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations
-from typing import Any
+from typing import Any, NamedTuple
 
 from verify import arithmetic as number_systems
 from verify.arithmetic.number_system import Arithmetic
@@ -32,11 +32,22 @@ Links = tuple[Link, ...]  # one for each of these entries
 METHOD = f"rerun with {MORE_DIGITS} more digits"
 
 
+class Size(NamedTuple):
+    """‖M‖² and ‖∧²M‖² in Frobenius' norm: the sum of all squares of entries, and of 2 × 2 minors.
+
+    The second is how M changes areas, and so what a 2-form grows by: Σ σ_i² σ_j² of the singular
+    values, i < j, beside the Σ σ_i² of the first.
+    """
+
+    norm: Fraction
+    areas: Fraction
+
+
 @dataclass(frozen=True)
 class FormWorking:
     """What one run of the kernel found; links are None where they were not followed.
 
-    `norms`: Frobenius' norm of float64's M at every checkpoint.
+    `sizes`: how large M is at every checkpoint.
     """
 
     clock: Links | None
@@ -45,7 +56,7 @@ class FormWorking:
     plain: Links
     closed_derivatives: Links | None  # None: S ≡ 0
     closed_form: Links | None
-    norms: tuple[float, ...]
+    sizes: tuple[Size, ...]
 
 
 def links_of(trail: Sequence[Entries], make: Callable[[tuple[Fraction, ...]], Link]) -> Links:
@@ -95,7 +106,10 @@ class FormRun:
             plain=links_of(plain, _of_float64),
             closed_derivatives=wide("w_w", self._entries) if kernel.closed else None,
             closed_form=links_of(closed, _of_float64) if kernel.closed else None,
-            norms=tuple(self._norm(state) for state in states),
+            sizes=tuple(
+                size_of(lambda a, b, at=state: _exact(at[f"w_n_{a}_{b}"], finer), self._size)
+                for state in again
+            ),
         )
 
     @property
@@ -188,6 +202,20 @@ def of_product(entry: Callable[[int, int], Any], size: int) -> tuple[Any, ...]:
             total = total - entry(n + i, a) * entry(i, b)
         found.append(total - 1 if b == n + a else total)
     return tuple(found)
+
+
+def size_of(entry: Callable[[int, int], Fraction], size: int) -> Size:
+    """The sizes of an exact matrix: ‖∧²M‖² = (‖M‖⁴ − ‖MᵀM‖²)/2."""
+    every = range(size)
+    columns = [[entry(a, b) for a in every] for b in every]
+    square = {
+        (a, b): sum((x * y for x, y in zip(columns[a], columns[b], strict=True)), Fraction(0))
+        for a in every
+        for b in range(a, size)
+    }
+    norm = sum((square[a, a] for a in every), Fraction(0))
+    whole = sum(((1 if a == b else 2) * x * x for (a, b), x in square.items()), Fraction(0))
+    return Size(norm, (norm * norm - whole) / 2)
 
 
 def _of_float64(trail: tuple[Fraction, ...]) -> Link:

@@ -35,8 +35,9 @@ How far the parts are known is told in `verify.studies.separation.working` and
 `verify.studies.separation.growth`.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
+from typing import Protocol
 
 from verify import arithmetic as number_systems
 from verify.arithmetic import AUTO
@@ -97,7 +98,7 @@ def separate(
         start["t"] = rational(t0, "t0")
         check_times(hamiltonian, start["t"], start["h"], steps)
     check(hamiltonian, steps, digits, ())
-    _check_reference(arithmetic)
+    check_reference(arithmetic)
     found: Chains | None = None
     stopped = None
     try:
@@ -173,16 +174,25 @@ def as_grid(points: Sequence[SeparationResult]) -> SeparationGrid:
     """Separations for several step sizes, with the crossover of each way to evaluate Λ."""
 
     def crossed(name: str) -> CrossoverResult:
-        ways = ((point.step_size, getattr(point, name)) for point in points)
-        parts = ((h, way.largest["truncation"], way.largest["total"]) for h, way in ways if way)
-        at = crossover([(Fraction(h), Fraction(x), Fraction(y)) for h, x, y in parts])
-        size = None if at.step_size is None else f"{at.step_size:.3e}"
-        ends = at.bracket and (text(at.bracket[0]), text(at.bracket[1]))
-        return CrossoverResult(step_size=size, bracket=ends, reason=at.reason)
+        return crossing((point.step_size, getattr(point, name)) for point in points)
 
     return SeparationGrid(
         points=tuple(points), plain=crossed("plain"), closed_form=crossed("closed_form")
     )
+
+
+class _Way(Protocol):
+    @property
+    def largest(self) -> Mapping[str, str]: ...
+
+
+def crossing(ways: Iterable[tuple[str, _Way | None]]) -> CrossoverResult:
+    """Where rounding overtakes truncation, of step sizes with what was found of each, one way."""
+    parts = ((h, way.largest["truncation"], way.largest["total"]) for h, way in ways if way)
+    at = crossover([(Fraction(h), Fraction(x), Fraction(y)) for h, x, y in parts])
+    size = None if at.step_size is None else f"{at.step_size:.3e}"
+    ends = at.bracket and (text(at.bracket[0]), text(at.bracket[1]))
+    return CrossoverResult(step_size=size, bracket=ends, reason=at.reason)
 
 
 def grid(
@@ -208,7 +218,8 @@ def grid(
     return list(found.items())
 
 
-def _check_reference(arithmetic: str) -> None:
+def check_reference(arithmetic: str) -> None:
+    """InputError for what cannot stand for exact arithmetic."""
     known = [AUTO, *(name for name in number_systems.names() if name != float64.NAME)]
     if arithmetic not in known:
         wrong = "is what is examined" if arithmetic == float64.NAME else "unknown"
@@ -226,7 +237,7 @@ def _evaluation(chain: Chain, digits: int) -> EvaluationResult:
     return EvaluationResult(
         parts=PartsInTime(**parts) if "clock" in parts else Parts(**parts),
         largest={n: known_digits(x, trails[n][1], _SHOWN)[0] for n, x in tops.items()},
-        growth={n: _growth(growth(chain.marks, *trails[n])) for n in ("total", *chain.parts)},
+        growth={n: growth_result(growth(chain.marks, *trails[n])) for n in ("total", *chain.parts)},
         series=tuple(_at(chain, trails, k) for k in shown),
         error_kind=chain.kind,
     )
@@ -239,7 +250,9 @@ def _at(chain: Chain, trails: dict[str, tuple[tuple[Fraction, ...], Fraction]], 
     return model(steps=chain.marks[k], **shown)
 
 
-def _growth(found: Growth) -> GrowthResult:
+def growth_result(found: Growth) -> GrowthResult:
+    """The growth as results have it."""
+
     def shown(x: float | None) -> str | None:
         return None if x is None else f"{x:.3f}"
 
