@@ -90,6 +90,14 @@ _NAMES = {
     "Sweep": ("verify.scenes.results.sweep", "what a sweep gave"),
     "SeparationResult": ("verify.scenes.results.separation", "what a separation gave"),
     "SeparationGrid": ("verify.scenes.results.separation", "separations over step sizes"),
+    "SeparationInDegrees": (
+        "verify.scenes.results.separation_in_degrees",
+        "what a separation gave in n degrees of freedom",
+    ),
+    "SeparationGridInDegrees": (
+        "verify.scenes.results.separation_in_degrees",
+        "such separations over step sizes",
+    ),
     "Report": ("verify.scenes.results.report", "a whole report"),
     "Verdict": ("verify.verdict", "PROVED, ENCLOSED, MEASURED, REFUTED or UNDECIDED"),
     "InputError": ("verify.errors", "bad input, in one line that says what is allowed"),

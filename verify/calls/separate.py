@@ -1,6 +1,8 @@
-"""`verify.separate` and `verify.separate_grid`: truncation and rounding in Λ of a float64 run."""
+"""`verify.separate` and `verify.separate_grid`: truncation and rounding of a float64 run, in Λ or,
+where H has more degrees of freedom, in W."""
 
 from collections.abc import Sequence
+from typing import Any, overload
 
 from verify.arithmetic.exact import Exact, whole
 from verify.calls.given import (
@@ -12,17 +14,38 @@ from verify.calls.given import (
     scheme_name,
 )
 from verify.calls.progress import Progress, progress_of
+from verify.hamiltonians.start import Given, check_start
 from verify.scenes.results.separation import SeparationGrid, SeparationResult
+from verify.scenes.results.separation_in_degrees import SeparationGridInDegrees, SeparationInDegrees
 from verify.scenes.values import AUTO, steps_from
+from verify.studies.separation import form_separate as in_degrees
 from verify.studies.separation import separate as study
+
+
+@overload
+def separate(
+    system: GivenSystem, scheme: GivenScheme, *, q: Exact, p: Exact, step_size: Exact,
+    steps: int | None = None, time: Exact | None = None, t0: Exact = 0,
+    parameters: GivenParameters = None, digits: int = 17, arithmetic: str = AUTO,
+    progress: Progress = None,
+) -> SeparationResult: ...  # fmt: skip
+
+
+@overload
+def separate(
+    system: GivenSystem, scheme: GivenScheme, *, q: Given, p: Given, step_size: Exact,
+    steps: int | None = None, time: Exact | None = None, t0: Exact = 0,
+    parameters: GivenParameters = None, digits: int = 17, arithmetic: str = AUTO,
+    progress: Progress = None,
+) -> SeparationResult | SeparationInDegrees: ...  # fmt: skip
 
 
 def separate(
     system: GivenSystem,
     scheme: GivenScheme,
     *,
-    q: Exact,
-    p: Exact,
+    q: Given,
+    p: Given,
     step_size: Exact,
     steps: int | None = None,
     time: Exact | None = None,
@@ -31,9 +54,10 @@ def separate(
     digits: int = 17,
     arithmetic: str = AUTO,
     progress: Progress = None,
-) -> SeparationResult:
+) -> SeparationResult | SeparationInDegrees:
     """Λ of a float64 run from (q, p), split into truncation and four kinds of rounding, of an
-    H in time five.
+    H in time five. In n degrees of freedom q and p are lists and W = MᵀΩM − Ω, M the product of the
+    steps' Jacobians, is split entry by entry: a `SeparationInDegrees`.
 
     The arguments are those of `verify.run`; `digits`: significant digits wanted of every part;
     `arithmetic` stands for exact arithmetic, and is not float64. Raises InputError, one line.
@@ -44,27 +68,39 @@ def separate(
     """
     exact = hamiltonian_from(system, parameters)
     name, count = scheme_name(scheme, exact), steps_from(steps, time, step_size)
+    asked: dict[str, Any] = {"q": q, "p": p, "step_size": step_size, "steps": count, "t0": t0}
     with progress_of(progress, "separating, steps", study.RUNS * count, adding=True) as tell:
-        return study.separate(
-            exact,
-            name,
-            q=q,
-            p=p,
-            step_size=step_size,
-            steps=count,
-            t0=t0,
-            digits=whole("digits", digits, 1),
-            arithmetic=arithmetic,
-            progress=tell,
-        )
+        asked |= {"digits": whole("digits", digits, 1), "arithmetic": arithmetic}
+        if exact.planar:
+            return study.separate(exact, name, **asked, progress=tell)
+        check_start(exact, q, p, t0)
+        return in_degrees.separate_in_degrees(exact, name, **asked, progress=tell)
+
+
+@overload
+def separate_grid(
+    system: GivenSystem, scheme: GivenScheme, *, q: Exact, p: Exact, step_sizes: Sequence[Exact],
+    steps: int | None = None, time: Exact | None = None, t0: Exact = 0,
+    parameters: GivenParameters = None, digits: int = 17, arithmetic: str = AUTO,
+    progress: Progress = None,
+) -> SeparationGrid: ...  # fmt: skip
+
+
+@overload
+def separate_grid(
+    system: GivenSystem, scheme: GivenScheme, *, q: Given, p: Given, step_sizes: Sequence[Exact],
+    steps: int | None = None, time: Exact | None = None, t0: Exact = 0,
+    parameters: GivenParameters = None, digits: int = 17, arithmetic: str = AUTO,
+    progress: Progress = None,
+) -> SeparationGrid | SeparationGridInDegrees: ...  # fmt: skip
 
 
 def separate_grid(
     system: GivenSystem,
     scheme: GivenScheme,
     *,
-    q: Exact,
-    p: Exact,
+    q: Given,
+    p: Given,
     step_sizes: Sequence[Exact],
     steps: int | None = None,
     time: Exact | None = None,
@@ -73,7 +109,7 @@ def separate_grid(
     digits: int = 17,
     arithmetic: str = AUTO,
     progress: Progress = None,
-) -> SeparationGrid:
+) -> SeparationGrid | SeparationGridInDegrees:
     """`separate` for several step sizes, and the one below which rounding is the larger part.
 
     N = `steps` steps, or N = ⌊time / h⌋ of each h. Raises InputError as `separate` does, and where
@@ -83,17 +119,10 @@ def separate_grid(
     name, sizes = scheme_name(scheme, exact), listed("step_sizes", step_sizes)
     steps = None if steps is None else whole("steps", steps, 1)
     total = study.RUNS * sum(count for _, count in study.grid(sizes, steps, time))
+    asked: dict[str, Any] = {"q": q, "p": p, "step_sizes": sizes, "steps": steps, "time": time}
     with progress_of(progress, "separating, steps", total, adding=True) as tell:
-        return study.separate_grid(
-            exact,
-            name,
-            q=q,
-            p=p,
-            step_sizes=sizes,
-            steps=steps,
-            time=time,
-            t0=t0,
-            digits=whole("digits", digits, 1),
-            arithmetic=arithmetic,
-            progress=tell,
-        )
+        asked |= {"t0": t0, "digits": whole("digits", digits, 1), "arithmetic": arithmetic}
+        if exact.planar:
+            return study.separate_grid(exact, name, **asked, progress=tell)
+        check_start(exact, q, p, t0)
+        return in_degrees.separate_grid_in_degrees(exact, name, **asked, progress=tell)

@@ -86,6 +86,7 @@ _LINES: Mapping[str, Callable[[Task], str]] = {
     "growth": _growth,
     "work_precision": _work_precision,
     "separation": lambda task: f"separate truncation from rounding in {_run(task)}",
+    "separation in degrees": lambda task: f"separate truncation from rounding in {_run(task)}",
     "run": lambda task: f"run {_run(task)} in {task['arithmetic']}",
     "stability": lambda task: f"judge {_run(task)}",
     "largest_step": lambda task: (

@@ -1,4 +1,4 @@
-"""The command `verify separate`: truncation and four kinds of rounding in Λ."""
+"""The command `verify separate`: truncation and four kinds of rounding in Λ, or in W."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -7,6 +7,7 @@ import click
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering
 from verify.commands.shared.cache import cache_option
+from verify.commands.shared.initial_value import listed, start_options
 from verify.commands.shared.input import scheme_option, with_hamiltonian
 
 if TYPE_CHECKING:
@@ -29,8 +30,7 @@ if TYPE_CHECKING:
 @click.option("--steps", type=int, metavar="N", help="At least 1; or:")
 @click.option("--time", metavar="T", help="N is T/H rounded down, for each H.")
 @click.option("--t0", default="0", metavar="T", help="When it starts, of an H(p, q, t).")
-@click.option("--q", "q", required=True, metavar="Q", help="Initial displacement.")
-@click.option("--p", "p", required=True, metavar="P", help="Initial momentum.")
+@start_options
 @click.option("--digits", type=int, default=17, metavar="D", help="Digits wanted of every part.")
 @click.option(
     "--arithmetic", default="auto", help="What stands for exact: auto, or a number system of run."
@@ -42,23 +42,40 @@ def separate(
 
     Of an H(p, q, t) float64's clock, t + h + h + …, is a kind of its own.
 
+    Of p1 … qn, W = MᵀΩM − Ω is split so, entry by entry, M the product of all steps' Jacobians.
+
     With several step sizes also the one below which rounding is the larger part.
     """
     from verify.arithmetic.exact import positive
+    from verify.commands.shared import separation_in_degrees as in_degrees
     from verify.commands.shared.progress import progress_bar
+    from verify.hamiltonians.start import check_start
     from verify.scenes.values import rounded_down
+    from verify.studies.separation.form_separate import separate_grid_in_degrees
     from verify.studies.separation.separate import RUNS, grid, separate_grid
 
-    exact.check_planar()
+    options |= {name: listed(options[name], exact) for name in ("q", "p")}
+    if not exact.planar:
+        check_start(exact, options["q"], options["p"], options["t0"])
     counts = grid(step_sizes, options["steps"], options["time"])
     with progress_bar("stepping", RUNS * sum(n for _, n in counts)) as advance:
-        result = separate_grid(exact, scheme, step_sizes=step_sizes, progress=advance, **options)
+        options |= {"step_sizes": step_sizes, "progress": advance}
+        if exact.planar:
+            result = separate_grid(exact, scheme, **options)
+        else:
+            of_form = separate_grid_in_degrees(exact, scheme, **options)
     time = options["time"]
     note = rounded_down(time and positive(time, "time"), [h for h, _ in counts])
 
     def shown() -> None:
-        show.print_separation(result)
+        if exact.planar:
+            show.print_separation(result)
+        else:
+            in_degrees.print_separation(of_form)
         if note:
             click.echo(note)
 
-    return Answer(lambda: show.separation_json(result), shown)
+    def data() -> dict[str, Any]:
+        return show.separation_json(result) if exact.planar else in_degrees.as_json(of_form)
+
+    return Answer(data, shown)

@@ -59,7 +59,8 @@ class Reached:
 
     `trail` has p, q and the observables at points on the way and at the last step done, as the
     exact rationals that they are; `tangents` what `verify.kernels.step.tangent_map` notes, at the
-    same points, with the entries of W (`w_a_b`, a < b) where `ENTRIES` are asked for. `state`: all that is carried; `seen`: extremes since the last note.
+    same points, with the entries of W (`w_a_b`, a < b) where `ENTRIES` are asked for. `state`: all
+    that is carried; `seen`: extremes since the last note.
     """
 
     done: int = 0

@@ -45,7 +45,8 @@ class Grid(Section):
     of freedom also `symplectic_defect_max` and `symplectic_defect`. Left out: ΔJ, MSE and Λ, and
     these two."""
     separate: bool = False
-    """Whether truncation is separated from rounding in Λ of each of these runs."""
+    """Whether truncation is separated from rounding in Λ of each of these runs; in n degrees of
+    freedom in W."""
     growth: bool = False
     """Whether Λ of each of these runs is held against its growth law."""
     growth_explains: Annotated[str, Field(max_length=200)] = ""
@@ -92,12 +93,13 @@ class Grid(Section):
 
 
 class SeparationOver(Section):
-    """Truncation and rounding in Λ over step sizes, from one initial value; `time` or `steps`."""
+    """Truncation and rounding in Λ over step sizes, from one initial value; `time` or `steps`. In n
+    degrees of freedom in W, which has all steps' symplectic defects."""
 
     step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=2, max_length=1000)]
     """The step sizes h over which the two are compared."""
-    initial_value: InitialValue
-    """Where the runs start."""
+    initial_value: Start
+    """Where the runs start; in n degrees of freedom with lists."""
     time: Time | None = None
     """The length of each run; or `steps`."""
     steps: Steps | None = None

@@ -178,8 +178,10 @@ class Scene(Frozen):
     def _check_no_plane(self, exact: Hamiltonian) -> None:
         """InputError where something of the plane is asked for."""
         own = {name for name in Scene.model_fields if name not in _IDENTITY and getattr(self, name)}
-        asked = own - {"name", "every_hamiltonian", "grid", "series", "reference"}
-        asked |= {f"grid.{name}" for name in ("separate", "growth") if getattr(self.grid, name, 0)}
+        asked = own - {"name", "every_hamiltonian", "grid", "series", "separation", "reference"}
+        asked |= {"grid.growth"} if self.grid and self.grid.growth else set()
+        if self.separation or (self.grid and self.grid.separate):
+            check_observables(exact, ("symplectic_defect",))  # W is what is separated
         if asked:
             names = ", ".join(exact.coordinates)
             problem = f"is of {names}; {min(asked)} takes p and q, one degree of freedom"

@@ -224,7 +224,7 @@ def print_separation(found: "SeparationGrid") -> None:
             click.echo(f"  {point.status}{at}: {point.reason}")
     if len(found.points) > 1:
         for label, way in (("plain", found.plain), ("closed form", found.closed_form)):
-            click.echo(f"rounding overtakes truncation, {label}: {_crossed(way)}")
+            click.echo(f"rounding overtakes truncation, {label}: {crossed(way)}")
 
 
 def _print_parts(point: "SeparationResult") -> None:
@@ -245,7 +245,7 @@ def _print_parts(point: "SeparationResult") -> None:
                f"bounds {ways[0].error_kind} ({point.error_method})")  # fmt: skip
 
 
-def _crossed(way: "CrossoverResult") -> str:
+def crossed(way: "CrossoverResult") -> str:
     if way.bracket is None:
         return way.reason
     return f"h* = {way.step_size or '?'}, {way.bracket[0]} … {way.bracket[1]} ({way.reason})"

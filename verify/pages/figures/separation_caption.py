@@ -11,6 +11,7 @@ from verify.scenes.results.separation import (
     SeparationGrid,
     SeparationResult,
 )
+from verify.scenes.results.separation_in_degrees import SeparationInDegrees
 
 PLAIN, CLOSED_FORM = "plain", "closed_form"
 _NONE = "none in this range: "  # how a crossover's reason begins where there is none
@@ -65,7 +66,7 @@ def short(step_size: str) -> str:
     return number(f"{Decimal(step_size):.1e}").replace(" ", NBSP)
 
 
-def end_of(points: Sequence[SeparationResult]) -> str:
+def end_of(points: Sequence[SeparationResult] | Sequence[SeparationInDegrees]) -> str:
     """`, over [t₀, t₀ + T]` where all runs end at one time."""
     lengths = {Fraction(point.step_size) * point.steps for point in points}
     if len(lengths) != 1:

@@ -15,6 +15,7 @@ from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.growth import AverageResult
 from verify.scenes.results.run import RunResult
 from verify.scenes.results.separation import SeparationResult
+from verify.scenes.results.separation_in_degrees import SeparationInDegrees
 from verify.scenes.results.work_precision import WorkPrecisionResult
 
 NBSP = "\u00a0"
@@ -127,7 +128,9 @@ def grouped(text: str) -> Markup:
     return Markup('<span class="digits">{}</span>').format(Markup("<br>").join(rows))
 
 
-def start(run: RunResult | SeparationResult | AverageResult | WorkPrecisionResult) -> str:
+def start(
+    run: RunResult | SeparationResult | SeparationInDegrees | AverageResult | WorkPrecisionResult,
+) -> str:
     """A run's initial value, and when it starts, where that is not 0."""
     t0 = getattr(run, "t0", "0")
     at = {"q₀": run.q, "p₀": run.p} | ({} if t0 == "0" else {"t₀": t0})

@@ -33,6 +33,20 @@ CLOCK = (
     "H depends on time, so float64’s clock, t ← t + h, is a part of its own, between input and "
     "trajectory: what its errors do to the motion in exact arithmetic."
 )
+FORM_SEPARATION = (
+    "W in float64 is truncation + rounding, and rounding the plain way is input + trajectory + "
+    "derivatives + product, entry by entry of a matrix; of each the greatest |entry| at the end of "
+    "the run stands here, the greatest part bold, and all entries are in results.json. The plain "
+    "way multiplies the steps’ Jacobians and takes MᵀΩM − Ω; the closed form sums MᵀSM."
+)
+FORM_GROWTH = (
+    "W sums MᵀSM, and a 2-form grows as areas do under M: like ‖∧²M‖, the root of the sum of all "
+    "squares of 2 × 2 minors, which is below ‖M‖². So where ‖M‖ grows exponentially, what W grows "
+    "by is the motion’s and not the scheme’s. The finite-time Lyapunov exponent is "
+    "ln(‖M‖/√(2n))/T of this run, by unit of time. The law of max |W| is its envelope’s slope "
+    "over N, in logarithms: bounded, N or N² where one of these is near, and fitted only where "
+    "‖M‖ does not grow exponentially."
+)
 ROUNDING_GROWTH = (
     "The exponent is the slope of the greatest |rounding| so far over N, in logarithms, with its "
     "standard error. Errors of both signs make a random walk, N to the ½; errors of one sign "
@@ -73,6 +87,15 @@ SEPARATED = {
         "parameters and initial values rounded; <code>trajectory</code>, the states stepped in "
         "float64; <code>determinant</code>, det J (or ΔJ) of each step rounded; "
         "<code>product</code>, their product (or sum of logarithms) rounded."
+    ),
+}
+SEPARATED_FORM = {
+    "Truncation, rounding in W": Markup(
+        "Truncation is W in exact arithmetic from the exact inputs. Rounding is all that float64 "
+        "adds to it, split along a chain so that the parts add up exactly: <code>input</code>, the "
+        "step size, parameters and initial values rounded; <code>trajectory</code>, the states "
+        "stepped in float64; <code>derivatives</code>, J (or S) of each step rounded; "
+        "<code>product</code>, products of matrices and their sums rounded."
     ),
 }
 RAN = {

@@ -17,6 +17,7 @@ from verify.scenes.results.proof import EveryResult, ProofResult
 from verify.scenes.results.regions import FlowResult
 from verify.scenes.results.run import RunResult
 from verify.scenes.results.separation import SeparationGrid
+from verify.scenes.results.separation_in_degrees import SeparationGridInDegrees
 from verify.scenes.results.stability import LargestStepResult, StabilityMapResult, StabilityResult
 from verify.scenes.results.statement import StatementResult
 from verify.scenes.results.stroboscopic import StroboscopicResult
@@ -32,7 +33,8 @@ class SceneResult(Frozen):
     `t0` when they start.
 
     `separations` are those of the grid's runs, one an initial value; `crossovers` those that the
-    scene asks for beside it. `growth_laws` hold the grid's runs against the growth law of Λ;
+    scene asks for beside it; `form_separations` and `form_crossovers` are the same of W, in n
+    degrees of freedom. `growth_laws` hold the grid's runs against the growth law of Λ;
     `growth_explains` is what of a paper the scene says that the law explains. `every` holds what is
     proved of its schemes for every H, `work_precision` error against run time,
     `flows` what maps do to regions, `stroboscopic` orbits once in each period;
@@ -52,6 +54,8 @@ class SceneResult(Frozen):
     series: tuple[RunResult, ...]
     separations: tuple[SeparationGrid, ...] = ()
     crossovers: tuple[SeparationGrid, ...] = ()
+    form_separations: tuple[SeparationGridInDegrees, ...] = ()
+    form_crossovers: tuple[SeparationGridInDegrees, ...] = ()
     growth_laws: tuple[GrowthLawResult, ...] = ()
     growth_explains: str = ""
     every: tuple[EveryResult, ...] = ()

@@ -111,8 +111,8 @@ class FormEvaluation(Frozen):
     """W of a float64 run, split, for one way to evaluate it.
 
     `largest`: the greatest |entry| of truncation and of total at any checkpoint. `growth`: of the
-    greatest |entry| of total and of each part, as of Λ. `law`: how the greatest |entry| of w_working
-    grows with N.
+    greatest |entry| of total and of each part, as of Λ. `law`: how that of w_working grows with N,
+    measured.
     """
 
     parts: FormPartsInTime | FormParts

@@ -1,31 +1,46 @@
-"""Truncation separated from rounding in Λ: of the grid's runs, and over step sizes beside it."""
+"""Truncation separated from rounding in Λ: of the grid's runs, and over step sizes beside it.
 
-from collections.abc import Sequence
-from typing import Any
+In n degrees of freedom it is W that is split.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import Any, TypeVar
 
 from verify.execution.plan import Plan
-from verify.execution.study import Results, Section, Study, called, known_results
-from verify.scenes.results.separation import SeparationGrid, SeparationResult
+from verify.execution.study import Result, Results, Section, Study, called, known_results
+from verify.kernels.step.in_degrees import map_of
+from verify.scenes.results.separation import SeparationResult
+from verify.scenes.results.separation_in_degrees import SeparationInDegrees
 from verify.scenes.run_sections import Grid
 from verify.scenes.scene import Scene
+from verify.studies.separation.form_separate import grid_in_degrees
+from verify.studies.separation.form_task import FormSeparationTask
 from verify.studies.separation.separate import as_grid
 from verify.studies.separation.task import SeparationTask
 
+Made = TypeVar("Made")
 _DIGITS = 6  # of each part
 
 
-def _rows(scene: Scene, scheme: str, grid: Grid) -> list[list[SeparationTask]]:
+def _rows(
+    scene: Scene, scheme: str, grid: Grid
+) -> Sequence[Sequence[SeparationTask | FormSeparationTask]]:
     """The splits of the grid's runs, by initial value, then step size."""
     given = scene.hamiltonian_fields()
+    task, starts = (
+        (SeparationTask, grid.in_the_plane)
+        if scene.exact_hamiltonian().planar
+        else (FormSeparationTask, grid.initial_values)
+    )
     return [
         [
-            SeparationTask(
+            task(
                 **given, scheme=scheme, step_size=h, steps=grid.steps_for(h),
                 q=at.q, p=at.p, t0=scene.t0, digits=_DIGITS,
             )
             for h in grid.step_sizes
         ]
-        for at in grid.in_the_plane
+        for at in starts
     ]  # fmt: skip
 
 
@@ -38,28 +53,43 @@ def _beside(scene: Scene) -> list[Grid]:
 
 
 def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
-    name = called(scene)
-    for grid in (*_own(scene), *_beside(scene)):
-        if preserves:
-            why = "ΔJ ≡ 0 is proved: the truncation part is exactly 0"
-            plan.leave_out(f"{name}: truncation separated from rounding for {scheme}", why)
+    name, exact = called(scene), scene.exact_hamiltonian()
+    grids = (*_own(scene), *_beside(scene))
+    what, why = ("Λ", "ΔJ ≡ 0") if exact.planar else ("W", "S ≡ 0")
+    without = f"{why} is proved: the truncation part is exactly 0" if preserves else ""
+    if grids and not exact.planar and not preserves and map_of(exact, scheme).implicit:
+        without = "it solves equations; in n degrees of freedom its Jacobian is not followed"
+    for grid in grids:
+        if without:
+            plan.leave_out(f"{name}: truncation separated from rounding for {scheme}", without)
             continue
         for row in _rows(scene, scheme, grid):
             for task in row:
-                plan.need(task, f"{name}: truncation separated from rounding in Λ")
+                plan.need(task, f"{name}: truncation separated from rounding in {what}")
 
 
 def _found(scene: Scene, results: Results) -> dict[str, Any]:
-    def over(grids: Sequence[Grid]) -> tuple[SeparationGrid, ...]:
+    def over(
+        grids: Sequence[Grid], model: type[Result], made: Callable[[Sequence[Result]], Made]
+    ) -> tuple[Made, ...]:
         rows = (
-            known_results(SeparationResult, row, results)
+            known_results(model, row, results)
             for scheme in scene.schemes
             for grid in grids
             for row in _rows(scene, scheme, grid)
         )
-        return tuple(as_grid(row) for row in rows if row)
+        return tuple(made(row) for row in rows if row)
 
-    return {"separations": over(_own(scene)), "crossovers": over(_beside(scene))}
+    own, beside = _own(scene), _beside(scene)
+    if scene.exact_hamiltonian().planar:
+        model = SeparationResult
+        return {
+            "separations": over(own, model, as_grid), "crossovers": over(beside, model, as_grid),
+        }  # fmt: skip
+    return {
+        "form_separations": over(own, SeparationInDegrees, grid_in_degrees),
+        "form_crossovers": over(beside, SeparationInDegrees, grid_in_degrees),
+    }
 
 
 _SECTION = Section(

@@ -8,7 +8,7 @@ chaos ‖M‖ grows exponentially and no power is fitted: what W grows by then i
 
 Exponential is said of a run whose ‖M‖ rises over its last doubling of N by more than N³ would. A
 power of that size is not met where motion is quasi-periodic; an orbit that is chaotic, but not yet
-in this time, is not found so.
+in this time, is not found so, and of an M that has hardly grown nothing is said.
 """
 
 import math
@@ -28,6 +28,7 @@ _LAWS: tuple[Law, ...] = ("bounded", "N", "N²")
 _NEAR = 0.25  # of a whole exponent, at least
 _WIDTH = 2.5  # standard errors, each way
 _STEEP, _FLAT = 3.0, 1.5  # exponents of ‖M‖ over the last doubling of N
+_GROWN = 10  # times ‖M‖² has grown where something is said of how
 _FIRST, _LEAST, _MOST = 8, 5, 32  # checkpoints: left out, of a fit at least, and at most
 _DECADES = 1.2
 _ABOVE = 10  # times the error bound
@@ -49,6 +50,8 @@ def motion_of(marks: Sequence[int], squares: Sequence[Fraction]) -> Kind:
     tops = list(accumulate(squares, max))
     half = next((k for k, n in enumerate(marks) if 2 * n >= marks[-1]), 0)
     if len(marks) < _LEAST or half == len(marks) - 1:
+        return "undecided"
+    if tops[-1] < _GROWN * tops[0]:
         return "undecided"
     rise = log(tops[-1] / tops[half]) / 2 / math.log(marks[-1] / marks[half])
     return "exponential" if rise > _STEEP else "polynomial" if rise < _FLAT else "undecided"

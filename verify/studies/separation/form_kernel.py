@@ -214,20 +214,19 @@ def _closed(narrow: Step) -> list[str]:
                 exact[a][b] = f"w_k_{a}_{b}"
     form = [["" for _ in range(size)] for _ in range(size)]
     for name, at in defect.items():
-        _, a, b = name.split("_")
+        i, k = map(int, name.split("_")[1:])
         if not narrow.program.is_constant(at, 0):
-            lines += [f"w_{name} = wide(f_v{at})", f"w_s_{b}_{a} = -w_{name}"]
-            form[int(a)][int(b)], form[int(b)][int(a)] = f"w_{name}", f"w_s_{b}_{a}"
-    right = _product(form, "w_m")
-    lines += [f"w_r_{a}_{b} = {right[a][b]}" for a in range(size) for b in range(size) if right[a][b]]
-    for a in range(size):
+            form[i][k], form[k][i] = f"w_s_{i}_{k}", f"w_s_{k}_{i}"
+            lines += [f"{form[i][k]} = wide(f_v{at})", f"{form[k][i]} = -{form[i][k]}"]
+    right, every = _product(form, "w_m"), range(size)
+    lines += [f"w_r_{a}_{b} = {right[a][b]}" for a in every for b in every if right[a][b]]
+    for a in every:
         for b in range(a + 1, size):
             terms = [f"w_m_{c}_{a} * w_r_{c}_{b}" for c in range(size) if right[c][b]]
             if terms:
                 lines.append(f"w_w_{a}_{b} = w_w_{a}_{b} + ({' + '.join(terms)})")
             lines.append(f"f_w_{a}_{b} = f_w_{a}_{b} + (f_v{outputs[f'dw_{a}_{b}']})")
     lines += _moved("w_m", exact)
-    every = range(size)
     lines += [
         f"f_m_{a}_{b} = f_m_{a}_{b} + (f_v{outputs[f'dm_{a}_{b}']})" for a in every for b in every
     ]

@@ -106,10 +106,7 @@ class FormRun:
             plain=links_of(plain, _of_float64),
             closed_derivatives=wide("w_w", self._entries) if kernel.closed else None,
             closed_form=links_of(closed, _of_float64) if kernel.closed else None,
-            sizes=tuple(
-                size_of(lambda a, b, at=state: _exact(at[f"w_n_{a}_{b}"], finer), self._size)
-                for state in again
-            ),
+            sizes=tuple(self._of_size(state, finer) for state in again),
         )
 
     @property
@@ -121,9 +118,7 @@ class FormRun:
 
     # -- stepping -----------------------------------------------------------------------------
 
-    def _states(
-        self, kernel: FormKernel, arithmetic: Arithmetic, advance: Advance
-    ) -> list[State]:
+    def _states(self, kernel: FormKernel, arithmetic: Arithmetic, advance: Advance) -> list[State]:
         """What the kernel carries, at every checkpoint."""
         given = [self.inputs[n] for n in ("h", *kernel.parameters)]
         fixed = [*given, *(arithmetic.number(Fraction(x)) for x in given)]
@@ -186,6 +181,9 @@ class FormRun:
     def _norm(self, state: State) -> float:
         every = range(self._size)
         return math.hypot(*(state[f"f_n_{a}_{b}"] for a in every for b in every))
+
+    def _of_size(self, state: State, own: Arithmetic) -> Size:
+        return size_of(lambda a, b: _exact(state[f"w_n_{a}_{b}"], own), self._size)
 
     def _entries(self, state: State, matrix: str, own: Arithmetic) -> Entries:
         places = combinations(range(self._size), 2)

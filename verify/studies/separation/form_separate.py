@@ -11,7 +11,15 @@ from fractions import Fraction
 from math import isqrt, log10
 
 from verify.arithmetic import AUTO
-from verify.arithmetic.exact import Exact, decimal, known_digits, magnitude, positive, rational, text
+from verify.arithmetic.exact import (
+    Exact,
+    decimal,
+    known_digits,
+    magnitude,
+    positive,
+    rational,
+    text,
+)
 from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import Given, point_of
@@ -45,8 +53,8 @@ Progress = Callable[[int], None]  # called with a number of steps just done
 _SHOWN = 7  # digits of what a figure shows
 _CHECKPOINTS = 32
 _NOT_THE_SCHEME = (
-    "; W adds MᵀSM at every step, S of that step and M the tangent map so far, and so grows as areas "
-    "do under M, at most like ‖M‖²: that growth is the motion's, not the scheme's"
+    "; W adds MᵀSM at every step, S of that step and M the tangent map so far, and so grows as "
+    "areas do under M, at most like ‖M‖²: that growth is the motion's, not the scheme's"
 )
 
 
@@ -96,8 +104,8 @@ def separate_in_degrees(
         step_size=text(h),
         steps=steps,
         coordinates=hamiltonian.coordinates,
-        q=begun.text("q"),
-        p=begun.text("p"),
+        q=tuple(begun.text("q")),
+        p=tuple(begun.text("p")),
         t0=text(start.get("t", Fraction(0))),
         status=stopped.status if stopped else "finished",
         failed_step=stopped.step if stopped else None,

@@ -1,0 +1,191 @@
+"""Truncation and rounding in W, n degrees of freedom, against an oracle that shares no code."""
+
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any
+
+import pytest
+
+from tests.helpers import form_separation as oracle
+from tests.helpers.form_separation import MP, Float64Step
+from verify import arithmetic as number_systems
+from verify.errors import InputError
+from verify.hamiltonians import systems
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.stepping import KernelRun
+from verify.studies.separation.chain import Chain
+from verify.studies.separation.form_chain import FormChains, form_chains
+from verify.studies.separation.form_separate import separate_in_degrees
+
+DIGITS = 30
+HENON = systems.get("henon-heiles").hamiltonian({})
+FPUT = systems.get("fput").hamiltonian({"n": 3, "alpha": "1/4", "beta": "1/10"})
+DRIVEN = systems.get("driven-henon-heiles").hamiltonian({"epsilon": "1/10", "omega": "7/5"})
+
+
+def real(x: Any) -> Any:
+    exact = Fraction(x)
+    return MP.mpf(exact.numerator) / exact.denominator
+
+
+CASES: dict[str, tuple[Hamiltonian, Any, list[str], str, int]] = {
+    "henon-heiles": (
+        HENON, lambda of: oracle.henon_heiles(), ["0.1", "0.2", "0.3", "-0.1"], "0.1", 40,
+    ),
+    "fput": (
+        FPUT, lambda of: oracle.chain(of("1/4"), of("1/10"), 3),
+        ["0.1", "0", "-0.2", "0.5", "0.7", "0.4"], "0.07", 24,
+    ),
+    "driven-henon-heiles": (
+        DRIVEN, lambda of: oracle.henon_heiles(of("1/10"), of("7/5")),
+        ["0.1", "0.2", "0.3", "-0.1"], "0.1", 30,
+    ),
+}  # fmt: skip
+T0 = "1/3"
+
+
+def made(name: str) -> tuple[FormChains, dict[str, list[dict[tuple[int, int], Any]]]]:
+    """The chains, and the links of each way by the oracle."""
+    exact, potential, z, h, steps = CASES[name]
+    start = dict(zip(exact.coordinates, map(Fraction, z), strict=True)) | {"h": Fraction(h)}
+    timed = exact.time_dependent
+    start |= {"t": Fraction(T0)} if timed else {}
+    found = form_chains(exact, "lie2", start, steps, DIGITS)
+    rounded = [float(Fraction(x)) for x in z]
+    step = Float64Step(exact, "lie2", float(h))
+    run = step.run(rounded, float(Fraction(T0)), steps)
+    exactly, binary = potential(real), potential(lambda x: real(float(Fraction(x))))
+    first, size, size_1 = real(Fraction(T0)), real(h), real(float(h))
+    links = [
+        oracle.exact_w(exactly, list(map(real, z)), size, [first + k * size for k in range(steps)])
+    ]
+    first = real(float(Fraction(T0)))
+    times = [first + k * size_1 for k in range(steps)]
+    links.append(oracle.exact_w(binary, list(map(real, rounded)), size_1, times))
+    clock = list(map(real, run.times))
+    if timed:
+        links.append(oracle.exact_w(binary, list(map(real, rounded)), size_1, clock))
+    links.append(oracle.exact_w(binary, rounded, size_1, clock, run.states))
+    plain = [*links, run.plain(exactly=True), run.plain(exactly=False)]
+    return found, {"plain": plain, "closed_form": [*links, run.closed_exactly(), run.closed]}
+
+
+def as_mpf(x: Any) -> Any:
+    return real(x) if isinstance(x, float | Fraction | int) else x
+
+
+def wrong_parts(
+    chains: tuple[Chain, ...], links: list[dict[tuple[int, int], Any]]
+) -> list[tuple[tuple[int, int], str]]:
+    """The entries and parts that differ from the oracle in their first 30 digits."""
+    found = []
+    for chain, place in zip(chains, links[0], strict=True):
+        own = [as_mpf(link[place]) for link in links]
+        parts = dict(zip(chain.parts, pairwise(own), strict=True))
+        expected = {n: b - a for n, (a, b) in parts.items()}
+        expected |= {"truncation": own[0], "lambda_working": own[-1], "total": own[-1] - own[0]}
+        for name, x in expected.items():
+            value, bound = chain.final(name)
+            apart = abs(real(value) - x)
+            if apart > abs(x) / MP.mpf(10) ** DIGITS or apart > real(bound) + MP.mpf(10) ** -70:
+                found.append((place, name))
+    return found
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_every_part_of_every_entry_agrees_with_the_oracle_to_30_digits(name: str) -> None:
+    found, links = made(name)
+    assert wrong_parts(found.plain, links["plain"]) == []
+    assert wrong_parts(found.closed_form, links["closed_form"]) == []
+
+
+def test_a_planted_wrong_part_is_noticed() -> None:
+    found, links = made("henon-heiles")
+    for k in range(1, 4):
+        planted = [dict(link) for link in links["plain"]]
+        planted[k][0, 1] = as_mpf(planted[k][0, 1]) * (1 + MP.mpf(10) ** -12)
+        assert len(wrong_parts(found.plain, planted)) == 2, "the parts on both sides of a link"
+
+
+@pytest.mark.parametrize("scheme", ["lie2", "rk4", "stormer-verlet"])
+def test_parts_add_up_exactly_at_every_checkpoint(scheme: str) -> None:
+    start = {"p1": "0.1", "p2": "0.2", "q1": "0.3", "q2": "-0.1", "h": "0.1"}
+    found = form_chains(HENON, scheme, {n: Fraction(x) for n, x in start.items()}, 50, 17)
+    for chain in (*found.plain, *found.closed_form):
+        trails = [chain.trail(name)[0] for name in ("truncation", *chain.parts)]
+        sums = [sum(each) for each in zip(*trails, strict=True)]
+        assert sums == list(chain.trail("lambda_working")[0])
+
+
+def test_what_is_symplectic_by_proof_has_no_truncation_and_is_not_run() -> None:
+    found = separate_in_degrees(
+        HENON, "stormer-verlet", q=["0.3", "-0.1"], p=["0.1", "0.2"], step_size="0.1", steps=60
+    )
+    assert found.plain is not None
+    assert found.closed_form is not None
+    for part in ("truncation", "input", "trajectory"):
+        assert not any(map(any, getattr(found.plain.parts, part).exact))
+    assert any(map(any, found.plain.parts.total.exact)), "float64 rounds its Jacobians"
+    assert not any(map(any, found.closed_form.parts.w_working.exact))
+    assert found.closed_form.error_kind == "enclosed"
+
+
+def test_the_working_w_of_the_closed_form_is_that_of_a_float64_run_bit_for_bit() -> None:
+    given = {"p1": "0.1", "p2": "0.2", "q1": "0.3", "q2": "-0.1", "h": "0.1"}
+    start = {n: Fraction(x) for n, x in given.items()}
+    found = form_chains(HENON, "lie2", start, 300, 17)
+    run = KernelRun(HENON, "lie2", start, 300, frozenset({"symplectic_defect"}), 0)
+    ran = run.run(number_systems.get("float64", 17)).values["symplectic_defect"]
+    assert max(abs(chain.final("lambda_working")[0]) for chain in found.closed_form) == ran
+
+
+def test_an_orbit_that_escapes_says_at_which_step() -> None:
+    found = separate_in_degrees(
+        HENON, "lie2", q=["0.9", "0.9"], p=["0.1", "0.2"], step_size="0.05", steps=2000
+    )
+    assert (found.status, found.failed_step, found.plain) == ("left range", 121, None)
+    before = separate_in_degrees(
+        HENON, "lie2", q=["0.9", "0.9"], p=["0.1", "0.2"], step_size="0.05", steps=100
+    )
+    assert before.status == "finished"
+
+
+@pytest.mark.parametrize(
+    ("system", "parameters", "scheme", "q", "p"),
+    [
+        ("kepler", {"mu": 1}, "lie2", ["2/5", "0"], ["0", "2"]),
+        ("magnetic", {"b": 1, "k": 1, "c": 1}, "lie4", ["0", "3/4"], ["1/2", "0"]),
+        ("fput", {"n": 4, "alpha": "1/4", "beta": "1/2"}, "rk4", ["0.1", "0", "0", "0"], ["0"] * 4),
+    ],
+)
+def test_named_systems_are_separated(
+    system: str, parameters: dict[str, Any], scheme: str, q: list[str], p: list[str]
+) -> None:
+    exact = systems.get(system).hamiltonian(parameters)
+    found = separate_in_degrees(exact, scheme, q=q, p=p, step_size="0.01", steps=40)
+    assert found.status == "finished"
+    assert found.closed_form is not None
+    parts = found.closed_form.parts
+    assert abs(parts.truncation.largest) > abs(parts.total.largest)
+    entry = parts.truncation.entry(0, 1)
+    assert -entry == parts.truncation.entry(1, 0)
+
+
+@pytest.mark.parametrize(
+    ("changed", "problem"),
+    [
+        ({"q": ["0.3"]}, "has 1 of 2 numbers"),
+        ({"step_size": 0}, "step_size=0"),
+        ({"steps": 0}, "steps=0"),
+        ({"arithmetic": "float64"}, "is what is examined"),
+        ({"scheme": "implicit-midpoint"}, "solves equations"),
+        ({"hamiltonian": systems.get("fput").hamiltonian({"n": 5, "alpha": 1, "beta": 1}),
+          "q": [0] * 5, "p": [1] * 5}, "is for up to 4 degrees of freedom"),
+    ],
+)  # fmt: skip
+def test_bad_input_is_refused_in_one_line(changed: dict[str, Any], problem: str) -> None:
+    asked = {"hamiltonian": HENON, "scheme": "lie2", "q": ["0.3", "-0.1"], "p": ["0.1", "0.2"],
+             "step_size": "0.1", "steps": 10}  # fmt: skip
+    with pytest.raises(InputError, match=problem) as error:
+        separate_in_degrees(**(asked | changed))
+    assert "\n" not in str(error.value)
