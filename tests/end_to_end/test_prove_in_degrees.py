@@ -91,7 +91,7 @@ def test_certificates_are_written_and_checked(
     assert (found["accepted"], found["degrees"]) == (True, 2)
 
 
-@pytest.mark.parametrize("command", ["separate", "stability"])
+@pytest.mark.parametrize("command", ["stability"])
 @pytest.mark.parametrize(("q", "p"), [("1", "0"), ("1,0", "0,1")])
 def test_what_takes_one_degree_says_so(
     command: str, q: str, p: str, capsys: pytest.CaptureFixture[str]

@@ -31,6 +31,12 @@ step_sizes = [0.1, 0.05]
 initial_values = [{START}]
 digits = 20
 """
+SEPARATED = f"""
+[[separation]]
+step_sizes = [0.1, 0.05]
+steps = 30
+initial_value = {START}
+"""
 SERIES = f"""
 [[series]]
 step_size = 0.1
@@ -116,7 +122,8 @@ def test_claims_are_judged(tmp_path: Path, claim: str, verdict: Verdict) -> None
         (GRID.replace("[0.3, -0.1]", "0.3"), "grid.initial_values.0.p: number="),
         (GRID.replace("q = [0.3, -0.1], p = [0.1, 0.2]", "q = 1, p = 0"), "has 1 of 2 numbers"),
         (GRID.replace("-0.1", '"x"'), "grid.initial_values.0.q.1: number=x"),
-        (GRID + "separate = true\n", "grid.separate takes p and q, one degree of freedom"),
+        (SEPARATED.replace("initial_value = { q = [0.3, -0.1]", "initial_value = { q = [0.3]"),
+         "q=0.3: has 1 of 2 numbers"),
         (GRID + "growth = true\n", "grid.growth takes p and q"),
         (GRID + 'observables = ["lambda_plain"]\n', "observable=lambda_plain"),
         ("criteria = [1]\n", "criteria takes p and q"),
@@ -139,3 +146,41 @@ def test_lists_are_refused_in_the_plane() -> None:
         scene(
             plane + GRID.replace(START, "{ q = 1, p = 0 }") + 'observables = ["symplectic_defect"]'
         )
+
+
+def test_w_is_separated_where_lambda_is_in_the_plane() -> None:
+    asked = scene(HEAD + GRID + "separate = true\n" + SEPARATED)
+    made = make_report(
+        "Separated", [asked], [], execute.Store(None), command="test", where=THIS_PROCESS
+    )
+    (found,) = made.scenes
+    assert (found.separations, found.crossovers) == ((), ())
+    (own,), (beside,) = found.form_separations, found.form_crossovers
+    assert [point.scheme for point in (*own.points, *beside.points)] == ["lie2"] * 4
+    assert any("separated from rounding for stormer-verlet" in what for what, _ in made.left_out)
+    again = Report.model_validate_json(made.model_dump_json())
+    assert again.scenes[0].form_crossovers == found.form_crossovers
+    shown = render(made)
+    assert "Truncation against rounding in W" in shown
+    assert "‖∧²M‖" in shown
+    assert "measured, not proved" in shown
+
+
+def test_w_is_not_separated_in_more_degrees_than_it_is_made_for() -> None:
+    chain = """
+name = "chain"
+title = "Five masses"
+system = "fput"
+schemes = ["lie2"]
+[parameters]
+n = 5
+alpha = 1
+beta = 0
+[grid]
+steps = 5
+step_sizes = [0.1]
+initial_values = [{ q = [1, 0, 0, 0, 0], p = [0, 0, 0, 0, 0] }]
+"""
+    assert scene(chain).grid
+    with pytest.raises(InputError, match="is for up to 4 degrees of freedom; H has 5"):
+        scene(chain + "separate = true\n")

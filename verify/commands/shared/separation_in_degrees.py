@@ -1,5 +1,6 @@
 """Truncation and rounding in W as `verify separate` tells them, in n degrees of freedom."""
 
+import textwrap
 from typing import Any
 
 import click
@@ -15,6 +16,7 @@ from verify.scenes.results.separation_in_degrees import (
     SeparationInDegrees,
 )
 
+_WIDTH = 88  # of a line of prose
 _LABELS = {"plain": "plain", "closed_form": "closed form"}
 
 
@@ -90,7 +92,8 @@ def _print_point(point: SeparationInDegrees) -> None:
             f"‖∧²M‖ = {float(tangent.areas):.3g}, finite-time Lyapunov exponent "
             f"{tangent.finite_time_lyapunov} over T = {tangent.time}"
         )
-        click.echo(f"  {tangent.meaning}")
+        meaning = textwrap.fill(str(tangent.meaning), _WIDTH, subsequent_indent="  ")
+        click.echo(f"  {meaning}")
     kinds = ", ".join(dict.fromkeys(way.error_kind for way in ways.values()))
     click.echo(
         f"  {point.arithmetic} as exact arithmetic, {point.seconds:.3g} s; "

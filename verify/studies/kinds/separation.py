@@ -36,7 +36,7 @@ def _rows(
         [
             task(
                 **given, scheme=scheme, step_size=h, steps=grid.steps_for(h),
-                q=at.q, p=at.p, t0=scene.t0, digits=_DIGITS,
+                **dict(at), t0=scene.t0, digits=_DIGITS,
             )
             for h in grid.step_sizes
         ]
