@@ -41,11 +41,11 @@ FORM_SEPARATION = (
 )
 FORM_GROWTH = (
     "W sums MᵀSM, and a 2-form grows as areas do under M: like ‖∧²M‖, the root of the sum of all "
-    "squares of 2 × 2 minors, which is below ‖M‖². So where ‖M‖ grows exponentially, what W grows "
-    "by is the motion’s and not the scheme’s. The finite-time Lyapunov exponent is "
-    "ln(‖M‖/√(2n))/T of this run, by unit of time. The law of max |W| is its envelope’s slope "
-    "over N, in logarithms: bounded, N or N² where one of these is near, and fitted only where "
-    "‖M‖ does not grow exponentially."
+    "squares of 2 × 2 minors, which is below ‖M‖². Where ‖M‖ grows exponentially at half the "
+    "step size too, and at about that rate, the growth is the motion’s and not the scheme’s. The "
+    "finite-time Lyapunov exponent is ln(‖M‖/√(2n))/T of this run, by unit of time. The law of "
+    "max |W| is the slope of its envelope over N, in logarithms: bounded, N or N² where one of "
+    "these is near, and fitted only where ‖M‖ does not grow exponentially."
 )
 ROUNDING_GROWTH = (
     "The exponent is the slope of the greatest |rounding| so far over N, in logarithms, with its "

@@ -129,8 +129,10 @@ class TangentGrowth(WithProse):
     `norm_squared`: ‖M_N‖² of Frobenius. `areas`: ‖∧²M_N‖, the root of the sum of all squares of its
     2 × 2 minors, as which a 2-form grows, and which is below ‖M_N‖². `finite_time_lyapunov`:
     ln(‖M_N‖/√(2n))/T per unit of time, `time` T. `motion`: whether ‖M‖ grew exponentially in this
-    run; `law`, `law_of_areas`: those of ‖M‖² and ‖∧²M‖ where it did not. `per_area`: the greatest
-    |entry| of the truncation of W_N, over ‖∧²M_N‖.
+    run, and then `cause`, whose that growth is: `at_half_step` is the exponent over the same time
+    with half the step size (`verify.studies.separation.form_motion`). `law`, `law_of_areas`: those
+    of ‖M‖² and ‖∧²M‖ where it did not. `per_area`: the greatest |entry| of the truncation of W_N,
+    over ‖∧²M_N‖.
     """
 
     norm_squared: str
@@ -138,6 +140,8 @@ class TangentGrowth(WithProse):
     time: str
     finite_time_lyapunov: str
     motion: Literal["exponential", "polynomial", "undecided"]
+    cause: Literal["motion", "scheme", "undecided"] | None
+    at_half_step: str | None
     law: PowerLawResult
     law_of_areas: PowerLawResult
     per_area: str

@@ -62,10 +62,10 @@ def power_law(
 ) -> PowerLaw:
     """The law of sizes at equidistant numbers of steps, each known to within `noise`."""
     tops = envelope(values)
-    if motion == "exponential":
-        return PowerLaw(None, None, "exponential", prose("‖M‖ grows exponentially: no power fits"))
     if not tops[-1]:
         return PowerLaw(None, None, "bounded", prose("exactly 0 at every checkpoint"))
+    if motion == "exponential":
+        return PowerLaw(None, None, "exponential", prose("‖M‖ grows exponentially: no power fits"))
     usable = [k for k, x in enumerate(tops) if k + 1 >= _FIRST and x > _ABOVE * noise]
     chosen = log_spaced(usable, [marks[k] for k in usable], _MOST)
     reach = math.log10(marks[chosen[-1]] / marks[chosen[0]]) if chosen else 0.0

@@ -130,7 +130,7 @@ def _motion_row(point: SeparationInDegrees) -> Row | None:
         few(found.norm_squared),
         few(found.areas),
         few(found.finite_time_lyapunov),
-        found.motion,
+        f"exponential, {_CAUSES[found.cause]}" if found.cause else found.motion,
         _law(law.exponent, law.name) if law else "0",
     )
     return Row(step(point.step_size), cells)
@@ -140,6 +140,7 @@ def _law(exponent: str | None, name: str) -> str:
     return name if exponent is None else f"{name} ({exponent})"
 
 
+_CAUSES = {"motion": "the motion’s", "scheme": "the scheme’s", "undecided": "whose, undecided"}
 SECTION = Section(
     order=71,
     title="Truncation against rounding in W",
