@@ -1,34 +1,33 @@
 """Truncation and rounding in W as `verify separate` tells them, in n degrees of freedom."""
 
 import textwrap
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from verify.commands.shared.answer import picked
 from verify.commands.shared.output import crossed, plain_json
-from verify.scenes.results.separation import WAYS
-from verify.scenes.results.separation_in_degrees import (
-    FORM_SHOWN,
-    FormEvaluation,
-    FormParts,
-    SeparationGridInDegrees,
-    SeparationInDegrees,
-)
+
+if TYPE_CHECKING:
+    from verify.scenes.results.separation_in_degrees import (
+        FormEvaluation,
+        SeparationGridInDegrees,
+        SeparationInDegrees,
+    )
 
 _WIDTH = 88  # of a line of prose
 _LABELS = {"plain": "plain", "closed_form": "closed form"}
 
 
-def as_json(found: SeparationGridInDegrees) -> dict[str, Any]:
+def as_json(found: "SeparationGridInDegrees") -> dict[str, Any]:
     """The first step size's parts, and those of all of them as `grid`; every part is a matrix."""
     points = [_separated(point) for point in found.points]
-    crossover = {way: getattr(found, way).model_dump(mode="json") for way in WAYS}
+    crossover = {way: getattr(found, way).model_dump(mode="json") for way in _LABELS}
     seconds = f"{sum(point.seconds for point in found.points):.6f}"
     return {**points[0], "crossover": crossover, "grid": points, "seconds": seconds}
 
 
-def _separated(point: SeparationInDegrees) -> dict[str, Any]:
+def _separated(point: "SeparationInDegrees") -> dict[str, Any]:
     return {
         "coordinates": list(point.coordinates),
         **_evaluated(point.plain),
@@ -41,7 +40,9 @@ def _separated(point: SeparationInDegrees) -> dict[str, Any]:
     }
 
 
-def _evaluated(way: FormEvaluation | None) -> dict[str, Any]:
+def _evaluated(way: "FormEvaluation | None") -> dict[str, Any]:
+    from verify.scenes.results.separation_in_degrees import FormParts
+
     names = (type(way.parts) if way else FormParts).model_fields
     values = {n: getattr(way.parts, n) if way else None for n in names}
     shown = {n: [list(row) for row in x.value] if x else None for n, x in values.items()}
@@ -58,7 +59,7 @@ def _evaluated(way: FormEvaluation | None) -> dict[str, Any]:
     }
 
 
-def print_separation(found: SeparationGridInDegrees) -> None:
+def print_separation(found: "SeparationGridInDegrees") -> None:
     """Each step size, and where rounding overtakes truncation."""
     for point in found.points:
         click.echo(f"h = {point.step_size}, {point.steps} steps")
@@ -72,7 +73,9 @@ def print_separation(found: SeparationGridInDegrees) -> None:
             click.echo(f"rounding overtakes truncation, {label}: {crossed(getattr(found, way))}")
 
 
-def _print_point(point: SeparationInDegrees) -> None:
+def _print_point(point: "SeparationInDegrees") -> None:
+    from verify.scenes.results.separation_in_degrees import FORM_SHOWN
+
     ways = {way: getattr(point, way) for way in _LABELS}
     parts = {name: f"  {name}" for name in ways["plain"].parts.of_rounding}
     click.echo(f"  {'greatest entry':16}{'plain':38}closed form")
