@@ -87,12 +87,14 @@ class FormRun:
             pairs = zip(coarse, fine, strict=True)
             apart = 2 * max(abs(x - y) for a, b in pairs for x, y in zip(a, b, strict=True))
             # Where both agree by chance, what their last bits may hide.
-            size = max(abs(_exact(s[n], finer)) for s in again for n in s if n[:3] == matrix)
-            bound = apart + (1 + size * size) / 2 ** (arithmetic.bits - 4)
+            size = max(abs(s[n]) for s in again for n in s if n[:3] == matrix)
+            bound = apart + (1 + _exact(size, finer) ** 2) / 2 ** (arithmetic.bits - 4)
             return links_of(fine, lambda trail: Link(trail, bound, "estimated", METHOD))
 
         def product(state: State, matrix: str, own: Arithmetic) -> Entries:
-            return of_product(lambda a, b: _exact(state[f"{matrix}_{a}_{b}"], own), self._size)
+            scaled, one = self._scaled(state, matrix, own)
+            found = of_product(lambda a, b: scaled[a][b], self._size, one * one)
+            return tuple(Fraction(x, one * one) for x in found)
 
         def followed(matrix: str) -> Links | None:
             return wide(matrix, product) if matrix in kernel.products else None
@@ -183,37 +185,44 @@ class FormRun:
         return math.hypot(*(state[f"f_n_{a}_{b}"] for a in every for b in every))
 
     def _of_size(self, state: State, own: Arithmetic) -> Size:
-        return size_of(lambda a, b: _exact(state[f"w_n_{a}_{b}"], own), self._size)
+        return size_of(*self._scaled(state, "w_n", own))
+
+    def _scaled(self, state: State, matrix: str, own: Arithmetic) -> tuple[list[list[int]], int]:
+        """A wide matrix as whole numbers over one denominator: Fractions take ten times as long."""
+        every = range(self._size)
+        exact = [[_exact(state[f"{matrix}_{a}_{b}"], own) for b in every] for a in every]
+        one = max(x.denominator for row in exact for x in row)  # of powers of 2
+        return [[x.numerator * (one // x.denominator) for x in row] for row in exact], one
 
     def _entries(self, state: State, matrix: str, own: Arithmetic) -> Entries:
         places = combinations(range(self._size), 2)
         return tuple(_exact(state[f"{matrix}_{a}_{b}"], own) for a, b in places)
 
 
-def of_product(entry: Callable[[int, int], Any], size: int) -> tuple[Any, ...]:
-    """The entries of MᵀΩM − Ω above the diagonal, row by row, in the arithmetic of M's entries."""
+def of_product(entry: Callable[[int, int], Any], size: int, one: int = 1) -> tuple[Any, ...]:
+    """The entries of MᵀΩM − Ω above the diagonal, row by row, in the arithmetic of M's entries; or
+    times `one`, of an M that is times its root."""
     n, found = size // 2, []
     for a, b in combinations(range(size), 2):
         total = entry(0, a) * entry(n, b) - entry(n, a) * entry(0, b)
         for i in range(1, n):
             total = total + entry(i, a) * entry(n + i, b)
             total = total - entry(n + i, a) * entry(i, b)
-        found.append(total - 1 if b == n + a else total)
+        found.append(total - one if b == n + a else total)
     return tuple(found)
 
 
-def size_of(entry: Callable[[int, int], Fraction], size: int) -> Size:
-    """The sizes of an exact matrix: ‖∧²M‖² = (‖M‖⁴ − ‖MᵀM‖²)/2."""
-    every = range(size)
-    columns = [[entry(a, b) for a in every] for b in every]
+def size_of(matrix: Sequence[Sequence[int]], one: int) -> Size:
+    """The sizes of `matrix`/`one`: ‖∧²M‖² = (‖M‖⁴ − ‖MᵀM‖²)/2."""
+    columns, every = list(zip(*matrix, strict=True)), range(len(matrix))
     square = {
-        (a, b): sum((x * y for x, y in zip(columns[a], columns[b], strict=True)), Fraction(0))
+        (a, b): sum(x * y for x, y in zip(columns[a], columns[b], strict=True))
         for a in every
-        for b in range(a, size)
+        for b in range(a, len(matrix))
     }
-    norm = sum((square[a, a] for a in every), Fraction(0))
-    whole = sum(((1 if a == b else 2) * x * x for (a, b), x in square.items()), Fraction(0))
-    return Size(norm, (norm * norm - whole) / 2)
+    norm = sum(square[a, a] for a in every)
+    whole = sum((1 if a == b else 2) * x * x for (a, b), x in square.items())
+    return Size(Fraction(norm, one**2), Fraction(norm * norm - whole, 2 * one**4))
 
 
 def _of_float64(trail: tuple[Fraction, ...]) -> Link:
