@@ -24,6 +24,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
+from itertools import combinations
 
 from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic
@@ -35,7 +36,7 @@ from verify.kernels.step.lowering import Lowering
 from verify.kernels.step.partials import Partials
 from verify.kernels.step.program import Program
 from verify.schemes.step_map import StepMap
-from verify.studies.separation.kernel import AT, prefixed_lines
+from verify.studies.separation.kernel import AT, box_of, prefixed_lines
 
 Rows = Sequence[Sequence[str]]  # of names; an empty one is 0
 
@@ -131,11 +132,17 @@ def form_kernel(
         products += ["f_m", "w_m"]
     moves += [f"f_{n} = f_{n} + (f_v{outputs[f'd{n}']})" for n in names]
     moves += ["f_t = f_t + f_h"] * timed
+    tops, watched = _watched(narrow, [x for x in products if x in ("w_n", "w_t", "w_m")], closed)
+    regions = [f"f_{n}" for n in names]
+    inside = [line for name in regions for line in box_of(name)] + inside
+    moves += watched
     states = (
         *(f"f_{n}" for n in (*names, *("t" * timed))),
         *(f"{AT}{n}" for n in names if follow and timed),
         *(f"{matrix}_{a}_{b}" for matrix in products for a, b in _places(names)),
         *(f"{w}_{a}_{b}" for w in ("f_w", "w_w") * closed for a, b in _places(names) if a < b),
+        *(f"{name}_{side}" for name in regions for side in ("low", "high")),
+        *tops,
     )
     source = _assemble(narrow, states, before, [*inside, *moves])
     scope = _scope(narrow, working, wide, arithmetic)
@@ -231,6 +238,43 @@ def _closed(narrow: Step) -> list[str]:
         f"f_m_{a}_{b} = f_m_{a}_{b} + (f_v{outputs[f'dm_{a}_{b}']})" for a in every for b in every
     ]
     return lines
+
+
+def _watched(narrow: Step, products: Sequence[str], closed: bool) -> tuple[list[str], list[str]]:
+    """What a bound needs of every step, in float64: the greatest ‖M‖² of each product and
+    ‖MᵀΩM − Ω‖², and the greatest ‖J̃‖², ‖K̃‖² and ‖S̃‖². The names that carry it, and lines."""
+    names, tops, lines = narrow.made.coordinates, list[str](), list[str]()
+    size, half = len(names), len(names) // 2
+
+    def keep(name: str, value: str) -> None:
+        tops.append(name)
+        lines.append(f"f_seen = {value}")
+        lines.append(f"if not f_seen <= {name}: {name} = f_seen")
+
+    def squares(entries: Sequence[str]) -> str:
+        return " + ".join(f"{x} * {x}" for x in entries if x) or "0.0"
+
+    for matrix in products:
+        lines += [f"f_x_{a}_{b} = approx({matrix}_{a}_{b})" for a, b in _places(names)]
+        keep(f"f_{matrix[2:]}_norm", squares([f"f_x_{a}_{b}" for a, b in _places(names)]))
+        places = list(combinations(range(size), 2))
+        for a, b in places:
+            areas = (
+                f"f_x_{i}_{a} * f_x_{half + i}_{b} - f_x_{half + i}_{a} * f_x_{i}_{b}"
+                for i in range(half)
+            )
+            lines.append(f"f_y_{a}_{b} = {' + '.join(areas)}{' - 1.0' * (b == half + a)}")
+        # In chaos W may be as large as its root is float64's range: there is no bound then anyway.
+        form = squares([f"f_y_{a}_{b}" for a, b in places])
+        keep(f"f_{matrix[2:]}_form", f"min(2.0 * ({form}), 1e300)")
+    slopes = narrow.names("f_")
+    jacobian = [f"f_j_{a}_{b}" for a, b in _places(names) if a == b or slopes[a][b]]
+    keep("f_j_norm", squares(jacobian))
+    if closed:
+        keep("f_k_norm", squares([x for row in slopes for x in row]))
+        defect = [f"f_v{at}" for at in narrow.made.defect.values()]
+        keep("f_s_norm", f"2.0 * ({squares(defect)})")
+    return tops, lines
 
 
 def _assemble(

@@ -4,8 +4,10 @@ What `verify.studies.separation.form_kernel` carries becomes the links of W here
 checkpoint: W = MᵀΩM − Ω of a wide M as exact rationals, and of float64's M in float64, each entry a
 sum of 2n products from the left, p's row first, and then less 1 where Ω has one.
 
-How far they are known: what float64 made is exact. A wide link is held against a rerun with 15 more
-digits; twice the greatest difference of any entry at any checkpoint is its bound, an estimate.
+How far they are known: what float64 made is exact. The rounding of a wide link is counted
+(`verify.studies.separation.form_count`), but for a clock; where there is no such bound, it is held
+against a rerun with 15 more digits, and twice the greatest difference of any entry at any
+checkpoint is its bound, an estimate.
 """
 
 import math
@@ -20,6 +22,7 @@ from verify.arithmetic.number_system import Arithmetic
 from verify.execution.keeping import fraction_of, fraction_text
 from verify.kernels.stepping import KernelRun
 from verify.runs.estimated import digits_of
+from verify.studies.separation.form_count import counted
 from verify.studies.separation.form_kernel import FormKernel, form_kernel
 from verify.studies.separation.kernel import AT
 from verify.studies.separation.stepper import State, Stepper
@@ -29,6 +32,8 @@ POINTS = 512  # checkpoints of a run; each has a matrix for each link
 MORE_DIGITS = 15
 Entries = tuple[Fraction, ...]  # of W above its diagonal, row by row
 Links = tuple[Link, ...]  # one for each of these entries
+_LINKS = ("w_c", "w_t", "w_n", "w_w")  # what is carried in wide numbers of which W is read
+COUNTED = "rounding counted"
 METHOD = f"rerun with {MORE_DIGITS} more digits"
 
 
@@ -78,38 +83,61 @@ class FormRun:
         """All steps; raises Stopped where float64 leaves its range."""
         kernel = self._kernel(arithmetic)
         states = self._states(kernel, arithmetic, advance)
+        known = counted(kernel, arithmetic, self.inputs, states[-1], self.run.steps)
+        carried = (*kernel.products, *("w_w",) * kernel.closed)
+        wide = [name for name in _LINKS if name in carried]
+        again: Sequence[State] = ()
         finer = number_systems.get(arithmetic.name, digits_of(arithmetic) + MORE_DIGITS)
-        again = self._states(self._kernel(finer), finer, lambda _: None)
+        if any(known.get(name) is None for name in wide):
+            again = self._states(self._kernel(finer), finer, lambda _: None)
 
-        def wide(matrix: str, of: Callable[[State, str, Arithmetic], Entries]) -> Links:
-            coarse = [of(state, matrix, arithmetic) for state in states]
-            fine = [of(state, matrix, finer) for state in again]
-            pairs = zip(coarse, fine, strict=True)
-            apart = 2 * max(abs(x - y) for a, b in pairs for x, y in zip(a, b, strict=True))
-            # Where both agree by chance, what their last bits may hide.
-            size = max(abs(s[n]) for s in again for n in s if n[:3] == matrix)
-            bound = apart + (1 + _exact(size, finer) ** 2) / 2 ** (arithmetic.bits - 4)
-            return links_of(fine, lambda trail: Link(trail, bound, "estimated", METHOD))
+        def links(name: str) -> Links | None:
+            if name not in wide:
+                return None
+            bound, trail = known.get(name), self._trail(states, name, arithmetic)
+            if bound is not None:
+                return links_of(trail, lambda each: Link(each, bound, "enclosed", COUNTED))
+            fine = self._trail(again, name, finer)
+            apart = self._apart(trail, fine, arithmetic, again, name)
+            return links_of(fine, lambda each: Link(each, apart, "estimated", METHOD))
 
-        def product(state: State, matrix: str, own: Arithmetic) -> Entries:
-            scaled, one = self._scaled(state, matrix, own)
-            found = of_product(lambda a, b: scaled[a][b], self._size, one * one)
-            return tuple(Fraction(x, one * one) for x in found)
-
-        def followed(matrix: str) -> Links | None:
-            return wide(matrix, product) if matrix in kernel.products else None
-
+        derivatives = links("w_n")
+        assert derivatives is not None  # noqa: S101 - every kernel has it
         plain = [tuple(map(Fraction, self._plain(state))) for state in states]
         closed = [self._entries(state, "f_w", arithmetic) for state in states if kernel.closed]
         return FormWorking(
-            clock=followed("w_c"),
-            trajectory=followed("w_t"),
-            derivatives=wide("w_n", product),
+            clock=links("w_c"),
+            trajectory=links("w_t"),
+            derivatives=derivatives,
             plain=links_of(plain, _of_float64),
-            closed_derivatives=wide("w_w", self._entries) if kernel.closed else None,
+            closed_derivatives=links("w_w"),
             closed_form=links_of(closed, _of_float64) if kernel.closed else None,
-            sizes=tuple(self._of_size(state, finer) for state in again),
+            sizes=tuple(self._of_size(state, arithmetic) for state in states),
         )
+
+    def _trail(self, states: Sequence[State], name: str, own: Arithmetic) -> list[Entries]:
+        """The entries of W of a wide product, or sum, at every checkpoint."""
+        if name == "w_w":
+            return [self._entries(state, name, own) for state in states]
+        found = []
+        for state in states:
+            scaled, one = self._scaled(state, name, own)
+            found.append(_of_whole(scaled, one))
+        return found
+
+    def _apart(
+        self,
+        coarse: Sequence[Entries],
+        fine: Sequence[Entries],
+        own: Arithmetic,
+        states: Sequence[State],
+        name: str,
+    ) -> Fraction:
+        """Twice the greatest difference of two runs, and the last bits that it may hide."""
+        pairs = zip(coarse, fine, strict=True)
+        apart = max(abs(x - y) for a, b in pairs for x, y in zip(a, b, strict=True))
+        size = Fraction(max(abs(float(s[n])) for s in states for n in s if n[:3] == name))
+        return 2 * apart + (1 + size * size) / 2 ** (own.bits - 4)
 
     @property
     def _size(self) -> int:
@@ -149,11 +177,14 @@ class FormRun:
     def _first_state(self, kernel: FormKernel, arithmetic: Arithmetic) -> State:
         state: dict[str, Any] = {}
         for name in kernel.state_names:
-            matrix, *place = name.removeprefix(AT).split("_")[-3:]
+            matrix, *place = name.split("_")[-3:]
+            region, _, side = name.removeprefix("f_").rpartition("_")
             if name.startswith(AT):
                 value = Fraction(self.inputs[name.removeprefix(AT)])
             elif name.removeprefix("f_") in self.inputs:
                 value = Fraction(self.inputs[name.removeprefix("f_")])
+            elif side in ("low", "high"):
+                value = Fraction(self.inputs[region])
             else:
                 value = Fraction(int(matrix != "w" and place[0] == place[1]))
             state[name] = float(value) if name[0] == "f" else arithmetic.number(value)
@@ -210,6 +241,12 @@ def of_product(entry: Callable[[int, int], Any], size: int, one: int = 1) -> tup
             total = total - entry(n + i, a) * entry(i, b)
         found.append(total - one if b == n + a else total)
     return tuple(found)
+
+
+def _of_whole(matrix: Sequence[Sequence[int]], one: int) -> Entries:
+    """MᵀΩM − Ω of M = `matrix`/`one`."""
+    found = of_product(lambda a, b: matrix[a][b], len(matrix), one * one)
+    return tuple(Fraction(x, one * one) for x in found)
 
 
 def size_of(matrix: Sequence[Sequence[int]], one: int) -> Size:

@@ -116,7 +116,7 @@ def mixed_kernel(
         totals |= {"f_sum": 0, "f_rest": 0}
     sides: list[str] = []
     if follow:  # the region visited, over which the rounding of ΔJ is bounded
-        inside += _box("f_p") + _box("f_q")
+        inside += box_of("f_p") + box_of("f_q")
         sides = [f"{n}_{side}" for n in ("f_p", "f_q") for side in ("low", "high")]
     inside += [f"f_p = f_p + ({value['dp']})", f"f_q = f_q + ({value['dq']})"]
     inside += ["f_t = f_t + f_h"] * timed
@@ -222,7 +222,8 @@ def _accumulate(name: str, own: str, state_names: dict[str, int]) -> list[str]:
     ]
 
 
-def _box(name: str) -> list[str]:
+def box_of(name: str) -> list[str]:
+    """The lines that keep the least and the greatest value of a name."""
     low, high = f"{name}_low", f"{name}_high"
     return [f"if {low} > {name}: {low} = {name}", f"if {name} > {high}: {high} = {name}"]
 

@@ -15,9 +15,12 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
 from verify.studies.separation.chain import Chain
 from verify.studies.separation.form_chain import FormChains, form_chains
+from verify.studies.separation.form_run import FormRun
 from verify.studies.separation.form_separate import separate_in_degrees
+from verify.studies.separation.working import rounded_inputs
 
 DIGITS = 30
+TINY = MP.mpf(10) ** -70  # of the oracle itself
 HENON = systems.get("henon-heiles").hamiltonian({})
 FPUT = systems.get("fput").hamiltonian({"n": 3, "alpha": "1/4", "beta": "1/10"})
 DRIVEN = systems.get("driven-henon-heiles").hamiltonian({"epsilon": "1/10", "omega": "7/5"})
@@ -87,7 +90,7 @@ def wrong_parts(
         for name, x in expected.items():
             value, bound = chain.final(name)
             apart = abs(real(value) - x)
-            if apart > abs(x) / MP.mpf(10) ** DIGITS or apart > real(bound) + MP.mpf(10) ** -70:
+            if apart > abs(x) / MP.mpf(10) ** DIGITS or apart > real(bound) + TINY:
                 found.append((place, name))
     return found
 
@@ -189,3 +192,40 @@ def test_bad_input_is_refused_in_one_line(changed: dict[str, Any], problem: str)
     with pytest.raises(InputError, match=problem) as error:
         separate_in_degrees(**(asked | changed))
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_rounding_is_counted_and_the_bounds_hold(name: str) -> None:
+    found, links = made(name)
+    assert all(chain.links[-2].kind == "enclosed" for chain in (*found.plain, *found.closed_form))
+    for chains, own in ((found.plain, links["plain"]), (found.closed_form, links["closed_form"])):
+        for chain, place in zip(chains, own[0], strict=True):
+            for link, exact in zip(chain.links, own, strict=True):
+                assert abs(real(link.trail[-1]) - as_mpf(exact[place])) <= real(link.bound) + TINY
+
+
+def test_few_digits_give_wide_bounds_that_hold_all_the_same() -> None:
+    """Where wide numbers are hardly wider than float64, their error is seen, and is within."""
+    exact, _, z, h, _ = CASES["henon-heiles"]
+    start = dict(zip(exact.coordinates, map(Fraction, z), strict=True)) | {"h": Fraction(h)}
+    run = KernelRun(exact, "lie2", start, 400, frozenset({"symplectic_defect"}), 0)
+    inputs = rounded_inputs(run)
+    beside = FormRun(run, inputs, follow=True)
+    coarse, fine = (
+        beside.step_through(number_systems.get("mpfr", digits), lambda _: None)
+        for digits in (20, 60)
+    )
+    for name in ("trajectory", "derivatives", "closed_derivatives"):
+        pairs = list(zip(getattr(coarse, name), getattr(fine, name), strict=True))
+        apart = [abs(x - y) for a, b in pairs for x, y in zip(a.trail, b.trail, strict=True)]
+        bound = max(a.bound for a, _ in pairs)
+        assert all(a.kind == "enclosed" for a, _ in pairs)
+        assert 0 < max(apart) <= bound
+        assert bound < 10**8 * max(apart), "not so wide that it says nothing"
+
+
+def test_where_w_is_large_nothing_is_counted_and_a_rerun_estimates() -> None:
+    start = {"p1": "0.5277", "p2": "0", "q1": "0", "q2": "-0.15", "h": "0.2"}
+    found = form_chains(HENON, "rk4", {n: Fraction(x) for n, x in start.items()}, 700, 8)
+    assert found.closed_form[0].kind == "estimated"
+    assert "rerun with 15 more digits" in found.closed_form[0].methods

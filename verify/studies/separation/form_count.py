@@ -1,0 +1,121 @@
+"""Rigorous bounds of products of matrices that were carried in wide numbers.
+
+Let M̂_{k+1} = A_k M̂_k + δ_k be what was carried, A_k the matrix that it stands for, M_k the exact
+product, E_k = M̂_k − M_k, all norms Frobenius', and ‖δ_k‖ ≤ δ: what rounding a product of rows and
+columns makes, and what A_k was off. Then E_{k+1} = A_k E_k + δ_k, and with Φ = M_{k+1} M_{i+1}⁻¹
+
+    E_{k+1} = δ_k + Σ_{i<k} Φ δ_i.
+
+From M_iᵀΩM_i = Ω + W_i it follows that M_i⁻¹ = (Ω + W_i)⁻¹ M_iᵀΩ, so that ‖M_i⁻¹‖ ≤ ‖M_i‖/(1 − ω)
+where all ‖W_i‖ ≤ ω < 1. With μ ≥ ‖M̂_k‖ for all k, and as long as ‖E_i‖ ≤ E for i ≤ k,
+
+    ‖E_{k+1}‖ ≤ (μ + ‖E_{k+1}‖) R,   R = N (μ + E) δ/(1 − ω),
+
+since μ ≥ 1. So ‖E_k‖ ≤ μR/(1 − R) for all k by induction, where that is at most the E that R was
+taken with and R < 1. What is read of M̂ is W = M̂ᵀΩM̂ − Ω, exactly, and so within 2μE + E²; a sum of
+M̂ᵀSM̂ over N steps is within N times ‖S‖ of that, and the rounding of its terms and of itself. μ
+and ω are noted in float64 at every step, M̂ rounded to it. Where W is not below 1, as in chaos,
+there is no bound of this kind, and a rerun estimates one.
+"""
+
+from collections.abc import Mapping
+from fractions import Fraction
+
+import flint
+
+from verify.arithmetic.arb import bounds, in_reach, rational_ball
+from verify.arithmetic.flint_precision import working_precision
+from verify.arithmetic.number_system import Arithmetic
+from verify.kernels.rounding import PRECISION, Ball, Rounded, analyse, rounding_of
+from verify.runs.derivatives import norm
+from verify.studies.separation.form_kernel import FormKernel
+from verify.studies.separation.stepper import State
+
+_FLOAT = flint.arb(2) ** -45  # of sums of squares in float64, relative
+_ENTRY = flint.arb(2) ** -44  # of an entry of MᵀΩM in float64, relative to ‖M‖²
+
+
+def counted(
+    kernel: FormKernel,
+    arithmetic: Arithmetic,
+    inputs: Mapping[str, float],
+    last: State,
+    steps: int,
+) -> Mapping[str, Fraction | None]:
+    """Bounds of the error of every entry of W at every checkpoint, by the letters of what was
+    carried; None where there is none. `last`: what the kernel carried in the end."""
+    if arithmetic.rounding is None or arithmetic.absolute:
+        return {}
+    with working_precision(PRECISION):
+        count = _Count(kernel, arithmetic, last, steps)
+        found = {"w_n": count.of_product("w_n", flint.arb(0), count.top("f_j_norm"))}
+        if "w_t" in kernel.products:
+            size, lost = count.evaluated(inputs)
+            found["w_t"] = count.of_product("w_t", lost, 1 + size)
+        if kernel.closed:
+            found["w_w"] = count.of_sum()
+        return {n: bounds(x)[1] if in_reach(x) else None for n, x in found.items()}
+
+
+class _Count:
+    def __init__(self, kernel: FormKernel, arithmetic: Arithmetic, last: State, steps: int) -> None:
+        self.kernel, self.arithmetic, self.last = kernel, arithmetic, last
+        self.steps, self.size = steps, len(kernel.coordinates)
+        # 2n products, their sum, and its sum with M: twice half a unit each, and second order.
+        self.unit = (self.size + 3) * flint.arb(2) ** (1 - arithmetic.bits)
+
+    def top(self, name: str) -> Ball:
+        """The root of a greatest sum of squares; for M not below that of 1."""
+        return (rational_ball(Fraction(self.last[name])) * (1 + _FLOAT)).sqrt().abs_upper()
+
+    def norm_of(self, matrix: str) -> Ball:
+        least = flint.arb(self.size).sqrt()  # of M₀ = 1
+        return self.top(f"f_{matrix[2:]}_norm").max(least)
+
+    def apart(self, matrix: str, lost: Ball, factor: Ball) -> Ball:
+        """E: `lost` is what A is off, `factor` a bound of ‖A‖, or of 1 + ‖A − 1‖."""
+        top = self.norm_of(matrix)
+        # An entry of δ is a rounded sum of products of |A| and |M̂|; what A is off is times M̂.
+        rounded = top * (lost + self.unit * (factor + lost))
+        form = self.top(f"f_{matrix[2:]}_form") + self.size * _ENTRY * top * top
+
+        def bound(apart: Ball) -> Ball:
+            moved = form + 2 * top * apart + apart * apart
+            rate = self.steps * (top + apart) * rounded / (1 - moved)
+            return top * rate / (1 - rate) if moved < 1 and rate < 1 else flint.arb.nan()
+
+        guess = (2 * bound(flint.arb(0))).abs_upper()
+        found = bound(guess)
+        return found.abs_upper() if found <= guess else flint.arb.nan()
+
+    def of_product(self, matrix: str, lost: Ball, factor: Ball) -> Ball:
+        """Of W = MᵀΩM − Ω."""
+        top, apart = self.norm_of(matrix), self.apart(matrix, lost, factor)
+        return (2 * top * apart + apart * apart).abs_upper()
+
+    def of_sum(self) -> Ball:
+        """Of Σ MᵀSM, with float64's S and K."""
+        top, size = self.norm_of("w_m"), self.top("f_s_norm")
+        apart = self.apart("w_m", flint.arb(0), 1 + self.top("f_k_norm"))
+        term = size * (top + apart) * (top + apart)
+        # Two products of matrices are rounded, and the sum at every step.
+        rounded = (2 * self.unit + self.steps * self.unit) * 2 * term
+        return (self.steps * (size * (2 * top * apart + apart * apart) + rounded)).abs_upper()
+
+    def evaluated(self, inputs: Mapping[str, float]) -> tuple[Ball, Ball]:
+        """‖K‖ over the region that the float64 states visited, and the error of the wide K."""
+        kernel, zero = self.kernel, flint.arb(0)
+        given = {"h": inputs["h"]}
+        given |= {f"x{k}": inputs[n] for k, n in enumerate(kernel.parameters)}
+        box = {n: Rounded(rational_ball(Fraction(x)), zero) for n, x in given.items()}
+        for n in kernel.coordinates:
+            low, high = (rational_ball(Fraction(self.last[f"f_{n}_{x}"])) for x in ("low", "high"))
+            box[n] = Rounded(low.union(high), zero)
+        if kernel.timed:
+            first, end = (rational_ball(Fraction(x)) for x in (inputs["t"], self.last["f_t"]))
+            box["t"] = Rounded(first.union(end), zero)
+        program, roots = kernel.wide.program, kernel.wide.roots()
+        found = analyse(program, program.live(roots), box, rounding_of(self.arithmetic))
+        if found is None:
+            return flint.arb.nan(), flint.arb.nan()
+        return norm(found[at].magnitude for at in roots), norm(found[at].error for at in roots)
