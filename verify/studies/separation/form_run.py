@@ -137,7 +137,7 @@ class FormRun:
         pairs = zip(coarse, fine, strict=True)
         apart = max(abs(x - y) for a, b in pairs for x, y in zip(a, b, strict=True))
         size = Fraction(max(abs(float(s[n])) for s in states for n in s if n[:3] == name))
-        return 2 * apart + (1 + size * size) / 2 ** (own.bits - 4)
+        return 2 * apart + (1 + size * size) * Fraction(1, 1 << (own.bits - 4))
 
     @property
     def _size(self) -> int:

@@ -10,6 +10,7 @@ from tests.helpers import form_separation as oracle
 from tests.helpers.form_separation import MP, Float64Step
 from verify import arithmetic as number_systems
 from verify.errors import InputError
+from verify.execution.keeping import Keeper
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
@@ -229,3 +230,36 @@ def test_where_w_is_large_nothing_is_counted_and_a_rerun_estimates() -> None:
     found = form_chains(HENON, "rk4", {n: Fraction(x) for n, x in start.items()}, 700, 8)
     assert found.closed_form[0].kind == "estimated"
     assert "rerun with 15 more digits" in found.closed_form[0].methods
+
+
+class KeepsAll(Keeper):
+    """Keeps every checkpoint, in memory."""
+
+    def __init__(self) -> None:
+        super().__init__(None, "")
+        self.kept: dict[str, Any] = {}
+
+    def due(self, _: str) -> bool:
+        return True
+
+    def save(self, label: str, data: Any) -> None:
+        self.kept[label] = data
+
+    def load(self, label: str) -> dict[str, Any] | None:
+        return self.kept.get(label)
+
+
+@pytest.mark.parametrize("name", ["henon-heiles", "driven-henon-heiles"])
+def test_an_interrupted_run_goes_on_with_the_same_bits(name: str) -> None:
+    exact, _, z, h, steps = CASES[name]
+    start = dict(zip(exact.coordinates, map(Fraction, z), strict=True)) | {"h": Fraction(h)}
+    start |= {"t": Fraction(T0)} if exact.time_dependent else {}
+    keeper = KeepsAll()
+    whole = form_chains(exact, "lie2", start, steps, 17, keeper=keeper)
+    beside = [label for label in keeper.kept if label.startswith("form beside")]
+    assert beside
+    for label in beside:
+        keeper.kept[label] = {"found": keeper.kept[label]["found"][: steps // 2]}
+    again = form_chains(exact, "lie2", start, steps, 17, keeper=keeper)
+    for a, b in zip(whole.plain + whole.closed_form, again.plain + again.closed_form, strict=True):
+        assert [link.trail for link in a.links] == [link.trail for link in b.links]
