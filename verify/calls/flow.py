@@ -6,9 +6,12 @@ from typing import Any
 from verify.arithmetic.exact import Exact
 from verify.calls.given import GivenParameters, GivenSystem, listed, performed, scene_of
 from verify.errors import InputError
+from verify.hamiltonians.start import Given
 from verify.scenes.results.regions import FlowResult
 from verify.studies.regions.findings import flows_of
 from verify.studies.regions.plan import need_flows
+
+_ORIGIN = (0, 0)
 
 
 def flow(
@@ -23,7 +26,8 @@ def flow(
     shape: str | None = None,
     polygon: Sequence[tuple[Exact, Exact]] | None = None,
     path: str | None = None,
-    centre: tuple[Exact, Exact] = (0, 0),
+    centre: tuple[Given, Given] = _ORIGIN,
+    plane: int = 1,
     scale: Exact = 1,
     exact: bool = True,
     mean_lambda: bool = True,
@@ -39,7 +43,8 @@ def flow(
     t0: when it begins, for an H that depends on t.
     shape: a name, circle, square or cat; or `polygon`, corners (q, p); or `path`, as SVG has it.
         Without any of them a circle.
-    centre: (q, p) of where it is put; `scale`: how many times as large.
+    centre: (q, p) of where it is put; `scale`: how many times as large. In n degrees of freedom q
+        and p are lists, and the region lies in (q_i, p_i), i = `plane`; measured is ∮ p·dq.
     exact: the exact flow beside them, and the distance from it.
     mean_lambda: the mean of Λ over the region, of schemes that change area.
     digits: of areas and distances; `workers`: processes; 1 is this one, and others
@@ -59,7 +64,8 @@ def flow(
         "shape": shape,
         "polygon": polygon,
         "path": path,
-        "centre": {"q": centre[0], "p": centre[1]},
+        **({} if centre is _ORIGIN else {"centre": {"q": centre[0], "p": centre[1]}}),
+        "plane": plane,
         "scale": scale,
         "step_size": step_size,
         "steps": None if steps is None else listed("steps", steps),

@@ -28,8 +28,13 @@ if TYPE_CHECKING:
         "--time", "times", multiple=True, metavar="T", help="N is T/H rounded down; repeatable."
     ),
     click.option("--shape", metavar="NAME", help="circle, square or cat.  [default: circle]"),
-    click.option("--q", metavar="Q", help="Where it is put.  [default: 0]"),
-    click.option("--p", metavar="P", help="[default: 0]"),
+    click.option(
+        "--q", metavar="Q", help="Where it is put; of q1, q2, … one each, as 0.1,0.2.  [default: 0]"
+    ),
+    click.option("--p", metavar="P", help="As --q.  [default: 0]"),
+    click.option(
+        "--plane", type=int, metavar="I", help="Of H(p1 … qn): it lies in (qI, pI).  [default: 1]"
+    ),
     click.option("--scale", metavar="S", help="How many times as large.  [default: 1]"),
 )
 @with_tasks
@@ -55,7 +60,7 @@ def flow(scene: str | None, keep: Path | None, where: "Placement", **given: Any)
     from verify.studies.regions.findings import flow_json, flows_of
     from verify.studies.regions.plan import need_flows
 
-    scenes = scenes_of(scene, given, (), _sections)
+    scenes = scenes_of(scene, given, (), _sections, several=True)
     plan = plan_of(scenes, need_flows)
     if not plan.tasks:
         raise InputError("SCENE", scene or NOT_GIVEN, "asks for no [[flow]]; add one")
@@ -76,11 +81,22 @@ def flow(scene: str | None, keep: Path | None, where: "Placement", **given: Any)
 
 
 def _sections(
-    *, step_sizes: Sequence[str], q: str = "0", p: str = "0", shape: str = "circle", **rest: Any
+    *,
+    step_sizes: Sequence[str],
+    q: "str | list[str] | None" = None,
+    p: "str | list[str] | None" = None,
+    shape: str = "circle",
+    **rest: Any,
 ) -> dict[str, Any]:
     """One [[flow]] a step size."""
-    rest |= {"shape": shape, "centre": {"q": q, "p": p}}
+    if q or p:  # of one that is left out there are as many zeros as of the other
+        rest["centre"] = {"q": q or _zeros(p), "p": p or _zeros(q)}
+    rest["shape"] = shape
     return {"flow": [{"step_size": h, **rest} for h in step_sizes]}
+
+
+def _zeros(like: "str | list[str] | None") -> str | list[str]:
+    return ["0"] * len(like) if isinstance(like, list) else "0"
 
 
 def _print(found: "Sequence[tuple[str, FlowResult]]") -> None:
@@ -91,10 +107,12 @@ def _print(found: "Sequence[tuple[str, FlowResult]]") -> None:
 def _print_flow(name: str, result: "FlowResult") -> None:
     q, p = result.centre
     title = f"{name}: " + (f"{result.source}, " if result.source else "")
-    where = f"{result.shape} at (q, p) = ({q}, {p}), scale {short(Fraction(result.scale))}"
+    i = result.plane or ""
+    where = f"{result.shape} at (q{i}, p{i}) = ({q}, {p}), scale {short(Fraction(result.scale))}"
+    where += "".join(f", {n} = {x}" for n, x in result.point.items() if n[1:] != str(i))
     begins = "" if result.t0 is None else f", from t0 = {result.t0}"
     click.echo(f"{title}{where}, h = {result.step_size}{begins}")
-    rows = [_HEAD, *map(_row, result.images)]
+    rows = [_HEAD_IN_DEGREES if i else _HEAD, *map(_row, result.images)]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row, image in zip(rows, (None, *result.images), strict=True):
         line = "  ".join(f"{cell:{width}}" for cell, width in zip(row, widths, strict=True))
@@ -104,6 +122,7 @@ def _print_flow(name: str, result: "FlowResult") -> None:
 
 
 _HEAD = ("map", "N", "t", "area changes by", "mean of Λ", "from the exact flow")
+_HEAD_IN_DEGREES = ("map", "N", "t", "∮ p·dq changes by", "mean of W", "of it in each plane")
 
 
 def _row(image: "FlowImage") -> tuple[str, ...]:
@@ -111,9 +130,12 @@ def _row(image: "FlowImage") -> tuple[str, ...]:
     if image.area_preserving and change:
         change = f"0, proved ({change})"
     mean = _with_error(image.mean_lambda, image.mean_lambda_error)
+    mean = mean or _with_error(image.mean_defect, image.mean_defect_error)
     mean += "" if image.agree is not False else "  NOT THE SAME"
     distance = _with_error(image.distance, image.distance_error)
-    return image.map, str(image.steps), image.time, change, mean, distance
+    planes = image.outlines[0].projections if image.outlines else ()
+    shares = " ".join(f"{float(x.area):.5g}" for x in planes)
+    return image.map, str(image.steps), image.time, change, mean, shares or distance
 
 
 def _with_error(value: str | None, error: str | None) -> str:

@@ -16,10 +16,11 @@ from verify.arithmetic.float_context import WIDE
 from verify.arithmetic.number_system import Arithmetic, interpreted
 from verify.arithmetic.systems import float64
 from verify.flows.extrapolation import LOST, NoFlowError, functions_at
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
 Array = Any  # numpy.ndarray, which is imported where it is used
-Slopes = Callable[..., tuple[Array, ...]]  # of p, q and t
+Slopes = Callable[..., tuple[Array, ...]]  # of the coordinates and t
 _ZERO = Fraction(0)
 
 _TOLERANCE = 4096  # roundings: of the last two extrapolated values, relative to the orbit so far
@@ -32,26 +33,25 @@ _STEP_BITS = 12  # of a step, so that times are sums without rounding
 
 def follow(
     hamiltonian: Hamiltonian,
-    p: Array,
-    q: Array,
+    points: Sequence[Array] | Array,
     times: Sequence[Fraction],
     columns: int,
     t0: Fraction = _ZERO,
 ) -> Array:
-    """φ_t of all points: an array (p or q, time, point). Times may have either sign, and are those
-    since t0, where H depends on time.
+    """φ_t of all points, p and q or p1 … qn: an array (coordinate, time, point). Times may have
+    either sign, and are those since t0, where H depends on time.
 
     `columns` of the extrapolation: two different numbers of them give independent errors. Raises
     NoFlowError, naming a point, where one cannot be followed.
     """
     import numpy as np
 
-    start = np.array([p, q], dtype=WIDE.type)
-    found = np.empty((2, len(times), len(p)))
+    start = np.array(points, dtype=WIDE.type)
+    found = np.empty((len(start), len(times), start.shape[1]))
     with np.errstate(all="ignore"):
-        slopes = _slopes(hamiltonian)
+        slopes = slopes_of(hamiltonian)
         for sign in (1, -1):
-            walk = _CommonSteps(slopes, start, sign, columns, WIDE.rational(t0))
+            walk = CommonSteps(slopes, start, sign, columns, WIDE.rational(t0))
             order = sorted((t for t in set(times) if sign * t > 0 or t == 0), key=abs)
             for time in order:
                 walk.to(WIDE.rational(abs(time)))
@@ -60,14 +60,19 @@ def follow(
     return found
 
 
-def _slopes(hamiltonian: Hamiltonian) -> Slopes:
-    """f at p, q and a t, which an H without time does not look at."""
-    field, _ = hamiltonian.field()
-    elements = [(field.ring, -field.h_q), (field.ring, field.h_p)]
-    if field.timed:
-        return functions_at(arrays(), elements, ("p", "q", "t"))
-    still = functions_at(arrays(), elements)
-    return lambda p, q, _: still(p, q)
+def slopes_of(hamiltonian: Hamiltonian) -> Slopes:
+    """f at the coordinates and a t, which an H without time does not look at."""
+    if hamiltonian.planar:
+        plane, _ = hamiltonian.field()
+        elements = [(plane.ring, -plane.h_q), (plane.ring, plane.h_p)]
+    else:
+        field, _ = canonical_field(hamiltonian)
+        elements = [(field.ring, x) for x in field.slopes]
+    names = hamiltonian.coordinates
+    if hamiltonian.time_dependent:
+        return functions_at(arrays(), elements, (*names, "t"))
+    still = functions_at(arrays(), elements, names)
+    return lambda *z: still(*z[:-1])
 
 
 def arrays() -> Arithmetic:
@@ -96,7 +101,7 @@ def _short(step: float) -> float:
     return math.ldexp(math.floor(math.ldexp(mantissa, _STEP_BITS)), exponent - _STEP_BITS)
 
 
-class _CommonSteps:
+class CommonSteps:
     """All points on their way, by common steps."""
 
     def __init__(self, slopes: Slopes, start: Array, sign: int, columns: int, t0: Any) -> None:
@@ -109,9 +114,8 @@ class _CommonSteps:
         self._done = WIDE.mpf(0)
         self._tolerance = _TOLERANCE * float(WIDE.eps)
         self._scale = np.max(np.abs(start), axis=0)  # of each orbit, as far as it is known
-        speed = np.max(
-            abs(np.array(np.broadcast_arrays(*slopes(*start, t0), start[0])[:2])), axis=0
-        )
+        at = np.broadcast_arrays(*slopes(*start, t0), start[0])[:-1]
+        speed = np.max(abs(np.array(at)), axis=0)
         size = np.where(self._scale > 0, self._scale, 1.0)
         fastest = float(np.max(speed / size, initial=0.0))
         self._step = _short(1.0 / (1.0 + fastest)) if np.isfinite(fastest) else 1.0
@@ -166,11 +170,17 @@ class _CommonSteps:
         slopes, z, t = self._slopes, self.z, self._t0 + self._sign * self._done
         before = np.zeros_like(z)
         at = np.empty_like(z)
-        at[0], at[1] = slopes(*z, t)
+        _fill(at, slopes(*z, t))
         at *= h
         change = np.empty_like(z)
         for k in range(1, count):
-            change[0], change[1] = slopes(*(z + at), t + k * h)
+            _fill(change, slopes(*(z + at), t + k * h))
             before, at = at, before + 2 * h * change
-        change[0], change[1] = slopes(*(z + at), t + time)
+        _fill(change, slopes(*(z + at), t + time))
         return (at + before + h * change) / 2
+
+
+def _fill(rows: Array, values: Sequence[Array]) -> None:
+    """A row may be one number for all points."""
+    for k, value in enumerate(values):
+        rows[k] = value

@@ -186,7 +186,7 @@ class _Work:
         """All points twice, by extrapolations of two orders."""
         import numpy as np
 
-        given = self.hamiltonian, self.p, self.q, self.times
+        given = self.hamiltonian, (self.p, self.q), self.times
         fine, rough = (follow(*given, columns, self.t0) for columns in (8, 7))
         self.found[:] = fine
         every = np.arange(len(self.p))

@@ -30,7 +30,7 @@ _ZERO = Fraction(0)
 _LANES = 64  # points whose states stay in the nearest cache
 _SHARE = 256  # points that a thread takes at a time: some milliseconds and more
 _WIDE_SHARE = 32  # the same in fixed point
-# Sequences of numbers, arrays or lists, by name: "p", "q" and what else is carried.
+# Sequences of numbers, arrays or lists, by name: the coordinates and what else is carried.
 Values = Mapping[str, Any]
 
 
@@ -58,7 +58,7 @@ class PointMap:
         Raises UnsupportedError where the arithmetic lacks what the scheme needs.
         """
         self.arithmetic, self.steps = arithmetic, steps
-        start = {"h": step_size, "p": _ZERO, "q": _ZERO, "t": t0}
+        start = {"h": step_size, "t": t0} | dict.fromkeys(hamiltonian.coordinates, _ZERO)
         self.kernel_run = KernelRun(hamiltonian, scheme, start, steps, observables, 0)
         self.kernel = kernel_for(
             self.kernel_run.hamiltonian, scheme, arithmetic, observables, compensated
@@ -68,16 +68,18 @@ class PointMap:
         turns = self.kernel_run.turns(arithmetic)
         self._t0 = turns.time(t0, arithmetic) if turns else t0
 
-    def __call__(self, p: Any, q: Any) -> Values:
-        """All that is carried, for points (p_i, q_i): two sequences of the arithmetic's numbers.
+    def __call__(self, **points: Any) -> Values:
+        """All that is carried, for points by their coordinates, p and q or p1 … qn: sequences of
+        the arithmetic's numbers, of one length.
 
         Raises LeftRangeError.
         """
         found: Sequence[Any]
+        given = [points[name] for name in self.kernel.coordinates]
         if self.arithmetic.name == float64.NAME:
-            found = self._in_lanes(np.asarray(p, dtype=np.float64), np.asarray(q, np.float64))
+            found = self._in_lanes(np.array(given, dtype=np.float64))
         else:
-            found = self._one_by_one(p, q)
+            found = self._one_by_one(given)
         return dict(zip(self.kernel.state_names, found, strict=True))
 
     def _inputs(self, extra: Sequence[Fraction] = ()) -> list[Number]:
@@ -88,43 +90,52 @@ class PointMap:
 
     @property
     def _rest(self) -> list[Number]:
-        """What is carried beside p and q, at the start."""
+        """What is carried beside the coordinates, at the start."""
         start = self.kernel_run.start
         if self.kernel.timed:
             start = start | {"t": self._t0} | first_rest(self.arithmetic, self._t0)
         exact = (start[x] if isinstance(x, str) else Fraction(x) for x in self.kernel.start)
         return [self.arithmetic.number(x) for x in exact]
 
-    def _in_lanes(self, p: np.ndarray, q: np.ndarray) -> list[np.ndarray]:
+    def _in_lanes(self, given: np.ndarray) -> list[np.ndarray]:
         run, share = _stepper(self.kernel)
         inputs = np.array(self._inputs(), dtype=np.float64)
-        spare = -len(p) % share  # a point more than once, where a call takes so many
-        rest = [np.full(len(p) + spare, x, dtype=np.float64) for x in self._rest]
-        carried = np.array([*(np.pad(z, (0, spare), "edge") for z in (p, q)), *rest])
+        count = given.shape[1]
+        spare = -count % share  # a point more than once, where a call takes so many
+        rest = [np.full(count + spare, x, dtype=np.float64) for x in self._rest]
+        carried = np.array([*(np.pad(z, (0, spare), "edge") for z in given), *rest])
 
         def advance(first: int) -> None:
             run(self.steps, inputs, carried[:, first : first + share])
 
         with ThreadPoolExecutor(os.cpu_count()) as threads:
-            list(threads.map(advance, range(0, len(p), share)))
-        carried = carried[:, : len(p)]
+            list(threads.map(advance, range(0, count, share)))
+        carried = carried[:, :count]
         lost = np.flatnonzero(~np.all(np.isfinite(carried), axis=0))
         if lost.size:
-            raise _points_out_of_range(p[lost[0]], q[lost[0]], self.arithmetic.name)
+            raise self._out_of_range(given[:, lost[0]].tolist())
         return list(carried)
 
-    def _one_by_one(self, p: Sequence[Number], q: Sequence[Number]) -> list[list[Number]]:
+    def _one_by_one(self, given: Sequence[Sequence[Number]]) -> list[list[Number]]:
         made = self.arithmetic
-        inputs = self._inputs(self._limits(p, q)[: len(self.kernel.limits)])
+        inputs = self._inputs(self._limits(given)[: len(self.kernel.limits)])
         rest = self._rest
-        points = [(*z, *rest) for z in zip(p, q, strict=True)]
+        points = [(*z, *rest) for z in zip(*given, strict=True)]
         found: list[Sequence[Number]] = []
         for z, states in zip(points, self._last_states(inputs, points), strict=True):
             if not states:
-                at_p, at_q = (float(made.exact(x)) for x in z[:2])
-                raise _points_out_of_range(at_p, at_q, made.name)
+                raise self._out_of_range([float(made.exact(x)) for x in z[: len(given)]])
             found += states
         return [list(column) for column in zip(*found, strict=True)]
+
+    def _out_of_range(self, point: Sequence[float]) -> LeftRangeError:
+        at = dict(zip(self.kernel.coordinates, point, strict=True))
+        names = sorted(at, key=lambda name: name[0] != "q")
+        shown = ", ".join(f"{at[name]:.6g}" for name in names)
+        where = f"({', '.join(names)}) = ({shown})"
+        return LeftRangeError(
+            f"the point {where} leaves the range of {self.arithmetic.name}, or of H"
+        )
 
     def _last_states(
         self, inputs: Sequence[Number], points: Sequence[Sequence[Number]]
@@ -145,12 +156,13 @@ class PointMap:
             for part in threads.map(advance, range(0, len(calls), _WIDE_SHARE)):
                 yield from part
 
-    def _limits(self, p: Sequence[Number], q: Sequence[Number]) -> tuple[Fraction, ...]:
+    def _limits(self, given: Sequence[Sequence[Number]]) -> tuple[Fraction, ...]:
         """Those of a fixed-point kernel, for all points together."""
         if not self.kernel.limits:
             return ()
         exact = self.arithmetic.exact
-        far = {"p": max(abs(exact(x)) for x in p), "q": max(abs(exact(x)) for x in q)}
+        pairs = zip(self.kernel.coordinates, given, strict=True)
+        far = {name: max(abs(exact(x)) for x in z) for name, z in pairs}
         run = self.kernel_run
         last = self._t0 + self.steps * run.start["h"]
         times = (self._t0, last) if self.kernel.timed else None
@@ -158,12 +170,6 @@ class PointMap:
         if found is None:
             raise UnsupportedError(f"no box around the points is safe in {self.arithmetic.name}")
         return found
-
-
-def _points_out_of_range(p: float, q: float, name: str) -> LeftRangeError:
-    return LeftRangeError(
-        f"the point (q, p) = ({q:.6g}, {p:.6g}) leaves the range of {name}, or of H"
-    )
 
 
 @lru_cache(maxsize=64)
@@ -176,20 +182,21 @@ def _stepper(kernel: Kernel) -> tuple[Callable[[int, np.ndarray, np.ndarray], No
 
 
 def _compiled(kernel: Kernel) -> Callable[..., None]:
-    """`many(steps, h, …, p, q, …)`: the kernel's loop on arrays, in place, compiled by numba."""
+    """`many(steps, h, …, p, q, …)`, or p1 … qn: the loop on arrays, in place, compiled by numba."""
     head, _, loop = kernel.source.partition(f"{LOOP}\n")
     signature, _, before = head.partition("\n")
     body = loop.rpartition("    return ")[0].splitlines()
     named = signature[signature.index("(") + 1 : signature.rindex(")")].split(",")
     names = [each.partition(":")[0].strip() for each in named]
     arrays = [f"{name}_all" if name in kernel.state_names else name for name in names]
+    points = f"{kernel.coordinates[0]}_all"
     source = "\n".join(
         [
             f"def many({', '.join(arrays)}):",
             before.rstrip("\n"),
-            f"    for first in range(0, len(p_all), {_LANES}):",
+            f"    for first in range(0, len({points}), {_LANES}):",
             "        for k in range(steps):",
-            f"            for i in range(first, min(first + {_LANES}, len(p_all))):",
+            f"            for i in range(first, min(first + {_LANES}, len({points}))):",
             *(f"                {name} = {name}_all[i]" for name in kernel.state_names),
             *(f"        {line}" for line in body),
             *(f"                {name}_all[i] = {name}" for name in kernel.state_names),

@@ -25,6 +25,7 @@ from verify.pages.figures import (
     stability_figure,
 )
 from verify.pages.figures import work_precision_figure as work_figure
+from verify.pages.figures.flow_grid import grid_of
 from verify.pages.figures.logarithm import lg
 from verify.pages.figures.svg import styled
 from verify.pages.figures.work_precision_plots import error_panels
@@ -141,11 +142,18 @@ def plot_stability(over: StabilityMapResult) -> Figure:
     return shown(lambda: stability_figure.draw_planes([over]))
 
 
-def plot_flow(flow: FlowResult) -> Figure:
-    """A region and its images by each map, q to the right and p upwards, on equal axes."""
+def plot_flow(flow: FlowResult, plane: int | None = None) -> Figure:
+    """A region and its images by each map, q to the right and p upwards, on equal axes.
+
+    `plane`: in n degrees of freedom the k of the plane (q_k, p_k) to which they are projected; that
+    in which the region lay, where it is left out.
+    """
     if not flow.before or not any(image.outlines for image in flow.images):
         raise InputError("flow", flow.shape, "holds no image to draw")
-    return shown(lambda: flow_figure.draw_flow(flow_figure.grid_of(flow)))
+    degrees = len(flow.point) // 2 or 1
+    if plane is not None and not 1 <= plane <= degrees:
+        raise InputError("plane", plane, f"must be 1 … {degrees}")
+    return shown(lambda: flow_figure.draw_flow(grid_of(flow, plane)))
 
 
 def shown(draw: Callable[[], Figure], ax: Any = None) -> Figure:

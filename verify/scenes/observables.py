@@ -25,6 +25,11 @@ def observed(hamiltonian: Hamiltonian, asked: Sequence[str] | None) -> tuple[str
     return tuple(name for name in _USUAL if hamiltonian.degrees <= _MOST_DEGREES[name])
 
 
+def carries_defect(hamiltonian: Hamiltonian) -> bool:
+    """Whether W is carried in so many degrees of freedom."""
+    return hamiltonian.degrees <= _MOST_DEGREES["symplectic_defect"]
+
+
 def check_observables(hamiltonian: Hamiltonian, asked: Sequence[str]) -> None:
     """InputError for a name that there is not, or that is not for so many degrees of freedom."""
     known, degrees = OBSERVABLES if hamiltonian.planar else SEVERAL, hamiltonian.degrees

@@ -5,12 +5,13 @@ shape = "cat"                          # circle, square; or polygon, or path, as
 polygon = [[0, 0], [1, 0], [0, 1]]     # (q, p) of each corner
 path = "M 0 0 C 10 20 30 20 40 0 Z"    # SVG path data, whose y points down: p = −y
 centre = { q = 1, p = 0 }              # where the shape's (0, 0) is put; (0, 0)
+plane = 1                              # in n degrees of freedom it lies in (q1, p1), and has lists
 scale = 0.5                            # by which it is made larger first; 1
 step_size = 0.01
 steps = [5000, 10000, 20000]           # of the map; or times = [1, 2, 3]
 schemes = ["lie2", "symplectic-euler"] # the scene's, where it is left out
 exact = true                           # the exact flow beside them, and the distance from it
-mean_lambda = true                     # the mean of Λ over the region, for schemes that change area
+mean_lambda = true                     # the mean of Λ, or of W's entry, over the region
 digits = 17                            # more than 17: all points are carried with 33 or more
 source = "Figure 6"                    # what of a paper it repeats; may be left out
 """
@@ -24,6 +25,8 @@ from pydantic import Field, model_validator
 
 from verify.arithmetic.exact import text
 from verify.errors import NOT_GIVEN, InputError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.start import point_of
 from verify.scenes.frozen import Frozen, Section
 from verify.scenes.shapes import named as shapes
 from verify.scenes.shapes.outline import Shape
@@ -32,6 +35,7 @@ from verify.scenes.values import (
     InitialValue,
     Number,
     SchemeName,
+    Start,
     Steps,
     StepSize,
     Time,
@@ -42,10 +46,11 @@ from verify.scenes.values import (
 MOST_DIGITS = 1000  # of points: a curve has thousands of them
 FARTHEST = 1e100  # of a shape's points, so that squares of what becomes of them are floats too
 Corner = tuple[Number, Number]
+_ORIGIN = InitialValue(q=Fraction(0), p=Fraction(0))
 
 
-class PlacedShape(Frozen):
-    """A shape by its name, as a polygon or as an SVG path; then where it is put, and how large."""
+class _SizedShape(Frozen):
+    """A shape by its name, as a polygon or as an SVG path; then how large it is."""
 
     shape: str | None = None
     """A shape by its name; or `polygon`, or `path`."""
@@ -53,8 +58,6 @@ class PlacedShape(Frozen):
     """A polygon by its corners (q, p)."""
     path: Annotated[str, Field(max_length=100_000)] | None = None
     """An outline as SVG path data, whose y points down: p = −y."""
-    centre: InitialValue = InitialValue(q=Fraction(0), p=Fraction(0))
-    """Where the shape's (0, 0) is put."""
     scale: Number = Fraction(1)
     """By which it is made larger first."""
 
@@ -65,6 +68,17 @@ class PlacedShape(Frozen):
             raise InputError("flow", ", ".join(given), "give one of shape, polygon and path")
         if self.scale <= 0:
             raise InputError("scale", text(self.scale), "must be greater than 0")
+        return self
+
+
+class PlacedShape(_SizedShape):
+    """A shape where it is put in a plane."""
+
+    centre: InitialValue = _ORIGIN
+    """Where the shape's (0, 0) is put."""
+
+    @model_validator(mode="after")
+    def _check_place(self) -> Self:
         if _reach(*self._key()) > FARTHEST:
             raise InputError("flow", "centre, scale", f"the shape reaches beyond ±{FARTHEST:g}")
         return self
@@ -113,9 +127,14 @@ def _reach(*key: Any) -> Any:
     return max(abs(x) for point in points for x in point)
 
 
-class Flow(PlacedShape, Section):
+class Flow(_SizedShape, Section):
     """See the module's text for the keys."""
 
+    centre: Start = _ORIGIN
+    """Where the shape's (0, 0) is put; in n degrees of freedom lists, such as
+    `{ q = [0, 0.1], p = [0.4, 0] }`, of which `plane` says where the shape lies."""
+    plane: Annotated[int, Field(ge=1, strict=True)] = 1
+    """In n degrees of freedom the region lies in (q1, p1), or in (q2, p2), …: which of them."""
     step_size: StepSize
     """The step size h."""
     steps: Annotated[tuple[Steps, ...], Field(max_length=100)] = ()
@@ -127,7 +146,8 @@ class Flow(PlacedShape, Section):
     exact: Annotated[bool, Field(strict=True)] = True
     """Whether the exact flow stands beside them, with the distance from it."""
     mean_lambda: Annotated[bool, Field(strict=True)] = True
-    """Whether the mean of Λ over the region is computed, where a map changes area."""
+    """Whether the mean of Λ over the region is computed, where a map changes area; in n degrees of
+    freedom the mean of W's entry, the symplectic defect of all steps."""
     digits: Digits = 17
     """With more than 17, all points are carried with 33 or more."""
     source: Annotated[str, Field(max_length=80)] = ""
@@ -144,7 +164,29 @@ class Flow(PlacedShape, Section):
             shown = ", ".join(map(text, self.times))
             raise InputError("times", shown, "two of them make the same number of steps")
         distinct("schemes", self.schemes)
+        if self.plane > min(map(len, self._lists)):
+            problem = f"must be 1 … {min(map(len, self._lists))}, as q and p of centre have it"
+            raise InputError("plane", self.plane, problem)
+        self.placed_shape()
         return self
+
+    @property
+    def _lists(self) -> tuple[tuple[Fraction, ...], tuple[Fraction, ...]]:
+        """q and p of the centre; the origin has as many as there are planes."""
+        if not isinstance(self.centre, InitialValue):
+            return self.centre.q, self.centre.p
+        planes = 1 if "centre" in self.model_fields_set else self.plane
+        return (self.centre.q,) * planes, (self.centre.p,) * planes
+
+    def point(self, hamiltonian: Hamiltonian) -> dict[str, Fraction]:
+        """The centre, by the names of H's coordinates. InputError where it, or the plane, is of
+        another number of degrees of freedom."""
+        degrees = hamiltonian.degrees
+        if self.plane > degrees:
+            raise InputError("plane", self.plane, f"must be 1 … {degrees}: H is in (q1, p1), …")
+        if not hamiltonian.planar and "centre" not in self.model_fields_set:
+            return dict.fromkeys(hamiltonian.coordinates, Fraction(0))
+        return point_of(hamiltonian, self.centre.q, self.centre.p)
 
     @property
     def counts(self) -> tuple[int, ...]:
@@ -153,5 +195,7 @@ class Flow(PlacedShape, Section):
         return tuple(sorted((*self.steps, *of_times)))
 
     def placed_shape(self) -> PlacedShape:
-        """Where which shape is, without the rest."""
-        return PlacedShape(**{n: getattr(self, n) for n in PlacedShape.model_fields})
+        """Where which shape is in its plane, without the rest."""
+        q, p = (values[self.plane - 1] for values in self._lists)
+        own = {n: getattr(self, n) for n in _SizedShape.model_fields}
+        return PlacedShape(**own, centre=InitialValue(q=q, p=p))

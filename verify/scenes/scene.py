@@ -172,13 +172,15 @@ class Scene(Frozen):
             one = getattr(section, "initial_value", None)
             for at in (*starts, *(() if one is None else (one,))):
                 point_of(exact, at.q, at.p)
+        for flow in self.flow:
+            flow.point(exact)
         if self.grid is not None and self.grid.observables is not None:
             check_observables(exact, self.grid.observables)
 
     def _check_no_plane(self, exact: Hamiltonian) -> None:
         """InputError where something of the plane is asked for."""
         own = {name for name in Scene.model_fields if name not in _IDENTITY and getattr(self, name)}
-        asked = own - {"name", "every_hamiltonian", "grid", "series", "separation", "reference"}
+        asked = own - {"name", "every_hamiltonian", "grid", "series", "separation", "reference", "flow"}
         asked |= {"grid.growth"} if self.grid and self.grid.growth else set()
         if self.separation or (self.grid and self.grid.separate):
             check_observables(exact, ("symplectic_defect",))  # W is what is separated

@@ -235,8 +235,8 @@ def by_numerical_flow(h: Hamiltonian, p: Any, q: Any, time: Fraction, found: Poi
 def test_a_numerical_flow_at_another_time_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     right = flow_of_many.follow
 
-    def planted(h: Any, p: Any, q: Any, times: Any, columns: int, t0: Any) -> Any:
-        return right(h, p, q, [t * (1 + Fraction(1, 10**11)) for t in times], columns, t0)
+    def planted(h: Any, points: Any, times: Any, columns: int, t0: Any) -> Any:
+        return right(h, points, [t * (1 + Fraction(1, 10**11)) for t in times], columns, t0)
 
     monkeypatch.setattr(module, "follow", planted)
     with pytest.raises(NoFlowError, match=r"is wrong by .* was estimated"):

@@ -322,6 +322,13 @@ schemes = ["lie2"]
 steps = 9
 step_sizes = [0.1]
 initial_values = [{ q = [0.1, 0], p = [0, 0.1] }]
+
+[[flow]]
+shape = "circle"
+centre = { q = [0.1, 0], p = [0, 0.1] }
+step_size = 0.1
+steps = [3]
+exact = false
 """
 
 

@@ -128,7 +128,11 @@ def test_claims_are_judged(tmp_path: Path, claim: str, verdict: Verdict) -> None
         (GRID + 'observables = ["lambda_plain"]\n', "observable=lambda_plain"),
         ("criteria = [1]\n", "criteria takes p and q"),
         ("[[flow]]\nshape = 'cat'\ncentre = { q = 1, p = 0 }\nscale = 1\nstep_size = 0.1\n"
-         "steps = [1]\n", "flow takes p and q"),
+         "steps = [1]\n", "p=0: has 1 of 2 numbers; H is of p1, p2"),
+        ("[[flow]]\nshape = 'cat'\nplane = 3\nstep_size = 0.1\nsteps = [1]\n",
+         "plane=3: must be 1 … 2"),
+        ("[[flow]]\nshape = 'cat'\nplane = 3\ncentre = { q = [1, 0], p = [0, 0] }\n"
+         "step_size = 0.1\nsteps = [1]\n", "plane=3: must be 1 … 2"),
     ],
 )  # fmt: skip
 def test_what_does_not_fit_is_refused_in_a_line(text: str, problem: str) -> None:

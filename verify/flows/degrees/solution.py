@@ -8,6 +8,7 @@ ellipse; all else is followed by the numerical flow, with more digits until two 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 
 import sympy
 
@@ -136,6 +137,7 @@ def _ellipse(
     return SolutionInDegrees(after, found[1], _ELLIPSE)
 
 
+@lru_cache(maxsize=64)
 def _strength(hamiltonian: Hamiltonian) -> Fraction | None:
     """μ, where H is Kepler's but for a constant."""
     kepler = get("kepler").hamiltonian({}).expression

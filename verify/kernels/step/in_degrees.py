@@ -42,6 +42,13 @@ def preserves(step_map: StepMap | CanonicalMap) -> bool:
     return ClosedDefect.of(step_map).vanishes
 
 
+def is_written_out(hamiltonian: Hamiltonian, scheme: str) -> bool:
+    """Whether S of its map in n degrees of freedom is evaluated from a closed form, in which
+    nothing cancels."""
+    step_map = map_of(hamiltonian, scheme)
+    return isinstance(step_map, CanonicalMap) and ClosedDefect.of(step_map).forms is not None
+
+
 @lru_cache(maxsize=32)
 def _in_degrees(hamiltonian: Hamiltonian, scheme: str) -> CanonicalMap:
     return map_in_degrees(get(scheme), hamiltonian)

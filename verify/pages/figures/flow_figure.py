@@ -17,142 +17,25 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 from matplotlib.transforms import Bbox
 
 from verify.pages.figures.axes import grid_lines
+from verify.pages.figures.flow_grid import Curves, Grid, Panel, length
 from verify.pages.figures.label_place import dots, place_of
 from verify.pages.figures.notebook_figure import NARROW, WIDE, sheet
 from verify.pages.figures.svg import INK, SERIES
-from verify.pages.text.typography import number, whole
-from verify.scenes.results.regions import (
-    EXACT_FLOW,
-    CarriedOutline,
-    DrawnOutline,
-    FlowImage,
-    FlowResult,
-)
-from verify.studies.regions.polyline import parsed, thinned
+from verify.pages.text.typography import whole
+from verify.studies.regions.polyline import thinned
 
 _SEVERAL = 600  # points, the width of two or three panels
 _LEFT, _LETTER, _RIGHT, _TOP, _BOTTOM, _GAP = 26, 7.5, 8, 24, 40, 12
-_MOST_IN_A_ROW = 6
 _SECOND_LINE = 16  # of a heading, in points
 _LOWEST, _HIGHEST = 0.3, 2.2  # a panel's height by its width
-_MOST_COUNTS = 6
-_WITH_OTHERS = 2  # maps at most whose images stand in one panel
-_KEPT_SHAPE = 3.0  # an outline that grew longer than this has lost its shape
 _DETAIL = 0.12  # of a point: what is finer is not drawn
 _LONG, _THINNER = 20, 0.6  # panel widths: a line so long is drawn with thinner strokes
 _ROOM = 0.04  # of the extent, around everything
 _LABEL = 11  # of an image, in points
 _LETTER_OF_LABEL = 0.62  # its width, as a part of the size
 _LINE = 0.7  # points, the region's outline
+_POINT = 9  # points, what was one point before
 _EXACT = 2.2  # points, the line of an exact image under another one
-
-Curves = tuple[np.ndarray, ...]
-"""An image's outlines, arrays (n, 2) of q, p, the region's first."""
-
-
-@dataclass(frozen=True)
-class Panel:
-    """A map's images with the number of steps of each.
-
-    `missing`: that of those without an image; `exact`: the exact flow's image, under the others;
-    `look`: its colour's place.
-    """
-
-    name: str
-    images: tuple[tuple[int, Curves], ...]
-    missing: tuple[int, ...] = ()
-    exact: Curves = ()
-    look: int = 0
-
-
-@dataclass(frozen=True)
-class Grid:
-    """A group of panels for each number of steps, named so; or one group without a name."""
-
-    counts: tuple[str, ...]
-    groups: tuple[tuple[Panel, ...], ...]
-    before: Curves
-
-    @property
-    def panels(self) -> tuple[Panel, ...]:
-        return tuple(panel for group in self.groups for panel in group)
-
-    @property
-    def in_a_row(self) -> int:
-        """Groups are not broken, as far as one fits."""
-        each = len(self.groups[0])
-        if not self.counts:
-            return each
-        whole_groups = max(1, _MOST_IN_A_ROW // each)
-        return min(each * whole_groups, len(self.panels))
-
-    @property
-    def size(self) -> tuple[np.ndarray, np.ndarray]:
-        """The least and the greatest (q, p) of what is drawn."""
-        images = (curves for panel in self.panels for _, curves in panel.images)
-        exact = (panel.exact for panel in self.panels)
-        drawn = (self.before, *images, *exact)
-        points = np.concatenate([curve for curves in drawn for curve in curves])
-        return points.min(axis=0), points.max(axis=0)
-
-
-# -- what stands where ----------------------------------------------------------------------------
-
-
-def grid_of(flow: FlowResult) -> Grid:
-    """All maps' images; at most so many counts, the first and the last of those with an image."""
-    maps = tuple(dict.fromkeys(image.map for image in flow.images))
-    before = _curves(flow.before)
-    if len(maps) <= _WITH_OTHERS and _keep_shape(flow, before):
-        together = tuple(
-            _panel([image for image in flow.images if image.map == name], look)
-            for look, name in enumerate(maps)
-        )
-        return Grid((), (together,), before)
-    shown = _some(sorted({image.steps for image in flow.images if image.outlines}))
-    found = {(image.map, image.steps): image for image in flow.images}
-    times = {image.steps: image.time for image in flow.images}
-    schemes = [name for name in maps if name != EXACT_FLOW] or list(maps)
-    groups = tuple(
-        tuple(
-            _panel([found[name, n]], maps.index(name), found.get((EXACT_FLOW, n)))
-            for name in schemes
-            if (name, n) in found
-        )
-        for n in shown
-    )
-    return Grid(tuple(f"N = {whole(n)}, t = {number(times[n])}" for n in shown), groups, before)
-
-
-def _some(counts: Sequence[int]) -> list[int]:
-    places = np.linspace(0, len(counts) - 1, min(len(counts), _MOST_COUNTS))
-    return [counts[round(place)] for place in places]
-
-
-def _panel(images: Sequence[FlowImage], look: int, exact: FlowImage | None = None) -> Panel:
-    under = exact if exact and exact.map != images[0].map else None
-    return Panel(
-        images[0].map,
-        tuple((image.steps, _curves(image.outlines)) for image in images if image.outlines),
-        tuple(image.steps for image in images if not image.outlines),
-        _curves(under.outlines) if under else (),
-        look,
-    )
-
-
-def _curves(outlines: Sequence[CarriedOutline | DrawnOutline]) -> Curves:
-    return tuple(parsed(outline.points) for outline in outlines)
-
-
-def _keep_shape(flow: FlowResult, before: Curves) -> bool:
-    own = _length(before[0])
-    images = [_curves(image.outlines[:1]) for image in flow.images if image.outlines]
-    return all(_length(curves[0]) <= _KEPT_SHAPE * own for curves in images)
-
-
-def _length(curve: np.ndarray) -> float:
-    return float(np.hypot(*(np.roll(curve, -1, axis=0) - curve).T).sum())
-
 
 # -- drawing --------------------------------------------------------------------------------------
 
@@ -187,7 +70,7 @@ def draw_flow(grid: Grid) -> Figure:
         y = _BOTTOM + (rows - 1 - i) * (layout.height + _GAP + layout.top)
         place = x / layout.total, y / high, layout.width / layout.total, layout.height / high
         axes = figure.add_axes(place)
-        _frame(axes, layout, left=j == 0, bottom=k + columns >= len(grid.panels))
+        _frame(axes, layout, grid.axes, left=j == 0, bottom=k + columns >= len(grid.panels))
         _draw_panel(axes, panel, grid, layout)
         axes.set_title(_heading(k, grid, int(layout.width / _LETTER)))
     return figure
@@ -233,12 +116,15 @@ def _layout(grid: Grid) -> _Layout:
     return _Layout(total, left, top, width, width * ratio, middle - reach, middle + reach)
 
 
-def _frame(axes: Any, layout: _Layout, *, left: bool, bottom: bool) -> None:
+def _frame(axes: Any, layout: _Layout, names: tuple[str, str], *, left: bool, bottom: bool) -> None:
     axes.set_xlim(layout.low[0], layout.high[0])
     axes.set_ylim(layout.low[1], layout.high[1])
     axes.set_aspect("equal")
     grid_lines(axes, "both")
-    for axis, name, shown in ((axes.xaxis, "q", bottom), (axes.yaxis, "p", left)):
+    for axis, name, shown in (
+        (axes.xaxis, names[0], bottom),
+        (axes.yaxis, names[1], left),
+    ):
         axis.set_major_locator(_ticks())
         axis.set_major_formatter(FuncFormatter(_tick))
         axis.set_tick_params(label1On=shown)
@@ -254,7 +140,10 @@ def _tick(x: float, _: object = None) -> str:
 
 
 def _draw_panel(axes: Any, panel: Panel, grid: Grid, layout: _Layout) -> None:
-    _shape(axes, grid.before, INK, layout, before=True)
+    if len(grid.before[0]) == 1:  # of another plane than the region's
+        axes.plot(*grid.before[0].T, linestyle="none", marker="+", color=INK, markersize=_POINT)
+    else:
+        _shape(axes, grid.before, INK, layout, before=True)
     if panel.exact:
         path = _path([thinned(curve, _DETAIL / layout.scale) for curve in panel.exact[:1]])
         faint = to_rgba(INK, 0.3)
@@ -275,7 +164,7 @@ def _shape(
     """The region lightly filled with a thin line, the other outlines as thinner lines."""
     region, *others = (thinned(curve, _DETAIL / layout.scale) for curve in curves)
     strength = 0.35 if before else 1
-    thin = _THINNER if _length(region) > _LONG * (layout.width / layout.scale) else 1
+    thin = _THINNER if length(region) > _LONG * (layout.width / layout.scale) else 1
     axes.add_artist(
         PathPatch(
             _path([region]), facecolor=to_rgba(colour, 0.1 if before else 0.22),
@@ -321,4 +210,4 @@ def line_width(grid: Grid) -> float:
 
 def stretched(before: Curves, image: Curves) -> float:
     """How many times as long the region's outline has become."""
-    return _length(image[0]) / _length(before[0])
+    return length(image[0]) / length(before[0])

@@ -5,6 +5,7 @@ from decimal import ROUND_CEILING, Decimal
 from fractions import Fraction
 
 from verify.pages.sections.by_key import by_key
+from verify.pages.sections.flow_words import Words, words
 from verify.pages.text.typography import NBSP, listed, number, step, whole
 from verify.scenes.results.regions import EXACT_FLOW, FlowImage, FlowResult
 
@@ -20,23 +21,27 @@ def findings(flows: Sequence[FlowResult]) -> Iterator[str]:
     images = [(flow, image) for flow in flows for image in flow.images]
     changing = [each for each in images if each[1].area_preserving is not True]
     known = [each for each in changing if each[1].area_change is not None]
+    said = words(flows)
     if known:
-        yield _largest(known)
+        yield _largest(known, said)
         yield _probe(known)
-        yield from _means(known)
-    yield from _preserved([each for each in images if each[1].area_preserving])
+        yield from _means(known, said)
+    yield from _preserved([each for each in images if each[1].area_preserving], said)
     yield from _distances([each for each in images if each[1].distance is not None])
     problems = [each for each in images if each[1].problem]
     if problems:
         count = "image has" if len(problems) == 1 else "images have"
-        yield f"{whole(len(problems))} {count} no known change of area; the table says why."
+        yield (
+            f"{whole(len(problems))} {count} no known change of {said.measured}; the table says "
+            "why."
+        )
 
 
-def _largest(known: Sequence[FlowFinding]) -> str:
+def _largest(known: Sequence[FlowFinding], said: Words) -> str:
     flow, image = max(known, key=lambda each: _size(each[1].area_change))
     return (
-        f"The largest relative change of area is that by {image.map} with {_at(flow, image)}: "
-        f"{_change(image)}."
+        f"The largest relative change of {said.measured} is that by {image.map} with "
+        f"{_at(flow, image)}: {_change(image)}."
     )
 
 
@@ -62,7 +67,7 @@ def _floor_of(ratio: Fraction) -> int:
     return count // unit * unit
 
 
-def _means(known: Sequence[FlowFinding]) -> Iterator[str]:
+def _means(known: Sequence[FlowFinding], said: Words) -> Iterator[str]:
     compared = [image for _, image in known if image.agree is not None]
     if not compared:
         return
@@ -70,22 +75,23 @@ def _means(known: Sequence[FlowFinding]) -> Iterator[str]:
     all_of = "In the one image" if len(compared) == 1 else f"In all {whole(len(compared))} images"
     if apart:
         yield (
-            f"The mean of Λ over the region, computed without any area, differs from it in "
-            f"{whole(apart)} of {whole(len(compared))} images: one of the two is wrong there."
+            f"The mean of {said.mean} over the region, computed without {said.without}, differs "
+            f"from it in {whole(apart)} of {whole(len(compared))} images: one of the two is wrong "
+            "there."
         )
     else:
         yield (
-            f"{all_of} the mean of Λ over the region, computed without any area, is the same "
-            "within the errors, as it must be by the change of variables."
+            f"{all_of} the mean of {said.mean} over the region, computed without {said.without}, "
+            f"is the same within the errors, as it must be by {said.equal_by}."
         )
 
 
-def _preserved(images: Sequence[FlowFinding]) -> Iterator[str]:
+def _preserved(images: Sequence[FlowFinding], words: Words) -> Iterator[str]:
     schemes = list(dict.fromkeys(i.map for _, i in images if i.map != EXACT_FLOW))
     exact = any(image.map == EXACT_FLOW for _, image in images)
-    whose = [f"det J ≡ 1 is proved for {listed(schemes)}"] if schemes else []
+    whose = [f"{words.proved} is proved for {listed(schemes)}"] if schemes else []
     if exact:
-        whose.append("the exact flow preserves area by Liouville’s theorem")
+        whose.append(words.kept)
     measured = [image for _, image in images if image.area_change is not None]
     if not whose or not measured:
         return
@@ -105,7 +111,7 @@ def _preserved(images: Sequence[FlowFinding]) -> Iterator[str]:
 
 
 def _capital(text: str) -> str:
-    return text if text.startswith("det") else text[0].upper() + text[1:]
+    return text if text.startswith("det") else text[:1].upper() + text[1:]
 
 
 def _distances(images: Sequence[FlowFinding]) -> Iterator[str]:
@@ -132,28 +138,60 @@ def finding(flow: FlowResult) -> Iterator[str]:
         if name != EXACT_FLOW:
             yield from (_finding_of(flow, each) for each in known[-1:] if each is not images[-1])
             yield _finding_of(flow, images[-1])
+    yield from _by_planes(flow)
 
 
 def _finding_of(flow: FlowResult, image: FlowImage) -> str:
     start = f"{image.map} with {_at(flow, image)}"
+    said = words([flow])
     if image.area_change is None:
-        return f"{start}: no change of area is known ({image.problem or 'none was measured'})."
+        why = image.problem or "none was measured"
+        return f"{start}: no change of {said.measured} is known ({why})."
     away = ""
     if image.distance is not None:
         away = f" Its outlines are {_away(image)} away from the exact ones."
     if image.area_preserving:
         change = f"(measured: {_change(image)})"
-        return f"{start} keeps the area of {region_of(flow)} by proof {change}.{away}"
+        return f"{start} keeps {_measured(flow)} by proof {change}.{away}"
     most = _size(image.area_change) + _size(image.probe_error)
     unseen = ", less than the thousandth that a picture can show" if most < _SEEN else ""
-    text = f"{start} changes the area of {region_of(flow)} by {_change(image)} of it{unseen}."
+    text = f"{start} changes {_measured(flow)} by {_change(image)} of it{unseen}."
     doubt = ""
     if image.agree is False:
-        mean = _pair(image.mean_lambda, image.mean_lambda_error)
         doubt = (
-            f" The mean of Λ over it, which must be the same, is {mean}: one of the two is wrong."
+            f" The mean of {said.mean} over it, which must be the same, is "
+            f"{_pair(*mean_of(image))}: one of the two is wrong."
         )
     return f"{text}{doubt}{away}"
+
+
+def mean_of(image: FlowImage) -> tuple[str | None, str | None]:
+    """The mean of Λ, or of W in n degrees of freedom, and its error."""
+    if image.mean_defect is not None:
+        return image.mean_defect, image.mean_defect_error
+    return image.mean_lambda, image.mean_lambda_error
+
+
+def _measured(flow: FlowResult) -> str:
+    said = words([flow]).measured
+    return f"{said} around {region_of(flow)}" if flow.plane else f"the {said} of {region_of(flow)}"
+
+
+def _by_planes(flow: FlowResult) -> Iterator[str]:
+    """What of ∮ p·dq lies in which plane at last, by the first map that has an image."""
+    images = [image for image in flow.images if image.outlines and image.outlines[0].projections]
+    if not images:
+        return
+    last = max((i for i in images if i.map == images[0].map), key=lambda image: image.steps)
+    seen = last.outlines[0].projections
+    planes = listed([f"(q{x.plane}, p{x.plane})" for x in seen])
+    areas = listed([f"{float(x.area):.4g}".replace("-", "−") for x in seen])
+    whose = "the exact flow" if last.map == EXACT_FLOW else last.map
+    yield (
+        f"After N{IS}{whole(last.steps)} steps by {whose} the projections to {planes} enclose "
+        f"{areas} of what the outline enclosed in (q{flow.plane}, p{flow.plane}) before: their sum "
+        "is the invariant, not each of them."
+    )
 
 
 def region_of(flow: FlowResult) -> str:

@@ -5,7 +5,8 @@ from fractions import Fraction
 
 import numpy as np
 
-from verify.pages.figures.flow_figure import Grid, line_width, stretched
+from verify.pages.figures.flow_figure import line_width, stretched
+from verify.pages.figures.flow_grid import Grid
 from verify.pages.text.typography import NBSP, listed, whole
 from verify.scenes.results.regions import EXACT_FLOW, FlowResult
 
@@ -14,6 +15,9 @@ _NOTED = 1.5  # times as long: an outline drawn out so far is spoken of
 
 
 def picture_sentences(flow: FlowResult, grid: Grid) -> Iterator[str]:
+    if len(grid.before[0]) == 1:
+        yield "+ is where all of it was before."
+        return
     yield from _stretched(grid)
     yield from _upon_each_other(flow, line_width(grid))
     yield from _upon_before(grid)

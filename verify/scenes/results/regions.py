@@ -1,9 +1,25 @@
 """What was found of regions that are carried by maps: areas, their changes, and curves to draw."""
 
+from pydantic import Field
+
 from verify.prose import Prose
 from verify.scenes.frozen import Frozen, Said, Seconds, WithProse
 
 EXACT_FLOW = "exact flow"
+
+
+class Projection(Frozen):
+    """A closed outline after a map in n degrees of freedom, as it is seen in the plane (q_k, p_k).
+
+    `plane`: k, from 1. `area`: what the projection encloses, ∮ p_k dq_k with its sign, by the area
+    before the map; the sum of all planes' is 1 + `area_change`. `area_error` a bound on its error.
+    `points` its curve as `q,p q,p …`, thinned for drawing.
+    """
+
+    plane: int
+    area: str
+    area_error: str
+    points: str
 
 
 class CarriedOutline(Frozen):
@@ -11,7 +27,9 @@ class CarriedOutline(Frozen):
 
     `area` is that of the region it bounded before the map, `area_change` the relative change of it,
     `probe_error` a bound on the error of `area_change`; `points` its curve as `q,p q,p …`, thinned
-    for drawing; `nodes` how many points the area was measured with.
+    for drawing; `nodes` how many points the area was measured with. In n degrees of freedom the
+    area is that of ω, ∮ p·dq along the outline, `points` are those in the plane that the region lay
+    in, and `projections` has each plane.
     """
 
     name: str
@@ -20,6 +38,7 @@ class CarriedOutline(Frozen):
     probe_error: str
     nodes: int
     points: str
+    projections: tuple[Projection, ...] = ()
 
 
 class DrawnOutline(Frozen):
@@ -38,6 +57,11 @@ class FlowImage(WithProse):
     the change of area and the mean of Λ are the same within their errors. What was not asked for,
     or is not known, is None. `area_preserving`: det J ≡ 1 by proof (for the exact flow by
     Liouville's theorem). `problem` says why there is no image, or why its area tells nothing.
+
+    In n degrees of freedom the area is that of ω, ∮ p·dq; in place of Λ stands W's entry at
+    (p_i, q_i), the defect of all steps in the region's plane, with its mean `mean_defect`; no
+    distance is told; and `area_preserving` says that S ≡ 0 is shown (of the exact flow it is
+    Poincaré's theorem).
     """
 
     map: str
@@ -49,6 +73,8 @@ class FlowImage(WithProse):
     probe_error: str | None = None
     mean_lambda: str | None = None
     mean_lambda_error: str | None = None
+    mean_defect: str | None = None
+    mean_defect_error: str | None = None
     agree: bool | None = None
     distance: str | None = None
     distance_error: str | None = None
@@ -63,7 +89,9 @@ class FlowResult(Frozen):
     """A shape carried by maps: its outlines before, and its images by map, then by steps.
 
     `centre` (q, p) and `scale`: where the shape was put, and how large; `t0`: when, where H depends
-    on time. `source`: what of a paper it repeats (`Figure 4`).
+    on time. `source`: what of a paper it repeats (`Figure 4`). In n degrees of freedom `plane` is
+    the i of the plane (q_i, p_i) that the shape lay in, of which `centre` is, and `point` has all
+    coordinates of the centre by their names; in the plane they are None and empty.
     """
 
     shape: str
@@ -74,3 +102,5 @@ class FlowResult(Frozen):
     images: tuple[FlowImage, ...]
     source: str = ""
     t0: str | None = None
+    plane: int | None = None
+    point: dict[str, str] = Field(default_factory=dict)

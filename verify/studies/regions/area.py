@@ -1,5 +1,8 @@
 """The areas that a map gives to regions inside curves, measured far more finely than they change.
 
+In n degrees of freedom the area is that of ω, the sum of those of the projections to the planes
+(q_k, p_k), with their signs: ∮ p·dq.
+
 A curve is cut into Gauss–Legendre panels (`verify.studies.regions.panels`). Each is measured whole
 and in halves; the difference is the error of the whole, and so a bound, and by far, for that of the
 halves, whose areas count. Where shear has stretched the curve so that the difference matters, the
@@ -11,11 +14,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
-from typing import Any, Protocol
 
 import numpy as np
 
 from verify.scenes.shapes.outline import Outline
+from verify.studies.regions.carrier import PointCarrier, Points
 from verify.studies.regions.panels import NODES, Rule, nodes_between, rule
 
 FIRST_PANELS = 8  # of an outline, at least
@@ -26,27 +29,6 @@ _STUCK = 2  # a difference that halving does not make smaller by this factor is 
 
 class NoAreaError(Exception):
     """A curve bounds an area that is not told from 0, so that its change has no meaning."""
-
-
-class PointCarrier(Protocol):
-    """Points in one number system, and a map of them."""
-
-    bits: int  # about so many are right after the point
-    grid: int  # 2^grid is what `whole` multiplies by
-    sampled: int  # panels that are carried in finer arithmetic
-    radius: Fraction | None  # a bound of the images' error, where that is known otherwise
-
-    def points(self, outline: Outline, arc: int, s: Sequence[Fraction]) -> tuple[Any, Any]:
-        """Sequences of x and y of an arc's points."""
-
-    def images(self, x: Any, y: Any) -> tuple[Any, Any]:
-        """Their images."""
-
-    def finer(self, x: Any, y: Any) -> tuple[Any, Any]:
-        """Their images in finer arithmetic."""
-
-    def whole(self, x: Any) -> np.ndarray:
-        """2^grid x, rounded to whole numbers; an array of int."""
 
 
 @dataclass(frozen=True)
@@ -68,10 +50,14 @@ class Panel:
     arc: int
     left: Fraction
     right: Fraction
-    start: tuple[Any, Any]
-    image: tuple[Any, Any]
+    start: Points
+    image: Points
     before: int  # area swept, in units of the plane's grid and of the rule
-    after: int
+    parts: tuple[int, ...]  # that by the image, in each plane (q_k, p_k)
+
+    @property
+    def after(self) -> int:
+        return sum(self.parts)
 
     @property
     def change(self) -> int:
@@ -94,6 +80,7 @@ class Family:
     halves: tuple[Panel, Panel]
     difference: int
     unsure: int
+    parts: tuple[int, ...]  # the difference in each plane, of the images
     stuck: bool = False
 
     @property
@@ -110,6 +97,7 @@ class Measured:
     """The area inside a curve and its relative change by a map, with a bound of the change's error.
 
     `truncated` and `rounded` are the parts of `error`: the quadrature's and the arithmetic's.
+    `parts`: the image's area in each plane (q_k, p_k), by the area before, and its error.
     `panels` are the halves in their order along the curve. `exhausted`: the goals were not reached
     with as many nodes as there may be.
     """
@@ -120,6 +108,7 @@ class Measured:
     rounded: Fraction
     panels: tuple[Panel, ...]
     exhausted: bool
+    parts: tuple[tuple[Fraction, Fraction], ...]
 
     @property
     def error(self) -> Fraction:
@@ -178,24 +167,25 @@ class Probe:
         images = self._images(starts, self.plane.images)
         areas = self._areas(starts), self._areas(images)
         return [
-            Panel(*part, start, image, before, after)
+            Panel(*part, start, image, sum(before), after)
             for part, start, image, before, after in zip(parts, starts, images, *areas, strict=True)
         ]
 
-    def _images(
-        self, starts: Sequence[tuple[Any, Any]], carry: Callable[[Any, Any], tuple[Any, Any]]
-    ) -> list[tuple[Any, Any]]:
+    def _images(self, starts: Sequence[Points], carry: Callable[..., Points]) -> list[Points]:
         """All points in one call."""
-        x, y = carry(*(np.concatenate([start[i] for start in starts]) for i in (0, 1)))
-        cut = [slice(i, i + NODES) for i in range(0, len(x), NODES)]
-        return [(x[part], y[part]) for part in cut]
+        found = carry(*(np.concatenate(z) for z in zip(*starts, strict=True)))
+        cut = [slice(i, i + NODES) for i in range(0, len(found[0]), NODES)]
+        return [tuple(z[part] for z in found) for part in cut]
 
-    def _areas(self, points: Sequence[tuple[Any, Any]]) -> list[int]:
-        x, y = (
-            self.plane.whole(np.concatenate([each[i] for each in points])).reshape(-1, NODES)
-            for i in (0, 1)
-        )
-        return list(self.rule.areas(x, y))
+    def _areas(self, points: Sequence[Points]) -> list[tuple[int, ...]]:
+        """Of each panel the area in each plane (q_k, p_k)."""
+        axes = [
+            self.plane.whole(np.concatenate(z)).reshape(-1, NODES)
+            for z in zip(*points, strict=True)
+        ]
+        n = len(axes) // 2
+        pairs = zip(axes[:n], axes[n:], strict=True)
+        return list(zip(*(self.rule.areas(x, y) for x, y in pairs), strict=True))
 
     def _families(self, panels: Sequence[Panel]) -> list[Family]:
         halves = self._panels([half for panel in panels for half in panel.halves])
@@ -204,7 +194,9 @@ class Probe:
         for panel, (one, other) in zip(panels, pairs, strict=True):
             unsure = abs(panel.before - one.before - other.before)
             apart = unsure + abs(panel.after - one.after - other.after)
-            found.append(Family((one, other), apart, unsure))
+            triples = zip(panel.parts, one.parts, other.parts, strict=True)
+            each = tuple(abs(x - y - z) for x, y, z in triples)
+            found.append(Family((one, other), apart, unsure, each))
         return found
 
     # -- where to cut -------------------------------------------------------------------------
@@ -251,13 +243,20 @@ class Probe:
         panels = tuple(half for family in families for half in family.halves)
         area, size = sum(panel.before for panel in panels), self._size(families)
         self._must_bound(families)
+        rounded = Fraction(rounding + self._floor(panels), size)
+        sums = zip(*(panel.parts for panel in panels), strict=True)
+        apart = zip(*(family.parts for family in families), strict=True)
         return Measured(
             area=area * self.unit,
             change=Fraction(sum(panel.change for panel in panels), area),
             truncated=Fraction(sum(family.difference for family in families), size),
-            rounded=Fraction(rounding + self._floor(panels), size),
+            rounded=rounded,
             panels=panels,
             exhausted=exhausted,
+            parts=tuple(
+                (Fraction(sum(x), area), Fraction(sum(y), size) + rounded)
+                for x, y in zip(sums, apart, strict=True)
+            ),
         )
 
     def _nothing(self, families: Sequence[Family]) -> int:
@@ -273,7 +272,8 @@ class Probe:
             raise NoAreaError(f"the outline {name} bounds no area that is told from 0")
 
     def _roundings(self, families: Sequence[Family]) -> list[int]:
-        """Differences of the panels' areas from those in finer arithmetic, without their signs.
+        """Differences of the panels' areas from those in finer arithmetic, without their signs, in
+        all planes (q_k, p_k).
 
         Where the images' error is known, that times the length of the image.
         """
@@ -283,19 +283,23 @@ class Probe:
         some = [panels[:: max(1, len(panels) // self.plane.sampled)] for panels in own]
         flat = [panel for panels in some for panel in panels]
         areas = iter(self._areas(self._images([p.start for p in flat], self.plane.finer)))
-        apart = [sum(abs(next(areas) - panel.after) for panel in panels) for panels in some]
+        apart = [
+            sum(abs(x - y) for p in panels for x, y in zip(next(areas), p.parts, strict=True))
+            for panels in some
+        ]
         return [
             2 * -(-x * len(panels) // len(few))
             for x, panels, few in zip(apart, own, some, strict=True)
         ]
 
     def _length(self, panels: Sequence[Panel]) -> Fraction:
-        """The sum of |dx| + |dy| along the image, by its nodes, and a quarter more."""
-        axes = [np.concatenate([self.plane.whole(p.image[i]) for p in panels]) for i in (0, 1)]
+        """The sum of |dz| of all coordinates along the image, by its nodes, and a quarter more."""
+        images = zip(*(panel.image for panel in panels), strict=True)
+        axes = [np.concatenate([self.plane.whole(z) for z in each]) for each in images]
         steps = sum(int(abs(np.diff(axis)).sum()) for axis in axes)
         return Fraction(steps * 5 // 4, 2**self.plane.grid)
 
     def _floor(self, panels: Sequence[Panel]) -> int:
         """The rounding of the rule's numbers."""
         largest = max(int(abs(self.plane.whole(x)).max()) for p in panels for x in p.image)
-        return len(panels) * NODES**2 * largest**2
+        return len(panels[0].parts) * len(panels) * NODES**2 * largest**2

@@ -2,14 +2,15 @@
 
 The relative change of the region's area is measured twice, by the area inside its image
 (`verify.studies.regions.area`) and as the mean of Λ over it (`verify.studies.regions.mean_lambda`),
-which by the change of variables are the same number. A probe whose own error is not far below the
-change is no result: float64 then gives way to more digits, and where these do not do either, the
-image says so.
+which by the change of variables are the same number. In n degrees of freedom the area is that of ω,
+and the mean that of W's entry in the region's plane: by Stokes' theorem they are the same. A probe
+whose own error is not far below the change is no result: float64 then gives way to more digits, and
+where these do not do either, the image says so.
 """
 
 import contextlib
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -25,13 +26,14 @@ from verify.flows.extrapolation import NoFlowError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.times_on_the_way import first_fault
 from verify.kernels.many_points import LeftRangeError
+from verify.kernels.step.in_degrees import map_of, preserves
 from verify.prose import Number, Prose, prose, read_prose
-from verify.scenes.results.regions import EXACT_FLOW, CarriedOutline, FlowImage
+from verify.scenes.results.regions import EXACT_FLOW, CarriedOutline, FlowImage, Projection
 from verify.scenes.shapes.outline import Outline, Shape
-from verify.schemes import get
 from verify.studies.regions.area import Goal, Measured, NoAreaError, Probe
-from verify.studies.regions.hausdorff import FARTHEST, hausdorff
+from verify.studies.regions.distance import distance_from_exact
 from verify.studies.regions.mean_lambda import mean_over
+from verify.studies.regions.place import ITSELF, Place
 from verify.studies.regions.point_carriers import (
     ExactFlowCarrier,
     FloatCarrier,
@@ -48,7 +50,6 @@ _FLOAT_DIGITS = 17
 _DRAWN_POINTS = 20_000  # of a curve before it is thinned
 _SHOWN = 12  # significant digits at most
 _LOST = 7  # digits
-_SAFETY = 1.01  # for what lies between the points of dense curves
 # Of the region where the map changes area, and where it does not, and of the outlines inside it.
 _PART = Fraction(1, 10**4)  # of the change
 _CHANGED = Goal(_PART, Fraction(1, 10**14))
@@ -62,8 +63,14 @@ class _OutlineImage:
 
     outline: Outline
     measured: Measured
-    before: list[tuple[np.ndarray, np.ndarray]]
-    after: list[tuple[np.ndarray, np.ndarray]]
+    before: list[tuple[np.ndarray, ...]]
+    after: list[tuple[np.ndarray, ...]]
+    place: Place
+
+    def curve(self, index: int) -> np.ndarray:
+        """The image in the plane (q_k, p_k), k − 1 = index: points (n, 2)."""
+        n = self.place.degrees
+        return dense([(z[index], z[n + index]) for z in self.after], _DRAWN_POINTS)[0]
 
 
 @dataclass(frozen=True)
@@ -75,6 +82,7 @@ class _Carrying:
     step_size: Fraction
     steps: int
     t0: Fraction
+    place: Place
 
     @property
     def time(self) -> Fraction:
@@ -84,7 +92,7 @@ class _Carrying:
     def preserves_area(self) -> bool:
         if self.map == EXACT_FLOW:
             return True
-        return get(self.map).step_map(self.hamiltonian).preserves_area
+        return preserves(map_of(self.hamiltonian, self.map))
 
 
 def carry(
@@ -98,23 +106,24 @@ def carry(
     mean_lambda: bool,
     distance: bool,
     t0: Fraction | None = None,
+    place: Place = ITSELF,
 ) -> FlowImage:
     """The image of the shape by so many steps of a scheme, or by the exact flow (EXACT_FLOW), from
-    t0 on where H depends on time.
+    t0 on where H depends on time; in n degrees of freedom of one in the plane of `place`.
 
     At least so many digits are worked with. `mean_lambda`: the mean of Λ over the region, too;
     `distance`: how far its outlines are from the exact ones. `problem` says why there is no image.
     """
     begun = time.perf_counter()
-    by = _Carrying(hamiltonian, map_name, step_size, steps, t0 or Fraction(0))
-    preserves = by.preserves_area
+    by = _Carrying(hamiltonian, map_name, step_size, steps, t0 or Fraction(0), place)
+    kept = by.preserves_area
     found: dict[str, Any] = {}
     try:
         _check_smooth(by)
         with np.errstate(all="ignore"):  # what is not finite is looked for
             carried, plane = _measured(by, shape, digits)
-            found = _areas(carried, plane, preserves)
-            if mean_lambda and not preserves and not found["problem"]:
+            found = _areas(carried, plane, kept)
+            if mean_lambda and not kept and not found["problem"]:
                 found |= _mean(by, carried[0])
             if distance:
                 with contextlib.suppress(NoFlowError):  # the area is known all the same
@@ -125,7 +134,7 @@ def carry(
         map=map_name,
         steps=steps,
         time=text(by.time),
-        area_preserving=preserves,
+        area_preserving=kept,
         seconds=time.perf_counter() - begun,
         **found,
     )
@@ -149,26 +158,26 @@ def _measured(
     by: _Carrying, shape: Shape, digits: int
 ) -> tuple[list[_OutlineImage], SchemeCarrier | ExactFlowCarrier]:
     """All outlines, in the arithmetic that tells the region's change from the probe's error."""
-    smaller, preserves = smaller_than_one(shape.outlines[0]), by.preserves_area
+    smaller, kept, place = smaller_than_one(shape.outlines[0]), by.preserves_area, by.place
     if by.map == EXACT_FLOW:
-        exact = ExactFlowCarrier(by.hamiltonian, by.time, by.t0, smaller)
+        exact = ExactFlowCarrier(by.hamiltonian, by.time, by.t0, smaller, place)
         return _all(shape, exact, _UNCHANGED), exact
     given = by.hamiltonian, by.map, by.step_size, by.steps, by.t0
     if digits <= _FLOAT_DIGITS:
         with contextlib.suppress(NoAreaError):  # its points may all be one in float64
-            floats = FloatCarrier(*given, smaller)
-            carried = _all(shape, floats, _UNCHANGED if preserves else _CHANGED)
+            floats = FloatCarrier(*given, smaller, place)
+            carried = _all(shape, floats, _UNCHANGED if kept else _CHANGED)
             measured = carried[0].measured
-            if preserves or _is_sharp(measured) or _is_unresolved(measured):
+            if kept or _is_sharp(measured) or _is_unresolved(measured):
                 return carried, floats
     digits = max(digits, _MORE_DIGITS)
-    goal = _unchanged(digits) if preserves else Goal(_PART, Fraction(100, 10**digits))
+    goal = _unchanged(digits) if kept else Goal(_PART, Fraction(100, 10**digits))
     *faster, last = (system.name for system in number_systems.automatic())
     for name in faster:
         with contextlib.suppress(UnsupportedError, LeftRangeError):
-            wide = WideCarrier(*given, name, digits, smaller)
+            wide = WideCarrier(*given, name, digits, smaller, place)
             return _all(shape, wide, goal), wide
-    wide = WideCarrier(*given, last, digits, smaller)
+    wide = WideCarrier(*given, last, digits, smaller, place)
     return _all(shape, wide, goal), wide
 
 
@@ -185,7 +194,7 @@ def _all(shape: Shape, plane: SchemeCarrier | ExactFlowCarrier, goal: Goal) -> l
     ):
         before = [plane.floats(panel.start) for panel in measured.panels]
         after = [plane.floats(panel.image) for panel in measured.panels]
-        found.append(_OutlineImage(outline, measured, before, after))
+        found.append(_OutlineImage(outline, measured, before, after, plane.place))
     return found
 
 
@@ -199,11 +208,13 @@ def _is_unresolved(measured: Measured) -> bool:
 
 
 def _areas(
-    carried: Sequence[_OutlineImage], plane: SchemeCarrier | ExactFlowCarrier, preserves: bool
+    carried: Sequence[_OutlineImage], plane: SchemeCarrier | ExactFlowCarrier, kept: bool
 ) -> dict[str, Any]:
     region = carried[0].measured
-    problem = _problem(region, preserves)
-    curves = to_draw([dense(each.after, _DRAWN_POINTS)[0] for each in carried])
+    problem = _problem(region, kept)
+    degrees = plane.place.degrees
+    seen = [to_draw([each.curve(k) for each in carried]) for k in range(degrees)]
+    curves = zip(*seen, strict=True)
     change, error = _shown(region.change, region.error)
     return {
         "problem": problem,
@@ -216,9 +227,9 @@ def _areas(
     }
 
 
-def _problem(region: Measured, preserves: bool) -> Prose:
+def _problem(region: Measured, kept: bool) -> Prose:
     """Why what was measured tells nothing; empty where it does."""
-    if not preserves and not _is_sharp(region):
+    if not kept and not _is_sharp(region):
         return read_prose(
             f"the probe's error `{decimal(region.error, 2)}` is not {BELOW} times below the change "
             f"of area `{decimal(region.change, 2)}`"
@@ -229,8 +240,9 @@ def _problem(region: Measured, preserves: bool) -> Prose:
     return Prose()
 
 
-def _outline(carried: _OutlineImage, points: np.ndarray) -> CarriedOutline:
-    measured = carried.measured
+def _outline(carried: _OutlineImage, curves: Sequence[np.ndarray]) -> CarriedOutline:
+    """`curves`: one for each plane (q_k, p_k)."""
+    measured, place = carried.measured, carried.place
     area = abs(measured.area)  # of a curve that runs clockwise it has a sign
     change, error = _shown(measured.change, measured.error)
     return CarriedOutline(
@@ -239,8 +251,15 @@ def _outline(carried: _OutlineImage, points: np.ndarray) -> CarriedOutline:
         area_change=change,
         probe_error=error,
         nodes=measured.nodes,
-        points=points_text(points),
+        points=points_text(curves[place.index]),
+        projections=tuple(_projections(measured, curves)) if place.degrees > 1 else (),
     )
+
+
+def _projections(measured: Measured, curves: Sequence[np.ndarray]) -> Iterator[Projection]:
+    for k, ((value, error), curve) in enumerate(zip(measured.parts, curves, strict=True)):
+        area, bound = _shown(value, error)
+        yield Projection(plane=k + 1, area=area, area_error=bound, points=points_text(curve))
 
 
 def _shown(value: Fraction, error: Fraction) -> tuple[str, str]:
@@ -253,10 +272,12 @@ def _shown(value: Fraction, error: Fraction) -> tuple[str, str]:
 
 
 def _mean(by: _Carrying, region: _OutlineImage) -> dict[str, Any]:
-    """The mean of Λ over the region; nothing where the map is not defined on all rays to it."""
+    """The mean of Λ, or of W, over the region; nothing where the map is not defined on all rays to
+    it."""
     # Amid the points of the outline: rays from elsewhere may leave the region, and there the map.
-    x, y = np.mean(np.concatenate(region.before, axis=1), axis=1)
-    given = by.hamiltonian, by.map, by.step_size, by.steps, by.t0
+    middle = np.mean(np.concatenate(region.before, axis=1), axis=1)
+    x, y = middle[by.place.index], middle[by.place.degrees + by.place.index]
+    given = by.hamiltonian, by.map, by.step_size, by.steps, by.t0, by.place
     try:
         found = mean_over(region.outline, (float(x), float(y)), *given)
     except LeftRangeError:
@@ -266,47 +287,19 @@ def _mean(by: _Carrying, region: _OutlineImage) -> dict[str, Any]:
     value, error = Fraction(found.value), Fraction(found.error)
     agree = abs(value - region.measured.change) <= error + region.measured.error
     shown, bound = _shown(value, error)
-    return {"mean_lambda": shown, "mean_lambda_error": bound, "agree": agree}
+    name = "mean_lambda" if by.hamiltonian.planar else "mean_defect"
+    return {name: shown, f"{name}_error": bound, "agree": agree}
 
 
 def _distance(by: _Carrying, carried: Sequence[_OutlineImage]) -> dict[str, Any]:
-    """The greatest Hausdorff distance of an outline from its image by the exact flow.
-
-    Nothing where an image is too far away for it, or where too few points of the region's are known
-    to tell even its area. Raises NoFlowError.
-    """
+    """How far the outlines are from their images by the exact flow; nothing where too few points of
+    the region's are known to tell even its area. Raises NoFlowError."""
     region = carried[0].measured
     if region.truncated > max(Fraction(1), abs(region.change)):
         return {}
-    if any(np.abs(z).max() > FARTHEST for each in carried for z in each.after):
+    pairs = [(each.before, each.after) for each in carried]
+    found = distance_from_exact(by.hamiltonian, by.time, by.t0, pairs)
+    if found is None:
         return {}
-    plane = ExactFlowCarrier(by.hamiltonian, by.time, by.t0)
-    panels = [z for each in carried for z in each.before]
-    q, p = plane.images(*(np.concatenate([z[i] for z in panels]) for i in (0, 1)))
-    images = iter(zip(np.split(q, len(panels)), np.split(p, len(panels)), strict=True))
-    apart = [_apart(each.after, [next(images) for _ in each.before]) for each in carried]
-    greatest, bound = _greatest(apart)
-    error = Fraction(bound) + (plane.radius or 0)
-    shown, told = _shown(Fraction(greatest), error)
+    shown, told = _shown(*found)
     return {"distance": shown, "distance_error": told}
-
-
-def _greatest(values: Sequence[tuple[float, float]]) -> tuple[float, float]:
-    """The greatest of values with errors, with its error: a smaller one may be less well known."""
-    greatest = max(value for value, _ in values)
-    most, least = (max(value + sign * error for value, error in values) for sign in (1, -1))
-    return greatest, max(most - greatest, greatest - least)
-
-
-_Nodes = Sequence[tuple[np.ndarray, np.ndarray]]
-
-
-def _apart(own: _Nodes, exact: _Nodes) -> tuple[float, float]:
-    """The Hausdorff distance of two curves with its error, from the nodes of their panels.
-
-    It is at most the greatest distance of points that come from one and the same point.
-    """
-    (one, sagitta), (other, other_sagitta) = dense(own), dense(exact)
-    found = hausdorff([one], [other], sagitta, other_sagitta)
-    most = float(np.hypot(*(one - other).T).max()) * _SAFETY
-    return min(found.value, most), min(found.bound, max(most - found.value, found.value))

@@ -19,15 +19,18 @@ def flows_of(scene: Scene, results: Results) -> tuple[FlowResult, ...]:
 
 
 def _flow(scene: Scene, flow: Flow, results: Results) -> FlowResult:
+    exact, centre = scene.exact_hamiltonian(), flow.placed_shape().centre
     return FlowResult(
         shape=flow.shape or ("polygon" if flow.polygon else "path"),
-        centre=(text(flow.centre.q), text(flow.centre.p)),
+        centre=(text(centre.q), text(centre.p)),
         scale=text(flow.scale),
         step_size=text(flow.step_size),
         before=_outlines_to_draw(flow),
         images=tuple(known_results(FlowImage, flow_tasks(scene, flow), results)),
         source=flow.source,
-        t0=text(scene.t0) if scene.exact_hamiltonian().time_dependent else None,
+        t0=text(scene.t0) if exact.time_dependent else None,
+        plane=None if exact.planar else flow.plane,
+        point={} if exact.planar else {n: text(x) for n, x in flow.point(exact).items()},
     )
 
 
@@ -55,12 +58,13 @@ def flow_json(found: Sequence[tuple[str, FlowResult]]) -> dict[str, Any]:
     first = next((i for i in images if not i["area_preserving"]), images[0])
     same = [i for i in images if i["map"] == first["map"] and i["scene"] == first["scene"]]
     top = max(same, key=lambda image: image["steps"])
-    keys = ("map", "steps", "area_change", "probe_error", "mean_lambda")
+    keys = ("map", "steps", "area_change", "probe_error", "mean_lambda", "mean_defect")
     return {**{name: top[name] for name in keys}, "images": images}
 
 
 def _without_points(image: FlowImage) -> dict[str, Any]:
     data = image.model_dump(mode="json", context=PLAIN)
     for outline in data["outlines"]:
-        del outline["points"]
+        for drawn in (outline, *outline["projections"]):
+            del drawn["points"]
     return data

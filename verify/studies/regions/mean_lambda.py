@@ -1,5 +1,8 @@
 """The mean of Λ over the region inside a closed curve, which is its relative change of area.
 
+In n degrees of freedom it is that of W's entry at (p_i, q_i), where the region lies in the plane
+(q_i, p_i): ω after N steps on the region is 1 + W_ii times ω before. In one of them W is Λ.
+
 A region is swept by rays from a centre c to its curve γ: the integral of f over it is that of
 f(c + r (γ − c)) r (γ − c) × γ' over 0 ≤ r ≤ 1 and the curve, for every closed curve, as what is
 swept twice counts with its sign; only the map must be defined along the rays. Both integrals are by
@@ -8,7 +11,7 @@ count without their signs: two sums may agree by chance where neither is right. 
 matters, the quarters are quartered again.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -19,20 +22,24 @@ from verify.arithmetic.float_context import FLOAT
 from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.many_points import PointMap
+from verify.kernels.step.in_degrees import is_written_out
 from verify.scenes.shapes.outline import Outline
 from verify.studies.regions.panels import NODES, rule
+from verify.studies.regions.place import ITSELF, Place
 
 _FROM_START = Fraction(0)
 _FIRST = 8  # cells along the curve, at least
 _MOST_POINTS = 60_000
 _AGREED = 3e-3  # of the mean: an error of the cells that is good enough; the quarters' is far less
 _ROUNDING = 1e-12  # of |Λ|, in float64 and ΔJ's closed form, whose errors mostly cancel in a mean
+_DEFECT = 2.0**-48  # of one step's S, where that is made from J's rounded entries
+_Density = Callable[[np.ndarray, np.ndarray], np.ndarray]  # of points (q, p) of the region's plane
 _Cell = tuple[int, float, float, float, float]  # an arc, from where to where on it, and on the rays
 
 
 @dataclass(frozen=True)
 class Mean:
-    """The mean of Λ with its error, by how much cells and their quarters differ altogether."""
+    """The mean with its error, by how much cells and their quarters differ altogether."""
 
     value: float
     error: float
@@ -46,18 +53,33 @@ def mean_over(
     step_size: Fraction,
     steps: int,
     t0: Fraction = _FROM_START,
+    place: Place = ITSELF,
 ) -> Mean:
     """The mean of Λ after N steps of a scheme, over the region inside the outline, in float64; from
-    t0 on, where H depends on time.
+    t0 on, where H depends on time. In n degrees of freedom that of W, in the plane of `place`.
 
     By rays from the centre (q, p). Raises LeftRangeError.
     """
-    arithmetic, asked = number_systems.get(float64.NAME, 17), frozenset({"lambda"})
+    name, observable = "lam", "lambda"
+    if not hamiltonian.planar:
+        name, observable = f"w_{place.index}_{place.degrees + place.index}", "symplectic_defect"
     carried = PointMap(
-        hamiltonian, scheme,
-        step_size=step_size, steps=steps, t0=t0, arithmetic=arithmetic, observables=asked,
+        hamiltonian, scheme, step_size=step_size, steps=steps, t0=t0,
+        arithmetic=number_systems.get(float64.NAME, 17), observables=frozenset({observable}),
     )  # fmt: skip
-    region = _Region(outline, centre, carried)
+
+    def density(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        points = place.embed(x, y, lambda value: np.full(len(x), float(value)))
+        found: np.ndarray = carried(**dict(zip(place.names, points, strict=True)))[name]
+        return found
+
+    found = _mean_of(density, outline, centre)
+    written = hamiltonian.planar or is_written_out(hamiltonian, scheme)
+    return found if written else Mean(found.value, found.error + steps * _DEFECT)
+
+
+def _mean_of(density: _Density, outline: Outline, centre: tuple[float, float]) -> Mean:
+    region = _Region(outline, centre, density)
     count = -(-_FIRST // len(outline.arcs))
     first = [
         (arc, k / count, (k + 1) / count, 0.0, 1.0)
@@ -84,11 +106,11 @@ def mean_over(
 
 @dataclass(frozen=True)
 class _Region:
-    """The region inside an outline, swept by rays from a centre, and the map of its points."""
+    """The region inside an outline, swept by rays from a centre, and what is looked at in it."""
 
     outline: Outline
     centre: tuple[float, float]
-    carried: PointMap
+    density: _Density
 
     def families(self, cells: list[_Cell], sums: np.ndarray) -> "list[_Family]":
         """The cells, of which the sums are known, in quarters."""
@@ -98,9 +120,9 @@ class _Region:
         return [_Family(cell, quarters[:, k], apart[:, k]) for k, cell in enumerate(cells)]
 
     def sums(self, cells: list[_Cell]) -> np.ndarray:
-        """Of each cell the area and the integrals of Λ and |Λ|: (3, cells)."""
+        """Of each cell the area and the integrals of the density and its size: (3, cells)."""
         x, y, weights = _cone(self.outline, self.centre, cells)
-        lam = self.carried(p=y, q=x)["lam"]
+        lam = self.density(x, y)
         parts = np.array([weights, weights * lam, np.abs(weights * lam)])
         summed: np.ndarray = parts.reshape(3, len(cells), -1).sum(axis=2)
         return summed
@@ -115,7 +137,7 @@ class _Family:
     apart: np.ndarray
 
     def difference(self, mean: float) -> float:
-        """Of the integral of Λ − mean: where Λ is constant no area's error matters."""
+        """Of the integral of Λ − mean: where Λ, or W, is constant no area's error matters."""
         return abs(float(self.apart[1] - mean * self.apart[0]))
 
 

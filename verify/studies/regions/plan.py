@@ -4,10 +4,11 @@ from collections.abc import Iterator
 
 from verify.execution.plan import Plan
 from verify.execution.study import called
+from verify.kernels.step.in_degrees import map_of, preserves
+from verify.scenes.observables import carries_defect
 from verify.scenes.region_sections import Flow
 from verify.scenes.results.regions import EXACT_FLOW
 from verify.scenes.scene import Scene
-from verify.schemes import get
 from verify.studies.regions.task import FlowTask
 
 
@@ -19,8 +20,18 @@ def need_flows(plan: Plan, scene: Scene) -> None:
             what = f"{name}: {flow.source or 'flow'}, {task.map} after {task.steps} steps"
             plan.need(task, what)
             if flow.mean_lambda and not task.mean_lambda and task.map != EXACT_FLOW:
-                why = "ΔJ ≡ 0 is proved: Λ is exactly 0"
-                plan.leave_out(f"{name}: mean of Λ over the region for {task.map}", why)
+                plan.leave_out(*_no_mean(scene, name, task.map))
+
+
+def _no_mean(scene: Scene, name: str, scheme: str) -> tuple[str, str]:
+    exact = scene.exact_hamiltonian()
+    if exact.planar:
+        why = "ΔJ ≡ 0 is proved: Λ is exactly 0"
+        return f"{name}: mean of Λ over the region for {scheme}", why
+    why = "S ≡ 0 is shown: W is exactly 0"
+    if not preserves(map_of(exact, scheme)):
+        why = f"W is not carried in {exact.degrees} degrees of freedom"
+    return f"{name}: mean of W over the region for {scheme}", why
 
 
 def maps_of(scene: Scene, flow: Flow) -> tuple[str, ...]:
@@ -34,7 +45,7 @@ def flow_tasks(scene: Scene, flow: Flow) -> Iterator[FlowTask]:
     exact, given, shape = scene.exact_hamiltonian(), scene.hamiltonian_fields(), flow.placed_shape()
     for name in maps_of(scene, flow):
         by_scheme = name != EXACT_FLOW
-        preserves = not by_scheme or get(name).step_map(exact).preserves_area
+        kept = not by_scheme or preserves(map_of(exact, name))
         for steps in flow.counts:
             yield FlowTask(
                 **given,
@@ -44,6 +55,8 @@ def flow_tasks(scene: Scene, flow: Flow) -> Iterator[FlowTask]:
                 t0=scene.t0 if exact.time_dependent else None,
                 steps=steps,
                 digits=flow.digits,
-                mean_lambda=flow.mean_lambda and not preserves,
-                distance=by_scheme and flow.exact,
+                mean_lambda=flow.mean_lambda and not kept and carries_defect(exact),
+                distance=by_scheme and flow.exact and exact.planar,
+                point={} if exact.planar else flow.point(exact),
+                plane=flow.plane,
             )

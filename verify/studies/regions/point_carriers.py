@@ -1,5 +1,7 @@
 """Points of outlines in one number system, and the maps that carry them.
 
+A point is q and p, or q1 … qn and p1 … pn, in the order of its `Place`: a sequence of each.
+
 A scheme's map in float64 is held against the same steps with compensated sums. These see nothing of
 a clock's rounding: where H depends on time, and in wider number systems, it is held against a wider
 one. The exact flow comes with its own bound.
@@ -18,10 +20,13 @@ from verify.arithmetic.exact import of_mpf
 from verify.arithmetic.float_context import FLOAT
 from verify.arithmetic.number_system import bits_for
 from verify.arithmetic.systems import float64
+from verify.flows.degrees.points import points_in_degrees
 from verify.flows.points import exact_points
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.many_points import PointMap
 from verify.scenes.shapes.outline import Outline
+from verify.studies.regions.carrier import Points
+from verify.studies.regions.place import ITSELF, Place
 
 _FLOAT_GRID = 80  # bits after the point that are kept of a float64
 _PRECISE = 2000  # bits with which the size of an outline is found
@@ -41,14 +46,14 @@ def smaller_than_one(outline: Outline) -> int:
 class _Floats:
     """Points in float64."""
 
-    bits, grid = 53, _FLOAT_GRID
+    bits, grid, place = 53, _FLOAT_GRID, ITSELF
 
-    def points(self, outline: Outline, arc: int, s: Sequence[Fraction]) -> tuple[Any, Any]:
+    def points(self, outline: Outline, arc: int, s: Sequence[Fraction]) -> Points:
         at = np.array([float(x) for x in s])
-        x, y = outline.arcs[arc](FLOAT, at)
-        return np.broadcast_to(x, at.shape).copy(), np.broadcast_to(y, at.shape).copy()
+        x, y = (np.broadcast_to(z, at.shape).copy() for z in outline.arcs[arc](FLOAT, at))
+        return self.place.embed(x, y, lambda value: np.full(at.shape, float(value)))
 
-    def floats(self, points: tuple[Any, Any]) -> tuple[np.ndarray, np.ndarray]:
+    def floats(self, points: Points) -> tuple[np.ndarray, ...]:
         return points
 
     def whole(self, x: np.ndarray) -> np.ndarray:
@@ -69,9 +74,10 @@ class FloatCarrier(_Floats):
 
     def __init__(
         self, hamiltonian: Hamiltonian, scheme: str, h: Fraction, steps: int, t0: Fraction,
-        smaller: int = 0,
+        smaller: int = 0, place: Place = ITSELF,
     ) -> None:  # fmt: skip
         self.grid += smaller
+        self.place = place
         arithmetic = number_systems.get(self.name, self.digits)
         steps_of = partial(PointMap, hamiltonian, scheme, step_size=h, steps=steps, t0=t0)
         self._map = steps_of(arithmetic=arithmetic)
@@ -83,17 +89,16 @@ class FloatCarrier(_Floats):
         else:
             self._finer = steps_of(arithmetic=arithmetic, compensated=True)
 
-    def images(self, x: Any, y: Any) -> tuple[Any, Any]:
-        return _image(self._map, x, y)
+    def images(self, *points: Any) -> Points:
+        return _image(self._map, self.place, points)
 
-    def finer(self, x: Any, y: Any) -> tuple[Any, Any]:
+    def finer(self, *points: Any) -> Points:
         own = self._finer.arithmetic
         if own.name == self.name:
-            return _image(self._finer, x, y)
-        given = ([own.number(Fraction(v)) for v in z.tolist()] for z in (x, y))
-        found = _image(self._finer, *given)
-        q, p = (np.array([float(own.exact(v)) for v in z]) for z in found)
-        return q, p
+            return _image(self._finer, self.place, points)
+        given = [[own.number(Fraction(v)) for v in z.tolist()] for z in points]
+        found = _image(self._finer, self.place, given)
+        return tuple(np.array([float(own.exact(v)) for v in z]) for z in found)
 
 
 class ExactFlowCarrier(_Floats):
@@ -103,20 +108,31 @@ class ExactFlowCarrier(_Floats):
     name, digits = float64.NAME, 17
 
     def __init__(
-        self, hamiltonian: Hamiltonian, time: Fraction, t0: Fraction, smaller: int = 0
-    ) -> None:
+        self, hamiltonian: Hamiltonian, time: Fraction, t0: Fraction, smaller: int = 0,
+        place: Place = ITSELF,
+    ) -> None:  # fmt: skip
         self.grid += smaller
+        self.place = place
         self._hamiltonian, self._time, self._t0 = hamiltonian, time, t0
         self.radius: Fraction | None = Fraction(0)
         self.method = ""
 
-    def images(self, x: Any, y: Any) -> tuple[Any, Any]:
-        found = exact_points(self._hamiltonian, y, x, [self._time], self._t0)
-        self.radius = max(self.radius or Fraction(0), Fraction(found.bound))
-        self.method = found.method
-        return found.q[0], found.p[0]
+    def images(self, *points: Any) -> Points:
+        if self._hamiltonian.planar:
+            q, p = points
+            plane = exact_points(self._hamiltonian, p, q, [self._time], self._t0)
+            self._note(plane.bound, plane.method)
+            return plane.q[0], plane.p[0]
+        given = dict(zip(self.place.names, points, strict=True))
+        found = points_in_degrees(self._hamiltonian, given, self._time, self._t0)
+        self._note(found.bound, found.method)
+        return tuple(found.points[name] for name in self.place.names)
 
-    def finer(self, x: Any, y: Any) -> tuple[Any, Any]:
+    def _note(self, bound: float, method: str) -> None:
+        self.radius = max(self.radius or Fraction(0), Fraction(bound))
+        self.method = method
+
+    def finer(self, *points: Any) -> Points:
         raise NotImplementedError("the exact flow's error is known")
 
 
@@ -128,11 +144,11 @@ class WideCarrier:
 
     def __init__(
         self, hamiltonian: Hamiltonian, scheme: str, h: Fraction, steps: int, t0: Fraction,
-        name: str, digits: int, smaller: int = 0,
+        name: str, digits: int, smaller: int = 0, place: Place = ITSELF,
     ) -> None:  # fmt: skip
         """`digits` of the outline's size, `smaller` bits below 1. Raises UnsupportedError."""
         self._steps = partial(PointMap, hamiltonian, scheme, step_size=h, steps=steps, t0=t0)
-        self.name, self.digits = name, digits
+        self.name, self.digits, self.place = name, digits, place
         self._places = digits + -(-smaller * 3 // 10)
         self.method = f"{name}; its rounding by {_SAMPLED} panels with {digits + _WIDER} digits"
         self.bits, self.grid = bits_for(digits), bits_for(self._places)
@@ -144,37 +160,37 @@ class WideCarrier:
         finer = number_systems.get(self.name, self._places + _WIDER)
         return self._steps(arithmetic=finer)
 
-    def points(self, outline: Outline, arc: int, s: Sequence[Fraction]) -> tuple[Any, Any]:
+    def points(self, outline: Outline, arc: int, s: Sequence[Fraction]) -> Points:
         mp = MPContext()
         mp.prec = self.grid + 20
         at = [outline.arcs[arc](mp, mp.mpf(x.numerator) / x.denominator) for x in s]
         number = self.arithmetic.number
         x, y = ([number(of_mpf(mp.mpf(z[i]))) for z in at] for i in (0, 1))
-        return _objects(x), _objects(y)
+        return self.place.embed(
+            _objects(x), _objects(y), lambda value: _objects([number(value)] * len(s))
+        )
 
-    def floats(self, points: tuple[Any, Any]) -> tuple[np.ndarray, np.ndarray]:
-        x, y = (np.array([float(self.arithmetic.exact(v)) for v in z]) for z in points)
-        return x, y
+    def floats(self, points: Points) -> tuple[np.ndarray, ...]:
+        exact = self.arithmetic.exact
+        return tuple(np.array([float(exact(v)) for v in z]) for z in points)
 
     def whole(self, x: Any) -> np.ndarray:
         exact, size = self.arithmetic.exact, 1 << self.grid
         return _objects([round(exact(v) * size) for v in x])
 
-    def images(self, x: Any, y: Any) -> tuple[Any, Any]:
-        q, p = _image(self._map, x, y)
-        return _objects(q), _objects(p)
+    def images(self, *points: Any) -> Points:
+        return tuple(map(_objects, _image(self._map, self.place, points)))
 
-    def finer(self, x: Any, y: Any) -> tuple[Any, Any]:
+    def finer(self, *points: Any) -> Points:
         own, wider = self.arithmetic, self._wider.arithmetic
-        given = ([wider.number(own.exact(v)) for v in z] for z in (x, y))
-        found = _image(self._wider, *given)
-        q, p = (_objects([own.number(wider.exact(v)) for v in z]) for z in found)
-        return q, p
+        given = [[wider.number(own.exact(v)) for v in z] for z in points]
+        found = _image(self._wider, self.place, given)
+        return tuple(_objects([own.number(wider.exact(v)) for v in z]) for z in found)
 
 
-def _image(point_map: PointMap, x: Any, y: Any) -> tuple[Any, Any]:
-    found = point_map(p=y, q=x)
-    return found["q"], found["p"]
+def _image(point_map: PointMap, place: Place, points: Sequence[Any]) -> Points:
+    found = point_map(**dict(zip(place.names, points, strict=True)))
+    return tuple(found[name] for name in place.names)
 
 
 def _objects(values: Sequence[Any]) -> np.ndarray:

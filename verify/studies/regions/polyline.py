@@ -16,7 +16,7 @@ _MORE = 1.5  # the arc between two points may be farther from its chord than its
 
 
 def dense(
-    panels: Sequence[tuple[np.ndarray, np.ndarray]], points: int = _MOST_POINTS
+    panels: Sequence[tuple[np.ndarray, ...]], points: int = _MOST_POINTS
 ) -> tuple[np.ndarray, float]:
     """A closed curve's points (n, 2), about so many, and how far it is from its chords at most.
 

@@ -1,6 +1,8 @@
 """The task of a region carried by a map."""
 
-from typing import Literal
+from typing import Annotated, Literal
+
+from pydantic import Field
 
 from verify.execution.keeping import Keeper
 from verify.execution.task import HamiltonianTask
@@ -25,6 +27,9 @@ class FlowTask(HamiltonianTask):
     digits: int
     mean_lambda: bool
     distance: bool
+    point: Annotated[dict[str, Number], Field(default_factory=dict)]
+    """In n degrees of freedom the centre's coordinates by their names; `plane`, where it lies."""
+    plane: int = 1
 
     @property
     def cost(self) -> int:
@@ -40,6 +45,8 @@ class FlowTask(HamiltonianTask):
     def compute(self, keeper: Keeper) -> FlowImage:
         """The images of the outline, as a result."""
         from verify.studies.regions.carry import carry
+        from verify.studies.regions.place import ITSELF, Place
 
-        shape = self.shape.to_shape()
-        return carry(self.exact_hamiltonian(), self.map, shape, **self.asked("map", "shape"))
+        place = Place.of(self.point, self.plane) if self.point else ITSELF
+        shape, asked = self.shape.to_shape(), self.asked("map", "shape", "point", "plane")
+        return carry(self.exact_hamiltonian(), self.map, shape, place=place, **asked)

@@ -8,7 +8,7 @@ from matplotlib.transforms import Bbox
 
 from tests.helpers.constructed.flows import FAILED, circle, exact, flow, image, outline, spiral
 from tests.unit.pages.test_page import scene
-from verify.pages.figures.flow_figure import grid_of
+from verify.pages.figures.flow_grid import grid_of
 from verify.pages.figures.label_place import place_of
 from verify.pages.sections.scene import flow as section
 from verify.scenes.results.regions import FlowResult

@@ -10,7 +10,8 @@ from tests.helpers.imported_modules import imported_by
 from tests.unit.pages.figures.test_figures import figures
 from tests.unit.pages.sections.test_growth_view import text_of
 from tests.unit.pages.test_page import EVIL, SCRIPT, Reader, claim, proof, report, run, scene
-from verify.pages.figures.flow_figure import draw_flow, grid_of
+from verify.pages.figures.flow_figure import draw_flow
+from verify.pages.figures.flow_grid import grid_of
 from verify.pages.figures.svg import styled
 from verify.pages.page import render
 from verify.pages.text.typography import number

@@ -7,7 +7,7 @@ import pytest
 from tests.helpers.known_areas import linear_determinant
 from tests.unit.studies.regions.test_carry import OSCILLATOR, carried, within
 from verify.scenes.region_sections import PlacedShape
-from verify.studies.regions.carry import _greatest
+from verify.studies.regions.distance import _greatest
 
 TRUE = linear_determinant("lie2", Fraction(1, 10), 10)
 

@@ -26,8 +26,8 @@ def test_points_go_as_runs_do(name: str) -> None:
     """Of each by itself, in mpfr and from the same time."""
     made = number_systems.get(name, 25)
     carried = PointMap(DRIVEN, "lie2", step_size=H, steps=STEPS, t0=T0, arithmetic=made)
-    numbers = (x if name == "float64" else [made.number(Fraction(v)) for v in x] for x in (P, Q))
-    found = carried(*numbers)
+    p, q = (x if name == "float64" else [made.number(Fraction(v)) for v in x] for x in (P, Q))
+    found = carried(p=p, q=q)
     within = Fraction(1, 10 ** (13 if name == "float64" else 20))
     for k, (p, q) in enumerate(zip(P, Q, strict=True)):
         one = run(DRIVEN, "lie2", p=p, q=q, t0=T0, step_size=H, steps=STEPS,
@@ -41,7 +41,7 @@ def test_points_go_as_runs_do(name: str) -> None:
 def test_another_start_of_the_clock_is_another_map() -> None:
     made = number_systems.get("float64", 17)
     here, there = (
-        PointMap(DRIVEN, "lie2", step_size=H, steps=STEPS, t0=t0, arithmetic=made)(P, Q)
+        PointMap(DRIVEN, "lie2", step_size=H, steps=STEPS, t0=t0, arithmetic=made)(p=P, q=Q)
         for t0 in (T0, Fraction(0))
     )
     assert np.abs(here["p"] - there["p"]).min() > 1e-3
