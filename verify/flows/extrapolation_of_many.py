@@ -6,7 +6,7 @@ is not much slower here: in float64 what is lost grows with the time to 10⁻¹�
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import nullcontext
 from dataclasses import replace
 from fractions import Fraction
@@ -108,7 +108,7 @@ class CommonSteps:
         import numpy as np
 
         self.z, self._t0 = start, t0
-        self._slopes = slopes
+        self.slopes = slopes
         self._sign = sign
         self._columns = columns
         self._done = WIDE.mpf(0)
@@ -122,6 +122,12 @@ class CommonSteps:
         self._least = self._step * _SHORTEST
 
     def to(self, goal: Any) -> None:
+        """To this time since the start. Raises NoFlowError."""
+        for _ in self.steps_to(goal):
+            pass
+
+    def steps_to(self, goal: Any) -> Iterator[tuple[Array, Any]]:
+        """After each step, where the points were before it, and its length."""
         import numpy as np
 
         for _ in range(_MOST_STEPS):
@@ -129,13 +135,14 @@ class CommonSteps:
                 return
             last = self._done + self._step >= goal
             step = goal - self._done if last else self._step
-            moved, error = self._extrapolated(self._sign * step)
+            moved, error = self._extrapolated(self.z, self._sign * step)
             size = np.maximum(self._scale, np.max(np.abs(self.z + moved), axis=0))
             ratio = error / np.where(size > 0, size, 1.0)
             worst = float(ratio.max(initial=0.0))
             if worst <= self._tolerance:
-                self.z, self._scale = self.z + moved, size
+                before, self.z, self._scale = self.z, self.z + moved, size
                 self._done = goal if last else self._done + step
+                yield before, step
                 if worst <= _EASY * self._tolerance and not last:
                     self._step = _short(self._step * _LONGER)
                 continue
@@ -150,24 +157,28 @@ class CommonSteps:
         i = int(np.argmax(np.where(np.isfinite(ratio), ratio, np.inf)))
         return f"point {i}: {LOST}, at about t = `{self._sign * self._done:.6g}`"
 
-    def _extrapolated(self, time: Any) -> tuple[Array, Array]:
+    def moved(self, z: Array, time: Array) -> Array:
+        """How far points move in a time each, of a step's length or less, of an H without time."""
+        return self._extrapolated(z, time)[0]
+
+    def _extrapolated(self, z: Array, time: Any) -> tuple[Array, Array]:
         """How far the points move by Aitken and Neville's scheme, and its estimated error."""
         import numpy as np
 
         above: list[Array] = []
         for j in range(1, self._columns + 1):
-            row = [self._midpoint(time, 2 * j)]
+            row = [self._midpoint(z, time, 2 * j)]
             for k, before in enumerate(above, start=1):
                 row.append(row[-1] + (row[-1] - before) * (j - k) ** 2 / (j**2 - (j - k) ** 2))
             above = row
         return above[-1], np.max(np.abs(above[-1] - above[-2]), axis=0)
 
-    def _midpoint(self, time: Any, count: int) -> Array:
+    def _midpoint(self, z: Array, time: Any, count: int) -> Array:
         """Gragg's rule with so many steps, smoothed at its end: what is added to z."""
         import numpy as np
 
         h = WIDE.mpf(time) / count
-        slopes, z, t = self._slopes, self.z, self._t0 + self._sign * self._done
+        slopes, t = self.slopes, self._t0 + self._sign * self._done
         before = np.zeros_like(z)
         at = np.empty_like(z)
         _fill(at, slopes(*z, t))

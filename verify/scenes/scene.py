@@ -45,6 +45,11 @@
     periods = 500
     initial_values = [{ q = 1, p = 0 }]
 
+    [[poincare]]                           # orbits where they pass a surface, in n ≥ 2 degrees
+    step_size = 0.05
+    time = 500
+    initial_values = [{ q = [0, 0.1], p = [0.4, 0] }]
+
     [[reference]]                          # numbers to test against; see verify.scenes.sections
     step_sizes = [0.01]
     initial_values = [{ q = 1.5, p = 0 }]
@@ -72,6 +77,7 @@ from verify.scenes.frozen import Frozen, Section
 from verify.scenes.mistakes.syntax import toml_mistake
 from verify.scenes.mistakes.values import one_line
 from verify.scenes.observables import check_observables
+from verify.scenes.poincare_section import Poincare
 from verify.scenes.region_sections import Flow
 from verify.scenes.run_sections import Grid, SeparationOver, Series
 from verify.scenes.sections import Reference, WorkPrecision
@@ -124,6 +130,8 @@ class Scene(Frozen):
     """Regions that maps carry, and their areas."""
     stroboscopic: tuple[Stroboscopic, ...] = ()
     """Orbits looked at once in each period of H."""
+    poincare: tuple[Poincare, ...] = ()
+    """Orbits looked at where they pass a surface, in two degrees of freedom or more."""
     stability: tuple[Stability, ...] = ()
     """Runs, judged: stable or not, and whose fault it is."""
     largest_step: tuple[LargestStepOver, ...] = ()
@@ -174,13 +182,15 @@ class Scene(Frozen):
                 point_of(exact, at.q, at.p)
         for flow in self.flow:
             flow.point(exact)
+        for passed in self.poincare:
+            passed.check_hamiltonian(exact)
         if self.grid is not None and self.grid.observables is not None:
             check_observables(exact, self.grid.observables)
 
     def _check_no_plane(self, exact: Hamiltonian) -> None:
         """InputError where something of the plane is asked for."""
         own = {name for name in Scene.model_fields if name not in _IDENTITY and getattr(self, name)}
-        asked = own - {"name", "every_hamiltonian", "grid", "series", "separation", "reference", "flow"}
+        asked = own - {"name", "every_hamiltonian", "grid", "series", "separation", "reference", "flow", "poincare"}
         asked |= {"grid.growth"} if self.grid and self.grid.growth else set()
         if self.separation or (self.grid and self.grid.separate):
             check_observables(exact, ("symplectic_defect",))  # W is what is separated

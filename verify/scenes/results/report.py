@@ -13,6 +13,7 @@ from verify.scenes.paper_figures import PaperFigure
 from verify.scenes.results.claim import ClaimResult, CriterionResult
 from verify.scenes.results.exploration import Gallery
 from verify.scenes.results.growth import GrowthLawResult
+from verify.scenes.results.poincare import PoincareResult
 from verify.scenes.results.proof import EveryResult, ProofResult
 from verify.scenes.results.regions import FlowResult
 from verify.scenes.results.run import RunResult
@@ -37,7 +38,8 @@ class SceneResult(Frozen):
     degrees of freedom. `growth_laws` hold the grid's runs against the growth law of Λ;
     `growth_explains` is what of a paper the scene says that the law explains. `every` holds what is
     proved of its schemes for every H, `work_precision` error against run time,
-    `flows` what maps do to regions, `stroboscopic` orbits once in each period;
+    `flows` what maps do to regions, `stroboscopic` orbits once in each period, `poincare` orbits
+    where they pass a surface;
     `stability`, `largest_steps` and `stability_maps` how stable they are.
     """
 
@@ -62,6 +64,7 @@ class SceneResult(Frozen):
     work_precision: WorkPrecisionResult | None = None
     flows: tuple[FlowResult, ...] = ()
     stroboscopic: tuple[StroboscopicResult, ...] = ()
+    poincare: tuple[PoincareResult, ...] = ()
     stability: tuple[StabilityResult, ...] = ()
     largest_steps: tuple[LargestStepResult, ...] = ()
     stability_maps: tuple[StabilityMapResult, ...] = ()

@@ -1,0 +1,137 @@
+"""Orbits where they pass a surface, as the page shows them: sentences, a figure, a table."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+
+from markupsafe import Markup
+
+from verify.pages.figures.captioned_plot import Plot, plotted
+from verify.pages.sections.rows import Row
+from verify.pages.sections.section import Picture, Place, Section
+from verify.pages.text.typography import NBSP, listed, number, step, whole
+from verify.scenes.results.poincare import MapSections, PoincareOrbit, PoincareResult
+from verify.scenes.results.regions import EXACT_FLOW
+from verify.scenes.results.report import SceneResult
+
+_IS = f"{NBSP}={NBSP}"
+
+
+@dataclass(frozen=True)
+class PassesView:
+    """What one section of the scene asked for."""
+
+    result: PoincareResult
+    anchor: str
+    title: str
+    finding: str
+    rows: tuple[Row, ...]
+    plot: Plot
+
+
+@dataclass(frozen=True)
+class PoincareView:
+    """All of them."""
+
+    each: tuple[PassesView, ...]
+
+
+def _view(scene: SceneResult, anchor: str) -> PoincareView | None:
+    if not scene.poincare:
+        return None
+    found = (_one(result, f"passes-{k}-of-{anchor}") for k, result in enumerate(scene.poincare))
+    return PoincareView(tuple(found))
+
+
+def _one(result: PoincareResult, anchor: str) -> PassesView:
+    from verify.pages.figures.poincare_figure import draw_passes, drawn_passes
+
+    way = "upwards" if result.rising else "downwards"
+    orbits = whole(len(result.sections[0].orbits))
+    where = f"where {result.coordinate} passes {number(result.value)} {way}"
+    title = f"{orbits} orbits {where}"
+    lead = (
+        f"{title}, by {listed(map(_name, result.sections))}, until t{_IS}{number(result.time)}; "
+        f"h{_IS}{step(result.step_size)}"
+    )
+    passes = max(len(o.points) for each in result.sections for o in each.orbits)
+    shown = drawn_passes(result.sections)
+    some = f" The first {whole(shown)} passes are drawn." * (shown < passes)
+    said = " ".join(map(_finding, result.sections))
+    return PassesView(
+        result=result,
+        anchor=anchor,
+        title=f"{result.source}: {title}" if result.source else title,
+        finding=said,
+        rows=tuple(
+            Row(each.map, _cells(o), _left(o)) for each in result.sections for o in each.orbits
+        ),
+        plot=plotted(
+            lambda: draw_passes(result),
+            name=f"points-of-{anchor}",
+            lead=lead,
+            label=f"{lead}. {said}",
+            caption=(
+                "A colour an orbit, the same in all panels; grey: what a second reckoning does "
+                f"not confirm. Points of one curve: regular motion; scattered ones: chaos.{some}"
+            ),
+        ),
+    )
+
+
+def _name(sections: MapSections) -> str:
+    return "the exact flow" if sections.map == EXACT_FLOW else sections.map
+
+
+def _finding(sections: MapSections) -> str:
+    """How far the map's orbits are known, and how well."""
+    orbits = sections.orbits
+    lost = [o for o in orbits if o.known < len(o.points)]
+    error = max((o.error for o in orbits), key=Fraction)
+    said = f"With {whole(sections.digits)} digits in {sections.arithmetic}, by {_name(sections)},"
+    within = f"within {number(error)} (estimated, by a second reckoning)"
+    if not lost:
+        return f"{said} every point is known {within}."
+    first = min(o.known for o in lost)
+    many = f"{whole(len(lost))} of {whole(len(orbits))} orbits"
+    part = "is known for a part" if len(lost) == 1 else "are known for a part"
+    return (
+        f"{said} {many} {part} of the time alone, at least for {whole(first)} passes; what is "
+        f"known is so {within}."
+    )
+
+
+def _cells(orbit: PoincareOrbit) -> tuple[str, ...]:
+    q, p = (", ".join(map(number, values)) for values in (orbit.q, orbit.p))
+    counts = whole(len(orbit.points)), whole(orbit.known)
+    return q, p, number(orbit.energy), *counts, number(orbit.error)
+
+
+def _left(orbit: PoincareOrbit) -> str:
+    return "it leaves every range" if orbit.left else ""
+
+
+_TERMS = {
+    "Poincaré section": Markup(
+        "The states of an orbit each time it passes a surface, here that of one coordinate’s value, "
+        "in the same direction. In two degrees of freedom two of their coordinates tell them, at a "
+        "given energy: they are points of one closed curve where a second quantity is kept, and a "
+        "sea of points where the motion is chaotic. A scheme’s orbit passes in the step from z to "
+        "Φ_h(z) at that Φ_θ(z) which lies on the surface."
+    ),
+}
+
+
+def _pictures(view: PoincareView) -> Iterator[Picture]:
+    for each in view.each:
+        yield Picture((3,), each.plot, Place(each.anchor, each.title))
+
+
+SECTION = Section(
+    order=26,
+    title="Where orbits pass a surface",
+    anchor="poincare",
+    view=_view,
+    pictures=_pictures,
+    terms=lambda _: _TERMS,
+)

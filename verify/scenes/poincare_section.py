@@ -1,0 +1,96 @@
+"""The section of a scene that looks at orbits where they pass a surface: Poincaré's.
+
+[[poincare]]                           # of an autonomous H(p1 … pn, q1 … qn), n ≥ 2
+coordinate = "q1"                      # which passes …
+value = 0                              # … this value
+rising = true                          # upwards; false: downwards
+draw = ["q2", "p2"]                    # what is drawn: to the right, and upwards
+step_size = 0.05
+time = 500                             # how long each orbit is followed; or steps = 10000
+initial_values = [{ q = [0, 0.1], p = [0.4, 0] }, { q = [0, 0], p = [0.5, 0] }]
+schemes = ["lie2", "stormer-verlet"]   # the scene's, where it is left out
+exact = true                           # the exact flow's points beside them
+digits = 33                            # with which orbits by schemes are followed
+source = "Figure 4"                    # what of a paper it repeats; may be left out
+"""
+
+from fractions import Fraction
+from typing import Annotated, Self
+
+from pydantic import Field, model_validator
+
+from verify.errors import NOT_GIVEN, InputError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.scenes.frozen import Section
+from verify.scenes.values import (
+    Digits,
+    Number,
+    SchemeName,
+    Start,
+    Steps,
+    StepSize,
+    Time,
+    distinct,
+    steps_of,
+)
+
+_MOST_STEPS = 2_000_000  # of all orbits by one map: minutes
+
+
+class Poincare(Section):
+    """See the module's text for the keys."""
+
+    coordinate: str = "q1"
+    """The coordinate whose passing of `value` is looked at, one of p1 … pn, q1 … qn."""
+    value: Number = Fraction(0)
+    """The value that it passes."""
+    rising: Annotated[bool, Field(strict=True)] = True
+    """Whether it passes upwards, or, where this is false, downwards."""
+    draw: tuple[str, str] = ("q2", "p2")
+    """The two coordinates that are drawn, to the right and upwards."""
+    step_size: StepSize
+    """The step size h."""
+    time: Time | None = None
+    """How long the orbits are followed, N = T/h rounded down; or `steps`."""
+    steps: Steps | None = None
+    """Over how many steps they are; or `time`."""
+    initial_values: Annotated[tuple[Start, ...], Field(min_length=1, max_length=100)]
+    """Where the orbits start, each once, with lists; each has its own energy."""
+    schemes: Annotated[tuple[SchemeName, ...], Field(max_length=100)] = ()
+    """The schemes; the scene's, where it is left out."""
+    exact: Annotated[bool, Field(strict=True)] = True
+    """Whether the exact flow's points stand beside them."""
+    digits: Digits = 33
+    """With how many digits the orbits by schemes are followed."""
+    source: Annotated[str, Field(max_length=80)] = ""
+    """What of a paper it repeats, for its caption."""
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if (self.time is None) == (self.steps is None):
+            raise InputError("time, steps", NOT_GIVEN, "give one of the two")
+        for name in ("initial_values", "schemes", "draw"):
+            distinct(name, getattr(self, name))
+        if self.count * len(self.initial_values) > _MOST_STEPS:
+            problem = f"for {len(self.initial_values)} orbits are more than {_MOST_STEPS} in all"
+            raise InputError("steps", self.count, problem)
+        return self
+
+    @property
+    def count(self) -> int:
+        """The number N of steps of each orbit."""
+        return steps_of(self.time, self.steps, self.step_size)
+
+    def check_hamiltonian(self, hamiltonian: Hamiltonian) -> None:
+        """InputError where H depends on t, is of one degree of freedom, or has no such
+        coordinate."""
+        formula, names = hamiltonian.formula, hamiltonian.coordinates
+        if hamiltonian.degrees < 2:
+            problem = "is of one degree of freedom; [[poincare]] takes p1 … pn and q1 … qn, n ≥ 2"
+            raise InputError("hamiltonian", formula, problem)
+        if hamiltonian.time_dependent:
+            problem = "depends on t; [[poincare]] takes an H that does not"
+            raise InputError("hamiltonian", formula, problem)
+        for key, given in (("coordinate", self.coordinate), *(("draw", x) for x in self.draw)):
+            if given not in names:
+                raise InputError(key, given, f"is no coordinate; allowed: {', '.join(names)}")

@@ -1,0 +1,1 @@
+"""Orbits of schemes and of the exact flow where they pass a surface."""

@@ -1,0 +1,112 @@
+"""Where orbits of the exact flow pass a surface: all of them together, in long double.
+
+They take common steps by an extrapolation (`verify.flows.extrapolation_of_many`), which are long; a
+pass within one is seen by a cubic through its ends, looked at in parts, and then found by Newton's
+iteration on the length of the step itself. A pass that lasts less than a part is not seen.
+"""
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from typing import Any
+
+from verify.arithmetic.float_context import WIDE
+from verify.flows.extrapolation import NoFlowError
+from verify.flows.extrapolation_of_many import CommonSteps, slopes_of
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.studies.poincare.surface import Passes, Surface
+
+Array = Any  # numpy.ndarray, which is imported where it is used
+_PARTS = 32  # of a step, in which a change of side is looked for
+_TRIES = 8  # of Newton's iteration, which begins at a cubic's root
+_CLOSE = 1e-15  # to the surface, relative to the orbit so far
+DIGITS = 18  # of long double
+
+
+def passes_together(
+    hamiltonian: Hamiltonian,
+    starts: Sequence[Mapping[str, Fraction]],
+    surface: Surface,
+    time: Fraction,
+    columns: int,
+) -> list[Passes]:
+    """All passes of each orbit until the time, by so many columns of the extrapolation.
+
+    Two different numbers of these have independent errors. One that cannot be followed to the end
+    ends the common steps; then each goes alone.
+    """
+    import numpy as np
+
+    z = np.array([[WIDE.rational(s[n]) for s in starts] for n in surface.names], dtype=WIDE.type)
+    found: list[list[Mapping[str, Fraction]]] = [[] for _ in starts]
+    with np.errstate(all="ignore"):
+        walk = CommonSteps(slopes_of(hamiltonian), z, 1, columns, WIDE.mpf(0))
+        seen = _Watch(walk, surface)
+        try:
+            for before, step in walk.steps_to(WIDE.rational(time)):
+                for orbit, state in seen.within(before, step):
+                    found[orbit].append(state)
+        except NoFlowError:
+            if len(starts) == 1:
+                return [Passes(found[0], left=True)]
+            alone = (passes_together(hamiltonian, [s], surface, time, columns) for s in starts)
+            return [passes for (passes,) in alone]
+    return [Passes(states) for states in found]
+
+
+class _Watch:
+    """Looks at each step for passes."""
+
+    def __init__(self, walk: CommonSteps, surface: Surface) -> None:
+        self.walk, self.surface = walk, surface
+        self.value = WIDE.rational(surface.value)
+        self.sign = 1 if surface.rising else -1
+
+    def heights(self, z: Array) -> tuple[Array, Array]:
+        """How far all points are beyond the surface, and how fast that grows."""
+        import numpy as np
+
+        place = self.surface.place
+        slope = self.walk.slopes(*z, 0)[place]
+        return self.surface.height(z, self.value), self.sign * (slope + np.zeros_like(z[place]))
+
+    def within(self, before: Array, step: Any) -> list[tuple[int, Mapping[str, Fraction]]]:
+        """Each pass in the step that led from there: the orbit, and the state on the surface."""
+        import numpy as np
+
+        part = np.arange(_PARTS + 1, dtype=WIDE.type)[:, None] / _PARTS
+        ends = (*self.heights(before), *self.heights(self.walk.z))
+        cubic = _cubic(part, step, *ends)
+        cubic[0], cubic[-1] = ends[0], ends[2]  # neighbouring steps agree on the side
+        parts, orbits = np.nonzero((cubic[:-1] < 0) & (cubic[1:] >= 0))
+        if not len(orbits):
+            return []
+        low, high = cubic[parts, orbits], cubic[parts + 1, orbits]
+        first = (part[parts, 0] - low / (high - low) / _PARTS) * step
+        z, good = self.on_surface(before[:, orbits], first, step)
+        order = np.lexsort((parts, orbits))
+        return [(int(orbits[k]), self._state(z[:, k])) for k in order if good[k]]
+
+    def on_surface(self, before: Array, time: Array, step: Any) -> tuple[Array, Array]:
+        """The points after a time each, near `time`, at which they are on the surface; and which of
+        them are."""
+        import numpy as np
+
+        for _ in range(_TRIES):
+            z = before + self.walk.moved(before, time)
+            height, speed = self.heights(z)
+            time = time - height / speed
+        size = np.maximum(np.abs(z).max(axis=0), WIDE.mpf(1))
+        room = step / _PARTS
+        good = (np.abs(height) <= _CLOSE * size) & (time >= -room) & (time <= step + room)
+        return z, good
+
+    def _state(self, z: Array) -> Mapping[str, Fraction]:
+        exact = (Fraction(*x.as_integer_ratio()) for x in z)
+        return dict(zip(self.surface.names, exact, strict=True))
+
+
+def _cubic(s: Array, step: Any, f: Array, df: Array, g: Array, dg: Array) -> Array:
+    """Hermite's cubic on 0 ≤ s ≤ 1 by values and slopes at its ends."""
+    away, gap = 1 - s, g - f
+    bend = s * away * (away * (df * step - gap) + s * (gap - dg * step))
+    return away * f + s * g + bend

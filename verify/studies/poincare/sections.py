@@ -1,0 +1,114 @@
+"""A map's orbits where they pass a surface, and how far they are known.
+
+An orbit in a chaotic sea loses a digit in every few turns, whatever the arithmetic. So each is
+followed twice: by a scheme with the digits that are asked for and with more of them, by the exact
+flow with extrapolations of two orders. Where the two part, the points are no more the orbit's own.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from verify import lockstep
+from verify.arithmetic.exact import decimal, text, upper
+from verify.arithmetic.systems import mpfr
+from verify.flows.extrapolation import functions_at
+from verify.hamiltonians.energy import energy_of
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.scenes.results.poincare import MapSections, PoincareOrbit
+from verify.scenes.results.regions import EXACT_FLOW
+from verify.studies.poincare import by_exact_flow, by_scheme
+from verify.studies.poincare.surface import Passes, Surface
+
+_MORE = 20  # digits
+_COLUMNS = 8, 7  # of the exact flow's two extrapolations
+_SAME = Fraction(1, 10**6)  # of 1 + the farthest that the points are from 0: one point
+_SHOWN = 7  # digits of a point
+_OF_ENERGY, _SPARE = 10, 20  # digits
+Start = Mapping[str, Fraction]
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is asked of a map: passes of this surface within so many steps, and what is drawn."""
+
+    hamiltonian: Hamiltonian
+    surface: Surface
+    draw: tuple[str, str]
+    step_size: Fraction
+    steps: int
+    digits: int
+
+
+def sections_of(asked: Asked, name: str, starts: Sequence[Start]) -> MapSections:
+    """Orbits by the scheme of this name, or by EXACT_FLOW, from each start, p1 … qn by their
+    names."""
+    begun, exact = lockstep.clock(), name == EXACT_FLOW
+    pairs = _exact(asked, starts) if exact else [_by_scheme(asked, name, z) for z in starts]
+    return MapSections(
+        map=name,
+        orbits=tuple(_orbit(asked, z, *pair) for z, pair in zip(starts, pairs, strict=True)),
+        arithmetic="long double" if exact else mpfr.NAME,
+        digits=by_exact_flow.DIGITS if exact else asked.digits,
+        seconds=lockstep.clock() - begun,
+    )
+
+
+def _exact(asked: Asked, starts: Sequence[Start]) -> list[tuple[Passes, Passes]]:
+    time = asked.step_size * asked.steps
+    both = (
+        by_exact_flow.passes_together(asked.hamiltonian, starts, asked.surface, time, columns)
+        for columns in _COLUMNS
+    )
+    return list(zip(*both, strict=True))
+
+
+def _by_scheme(asked: Asked, name: str, start: Start) -> tuple[Passes, Passes]:
+    one, other = (
+        by_scheme.passes(
+            asked.hamiltonian, name, start, asked.surface,
+            step_size=asked.step_size, steps=asked.steps, digits=asked.digits + more,
+        )
+        for more in (0, _MORE)
+    )  # fmt: skip
+    return one, other
+
+
+def _orbit(asked: Asked, start: Start, found: Passes, again: Passes) -> PoincareOrbit:
+    size = 1 + max((abs(z[n]) for z in found.states for n in asked.draw), default=Fraction(0))
+    known, error = _together(found, again, _SAME * size)
+    return PoincareOrbit(
+        q=tuple(text(x) for name, x in start.items() if name[0] == "q"),
+        p=tuple(text(x) for name, x in start.items() if name[0] == "p"),
+        energy=_energy(asked.hamiltonian, start),
+        points=tuple(_drawn(z, asked.draw) for z in found.states),
+        known=known,
+        error=upper(error),
+        left=found.left,
+    )
+
+
+def _drawn(z: Start, draw: tuple[str, str]) -> tuple[str, str]:
+    x, y = (decimal(z[name], _SHOWN) for name in draw)
+    return x, y
+
+
+def _together(one: Passes, other: Passes, within: Fraction) -> tuple[int, Fraction]:
+    """How many of the first passes are nowhere farther apart, and how far these are at most."""
+    most = Fraction(0)
+    for k, (x, y) in enumerate(zip(one.states, other.states, strict=False)):
+        apart = max(abs(x[name] - y[name]) for name in x)
+        if apart > within:
+            return k, most
+        most = max(most, apart)
+    return min(len(one.states), len(other.states)), most
+
+
+def _energy(hamiltonian: Hamiltonian, start: Start) -> str:
+    """H there, to so many digits."""
+    own = mpfr.make(_OF_ENERGY + _SPARE)
+    names = hamiltonian.coordinates
+    value = functions_at(own, [energy_of(hamiltonian)], names)
+    with own.context():
+        (found,) = value(*(own.number(start[name]) for name in names))
+    return decimal(own.exact(found), _OF_ENERGY)

@@ -1,0 +1,36 @@
+"""The surface that orbits pass: where one coordinate has one value, and which way."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+State = Sequence[Any]  # the numbers of p1 … pn, q1 … qn
+
+
+@dataclass(frozen=True)
+class Surface:
+    """`coordinate` = `value` among the coordinates `names`; passed upwards where it is `rising`."""
+
+    names: tuple[str, ...]
+    coordinate: str
+    value: Fraction
+    rising: bool
+
+    @property
+    def place(self) -> int:
+        """Of the coordinate among all."""
+        return self.names.index(self.coordinate)
+
+    def height(self, z: State, value: Any) -> Any:
+        """How far z is beyond the surface, in the direction that counts; `value` in z's numbers."""
+        beyond = z[self.place] - value
+        return beyond if self.rising else -beyond
+
+
+@dataclass(frozen=True)
+class Passes:
+    """The states at which an orbit passes, in their order; `left`: it did not reach its end."""
+
+    states: Sequence[Mapping[str, Fraction]]
+    left: bool = False
