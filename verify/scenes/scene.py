@@ -175,6 +175,8 @@ class Scene(Frozen):
         for."""
         if not exact.planar:
             self._check_no_plane(exact)
+        for passed in self.poincare:
+            passed.check_hamiltonian(exact)
         for section in self.sections():
             starts = getattr(section, "initial_values", None) or ()
             one = getattr(section, "initial_value", None)
@@ -182,8 +184,6 @@ class Scene(Frozen):
                 point_of(exact, at.q, at.p)
         for flow in self.flow:
             flow.point(exact)
-        for passed in self.poincare:
-            passed.check_hamiltonian(exact)
         if self.grid is not None and self.grid.observables is not None:
             check_observables(exact, self.grid.observables)
 

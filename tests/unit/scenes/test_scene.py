@@ -16,6 +16,7 @@ from verify.execution.executors import THIS_PROCESS
 from verify.scenes.frozen import Frozen, OfScheme, WithProse
 from verify.scenes.results import bounded_value as value
 from verify.scenes.results import claim, growth, proof, separation
+from verify.scenes.results import poincare as poincare_results
 from verify.scenes.results import regions as flow_results
 from verify.scenes.results import report as scene_results
 from verify.scenes.results import run as run_results
@@ -188,6 +189,7 @@ def test_the_steps_are_the_whole_ones_that_fit_into_the_time(tmp_path: Path) -> 
 RESULTS = (
     claim,
     growth,
+    poincare_results,
     proof,
     separation,
     value,
@@ -329,6 +331,11 @@ centre = { q = [0.1, 0], p = [0, 0.1] }
 step_size = 0.1
 steps = [3]
 exact = false
+
+[[poincare]]
+step_size = 0.1
+steps = 90
+initial_values = [{ q = [0.1, 0], p = [0, 0.1] }]
 """
 
 

@@ -113,7 +113,7 @@ def _left(orbit: PoincareOrbit) -> str:
 
 _TERMS = {
     "Poincaré section": Markup(
-        "The states of an orbit each time it passes a surface, here that of one coordinate’s value, "
+        "The states of an orbit each time it passes a surface, here that of a coordinate’s value, "
         "in the same direction. In two degrees of freedom two of their coordinates tell them, at a "
         "given energy: they are points of one closed curve where a second quantity is kept, and a "
         "sea of points where the motion is chaotic. A scheme’s orbit passes in the step from z to "

@@ -1,0 +1,1 @@
+"""Orbits once in each period."""
