@@ -19,7 +19,11 @@ Array = Any  # numpy.ndarray, which is imported where it is used
 _PARTS = 32  # of a step, in which a change of side is looked for
 _TRIES = 8  # of Newton's iteration, which begins at a cubic's root
 _CLOSE = 1e-15  # to the surface, relative to the orbit so far
-DIGITS = 18  # of long double
+
+
+def digits() -> int:
+    """Of long double."""
+    return int(WIDE.prec) * 3 // 10
 
 
 def passes_together(

@@ -49,7 +49,7 @@ def sections_of(asked: Asked, name: str, starts: Sequence[Start]) -> MapSections
         map=name,
         orbits=tuple(_orbit(asked, z, *pair) for z, pair in zip(starts, pairs, strict=True)),
         arithmetic="long double" if exact else mpfr.NAME,
-        digits=by_exact_flow.DIGITS if exact else asked.digits,
+        digits=by_exact_flow.digits() if exact else asked.digits,
         seconds=lockstep.clock() - begun,
     )
 

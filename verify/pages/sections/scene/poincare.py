@@ -44,7 +44,7 @@ def _view(scene: SceneResult, anchor: str) -> PoincareView | None:
 
 
 def _one(result: PoincareResult, anchor: str) -> PassesView:
-    from verify.pages.figures.poincare_figure import draw_passes, drawn_passes
+    from verify.pages.figures.poincare_figure import draw_passes, drawn, drawn_passes
 
     way = "upwards" if result.rising else "downwards"
     orbits = whole(len(result.sections[0].orbits))
@@ -57,6 +57,9 @@ def _one(result: PoincareResult, anchor: str) -> PassesView:
     passes = max(len(o.points) for each in result.sections for o in each.orbits)
     shown = drawn_passes(result.sections)
     some = f" The first {whole(shown)} passes are drawn." * (shown < passes)
+    outside = drawn(result)[1]
+    if outside:
+        some += f" Points far out, by orbits that escape, are not drawn: {whole(outside)}."
     said = " ".join(map(_finding, result.sections))
     return PassesView(
         result=result,
