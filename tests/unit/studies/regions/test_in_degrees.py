@@ -5,7 +5,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
+import verify
+from verify.commands.main import cli
 from verify.flows.degrees import points as module_of_points
 from verify.flows.degrees.points import points_in_degrees
 from verify.flows.degrees.solution import solution_in_degrees
@@ -169,6 +172,29 @@ def test_an_area_that_is_kept_is_not_by_a_wrong_flow(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(point_carriers, "points_in_degrees", planted)
     image = carried(EXACT_FLOW)
     assert abs(number(image.area_change)) > number(image.probe_error)
+
+
+# -- from Python and in one line ------------------------------------------------------------------
+
+
+def test_a_call_takes_lists_and_a_plane() -> None:
+    found = verify.flow(
+        "henon-heiles", "lie2", centre=([0, "1/10"], ["2/5", 0]), plane=2, scale="1/10",
+        step_size=H, steps=N, exact=False,
+    )  # fmt: skip
+    assert found.centre == ("0.1", "0")
+    assert (found.plane, found.point["p1"]) == (2, "0.4")
+    assert found.images[0].agree
+    assert found.images[0].area_change == carried(plane=2).area_change
+
+
+def test_the_command_takes_them_too() -> None:
+    asked = "flow --system henon-heiles --scheme lie2 --q 0,1/10 --p 2/5,0 --scale 1/10 --plane 1"
+    result = CliRunner().invoke(cli, [*asked.split(), "--step-size", "1/10", "--steps", str(N)])
+    assert result.exit_code == 0
+    assert "circle at (q1, p1) = (0, 0.4), scale 0.1, p2 = 0, q2 = 0.1" in result.output
+    assert "∮ p·dq changes by" in result.output
+    assert "NOT THE SAME" not in result.output
 
 
 # -- the exact flow of many points ------------------------------------------------------------
