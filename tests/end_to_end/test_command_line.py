@@ -151,7 +151,7 @@ FORMULAS = {
     "huge-power": ("p**9999", "exponent"),
     "tower": ("9**9**9**9", "exponent"),
     "symbolic-power": ("q**p", "exponent"),
-    "long": ("p + " * 2000 + "q", "longer than"),
+    "long": ("p + " * 4000 + "q", "longer than"),
     "deep": ("(" * 300 + "q" + ")" * 300, "not a formula"),
     "nested-calls": ("sin(" * 80 + "q" + ")" * 80, "nested deeper"),
     "many-terms": ("(p + q + a + b + c + d)**64", "terms"),

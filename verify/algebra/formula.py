@@ -25,7 +25,7 @@ from verify.algebra.requirement import Requirement, of_divisor, of_function, of_
 from verify.arithmetic.exact import rational
 from verify.errors import InputError, LimitError
 
-MAX_LENGTH = 4000
+MAX_LENGTH = 5000  # that of a chain of 64 masses is 4,240
 MAX_DEPTH = 60
 
 FUNCTIONS: dict[str, Callable[[sympy.Expr], sympy.Expr]] = {

@@ -6,6 +6,7 @@ from verify.arithmetic.exact import Exact
 from verify.calls.given import GivenParameters, GivenSystem, listed, scene_of
 from verify.calls.progress import Progress, progress_of
 from verify.errors import InputError
+from verify.hamiltonians.start import Given
 from verify.scenes.results.work_precision import WorkPrecisionResult
 from verify.studies.work_precision.plan import work_precision_task
 
@@ -14,8 +15,8 @@ def bench(
     system: GivenSystem,
     scheme: Any,
     *,
-    q: Exact,
-    p: Exact,
+    q: Given,
+    p: Given,
     step_sizes: Any,
     time: Exact,
     t0: Exact = 0,

@@ -23,6 +23,13 @@ if TYPE_CHECKING:
     from verify.studies.work_precision.task import WorkPrecisionTask
 
 
+# Columns of the table in the plane, and in n degrees of freedom: of a point's fields.
+_ERRORS = {
+    True: {"error": "error", "Λ": "lam"},
+    False: {"error": "error", "energy": "energy", "Λ": "lam", "max |W|": "symplectic_defect"},
+}
+
+
 @click.command()
 @with_one_line(
     click.option("--time", metavar="T", help="N is T/H rounded down."),
@@ -44,7 +51,7 @@ def bench(scene: str | None, output: Path | None, cluster: str | None, **given: 
     """
     if output is not None and output.suffix != ".svg":
         raise InputError("--output", str(output), "must end in .svg")
-    scenes = scenes_of(scene, given, ("q", "p", "time"), _section)
+    scenes = scenes_of(scene, given, ("q", "p", "time"), _section, several=True)
     asked = [each for each in scenes if each.work_precision]
     if not asked:
         raise InputError("SCENE", scene or NOT_GIVEN, "has no [work_precision]; add one")
@@ -134,6 +141,7 @@ def _point(point: "WorkPoint") -> dict[str, Any]:
         "energy_error": point.energy,
         "lambda": point.lam,
         "lambda_plain": point.lam_plain,
+        "symplectic_defect": point.symplectic_defect,
     }
     rest = point.model_dump(mode="json", exclude={"energy", "lam", "lam_plain", *values})
     return {
@@ -160,7 +168,7 @@ def _print_bench(name: str, result: "WorkPrecisionResult") -> None:
     console = Console(highlight=False)
     console.print(_table(name, result))
     for line in result.lines:
-        console.print(_about(line))
+        console.print(_about(line, "Λ" if result.planar else "max |W|"))
     for system in result.systems:
         known = f"{system.certified} certified digits" if system.certified else system.reason
         asked = f"{system.arithmetic}, {system.digits} digits"
@@ -189,32 +197,32 @@ def _table(name: str, result: "WorkPrecisionResult") -> "Table":
         pad_edge=False,
         collapse_padding=True,
     )
-    for head in ("scheme", "h or tol.", "N", "error", "Λ", "seconds", "limited by"):
+    for head in ("scheme", "h or tol.", "N", *_ERRORS[result.planar], "seconds", "limited by"):
         left = head in ("scheme", "limited by")
         table.add_column(head, justify="left" if left else "right", no_wrap=not left)
     for line in result.lines:
         for k, point in enumerate(line.points):
-            table.add_row("" if k else line.name, *_row(point))
+            table.add_row("" if k else line.name, *_row(point, result.planar))
         table.add_section()
     return table
 
 
-def _row(point: "WorkPoint") -> tuple[str, ...]:
+def _row(point: "WorkPoint", planar: bool) -> tuple[str, ...]:
     failed = f"failed, step {point.failed_step}" if point.failed_step else point.limited_by
     return (
         point.step_size or point.tolerance or "",
         "" if point.steps is None else str(point.steps),
-        *map(_few, (point.error, point.lam)),
+        *(_few(getattr(point, name)) for name in _ERRORS[planar].values()),
         _seconds(point.seconds_median),
         failed,
     )
 
 
-def _about(line: "WorkLine") -> str:
+def _about(line: "WorkLine", area: str) -> str:
     if line.peer:
         return f"{line.name}: made ready in {line.compile_seconds:.2g} s"
     slopes = []
-    for of, slope in (("error", line.error_slope), ("Λ", line.lambda_slope)):
+    for of, slope in (("error", line.error_slope), (area, line.lambda_slope)):
         known = f"{slope.value} ± {slope.standard_error}" if slope.value else "none"
         why = f" ({slope.reason})" if slope.reason else ""
         slopes.append(f"order of {of} {known}{why}")

@@ -17,7 +17,7 @@ _LIKELY = {
 }
 _NUMBERED = re.compile(r"[pq]([1-9]\d{0,2})", re.ASCII)
 PLANE = ("p", "q")
-MOST_DEGREES = 32  # of freedom; a matrix of 64 × 64 exact functions is more than any page shows
+MOST_DEGREES = 64  # of freedom; what has n² entries or more has limits of its own
 _PRODUCT = re.compile(r"[pq]{2,}")
 _CALL = re.compile(r"(sinh?|cosh?|tanh?|exp|log|ln|sqrt|atan)_?([pq])")
 

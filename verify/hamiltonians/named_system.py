@@ -50,7 +50,7 @@ class System:
     def hamiltonian(self, values: Mapping[str, Exact | None] | None = None) -> Hamiltonian:
         """H with these parameter values; parameters without one stay symbols.
 
-        Of a family n is no symbol of H: InputError where it is no whole number, 2 … 32.
+        Of a family n is no symbol of H: InputError where it is no whole number, 2 … 64.
         """
         if self.family is None or not isinstance(values, Mapping):
             return Hamiltonian.parse(self.formula, values)

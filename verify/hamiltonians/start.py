@@ -1,6 +1,6 @@
 """Where a run may start: where H is defined and smooth."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 from verify.arithmetic.exact import Exact, rational, text
@@ -35,6 +35,14 @@ def point_of(hamiltonian: Hamiltonian, q: Given, p: Given) -> dict[str, Fraction
         for name, value in zip(own, values, strict=True):
             found[name] = rational(value, name)
     return {name: found[name] for name in hamiltonian.coordinates}
+
+
+def shown_of(
+    hamiltonian: Hamiltonian, point: Mapping[str, Fraction], letter: str
+) -> str | tuple[str, ...]:
+    """q or p of a point as it is shown: a number, or a list in n degrees of freedom."""
+    own = tuple(text(x) for name, x in point.items() if name[0] == letter)
+    return own[0] if hamiltonian.planar else own
 
 
 def check_start(hamiltonian: Hamiltonian, q: Given, p: Given, t0: Exact = 0) -> None:

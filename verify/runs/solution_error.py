@@ -5,10 +5,8 @@ from fractions import Fraction
 from math import isqrt
 
 from verify.errors import InputError
-from verify.flows.degrees.solution import Point, SolutionInDegrees, solution_in_degrees
+from verify.flows.degrees.solution import SolutionInDegrees, solution_in_degrees
 from verify.flows.extrapolation import NoFlowError
-from verify.flows.solution import exact_solution
-from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.orbit import orbit_of
 from verify.runs.start import Start
 from verify.scenes.results.bounded_value import Value
@@ -45,25 +43,15 @@ def solution_errors(result: RunResult, points: int = 200) -> tuple[tuple[Fractio
 
 def _solution(begun: Start, times: list[Fraction], digits: int) -> Iterator[_Point]:
     """The solution and the bound of each coordinate at the times."""
-    whole = _after(begun.hamiltonian, begun.point, times[-1] - begun.t0, digits, begun.t0)
+    whole = solution_in_degrees(
+        begun.hamiltonian, begun.point, times[-1] - begun.t0, digits, begun.t0
+    )
     if not whole.enclosed:
         yield from _followed(begun, times, digits, whole)
         return
     for t in times:
-        found = _after(begun.hamiltonian, begun.point, t - begun.t0, digits, begun.t0)
+        found = solution_in_degrees(begun.hamiltonian, begun.point, t - begun.t0, digits, begun.t0)
         yield tuple(found.point.values()), found.bound
-
-
-def _after(
-    hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int, t0: Fraction
-) -> SolutionInDegrees:
-    """The exact solution after a time, in the plane too."""
-    if not hamiltonian.planar:
-        return solution_in_degrees(hamiltonian, point, time, digits, t0)
-    p, q = point["p"], point["q"]
-    found = exact_solution(hamiltonian, p=p, q=q, time=time, digits=digits, t0=t0)
-    after = {"p": found.p, "q": found.q}
-    return SolutionInDegrees(after, found.bound, found.method, found.enclosed)
 
 
 def _followed(
@@ -76,7 +64,7 @@ def _followed(
     made: list[_Point] = []
     point, before, total = begun.point, begun.t0, Fraction(0)
     for t in times:
-        found = _after(begun.hamiltonian, point, t - before, digits, before)
+        found = solution_in_degrees(begun.hamiltonian, point, t - before, digits, before)
         point, before, total = found.point, t, total + found.bound
         made.append((tuple(point.values()), total))
     missed = max(abs(whole.point[name] - point[name]) for name in point) + whole.bound

@@ -4,9 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from verify.arithmetic.exact import text
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.start import point_of
+from verify.hamiltonians.start import point_of, shown_of
 from verify.scenes.results.run import RunResult
 
 
@@ -36,5 +35,4 @@ class Start:
 
     def text(self, letter: str) -> str | tuple[str, ...]:
         """q or p as it is shown: a number, or a list in n degrees of freedom."""
-        own = tuple(text(x) for name, x in self.point.items() if name[0] == letter)
-        return own[0] if self.hamiltonian.planar else own
+        return shown_of(self.hamiltonian, self.point, letter)

@@ -52,7 +52,7 @@ class WorkPrecision(Section):
     """The length T of each run, N = T/h rounded down; the error is that at t = N·h."""
     step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=2, max_length=100)]
     """The step sizes h, each once."""
-    initial_value: InitialValue
+    initial_value: Start
     """Where the runs start."""
     schemes: Annotated[tuple[SchemeName, ...], Field(max_length=100)] = ()
     """The schemes that are compared; the scene's, where it is left out."""

@@ -13,7 +13,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
         ("p**2/2 + x**2/2", "has no q; is x meant"),
         ("p1**2/2 + p**2/2 + q**2", "has p1 beside p and q; allowed: p and q alone"),
         ("p1**2/2 + q3*p3", "has p1, p3, q3, and neither p2 nor q2"),
-        ("p1 + p40", "has 40 degrees of freedom; allowed: up to 32"),
+        ("p1 + p70", "has 70 degrees of freedom; allowed: up to 64"),
         ("P**2/2 + Q**2/2", "are P, Q meant"),
         ("p**2/2 - cos(theta)", "has no q; is theta meant"),
         ("vx*q", "has no p; is vx meant"),

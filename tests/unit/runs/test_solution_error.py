@@ -2,12 +2,14 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from typing import Any
 
 import pytest
 
 import verify
-from verify.flows.solution import Solution
+from verify.flows.degrees.solution import Point, SolutionInDegrees
 from verify.hamiltonians import known_flows
+from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs import solution_error
 from verify.runs.solution_error import solution_errors
 from verify.scenes.results.run import RunResult
@@ -43,12 +45,13 @@ def test_what_is_lost_on_the_way_is_in_the_bound(
     run: RunResult, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A solution that says more than it knows is found out by the one of a single piece."""
-    true, lost = solution_error.exact_solution, Fraction(1, 10**4)
+    true, lost = solution_error.solution_in_degrees, Fraction(1, 10**4)
 
-    def careless(*given: object, time: Fraction, **named: object) -> Solution:
-        found = true(*given, time=time, **named)
-        return found if time == 1 else replace(found, p=found.p + lost)
+    def careless(h: Hamiltonian, at: Point, time: Fraction, *rest: Any) -> SolutionInDegrees:
+        found = true(h, at, time, *rest)
+        moved = {**found.point, "p": found.point["p"] + lost}
+        return found if time == 1 else replace(found, point=moved)
 
     monkeypatch.setattr(known_flows, "closed_form", lambda *_: None)
-    monkeypatch.setattr(solution_error, "exact_solution", careless)
+    monkeypatch.setattr(solution_error, "solution_in_degrees", careless)
     assert all(Fraction(x.bound) > lost for _, x in solution_errors(run, 4))

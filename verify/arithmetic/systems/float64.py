@@ -7,7 +7,7 @@ overflow give infinities and NaN, which the run finds.
 import math
 import re
 from collections.abc import Callable, Mapping
-from contextlib import nullcontext
+from contextlib import nullcontext, suppress
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
@@ -19,6 +19,7 @@ from verify.arithmetic.number_system import Arithmetic, NumberSystem, interprete
 
 NAME = "float64"
 _REPAID = 200_000  # steps: Python takes some 2 µs each, and numba's import and compilation 1 s
+_LONG = 500  # lines of a kernel, of many degrees of freedom: numba takes some 5 ms for each
 _REPAID_SOLVING = 50_000  # steps with a loop in them, which solves equations: 4 … 25 µs
 
 
@@ -110,6 +111,15 @@ def _unrefused(source: str, name: str, namespace: Mapping[str, Any]) -> Callable
 
 
 def _compiled(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
+    if source.count("\n") > _LONG and "for k in range(steps)" in source:
+        from verify.arithmetic.compiled.doubles import one_point
+
+        with suppress(NotImplementedError):  # a function that is not in its language
+            return one_point(source, namespace)
+    return _by_numba(source, name, namespace)
+
+
+def _by_numba(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
     import numba
 
     # numba looks for the module of what it loads again.

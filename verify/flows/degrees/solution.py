@@ -1,4 +1,4 @@
-"""The exact solution in n degrees of freedom at one time, with its error bound.
+"""The exact solution at one time, with its error bound, in any number of degrees of freedom.
 
 H is taken apart into what is not coupled. A part in one degree of freedom is the plane's
 (`verify.flows.solution`), with its closed forms; Kepler's problem has one where the orbit is an
@@ -58,8 +58,8 @@ def solution_in_degrees(
         raise InputError("digits", digits, f"must be 1 … {MOST_DIGITS}")
     if time == 0:
         return SolutionInDegrees(point, Fraction(0), _ITSELF)
-    parts = uncoupled(hamiltonian)
-    if len(parts) == 1:
+    parts = [] if hamiltonian.planar else uncoupled(hamiltonian)
+    if len(parts) < 2:
         return _of_part(hamiltonian, point, time, digits, t0)
     found: dict[str, Fraction] = {}
     solutions = []

@@ -72,10 +72,15 @@ def _area_panels(found: WorkPrecisionResult) -> "Iterator[Panel]":
     if lines:
         from verify.pages.figures.work_precision_figure import Panel
 
-        yield Panel("|Λ| against run time", _RUN_TIME, lines)
+        area = "|Λ|" if found.planar else "max |W|"
+        yield Panel(f"{area} against run time", _RUN_TIME, lines)
 
 
 def _of_areas(found: WorkPrecisionResult) -> str:
+    if not found.planar:
+        kept = [line.name for line in found.lines if line.area_preserving]
+        said = f" For {listed(kept)} S ≡ 0 is proved, and W is 0." if kept else ""
+        return f"max |W| is the greatest entry of W, the symplectic defect of the run.{said}"
     caption = "Λ in float64 by the closed form of ΔJ."
     keeping = [line for line in found.lines if line.area_preserving]
     if keeping:
@@ -171,7 +176,7 @@ def _area(line: WorkLine) -> list["Mark"]:
     found: list[Mark] = []
     timed = _timed(line)
     for point in timed:
-        value = point.lam_plain if line.area_preserving else point.lam
+        value = point.lam_plain if line.area_preserving else point.area_error
         found += _mark(_run_time(point, timed), value, point.lambda_limited_by)
     return found
 

@@ -17,8 +17,9 @@ class WorkPoint(Frozen):
     N is T/h, rounded down.
     `truncation`: the same of the scheme in exact arithmetic; `rounding`: how far the float64 state
     is from that. `energy`: |H(z_N) − H(z_0)|. `lam`: Λ in float64 by the closed form of ΔJ, exactly
-    0 where that is proved; `lam_plain`: by the plain product of determinants. `limited_by` is of
-    `error`, `lambda_limited_by` of Λ; "tolerance" is a peer's, in which nothing tells truncation
+    0 where that is proved; `lam_plain`: by the plain product of determinants, in the plane;
+    `symplectic_defect`: max |W_N| in n degrees of freedom. `limited_by` is of
+    `error`, `lambda_limited_by` of Λ, or of W; "tolerance" is a peer's, in which nothing tells truncation
     from rounding, "undecided" has its reason in `reason`. A failed run has no values; `failed_step`
     is the step at which it left its range. Seconds are those of the whole run, its compilation and
     the call itself apart; None where that takes longer than the run. `evaluations`: of the vector
@@ -35,6 +36,7 @@ class WorkPoint(Frozen):
     energy: Value | None = None
     lam: Value | None = None
     lam_plain: Value | None = None
+    symplectic_defect: Value | None = None
     limited_by: LimitedBy
     lambda_limited_by: LimitedBy | None = None
     failed_step: int | None = None
@@ -42,6 +44,11 @@ class WorkPoint(Frozen):
     seconds_min: Seconds | None = None
     seconds_median: Seconds | None = None
     evaluations: int | None = None
+
+    @property
+    def area_error(self) -> Value | None:
+        """What is lost of area, Λ; in n degrees of freedom of the symplectic form, max |W_N|."""
+        return self.symplectic_defect or self.lam
 
 
 class SlopeResult(Frozen):
@@ -77,7 +84,11 @@ class CostResult(Frozen):
 
 
 class WorkLine(Frozen):
-    """One scheme, or one peer, with its points in the order of falling step size or tolerance."""
+    """One scheme, or one peer, with its points in the order of falling step size or tolerance.
+
+    In n degrees of freedom `area_preserving` says that the scheme is symplectic, S ≡ 0, and
+    `lambda_slope` is of max |W_N|.
+    """
 
     name: str
     peer: bool
@@ -141,7 +152,7 @@ class WorkPrecisionResult(Frozen):
 
     `scale`: the size of the orbit, the greater |z| of its ends.
     `overhead`: seconds of an empty call, as it was subtracted. `rounding_share`: a rounding part
-    that may be a greater share of an error limits it. `reference_bound`: of p and of q. `machine`:
+    that may be a greater share of an error limits it. `reference_bound`: of each coordinate. `machine`:
     the one that the run times are of. `left_out`: peers with the reason. `systems` are of one
     scheme at one step size.
     """
@@ -150,8 +161,8 @@ class WorkPrecisionResult(Frozen):
     parameters: dict[str, str]
     time: str
     t0: str = "0"
-    q: str
-    p: str
+    q: str | tuple[str, ...]
+    p: str | tuple[str, ...]
     repeats: int
     clock: str
     overhead: Seconds
@@ -167,6 +178,11 @@ class WorkPrecisionResult(Frozen):
     systems_step_size: str
     left_out: tuple[tuple[str, str], ...]
     seconds: Seconds
+
+    @property
+    def planar(self) -> bool:
+        """Whether it is of p and q, and not of lists of them."""
+        return isinstance(self.q, str)
 
     @property
     def rounded_down(self) -> str:

@@ -43,6 +43,8 @@ def line(
     cost: CostResult | None,
     compile_seconds: float,
     scale: str = _ANY,
+    *,
+    planar: bool = True,
 ) -> WorkLine:
     """A scheme's line, or with only a name a peer's; `scale` is the orbit's size."""
     peer = isinstance(scheme, str)
@@ -52,7 +54,9 @@ def line(
         order=None if isinstance(scheme, str) else scheme.order,
         area_preserving=bool(preserves_area),
         error_slope=_NOTHING if peer else error_slope(points, scale),
-        lambda_slope=_NOTHING if peer else lambda_slope(points, bool(preserves_area), scale),
+        lambda_slope=_NOTHING
+        if peer
+        else lambda_slope(points, bool(preserves_area), scale, planar),
         cost=cost,
         compile_seconds=compile_seconds,
         points=tuple(points),
@@ -69,15 +73,14 @@ def error_slope(points: Sequence[WorkPoint], scale: str = _ANY) -> SlopeResult:
 
 
 def lambda_slope(
-    points: Sequence[WorkPoint], preserves_area: bool, scale: str = _ANY
+    points: Sequence[WorkPoint], preserves_area: bool, scale: str = _ANY, planar: bool = True
 ) -> SlopeResult:
-    """The order of |Λ| in h."""
+    """The order of |Λ| in h; in n degrees of freedom that of max |W|."""
     if preserves_area:
-        return SlopeResult(
-            value=None, standard_error=None, points=0, reason="ΔJ ≡ 0 is proved: Λ is exactly 0"
-        )
+        why = "ΔJ ≡ 0 is proved: Λ is exactly 0" if planar else "S ≡ 0 is proved: W is exactly 0"
+        return SlopeResult(value=None, standard_error=None, points=0, reason=why)
     limited = [x for x in points if x.lambda_limited_by == "truncation"]
-    return _order_within_orbit(limited, [(x, x.lam) for x in within_orbit(limited, scale)])
+    return _order_within_orbit(limited, [(x, x.area_error) for x in within_orbit(limited, scale)])
 
 
 def _order_within_orbit(
@@ -134,13 +137,15 @@ def lg(text: str) -> float:
 # -- at equal run time ----------------------------------------------------------------------------
 
 
-def comparisons(lines: Sequence[WorkLine], scale: str) -> tuple[ComparisonResult, ...]:
+def comparisons(
+    lines: Sequence[WorkLine], scale: str, *, planar: bool = True
+) -> tuple[ComparisonResult, ...]:
     """Every two schemes that claim the same order; `scale` is the orbit's size."""
     pairs = combinations([line for line in lines if not line.peer], 2)
-    return tuple(compare(a, b, scale) for a, b in pairs if a.order == b.order)
+    return tuple(compare(a, b, scale, planar=planar) for a, b in pairs if a.order == b.order)
 
 
-def compare(one: WorkLine, other: WorkLine, scale: str) -> ComparisonResult:
+def compare(one: WorkLine, other: WorkLine, scale: str, *, planar: bool = True) -> ComparisonResult:
     """The two at equal run time; see the module's text."""
     errors = _places(one, "error", scale), _places(other, "error", scale)
     span = _overlap(errors)
@@ -152,13 +157,13 @@ def compare(one: WorkLine, other: WorkLine, scale: str) -> ComparisonResult:
         seconds, first, last = (_few(10**x) for x in (sum(span) / 2, *span))
         error = _ratio(*errors, span)
         if not (one.area_preserving or other.area_preserving):
-            areas = _places(one, "lam", scale), _places(other, "lam", scale)
+            areas = _places(one, "area_error", scale), _places(other, "area_error", scale)
             shared = _overlap(areas)
             area = _ratio(*areas, shared) if shared else None
         times = f"`{first}` to `{last}` s"
         smaller = _smaller(_called(one), _called(other), error, times)
         said = f"At equal run time (`{seconds}` s) the solution error of {smaller}. "
-        said += _area_sentence(one, other, area, scale)
+        said += (_area_sentence if planar else _form_sentence)(one, other, area, scale)
     return ComparisonResult(
         one=one.name,
         other=other.name,
@@ -225,6 +230,23 @@ def _area_sentence(one: WorkLine, other: WorkLine, ratio: RatioResult | None, sc
     if ratio is None:
         return "In area there is nothing to compare."
     return f"In area, |Λ| of {_smaller(_called(one), _called(other), ratio, '')}."
+
+
+def _form_sentence(one: WorkLine, other: WorkLine, ratio: RatioResult | None, scale: str) -> str:
+    """The same of the symplectic form, in n degrees of freedom."""
+    exact = [_called(line) for line in (one, other) if line.area_preserving]
+    if len(exact) == 2:
+        return f"Both are symplectic: {exact[0]} and {exact[1]} have S ≡ 0 by proof."
+    if exact:
+        rest = one if other.area_preserving else other
+        errors = _sizes(x.symplectic_defect for x in within_orbit(rest.points, scale))
+        seen = f", where {_called(rest)} has max |W| of {_span(errors)}" if errors else ""
+        return f"{exact[0]} is symplectic (S ≡ 0 is proved){seen}."
+    if ratio is None:
+        return "Of the symplectic form there is nothing to compare."
+    return (
+        f"Of the symplectic form, max |W| of {_smaller(_called(one), _called(other), ratio, '')}."
+    )
 
 
 def _sizes(values: Iterable[Value | None]) -> list[float]:

@@ -6,7 +6,7 @@ this program runs meanwhile. What the errors are is told in `verify.studies.work
 what is made of the points in `verify.studies.work_precision.lines`.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from statistics import median
@@ -19,6 +19,7 @@ from verify.errors import InputError
 from verify.execution.machine import machine
 from verify.flows.extrapolation import NoFlowError
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.start import Given, point_of, shown_of
 from verify.runs.run import run
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.run import RunResult
@@ -31,9 +32,9 @@ from verify.studies.work_precision.runs import (
     SHOWN,
     Ladder,
     Problem,
-    distance,
     failed,
     reference,
+    size,
 )
 from verify.studies.work_precision.timing import Timed, above, clock, interleaved, nothing
 
@@ -52,8 +53,8 @@ class _Timing:
 def work_precision(
     hamiltonian: Hamiltonian,
     *,
-    q: Fraction,
-    p: Fraction,
+    q: Given,
+    p: Given,
     time: Fraction,
     t0: Fraction,
     schemes: Sequence[str],
@@ -67,13 +68,14 @@ def work_precision(
     peers_left_out: Sequence[tuple[str, str]],
     advance: Advance,
 ) -> WorkPrecisionResult:
-    """Errors and run times over [t0, t0 + time] from (q, p): of each scheme with each step size, of
-    peers, and of number systems with so many digits, on one scheme at one step size.
+    """Errors and run times over [t0, t0 + time] from (q, p), a number each or a list: of each
+    scheme with each step size, of peers, and of number systems with so many digits, on one scheme at one step size.
 
     Raises InputError where the exact solution does not reach the time.
     """
     begun = perf_counter()
-    problem = _problem(hamiltonian, p, q, time, t0)
+    begun_at = point_of(hamiltonian, q, p)
+    problem = _problem(hamiltonian, begun_at, time, t0)
     _wake_compiler()
     ladders = [Ladder(problem, name) for name in schemes]
     own = [[_scheme_point(ladder, h, advance) for h in step_sizes] for ladder in ladders]
@@ -81,7 +83,7 @@ def work_precision(
     overhead = _time([*own, *(timings for timings, _ in others)], repeats)
     lines = [
         line([t.point for t in timings], ladder.scheme, ladder.preserves_area, ladder.cost,
-             ladder.compile_seconds, problem.scale)
+             ladder.compile_seconds, problem.scale, planar=hamiltonian.planar)
         for ladder, timings in zip(ladders, own, strict=True)
     ]  # fmt: skip
     lines += [
@@ -96,8 +98,8 @@ def work_precision(
         **hamiltonian.texts,
         time=text(time),
         t0=text(t0),
-        q=text(q),
-        p=text(p),
+        q=shown_of(hamiltonian, begun_at, "q"),
+        p=shown_of(hamiltonian, begun_at, "p"),
         repeats=repeats,
         clock=clock()[1],
         overhead=overhead,
@@ -107,7 +109,7 @@ def work_precision(
         reference_bound=upper(problem.solution.bound),
         machine=machine(),
         lines=tuple(lines),
-        comparisons=comparisons(lines, problem.scale),
+        comparisons=comparisons(lines, problem.scale, planar=hamiltonian.planar),
         systems=tuple(systems),
         systems_scheme=number_systems_scheme,
         systems_step_size=text(number_systems_step_size),
@@ -117,13 +119,13 @@ def work_precision(
 
 
 def _problem(
-    hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fraction, t0: Fraction
+    hamiltonian: Hamiltonian, point: Mapping[str, Fraction], time: Fraction, t0: Fraction
 ) -> Problem:
     try:
-        exact = reference(hamiltonian, p, q, time, t0)
+        exact = reference(hamiltonian, point, time, t0)
     except NoFlowError as error:
         raise InputError("work_precision.time", text(time), str(error)) from None
-    return Problem(hamiltonian, p, q, time, t0, exact)
+    return Problem(hamiltonian, point, time, t0, exact)
 
 
 def _wake_compiler() -> None:
@@ -182,10 +184,9 @@ def _peer(problem: Problem, name: str, advance: Advance) -> tuple[list[_Timing],
 
 
 def _peer_point(problem: Problem, name: str, tolerance: Fraction, answer: Answer) -> WorkPoint:
-    values = answer.p, answer.q
-    if not all(abs(x) < float("inf") for x in values):
+    if not all(abs(x) < float("inf") for x in answer.state):
         return failed(name, tolerance=text(tolerance), reason="left the range of float64")
-    state = Fraction(answer.p), Fraction(answer.q)
+    state = tuple(map(Fraction, answer.state))
     return WorkPoint(
         scheme=name,
         tolerance=f"{float(tolerance):.0e}",
@@ -208,9 +209,13 @@ def _system_points(
     The run times are those of one scheme at one step size.
     """
 
+    def at(letter: str) -> Given:
+        own = [x for name, x in problem.point.items() if name[0] == letter]
+        return own[0] if problem.hamiltonian.planar else own
+
     def go(name: str, digits: int) -> RunResult:
         return run(
-            problem.hamiltonian, scheme, q=problem.q, p=problem.p, step_size=h, t0=problem.t0,
+            problem.hamiltonian, scheme, q=at("q"), p=at("p"), step_size=h, t0=problem.t0,
             steps=problem.time // h, arithmetic=name, digits=digits, observables=(),
         )  # fmt: skip
 
@@ -252,13 +257,15 @@ def _system_point(name: str, digits: int, result: RunResult, timed: Timed | None
 
 
 def _digits_of_state(result: RunResult) -> str | None:
-    """−lg(bound / size) of the state (p, q), with one decimal."""
-    p, q = (result.values.get(name) for name in ("p", "q"))
-    if p is None or q is None:
+    """−lg(bound / size) of the state, with one decimal."""
+    state = list(result.values.values())  # no observable was asked for
+    if not state:
         return None
-    size, _ = distance((Fraction(p.value), Fraction(q.value)), (Fraction(0), Fraction(0)))
-    bound = Fraction(p.bound) + Fraction(q.bound)
-    if not bound or not size:
+    length, bound = (
+        size(tuple(Fraction(x.value) for x in state)),
+        sum(Fraction(x.bound) for x in state),
+    )
+    if not bound or not length:
         return None
-    part = bound / size
+    part = bound / length
     return f"{-lg(f'{part.numerator}/{part.denominator}'):.1f}"

@@ -1,6 +1,6 @@
 """What a peer is: another integrator, made ready to solve one problem to one tolerance."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -13,21 +13,20 @@ class PeerError(Exception):
 
 @dataclass(frozen=True)
 class InitialValueProblem:
-    """p' = −H_q, q' = H_p from (p, q) at t0, for the length `time`."""
+    """p' = −H_q, q' = H_p from `point`, each coordinate's value by its name, in the order p1 … pn,
+    q1 … qn, at t0 for the length `time`."""
 
     hamiltonian: Hamiltonian
-    p: Fraction
-    q: Fraction
+    point: Mapping[str, Fraction]
     time: Fraction
     t0: Fraction
 
 
 @dataclass(frozen=True)
 class Answer:
-    """The state at the end, the steps taken, and evaluations of the vector field if counted."""
+    """The coordinates at the end, the steps taken, and evaluations of the field if counted."""
 
-    p: float
-    q: float
+    state: tuple[float, ...]
     steps: int | None
     evaluations: int | None
 

@@ -21,13 +21,16 @@ from verify.arithmetic.arb import in_reach, middle_and_radius
 from verify.arithmetic.exact import decimal, text
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import float64
-from verify.flows.solution import Solution, exact_solution
+from verify.flows.degrees.solution import Point, SolutionInDegrees, solution_in_degrees
+from verify.hamiltonians.energy import energy_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.chunked_loop import ChunkedLoop
 from verify.kernels.kernel import Kernel, Writer
+from verify.kernels.step.in_degrees import map_of, preserves
 from verify.kernels.stepping import KernelRun
 from verify.runs.digits_on_demand import choose, measure
 from verify.runs.estimated import Bounds
+from verify.scenes.observables import observed
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.work_precision import CostResult, LimitedBy, WorkPoint
 from verify.schemes import get
@@ -39,55 +42,60 @@ EXACT_DIGITS = 33  # of the run that stands for exact arithmetic
 SHOWN = 12  # digits of an error at most
 _BITS = 400
 _REFERENCE_DIGITS = 33  # of the exact solution: float64 has 16
+_IN_DEGREES = 24  # of one in n degrees of freedom: each more costs, and most have no closed form
 _ROOT_BITS = 160
 
-State = tuple[Fraction, Fraction]  # p, q
+# The observables of a run, as a point has them.
+_FIELDS = {
+    "lambda": "lam", "lambda_plain": "lam_plain", "symplectic_defect": "symplectic_defect",
+}  # fmt: skip
+State = tuple[Fraction, ...]  # p1 … pn, q1 … qn
 
 
 def reference(
-    hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fraction, t0: Fraction
-) -> Solution:
+    hamiltonian: Hamiltonian, point: Point, time: Fraction, t0: Fraction
+) -> SolutionInDegrees:
     """The exact solution that errors are held against; NoFlowError where it is not reached."""
-    return exact_solution(hamiltonian, p=p, q=q, time=time, digits=_REFERENCE_DIGITS, t0=t0)
+    digits = _REFERENCE_DIGITS if hamiltonian.planar else _IN_DEGREES
+    return solution_in_degrees(hamiltonian, point, time, digits, t0)
 
 
 @dataclass(frozen=True)
 class Problem(InitialValueProblem):
     """An initial value problem with its exact solution at the time."""
 
-    solution: Solution
+    solution: SolutionInDegrees
 
     @cached_property
-    def _ends(self) -> dict[Fraction, Solution]:
+    def _ends(self) -> dict[Fraction, SolutionInDegrees]:
         return {self.time: self.solution}
 
-    def solution_after(self, h: Fraction) -> Solution:
+    def solution_after(self, h: Fraction) -> SolutionInDegrees:
         """The exact solution after N·h, N = T/h rounded down, where the steps end."""
         end = self.time // h * h
         if end not in self._ends:
-            self._ends[end] = reference(self.hamiltonian, self.p, self.q, end, self.t0)
+            self._ends[end] = reference(self.hamiltonian, self.point, end, self.t0)
         return self._ends[end]
 
     @property
     def start(self) -> State:
-        return self.p, self.q
+        return tuple(self.point.values())
 
     @cached_property
     def _energy(self) -> tuple[Ring, Poly]:
-        field, _ = self.hamiltonian.field()
-        return field.ring, field.energy
+        return energy_of(self.hamiltonian)
 
     @property
     def scale(self) -> str:
         """The greater |z| of the orbit's two ends."""
-        ends = self.start, (self.solution.p, self.solution.q)
-        return decimal(max(distance(z, (Fraction(0), Fraction(0)))[0] for z in ends), 3)
+        ends = self.start, tuple(self.solution.point.values())
+        return decimal(max(size(z) for z in ends), 3)
 
     def error(self, state: State, h: Fraction | None = None) -> tuple[Fraction, Fraction]:
         """|state − z(T)| with its bound; with h, the distance from z(N·h)."""
         exact = self.solution if h is None else self.solution_after(h)
-        size, own = distance(state, (exact.p, exact.q))
-        return size, own + 2 * exact.bound  # of each of p and q
+        apart, own = distance(state, tuple(exact.point.values()))
+        return apart, own + len(state) * exact.bound  # of each coordinate
 
     def energy_error(self, state: State) -> Value | None:
         """|H(state) − H(z₀)|; None where H is not defined there, or out of reach, or not kept by
@@ -96,7 +104,7 @@ class Problem(InitialValueProblem):
             return None
         ring, energy = self._energy
         ends = [
-            enclose(ring, energy, dict(zip("pq", at, strict=True)), _BITS)
+            enclose(ring, energy, dict(zip(self.point, at, strict=True)), _BITS)
             for at in (state, self.start)
         ]
         reached = [x for x in ends if x is not None and in_reach(x)]
@@ -112,13 +120,20 @@ class Ladder:
     def __init__(self, problem: Problem, scheme: str) -> None:
         self.problem, self.scheme = problem, get(scheme)
         self.name = scheme
-        self.preserves_area = self.scheme.step_map(problem.hamiltonian).preserves_area
+        self.preserves_area = preserves(map_of(problem.hamiltonian, scheme))
         self.arithmetic: Arithmetic = float64.compiled_at_once()
-        step_map = self.scheme.step_map(self._kernel_run(problem.time, frozenset()).hamiltonian)
+        step_map = map_of(self._kernel_run(problem.time, frozenset()).hamiltonian, scheme)
         begun = time.perf_counter()
         self.kernel: Kernel = Writer(step_map, self.arithmetic, frozenset(), False).kernel()
         self.call(problem.time, blank=True)()
         self.compile_seconds = time.perf_counter() - begun
+
+    @cached_property
+    def lost(self) -> tuple[str, ...]:
+        """What measures the loss of area, or of the symplectic form, the sharper one
+        last; none where H has too many degrees of freedom for it."""
+        usual = observed(self.problem.hamiltonian, None)
+        return tuple(name for name in ("lambda", "symplectic_defect") if name in usual)
 
     @property
     def cost(self) -> CostResult:
@@ -126,7 +141,7 @@ class Ladder:
 
     def _kernel_run(self, h: Fraction, observables: frozenset[str]) -> KernelRun:
         of = self.problem
-        start, steps = {"p": of.p, "q": of.q, "h": h, "t": of.t0}, of.time // h
+        start, steps = {**of.point, "h": h, "t": of.t0}, of.time // h
         return KernelRun(of.hamiltonian, self.name, start, steps, observables, points=0)
 
     def _loop(self, h: Fraction) -> ChunkedLoop:
@@ -150,7 +165,7 @@ class Ladder:
                 reason="left the range of float64",
             )  # fmt: skip
         last = loop.reached.trail[-1]
-        return self._finished(h, steps, (last["p"], last["q"]))
+        return self._finished(h, steps, tuple(last[name] for name in self.problem.point))
 
     def _finished(self, h: Fraction, steps: int, last: State) -> WorkPoint:
         error = self.problem.error(last, h)
@@ -158,16 +173,17 @@ class Ladder:
         truncation = rounding = None
         limited: LimitedBy = "undecided"
         reason = ""
-        if exact.status == "finished" and {"p", "q"} <= set(exact.values):
-            (p, p_bound), (q, q_bound) = exact.values["p"], exact.values["q"]
-            size, bound = self.problem.error((p, q), h)
-            truncation = size, bound + p_bound + q_bound
-            size, bound = distance(last, (p, q))
-            rounding = size, bound + p_bound + q_bound
+        if exact.status == "finished" and set(self.problem.point) <= set(exact.values):
+            pairs = [exact.values[name] for name in self.problem.point]
+            true, uncertain = tuple(x for x, _ in pairs), sum(bound for _, bound in pairs)
+            apart, bound = self.problem.error(true, h)
+            truncation = apart, bound + uncertain
+            apart, bound = distance(last, true)
+            rounding = apart, bound + uncertain
             limited = limited_by(error, rounding)
         else:
             reason = f"at high precision: {exact.status} ({exact.method})"
-        plain, lam, lambda_limited = self._area(h, exact)
+        area = self._area(h, exact)
         return WorkPoint(
             scheme=self.name,
             step_size=text(h),
@@ -176,38 +192,40 @@ class Ladder:
             truncation=truncation and Value.of(*truncation, SHOWN),
             rounding=rounding and Value.of(*rounding, SHOWN),
             energy=self.problem.energy_error(last),
-            lam=lam,
-            lam_plain=plain,
             limited_by=limited,
-            lambda_limited_by=lambda_limited,
             reason=reason,
+            **area,
         )
 
     def _exactly(self, h: Fraction) -> Bounds:
         """The same steps in high precision, from the exact inputs."""
-        kernel_run = self._kernel_run(
-            h, frozenset() if self.preserves_area else frozenset({"lambda"})
-        )
+        lost = frozenset[str]() if self.preserves_area else frozenset(self.lost)
+        kernel_run = self._kernel_run(h, lost)
         return measure(kernel_run, choose(kernel_run, EXACT_DIGITS), EXACT_DIGITS).bounds
 
-    def _area(
-        self, h: Fraction, exact: Bounds
-    ) -> tuple[Value | None, Value | None, LimitedBy | None]:
-        """Λ by the plain product, by its closed form, and what limits the latter."""
-        asked = {"lambda_plain"} | (set() if self.preserves_area else {"lambda"})
-        kernel_run = self._kernel_run(h, frozenset(asked))
-        run = kernel_run.run(float64.make(17))
-        if run.done < kernel_run.steps:
-            return None, None, "failed"
-        plain = Value.of(run.values["lambda_plain"], Fraction(0), SHOWN)
+    def _area(self, h: Fraction, exact: Bounds) -> dict[str, Any]:
+        """Of a point: Λ, and in n degrees of freedom W; what limits them; and in the plane Λ by the
+        plain product, too."""
+        plain = {"lambda_plain"} if self.problem.hamiltonian.planar else set[str]()
+        asked = plain | (set() if self.preserves_area else set(self.lost))
+        run = self._kernel_run(h, frozenset(asked)).run(float64.make(17)) if asked else None
+        if run is not None and run.done < self.problem.time // h:
+            return {"lambda_limited_by": "failed"}
+        found: dict[str, Any] = {
+            _FIELDS[name]: Value.of(run.values[name], Fraction(0), SHOWN)
+            for name in asked
+            if run is not None
+        }
         if self.preserves_area:  # proved; what the product shows is rounding
-            return plain, Value(value="0", bound="0"), "rounding"
-        lam = run.values["lambda"]
-        limited: LimitedBy = "undecided"
-        if "lambda" in exact.values:
-            true, bound = exact.values["lambda"]
-            limited = limited_by((abs(lam), Fraction(0)), (abs(lam - true), bound))
-        return plain, Value.of(lam, Fraction(0), SHOWN), limited
+            kept = dict.fromkeys((_FIELDS[name] for name in self.lost), Value(value="0", bound="0"))
+            return {**found, **kept, "lambda_limited_by": "rounding"}
+        if run is None:
+            return found
+        limits: LimitedBy = "undecided"
+        if self.lost[-1] in exact.values:
+            own, (true, bound) = run.values[self.lost[-1]], exact.values[self.lost[-1]]
+            limits = limited_by((abs(own), Fraction(0)), (abs(own - true), bound))
+        return {**found, "lambda_limited_by": limits}
 
 
 def limited_by(error: tuple[Fraction, Fraction], rounding: tuple[Fraction, Fraction]) -> LimitedBy:
@@ -222,6 +240,11 @@ def limited_by(error: tuple[Fraction, Fraction], rounding: tuple[Fraction, Fract
 def failed(scheme: str, **found: Any) -> WorkPoint:  # Any: the model checks them
     """A run that gave no values."""
     return WorkPoint(scheme=scheme, limited_by="failed", lambda_limited_by="failed", **found)
+
+
+def size(state: State) -> Fraction:
+    """|state|, Euclidean."""
+    return distance(state, (Fraction(0),) * len(state))[0]
 
 
 def distance(one: State, other: State) -> tuple[Fraction, Fraction]:

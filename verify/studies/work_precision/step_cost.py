@@ -14,13 +14,13 @@ _CALL = "call "  # before a function's name, among the kinds of operations
 def cost(kernel: Kernel, scheme: Scheme) -> CostResult:
     """Operations of one step that carries the state alone, those before the loop left out.
 
-    Adding the increments to p and q counts; a change of sign does not.
+    Adding the increments to the coordinates counts; a change of sign does not.
     """
-    lowering, roots = kernel.lowering, [kernel.outputs["dp"], kernel.outputs["dq"]]
+    lowering, roots = kernel.lowering, [kernel.outputs[f"d{name}"] for name in kernel.coordinates]
     turn: Counter[str] = Counter()
     for loop in lowering.loops(lowering.live(roots)):
         turn += _counted(lowering.inner(loop), loop.updates) + Counter(add=len(loop.updates))
-    counted = _counted(lowering, roots) + Counter(add=2)
+    counted = _counted(lowering, roots) + Counter(add=len(roots))
     return _result(counted, scheme.evaluations, _result(turn, None, None) if turn else None)
 
 

@@ -7,7 +7,7 @@ from typing import ClassVar, Literal
 from verify.execution.keeping import Keeper
 from verify.execution.task import HamiltonianTask
 from verify.scenes.results.work_precision import WorkPrecisionResult
-from verify.scenes.values import Number, StepSize
+from verify.scenes.values import Coordinates, Number, StepSize
 
 _POINT_COST = 80_000_000  # of a point of error against run time: some tenths of a second
 
@@ -25,8 +25,8 @@ class WorkPrecisionTask(HamiltonianTask):
     time: Number
     t0: Number = Fraction(0)
     step_sizes: tuple[StepSize, ...]
-    q: Number
-    p: Number
+    q: Coordinates
+    p: Coordinates
     repeats: int
     number_systems: tuple[str, ...]
     digits: tuple[int, ...]

@@ -13,13 +13,12 @@ from verify import schemes
 from verify.arithmetic.arb import slope
 from verify.errors import InputError
 from verify.execution.execute import compute_task
-from verify.flows.solution import exact_solution
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.run import run
 from verify.scenes.results.work_precision import WorkPoint, WorkPrecisionResult
 from verify.studies.work_precision.lines import error_slope, lambda_slope, lg
 from verify.studies.work_precision.measure import _digits_of_state
-from verify.studies.work_precision.runs import ROUNDING_SHARE, Ladder, Problem
+from verify.studies.work_precision.runs import ROUNDING_SHARE, Ladder, Problem, reference
 from verify.studies.work_precision.task import WorkPrecisionTask
 
 HARMONIC = Hamiltonian.parse("p**2/2 + q**2/2")
@@ -29,8 +28,9 @@ PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
 
 def problem(hamiltonian: Hamiltonian, q: str = "1", time: Fraction | int = 1) -> Problem:
     start = Fraction(0), Fraction(q)
-    exact = exact_solution(hamiltonian, p=start[0], q=start[1], time=Fraction(time), digits=33)
-    return Problem(hamiltonian, *start, Fraction(time), Fraction(0), exact)
+    point = dict(zip("pq", start, strict=True))
+    exact = reference(hamiltonian, point, Fraction(time), Fraction(0))
+    return Problem(hamiltonian, point, Fraction(time), Fraction(0), exact)
 
 
 def points(of: Problem, scheme: str, steps: Sequence[int]) -> list[WorkPoint]:
@@ -51,7 +51,7 @@ def test_where_h_does_not_divide_the_time_the_error_is_that_where_the_steps_end(
     point, same = rounded.point(h), Ladder(whole, "rk4").point(h)
     assert point.steps == same.steps == 3
     assert (point.error, point.truncation) == (same.error, same.truncation)
-    at_the_time = rounded.problem.error((whole.solution.p, whole.solution.q))[0]
+    at_the_time = rounded.problem.error(tuple(whole.solution.point.values()))[0]
     assert at_the_time > 100 * number(point.error)  # what it would be from z(T)
 
 

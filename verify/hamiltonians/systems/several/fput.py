@@ -34,7 +34,7 @@ SYSTEM = System(
         " 1955; the computations by M. Tsingou"
     ),
     parameters={
-        "n": "number of moving masses, 2 … 32; 3 where it is not given",
+        "n": "number of moving masses, 2 … 64; 3 where it is not given",
         "alpha": "the springs' quadratic force",
         "beta": "their cubic force",
     },

@@ -11,6 +11,7 @@ from verify.pages.sections.rows import Group, Row
 from verify.pages.sections.section import Picture, Section
 from verify.pages.text import words
 from verify.pages.text.typography import NBSP, number, start, step, whole
+from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.work_precision import (
     CostResult,
@@ -136,11 +137,16 @@ def _row(point: WorkPoint) -> Row:
     if point.limited_by == "failed":
         at = f" at step {whole(point.failed_step)}" if point.failed_step else ""
         return Row(label, (steps,), f"failed{at}: {point.reason}")
-    values = (point.error, point.rounding, point.energy, point.lam, point.lam_plain)
+    values = (point.error, point.rounding, point.energy, point.lam, _sharper(point))
     times = (point.seconds_min, point.seconds_median)
     limit = "its tolerance" if point.limited_by == "tolerance" else point.limited_by
     cells = (*map(few_digits, values), *map(_seconds, times), limit)
     return Row(label, (steps, *cells))
+
+
+def _sharper(point: WorkPoint) -> Value | None:
+    """Λ by the plain product; in n degrees of freedom max |W|."""
+    return point.symplectic_defect or point.lam_plain
 
 
 def _system(point: SystemPoint) -> Row:

@@ -5,10 +5,12 @@ Its vector field is compiled; the method itself is Python, as scipy ships it.
 """
 
 import time
+from collections.abc import Sequence
 from fractions import Fraction
 
 from verify.arithmetic.systems import float64
 from verify.flows.extrapolation import functions_at
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.studies.work_precision.peer_interface import (
     Answer,
     InitialValueProblem,
@@ -26,24 +28,22 @@ def make(problem: InitialValueProblem, tolerance: Fraction) -> Solver:
     from scipy.integrate import solve_ivp
 
     begun = time.perf_counter()
-    field, _ = problem.hamiltonian.field()
-    names = ("p", "q", "t") if field.timed else ("p", "q")
+    field, _ = canonical_field(problem.hamiltonian)
+    names = (*field.names, "t") if field.timed else field.names
     slopes = functions_at(
-        float64.compiled_at_once(), [(field.ring, -field.h_q), (field.ring, field.h_p)], names
+        float64.compiled_at_once(), [(field.ring, x) for x in field.slopes], names
     )
-    start, begin = (float(problem.p), float(problem.q)), float(problem.t0)
+    start, begin = tuple(map(float, problem.point.values())), float(problem.t0)
     end = float(problem.t0 + problem.time)
     slopes(*start, *(begin,)[: field.timed])
     compiled = time.perf_counter() - begun
 
-    def still(_: float, z: tuple[float, float]) -> tuple[float, float]:
-        p, q = z
-        found: tuple[float, float] = slopes(p, q)
+    def still(_: float, z: Sequence[float]) -> tuple[float, ...]:
+        found: tuple[float, ...] = slopes(*z)
         return found
 
-    def driven(t: float, z: tuple[float, float]) -> tuple[float, float]:
-        p, q = z
-        found: tuple[float, float] = slopes(p, q, t)
+    def driven(t: float, z: Sequence[float]) -> tuple[float, ...]:
+        found: tuple[float, ...] = slopes(*z, t)
         return found
 
     def solve() -> Answer:
@@ -53,7 +53,6 @@ def make(problem: InitialValueProblem, tolerance: Fraction) -> Solver:
         )  # fmt: skip
         if not found.success:
             raise PeerError(found.message)
-        p, q = found.y[:, -1]
-        return Answer(float(p), float(q), None, int(found.nfev))
+        return Answer(tuple(map(float, found.y[:, -1])), None, int(found.nfev))
 
     return Solver(solve, compiled)

@@ -30,13 +30,14 @@ def make(problem: InitialValueProblem, tolerance: Fraction) -> Solver:
     import heyoka as hy
 
     begun = time.perf_counter()
-    p, q = hy.make_vars("p", "q")
+    names = tuple(problem.point)
+    variables, n = hy.make_vars(*names), len(names) // 2
     h = _translated(problem.hamiltonian.exact)
-    start, begin = (float(problem.p), float(problem.q)), float(problem.t0)
+    start, begin = tuple(map(float, problem.point.values())), float(problem.t0)
     end = float(problem.t0 + problem.time)
-    taylor = hy.taylor_adaptive(
-        [(p, -hy.diff(h, q)), (q, hy.diff(h, p))], list(start), tol=float(tolerance)
-    )
+    pairs = list(zip(variables[:n], variables[n:], strict=True))
+    field = [(p, -hy.diff(h, q)) for p, q in pairs] + [(q, hy.diff(h, p)) for p, q in pairs]
+    taylor = hy.taylor_adaptive(field, list(start), tol=float(tolerance))
     compiled = time.perf_counter() - begun
 
     def solve() -> Answer:
@@ -45,8 +46,7 @@ def make(problem: InitialValueProblem, tolerance: Fraction) -> Solver:
         outcome, _, _, steps, *_ = taylor.propagate_until(end)
         if outcome != hy.taylor_outcome.time_limit:
             raise PeerError(f"heyoka stopped: {outcome}")
-        found_p, found_q = taylor.state
-        return Answer(float(found_p), float(found_q), int(steps), None)
+        return Answer(tuple(map(float, taylor.state)), int(steps), None)
 
     return Solver(solve, compiled)
 

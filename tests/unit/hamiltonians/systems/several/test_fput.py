@@ -36,7 +36,7 @@ def somewhere(n: int) -> Example:
     return Example(values, q, p, FPUT.hamiltonian(values))
 
 
-@pytest.mark.parametrize("n", [2, 3, 5, 16, 32])
+@pytest.mark.parametrize("n", [2, 3, 5, 16, 64])
 def test_it_is_the_chain_of_n_masses(n: int) -> None:
     at = somewhere(n)
     assert at.hamiltonian.degrees == n
@@ -78,9 +78,9 @@ def test_a_run_of_the_lowest_mode_turns_with_its_frequency() -> None:
         assert abs(float(found.values[f"p{k}"])) < 2e-12
 
 
-@pytest.mark.parametrize("n", ["4.5", 0, 1, -3, 33, "1/3", 10**30])
+@pytest.mark.parametrize("n", ["4.5", 0, 1, -3, 65, "1/3", 10**30])
 def test_an_n_that_is_no_number_of_masses_is_refused(n: Any) -> None:
-    with pytest.raises(InputError, match=r"^parameter n=.*must be a whole number, 2 … 32"):
+    with pytest.raises(InputError, match=r"^parameter n=.*must be a whole number, 2 … 64"):
         FPUT.hamiltonian({"n": n, "alpha": 1, "beta": 0})
 
 
