@@ -2,9 +2,9 @@
 
 python tests/bench/chain_steps.py
 
-Its force has n + 1 springs, so that a step should cost so many times as much. Operations are counted in
-the kernel; microseconds are the least of the rounds, an empty call subtracted; the kernel is compiled
-anew. Results of 2026-11-26 stand in docs/explanation/speed.md.
+Its force has n + 1 springs, so that a step should cost so many times as much. Operations are
+counted in the kernel; microseconds are the least of the rounds, an empty call subtracted; the
+kernel is compiled anew. Results of 2026-11-26 stand in docs/explanation/speed.md.
 """
 
 import os

@@ -4,6 +4,7 @@ from typing import Any
 
 from verify.arithmetic.exact import Exact
 from verify.calls.given import GivenParameters, GivenSystem, listed, performed, scene_of
+from verify.hamiltonians.start import Given
 from verify.scenes.results.stability import StabilityResult
 from verify.studies.stability.findings import findings_of
 from verify.studies.stability.plan import need_stability
@@ -13,8 +14,8 @@ def stability(
     system: GivenSystem,
     scheme: Any,
     *,
-    q: Exact,
-    p: Exact,
+    q: Given,
+    p: Given,
     step_size: Any,
     steps: int | None = None,
     time: Exact | None = None,

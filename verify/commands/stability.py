@@ -36,7 +36,8 @@ def stability(
 ) -> Answer:
     """Judge the runs of SCENE: a TOML file, `paper`, or the suites `stiff` and `extreme`.
 
-    stable, drifts, unstable: scheme, unstable: arithmetic, escapes, overflow at step k, underflow.
+    stable, drifts, unstable: scheme, unstable: arithmetic, escapes, overflow at step k, underflow;
+    in n degrees of freedom sensitive, where the exact motion parts from its neighbours itself.
     Nothing of the scene is done but its [[stability]], [[largest_step]] and [[stability_map]].
 
     \b
@@ -46,7 +47,7 @@ def stability(
     """
     if linear:
         return _linear(_of_linear(scene, given))
-    scenes = scenes_of(scene, given, ("q", "p"), _section)
+    scenes = scenes_of(scene, given, ("q", "p"), _section, several=True)
     return _of_scenes(scene, scenes, keep, where)
 
 

@@ -33,6 +33,7 @@ _RUN_SIGNS: dict[Kind, tuple[str, Verdict]] = {
     "escapes": ("↗", Verdict.ENCLOSED),
     "overflow": ("∞", Verdict.REFUTED),
     "underflow": ("↓", Verdict.REFUTED),
+    "sensitive": ("≀", Verdict.ENCLOSED),
     "undecided": ("?", Verdict.UNDECIDED),
 }
 # A statement's outcome: its sign, its word, what it means.

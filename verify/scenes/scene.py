@@ -190,7 +190,7 @@ class Scene(Frozen):
     def _check_no_plane(self, exact: Hamiltonian) -> None:
         """InputError where something of the plane is asked for."""
         own = {name for name in Scene.model_fields if name not in _IDENTITY and getattr(self, name)}
-        asked = own - {"name", "every_hamiltonian", "grid", "series", "separation", "reference", "flow", "poincare", "work_precision"}
+        asked = own - {"name", "every_hamiltonian", "grid", "series", "separation", "reference", "flow", "poincare", "work_precision", "stability"}
         asked |= {"grid.growth"} if self.grid and self.grid.growth else set()
         if self.separation or (self.grid and self.grid.separate):
             check_observables(exact, ("symplectic_defect",))  # W is what is separated

@@ -34,6 +34,7 @@ from verify.scenes.values import (
     InitialValue,
     Number,
     SchemeName,
+    Start,
     Steps,
     StepSize,
     Time,
@@ -105,7 +106,7 @@ class Stability(OfSchemes):
     """The number of steps of each run; or `time`."""
     step_sizes: StepSizes
     """The step sizes; or `{ from = …, to = …, count = … }`, evenly by their logarithms."""
-    initial_values: Annotated[tuple[InitialValue, ...], Field(min_length=1, max_length=1000)]
+    initial_values: Annotated[tuple[Start, ...], Field(min_length=1, max_length=1000)]
     """Where the runs start."""
 
     @model_validator(mode="after")

@@ -25,6 +25,7 @@ _MARKS: dict[Kind, dict[str, Any]] = {
     "escapes": {"marker": "^", "color": SERIES[4], "s": 22},
     "overflow": {"marker": "P", "color": SERIES[3], "s": 36},
     "underflow": {"marker": "v", "color": SERIES[3], "s": 22},
+    "sensitive": {"marker": "*", "color": SERIES[5], "s": 30},
     "undecided": {"marker": "+", "color": SERIES[7], "s": 30},
 }
 

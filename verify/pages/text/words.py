@@ -122,6 +122,7 @@ _COUNTED: dict[Kind, str] = {
     "escapes": "escaping",
     "overflow": "overflowing",
     "underflow": "underflowing",
+    "sensitive": "sensitive",
     "undecided": "undecided",
 }
 

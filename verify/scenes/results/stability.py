@@ -9,7 +9,7 @@ from verify.scenes.frozen import Frozen, OfScheme, Said, WithProse
 
 Kind = Literal[
     "stable", "drifts", "unstable: scheme", "unstable: arithmetic", "escapes", "overflow",
-    "underflow", "undecided",
+    "underflow", "sensitive", "undecided",
 ]  # fmt: skip
 KINDS: tuple[Kind, ...] = Kind.__args__  # type: ignore[attr-defined]
 
@@ -22,7 +22,8 @@ class StabilityResult(WithProse):
     float64's range. `rate`: of a drift, the energy's change in a unit of time in parts of the
     orbit's own energy scale. `energy_error`: the greatest |H − H(z0)| seen, in the same parts.
     `h_omega`: the step size times the orbit's greatest frequency; `linear_limit`: up to where the
-    scheme is stable on the harmonic oscillator; None where either is not known.
+    scheme is stable on the harmonic oscillator; None where either is not known. `lyapunov`: in n
+    degrees of freedom, the finite-time Lyapunov exponent of the exact motion.
     """
 
     id: str = ""
@@ -31,8 +32,8 @@ class StabilityResult(WithProse):
     scheme: str
     step_size: str
     steps: int
-    q: str
-    p: str
+    q: str | tuple[str, ...]
+    p: str | tuple[str, ...]
     t0: str | None = None
     kind: Kind
     step: int | None = None
@@ -40,6 +41,7 @@ class StabilityResult(WithProse):
     energy_error: str | None = None
     h_omega: str | None = None
     linear_limit: str | None = None
+    lyapunov: str | None = None
     exact_orbit: Said
     detail: Said
 

@@ -19,8 +19,8 @@ class WorkPoint(Frozen):
     is from that. `energy`: |H(z_N) − H(z_0)|. `lam`: Λ in float64 by the closed form of ΔJ, exactly
     0 where that is proved; `lam_plain`: by the plain product of determinants, in the plane;
     `symplectic_defect`: max |W_N| in n degrees of freedom. `limited_by` is of
-    `error`, `lambda_limited_by` of Λ, or of W; "tolerance" is a peer's, in which nothing tells truncation
-    from rounding, "undecided" has its reason in `reason`. A failed run has no values; `failed_step`
+    `error`, `lambda_limited_by` of Λ, or of W; "tolerance" is a peer's, in which nothing tells
+    truncation from rounding, "undecided" has its reason in `reason`. A failed run has no values; `failed_step`
     is the step at which it left its range. Seconds are those of the whole run, its compilation and
     the call itself apart; None where that takes longer than the run. `evaluations`: of the vector
     field in the whole run, where it is counted.
@@ -152,8 +152,8 @@ class WorkPrecisionResult(Frozen):
 
     `scale`: the size of the orbit, the greater |z| of its ends.
     `overhead`: seconds of an empty call, as it was subtracted. `rounding_share`: a rounding part
-    that may be a greater share of an error limits it. `reference_bound`: of each coordinate. `machine`:
-    the one that the run times are of. `left_out`: peers with the reason. `systems` are of one
+    that may be a greater share of an error limits it. `reference_bound`: of each coordinate.
+    `machine`: the one that the run times are of. `left_out`: peers with the reason. `systems` are of one
     scheme at one step size.
     """
 

@@ -9,6 +9,7 @@ measured, and not proved.
 
 from dataclasses import dataclass
 from fractions import Fraction
+from math import log
 from typing import Literal
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -45,7 +46,7 @@ def halved(
         return Halved("undecided", None)
     tops = [note["growth_top"] for note in outcome.tangents]
     size, time = len(hamiltonian.coordinates), steps * start["h"]
-    own = finite_time_lyapunov(float(tops[-1]) ** 0.5, size, time)
+    own = finite_time_lyapunov(log(float(tops[-1])) / 2, size, float(time))
     alike = rate < _ALIKE * own and own < _ALIKE * rate
     grows = motion_of(marks_of(2 * steps, POINTS), tops) == "exponential"
     return Halved("motion" if alike and grows else "undecided" if alike else "scheme", own)

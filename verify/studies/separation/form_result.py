@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from math import isqrt, log10
+from math import isqrt, log, log10
 
 from verify.arithmetic.exact import decimal, known_digits, magnitude, text
 from verify.prose import Number, Prose, prose
@@ -80,7 +80,7 @@ class FormWay:
     def tangent(self, time: Fraction, half: Callable[[float], Halved]) -> TangentGrowth:
         """How M grew, and what follows for W; `half` tells of an exponential rate whose it is."""
         last, size = self.sizes[-1], _size(len(self.chains))
-        rate = finite_time_lyapunov(float(_root(last.norm)), size, time)
+        rate = finite_time_lyapunov(log(float(_root(last.norm))), size, float(time))
         halved = half(rate) if self.motion == "exponential" else None
         areas = [_root(x.areas) for x in self.sizes]
         laws = [

@@ -16,12 +16,12 @@ from verify.studies.stability.run_motion import RunMotion
 from verify.studies.stability.trail import MOST_INTERPRETED, Trail, follow_precisely
 
 _STRETCHES = 8
-_LONGER = 4
+LONGER = 4
 _PERIODS = 8  # of the exact orbit, that the longer run lasts at least
 _SEEN = 2.0**-53  # of the energy scale: what float64 could not show is no drift
 _MOST_LOOKED_AT = 20_000  # steps of a last period
 _SURE = 4.0  # standard errors of a mean
-_SLOWER = 16.0  # times less, at most, in the longer run
+SLOWER = 16.0  # times less, at most, in the longer run
 
 
 def drift_of(motion: RunMotion) -> Fraction | None:
@@ -38,12 +38,12 @@ def drift_of(motion: RunMotion) -> Fraction | None:
     first = _rate(motion, trail)
     if first is None:
         return None
-    longer = replace(run, steps=_LONGER * trail.steps)
+    longer = replace(run, steps=LONGER * trail.steps)
     if longer.steps <= MOST_INTERPRETED:
         again = follow_precisely(longer, motion.digits)
         if motion.stays(again):  # else it has drifted away
             second = _rate(motion, again)
-            if second is None or second / first < 1 / _SLOWER:
+            if second is None or second / first < 1 / SLOWER:
                 return None
     return Fraction(first)
 
@@ -56,7 +56,7 @@ def too_short(motion: RunMotion) -> bool:
     orbit = motion.orbit
     if orbit.period is None:
         return orbit.kind == "open"
-    return _LONGER * motion.precise.steps * motion.run.step_size < _PERIODS * orbit.period
+    return LONGER * motion.precise.steps * motion.run.step_size < _PERIODS * orbit.period
 
 
 def _died(motion: RunMotion, trail: Trail, period: Fraction) -> bool:
@@ -79,11 +79,15 @@ def _errors(motion: RunMotion, trail: Trail) -> list[float]:
 
 
 def _rate(motion: RunMotion, trail: Trail) -> float | None:
-    errors = _errors(motion, trail)
+    return rate_of(_errors(motion, trail), trail)
+
+
+def rate_of(errors: Sequence[float], trail: Trail) -> float | None:
+    """That of the energy errors at a trail's points; None where no drift is seen."""
     if len(errors) < 4 * _STRETCHES:
         return None
     length = len(errors) // _STRETCHES
-    parts: list[list[float]] = [errors[k * length : (k + 1) * length] for k in range(_STRETCHES)]
+    parts = [errors[k * length : (k + 1) * length] for k in range(_STRETCHES)]
     means = [fmean(part) for part in parts]
     steps = [b - a for a, b in pairwise(means)]
     moved = means[-1] - means[0]
@@ -91,7 +95,7 @@ def _rate(motion: RunMotion, trail: Trail) -> float | None:
         return None
     if abs(moved) < _SURE * _uncertain(errors, length):
         return None
-    stretch = trail.points[length].step * float(motion.run.step_size)
+    stretch = trail.points[length].step * float(trail.run.step_size)
     return float(moved / (stretch * (_STRETCHES - 1)))
 
 

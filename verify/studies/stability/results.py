@@ -3,12 +3,38 @@
 from fractions import Fraction
 
 from verify.arithmetic.exact import plain, text
+from verify.hamiltonians.start import shown_of
 from verify.prose import Number, Prose, prose
 from verify.scenes.results.stability import StabilityResult
+from verify.studies.stability.degrees.run_in_degrees import RunInDegrees
+from verify.studies.stability.degrees.verdict_in_degrees import MotionInDegrees, judge_in_degrees
 from verify.studies.stability.limits import frequency, linear_limit, shortened
 from verify.studies.stability.run_motion import RunMotion
 from verify.studies.stability.trail import Run
 from verify.studies.stability.verdict_on_run import Judgement, judge
+
+
+def result_in_degrees(run: RunInDegrees) -> StabilityResult:
+    """The verdict on one run in n degrees of freedom."""
+    motion = MotionInDegrees(run)
+    found, orbit, exact = judge_in_degrees(motion), motion.orbit, run.hamiltonian
+    point, seen = dict(zip(exact.coordinates, run.state, strict=True)), orbit.sensitivity
+    return StabilityResult(
+        **exact.texts,
+        scheme=run.scheme,
+        step_size=text(run.step_size),
+        steps=run.steps,
+        q=shown_of(exact, point, "q"),
+        p=shown_of(exact, point, "p"),
+        t0=text(run.t0) if exact.time_dependent else None,
+        kind=found.kind,
+        step=found.step,
+        rate=shortened(found.rate, 3),
+        energy_error=shortened(found.energy_error, 3),
+        lyapunov=None if seen is None else f"{seen.exponent:.2g}",
+        exact_orbit=orbit.summary,
+        detail=found.detail,
+    )
 
 
 def run_result(run: Run) -> StabilityResult:

@@ -77,7 +77,7 @@ class RunMotion:
 
     @cached_property
     def _first_energy(self) -> Fraction | None:
-        return self.energy(Point(0, self.run.p, self.run.q))
+        return self.energy(Point(0, self.run.state))
 
     def energy_error(self, point: Point) -> Fraction | None:
         """H − H(z₀) in parts of the orbit's scale."""

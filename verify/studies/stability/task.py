@@ -5,7 +5,8 @@ from typing import Literal
 
 from verify.arithmetic import AUTO, step_cost
 from verify.execution.keeping import Keeper
-from verify.execution.task import InitialValueTask
+from verify.execution.task import InitialValueTask, StartTask
+from verify.hamiltonians.start import point_of
 from verify.scenes.results.stability import (
     LargestStepResult,
     StabilityMapResult,
@@ -23,12 +24,13 @@ class _FromATime(InitialValueTask):
     """None where H does not depend on time."""
 
 
-class StabilityTask(_FromATime):
+class StabilityTask(StartTask):
     """Judge one run: stable, drifting, unstable, and whose fault it is."""
 
     result = StabilityResult
     imports = ("verify.studies.stability.results", "verify.studies.stability.trail")
     kind: Literal["stability"] = "stability"
+    t0: Number | None = None
     step_size: StepSize
     steps: int
 
@@ -37,15 +39,16 @@ class StabilityTask(_FromATime):
         return _RUN_COST + self.steps * step_cost(AUTO)
 
     def compute(self, keeper: Keeper) -> StabilityResult:
-        from verify.studies.stability.results import run_result
+        from verify.studies.stability.degrees.run_in_degrees import RunInDegrees
+        from verify.studies.stability.results import result_in_degrees, run_result
         from verify.studies.stability.trail import Run
 
-        z0 = self.q, self.p
-        run = Run(
-            self.exact_hamiltonian(), self.scheme, self.step_size, *z0, self.steps,
-            t0=self.t0 or Fraction(0),
-        )  # fmt: skip
-        return run_result(run)
+        exact, t0 = self.exact_hamiltonian(), self.t0 or Fraction(0)
+        of = exact, self.scheme, self.step_size
+        point = point_of(exact, self.q, self.p)
+        if not exact.planar:
+            return result_in_degrees(RunInDegrees(*of, tuple(point.values()), self.steps, t0))
+        return run_result(Run(*of, point["q"], point["p"], self.steps, t0=t0))
 
 
 class LargestStepTask(_FromATime):

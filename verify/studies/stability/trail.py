@@ -6,14 +6,16 @@ something happens between two of them, that stretch is run again from the first 
 until it is one step.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import Protocol
 
 from sympy import isprime
 
 from verify import arithmetic as number_systems
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
+from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.orbit import Orbit
 from verify.kernels.stepping import KernelRun
 from verify.runs.digits_on_demand import worth_compiling
@@ -24,9 +26,38 @@ _FEWEST = 5  # steps between two of them, where not every step is looked at
 MOST_INTERPRETED = 300_000  # steps in an arithmetic that has no compiler
 
 
+State = tuple[Fraction, ...]  # p and q; p1 … pn, q1 … qn
+
+
+class Followed(Protocol):
+    """One run: the first N steps of an orbit, in the plane or in n degrees of freedom."""
+
+    @property
+    def hamiltonian(self) -> Hamiltonian: ...
+    @property
+    def scheme(self) -> str: ...
+    @property
+    def step_size(self) -> Fraction: ...
+    @property
+    def steps(self) -> int: ...
+    @property
+    def start(self) -> Mapping[str, Fraction]:
+        """What a kernel's run begins with."""
+
+    @property
+    def state(self) -> State:
+        """The coordinates at its start."""
+
+    def onwards(self, state: State, step: int, steps: int) -> "Followed":
+        """So many steps from a state that it has after `step`."""
+
+    def shortened(self, steps: int) -> "Followed":
+        """So many of its steps, or more."""
+
+
 @dataclass(frozen=True)
 class Run(Orbit):
-    """One run: the first N steps of an orbit."""
+    """A run in the plane."""
 
     steps: int
 
@@ -34,21 +65,39 @@ class Run(Orbit):
     def time(self) -> Fraction:
         return self.steps * self.step_size
 
+    @property
+    def state(self) -> State:
+        return self.p, self.q
+
+    def onwards(self, state: State, step: int, steps: int) -> "Run":
+        p, q = state
+        return replace(self, p=p, q=q, t0=self.t0 + step * self.step_size, steps=steps)
+
+    def shortened(self, steps: int) -> "Run":
+        return replace(self, steps=steps)
+
 
 @dataclass(frozen=True)
 class Point:
     """The state after so many steps, as the exact numbers that it has."""
 
     step: int
-    p: Fraction
-    q: Fraction
+    state: State
+
+    @property
+    def p(self) -> Fraction:
+        return self.state[0]
+
+    @property
+    def q(self) -> Fraction:
+        return self.state[1]
 
 
 @dataclass(frozen=True)
 class Trail:
     """States of a run in an arithmetic; `done` of its steps stayed in the arithmetic's range."""
 
-    run: Run
+    run: Followed
     arithmetic: Arithmetic
     points: tuple[Point, ...]
     done: int
@@ -63,20 +112,19 @@ class Trail:
 
     def onwards(self, point: Point, steps: int) -> "Trail":
         """So many steps from one of its points, followed more closely."""
-        t0 = self.run.t0 + point.step * self.run.step_size
-        onwards = replace(self.run, p=point.p, q=point.q, t0=t0, steps=steps)
-        return follow(onwards, self.arithmetic)
+        return follow(self.run.onwards(point.state, point.step, steps), self.arithmetic)
 
 
-def follow(run: Run, arithmetic: Arithmetic) -> Trail:
+def follow(run: Followed, arithmetic: Arithmetic) -> Trail:
     """The run in this arithmetic. Raises UnsupportedError where that lacks a function."""
     sections = _sections(run.steps)
-    asked = run.hamiltonian, run.scheme, run.start, run.steps, frozenset[str](), 0
+    names = run.hamiltonian.coordinates
+    asked = run.hamiltonian, run.scheme, {**run.start}, run.steps, frozenset[str](), 0
     outcome = KernelRun(*asked, sections=sections).run(arithmetic)
     section = -(-run.steps // sections)
-    points = [Point(0, run.p, run.q)]
+    points = [Point(0, run.state)]
     for k, state in enumerate(outcome.trail, start=1):
-        points.append(Point(min(k * section, run.steps), state["p"], state["q"]))
+        points.append(Point(min(k * section, run.steps), tuple(state[name] for name in names)))
     return Trail(run, arithmetic, tuple(points), outcome.done)
 
 
@@ -90,7 +138,7 @@ def _sections(steps: int) -> int:
     return next((k for k, length in lengths if length >= _FEWEST and isprime(length)), aimed)
 
 
-def follow_precisely(run: Run, digits: int) -> Trail:
+def follow_precisely(run: Followed, digits: int) -> Trail:
     """The run to so many digits, compiled where that repays.
 
     Without a compiler only the first 300 000 of its steps are done, and `steps` says so.
@@ -104,7 +152,7 @@ def follow_precisely(run: Run, digits: int) -> Trail:
                 continue
             if trail.finished:
                 return trail
-    return follow(replace(run, steps=min(run.steps, MOST_INTERPRETED)), last.make(digits))
+    return follow(run.shortened(min(run.steps, MOST_INTERPRETED)), last.make(digits))
 
 
 def first_step(trail: Trail, happens: Callable[[Point], bool]) -> int | None:

@@ -126,7 +126,7 @@ def _not_the_scheme(motion: RunMotion) -> Judgement:
 def _sensitive(motion: RunMotion, digits: int, precise: Trail) -> Prose:
     """Whether a neighbour parts from the run as well, without rounding: as driven ones may be
     chaotic."""
-    run = precise.run
+    run = replace(motion.run, steps=precise.steps)
     near = follow_precisely(replace(run, q=run.q + _NEXT * (motion.orbit.reach[1] or 1)), digits)
     step = first_apart(near, precise, motion.apart)
     if step is None:

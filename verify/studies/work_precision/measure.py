@@ -69,7 +69,8 @@ def work_precision(
     advance: Advance,
 ) -> WorkPrecisionResult:
     """Errors and run times over [t0, t0 + time] from (q, p), a number each or a list: of each
-    scheme with each step size, of peers, and of number systems with so many digits, on one scheme at one step size.
+    scheme with each step size, of peers, and of number systems with so many digits, on one scheme
+    at one step size.
 
     Raises InputError where the exact solution does not reach the time.
     """

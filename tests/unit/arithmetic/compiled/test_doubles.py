@@ -1,4 +1,4 @@
-"""Long float64 kernels by LLVM alone: the bits of numba's, and what they do not know is left to it."""
+"""Long float64 kernels by LLVM alone: numba's bits, and what they do not know is left to it."""
 
 from fractions import Fraction
 from typing import Any

@@ -34,7 +34,7 @@ def stepped(case: Run, steps: int) -> tuple[float, float]:
 def test_a_trail_has_the_states_of_a_plain_loop() -> None:
     trail = follow(GROWING, FLOAT)
     assert trail.finished
-    assert trail.points[0] == Point(0, Fraction(0), Fraction(1))
+    assert trail.points[0] == Point(0, (Fraction(0), Fraction(1)))
     assert trail.points[-1].step == GROWING.steps
     assert len(trail.points) > 100
     for point in trail.points[:: len(trail.points) // 5]:

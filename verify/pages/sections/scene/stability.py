@@ -32,6 +32,7 @@ MEANINGS: dict[Kind, str] = {
     "escapes": "the exact solution itself leaves",
     "overflow": "a number is beyond float64’s range, and 53 bits with wider exponents stay",
     "underflow": "numbers vanish in float64 that wider exponents keep",
+    "sensitive": "the exact motion itself parts from its neighbours exponentially",
     "undecided": "no two precisions agree, or the run is too long for high precision",
 }
 
