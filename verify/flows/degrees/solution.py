@@ -143,6 +143,8 @@ def _strength(hamiltonian: Hamiltonian) -> Fraction | None:
     kepler = get("kepler").hamiltonian({}).expression
     if len(hamiltonian.coordinates) != 4 or hamiltonian.time_dependent:
         return None
+    if hamiltonian.exact.is_polynomial():  # seen at once, where simplifying takes seconds
+        return None
     mu = symbol("mu")
     # At q = (1, 0) and p = 0 it is −μ, and at q = (2, 0) half of that.
     at = [dict.fromkeys(map(symbol, ("p1", "p2", "q2")), 0) | {symbol("q1"): k} for k in (1, 2)]

@@ -20,9 +20,10 @@ class WorkPoint(Frozen):
     0 where that is proved; `lam_plain`: by the plain product of determinants, in the plane;
     `symplectic_defect`: max |W_N| in n degrees of freedom. `limited_by` is of
     `error`, `lambda_limited_by` of Λ, or of W; "tolerance" is a peer's, in which nothing tells
-    truncation from rounding, "undecided" has its reason in `reason`. A failed run has no values; `failed_step`
-    is the step at which it left its range. Seconds are those of the whole run, its compilation and
-    the call itself apart; None where that takes longer than the run. `evaluations`: of the vector
+    truncation from rounding, "undecided" has its reason in `reason`. A failed run has no values;
+    `failed_step` is the step at which it left its range. Seconds are those of the whole run, its
+    compilation and the call itself apart; None where that takes longer than the run. `evaluations`:
+    of the vector
     field in the whole run, where it is counted.
     """
 
@@ -153,8 +154,8 @@ class WorkPrecisionResult(Frozen):
     `scale`: the size of the orbit, the greater |z| of its ends.
     `overhead`: seconds of an empty call, as it was subtracted. `rounding_share`: a rounding part
     that may be a greater share of an error limits it. `reference_bound`: of each coordinate.
-    `machine`: the one that the run times are of. `left_out`: peers with the reason. `systems` are of one
-    scheme at one step size.
+    `machine`: the one that the run times are of. `left_out`: peers with the reason. `systems` are
+    of one scheme at one step size.
     """
 
     hamiltonian: str

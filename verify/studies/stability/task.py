@@ -39,8 +39,8 @@ class StabilityTask(StartTask):
         return _RUN_COST + self.steps * step_cost(AUTO)
 
     def compute(self, keeper: Keeper) -> StabilityResult:
-        from verify.studies.stability.degrees.run_in_degrees import RunInDegrees
         from verify.studies.stability.results import result_in_degrees, run_result
+        from verify.studies.stability.run_in_degrees import RunInDegrees
         from verify.studies.stability.trail import Run
 
         exact, t0 = self.exact_hamiltonian(), self.t0 or Fraction(0)

@@ -77,7 +77,8 @@ def work_precision(
     begun = perf_counter()
     begun_at = point_of(hamiltonian, q, p)
     problem = _problem(hamiltonian, begun_at, time, t0)
-    _wake_compiler()
+    if hamiltonian.planar:  # numba's, which compiles no loop of more degrees of freedom
+        _wake_compiler()
     ladders = [Ladder(problem, name) for name in schemes]
     own = [[_scheme_point(ladder, h, advance) for h in step_sizes] for ladder in ladders]
     others = [_peer(problem, name, advance) for name in peers]

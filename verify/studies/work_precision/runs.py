@@ -42,7 +42,7 @@ EXACT_DIGITS = 33  # of the run that stands for exact arithmetic
 SHOWN = 12  # digits of an error at most
 _BITS = 400
 _REFERENCE_DIGITS = 33  # of the exact solution: float64 has 16
-_IN_DEGREES = 24  # of one in n degrees of freedom: each more costs, and most have no closed form
+_IN_DEGREES = 20  # of one in n degrees of freedom: each more costs, and most have no closed form
 _ROOT_BITS = 160
 
 # The observables of a run, as a point has them.
@@ -121,7 +121,8 @@ class Ladder:
         self.problem, self.scheme = problem, get(scheme)
         self.name = scheme
         self.preserves_area = preserves(map_of(problem.hamiltonian, scheme))
-        self.arithmetic: Arithmetic = float64.compiled_at_once()
+        lightly = not problem.hamiltonian.planar
+        self.arithmetic: Arithmetic = float64.compiled_at_once(lightly=lightly)
         step_map = map_of(self._kernel_run(problem.time, frozenset()).hamiltonian, scheme)
         begun = time.perf_counter()
         self.kernel: Kernel = Writer(step_map, self.arithmetic, frozenset(), False).kernel()

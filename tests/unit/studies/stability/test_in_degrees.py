@@ -1,4 +1,4 @@
-"""Runs in n degrees of freedom, judged: regular, chaotic and leaving ones, each with its control."""
+"""Runs in n degrees of freedom, judged: regular, chaotic, leaving; each with its control."""
 
 from fractions import Fraction
 from math import log

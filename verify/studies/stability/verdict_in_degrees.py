@@ -24,15 +24,15 @@ from verify.arithmetic.systems import mpfr
 from verify.flows.extrapolation import functions_at
 from verify.hamiltonians.energy import energy_of
 from verify.prose import prose, read_prose
-from verify.studies.stability.degrees.exact_motion import (
+from verify.studies.stability.energy_drift import LONGER, SLOWER, rate_of
+from verify.studies.stability.exact_motion import (
     ExactMotion,
     Sensitivity,
     distance,
     exact_motion,
     moved,
 )
-from verify.studies.stability.degrees.run_in_degrees import RunInDegrees
-from verify.studies.stability.energy_drift import LONGER, SLOWER, rate_of
+from verify.studies.stability.run_in_degrees import RunInDegrees
 from verify.studies.stability.run_motion import float64
 from verify.studies.stability.trail import (
     MOST_INTERPRETED,

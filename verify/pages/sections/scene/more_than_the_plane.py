@@ -1,0 +1,121 @@
+"""What is lost of the symplectic form in n degrees of freedom, and what det J would have said.
+
+S has n(2n − 1) entries and det J is one number: at its lowest order det J − 1 is the sum of n of
+them. Along a run W = Σ MᵀSM grows with the tangent map M, and Λ = Π det J − 1 does not.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+
+from verify.pages.figures.captioned_plot import few_digits
+from verify.pages.sections.rows import Group, Row
+from verify.pages.sections.section import Section
+from verify.pages.text import words
+from verify.pages.text.typography import counted, listed, number, power_of_h, start, step, whole
+from verify.scenes.results.report import SceneResult
+from verify.scenes.results.work_precision import WorkLine, WorkPoint, WorkPrecisionResult
+
+
+@dataclass(frozen=True)
+class BeyondView:
+    """Sentences, and a table of the runs by scheme."""
+
+    finding: tuple[str, ...]
+    groups: tuple[Group, ...]
+    caption: str
+
+
+def _view(scene: SceneResult, _: str) -> BeyondView | None:
+    found = scene.work_precision
+    if found is None or found.planar:
+        return None
+    own = [line for line in found.lines if not line.peer]
+    caption = f"float64 runs to T = {number(found.time)} from {start(found)}"
+    groups = tuple(Group(line.name, list(map(_row, line.points)), _kept(line)) for line in own)
+    said = (*_orders(scene), *_finding(found, own))
+    return BeyondView(said, groups, caption)
+
+
+def _kept(line: WorkLine) -> str:
+    return "S ≡ 0 is proved" if line.area_preserving else ""
+
+
+def _row(point: WorkPoint) -> Row:
+    label, steps = step(point.step_size or ""), whole(point.steps or 0)
+    if point.limited_by == "failed":
+        return Row(label, (steps,), f"failed: {point.reason}")
+    values = (point.error, point.energy, point.symplectic_defect, point.lam)
+    seconds = "–" if point.seconds_median is None else number(f"{point.seconds_median:.2e}")
+    return Row(label, (steps, *map(few_digits, values), seconds))
+
+
+# -- sentences ------------------------------------------------------------------------------------
+
+
+def _orders(scene: SceneResult) -> Iterator[str]:
+    """Where det J − 1 begins with a higher power of h than S."""
+    for proof in scene.proofs:
+        form = proof.form
+        if form is None or form.volume_order is None or proof.order is None:
+            continue
+        if form.volume_order > proof.order:
+            yield (
+                f"S of {proof.scheme} begins with {power_of_h(proof.order)} and det J − 1 with "
+                f"{power_of_h(form.volume_order)}: by det J alone it would seem to be "
+                f"{counted(form.volume_order - proof.order, 'order')} better than it is."
+            )
+
+
+def _finding(found: WorkPrecisionResult, own: list[WorkLine]) -> Iterator[str]:
+    kept = [line.name for line in own if line.area_preserving]
+    if kept:
+        yield f"{listed(kept)}: every step is symplectic, S ≡ 0, by proof; so are all N of them."
+    lost = [line for line in own if not line.area_preserving]
+    pairs = [(line, point) for line in lost for point in line.points if _compared(point)]
+    if not pairs:
+        return
+    line, point = max(pairs, key=lambda each: _ratio(each[1]))
+    yield (
+        f"What det J alone would have said: of {line.name} at h = {step(point.step_size or '')} "
+        f"that {whole(point.steps or 0)} steps change volume by Λ = {_few(point.lam)}, while "
+        f"the symplectic form is off by max |W| = {_few(point.symplectic_defect)}, "
+        f"{number(f'{_ratio(point):.1e}')} times as much."
+    )
+    yield (
+        "det J is one number where S has n(2n − 1) entries, and says nothing of how errors of the "
+        "form are carried on: W grows with the tangent map, as Mᵀ S M, Λ does not."
+    )
+    wide = [p.name for p in lost if any(_beyond_orbit(x, found) for x in p.points)]
+    if wide:
+        yield (
+            f"Of {listed(wide)} some solutions are farther off than the orbit is wide: there "
+            "no scheme follows this orbit, and the energy and the form are what is left to compare."
+        )
+
+
+def _compared(point: WorkPoint) -> bool:
+    both = point.lam, point.symplectic_defect
+    return all(x is not None and Fraction(x.value) for x in both)
+
+
+def _ratio(point: WorkPoint) -> float:
+    lam, form = point.lam, point.symplectic_defect
+    return abs(float(form.value) / float(lam.value)) if lam and form else 0.0
+
+
+def _beyond_orbit(point: WorkPoint, found: WorkPrecisionResult) -> bool:
+    return point.error is not None and Fraction(point.error.value) > Fraction(found.scale)
+
+
+def _few(value: object) -> str:
+    return str(few_digits(value))  # type: ignore[arg-type]
+
+
+SECTION = Section(
+    order=9,
+    title="More than the plane",
+    anchor="beyond",
+    view=_view,
+    terms=lambda _: words.OF_FORM,
+)

@@ -1,1 +1,0 @@
-"""Runs in n degrees of freedom, judged: chaos, and other sensitive motion, told apart."""
