@@ -149,9 +149,11 @@ def scene_of(
     system, where it has one.
     """
     exact = hamiltonian_from(system, parameters)
+    of_family = known_as is not None and systems.get(known_as).family is not None
     data = {
         **({"system": known_as} if known_as else {"hamiltonian": exact.formula}),
-        "parameters": dict[str, Fraction](exact.values),
+        "parameters": dict[str, Fraction](exact.values)
+        | ({"n": Fraction(exact.degrees)} if of_family else {}),
         "schemes": schemes_from(scheme, exact),
         **({"t0": plain(t0)} if t0 is not None and exact.time_dependent else {}),
     }

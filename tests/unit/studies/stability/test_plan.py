@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from tests.unit.scenes.test_scene import load
-from verify.commands.shared.input import suites, target
+from verify.commands.shared.input import target
 from verify.errors import InputError
 from verify.execution.study import plan_of
 from verify.scenes.stability_sections import Stability, StabilityMap
@@ -132,7 +132,7 @@ def test_bad_maps_are_refused_in_one_line(tmp_path: Path, old: str, new: str, me
     assert "\n" not in str(info.value)
 
 
-@pytest.mark.parametrize("suite", suites())
+@pytest.mark.parametrize("suite", ["extreme", "stiff"])
 def test_the_suites_are_scenes_that_ask_for_stability(suite: str) -> None:
     scenes = target(suite)[1]
     assert len(scenes) >= 5

@@ -1,0 +1,65 @@
+"""`bench` and `stability` of H(p1 … pn, q1 … qn), in one line and from files."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.end_to_end.test_one_line import here, json_of
+
+HENON = ["--system", "henon-heiles", "--q", "0,0.1", "--p", "0.4,0"]
+
+
+def test_bench_has_w_beside_errors(capsys: pytest.CaptureFixture[str]) -> None:
+    sizes = ["--step-size", "0.1", "--step-size", "0.05", "--time", "1", "--repeats", "1"]
+    schemes = ["--scheme", "lie2", "--scheme", "stormer-verlet"]
+    status, out, _ = here(capsys, "bench", *HENON, *schemes, *sizes, "--json")
+    assert status == 0
+    found = json_of(out)
+    assert found["scenes"][0]["q"] == ["0", "0.1"]
+    defects = {x["scheme"]: x["symplectic_defect"] for x in found["points"] if x["step_size"]}
+    assert float(defects["lie2"]) > 0
+    assert float(defects["stormer-verlet"]) == 0
+    status, shown, _ = here(capsys, "bench", *HENON, *schemes, *sizes)
+    assert status == 0
+    assert "max |W|" in shown
+
+
+def test_a_chain_is_judged_with_its_own_number_of_masses(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    chain = ["--system", "fput", "--param", "n=4", "--param", "alpha=1/4", "--param", "beta=0"]
+    start = ["--q", "1,0,0,0", "--p", "0,0,0,0", "--step-size", "0.1", "--time", "10"]
+    status, shown, _ = here(capsys, "stability", *chain, *start, "--scheme", "stormer-verlet")
+    assert (status, shown.split()[0]) == (0, "stable")
+
+
+@pytest.mark.parametrize(
+    ("command", "start", "said"),
+    [
+        ("stability", ["--q", "0", "--p", "0.4,0"], "--q=0: has 1 of 2 numbers"),
+        ("bench", ["--q", "0,0.1", "--p", "0.4"], "--p=0.4: has 1 of 2 numbers"),
+        ("stability", ["--q", "0,x", "--p", "0.4,0"], "--q=x"),
+    ],
+)
+def test_mistakes_are_one_line(
+    command: str, start: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    more = ["--scheme", "rk4", "--step-size", "0.1", "--time", "1"]
+    more += ["--step-size", "0.05"] if command == "bench" else []
+    status, out, err = here(capsys, command, "--system", "henon-heiles", *more, *start)
+    assert (status, out) == (2, "")
+    assert said in err
+    assert err.count("\n") == 1
+
+
+def test_what_is_of_the_plane_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "mine.toml"
+    file.write_text(
+        'system = "henon-heiles"\nschemes = ["rk4"]\n[[largest_step]]\ntime = 1\n'
+        "initial_value = { q = 1, p = 0 }\n"
+    )
+    status, _, err = here(capsys, "stability", str(file))
+    assert status == 2
+    assert "largest_step takes p and q" in err
