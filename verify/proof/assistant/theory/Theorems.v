@@ -8,7 +8,7 @@
 
 From Coq Require Import Reals QArith List.
 From AreaPreservation Require Import Sums Differential Symplectic Hamiltonians RungeKutta SymplecticMethods Product Rings Totals Flow Taylor Bracket LieScheme Step Plane Determinants Values Volume Determinant Smooth Systems Solutions Oscillator.
-Open Scope nat_scope.
+Local Open Scope nat_scope.
 
 (** ** The scheme lie_eta: z' = sum of h^k/k! D^k z up to k = eta
 
@@ -65,7 +65,7 @@ Proof. exact odd_does_not_telescope. Qed.
 
 (** ** Methods that are symplectic, for every H that is twice differentiable where it is looked at *)
 
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 (** Compositions of kicks and drifts. *)
 Theorem shears_are_symplectic : forall n h l x, shears_of_hamiltonian n h l x ->

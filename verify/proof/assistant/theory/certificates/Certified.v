@@ -3,7 +3,7 @@
 From Coq Require Import Setoid Morphisms Ring Ring_theory QArith List Bool Lia.
 From AreaPreservation Require Import Rings Totals Flow Taylor Formulas Identities.
 Import ListNotations.
-Open Scope nat_scope.
+Local Open Scope nat_scope.
 
 (** The names of a certificate stand for these elements, the coordinates first. *)
 Record interprets (K : differential_ring) (s : system K) (x : certificate) (names : list K) := {
@@ -20,7 +20,7 @@ Section Certified.
   Context (K : differential_ring) (s : system K) (x : certificate) (names : list K).
   Context (meaning : interprets K s x names) (sloped : all_have_slopes x = true).
   Add Ring certified : (ring_laws K) (setoid (same_equivalence K) (operations_extend K)).
-  Open Scope ring_of_functions.
+  Local Open Scope ring_of_functions.
 
   Notation n := (of_degrees x).
   Notation D := (along_flow K s).

@@ -3,7 +3,7 @@
 From Coq Require Import Reals QArith List Bool Lia Lra.
 From AreaPreservation Require Import Rings Formulas Calculation RealFormulas RungeKutta StageSchemes.
 Import ListNotations.
-Open Scope nat_scope.
+Local Open Scope nat_scope.
 
 Section Coefficients.
   Context (numbers : list R) (relations : list formula).

@@ -3,7 +3,7 @@
 From Coq Require Import Setoid Morphisms Ring Ring_theory QArith List Bool Lia.
 From AreaPreservation Require Import Rings Totals Flow Taylor Bracket Formulas Calculation Identities Certified EveryHamiltonian.
 Import ListNotations.
-Open Scope nat_scope.
+Local Open Scope nat_scope.
 
 (** The coefficient of h^m in the determinant of p' = sum P_k h^k, q' = sum Q_k h^k. *)
 Definition determinant_coefficient {K : differential_ring} (P Q : nat -> K) (m : nat) : K :=
@@ -35,7 +35,7 @@ Section EveryClaims.
   Context (e : family_of_energies) (x : certificate) (checked : sound_for_every e x).
   Context (K : differential_ring) (s : system K) (member : belongs s e).
   Add Ring every_claims : (ring_laws K) (setoid (same_equivalence K) (operations_extend K)).
-  Open Scope ring_of_functions.
+  Local Open Scope ring_of_functions.
   Notation n := (of_degrees x).
   Notation value f := (@value_of K (names_for_every K s e) f).
 

@@ -3,7 +3,7 @@
 From Coq Require Import Setoid Morphisms Ring Ring_theory QArith List Permutation Bool Lia.
 From AreaPreservation Require Import Rings Totals Flow Taylor Formulas Identities Certified.
 Import ListNotations.
-Open Scope nat_scope.
+Local Open Scope nat_scope.
 
 (** The derivative of f by all coordinates of a list. *)
 Definition derived {K : differential_ring} (l : list nat) (f : K) : K :=
@@ -87,7 +87,7 @@ Record belongs {K : differential_ring} (s : system K) (e : family_of_energies) :
 Section EveryHamiltonian.
   Context (K : differential_ring) (s : system K) (e : family_of_energies) (member : belongs s e).
   Add Ring every_hamiltonian : (ring_laws K) (setoid (same_equivalence K) (operations_extend K)).
-  Open Scope ring_of_functions.
+  Local Open Scope ring_of_functions.
 
   Notation n := (energy_degrees e).
   Notation H := (hamiltonian s).

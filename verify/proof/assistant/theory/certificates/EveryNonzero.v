@@ -4,7 +4,7 @@
 From Coq Require Import Reals Qreals List Lia.
 From AreaPreservation Require Import Differential Rings Flow Formulas Simplified Smooth Systems RealFormulas RealNames EveryHamiltonian RationalValues.
 Import ListNotations.
-Open Scope nat_scope.
+Local Open Scope nat_scope.
 
 (** The names 1 .. 2n+1 are the coordinates, and there are no others. *)
 Definition coordinates_alone (n : nat) : vocabulary :=

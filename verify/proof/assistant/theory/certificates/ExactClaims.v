@@ -4,7 +4,7 @@
 From Coq Require Import Reals QArith Qreals List Bool Lra Lia.
 From AreaPreservation Require Import Sums Differential Rings Formulas Symplectic Identities RealFormulas RealNames OneHamiltonian RealDefect RealClaims RealExact MapClaims.
 Import ListNotations.
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 Section ExactClaims.
   Context (v : vocabulary) (energy : formula) (x : certificate).

@@ -4,7 +4,7 @@
 From Coq Require Import Reals QArith Qreals List Bool Lra Lia.
 From AreaPreservation Require Import Sums Differential Orders Rings Formulas Identities RealFormulas RealNames OneHamiltonian RealDefect RealClaims MapClaims.
 Import ListNotations.
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 Section FlowClaims.
   Context (v : vocabulary) (energy : formula) (x : certificate).

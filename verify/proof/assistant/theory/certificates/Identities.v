@@ -7,7 +7,7 @@
 From Coq Require Import QArith List Bool.
 From AreaPreservation Require Import Formulas Calculation.
 Import ListNotations.
-Open Scope nat_scope.
+Local Open Scope nat_scope.
 
 Record certificate := {
   of_degrees : nat;

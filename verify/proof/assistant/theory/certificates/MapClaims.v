@@ -4,7 +4,7 @@
 From Coq Require Import Reals QArith Qreals List Bool Lra Lia.
 From AreaPreservation Require Import Sums Differential Slopes Orders Rings Formulas Calculation Symplectic Identities RealFormulas RealNames OneHamiltonian RealDefect RealClaims.
 Import ListNotations.
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 (** sum c_k h^k. *)
 Fixpoint in_powers (h : R) (coefficients : list R) : R :=
@@ -40,12 +40,6 @@ Definition plane_slopes_bounded (u : R -> R -> R -> R) (p q : R) : Prop :=
   exists (u_p u_q : R -> R) B, forall h, Rabs h <= 1 ->
     derivable_pt_lim (fun s => u h s q) p (u_p h) /\ derivable_pt_lim (fun s => u h p s) q (u_q h) /\
     Rabs (u_p h) <= B /\ Rabs (u_q h) <= B.
-
-Lemma no_remainder : forall p q, plane_slopes_bounded (fun _ _ _ => 0) p q.
-Proof.
-  intros p q. exists (fun _ => 0), (fun _ => 0), 0. intros h _. rewrite Rabs_R0.
-  repeat split; try apply Rle_refl; apply derivable_pt_lim_const.
-Qed.
 
 Lemma in_powers_is : forall h l m, (length l <= m)%nat ->
   in_powers h l = sum m (fun k => nth k l 0 * h ^ k).

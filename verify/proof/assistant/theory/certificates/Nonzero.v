@@ -4,7 +4,7 @@
 From Coq Require Import Reals Qreals List Lra.
 From AreaPreservation Require Import Differential Slopes Rings Formulas RealFormulas RealNames OneHamiltonian RationalValues.
 Import ListNotations.
-Open Scope nat_scope.
+Local Open Scope nat_scope.
 
 (** Whether a function has this value by what is known of it: sin 0 = 0, cos 0 = 1, exp 0 = 1. *)
 Definition has_known_value (k : kind) (argument u : Q) : bool :=

@@ -4,7 +4,7 @@
 From Coq Require Import Reals Rtrigo_reg QArith Qreals List Bool Lra Lia.
 From AreaPreservation Require Import Sums Differential Slopes Rings Totals Flow Formulas Taylor Smooth Systems Identities Certified RealFormulas RealNames.
 Import ListNotations.
-Open Scope nat_scope.
+Local Open Scope nat_scope.
 
 Section OneHamiltonian.
   Context (v : vocabulary) (made_well : well_made v = true) (given : list R).
@@ -118,10 +118,4 @@ Section OneHamiltonian.
       apply slope_of_formula. lia.
   Qed.
 
-  Theorem relations_are_zero : forall f, In f (relations_of v) ->
-    @same K (@value_of K elements f) (@zero K).
-  Proof.
-    intros f F x I. rewrite value_of_element.
-    exact (relations_hold v made_well given enough x I f F).
-  Qed.
 End OneHamiltonian.

@@ -4,7 +4,7 @@
 From Coq Require Import Reals Qreduction Qfield Qreals List.
 From AreaPreservation Require Import Differential Rings Formulas RealFormulas.
 Import ListNotations.
-Open Scope nat_scope.
+Local Open Scope nat_scope.
 
 (** The rational numbers, as fractions that are reduced at each step. *)
 Definition rational_numbers : rational_ring.

@@ -3,7 +3,7 @@
 From Coq Require Import Reals QArith Qreals List Bool Lra Lia.
 From AreaPreservation Require Import Sums Differential Slopes Orders Rings Totals Flow Taylor Formulas Calculation Smooth Systems Solutions Symplectic Identities Certified RealFormulas RealNames OneHamiltonian RealDefect.
 Import ListNotations.
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 (** A certificate for H, the formula [energy] in the names of [v], that the check accepts. *)
 Record sound (v : vocabulary) (energy : formula) (x : certificate)

@@ -4,7 +4,7 @@
 From Coq Require Import Reals QArith Qreals List Bool Lra Lia.
 From AreaPreservation Require Import Sums Differential Slopes Orders Rings Totals Flow Taylor Formulas Smooth Systems Symplectic Identities Certified RealFormulas RealNames OneHamiltonian.
 Import ListNotations.
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 Lemma total_is_sum : forall m (f : nat -> R), @total real_numbers m f = sum m f.
 Proof. induction m as [|m IH]; intro f; simpl; [reflexivity|]. rewrite IH. reflexivity. Qed.

@@ -4,7 +4,7 @@
 From Coq Require Import Reals QArith List Lia.
 From AreaPreservation Require Import Differential Totals Formulas Identities RealFormulas OneHamiltonian RealDefect RealClaims.
 Import ListNotations.
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 (** Whether the map ends at h^d, and no coefficient of its defect is said to be other than 0: the
     defect ends at h^(2d), so that it has to be known up to there. *)
@@ -60,20 +60,6 @@ Section RealExact.
   Notation value_at z f := (@value_of real_numbers (names_at v given z) f).
   Notation U := (inside v given).
   Notation slope_at z c a k := (value_at z (slope x a (term x k c))).
-
-  (** [polynomial_map] is then the whole map: more terms add nothing. *)
-  Theorem map_is_whole : forall d, short_series x d = true -> forall m c h z, (d <= m)%nat ->
-    sum (S m) (fun k => value_at z (term x k c) * h ^ k) = polynomial_map v given x c h z.
-  Proof.
-    clear enough. intros d E m c h z L. destruct (short_series_means x d E) as [ends [Ld _]].
-    unfold polynomial_map.
-    assert (cut : forall m, (d <= m)%nat -> sum (S m) (fun k => value_at z (term x k c) * h ^ k)
-      = sum (S d) (fun k => value_at z (term x k c) * h ^ k)).
-    { intros l Ll. rewrite <- !total_is_sum. apply (total_cut real_numbers); [lia|].
-      intros i Li. change (value_at z (term x i c) * h ^ i = 0).
-      rewrite ends by lia. simpl. unfold real_of. simpl. ring. }
-    rewrite (cut m L), (cut (known x)) by lia. reflexivity.
-  Qed.
 
   Lemma value_of_defect_formula : forall z m a b, value_at z (defect_formula x m a b)
     = sum n (fun i => sum (S m) (fun k => slope_at z i a k * slope_at z (n + i)%nat b (m - k)%nat)

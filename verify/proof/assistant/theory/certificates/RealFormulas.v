@@ -4,7 +4,7 @@
 From Coq Require Import Reals Rtrigo_reg QArith Qreals List Bool Lra Lia.
 From AreaPreservation Require Import Sums Differential Slopes Rings Formulas.
 Import ListNotations.
-Open Scope nat_scope.
+Local Open Scope nat_scope.
 
 (** A rational number as a real one, written without a denominator 1. *)
 Definition real_of (a : Q) : R :=

@@ -4,7 +4,7 @@
 From Coq Require Import Reals Rtrigo_reg QArith Qreals List Bool Lra Lia.
 From AreaPreservation Require Import Sums Differential Slopes Rings Formulas RealFormulas.
 Import ListNotations.
-Open Scope nat_scope.
+Local Open Scope nat_scope.
 
 Section RealNames.
   Context (v : vocabulary) (made_well : well_made v = true) (given : list R).

@@ -4,7 +4,7 @@
 From Coq Require Import Reals QArith List Lia.
 From AreaPreservation Require Import Differential Rings Flow Formulas Smooth Identities Certified RealFormulas OneHamiltonian RealDefect RealClaims.
 Import ListNotations.
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 Section RealPotential.
   Context (v : vocabulary) (energy : formula) (x : certificate).

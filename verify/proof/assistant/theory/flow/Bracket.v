@@ -2,12 +2,12 @@
 
 From Coq Require Import Setoid Morphisms Ring Ring_theory QArith Lia.
 From AreaPreservation Require Import Rings Totals Flow Taylor.
-Open Scope nat_scope.
+Local Open Scope nat_scope.
 
 Section Bracket.
   Context (K : differential_ring) (s : system K) (plane : degrees s = 1).
   Add Ring bracket_ring : (ring_laws K) (setoid (same_equivalence K) (operations_extend K)).
-  Open Scope ring_of_functions.
+  Local Open Scope ring_of_functions.
 
   Notation d := by_coordinate.
   Notation z := (coordinate s).

@@ -2,13 +2,13 @@
 
 From Coq Require Import Setoid Morphisms Ring Ring_theory QArith Lia.
 From AreaPreservation Require Import Rings Totals Flow Bracket LieScheme Plane Volume Determinant.
-Open Scope nat_scope.
+Local Open Scope nat_scope.
 
 Section DeterminantInPlane.
   Context (K : differential_ring) (s : system K) (plane : degrees s = 1) (eta : nat).
   Add Ring determinant_in_plane : (ring_laws K)
     (setoid (same_equivalence K) (operations_extend K)).
-  Open Scope ring_of_functions.
+  Local Open Scope ring_of_functions.
 
   (** det J by its definition. *)
   Theorem same_determinant : forall h,

@@ -5,7 +5,7 @@
 
 From Coq Require Import Setoid Morphisms Ring Ring_theory QArith Lia.
 From AreaPreservation Require Import Rings Totals.
-Open Scope nat_scope.
+Local Open Scope nat_scope.
 
 (** n degrees of freedom, coordinates and a Hamiltonian. *)
 Record system (K : differential_ring) := {
@@ -24,7 +24,7 @@ Arguments hamiltonian {_}.
 Section Flow.
   Context (K : differential_ring) (s : system K).
   Add Ring flow : (ring_laws K) (setoid (same_equivalence K) (operations_extend K)).
-  Open Scope ring_of_functions.
+  Local Open Scope ring_of_functions.
 
   Notation n := (degrees s).
   Notation H := (hamiltonian s).

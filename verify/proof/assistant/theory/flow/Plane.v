@@ -2,12 +2,12 @@
 
 From Coq Require Import Setoid Morphisms Ring Ring_theory QArith Lia.
 From AreaPreservation Require Import Rings Totals Flow Taylor Bracket LieScheme Step.
-Open Scope nat_scope.
+Local Open Scope nat_scope.
 
 Section Plane.
   Context (K : differential_ring) (s : system K) (plane : degrees s = 1) (eta : nat).
   Add Ring plane : (ring_laws K) (setoid (same_equivalence K) (operations_extend K)).
-  Open Scope ring_of_functions.
+  Local Open Scope ring_of_functions.
 
   Notation H := (hamiltonian s).
   Notation d := by_coordinate.
@@ -86,21 +86,4 @@ Section Plane.
     rewrite G_is, !none, (derivations_commute K 0 1 H). ring.
   Qed.
 
-  (** Where H has no time neither has the scheme: D is X all along. *)
-  Theorem without_time : d 2%nat H == zero -> forall k i, (i < 2)%nat ->
-    d 2%nat (iterated k (z i)) == zero /\ iterated (S k) (z i) == X (iterated k (z i)).
-  Proof.
-    intros still k i L.
-    assert (X_still : forall f, d 2%nat f == zero -> d 2%nat (X f) == zero).
-    { intros f E. unfold along_field. rewrite plane. simpl.
-      rewrite derivation_add, derivation_zero, derivation_sub, !derivation_mul.
-      rewrite !(derivations_commute K 2), still, E, !derivation_zero. ring. }
-    assert (step : forall f, d 2%nat f == zero -> D f == X f).
-    { intros f E. unfold along_flow. rewrite plane. simpl. rewrite E. ring. }
-    assert (no_time : d 2%nat (iterated k (z i)) == zero).
-    { induction k as [|k IH]; simpl.
-      - apply other_slope; rewrite ?plane; lia.
-      - rewrite (step _ IH). apply X_still, IH. }
-    split; [exact no_time|]. simpl. apply step, no_time.
-  Qed.
 End Plane.

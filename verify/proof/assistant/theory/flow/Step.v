@@ -2,12 +2,12 @@
 
 From Coq Require Import Setoid Morphisms Ring Ring_theory QArith Lia.
 From AreaPreservation Require Import Rings Totals Flow Taylor LieScheme.
-Open Scope nat_scope.
+Local Open Scope nat_scope.
 
 Section Step.
   Context (K : differential_ring) (s : system K) (eta : nat).
   Add Ring step : (ring_laws K) (setoid (same_equivalence K) (operations_extend K)).
-  Open Scope ring_of_functions.
+  Local Open Scope ring_of_functions.
 
   Notation n := (degrees s).
   Notation H := (hamiltonian s).

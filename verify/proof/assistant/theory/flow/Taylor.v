@@ -3,7 +3,7 @@
 
 From Coq Require Import Setoid Morphisms Ring Ring_theory QArith Lia.
 From AreaPreservation Require Import Rings Totals Flow.
-Open Scope nat_scope.
+Local Open Scope nat_scope.
 
 Definition whole {K : rational_ring} (k : nat) : K := rational (Z.of_nat k # 1).
 Definition fraction {K : rational_ring} (k : nat) : K := rational (1 # Pos.of_nat k).
@@ -11,7 +11,7 @@ Definition fraction {K : rational_ring} (k : nat) : K := rational (1 # Pos.of_na
 Section Taylor.
   Context (K : differential_ring) (s : system K).
   Add Ring taylor : (ring_laws K) (setoid (same_equivalence K) (operations_extend K)).
-  Open Scope ring_of_functions.
+  Local Open Scope ring_of_functions.
 
   Notation n := (degrees s).
   Notation H := (hamiltonian s).
@@ -101,14 +101,6 @@ Section Taylor.
         (try lia; intros i Li N; rewrite !other_slope by lia; ring).
       replace (n + (a - n))%nat with a by lia.
       rewrite own_slope, other_slope by lia. ring.
-  Qed.
-
-  Lemma slope_of_slope : forall a i j, (i <= 2 * n)%nat -> (j <= 2 * n)%nat ->
-    d a (d i (coordinate s j)) == zero.
-  Proof.
-    intros a i j Li Lj. destruct (Nat.eq_dec i j) as [->|N].
-    - rewrite own_slope by exact Lj. apply derivation_one.
-    - rewrite other_slope by assumption. apply derivation_zero.
   Qed.
 
   Lemma along_flow_coordinate : forall i, (i < n)%nat ->

@@ -3,14 +3,14 @@
 
 From Coq Require Import Setoid Morphisms Ring Ring_theory QArith Lia.
 From AreaPreservation Require Import Rings Totals Flow Taylor LieScheme Step Determinants Series.
-Open Scope nat_scope.
+Local Open Scope nat_scope.
 
 Section Volume.
   Context (K : differential_ring) (s : system K) (eta : nat).
   Add Ring volume : (ring_laws K) (setoid (same_equivalence K) (operations_extend K)).
   Add Ring volume_series : (ring_laws (series K))
     (setoid (same_equivalence (series K)) (operations_extend (series K))).
-  Open Scope ring_of_functions.
+  Local Open Scope ring_of_functions.
 
   Notation n := (degrees s).
   Notation d := by_coordinate.

@@ -2,7 +2,7 @@
 
 From Coq Require Import Reals Lra Lia.
 From AreaPreservation Require Import Differential Slopes Schwarz Symplectic Stages.
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 (** [H] has the slopes [H1] on a ball around [x], and these have slopes at [x]. *)
 Definition twice_differentiable (N : nat) (H : point -> R) (H1 : nat -> point -> R) (x : point) :=

@@ -2,7 +2,7 @@
 
 From Coq Require Import Reals Lra Lia.
 From AreaPreservation Require Import Sums Differential Slopes Symplectic Stages.
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 (** From the gradient (H_p, H_q) to the field (-H_q, H_p). *)
 Definition turned (n : nat) (g : point) (c : nat) : R :=

@@ -2,7 +2,7 @@
 
 From Coq Require Import Reals Lra Lia List Bool.
 From AreaPreservation Require Import Sums Differential Slopes Symplectic Stages.
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 (** p' = p - h k H_q(q), where H depends on q only; [H1 j] is its slope along coordinate j. *)
 Definition kick (n : nat) (h k : R) (H1 : nat -> point -> R) (i : nat) (y : point) : R :=

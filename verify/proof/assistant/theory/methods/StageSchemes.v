@@ -3,7 +3,7 @@
 From Coq Require Import Reals Lra Lia List.
 From AreaPreservation Require Import Differential Symplectic Stages Hamiltonians SymplecticMethods.
 Import ListNotations.
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 (** p' = p - h kick H_q, q' = q + h drift H_p, at p + share_p (p' - p), q + share_q (q' - q) and the
     time t + moment h. *)

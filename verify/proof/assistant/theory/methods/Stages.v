@@ -8,7 +8,7 @@
 
 From Coq Require Import Reals Lra Lia.
 From AreaPreservation Require Import Sums Differential Slopes Symplectic.
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 (** [s] for the numbers of momenta and [u] for those of positions. *)
 Definition weight (n : nat) (s u : R) (j : nat) : R := if Nat.ltb j n then s else u.

@@ -6,7 +6,7 @@
 
 From Coq Require Import Reals Lra Lia List.
 From AreaPreservation Require Import Sums Differential Slopes.
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 (** The canonical form dp^dq in the directions of the coordinates a and b, for a, b < 2n: the first
     condition then says that a is a momentum and b its position, the second the reverse. *)
@@ -30,22 +30,12 @@ Definition symplectic_at (n : nat) (F : nat -> point -> R) (x : point) : Prop :=
 Definition near (N : nat) (x : point) (P : point -> Prop) : Prop :=
   exists delta, 0 < delta /\ forall y, distance N x y < delta -> P y.
 
-Lemma near_both : forall N x P Q, near N x P -> near N x Q -> near N x (fun y => P y /\ Q y).
-Proof.
-  intros N x P Q (d & D & HP) (e & E & HQ). exists (Rmin d e).
-  split; [ apply Rmin_pos; assumption | ]. intros y Y.
-  pose proof (Rmin_l d e). pose proof (Rmin_r d e). split; [ apply HP | apply HQ ]; lra.
-Qed.
-
 Lemma near_weaker : forall N x (P Q : point -> Prop),
   (forall y, P y -> Q y) -> near N x P -> near N x Q.
 Proof. intros N x P Q I (d & D & H). exists d. split; [ exact D | ]. intros y Y. apply I, H, Y. Qed.
 
 Lemma near_everywhere : forall N x (P : point -> Prop), (forall y, P y) -> near N x P.
 Proof. intros N x P H. exists 1. split; [ lra | intros; apply H ]. Qed.
-
-Lemma near_at_center : forall N x (P : point -> Prop), near N x P -> P x.
-Proof. intros N x P (d & D & H). apply H. rewrite distance_to_itself. exact D. Qed.
 
 (** * The form is bilinear and alternating *)
 
@@ -165,13 +155,6 @@ Proof.
   intros n l. induction l as [ | F rest IH ]; intros x E.
   - apply identity_symplectic.
   - destruct E as (HF & HR). exact (composition_symplectic n F (steps_of rest) x HF (IH _ HR)).
-Qed.
-
-Lemma each_symplectic_if_everywhere : forall n l,
-  (forall F, In F l -> forall x, symplectic_at n F x) -> forall x, each_symplectic n l x.
-Proof.
-  intros n l. induction l as [ | F rest IH ]; intros E x; simpl; [ exact I | ].
-  split; [ apply E; left; reflexivity | apply IH; intros; apply E; right; assumption ].
 Qed.
 
 (** It does not matter which slopes are looked at, since there is but one choice. *)

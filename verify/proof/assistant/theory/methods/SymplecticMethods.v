@@ -4,7 +4,7 @@
 
 From Coq Require Import Reals Lra Lia List.
 From AreaPreservation Require Import Differential Symplectic Stages Shears RungeKutta Hamiltonians.
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 Theorem stage_of_hamiltonian : forall n h k d s u (H : point -> R) (H1 F : nat -> point -> R) x,
   near (2 * n) x (solves_stage n h k d s u H1 F) ->
@@ -57,21 +57,6 @@ Proof.
   intros n h H H1 F x middle Eq Some Twice.
   destruct (symmetric_second_slopes _ _ _ _ Twice) as (H2 & S2 & E).
   apply (midpoint_symplectic n h H1 F x H2); assumption.
-Qed.
-
-(** One degree of freedom. *)
-Corollary method_determinant_one : forall m h A b (H : nat -> point -> R)
-    (H1 : nat -> nat -> point -> R) (Z : nat -> point -> point) (F : nat -> point -> R)
-    (x : point) (J : nat -> nat -> R),
-  near 2 x (solves_method 1 m h A b H1 Z F) ->
-  (forall i c, (i < m)%nat -> (c < 2)%nat -> exists g, has_slopes 2 (fun y => Z i y c) x g) ->
-  (forall i, (i < m)%nat -> twice_differentiable 2 (H i) (H1 i) (Z i x)) ->
-  symplectic_weights m A b ->
-  (forall i, (i < 2)%nat -> has_slopes 2 (F i) x (J i)) ->
-  J 0%nat 0%nat * J 1%nat 1%nat - J 0%nat 1%nat * J 1%nat 0%nat = 1.
-Proof.
-  intros m h A b H H1 Z F x J Eq Some Twice M S. apply (determinant_one F x); [ | exact S ].
-  apply (method_of_hamiltonian 1 m h A b H H1 Z F x); assumption.
 Qed.
 
 (** * Lists of kicks and drifts *)

@@ -3,7 +3,7 @@
 
 From Coq Require Import Reals QArith Qreals List Lra.
 Import ListNotations.
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 Fixpoint polynomial_at (coefficients : list Z) (x : R) : R :=
   match coefficients with

@@ -7,7 +7,7 @@
 From Coq Require Import Reals Lra Lia.
 From AreaPreservation Require Import Sums.
 Export Sums.
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 Definition point := nat -> R.
 

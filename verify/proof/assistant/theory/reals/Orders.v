@@ -4,7 +4,7 @@
 
 From Coq Require Import Reals Lra Lia PeanoNat.
 From AreaPreservation Require Import Sums.
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 Definition expands (m : nat) (F : R -> R) (a : nat -> R) : Prop :=
   exists C, forall h, Rabs h <= 1 ->
@@ -14,9 +14,6 @@ Definition expands (m : nat) (F : R -> R) (a : nat -> R) : Prop :=
 
 Lemma power_nonnegative : forall h k, 0 <= Rabs h ^ k.
 Proof. intros. apply pow_le, Rabs_pos. Qed.
-
-Lemma power_below_one : forall h k, Rabs h <= 1 -> Rabs h ^ k <= 1.
-Proof. intros h k L. rewrite <- (pow1 k). apply pow_incr. split; [ apply Rabs_pos | exact L ]. Qed.
 
 (** The constant of an estimate cannot be negative, as h = 1 shows. *)
 Lemma bound_nonnegative : forall (E : R -> R) C k,
@@ -47,20 +44,6 @@ Proof.
   set (P := sum (S m) (fun k => a k * h ^ k)). replace (P + _ - P) with (r h * h ^ (S m)) by ring.
   rewrite Rabs_mult, <- RPow_abs.
   apply Rmult_le_compat_r; [ apply power_nonnegative | exact (bound h L) ].
-Qed.
-
-(** An estimate for |h| <= h0 is one for |h| <= 1 when h is measured in units of h0. *)
-Lemma expands_in_units : forall m F a C h0, 0 < h0 ->
-  (forall h, Rabs h <= h0 ->
-    Rabs (F h - sum (S m) (fun k => a k * h ^ k)) <= C * Rabs h ^ (S m)) ->
-  expands m (fun h => F (h0 * h)) (fun k => a k * h0 ^ k).
-Proof.
-  intros m F a C h0 h0_positive B. exists (C * h0 ^ (S m)). intros h L.
-  rewrite (sum_of_equals (S m) _ (fun k => a k * (h0 * h) ^ k))
-    by (intros; rewrite Rpow_mult_distr; ring).
-  assert (size : Rabs (h0 * h) = h0 * Rabs h) by (rewrite Rabs_mult, (Rabs_right h0); lra).
-  rewrite Rmult_assoc, <- Rpow_mult_distr, <- size. apply B. rewrite size.
-  rewrite <- (Rmult_1_r h0) at 2. apply Rmult_le_compat_l; lra.
 Qed.
 
 (** What is known up to h^m is known up to every lower power. *)

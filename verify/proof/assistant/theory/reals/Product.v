@@ -2,7 +2,7 @@
 
 From Coq Require Import Reals Lra Lia.
 From AreaPreservation Require Import Sums.
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 (** The product of the first [n] numbers. *)
 Fixpoint product (n : nat) (d : nat -> R) : R :=

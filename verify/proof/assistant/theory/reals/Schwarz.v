@@ -2,7 +2,7 @@
 
 From Coq Require Import Reals Lra Lia PeanoNat.
 From AreaPreservation Require Import Sums Differential.
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 (** The point [x] with [a] added to coordinate [i] and [b] to coordinate [j]. *)
 Definition shifted (x : point) (i j : nat) (a b : R) : point :=

@@ -2,7 +2,7 @@
 
 From Coq Require Import Reals Lra Lia.
 From AreaPreservation Require Import Sums Differential.
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 (** A function that differs from a linear one by nothing. *)
 Lemma slopes_of_linear : forall N f x g,

@@ -1,7 +1,7 @@
 (** Finite sums of real numbers. *)
 
 From Coq Require Import Reals Lra Lia.
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 Fixpoint sum (n : nat) (f : nat -> R) : R :=
   match n with

@@ -3,7 +3,7 @@
 From Coq Require Import Setoid Morphisms Ring Ring_theory QArith List Bool Lia.
 From AreaPreservation Require Import Rings Totals Formulas.
 Import ListNotations.
-Open Scope nat_scope.
+Local Open Scope nat_scope.
 
 (** A gap is seen to be 0 by what it is less a sum of factors times relations that are 0. *)
 Definition reduced (relations : list formula) (gap : formula) (by_factors : list (nat * formula)) :=
@@ -19,7 +19,7 @@ Fixpoint all_vanish (relations gaps : list formula) (factors : list (list (nat *
 Section Calculation.
   Context (K : rational_ring).
   Add Ring calculation : (ring_laws K) (setoid (same_equivalence K) (operations_extend K)).
-  Open Scope ring_of_functions.
+  Local Open Scope ring_of_functions.
 
   (** The calculation that shows it, where the relations are 0. *)
   Theorem calculated : forall names relations gaps factors,

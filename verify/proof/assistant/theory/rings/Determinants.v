@@ -5,7 +5,7 @@
 
 From Coq Require Import Setoid Morphisms Ring Ring_theory QArith Lia.
 From AreaPreservation Require Import Rings Totals.
-Open Scope nat_scope.
+Local Open Scope nat_scope.
 
 (** The numbers without i, in order. *)
 Definition past (i r : nat) : nat := if r <? i then r else S r.
@@ -67,7 +67,7 @@ Qed.
 Section Determinants.
   Context (K : differential_ring).
   Add Ring determinants : (ring_laws K) (setoid (same_equivalence K) (operations_extend K)).
-  Open Scope ring_of_functions.
+  Local Open Scope ring_of_functions.
 
   Implicit Types M N : nat -> nat -> K.
   Notation sign := (power K (- one)).

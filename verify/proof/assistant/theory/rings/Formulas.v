@@ -4,7 +4,7 @@
 From Coq Require Import Setoid Morphisms Ring Ring_theory Ring_polynom QArith Qreduction Nnat BinList List Lia.
 From AreaPreservation Require Import Rings Totals.
 Import ListNotations.
-Open Scope nat_scope.
+Local Open Scope nat_scope.
 
 Inductive formula :=
 | Number (a : Q)
@@ -107,7 +107,7 @@ Definition vanishes (f : formula) : bool := Peq Qeq_bool (normal_form f) (Pc 0%Q
 Section Soundness.
   Context (K : rational_ring).
   Add Ring soundness : (ring_laws K) (setoid (same_equivalence K) (operations_extend K)).
-  Open Scope ring_of_functions.
+  Local Open Scope ring_of_functions.
 
   Lemma rational_is_morphism : ring_morph (@zero K) one add mul sub opp same
     0%Q 1%Q reduced_add reduced_mul reduced_sub Qopp Qeq_bool rational.
@@ -180,7 +180,7 @@ End Soundness.
 Section Derivatives.
   Context (K : differential_ring).
   Add Ring derivatives : (ring_laws K) (setoid (same_equivalence K) (operations_extend K)).
-  Open Scope ring_of_functions.
+  Local Open Scope ring_of_functions.
 
   Lemma derivation_power : forall i (x : K) k,
     by_coordinate i (power K x (S k))

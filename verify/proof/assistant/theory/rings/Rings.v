@@ -4,7 +4,7 @@
     equal that agree everywhere (see Smooth.v). *)
 
 From Coq Require Import Setoid Morphisms Ring Ring_theory QArith Lia.
-Open Scope nat_scope.
+Local Open Scope nat_scope.
 
 Record rational_ring := {
   carrier :> Type;
@@ -86,7 +86,7 @@ Proof. intros a b. apply rational_extends. Qed.
 Section Consequences.
   Context (K : rational_ring).
   Add Ring consequences : (ring_laws K) (setoid (same_equivalence K) (operations_extend K)).
-  Open Scope ring_of_functions.
+  Local Open Scope ring_of_functions.
 
   Lemma cancel : forall x y z : K, x + z == y + z -> x == y.
   Proof.
@@ -117,7 +117,7 @@ Proof. intros x y. apply derivation_extends. Qed.
 Section Derivations.
   Context (K : differential_ring).
   Add Ring derivations : (ring_laws K) (setoid (same_equivalence K) (operations_extend K)).
-  Open Scope ring_of_functions.
+  Local Open Scope ring_of_functions.
 
   Lemma derivation_zero : forall i, by_coordinate i (@zero K) == zero.
   Proof.

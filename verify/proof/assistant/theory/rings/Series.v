@@ -3,7 +3,7 @@
 
 From Coq Require Import Setoid Morphisms Ring Ring_theory QArith Lia.
 From AreaPreservation Require Import Rings Totals Taylor Determinants.
-Open Scope nat_scope.
+Local Open Scope nat_scope.
 
 (** The product of two series: (f_0 + h f') g = f_0 g + h f' g. *)
 Fixpoint convolution {K : differential_ring} (f g : nat -> K) (m : nat) : K :=
@@ -22,7 +22,7 @@ Definition number {K : differential_ring} (x : K) (k : nat) : K :=
 Section Products.
   Context (K : differential_ring).
   Add Ring products : (ring_laws K) (setoid (same_equivalence K) (operations_extend K)).
-  Open Scope ring_of_functions.
+  Local Open Scope ring_of_functions.
 
   Implicit Types f g e : nat -> K.
 
@@ -204,7 +204,7 @@ Defined.
 
 Section Series.
   Context (K : differential_ring).
-  Open Scope ring_of_functions.
+  Local Open Scope ring_of_functions.
 
   (** The first coefficient of a determinant. *)
   Lemma determinant_at_0 : forall k (M : nat -> nat -> series K),

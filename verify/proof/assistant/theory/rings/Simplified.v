@@ -2,7 +2,7 @@
 
 From Coq Require Import Setoid Morphisms Ring Ring_theory QArith Qreduction Lia.
 From AreaPreservation Require Import Rings Formulas.
-Open Scope nat_scope.
+Local Open Scope nat_scope.
 
 Definition is_number (f : formula) : option Q :=
   match f with
@@ -39,7 +39,7 @@ Fixpoint simplified (f : formula) : formula :=
 Section Simplified.
   Context (K : rational_ring) (names : list K).
   Add Ring simplified_ring : (ring_laws K) (setoid (same_equivalence K) (operations_extend K)).
-  Open Scope ring_of_functions.
+  Local Open Scope ring_of_functions.
   Notation value f := (@value_of K names f).
 
   Lemma number_found : forall f b, is_number f = Some b -> f = Number b.

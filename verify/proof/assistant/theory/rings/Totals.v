@@ -2,7 +2,7 @@
 
 From Coq Require Import Setoid Morphisms Ring Ring_theory QArith Lia.
 From AreaPreservation Require Import Rings.
-Open Scope nat_scope.
+Local Open Scope nat_scope.
 
 Fixpoint total {K : rational_ring} (n : nat) (f : nat -> K) : K :=
   match n with
@@ -13,7 +13,7 @@ Fixpoint total {K : rational_ring} (n : nat) (f : nat -> K) : K :=
 Section Totals.
   Context (K : rational_ring).
   Add Ring totals : (ring_laws K) (setoid (same_equivalence K) (operations_extend K)).
-  Open Scope ring_of_functions.
+  Local Open Scope ring_of_functions.
 
   Lemma total_same : forall n (f g : nat -> K),
     (forall i, (i < n)%nat -> f i == g i) -> total n f == total n g.
@@ -119,7 +119,7 @@ End Totals.
 
 Section DerivedTotals.
   Context (K : differential_ring).
-  Open Scope ring_of_functions.
+  Local Open Scope ring_of_functions.
 
   Lemma derivation_total : forall i n (f : nat -> K),
     by_coordinate i (total n f) == total n (fun k => by_coordinate i (f k)).

@@ -2,12 +2,12 @@
 
 From Coq Require Import Setoid Morphisms Ring Ring_theory QArith Lia.
 From AreaPreservation Require Import Rings Totals Step Determinants Series.
-Open Scope nat_scope.
+Local Open Scope nat_scope.
 
 Section Values.
   Context (K : differential_ring).
   Add Ring values : (ring_laws K) (setoid (same_equivalence K) (operations_extend K)).
-  Open Scope ring_of_functions.
+  Local Open Scope ring_of_functions.
 
   Notation power := (power K).
 

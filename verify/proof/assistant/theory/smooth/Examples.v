@@ -3,7 +3,7 @@
 
 From Coq Require Import Reals Lra Lia PeanoNat.
 From AreaPreservation Require Import Sums Differential Rings Totals Flow Smooth Functions Systems.
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 (** The pendulum, H = p^2 / 2 - cos q: one degree of freedom, (p, q, t). *)
 Definition pendulum_energy : smooth 3 everywhere :=

@@ -3,7 +3,7 @@
 From Coq Require Import Reals Lra Lia PeanoNat List.
 From AreaPreservation Require Import Differential Slopes Rings Smooth.
 Import ListNotations.
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 (** The derivatives of phi_k(F) G: its slope is phi_(k+1)(F) F' G + phi_k(F) G'. *)
 Fixpoint composite_family (phi : nat -> R -> R) (F : list nat -> point -> R)

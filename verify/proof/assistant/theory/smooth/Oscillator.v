@@ -5,13 +5,13 @@
 
 From Coq Require Import Setoid Morphisms Ring Ring_theory Reals Lra Lia PeanoNat.
 From AreaPreservation Require Import Sums Rings Flow LieScheme Plane Smooth Systems Solutions.
-Open Scope nat_scope.
+Local Open Scope nat_scope.
 
 (** What is calculated in any ring where H_p = p, H_q = q and H_t = 0. *)
 Section Turning.
   Context (K : differential_ring) (s : system K) (plane : degrees s = 1).
   Add Ring turning : (ring_laws K) (setoid (same_equivalence K) (operations_extend K)).
-  Open Scope ring_of_functions.
+  Local Open Scope ring_of_functions.
 
   Notation H := (hamiltonian s).
   Notation d := by_coordinate.
@@ -93,7 +93,7 @@ Section Turning.
   Qed.
 End Turning.
 
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 Definition oscillator_energy : smooth 3 everywhere :=
   smooth_mul (smooth_constant (1 / 2))

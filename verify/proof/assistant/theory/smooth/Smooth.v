@@ -6,7 +6,7 @@
 From Coq Require Import Reals Lra Lia PeanoNat List Setoid Ring_theory Qreals.
 From AreaPreservation Require Import Sums Differential Slopes Schwarz Rings.
 Import ListNotations.
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 (** The member of a list is the derivative along its coordinates, the head being taken first;
     that of the empty list is the function itself. *)
@@ -225,9 +225,6 @@ Definition smooth_ring (N : nat) (U : point -> Prop) (HU : is_open N U) : differ
 Lemma value_zero : forall N U (HU : is_open N U) x, value (@zero (smooth_ring N U HU)) x = 0.
 Proof. reflexivity. Qed.
 
-Lemma value_one : forall N U (HU : is_open N U) x, value (@one (smooth_ring N U HU)) x = 1.
-Proof. reflexivity. Qed.
-
 Lemma value_add : forall N U (HU : is_open N U) f g x,
   value (@add (smooth_ring N U HU) f g) x = value f x + value g x.
 Proof. reflexivity. Qed.
@@ -246,9 +243,6 @@ Proof. reflexivity. Qed.
 
 Lemma value_rational : forall N U (HU : is_open N U) q x,
   value (@rational (smooth_ring N U HU) q) x = Q2R q.
-Proof. reflexivity. Qed.
-
-Lemma value_constant : forall N U c x, value (@smooth_constant N U c) x = c.
 Proof. reflexivity. Qed.
 
 Lemma value_coordinate : forall N U j x, (j < N)%nat -> value (@smooth_coordinate N U j) x = x j.
@@ -273,14 +267,6 @@ Theorem derivation_is_slope : forall N U (HU : is_open N U) f x i, U x -> (i < N
 Proof.
   intros N U HU f x i Hx L.
   exact (derivative_along_coordinate N _ x _ i (derivation_has_slopes N U HU f x Hx) L).
-Qed.
-
-Lemma derivation_constant : forall N U (HU : is_open N U) i c,
-  @same (smooth_ring N U HU) (@by_coordinate (smooth_ring N U HU) i (smooth_constant c))
-    (@zero (smooth_ring N U HU)).
-Proof.
-  intros N U HU i c x _. unfold value; simpl; unfold derivative_family.
-  now destruct (Nat.ltb i N).
 Qed.
 
 Lemma derivation_coordinate : forall N U (HU : is_open N U) i j, (i < N)%nat -> (j < N)%nat ->

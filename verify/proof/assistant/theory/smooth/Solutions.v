@@ -5,7 +5,7 @@
 
 From Coq Require Import Reals Lra Lia PeanoNat Qreals.
 From AreaPreservation Require Import Sums Differential Rings Flow Taylor LieScheme Smooth Systems.
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 (** For |s| < r the curve [w] is in [U] and p' = - H_q, q' = H_p, t' = 1. *)
 Definition solves (n : nat) (U : point -> Prop) (H : smooth (2 * n + 1) U)
@@ -54,36 +54,6 @@ Proof.
   rewrite (proj2 (Nat.ltb_lt (n + i) (2 * n))) by lia.
   replace (n + i - n)%nat with i by lia.
   change (@by_coordinate (smooth_ring _ U HU)) with (@smooth_derivative (2 * n + 1) U). ring.
-Qed.
-
-(** The equations of motion are those of the coordinates along the flow. *)
-Theorem solves_means : forall n U (HU : is_open (2 * n + 1) U) H w r,
-  solves n U H w r <-> forall s, Rabs s < r -> U (fun j => w j s) /\
-    forall j, (j <= 2 * n)%nat -> derivable_pt_lim (w j) s
-      (value (along_flow _ (smooth_system n U HU H) (smooth_coordinate j)) (fun i => w i s)).
-Proof.
-  intros n U HU H w r. split; intros W s L.
-  - split; [ apply (W s L) | ]. intros j J.
-    apply derivable_pt_lim_ext with (2 := rate_along_solution n U HU H w r _ s W L).
-    intros t. apply value_coordinate. lia.
-  - destruct (W s L) as [ inside M ]. split; [ exact inside | ]. split.
-    + intros i I.
-      destruct (along_flow_coordinate _ (smooth_system n U HU H) i I) as [ P Q ].
-      specialize (P _ inside). specialize (Q _ inside).
-      split; [ rewrite <- (value_opp _ U HU) | ].
-      * exact (eq_ind _ _ (M i ltac:(lia)) _ P).
-      * exact (eq_ind _ _ (M (n + i)%nat ltac:(lia)) _ Q).
-    + assert (E : value (along_flow _ (smooth_system n U HU H) (smooth_coordinate (2 * n)))
-        (fun j => w j s) = 1); [ | rewrite <- E; apply M; lia ].
-      rewrite value_along_flow, sum_of_zeros.
-      * rewrite Rplus_0_r. exact (smooth_own_slope n U HU (2 * n) ltac:(lia) _ inside).
-      * intros i I.
-        pose proof (smooth_other_slope n U HU i (2 * n) ltac:(lia) ltac:(lia) ltac:(lia) _ inside)
-          as A.
-        pose proof (smooth_other_slope n U HU (n + i) (2 * n) ltac:(lia) ltac:(lia) ltac:(lia)
-          _ inside) as B.
-        change (@by_coordinate (smooth_ring _ U HU)) with (@smooth_derivative (2 * n + 1) U) in *.
-        rewrite A, B. rewrite !(value_zero _ U HU). ring.
 Qed.
 
 (** * Taylor coefficients *)

@@ -4,7 +4,7 @@
 
 From Coq Require Import Reals Lra Lia PeanoNat.
 From AreaPreservation Require Import Sums Differential Rings Totals Flow Smooth.
-Open Scope R_scope.
+Local Open Scope R_scope.
 
 Lemma smooth_own_slope : forall n U (HU : is_open (2 * n + 1) U) i, (i <= 2 * n)%nat ->
   @same (smooth_ring _ U HU) (@by_coordinate (smooth_ring _ U HU) i (smooth_coordinate i))
