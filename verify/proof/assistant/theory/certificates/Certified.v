@@ -56,15 +56,15 @@ Section Certified.
     - apply Nat.ltb_lt, L.
   Qed.
 
-  Lemma turned_ok : forall w a b, primitive x = Some w -> (a < 2 * n)%nat -> (b < 2 * n)%nat ->
-    ok (turned w a b) = true.
+  Lemma form_ok : forall w a b, primitive x = Some w -> (a < 2 * n)%nat -> (b < 2 * n)%nat ->
+    ok (form_formula w a b) = true.
   Proof.
     intros w a b W La Lb. unfold all_have_slopes in sloped. rewrite !andb_true_iff, W in sloped.
-    destruct sloped as [_ form_ok]. rewrite forallb_forall in form_ok. unfold turned.
+    destruct sloped as [_ entries_ok]. rewrite forallb_forall in entries_ok. unfold two_form.
     destruct (Nat.ltb_spec a b) as [L|L].
-    - exact (form_ok _ (pair_listed a b L Lb)).
+    - exact (entries_ok _ (pair_listed a b L Lb)).
     - destruct (Nat.ltb_spec b a) as [M|M]; [|reflexivity].
-      exact (form_ok _ (pair_listed b a M La)).
+      exact (entries_ok _ (pair_listed b a M La)).
   Qed.
 
   Lemma value_of_slope : forall a f, (a <= 2 * n)%nat -> ok f = true ->
@@ -100,10 +100,10 @@ Section Certified.
 
   Lemma value_of_lie : forall w a b, primitive x = Some w ->
     (a < 2 * n)%nat -> (b < 2 * n)%nat ->
-    lie_derivative K s (fun a b => value (turned w a b)) a b == value (lie_formula x w a b).
+    lie_derivative K s (fun a b => value (form_formula w a b)) a b == value (lie_formula x w a b).
   Proof.
     intros w a b W La Lb. unfold lie_derivative, lie_formula. cbn [value_of].
-    rewrite value_of_flow by (apply turned_ok; assumption). apply add_extends; [reflexivity|].
+    rewrite value_of_flow by (apply form_ok; assumption). apply add_extends; [reflexivity|].
     rewrite (value_of_sum_up_to K), (same_degrees _ _ _ _ meaning). apply total_same. intros i L.
     cbn [value_of]. rewrite <- !value_of_slope by (lia || (apply energy_ok; lia)).
     assert (E : forall c d, (c <= 2 * n)%nat -> (d < 2 * n)%nat -> by_coordinate c
@@ -162,7 +162,7 @@ Section Certified.
   Theorem primitive_is : forall w, primitive x = Some w ->
     (forall f, In f (primitive_gaps x) -> value f == zero) ->
     forall a b, (a < b)%nat -> (b < 2 * n)%nat ->
-    lie_derivative K s (fun a b => value (turned w a b)) a b == value (leading_entry x a b).
+    lie_derivative K s (fun a b => value (form_formula w a b)) a b == value (leading_entry x a b).
   Proof.
     intros w W E a b L Lb. rewrite value_of_lie by (exact W || lia). apply gap_closed, E.
     unfold primitive_gaps. rewrite W. apply in_map_iff. exists (a, b).

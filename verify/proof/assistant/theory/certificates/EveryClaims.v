@@ -5,19 +5,18 @@ From AreaPreservation Require Import Rings Totals Flow Taylor Bracket Formulas C
 Import ListNotations.
 Local Open Scope nat_scope.
 
+Notation form_of := (two_form (rational 0) opp).
+
 (** The coefficient of h^m in the determinant of p' = sum P_k h^k, q' = sum Q_k h^k. *)
 Definition determinant_coefficient {K : differential_ring} (P Q : nat -> K) (m : nat) : K :=
   total (S m) (fun k => bracket K (P k) (Q (m - k))).
 
-(** Entries above the diagonal make a 2-form. *)
-Definition two_form {K : rational_ring} (w : nat -> nat -> K) (a b : nat) : K :=
-  if a <? b then w a b else if b <? a then opp (w b a) else rational 0.
-
-Lemma two_form_is : forall (K : rational_ring) (names : list K) w (v : nat -> nat -> K),
+(** The 2-form of elements that are the values of formulas. *)
+Lemma value_of_form : forall (K : rational_ring) (names : list K) w (v : nat -> nat -> K),
   (forall i j, value_of names (w i j) = v i j) ->
-  forall a b, same (value_of names (turned w a b)) (two_form v a b).
+  forall a b, value_of names (form_formula w a b) = form_of v a b.
 Proof.
-  intros K names w v E a b. unfold turned, two_form. rewrite <- !E.
+  intros K names w v E a b. unfold two_form. rewrite <- !E.
   destruct (a <? b); [reflexivity|]. destruct (b <? a); reflexivity.
 Qed.
 
@@ -72,6 +71,15 @@ Section EveryClaims.
       intros f F. apply every_gap, in_app_iff. right. apply in_app_iff. left. exact F.
     Qed.
 
+    Lemma every_defect_start : forall a b, defect_coefficient K s A 0 a b == canonical K s a b.
+    Proof.
+      intros a b. transitivity (pairs K s (A 0%nat) (A 0%nat) a b);
+        [unfold defect_coefficient, paired; simpl; ring|].
+      unfold canonical, pairs. rewrite (belongs_degrees _ _ member), <- (every_degrees e x checked).
+      apply total_same. intros i Li.
+      rewrite !is_so by lia. rewrite !every_agrees by lia. reflexivity.
+    Qed.
+
     Theorem every_defect_before : forall r m a b, order x = Some r -> (1 <= m < r)%nat ->
       (r <= known x)%nat -> (a < b)%nat -> (b < 2 * n)%nat ->
       defect_coefficient K s A m a b == zero.
@@ -119,14 +127,18 @@ Section EveryClaims.
     assert (is_so : forall k c, (k <= known x)%nat -> (c < 2 * n)%nat -> A k c == value (term x k c)).
     { intros k c Lk Lc. rewrite (A_is k c Lk Lc). symmetry. apply element_is. }
     split; [|split].
-    - transitivity (pairs K s (A 0%nat) (A 0%nat) a b);
-        [unfold defect_coefficient, paired; simpl; ring|].
-      unfold canonical, pairs. rewrite (belongs_degrees _ _ member), <- (every_degrees e x checked).
-      apply total_same. intros i Li.
-      rewrite !is_so by lia. rewrite !every_agrees by lia. reflexivity.
+    - apply (every_defect_start A is_so).
     - intros m M. apply (every_defect_before A is_so r); assumption || lia.
     - apply (every_defect_first A is_so r); assumption.
   Qed.
+
+  Lemma one_degree : degrees s = 1%nat -> n = 1%nat.
+  Proof. intro P. rewrite (every_degrees e x checked), <- (belongs_degrees _ _ member). exact P. Qed.
+
+  Lemma determinant_coefficient_is : degrees s = 1%nat -> forall (A : nat -> nat -> K) m,
+    defect_coefficient K s A m 0 1
+    == determinant_coefficient (fun k => A k 0%nat) (fun k => A k 1%nat) m.
+  Proof. intros plane A m. apply total_same. intros k _. apply (pairs_in_plane K s plane). Qed.
 
   (** In the plane: of det J. *)
   Theorem determinant_has_order : degrees s = 1%nat ->
@@ -137,13 +149,11 @@ Section EveryClaims.
     (forall m, (1 <= m < r)%nat -> determinant_coefficient P Q m == zero) /\
     determinant_coefficient P Q r == value (leading_entry x 0 1).
   Proof.
-    intros plane r E L P Q PQ.
-    assert (N : n = 1%nat).
-    { rewrite (every_degrees e x checked), <- (belongs_degrees _ _ member). exact plane. }
+    intros plane r E L P Q PQ. assert (N := one_degree plane).
     set (A := fun k c => match c with O => P k | _ => Q k end).
-    assert (same_coefficient : forall m,
-      defect_coefficient K s A m 0 1 == determinant_coefficient P Q m).
-    { intro m. apply total_same. intros k _. apply (pairs_in_plane K s plane). }
+    assert (same_coefficient := determinant_coefficient_is plane A).
+    change (fun k => A k 0%nat) with P in same_coefficient.
+    change (fun k => A k 1%nat) with Q in same_coefficient.
     destruct (form_has_order r E L A) with (a := 0%nat) (b := 1%nat) as [start [before first]];
       [|lia|lia|].
     - intros k c Lk Lc. rewrite N in Lc. destruct c as [|[|c]]; [apply PQ, Lk|apply PQ, Lk|lia].
@@ -153,36 +163,10 @@ Section EveryClaims.
       + rewrite <- same_coefficient. exact first.
   Qed.
 
-  (** Of a polynomial map in h: no coefficient of det J - 1 is left. *)
-  Theorem determinant_is_one : degrees s = 1%nat -> order x = None ->
-    forall m, (1 <= m <= known x)%nat ->
-    determinant_coefficient (fun k => nth k (elements_of 0) zero)
-      (fun k => nth k (elements_of 1) zero) m == zero.
-  Proof.
-    intros plane E m M.
-    assert (N : n = 1%nat).
-    { rewrite (every_degrees e x checked), <- (belongs_degrees _ _ member). exact plane. }
-    set (A := fun k c => nth k (elements_of c) zero).
-    transitivity (defect_coefficient K s A m 0 1).
-    - symmetry. apply total_same. intros k _. apply (pairs_in_plane K s plane).
-    - rewrite (every_defect A) by (try lia; intros k c _ _; symmetry; apply element_is).
-      unfold expected. rewrite E. apply rational_zero.
-  Qed.
-
-  (** In n degrees of freedom: none of S. *)
-  Theorem form_is_kept : order x = None -> forall m a b, (1 <= m <= known x)%nat ->
-    (a < b)%nat -> (b < 2 * n)%nat ->
-    defect_coefficient K s (fun k c => nth k (elements_of c) zero) m a b == zero.
-  Proof.
-    intros E m a b M La Lb. rewrite every_defect by
-      (try assumption; intros k c _ _; symmetry; apply element_is).
-    unfold expected. rewrite E. apply rational_zero.
-  Qed.
-
   (** L is the Lie derivative of G along the flow. *)
   Theorem every_primitive : forall w, primitive x = Some w ->
     forall a b, (a < b)%nat -> (b < 2 * n)%nat ->
-    lie_derivative K s (fun a b => value (turned w a b)) a b == value (leading_entry x a b).
+    lie_derivative K s (fun a b => value (form_formula w a b)) a b == value (leading_entry x a b).
   Proof.
     intros w W. apply (primitive_is K s x _ every_meaning every_sloped w W).
     intros f F. apply every_gap, in_app_iff. right. apply in_app_iff. right. exact F.
@@ -192,14 +176,12 @@ Section EveryClaims.
   Theorem every_potential : degrees s = 1%nat -> forall w, primitive x = Some w ->
     along_flow K s (value (w 0 1)%nat) == value (leading_entry x 0 1).
   Proof.
-    intros P w W.
-    assert (N : n = 1%nat).
-    { rewrite (every_degrees e x checked), <- (belongs_degrees _ _ member). exact P. }
+    intros P w W. assert (N := one_degree P).
     rewrite <- (every_primitive w W 0 1) by lia.
     unfold lie_derivative. rewrite P. simpl total. simpl Nat.add.
-    change (value (turned w 0 1)) with (value (w 0 1)%nat).
-    change (value (turned w 1 1)) with (@rational K 0).
-    change (value (turned w 0 0)) with (@rational K 0).
+    change (value (form_formula w 0 1)) with (value (w 0 1)%nat).
+    change (value (form_formula w 1 1)) with (@rational K 0).
+    change (value (form_formula w 0 0)) with (@rational K 0).
     rewrite (rational_zero K), (derivations_commute K 0 1). ring.
   Qed.
 End EveryClaims.

@@ -2,7 +2,7 @@
     words of its file. *)
 
 From Coq Require Import Reals QArith Qreals List Bool Lra Lia.
-From AreaPreservation Require Import Sums Differential Rings Formulas Symplectic Identities RealFormulas RealNames OneHamiltonian RealDefect RealClaims RealExact MapClaims.
+From AreaPreservation Require Import Sums Differential Rings Formulas Symplectic Identities RealFormulas RealNames OneHamiltonian RealMaps RealDefect RealClaims RealExact MapClaims.
 Import ListNotations.
 Local Open Scope R_scope.
 
@@ -36,17 +36,8 @@ Section ExactClaims.
   Proof.
     intros d short S N P Q p q t P_is Q_is I h. set (z := at_point [p; q; t]).
     destruct (form_is_kept_exactly d short S z I h) as [J [D E]].
-    specialize (E 0%nat 1%nat ltac:(lia) ltac:(lia)). rewrite N in D.
-    exists (J 0%nat 0%nat), (J 0%nat 1%nat), (J 1%nat 0%nat), (J 1%nat 1%nat).
-    split; [|split; [|split; [|split]]].
-    - exact (derivable_pt_lim_ext _ _ _ _ (fun s => eq_sym (P_is h (moved z 0 s) eq_refl))
-        (D 0%nat 0%nat ltac:(lia) ltac:(lia))).
-    - exact (derivable_pt_lim_ext _ _ _ _ (fun s => eq_sym (P_is h (moved z 1 s) eq_refl))
-        (D 0%nat 1%nat ltac:(lia) ltac:(lia))).
-    - exact (derivable_pt_lim_ext _ _ _ _ (fun s => eq_sym (Q_is h (moved z 0 s) eq_refl))
-        (D 1%nat 0%nat ltac:(lia) ltac:(lia))).
-    - exact (derivable_pt_lim_ext _ _ _ _ (fun s => eq_sym (Q_is h (moved z 1 s) eq_refl))
-        (D 1%nat 1%nat ltac:(lia) ltac:(lia))).
-    - unfold defect_entry, pairing in E. rewrite N in E. simpl in E. lra.
+    specialize (E 0%nat 1%nat ltac:(lia) ltac:(lia)). rewrite N in D, E.
+    replace 1 with (defect_entry 1 J 0 1 + 1) by (rewrite E; ring).
+    refine (plane_determinant _ _ _ z J _ _ D); intros y Y; [apply P_is|apply Q_is]; exact Y.
   Qed.
 End ExactClaims.

@@ -2,7 +2,7 @@
     equations, in the words of its file. *)
 
 From Coq Require Import Reals QArith Qreals List Bool Lra Lia.
-From AreaPreservation Require Import Sums Differential Orders Rings Formulas Identities RealFormulas RealNames OneHamiltonian RealDefect RealClaims MapClaims.
+From AreaPreservation Require Import Sums Differential Orders Rings Formulas Identities RealFormulas RealNames OneHamiltonian RealMaps RealDefect RealClaims MapClaims.
 Import ListNotations.
 Local Open Scope R_scope.
 

@@ -42,18 +42,20 @@ Definition defect_formula (x : certificate) (m a b : nat) : formula :=
   sum_up_to (S m) (fun k => sum_up_to (of_degrees x) (fun i =>
     wedge_formula x (term x k i) (term x (m - k) (of_degrees x + i)) a b)).
 
-(** Entries above the diagonal make a 2-form. *)
-Definition turned (w : nat -> nat -> formula) (a b : nat) : formula :=
-  if a <? b then w a b else if b <? a then Negative (w b a) else Number 0.
+(** The 2-form whose entries above the diagonal are these. *)
+Definition two_form {A : Type} (none : A) (negative : A -> A) (w : nat -> nat -> A) (a b : nat) : A :=
+  if a <? b then w a b else if b <? a then negative (w b a) else none.
+
+Notation form_formula := (two_form (Number 0) Negative).
 
 Definition lie_formula (x : certificate) (w : nat -> nat -> formula) (a b : nat) : formula :=
   let n := of_degrees x in
   let h := slope_of_energy x in
-  Plus (flow_formula x (turned w a b)) (sum_up_to n (fun i =>
-    Plus (Minus (Times (slope x a (h i)) (turned w (n + i) b))
-                (Times (slope x a (h (n + i))) (turned w i b)))
-         (Minus (Times (slope x b (h i)) (turned w a (n + i)))
-                (Times (slope x b (h (n + i))) (turned w a i))))).
+  Plus (flow_formula x (form_formula w a b)) (sum_up_to n (fun i =>
+    Plus (Minus (Times (slope x a (h i)) (form_formula w (n + i) b))
+                (Times (slope x a (h (n + i))) (form_formula w i b)))
+         (Minus (Times (slope x b (h i)) (form_formula w a (n + i)))
+                (Times (slope x b (h (n + i))) (form_formula w a i))))).
 
 (** One gap for each coefficient of each coordinate that agrees with the flow: (k + 1) z_(k+1) =
     D z_k, and z_0 = z. *)

@@ -1,7 +1,7 @@
 (** The theorems of a certificate for one H, over the real numbers. *)
 
 From Coq Require Import Reals QArith Qreals List Bool Lra Lia.
-From AreaPreservation Require Import Sums Differential Slopes Orders Rings Totals Flow Taylor Formulas Calculation Smooth Systems Solutions Symplectic Identities Certified RealFormulas RealNames OneHamiltonian RealDefect.
+From AreaPreservation Require Import Sums Differential Slopes Orders Rings Totals Flow Taylor Formulas Calculation Smooth Systems Solutions Symplectic Identities Certified RealFormulas RealNames OneHamiltonian RealMaps RealDefect.
 Import ListNotations.
 Local Open Scope R_scope.
 
@@ -142,12 +142,12 @@ Section RealClaims.
     (forall c a h, (c < 2 * n)%nat -> (a < 2 * n)%nat -> Rabs h <= 1 ->
       Rabs (rest_slope c a h) <= B) ->
     forall a b, (a < b)%nat -> (b < 2 * n)%nat -> exists C, forall h, Rabs h <= 1 ->
-      Rabs (defect_of x (fun c a => polynomial_slope v given x z c a h
+      Rabs (defect_entry n (fun c a => polynomial_slope v given x z c a h
               + h ^ S (known x) * rest_slope c a h) a b
             - value_at z (leading_entry x a b) * h ^ r) <= C * Rabs h ^ S r.
   Proof.
     intros r Er Lr z I rest_slope B bounded a b L Lb.
-    assert (E := defect_expands v given enough x size z a b (fun c a h => polynomial_slope v given x z c a h
+    assert (E := defect_expands v given x z a b (fun c a h => polynomial_slope v given x z c a h
               + h ^ S (known x) * rest_slope c a h)).
     assert (F := expands_difference _ _ _ _ _ (E (fun c a Lc La => expands_with_remainder _ _
         (fun k => value_at z (slope x a (term x k c))) (rest_slope c a) B

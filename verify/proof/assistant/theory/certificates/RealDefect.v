@@ -2,30 +2,12 @@
     order in h of S = J^T Omega J - Omega. *)
 
 From Coq Require Import Reals QArith Qreals List Bool Lra Lia.
-From AreaPreservation Require Import Sums Differential Slopes Orders Rings Totals Flow Taylor Formulas Smooth Systems Symplectic Identities Certified RealFormulas RealNames OneHamiltonian.
+From AreaPreservation Require Import Sums Differential Slopes Orders Rings Totals Flow Taylor Formulas Smooth Systems Symplectic Identities Certified RealFormulas RealNames OneHamiltonian RealMaps.
 Import ListNotations.
 Local Open Scope R_scope.
 
 Lemma total_is_sum : forall m (f : nat -> R), @total real_numbers m f = sum m f.
 Proof. induction m as [|m IH]; intro f; simpl; [reflexivity|]. rewrite IH. reflexivity. Qed.
-
-Lemma slopes_of_coordinates_pair : forall n a b, (a < b)%nat -> (b < 2 * n)%nat ->
-  sum n (fun i => pick i a * pick (n + i) b - pick i b * pick (n + i) a) = pairing n a b.
-Proof.
-  intros n a b L Lb. unfold pairing. rewrite (proj2 (Nat.eqb_neq a (n + b))) by lia.
-  destruct (Nat.eqb_spec b (n + a)) as [->|N].
-  - rewrite (sum_of_single n a); [|lia|].
-    + unfold pick. rewrite !Nat.eqb_refl.
-      rewrite (proj2 (Nat.eqb_neq a (n + a))) by lia. ring.
-    + intros i Li Ni. unfold pick. rewrite (proj2 (Nat.eqb_neq a i)) by lia.
-      rewrite (proj2 (Nat.eqb_neq (n + a) i)) by lia. ring.
-  - apply sum_of_zeros. intros i Li. unfold pick.
-    destruct (Nat.eqb_spec a i) as [->|Na].
-    + rewrite (proj2 (Nat.eqb_neq b (n + i))) by lia.
-      rewrite (proj2 (Nat.eqb_neq b i)) by lia. ring.
-    + destruct (Nat.eqb_spec b i) as [->|Nb]; [|ring].
-      rewrite (proj2 (Nat.eqb_neq a (n + i))) by lia. ring.
-Qed.
 
 Section RealDefect.
   Context (v : vocabulary) (made_well : well_made v = true) (given : list R).
@@ -34,6 +16,7 @@ Section RealDefect.
   Context (size : dimension v = (2 * n + 1)%nat).
   Context (its_slopes : slope_of_name x = slope_of_real v).
   Notation value_at z f := (@value_of real_numbers (names_at v given z) f).
+  Notation slope_at z c a k := (value_at z (slope x a (term x k c))).
 
   (** A map in h with these coefficients: what it does to the coordinate c. *)
   Definition polynomial_map (c : nat) (h : R) (z : point) : R :=
@@ -42,10 +25,6 @@ Section RealDefect.
   (** The slope of that by the coordinate a. *)
   Definition polynomial_slope (z : point) (c a : nat) (h : R) : R :=
     sum (S (known x)) (fun k => value_at z (slope x a (term x k c)) * h ^ k).
-
-  (** What a map with the Jacobian J lacks to be symplectic. *)
-  Definition defect_of (J : nat -> nat -> R) (a b : nat) : R :=
-    sum n (fun i => J i a * J (n + i)%nat b - J i b * J (n + i)%nat a) - pairing n a b.
 
   Lemma value_of_slope_is : forall z, defined_at v given z -> forall f a, (a < 2 * n + 1)%nat ->
     derivable_pt_lim (fun s => value_at (moved z a s) f) (z a) (value_at z (slope x a f)).
@@ -73,39 +52,29 @@ Section RealDefect.
       + apply derivable_pt_lim_const.
   Qed.
 
+  Lemma value_of_defect_formula : forall z m a b, value_at z (defect_formula x m a b)
+    = sum n (fun i => sum (S m) (fun k => slope_at z i a k * slope_at z (n + i)%nat b (m - k)%nat)
+                    - sum (S m) (fun k => slope_at z i b k * slope_at z (n + i)%nat a (m - k)%nat)).
+  Proof.
+    intros z m a b. unfold defect_formula. rewrite (value_of_sum_up_to real_numbers), total_is_sum.
+    rewrite (sum_of_equals (S m) _ (fun k => sum n (fun i =>
+      slope_at z i a k * slope_at z (n + i)%nat b (m - k)%nat
+      - slope_at z i b k * slope_at z (n + i)%nat a (m - k)%nat))).
+    - rewrite sum_swapped. apply sum_of_equals. intros i _. apply sum_of_difference.
+    - intros k _. rewrite (value_of_sum_up_to real_numbers), total_is_sum. reflexivity.
+  Qed.
+
   (** The defect of a Jacobian whose entries expand so does it with these coefficients. *)
   Lemma defect_expands : forall z a b (J : nat -> nat -> R -> R),
     (forall c a, (c < 2 * n)%nat -> (a < 2 * n)%nat ->
-      expands (known x) (J c a) (fun k => value_at z (slope x a (term x k c)))) ->
+      expands (known x) (J c a) (fun k => slope_at z c a k)) ->
     (a < 2 * n)%nat -> (b < 2 * n)%nat ->
     expands (known x) (fun h => sum n (fun i => J i a h * J (n + i)%nat b h - J i b h * J (n + i)%nat a h))
       (fun m => value_at z (defect_formula x m a b)).
   Proof.
-    intros z a b J E La Lb.
-    apply (expands_same _
-      (fun h => sum n (fun i => J i a h * J (n + i)%nat b h - J i b h * J (n + i)%nat a h))
-      _ (fun m => sum n (fun i =>
-        sum (S m) (fun k => value_at z (slope x a (term x k i))
-          * value_at z (slope x b (term x (m - k) (n + i))))
-        - sum (S m) (fun k => value_at z (slope x b (term x k i))
-          * value_at z (slope x a (term x (m - k) (n + i))))))); [reflexivity| |].
-    - intros m _. unfold defect_formula. rewrite (value_of_sum_up_to real_numbers), total_is_sum.
-      rewrite (sum_of_equals (S m) _ (fun k => sum n (fun i =>
-        value_at z (slope x a (term x k i)) * value_at z (slope x b (term x (m - k) (n + i)))
-        - value_at z (slope x b (term x k i)) * value_at z (slope x a (term x (m - k) (n + i)))))).
-      + rewrite sum_swapped. apply sum_of_equals. intros i _. symmetry. apply sum_of_difference.
-      + intros k _. rewrite (value_of_sum_up_to real_numbers), total_is_sum. reflexivity.
-    - apply (expands_finite_sum (known x) n
-        (fun i h => J i a h * J (n + i)%nat b h - J i b h * J (n + i)%nat a h)
-        (fun i m => sum (S m) (fun k => value_at z (slope x a (term x k i))
-            * value_at z (slope x b (term x (m - k) (n + i))))
-          - sum (S m) (fun k => value_at z (slope x b (term x k i))
-            * value_at z (slope x a (term x (m - k) (n + i)))))).
-      intros i L. apply expands_difference.
-      + apply (expands_product _ _ _ (fun k => value_at z (slope x a (term x k i)))
-          (fun k => value_at z (slope x b (term x k (n + i))))); apply E; lia.
-      + apply (expands_product _ _ _ (fun k => value_at z (slope x b (term x k i)))
-          (fun k => value_at z (slope x a (term x k (n + i))))); apply E; lia.
+    intros z a b J E La Lb. apply expands_same with
+      (3 := expands_pairs _ n J (fun k c a => slope_at z c a k) a b E La Lb); [reflexivity|].
+    intros m _. symmetry. apply value_of_defect_formula.
   Qed.
 
   Lemma gap_is_closed : forall z f g, value_at z (Minus f g) = 0 -> value_at z f = value_at z g.
@@ -128,11 +97,7 @@ Section RealDefect.
       - exact I.
       - intros y Y. apply E; assumption.
       - apply slopes_of_coordinate. rewrite size. lia. }
-    unfold defect_formula. rewrite (value_of_sum_up_to real_numbers), total_is_sum. simpl sum.
-    rewrite Rplus_0_l, (value_of_sum_up_to real_numbers), total_is_sum.
-    rewrite <- (slopes_of_coordinates_pair n a b L Lb). apply sum_of_equals.
-    intros i Li. unfold wedge_formula. cbn [value_of].
-    change (@sub real_numbers) with Rminus. change (@mul real_numbers) with Rmult.
-    simpl Nat.sub. rewrite !delta by lia. reflexivity.
+    rewrite value_of_defect_formula, <- (identity_preserves_form n a b ltac:(lia) Lb).
+    apply sum_of_equals. intros i Li. simpl sum. rewrite !Rplus_0_l, !delta by lia. reflexivity.
   Qed.
 End RealDefect.

@@ -2,7 +2,7 @@
     exactly, at every h. *)
 
 From Coq Require Import Reals QArith List Lia.
-From AreaPreservation Require Import Differential Totals Formulas Identities RealFormulas OneHamiltonian RealDefect RealClaims.
+From AreaPreservation Require Import Differential Totals Formulas Identities RealFormulas OneHamiltonian RealMaps RealDefect RealClaims.
 Import ListNotations.
 Local Open Scope R_scope.
 
@@ -61,35 +61,23 @@ Section RealExact.
   Notation U := (inside v given).
   Notation slope_at z c a k := (value_at z (slope x a (term x k c))).
 
-  Lemma value_of_defect_formula : forall z m a b, value_at z (defect_formula x m a b)
-    = sum n (fun i => sum (S m) (fun k => slope_at z i a k * slope_at z (n + i)%nat b (m - k)%nat)
-                    - sum (S m) (fun k => slope_at z i b k * slope_at z (n + i)%nat a (m - k)%nat)).
-  Proof.
-    intros z m a b. unfold defect_formula. rewrite (value_of_sum_up_to real_numbers), total_is_sum.
-    rewrite (sum_of_equals (S m) _ (fun k => sum n (fun i =>
-      slope_at z i a k * slope_at z (n + i)%nat b (m - k)%nat
-      - slope_at z i b k * slope_at z (n + i)%nat a (m - k)%nat))).
-    - rewrite sum_swapped. apply sum_of_equals. intros i _. apply sum_of_difference.
-    - intros k _. rewrite (value_of_sum_up_to real_numbers), total_is_sum. reflexivity.
-  Qed.
-
   (** The map is symplectic: its defect is 0, and not of some order alone. *)
   Theorem exactly_symplectic : forall d, short_series x d = true ->
     forall z, U z -> forall h a b, (a < b)%nat -> (b < 2 * n)%nat ->
-    defect_of x (fun c a => polynomial_slope v given x z c a h) a b = 0.
+    defect_entry n (fun c a => polynomial_slope v given x z c a h) a b = 0.
   Proof.
     intros d E z I h a b L Lb. destruct (short_series_means x d E) as [ends [Ld O]].
     assert (beyond : forall c a k, (d < k)%nat -> slope_at z c a k = 0).
     { intros c a' k Lk. rewrite ends by exact Lk. simpl. unfold real_of. simpl. ring. }
-    unfold defect_of, polynomial_slope.
+    unfold defect_entry, polynomial_slope.
     rewrite (sum_of_equals n _ (fun i => sum (S (2 * d)) (fun m =>
       (sum (S m) (fun k => slope_at z i a k * slope_at z (n + i)%nat b (m - k)%nat)
        - sum (S m) (fun k => slope_at z i b k * slope_at z (n + i)%nat a (m - k)%nat)) * h ^ m))).
     - rewrite sum_swapped, (sum_of_single _ 0); [|lia|].
-      + rewrite sum_times, <- (value_of_defect_formula z 0).
+      + rewrite sum_times, <- (value_of_defect_formula v given x z 0).
         rewrite (defect_coefficients v energy x factors checked given enough) by (assumption || lia).
         simpl. ring.
-      + intros m Lm N. rewrite sum_times, <- (value_of_defect_formula z m).
+      + intros m Lm N. rewrite sum_times, <- (value_of_defect_formula v given x z m).
         rewrite (defect_coefficients v energy x factors checked given enough) by (assumption || lia).
         destruct m as [|m]; [lia|]. unfold expected. rewrite O. simpl. unfold real_of. simpl. ring.
     - intros i _.

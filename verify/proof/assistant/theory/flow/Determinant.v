@@ -42,16 +42,8 @@ Section Determinant.
     destruct (determinant_has_value zero) as [m [E _]]; [exact (derivation_zero K)|].
     exists m. split; [exact E|]. intros h C.
     rewrite (value_unique K h volume _ m (determinant_has_value h C) E).
-    rewrite <- (value_further K h volume m (S (S eta) + m)) by (try exact E; lia).
-    unfold partial_sum at 1. rewrite total_split.
-    change (total (S (S eta)) (fun k => power h k * volume k)) with
-      (total (S eta) (fun k => power h k * volume k) + power h (S eta) * volume (S eta)).
-    rewrite volume_first. rewrite (total_one K (S eta) 0) by
-      (first [lia | intros [|k] Lk N; [lia|rewrite volume_below by lia; ring]]).
-    rewrite volume_at_0. unfold partial_sum. rewrite <- total_scaled.
-    rewrite (total_same K m (fun i => power h (S (S eta) + i) * _)
-      (fun k => power h (S (S eta)) * (power h k * volume (S (S eta) + k)%nat))).
-    - simpl power at 1. ring.
-    - intros k _. rewrite power_add. ring.
+    rewrite <- (partial_sum_ends K h volume m (S (S eta) + m)) by (try exact E; lia).
+    rewrite partial_sum_first by (first [lia | intros [|k] Lk; [lia|apply volume_below; lia]]).
+    rewrite volume_at_0, volume_first. reflexivity.
   Qed.
 End Determinant.

@@ -80,11 +80,14 @@ Section Flow.
     - intros i _. rewrite !derivation_mul. ring.
   Qed.
 
-  Lemma along_flow_rational : forall a, along_flow (rational a) == zero.
+  Lemma along_flow_constant : forall c, constant K c -> along_flow c == zero.
   Proof.
-    intro a. unfold along_flow, along_field. rewrite derivation_rational.
-    rewrite total_zero; [ring|]. intros i _. rewrite !derivation_rational. ring.
+    intros c C. unfold along_flow, along_field. rewrite (C _).
+    rewrite total_zero; [ring|]. intros i _. rewrite !(C _). ring.
   Qed.
+
+  Lemma along_flow_rational : forall a, along_flow (rational a) == zero.
+  Proof. intro a. apply along_flow_constant. intro i. apply derivation_rational. Qed.
 
   Lemma along_flow_zero : along_flow zero == zero.
   Proof.
@@ -92,8 +95,8 @@ Section Flow.
     apply along_flow_proper. symmetry. apply rational_zero.
   Qed.
 
-  Lemma along_flow_scaled : forall a f, along_flow (rational a * f) == rational a * along_flow f.
-  Proof. intros a f. rewrite along_flow_mul, along_flow_rational. ring. Qed.
+  Lemma along_flow_scaled : forall c f, constant K c -> along_flow (c * f) == c * along_flow f.
+  Proof. intros c f C. rewrite along_flow_mul, along_flow_constant by exact C. ring. Qed.
 
   Lemma along_flow_total : forall m f,
     along_flow (total m f) == total m (fun k => along_flow (f k)).
@@ -164,11 +167,11 @@ Section Flow.
     intros i _. ring.
   Qed.
 
-  Lemma lie_derivative_scaled : forall x w a b,
-    lie_derivative (fun a b => rational x * w a b) a b == rational x * lie_derivative w a b.
+  Lemma lie_derivative_scaled : forall c w a b, constant K c ->
+    lie_derivative (fun a b => c * w a b) a b == c * lie_derivative w a b.
   Proof.
-    intros x w a b. unfold lie_derivative. rewrite along_flow_scaled.
-    rewrite (total_same K n _ (fun i => rational x *
+    intros c w a b C. unfold lie_derivative. rewrite along_flow_scaled by exact C.
+    rewrite (total_same K n _ (fun i => c *
       ((d a (d i H) * w (n + i)%nat b - d a (d (n + i)%nat H) * w i b)
       + (d b (d i H) * w a (n + i)%nat - d b (d (n + i)%nat H) * w a i)))).
     - rewrite total_scaled. ring.

@@ -33,7 +33,7 @@ Section LieScheme.
     - simpl. unfold inverse_factorial. change (1 # Pos.of_nat (fact 0)) with 1%Q.
       rewrite rational_one. ring.
     - simpl Taylor.coefficient. rewrite IH. unfold inverse_factorial at 1.
-      rewrite along_flow_scaled. simpl iterated.
+      rewrite along_flow_scaled by (intro i; apply derivation_rational). simpl iterated.
       transitivity (fraction (S k) * rational (1 # Pos.of_nat (fact k)) * D (iterated k f)); [ring|].
       apply mul_extends; [|reflexivity].
       unfold fraction, inverse_factorial. rewrite <- rational_mul. apply rational_extends.
@@ -50,13 +50,6 @@ Section LieScheme.
   (** The first coefficient that is left. *)
   Definition leading : form K := fun a b =>
     - (pairs (flow_series (S eta)) z a b + pairs z (flow_series (S eta)) a b).
-
-  Lemma pairs_of_zero : forall A B a b, (forall i, A i == zero) \/ (forall i, B i == zero) ->
-    pairs A B a b == zero.
-  Proof.
-    intros A B a b [E|E]; apply total_zero; intros i _; unfold wedge; rewrite E;
-      rewrite !derivation_zero; ring.
-  Qed.
 
   (** The map is symplectic at h = 0. *)
   Theorem defect_at_0 : forall a b, defect 0 a b == canonical K s a b.
@@ -90,9 +83,9 @@ Section LieScheme.
           + pairs (flow_series (S eta)) (flow_series (S eta - S eta)) a b).
       assert (over : forall i, scheme_series (S eta) i == zero).
       { intro i. unfold scheme_series. rewrite (proj2 (Nat.leb_gt _ _)) by lia. reflexivity. }
-      rewrite (pairs_of_zero (scheme_series (S eta))) by (left; exact over).
+      rewrite (pairs_of_zero K s (scheme_series (S eta))) by (left; exact over).
       replace (S eta - 0)%nat with (S eta) by lia.
-      rewrite (pairs_of_zero (scheme_series 0)) by (right; exact over).
+      rewrite (pairs_of_zero K s (scheme_series 0)) by (right; exact over).
       replace (S eta - S eta)%nat with O by lia.
       rewrite (total_same K eta (fun i => pairs (scheme_series _) (scheme_series _) a b)
         (fun i => pairs (flow_series (S i)) (flow_series (S eta - S i)) a b)).
@@ -118,15 +111,9 @@ Section LieScheme.
   Definition potential : form K := fun a b => - (inverse_factorial (S eta) * total (S eta) (fun k =>
     sign k * pairs (fun i => iterated (eta - k) (z i)) (fun i => iterated k (z i)) a b)).
 
-  Lemma lie_derivative_of_constant : forall x w a b, (forall f, D (x * f) == x * D f) ->
-    lie_derivative K s (fun a b => x * w a b) a b == x * lie_derivative K s w a b.
+  Lemma sign_constant : forall k, constant K (sign k).
   Proof.
-    intros x w a b E. unfold lie_derivative. rewrite E.
-    rewrite (total_same K n _ (fun i => x *
-      ((d a (d i H) * w (n + i)%nat b - d a (d (n + i)%nat H) * w i b)
-      + (d b (d i H) * w a (n + i)%nat - d b (d (n + i)%nat H) * w a i)))).
-    - rewrite total_scaled. ring.
-    - intros i _. ring.
+    intros k i. unfold sign. destruct (Nat.even k); rewrite ?derivation_opp, derivation_one; ring.
   Qed.
 
   Theorem even_telescopes : Nat.Even eta -> forall a b, (a < 2 * n)%nat -> (b < 2 * n)%nat ->
@@ -134,25 +121,20 @@ Section LieScheme.
   Proof.
     intros even a b La Lb. unfold potential.
     set (V := fun k l => pairs (fun i => iterated k (z i)) (fun i => iterated l (z i))).
-    assert (one_alone : forall f, D (- (one) * f) == - (one) * D f).
-    { intro f. rewrite along_flow_mul.
-      transitivity (D (rational (Qopp 1)) * f + - one * D f).
-      - apply add_extends; [|reflexivity]. apply mul_extends; [|reflexivity].
-        apply along_flow_proper. rewrite rational_opp, rational_one. reflexivity.
-      - rewrite along_flow_rational. ring. }
-    assert (sign_alone : forall k f, D (sign k * f) == sign k * D f).
-    { intros k f. unfold sign. destruct (Nat.even k); [|apply one_alone].
-      transitivity (D f); [apply along_flow_proper|]; ring. }
+    assert (opposite : constant K (- one)).
+    { intro i. rewrite derivation_opp, derivation_one. ring. }
+    assert (factorial : constant K (inverse_factorial (S eta))).
+    { intro i. apply derivation_rational. }
     transitivity (- one * (inverse_factorial (S eta) * total (S eta) (fun k =>
       sign k * (V (S (eta - k)) k a b + V (eta - k)%nat (S k) a b)))).
     - rewrite <- (lie_derivative_same K s (fun a b => - one * (inverse_factorial (S eta) *
         total (S eta) (fun k => sign k * V (eta - k)%nat k a b)))) by
         (try assumption; intros; unfold V; ring).
-      rewrite (lie_derivative_of_constant (- one)) by exact one_alone.
-      apply mul_extends; [reflexivity|].
-      unfold inverse_factorial at 1. rewrite lie_derivative_scaled, lie_derivative_total.
+      rewrite (lie_derivative_scaled K s (- one)), (lie_derivative_scaled K s _ _ a b factorial) by
+        exact opposite.
+      apply mul_extends; [reflexivity|]. rewrite lie_derivative_total.
       apply mul_extends; [reflexivity|]. apply total_same. intros k _.
-      rewrite lie_derivative_of_constant by apply sign_alone.
+      rewrite lie_derivative_scaled by apply sign_constant.
       unfold V. rewrite lie_derivative_of_pairs. reflexivity.
     - assert (partial : forall m, (m <= S eta)%nat -> total m (fun k =>
           sign k * (V (S (eta - k)) k a b + V (eta - k)%nat (S k) a b))

@@ -79,6 +79,60 @@ Section Taylor.
     reflexivity.
   Qed.
 
+  (** The new value of the coordinate i at a number h: the terms before h^m. *)
+  Definition at_number (h : K) (A : nat -> nat -> K) (m i : nat) : K :=
+    partial_sum K h (fun k => A k i) m.
+
+  Lemma pairs_of_zero : forall A B a b, (forall i, A i == zero) \/ (forall i, B i == zero) ->
+    pairs A B a b == zero.
+  Proof.
+    intros A B a b [E|E]; apply total_zero; intros i _; unfold wedge; rewrite E;
+      rewrite !derivation_zero; ring.
+  Qed.
+
+  (** Where the map ends before h^m its coefficients end before h^(2m - 1). *)
+  Lemma defect_coefficient_ends : forall A m, (forall k i, (m <= k)%nat -> A k i == zero) ->
+    forall j a b, (m + m <= S j)%nat -> defect_coefficient A j a b == zero.
+  Proof.
+    intros A m E j a b L. apply total_zero. intros k Lk. apply pairs_of_zero.
+    destruct (Nat.le_gt_cases m k) as [M|M]; [left|right]; intro i; apply E; lia.
+  Qed.
+
+  (** So sum_i dp_i' /\ dq_i' is the sum of its coefficients, at each number h. *)
+  Theorem pairs_at_number : forall h A m a b, constant K h ->
+    (forall k i, (m <= k)%nat -> A k i == zero) ->
+    pairs (at_number h A m) (at_number h A m) a b
+    == partial_sum K h (fun j => defect_coefficient A j a b) (m + m).
+  Proof.
+    intros h A m a b C E. set (T := fun k i => power K h k * A k i).
+    transitivity (total m (fun k => total m (fun l => pairs (T k) (T l) a b))).
+    - unfold Flow.pairs. rewrite (total_same K n _ (fun i => total m (fun k => total m
+        (fun l => wedge K (T k i) (T l (n + i)%nat) a b)))).
+      + rewrite total_swap. apply total_same. intros k _. apply total_swap.
+      + intros i _. unfold wedge, at_number, partial_sum.
+        rewrite !derivation_total, !total_times_total, <- total_sub.
+        apply total_same. intros k _. symmetry. apply total_sub.
+    - rewrite total_product.
+      + apply total_same. intros j _. unfold defect_coefficient.
+        rewrite <- total_scaled. apply total_same. intros k L. unfold paired, Flow.pairs.
+        rewrite <- total_scaled. apply total_same. intros i _. unfold wedge, T.
+        assert (P : power K h j == power K h k * power K h (j - k)%nat).
+        { rewrite <- power_add. replace (k + (j - k))%nat with j by lia. reflexivity. }
+        rewrite P, !derivation_mul, !(power_constant K h) by exact C. ring.
+      + intros k l over. apply pairs_of_zero. unfold T.
+        destruct over; [left|right]; intro i; rewrite E by assumption; ring.
+  Qed.
+
+  (** What is added to a map with a factor g, a number, adds this. *)
+  Lemma pairs_with_remainder : forall g A u a b, constant K g ->
+    pairs (fun i => A i + g * u i) (fun i => A i + g * u i) a b
+    == pairs A A a b + g * (pairs A u a b + pairs u A a b + g * pairs u u a b).
+  Proof.
+    intros g A u a b C. unfold Flow.pairs. rewrite <- (total_scaled K n g), <- !total_add.
+    rewrite <- total_scaled, <- total_add. apply total_same. intros i _. unfold wedge.
+    rewrite !derivation_add, !derivation_mul, !(C _). ring.
+  Qed.
+
   Lemma pairs_scaled : forall x A B a b,
     pairs (fun i => rational x * A i) B a b == rational x * pairs A B a b
     /\ pairs A (fun i => rational x * B i) a b == rational x * pairs A B a b.

@@ -181,6 +181,23 @@ Proof.
   - intros i I. rewrite (proj2 (Nat.ltb_lt j (S j + i))) by lia. ring.
 Qed.
 
+(** What S = J^T Omega J - Omega is made of, where the entries J c a have the coefficients j _ c a. *)
+Lemma expands_pairs : forall m n (J : nat -> nat -> R -> R) (j : nat -> nat -> nat -> R) a b,
+  (forall c a, (c < 2 * n)%nat -> (a < 2 * n)%nat -> expands m (J c a) (fun k => j k c a)) ->
+  (a < 2 * n)%nat -> (b < 2 * n)%nat ->
+  expands m (fun h => sum n (fun i => J i a h * J (n + i)%nat b h - J i b h * J (n + i)%nat a h))
+    (fun l => sum n (fun i => sum (S l) (fun k => j k i a * j (l - k)%nat (n + i)%nat b)
+                            - sum (S l) (fun k => j k i b * j (l - k)%nat (n + i)%nat a))).
+Proof.
+  intros m n J j a b E La Lb.
+  apply (expands_finite_sum m n (fun i h => J i a h * J (n + i)%nat b h - J i b h * J (n + i)%nat a h)
+    (fun i l => sum (S l) (fun k => j k i a * j (l - k)%nat (n + i)%nat b)
+              - sum (S l) (fun k => j k i b * j (l - k)%nat (n + i)%nat a))).
+  intros i L. apply expands_difference.
+  - apply (expands_product m _ _ (fun k => j k i a) (fun k => j k (n + i)%nat b)); apply E; lia.
+  - apply (expands_product m _ _ (fun k => j k i b) (fun k => j k (n + i)%nat a)); apply E; lia.
+Qed.
+
 (** * Conclusions *)
 
 (** If the coefficients below that of h^r are 0, then F h = a_r h^r + O(h^(r+1)). *)

@@ -108,6 +108,8 @@ Section Consequences.
   Lemma rational_sub : forall a b, @rational K (a - b)%Q == rational a - rational b.
   Proof. intros a b. unfold Qminus. rewrite rational_add, rational_opp. ring. Qed.
 
+  Lemma power_add : forall (h : K) k l, h ^ (k + l) == h ^ k * h ^ l.
+  Proof. intros h k l. induction k as [|k IH]; simpl; [|rewrite IH]; ring. Qed.
 End Consequences.
 
 #[export] Instance derivation_proper (K : differential_ring) (i : nat) :
@@ -145,6 +147,15 @@ Section Derivations.
     transitivity (by_coordinate i (@one K) * one + one * by_coordinate i one); [ring|].
     rewrite <- derivation_mul. transitivity (by_coordinate i (@one K)); [|ring].
     apply derivation_extends. ring.
+  Qed.
+
+  (** What no derivation sees, as it does not see a number h. *)
+  Definition constant (h : K) : Prop := forall i, by_coordinate i h == zero.
+
+  Lemma power_constant : forall h k, constant h -> constant (h ^ k).
+  Proof.
+    intros h k C i. induction k as [|k IH]; simpl; [apply derivation_one|].
+    rewrite derivation_mul, IH, (C i). ring.
   Qed.
 
   (** Rational numbers are constants: b (a/b) = a is one, as a sum of ones is. *)

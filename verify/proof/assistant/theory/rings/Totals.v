@@ -10,6 +10,10 @@ Fixpoint total {K : rational_ring} (n : nat) (f : nat -> K) : K :=
   | S k => add (total k f) (f k)
   end.
 
+(** f_0 + f_1 h + .. + f_(m-1) h^(m-1). *)
+Definition partial_sum (K : rational_ring) (h : K) (f : nat -> K) (m : nat) : K :=
+  total m (fun k => mul (power K h k) (f k)).
+
 Section Totals.
   Context (K : rational_ring).
   Add Ring totals : (ring_laws K) (setoid (same_equivalence K) (operations_extend K)).
@@ -78,6 +82,14 @@ Section Totals.
     simpl. rewrite IH, Z by exact L. ring.
   Qed.
 
+  Lemma total_split : forall m k (f : nat -> K),
+    total (m + k)%nat f == total m f + total k (fun i => f (m + i)%nat).
+  Proof.
+    intros m k f. induction k as [|k IH].
+    - replace (m + 0)%nat with m by lia. simpl. ring.
+    - replace (m + S k)%nat with (S (m + k)) by lia. simpl. rewrite IH. ring.
+  Qed.
+
   Lemma total_one : forall n k (f : nat -> K), (k < n)%nat ->
     (forall i, (i < n)%nat -> i <> k -> f i == zero) -> total n f == f k.
   Proof.
@@ -114,6 +126,28 @@ Section Totals.
     rewrite (total_cut (n + n) n) by
       (try lia; intros i L; apply total_zero; intros; apply Z; lia).
     apply total_same. intros k L. apply total_cut; [lia|]. intros i M. apply Z. lia.
+  Qed.
+
+  Lemma partial_sum_same : forall h f g m, (forall k, (k < m)%nat -> f k == g k) ->
+    partial_sum K h f m == partial_sum K h g m.
+  Proof. intros h f g m E. apply total_same. intros k L. rewrite (E k L). reflexivity. Qed.
+
+  Lemma partial_sum_ends : forall h f m l, (forall k, (m <= k)%nat -> f k == zero) -> (m <= l)%nat ->
+    partial_sum K h f l == partial_sum K h f m.
+  Proof. intros h f m l E L. apply total_cut; [exact L|]. intros k Lk. rewrite E by exact Lk. ring. Qed.
+
+  (** Where no terms stand between that of h^0 and that of h^r. *)
+  Lemma partial_sum_first : forall h f r l, (1 <= r)%nat ->
+    (forall k, (1 <= k < r)%nat -> f k == zero) ->
+    partial_sum K h f (S r + l)
+    == f O + h ^ r * f r + h ^ S r * partial_sum K h (fun k => f (S r + k)%nat) l.
+  Proof.
+    intros h f r l L Z. unfold partial_sum. rewrite total_split, <- total_scaled.
+    apply add_extends.
+    - change (total (S r) (fun k => h ^ k * f k)) with (total r (fun k => h ^ k * f k) + h ^ r * f r).
+      rewrite (total_one r 0) by (first [lia | intros k Lk N; rewrite Z by lia; ring]).
+      simpl. ring.
+    - apply total_same. intros k _. rewrite (power_add K). ring.
   Qed.
 End Totals.
 

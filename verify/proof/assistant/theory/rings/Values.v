@@ -1,7 +1,7 @@
 (** The value of a series that ends, at a number h. Values respect sums, products, determinants. *)
 
 From Coq Require Import Setoid Morphisms Ring Ring_theory QArith Lia.
-From AreaPreservation Require Import Rings Totals Step Determinants Series.
+From AreaPreservation Require Import Rings Totals Determinants Series.
 Local Open Scope nat_scope.
 
 Section Values.
@@ -14,22 +14,15 @@ Section Values.
   (** The series f ends before h^m. *)
   Definition ends (f : series K) (m : nat) : Prop := forall k, (m <= k)%nat -> f k == zero.
 
-  (** f_0 + f_1 h + .. + f_(m-1) h^(m-1). *)
-  Definition partial_sum (h : K) (f : nat -> K) (m : nat) : K := total m (fun k => power h k * f k).
+  Notation partial_sum := (partial_sum K).
 
   Definition has_value (h : K) (f : series K) (x : K) : Prop :=
     exists m, ends f m /\ x == partial_sum h f m.
 
-  Lemma value_further : forall h f m l, ends f m -> (m <= l)%nat ->
-    partial_sum h f l == partial_sum h f m.
-  Proof.
-    intros h f m l E L. apply total_cut; [exact L|]. intros k Lk. rewrite E by exact Lk. ring.
-  Qed.
-
   Lemma value_unique : forall h f x m, has_value h f x -> ends f m -> x == partial_sum h f m.
   Proof.
     intros h f x m [l [El ->]] Em.
-    rewrite <- (value_further h f m (m + l)), <- (value_further h f l (m + l)) by
+    rewrite <- (partial_sum_ends K h f m (m + l)), <- (partial_sum_ends K h f l (m + l)) by
       (try assumption; lia). reflexivity.
   Qed.
 
@@ -38,9 +31,9 @@ Section Values.
   Proof.
     intros h f g x y [m [Em E]] [l [El F]]. exists (m + l)%nat. split.
     - intros k L. simpl. rewrite Em, El by lia. ring.
-    - rewrite E, F. rewrite <- (value_further h f m (m + l)), <- (value_further h g l (m + l)) by
+    - rewrite E, F. rewrite <- (partial_sum_ends K h f m (m + l)), <- (partial_sum_ends K h g l (m + l)) by
         (try assumption; lia).
-      unfold partial_sum. rewrite <- total_add. apply total_same. intros k _. simpl. ring.
+      unfold Totals.partial_sum. rewrite <- total_add. apply total_same. intros k _. simpl. ring.
   Qed.
 
   Lemma value_of_product : forall h f g x y, has_value h f x -> has_value h g y ->
@@ -48,9 +41,9 @@ Section Values.
   Proof.
     intros h f g x y [m [Em E]] [l [El F]]. set (w := (m + l)%nat). exists (w + w)%nat. split.
     - intros k L. apply (product_ends K m l); try assumption. unfold w in L. lia.
-    - rewrite E, F. rewrite <- (value_further h f m w), <- (value_further h g l w) by
+    - rewrite E, F. rewrite <- (partial_sum_ends K h f m w), <- (partial_sum_ends K h g l w) by
         (try assumption; unfold w; lia).
-      unfold partial_sum. rewrite total_times_total, total_product.
+      unfold Totals.partial_sum. rewrite total_times_total, total_product.
       + apply total_same. intros i _. simpl mul. rewrite product_is, <- total_scaled.
         apply total_same. intros k L.
         assert (P : power h i == power h k * power h (i - k)%nat).
@@ -65,10 +58,10 @@ Section Values.
   Proof.
     intro h. apply determinants_related.
     - exists O. split; [intros k _|]; reflexivity.
-    - exists 1%nat. split; [intros [|k] L; [lia|reflexivity]|]. unfold partial_sum. simpl. ring.
+    - exists 1%nat. split; [intros [|k] L; [lia|reflexivity]|]. unfold Totals.partial_sum. simpl. ring.
     - intros f x [m [Em E]]. exists m. split.
       + intros k L. simpl. rewrite Em by exact L. ring.
-      + rewrite E. unfold partial_sum. rewrite <- total_opp. apply total_same.
+      + rewrite E. unfold Totals.partial_sum. rewrite <- total_opp. apply total_same.
         intros k _. simpl. ring.
     - intros f f' x x'. apply value_of_sum.
     - intros f f' x x'. apply value_of_product.

@@ -269,6 +269,14 @@ Proof.
   exact (derivative_along_coordinate N _ x _ i (derivation_has_slopes N U HU f x Hx) L).
 Qed.
 
+Lemma derivation_constant : forall N U (HU : is_open N U) i c,
+  @same (smooth_ring N U HU) (@by_coordinate (smooth_ring N U HU) i (smooth_constant c))
+    (@zero (smooth_ring N U HU)).
+Proof.
+  intros N U HU i c x _. unfold value; simpl; unfold derivative_family.
+  now destruct (Nat.ltb i N).
+Qed.
+
 Lemma derivation_coordinate : forall N U (HU : is_open N U) i j, (i < N)%nat -> (j < N)%nat ->
   @same (smooth_ring N U HU) (@by_coordinate (smooth_ring N U HU) i (smooth_coordinate j))
     (if Nat.eqb i j then @one (smooth_ring N U HU) else @zero (smooth_ring N U HU)).
