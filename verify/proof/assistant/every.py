@@ -19,8 +19,13 @@ _NEEDS = [
     "Identities",
     "EveryHamiltonian",
     "EveryClaims",
+    "EveryNumbers",
+    "Differential",
+    "Smooth",
+    "Systems",
+    "RealMaps",
+    "EverySmooth",
 ]
-_SMOOTH = ("Smooth", "Systems", "EveryNonzero")
 _WHICH = {  # by (separable, timed)
     (False, False): "H(p, q)",
     (True, False): "H = T(p) + V(q)",
@@ -41,9 +46,9 @@ def of_every(entries: Expansion) -> Export:
     spelled = names.deep
     potential = entries.potential
     shown = energy_that_shows(entries)
-    known = known_power(entries)
+    known, length = known_power(entries), max(map(len, entries.after))
     return Export(
-        needs=_NEEDS if shown is None else (*_NEEDS, *_SMOOTH),
+        needs=_NEEDS if shown is None else (*_NEEDS, "EveryNonzero"),
         template="every",
         values={
             "n": n,
@@ -62,6 +67,8 @@ def of_every(entries: Expansion) -> Export:
             ],
             "agreement": entries.convergence_order,
             "known": known,
+            "length": length,
+            "left": max(0, 2 * length - order - 2) if order else None,
             "order": order,
             "shown": shown
             and {
