@@ -28,6 +28,7 @@ _NEEDS = [
     "RealFormulas",
     "RealNames",
     "OneHamiltonian",
+    "RealMaps",
     "RealDefect",
     "RealClaims",
     "MapClaims",
@@ -36,7 +37,7 @@ _NEEDS = [
 _OWN = frozenset(("True", "I", "conj", "proj1", "proj2"))  # words that are written here
 _OF_ORDER = ("RationalValues", "Nonzero")
 _EXACT = ("RealExact", "ExactClaims")
-_TELESCOPING = ("Flow", "Smooth", "RealPotential")
+_TELESCOPING = ("RealPotential",)
 _PARTNERS = {"sin": "cos", "cos": "sin"}
 _KINDS = {"sin": "Sine", "cos": "Cosine", "exp": "Exponential", "inverse": "Inverse"}
 

@@ -77,16 +77,16 @@ Section EveryNumbers.
   Lemma is_told : forall k c, (k <= known x)%nat -> (c < 2 * n)%nat -> A k c == value (term x k c).
   Proof. intros k c _ _. symmetry. apply element_is. Qed.
 
-  (** What is beyond h^r in S, divided by h^(r+1): the l coefficients that are left, and what the
-      part u h^(known+1) of the map adds, of which nothing is told. *)
+  (** S of a map: L h^r, the l coefficients that are left, and what the part u h^(known+1) of the map
+      adds, of which nothing is told. *)
   Theorem form_at_number : forall r m l, order x = Some r -> (1 <= r <= known x)%nat ->
     of_length x m = true -> (m + m <= S (S r + l))%nat -> forall h u, constant K h ->
     forall a b, (a < b)%nat -> (b < 2 * n)%nat ->
     pairs K s (fun c => told h c + h ^ S (known x) * u c) (fun c => told h c + h ^ S (known x) * u c) a b
-    == canonical K s a b + h ^ r * value (leading_entry x a b) + h ^ S r *
-       (partial_sum K h (fun k => defect_coefficient K s A (S r + k) a b) l
-        + h ^ (known x - r) * (pairs K s (told h) u a b + pairs K s u (told h) a b
-                               + h ^ S (known x) * pairs K s u u a b)).
+    == canonical K s a b + h ^ r * value (leading_entry x a b)
+       + h ^ S r * partial_sum K h (fun k => defect_coefficient K s A (S r + k) a b) l
+       + h ^ S (known x) * (pairs K s (told h) u a b + pairs K s u (told h) a b
+                            + h ^ S (known x) * pairs K s u u a b).
   Proof.
     intros r m l E R short L h u C a b La Lb.
     rewrite pairs_with_remainder by (apply power_constant, C). rewrite (pairs_told m h a b short C).
@@ -96,11 +96,7 @@ Section EveryNumbers.
     rewrite partial_sum_first by
       (try lia; intros k Lk; apply (every_defect_before e x checked K s member A is_told r); assumption || lia).
     rewrite (every_defect_start e x checked K s member A is_told).
-    rewrite (every_defect_first e x checked K s member A is_told r) by assumption.
-    assert (P : h ^ S (known x) == h ^ S r * h ^ (known x - r)).
-    { rewrite <- (power_add K). replace (S r + (known x - r))%nat with (S (known x)) by lia.
-      reflexivity. }
-    rewrite P at 1. ring.
+    rewrite (every_defect_first e x checked K s member A is_told r) by assumption. reflexivity.
   Qed.
 
   (** Where no order is told no coefficient is left, of a map that is known as a whole. *)
@@ -138,10 +134,9 @@ Section EveryNumbers.
   Theorem determinant_at_number : forall r m l, order x = Some r -> (1 <= r <= known x)%nat ->
     of_length x m = true -> (m + m <= S (S r + l))%nat -> forall h u w, constant K h ->
     bracket K (P h + h ^ S (known x) * u) (Q h + h ^ S (known x) * w)
-    == one + h ^ r * value (leading_entry x 0 1) + h ^ S r *
-       (partial_sum K h (fun k => det_coefficient (S r + k)%nat) l
-        + h ^ (known x - r) * (bracket K (P h) w + bracket K u (Q h)
-                               + h ^ S (known x) * bracket K u w)).
+    == one + h ^ r * value (leading_entry x 0 1)
+       + h ^ S r * partial_sum K h (fun k => det_coefficient (S r + k)%nat) l
+       + h ^ S (known x) * (bracket K (P h) w + bracket K u (Q h) + h ^ S (known x) * bracket K u w).
   Proof.
     intros r m l E R short L h u w C. assert (N := one_degree e x checked K s member plane).
     assert (F := form_at_number r m l E R short L h (fun c => match c with O => u | _ => w end) C 0 1

@@ -113,10 +113,10 @@ Proof.
 Qed.
 
 (** Where V and T are so everywhere, it is enough to look at each shear by itself. *)
-Corollary shears_symplectic_everywhere : forall n h l,
+Lemma shears_of_hamiltonian_everywhere : forall n h l,
   List.Forall (fun s => forall x, shear_of_hamiltonian n s x) l ->
-  forall x, symplectic_at n (steps_of (map (shear_map n h) l)) x.
+  forall x, shears_of_hamiltonian n h l x.
 Proof.
-  intros n h l E x. apply shears_symplectic. revert x.
-  induction E as [ | s rest Here _ IH ]; intro x; simpl; [ exact I | split; [ apply Here | apply IH ] ].
+  intros n h l E. induction E as [ | s rest Here _ IH ]; intro x; simpl;
+    [ exact I | split; [ apply Here | apply IH ] ].
 Qed.
