@@ -1,13 +1,15 @@
 (** What the theory proves, in one place. Each theorem stands here as a whole: with what it speaks
-    of, for all eta and all n at once.
+    of, for all eta and all n at once. At the end stand the controls: that the theorems speak of
+    something, and that what they ask for is needed.
 
     K is any ring that holds the rational numbers, with derivations by the coordinates that commute
-    (Rings.v); the smooth functions on an open set are one (Smooth.v). A system s has n degrees of
+    (Rings.v); the smooth functions on an open set are one ([smooth_functions_are_a_ring]). A system s has n degrees of
     freedom, coordinates p, q and t, and a Hamiltonian H(p, q, t), an element of K (Flow.v).
     D = d/dt + X is the derivation along the flow. *)
 
 From Coq Require Import Reals QArith List.
-From AreaPreservation Require Import Sums Differential Symplectic Hamiltonians RungeKutta SymplecticMethods Product Rings Totals Flow Taylor Bracket LieScheme Step Plane Determinants Values Volume Determinant Smooth Systems Solutions Oscillator.
+From AreaPreservation Require Import Sums Orders Differential Symplectic Stages Shears Hamiltonians RungeKutta SymplecticMethods StageSchemes ImplicitSolutions Product Rings Totals Flow Taylor Bracket LieScheme Step Plane Determinants Values Volume Determinant Smooth Systems Solutions Oscillator.
+Import ListNotations.
 Local Open Scope nat_scope.
 
 (** ** The scheme lie_eta: z' = sum of h^k/k! D^k z up to k = eta
@@ -111,3 +113,89 @@ Theorem flow_has_taylor_series : forall n U (HU : is_open (2 * n + 1) U) H w r c
       value (flow_series _ (smooth_system n U HU H) k c) (fun j => w j 0) * h ^ k))
     <= C * Rabs h ^ (S m).
 Proof. exact taylor_remainder. Qed.
+
+(** ** Controls *)
+
+(** The smooth functions on an open set U are such a ring, in which to be the same is to have the same
+    values on U, and the derivations are the derivatives; it is not trivial where U has a point. *)
+Definition smooth_functions_are_a_ring : forall N (U : point -> Prop), is_open N U ->
+  differential_ring := smooth_ring.
+
+Theorem smooth_functions_are_as_they_should : forall N U (HU : is_open N U),
+  let K := smooth_functions_are_a_ring N U HU in
+  (forall f g : K, same f g <-> forall x, U x -> value f x = value g x) /\
+  (forall (f : K) x i, U x -> (i < N)%nat -> derivable_pt_lim (fun s => value f (moved x i s)) (x i)
+     (value (by_coordinate i f) x)) /\
+  ((exists x, U x) -> ~ same (@zero K) (@one K)).
+Proof.
+  intros N U HU K. split; [|split].
+  - intros f g. reflexivity.
+  - exact (derivation_is_slope N U HU).
+  - intros [x Ux]. exact (smooth_ring_not_trivial N U HU x Ux).
+Qed.
+
+(** Any smooth function of p, q and t is an H of such a system. *)
+Theorem smooth_functions_are_hamiltonians : forall n U (HU : is_open (2 * n + 1) U)
+    (H : smooth (2 * n + 1) U), exists s : system (smooth_functions_are_a_ring (2 * n + 1) U HU),
+  degrees s = n /\ hamiltonian s = H /\
+  forall c x, (c < 2 * n + 1)%nat -> value (coordinate s c) x = x c.
+Proof.
+  intros n U HU H. exists (smooth_system n U HU H). split; [reflexivity|split; [reflexivity|]].
+  intros c x. apply value_coordinate.
+Qed.
+
+(** What is a h^r + O(h^(r+1)), a not 0, is of no higher order: of det J - 1 = L h^r + O(h^(r+1)) where
+    L is not 0. *)
+Theorem orders_are_exact : forall r a C, a <> 0 -> exists h0 c, 0 < h0 /\ 0 < c /\
+  forall h x, Rabs h <= h0 -> Rabs (x - a * h ^ r) <= C * Rabs h ^ (S r) -> c * Rabs h ^ r <= Rabs x.
+Proof. exact order_is_exact. Qed.
+
+(** The leading coefficient of lie_eta on the oscillator: not 0 for odd eta, and 0 for even eta. *)
+Theorem leading_on_the_oscillator : forall eta x,
+  (Nat.Odd eta -> value (first_of_determinant _ oscillator eta) x <> 0) /\
+  (Nat.Even eta -> value (first_of_determinant _ oscillator eta) x = 0).
+Proof.
+  intros eta x. split; [apply oscillator_first_not_zero|apply oscillator_first_for_even].
+Qed.
+
+(** The solutions that [flow_has_taylor_series] speaks of exist: p = cos t, q = sin t is one. *)
+Theorem oscillator_has_solutions : forall r, solves 1 everywhere oscillator_energy
+  (fun j => match j with O => cos | S O => sin | _ => id end) r.
+Proof. exact oscillation_solves. Qed.
+
+(** The equations of implicit methods have solutions that are smooth, at every h: of stages... *)
+Theorem stages_have_solutions : forall h t x,
+  solves_scheme 1 h t (fun _ => harmonic) (fun _ => harmonic_slopes)
+    [midpoint] [midpoint_map h] x.
+Proof. exact midpoint_has_solutions. Qed.
+
+(** ... and of a Runge-Kutta method of two stages, with weights that fit. *)
+Theorem runge_kutta_has_solutions : forall h x, exists A b Z F, symplectic_weights 2 A b /\
+  near 2 x (solves_method 1 2 h A b (fun _ => harmonic_slopes) Z F) /\
+  (forall i c, (i < 2)%nat -> (c < 2)%nat -> exists g, has_slopes 2 (fun y => Z i y c) x g) /\
+  (forall i, (i < 2)%nat ->
+    twice_differentiable 2 harmonic harmonic_slopes (Z i x)).
+Proof.
+  intros h x. exists (gauss_entry (sqrt 3)), gauss_weight, (gauss_stage (sqrt 3) h), (gauss_map h).
+  split; [apply gauss_is_symplectic|].
+  apply gauss_has_solutions, sqrt_sqrt. apply IZR_le. discriminate.
+Qed.
+
+(** Where the weights do not fit the method is not symplectic: explicit Euler; a stage is so exactly
+    where k d (1 - s - u) = 0; a kick by what is no gradient is so for h = 0 alone. *)
+Theorem euler_is_not_symplectic : forall h x, h <> 0 -> ~ symplectic_at 1 (linear (euler h)) x.
+Proof. exact euler_not_symplectic. Qed.
+
+Theorem stages_are_symplectic_exactly : forall h k d s u x,
+  1 + s * u * (h * h * k * d) <> 0 -> h <> 0 ->
+  symplectic_at 1 (linear (oscillator_stage h k d s u)) x <-> k * d * (1 - s - u) = 0.
+Proof. exact condition_on_weights_exact. Qed.
+
+Theorem kick_by_no_gradient_is_not_symplectic : forall h x,
+  symplectic_at 2 (kick 2 h 1 (fun j z => match j with 2%nat => z 3%nat | _ => 0 end)) x -> h = 0.
+Proof. exact kick_without_gradient. Qed.
+
+(** The bound of a product is attained. *)
+Theorem product_bound_is_attained : forall N eps, 0 <= eps ->
+  Rabs (product N (fun _ => 1 + eps) - 1) = (1 + eps) ^ N - 1.
+Proof. exact bound_attained. Qed.

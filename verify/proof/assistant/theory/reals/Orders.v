@@ -210,53 +210,24 @@ Proof.
   intros k K N. rewrite Z by lia. ring.
 Qed.
 
-(** The order is no higher where a_r is not 0: near 0, F h is at least of the size of h^r. *)
-Theorem order_is_exact : forall m r F a, expands m F a -> (r <= m)%nat ->
-  (forall k, (k < r)%nat -> a k = 0) -> a r <> 0 ->
-  exists h0 c, 0 < h0 /\ 0 < c /\ forall h, Rabs h <= h0 -> c * Rabs h ^ r <= Rabs (F h).
+(** The order is exact where a is not 0: what is a h^r + O(h^(r+1)) is at least of the size of h^r. *)
+Theorem order_is_exact : forall r a C, a <> 0 -> exists h0 c, 0 < h0 /\ 0 < c /\
+  forall h x, Rabs h <= h0 -> Rabs (x - a * h ^ r) <= C * Rabs h ^ (S r) -> c * Rabs h ^ r <= Rabs x.
 Proof.
-  intros m r F a E L Z N. destruct (expands_first m r F a E L Z) as [C B].
-  pose proof (bound_nonnegative _ _ _ B) as C_nonnegative.
-  pose proof (Rabs_pos_lt (a r) N) as A.
-  assert (D : 0 < Rabs (a r) / 2 / (C + 1)) by (apply Rdiv_lt_0_compat; lra).
-  exists (Rmin 1 (Rabs (a r) / 2 / (C + 1))), (Rabs (a r) / 2).
-  split; [ apply Rmin_pos; lra | ]. split; [ lra | ]. intros h near.
-  pose proof (Rmin_l 1 (Rabs (a r) / 2 / (C + 1))).
-  pose proof (Rmin_r 1 (Rabs (a r) / 2 / (C + 1))).
-  specialize (B h ltac:(lra)). simpl in B.
-  pose proof (power_nonnegative h r) as P. pose proof (Rabs_pos h) as P1.
-  assert (small : C * Rabs h <= Rabs (a r) / 2).
-  { apply Rle_trans with ((C + 1) * Rabs h); [ lra | ].
-    replace (Rabs (a r) / 2) with ((C + 1) * (Rabs (a r) / 2 / (C + 1))) by (field; lra).
-    apply Rmult_le_compat_l; lra. }
-  apply (Rmult_le_compat_r _ _ _ P) in small.
-  assert (size : Rabs (a r * h ^ r) = Rabs (a r) * Rabs h ^ r).
-  { rewrite RPow_abs. apply Rabs_mult. }
-  pose proof (Rabs_triang (F h) (- (F h - a r * h ^ r))) as T. rewrite Rabs_Ropp in T.
-  replace (F h + - (F h - a r * h ^ r)) with (a r * h ^ r) in T by ring. lra.
-Qed.
-
-(** So that it is not O(h^(r+1)). *)
-Corollary not_of_higher_order : forall m r F a, expands m F a -> (r <= m)%nat ->
-  (forall k, (k < r)%nat -> a k = 0) -> a r <> 0 ->
-  ~ exists C h1, 0 < h1 /\ forall h, Rabs h <= h1 -> Rabs (F h) <= C * Rabs h ^ (S r).
-Proof.
-  intros m r F a E L Z N (C & h1 & Pos & B).
-  destruct (order_is_exact m r F a E L Z N) as (h0 & c & h0_positive & c_positive & X).
-  set (C' := Rmax C 1).
-  assert (C1 : C <= C' /\ 1 <= C') by (split; [ apply Rmax_l | apply Rmax_r ]).
-  assert (D : 0 < c / 2 / C') by (apply Rdiv_lt_0_compat; lra).
-  set (h := Rmin (c / 2 / C') (Rmin h0 h1)).
-  assert (h_positive : 0 < h) by (repeat apply Rmin_pos; assumption).
-  assert (h_small : h <= c / 2 / C' /\ h <= h0 /\ h <= h1).
-  { pose proof (Rmin_l (c / 2 / C') (Rmin h0 h1)). pose proof (Rmin_r (c / 2 / C') (Rmin h0 h1)).
-    pose proof (Rmin_l h0 h1). pose proof (Rmin_r h0 h1). unfold h. lra. }
-  clearbody h. specialize (X h). specialize (B h). rewrite (Rabs_right h) in * by lra.
-  specialize (X ltac:(lra)). specialize (B ltac:(lra)). simpl in B.
-  pose proof (pow_lt h r h_positive) as P.
-  assert (below : C * h <= c / 2).
-  { apply Rle_trans with (C' * h); [ apply Rmult_le_compat_r; lra | ].
-    replace (c / 2) with (C' * (c / 2 / C')) by (field; lra). apply Rmult_le_compat_l; lra. }
-  apply (Rmult_le_compat_r (h ^ r)) in below; [ | lra ].
-  pose proof (Rmult_lt_0_compat c (h ^ r) c_positive P). lra.
+  intros r a C N. pose proof (Rabs_pos_lt a N) as A. pose proof (Rle_abs C) as C_less.
+  pose proof (Rabs_pos C) as C_nonnegative. set (D := Rabs C + 1).
+  assert (D_positive : 0 < D) by (unfold D; lra).
+  exists (Rabs a / 2 / D), (Rabs a / 2). split; [ | split; [ lra | ] ].
+  - apply Rdiv_lt_0_compat; lra.
+  - intros h x L B. pose proof (power_nonnegative h r) as P. pose proof (Rabs_pos h) as P1.
+    assert (small : D * Rabs h <= Rabs a / 2).
+    { replace (Rabs a / 2) with (D * (Rabs a / 2 / D)) by (field; lra).
+      apply Rmult_le_compat_l; lra. }
+    apply (Rmult_le_compat_r _ _ _ P) in small.
+    assert (size : Rabs (a * h ^ r) = Rabs a * Rabs h ^ r) by (rewrite Rabs_mult, RPow_abs; reflexivity).
+    pose proof (Rabs_triang x (- (x - a * h ^ r))) as T. rewrite Rabs_Ropp in T.
+    replace (x + - (x - a * h ^ r)) with (a * h ^ r) in T by ring. simpl in B.
+    assert (more : C * (Rabs h * Rabs h ^ r) <= D * Rabs h * Rabs h ^ r).
+    { rewrite Rmult_assoc. apply Rmult_le_compat_r; [ apply Rmult_le_pos; lra | unfold D; lra ]. }
+    lra.
 Qed.
