@@ -145,34 +145,42 @@ Section EverySmooth.
   Context (member : @belongs K s e).
   Notation elements := (elements_of e x K s).
   Notation leading a b := (@value_of K (names_for_every K s e) (leading_entry x a b)).
+  (** As they stand in the exported file: there they are seen to be the same in any ring, where
+      nothing of smooth functions is unfolded. *)
+  Context (next : nat -> list K) (next_is : forall c, elements c = next c).
 
   (** S = L h^r + O(h^(r+1)), whatever is left out of the map. *)
   Theorem smooth_form_has_order : forall r, order x = Some r -> (1 <= r <= known x)%nat ->
     of_length x (S (known x)) = true -> forall z, U z ->
-    forall rest, slopes_bounded n rest z -> forall a b, (a < b)%nat -> (b < 2 * n)%nat ->
-    exists C, forall h, Rabs h <= 1 -> exists J,
-      has_jacobian n (fun c y => in_powers h (values_at y (elements c)) + h ^ S (known x) * rest c h y) z J /\
-      Rabs (defect_entry n J a b - value (leading a b) z * h ^ r) <= C * Rabs h ^ S r.
+    forall rest, slopes_bounded n rest z -> forall a b L, leading a b = L ->
+    (a < b)%nat -> (b < 2 * n)%nat -> exists C, forall h, Rabs h <= 1 -> exists J,
+      has_jacobian n (fun c y => in_powers h (values_at y (next c)) + h ^ S (known x) * rest c h y) z J /\
+      Rabs (defect_entry n J a b - value L z * h ^ r) <= C * Rabs h ^ S r.
   Proof.
-    intros r E Lr short z I rest small a b L Lb.
+    intros r E Lr short z I rest small a b L <- Lab Lb.
     set (A := fun k c => coefficients (elements c) k).
-    destruct (form_has_order e x checked K s member r E Lr A (fun k c _ _ => reflexivity _) a b L
+    destruct (form_has_order e x checked K s member r E Lr A (fun k c _ _ => reflexivity _) a b Lab
       ltac:(rewrite (every_degrees e x checked); exact Lb)) as [start [before first]].
-    rewrite <- (first z I).
-    exact (smooth_map_has_order n U U_open H elements (known x) r z I
-      (length_of_elements e x K s _ short) (proj2 Lr) a b L Lb start before rest small (proj1 Lr)).
+    destruct (smooth_map_has_order n U U_open H elements (known x) r z I
+      (length_of_elements e x K s _ short) (proj2 Lr) a b Lab Lb start before rest small (proj1 Lr))
+      as [C bound].
+    exists C. intros h Lh. destruct (bound h Lh) as [J [D B]]. exists J. split.
+    - intros c a' Lc La. rewrite <- (next_is c). exact (D c a' Lc La).
+    - rewrite <- (first z I). exact B.
   Qed.
 
   (** In the plane: det J = 1 + L h^r + O(h^(r+1)). *)
   Theorem smooth_determinant_has_order : n = 1%nat -> forall r, order x = Some r ->
-    (1 <= r <= known x)%nat -> of_length x (S (known x)) = true -> forall z, U z ->
-    forall rest, slopes_bounded n rest z -> exists C, forall h, Rabs h <= 1 -> exists J,
-      has_jacobian n (fun c y => in_powers h (values_at y (elements c)) + h ^ S (known x) * rest c h y) z J /\
-      Rabs (J 0%nat 0%nat * J 1%nat 1%nat - J 0%nat 1%nat * J 1%nat 0%nat - 1
-            - value (leading 0%nat 1%nat) z * h ^ r) <= C * Rabs h ^ S r.
+    (1 <= r <= known x)%nat -> of_length x (S (known x)) = true -> forall L, leading 0%nat 1%nat = L ->
+    forall z, U z -> forall rest, slopes_bounded n rest z ->
+    exists C, forall h, Rabs h <= 1 -> exists J,
+      has_jacobian n (fun c y => in_powers h (values_at y (next c)) + h ^ S (known x) * rest c h y) z J /\
+      Rabs (J 0%nat 0%nat * J 1%nat 1%nat - J 0%nat 1%nat * J 1%nat 0%nat - 1 - value L z * h ^ r)
+        <= C * Rabs h ^ S r.
   Proof.
-    intros plane r E Lr short z I rest small.
-    destruct (smooth_form_has_order r E Lr short z I rest small 0 1 ltac:(lia) ltac:(lia)) as [C bound].
+    intros plane r E Lr short L L_is z I rest small.
+    destruct (smooth_form_has_order r E Lr short z I rest small 0 1 L L_is ltac:(lia) ltac:(lia))
+      as [C bound].
     exists C. intros h Lh. destruct (bound h Lh) as [J [D B]]. exists J. split; [exact D|].
     rewrite <- (entry_in_plane n J plane). exact B.
   Qed.
@@ -180,17 +188,20 @@ Section EverySmooth.
   (** Where no order is told: S = 0 at each h. *)
   Theorem smooth_form_is_kept : forall m, order x = None -> of_length x m = true ->
     (m + m <= S (S (known x)))%nat -> forall z, U z -> forall h, exists J,
-      has_jacobian n (fun c y => in_powers h (values_at y (elements c))) z J /\
+      has_jacobian n (fun c y => in_powers h (values_at y (next c))) z J /\
       forall a b, (a < b)%nat -> (b < 2 * n)%nat -> defect_entry n J a b = 0.
   Proof.
-    intros m E short L. apply (smooth_map_keeps_form n U U_open H elements).
-    intros h C a b La Lb. apply (form_is_kept e x checked K s member m E short L h C a b La).
-    rewrite (every_degrees e x checked). exact Lb.
+    intros m E short Lm z I h.
+    destruct (smooth_map_keeps_form n U U_open H elements) with (z := z) (h := h) as [J [D B]];
+      [|exact I|].
+    - intros g C a b L Lb. apply (form_is_kept e x checked K s member m E short Lm g C a b L).
+      rewrite (every_degrees e x checked). exact Lb.
+    - exists J. split; [|exact B]. intros c a Lc La. rewrite <- (next_is c). exact (D c a Lc La).
   Qed.
 
   Theorem smooth_determinant_is_one : n = 1%nat -> forall m, order x = None -> of_length x m = true ->
     (m + m <= S (S (known x)))%nat -> forall z, U z -> forall h, exists J,
-      has_jacobian n (fun c y => in_powers h (values_at y (elements c))) z J /\
+      has_jacobian n (fun c y => in_powers h (values_at y (next c))) z J /\
       J 0%nat 0%nat * J 1%nat 1%nat - J 0%nat 1%nat * J 1%nat 0%nat = 1.
   Proof.
     intros plane m E short L z I h. destruct (smooth_form_is_kept m E short L z I h) as [J [D B]].
