@@ -68,6 +68,13 @@ ERRORS = [
             ("(0%nat, 3%nat, p1)", "(0%nat, 3%nat, - p1)")),
     planted("an entry of G as it is read", "henon_heiles", TELESCOPES,
             ("(0%nat, 3%nat, q1)", "(0%nat, 3%nat, - q1)")),
+    planted("another flow", "henon_heiles", TELESCOPES,
+            ("- H1 (2 + i)%nat * G1 a b i", "+ H1 (2 + i)%nat * G1 a b i")),
+    planted("another form", "henon_heiles", TELESCOPES, ("two_form 0 Ropp", "two_form 0 id")),
+    planted("a clock that stands for another coordinate", "henon_heiles", TELESCOPES,
+            ("G1 a b 4%nat", "G1 a b 3%nat")),
+    planted("slopes of H along another coordinate", "henon_heiles", TELESCOPES,
+            ("(z c) (H2 i c)", "(z c) (H2 c i)")),
     planted("degrees fewer", "henon_heiles", CHECKED, ("of_degrees := 2", "of_degrees := 1")),
 ]  # fmt: skip
 

@@ -11,6 +11,7 @@ from tests.rocq.planted import Planted, check_refused, planted
 
 CHECKED, FIT, ROOT, HOLD = "checked", "weights_fit", "there_is_w", "relations_hold"
 STEP, AREA = "step_is_symplectic", "area_is_preserved"
+EVERYWHERE = "step_is_symplectic_everywhere"
 POINT, INTERVAL = ("1 <= w <= 2", "2 <= w <= 3"), ("]%Z (1 # 1) (2 # 1)", "]%Z (2 # 1) (3 # 1)")
 B_READ = ("nth i [1 / 2; 1 / 2]", "nth i [1 / 3; 1 / 2]")
 B_TOLD = (
@@ -54,16 +55,22 @@ ERRORS = [
             ("(forall t, sum_of_parts 1 (H t)) ->", "True ->", 2)),
     planted("a kick of its own", "implicit_euler", CHECKED,
             ("kick_by := 1", "kick_by := 2"), ("[[(Number (1 # 1))", "[[(Number (2 # 1))")),
-    planted("a kick by a function of p", "yoshida4", STEP,
+    planted("a kick by a function of p", "yoshida4", EVERYWHERE,
             ("[Kick (1 / 12 * w ^ 2 + 1 / 6 * w + 1 / 3) V V1;",
              "[Kick (1 / 12 * w ^ 2 + 1 / 6 * w + 1 / 3) T T1;")),
-    planted("slopes of another function", "yoshida4", STEP,
+    planted("slopes of another function", "yoshida4", EVERYWHERE,
             ("Drift (- (1 / 3 * w ^ 2) - 2 / 3 * w - 1 / 3) T T1",
              "Drift (- (1 / 3 * w ^ 2) - 2 / 3 * w - 1 / 3) T V1")),
-    planted("a T that depends on q", "yoshida4", STEP, ("only_momenta 1", "only_positions 1")),
+    planted("a T that depends on q", "yoshida4", EVERYWHERE,
+            ("only_momenta 1", "only_positions 1")),
+    planted("nothing asked of V and T", "yoshida4", STEP,
+            ("shears_of_hamiltonian 1 h (scheme w V T V1 T1) x ->", "True ->", 2)),
+    planted("another point than the step's", "yoshida4", STEP,
+            ("(step w V T V1 T1 h) x. Proof. intros w E_w V T V1 T1 h x.",
+             "(step w V T V1 T1 h) (fun _ => 0). Proof. intros w E_w V T V1 T1 h x.")),
     planted("another determinant", "yoshida4", AREA,
             ("P_p * Q_q - P_q * Q_p = 1", "P_p * Q_q + P_q * Q_p = 1")),
-    planted("slopes of another time", "yoshida4_in_time", STEP,
+    planted("slopes of another time", "yoshida4_in_time", EVERYWHERE,
             (f"[{KICK_AT_T}", f"[{KICK_AT_T[:-2]}0)")),
 ]  # fmt: skip
 

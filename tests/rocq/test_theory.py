@@ -18,7 +18,7 @@ _THEOREM = re.compile(r"^ *(?:Theorem|Corollary|Lemma) (\w+)", re.MULTILINE)
 _LIBRARIES = re.compile(r"^From Coq Require Import ([^.]*)\.", re.MULTILINE)
 _WITH_REALS = {"Reals", "Qreals", "Lra", "Rtrigo_reg"}
 # Files that stand on nothing but rings, in which the theorems for every H are.
-ALGEBRAIC = {"LieScheme", "Step", "Plane", "Determinant", "EveryClaims"}
+ALGEBRAIC = {"LieScheme", "Step", "Plane", "Determinant", "EveryClaims", "EveryNumbers"}
 PLANTED = {
     "by_axiom": "Axiom by_axiom : 1 = 2.",
     "by_parameter": "Parameters by_parameter : 1 = 2.",
