@@ -3,8 +3,9 @@
     something, and that what they ask for is needed.
 
     K is any ring that holds the rational numbers, with derivations by the coordinates that commute
-    (Rings.v); the smooth functions on an open set are one ([smooth_functions_are_a_ring]). A system s has n degrees of
-    freedom, coordinates p, q and t, and a Hamiltonian H(p, q, t), an element of K (Flow.v).
+    (Rings.v); the smooth functions on an open set are one ([smooth_functions_are_a_ring]). A system s
+    has n degrees of freedom, coordinates p, q and t, and a Hamiltonian H(p, q, t), an element of K
+    (Flow.v).
     D = d/dt + X is the derivation along the flow. *)
 
 From Coq Require Import Reals QArith List.

@@ -94,7 +94,8 @@ Section EveryNumbers.
     rewrite <- (partial_sum_ends K h _ (m + m) (m + m + (S r + l))),
       (partial_sum_ends K h _ (S r + l)) by (try lia; intros k Lk; apply ends; lia).
     rewrite partial_sum_first by
-      (try lia; intros k Lk; apply (every_defect_before e x checked K s member A is_told r); assumption || lia).
+      (try lia; intros k Lk; apply (every_defect_before e x checked K s member A is_told r);
+       assumption || lia).
     rewrite (every_defect_start e x checked K s member A is_told).
     rewrite (every_defect_first e x checked K s member A is_told r) by assumption. reflexivity.
   Qed.
@@ -129,7 +130,8 @@ Section EveryNumbers.
   Context (plane : degrees s = 1%nat).
   Notation P h := (polynomial h (elements 0)).
   Notation Q h := (polynomial h (elements 1)).
-  Notation det_coefficient := (determinant_coefficient (coefficients (elements 0)) (coefficients (elements 1))).
+  Notation det_coefficient :=
+    (determinant_coefficient (coefficients (elements 0)) (coefficients (elements 1))).
 
   Theorem determinant_at_number : forall r m l, order x = Some r -> (1 <= r <= known x)%nat ->
     of_length x m = true -> (m + m <= S (S r + l))%nat -> forall h u w, constant K h ->
