@@ -16,10 +16,6 @@ Fixpoint polynomial {K : rational_ring} (h : K) (l : list K) : K :=
 (** The coefficients of a list, and 0 beyond it. *)
 Definition coefficients {K : rational_ring} (l : list K) (k : nat) : K := nth k l zero.
 
-(** Whether no coordinate has more coefficients than m. *)
-Definition of_length (x : certificate) (m : nat) : bool :=
-  forallb (fun row => length row <=? m) (series x).
-
 Section EveryNumbers.
   Context (e : family_of_energies) (x : certificate) (checked : sound_for_every e x).
   Context (K : differential_ring) (s : system K) (member : belongs s e).

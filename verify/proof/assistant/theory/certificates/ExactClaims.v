@@ -12,7 +12,7 @@ Section ExactClaims.
   Context (given : list R) (enough : length given = parameters v).
   Notation n := (of_degrees x).
 
-  Theorem form_is_kept_exactly : forall d, short_series x d = true -> not_longer x = true ->
+  Theorem form_is_kept_exactly : forall d, short_series x d = true -> of_length x (S (known x)) = true ->
     forall z, inside v given z -> forall h, exists J,
       has_jacobian n (fun c y => in_powers h (coefficients_at v x given y c)) z J /\
       forall a b, (a < b)%nat -> (b < 2 * n)%nat -> defect_entry n J a b = 0.
@@ -28,7 +28,7 @@ Section ExactClaims.
   Qed.
 
   (** In the plane: det J = 1. *)
-  Theorem area_is_kept_exactly : forall d, short_series x d = true -> not_longer x = true ->
+  Theorem area_is_kept_exactly : forall d, short_series x d = true -> of_length x (S (known x)) = true ->
     n = 1%nat -> forall (P Q : R -> R -> R -> R) p q t,
     (forall h y, y 2%nat = t -> P h (y 0%nat) (y 1%nat) = in_powers h (coefficients_at v x given y 0)) ->
     (forall h y, y 2%nat = t -> Q h (y 0%nat) (y 1%nat) = in_powers h (coefficients_at v x given y 1)) ->

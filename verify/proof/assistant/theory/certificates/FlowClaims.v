@@ -27,7 +27,7 @@ Section FlowClaims.
   Qed.
 
   (** The map is as near to each solution as the order says. *)
-  Theorem near_solutions : (agreement x <= known x)%nat -> not_longer x = true ->
+  Theorem near_solutions : (agreement x <= known x)%nat -> of_length x (S (known x)) = true ->
     forall w r, 0 < r -> solves_equations v x given w r -> forall c, (c < 2 * n)%nat ->
     exists C h0, 0 <= C /\ 0 < h0 /\ forall h, Rabs h <= h0 ->
       Rabs (w c h - in_powers h (coefficients_at v x given (fun j => w j 0) c))

@@ -25,6 +25,10 @@ Record certificate := {
 (** The coefficient of h^k in the new value of the coordinate c. *)
 Definition term (x : certificate) (k c : nat) : formula := nth k (nth c (series x) []) (Number 0).
 
+(** Whether no coordinate has more coefficients than m. *)
+Definition of_length (x : certificate) (m : nat) : bool :=
+  forallb (fun row => length row <=? m) (series x).
+
 Definition coordinate_name (c : nat) : formula := Name (Pos.of_succ_nat c).
 
 Definition slope (x : certificate) (a : nat) : formula -> formula := derivative (slope_of_name x a).

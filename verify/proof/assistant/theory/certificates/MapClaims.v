@@ -17,9 +17,7 @@ Section MapClaims.
   Definition coefficients_at (z : point) (c : nat) : list R :=
     nth c (map (map (fun f => value_at z f)) (series x)) [].
 
-  Definition not_longer : bool := forallb (fun l => length l <=? S (known x))%nat (series x).
-
-  Lemma series_is : not_longer = true -> forall z c h,
+  Lemma series_is : of_length x (S (known x)) = true -> forall z c h,
     in_powers h (coefficients_at z c) = polynomial_map v given x c h z.
   Proof.
     intros E z c h.
@@ -29,7 +27,7 @@ Section MapClaims.
     - apply sum_of_equals. intros k _. unfold term.
       change 0 with (@value_of real_numbers (names_at v given z) (Number 0)).
       rewrite (map_nth (fun f => value_at z f)). reflexivity.
-    - rewrite map_length. unfold not_longer in E. rewrite forallb_forall in E.
+    - rewrite map_length. unfold of_length in E. rewrite forallb_forall in E.
       destruct (Nat.lt_ge_cases c (length (series x))) as [L|L].
       + apply Nat.leb_le, E, nth_In, L.
       + rewrite nth_overflow by exact L. simpl. lia.
@@ -37,7 +35,7 @@ Section MapClaims.
 
   (** The order of the defect, for every remainder. *)
   Theorem order_of_defect : forall r, order x = Some r -> (1 <= r <= known x)%nat ->
-    not_longer = true -> forall z, inside v given z -> forall rest, slopes_bounded n rest z ->
+    of_length x (S (known x)) = true -> forall z, inside v given z -> forall rest, slopes_bounded n rest z ->
     forall a b, (a < b)%nat -> (b < 2 * n)%nat ->
     exists C, forall h, Rabs h <= 1 -> exists J,
       has_jacobian n (fun c y => in_powers h (coefficients_at y c) + h ^ S (known x) * rest c h y) z J /\
@@ -62,7 +60,7 @@ Section MapClaims.
 
   (** In the plane: of det J - 1, for a map that is written with functions of p and q. *)
   Theorem order_of_determinant : forall r, order x = Some r -> (1 <= r <= known x)%nat ->
-    not_longer = true -> n = 1%nat -> forall (P Q : R -> R -> R -> R) p q t,
+    of_length x (S (known x)) = true -> n = 1%nat -> forall (P Q : R -> R -> R -> R) p q t,
     (forall h y, y 2%nat = t -> P h (y 0%nat) (y 1%nat) = in_powers h (coefficients_at y 0)) ->
     (forall h y, y 2%nat = t -> Q h (y 0%nat) (y 1%nat) = in_powers h (coefficients_at y 1)) ->
     inside v given (at_point [p; q; t]) -> forall u w,

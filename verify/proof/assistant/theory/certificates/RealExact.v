@@ -9,7 +9,7 @@ Local Open Scope R_scope.
 (** Whether the map ends at h^d, and no coefficient of its defect is said to be other than 0: the
     defect ends at h^(2d), so that it has to be known up to there. *)
 Definition short_series (x : certificate) (d : nat) : bool :=
-  forallb (fun row => length row <=? S d)%nat (series x) && (2 * d <=? known x)%nat
+  of_length x (S d) && (2 * d <=? known x)%nat
   && match order x with None => true | Some _ => false end.
 
 Lemma short_series_means : forall x d, short_series x d = true ->
@@ -19,7 +19,8 @@ Proof.
   split; [|split; [apply Nat.leb_le, L|destruct (order x); [discriminate|reflexivity]]].
   intros k c Lk. unfold term. apply nth_overflow.
   destruct (Nat.lt_ge_cases c (length (series x))) as [M|M].
-  - rewrite forallb_forall in E. specialize (E _ (nth_In _ [] M)). apply Nat.leb_le in E. lia.
+  - unfold of_length in E. rewrite forallb_forall in E. specialize (E _ (nth_In _ [] M)).
+    apply Nat.leb_le in E. lia.
   - rewrite (nth_overflow (series x)) by exact M. simpl. lia.
 Qed.
 
