@@ -8,6 +8,7 @@ bits that it has by itself.
 
 import ctypes
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -68,7 +69,19 @@ def one_point(source: str, names: Mapping[str, Any]) -> Callable[..., tuple[Any,
         linked()(layout.packed(arguments), found)
         return layout.unpacked(found.raw)  # type: ignore[return-value]
 
+    def prepared(*arguments: Any) -> Callable[[], None]:
+        return partial(linked(), layout.packed(arguments), ctypes.create_string_buffer(size))
+
+    kernel.prepared = prepared  # type: ignore[attr-defined]
     return kernel
+
+
+def prepared_call(kernel: Callable[..., Any], *arguments: Any) -> Callable[[], object]:
+    """The kernel on these arguments, as a call to be timed, which packs none of them."""
+    made: Callable[..., Callable[[], object]] = getattr(
+        kernel, "prepared", partial(partial, kernel)
+    )
+    return made(*arguments)
 
 
 def _annotated(source: str) -> str:

@@ -11,13 +11,14 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property, partial
+from functools import cached_property
 from math import isqrt
 from typing import Any
 
 from verify.algebra.enclosure import enclose
 from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.arb import in_reach, middle_and_radius
+from verify.arithmetic.compiled.doubles import prepared_call
 from verify.arithmetic.exact import decimal, text
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import float64
@@ -152,7 +153,7 @@ class Ladder:
         """The loop over all steps, or over none, which is what a call takes by itself."""
         loop = self._loop(h)
         count = 0 if blank else loop.run.steps
-        return partial(self.kernel.function, count, *loop.fixed, *loop.state)
+        return prepared_call(self.kernel.function, count, *loop.fixed, *loop.state)
 
     def point(self, h: Fraction) -> WorkPoint:
         """The run with this step size, not yet timed."""
