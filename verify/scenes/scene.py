@@ -91,8 +91,7 @@ from verify.scenes.values import (
 from verify.schemes.degrees import check_takes
 
 _MAX_DEPTH = 12
-
-
+_OF_THE_PLANE = ("criteria", "stroboscopic", "largest_step", "stability_map")
 _IDENTITY = ("name", "title", "system", "hamiltonian", "parameters", "t0", "schemes")
 
 
@@ -189,8 +188,7 @@ class Scene(Frozen):
 
     def _check_no_plane(self, exact: Hamiltonian) -> None:
         """InputError where something of the plane is asked for."""
-        own = {name for name in Scene.model_fields if name not in _IDENTITY and getattr(self, name)}
-        asked = own - {"name", "every_hamiltonian", "grid", "series", "separation", "reference", "flow", "poincare", "work_precision", "stability"}
+        asked = {name for name in _OF_THE_PLANE if getattr(self, name)}
         asked |= {"grid.growth"} if self.grid and self.grid.growth else set()
         if self.separation or (self.grid and self.grid.separate):
             check_observables(exact, ("symplectic_defect",))  # W is what is separated

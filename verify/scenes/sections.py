@@ -33,7 +33,6 @@ from verify.scenes.values import (
     AUTO,
     ArithmeticName,
     Digits,
-    InitialValue,
     SchemeName,
     Start,
     StepSize,
