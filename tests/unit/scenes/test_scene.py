@@ -324,6 +324,7 @@ schemes = ["lie2"]
 steps = 9
 step_sizes = [0.1]
 initial_values = [{ q = [0.1, 0], p = [0, 0.1] }]
+separate = true
 
 [[flow]]
 shape = "circle"
@@ -337,6 +338,7 @@ step_size = 0.1
 steps = 90
 initial_values = [{ q = [0.1, 0], p = [0, 0.1] }]
 """
+SEVERAL_IN_TIME = SEVERAL.replace("q2**3/3", "q2**3/3 - q1*cos(t)").replace("several", "timed")
 
 
 @pytest.fixture(scope="module")
@@ -346,12 +348,13 @@ def full_report(tmp_path_factory: pytest.TempPathFactory) -> Report:
     (folder / "claims.toml").write_text(CLAIMS)
     file = load_claims(folder / "claims.toml")
     store, figures = execute.Store(None), file.figures
+    others = [load(folder, each) for each in (DRIVEN, SEVERAL, SEVERAL_IN_TIME)]
     made = make_report(
-        "All", [scene, load(folder, DRIVEN), load(folder, SEVERAL)], file.claims, store,
+        "All", [scene, *others], file.claims, store,
         figures=figures, command="test", where=THIS_PROCESS,
     )  # fmt: skip
-    first, *others = made.scenes
-    scenes = (_with_symbols(_with_ratio(first)), *others)
+    first, *more = made.scenes
+    scenes = (_with_symbols(_with_ratio(first)), *more)
     return made.model_copy(update={"gallery": gallery(shown()), "scenes": scenes})
 
 
