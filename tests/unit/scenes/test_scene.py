@@ -15,7 +15,7 @@ from verify.execution import execute
 from verify.execution.executors import THIS_PROCESS
 from verify.scenes.frozen import Frozen, OfScheme, WithProse
 from verify.scenes.results import bounded_value as value
-from verify.scenes.results import claim, growth, proof, separation
+from verify.scenes.results import claim, growth, proof, separation, separation_in_degrees
 from verify.scenes.results import poincare as poincare_results
 from verify.scenes.results import regions as flow_results
 from verify.scenes.results import report as scene_results
@@ -192,6 +192,7 @@ RESULTS = (
     poincare_results,
     proof,
     separation,
+    separation_in_degrees,
     value,
     run_results,
     scene_results,
