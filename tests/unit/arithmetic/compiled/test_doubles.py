@@ -29,6 +29,8 @@ def test_a_long_kernel_has_the_bits_of_numba(scheme: str) -> None:
     ours = doubles.one_point(kernel.source, kernel.names)
     by_numba = float64._by_numba(kernel.source, "kernel", kernel.names)
     assert ours(100, *given) == tuple(by_numba(100, *given))
+    assert doubles.prepared_call(ours, 100, *given)() is None
+    assert doubles.prepared_call(by_numba, 1, *given)()[0] == 1  # type: ignore[index]
     assert ours(0, *given) == (0, *given[-12:])
 
 
@@ -47,3 +49,9 @@ def test_a_function_that_is_not_in_the_language_is_left_to_numba() -> None:
     source = f"def kernel(steps, x):\n    for k in range(steps):\n{lines}    return steps, x\n"
     with pytest.raises(NotImplementedError):
         doubles.one_point(source, {})
+
+
+@pytest.mark.parametrize("scheme", ["stormer-verlet", "lie2", "rk4", "lie4"])
+def test_a_step_of_a_chain_has_as_many_operations_a_mass_however_long_it_is(scheme: str) -> None:
+    small, middle, large = (len(chain(scheme, n)[0].program.ops) for n in (4, 6, 8))
+    assert large - middle == middle - small > 0
