@@ -45,6 +45,12 @@ if TYPE_CHECKING:
     from verify.scenes.results.run import RunResult as RunResult
     from verify.scenes.results.separation import SeparationGrid as SeparationGrid
     from verify.scenes.results.separation import SeparationResult as SeparationResult
+    from verify.scenes.results.separation_in_degrees import (
+        SeparationGridInDegrees as SeparationGridInDegrees,
+    )
+    from verify.scenes.results.separation_in_degrees import (
+        SeparationInDegrees as SeparationInDegrees,
+    )
     from verify.scenes.results.sweep import Sweep as Sweep
     from verify.scenes.scene import Scene as Scene
     from verify.scenes.scene import load_scene as load_scene

@@ -71,7 +71,7 @@ FORMULAS = {
     "v**2/2 + x**2/2": "has no p and no q; are v, x meant? write p and q",
     "p1**2/2 + p3**2/2 + q1*q3": "has p1, p3, q1, q3, and neither p2 nor q2",
     "p**2/2 + q1*q": "has q1 beside p and q; allowed: p and q alone",
-    "p1**2/2 + q33*q1": "has 33 degrees of freedom; allowed: up to 32",
+    "p1**2/2 + q65*q1": "has 65 degrees of freedom; allowed: up to 64",
     "p**2/2 + pq": "has no q, and pq would be a parameter; write p*q",
     "pendulum": "is no formula but a system; write",
 }

@@ -37,8 +37,11 @@ def speaks_for_itself(method: ast.FunctionDef) -> bool:
 
 
 def public(body: Collection[ast.stmt]) -> Iterator[Definition]:
+    """Those without an underscore, but for a function's further signatures."""
     for node in body:
-        if isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith("_"):
+        if not isinstance(node, ast.FunctionDef | ast.ClassDef) or node.name.startswith("_"):
+            continue
+        if not any(ast.unparse(x) == "overload" for x in node.decorator_list):
             yield node
 
 

@@ -17,7 +17,7 @@ class PoincareTask(HamiltonianTask):
     flow's."""
 
     result = MapSections
-    imports = ("verify.studies.poincare.sections",)
+    imports = ("verify.studies.poincare.sections", "verify.studies.poincare.surface")
     kind: Literal["poincare"] = "poincare"
     map: str
     initial_values: tuple[Start, ...]

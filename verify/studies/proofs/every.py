@@ -18,7 +18,13 @@ class EveryTask(Task):
     that depends on time."""
 
     result = EveryResult
-    imports = ("verify.proof.every",)
+    imports = (
+        "verify.proof.checked",
+        "verify.proof.checked.paper_steps",
+        "verify.proof.checked.proved",
+        "verify.proof.every",
+        "verify.schemes",
+    )
     kind: Literal["every"] = "every"
     scheme: str
     timed: bool = False

@@ -17,7 +17,7 @@ class FlowTask(HamiltonianTask):
     """Carry a shape by `steps` steps of a map: a scheme's, or the exact flow's."""
 
     result = FlowImage
-    imports = ("verify.studies.regions.carry",)
+    imports = ("verify.studies.regions.carry", "verify.studies.regions.place")
     kind: Literal["flow"] = "flow"
     map: str
     shape: PlacedShape

@@ -28,7 +28,11 @@ class StabilityTask(StartTask):
     """Judge one run: stable, drifting, unstable, and whose fault it is."""
 
     result = StabilityResult
-    imports = ("verify.studies.stability.results", "verify.studies.stability.trail")
+    imports = (
+        "verify.studies.stability.results",
+        "verify.studies.stability.run_in_degrees",
+        "verify.studies.stability.trail",
+    )
     kind: Literal["stability"] = "stability"
     t0: Number | None = None
     step_size: StepSize

@@ -18,7 +18,6 @@ from typing import Any
 from verify.algebra.enclosure import enclose
 from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.arb import in_reach, middle_and_radius
-from verify.arithmetic.compiled.doubles import prepared_call
 from verify.arithmetic.exact import decimal, text
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import float64
@@ -151,6 +150,8 @@ class Ladder:
 
     def call(self, h: Fraction, *, blank: bool = False) -> Callable[[], object]:
         """The loop over all steps, or over none, which is what a call takes by itself."""
+        from verify.arithmetic.compiled.doubles import prepared_call
+
         loop = self._loop(h)
         count = 0 if blank else loop.run.steps
         return prepared_call(self.kernel.function, count, *loop.fixed, *loop.state)

@@ -268,7 +268,7 @@ def test_a_map_that_does_not_end_is_ended() -> None:
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        ({"degrees": 0}, "must be 1 … 32"),
+        ({"degrees": 0}, "must be 1 … 64"),
         ({"degrees": 2, "arguments": "q,p"}, "is no order of p1, p2, q1, q2"),
         ({"parameters": {"k": 1}}, "is no argument of"),
         ({"point": [1]}, "has 1 numbers; allowed: 2"),

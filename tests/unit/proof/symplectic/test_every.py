@@ -131,8 +131,8 @@ def test_for_which_h_it_is_said() -> None:
 @pytest.mark.parametrize(
     ("scheme", "degrees", "words"),
     [
-        ("lie2", 0, "must be 1 … 32"),
-        ("lie2", 33, "must be 1 … 32"),
+        ("lie2", 0, "must be 1 … 64"),
+        ("lie2", 65, "must be 1 … 64"),
         ("lie2", 20, "derivatives of H would be needed"),
         ("lie8", 3, "are too many for lie8"),
         ("p_next = p; q_next = q", 2, "in one degree of freedom only"),
