@@ -240,7 +240,6 @@ COMMANDS: dict[str, tuple[str, ...]] = {
 }  # fmt: skip
 
 
-@pytest.mark.sample(65)
 @pytest.mark.parametrize(("typed", "words"), COMMANDS.items(), ids=map(ascii, COMMANDS))
 def test_a_command(typed: str, words: tuple[str, ...], capsys: pytest.CaptureFixture[str]) -> None:
     told(capsys, shlex.split(typed), words)

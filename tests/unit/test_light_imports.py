@@ -112,6 +112,7 @@ steps = [5]
 """
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("arguments", "loaded"),
     [

@@ -215,6 +215,7 @@ def beyond(ranges: set[tuple[int | None, int | None]]) -> Iterator[tuple[int | N
     yield from (r for r in ranges if r[0] is None or r[1] is None or r[0] < -99 or r[1] > 99)
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     "drawn", [SampleSpace(), SampleSpace(degree=64), SampleSpace(schemes=("stormer-verlet",))]
 )

@@ -83,6 +83,7 @@ EXACT_TO = [(name, digits) for name in CLOSED_FORMS for digits in (5, 20)]
 EXACT_TO += [("swing", 40), ("circle", 40)]
 
 
+@pytest.mark.sample(8)
 @pytest.mark.parametrize(("name", "digits"), EXACT_TO)
 def test_period_and_average_are_those_in_closed_form(name: str, digits: int) -> None:
     formula, g, p, q, closed_form = CLOSED_FORMS[name]
@@ -190,6 +191,7 @@ REFUSED: dict[str, tuple[str, Exact, Exact, str]] = {
 }
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("case", REFUSED.values(), ids=REFUSED)
 def test_what_is_not_known_to_be_closed_has_no_average(
     case: tuple[str, Exact, Exact, str],

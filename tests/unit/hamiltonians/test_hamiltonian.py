@@ -212,6 +212,7 @@ LARGE = [
 ]
 
 
+@pytest.mark.sample(12)
 @pytest.mark.parametrize("value", ["1e300", "-1e9", "1e-300", "100"])
 @pytest.mark.parametrize("text", LARGE)
 def test_a_large_parameter_is_taken_or_refused_in_bounded_time(text: str, value: str) -> None:
@@ -255,6 +256,7 @@ ENDS = {
 }
 
 
+@pytest.mark.sample(13)
 @pytest.mark.parametrize("text", ENDS.values(), ids=ENDS.keys())
 def test_a_hamiltonian_is_taken_or_refused_in_bounded_time(text: str) -> None:
     assert outcome(lambda: Hamiltonian.parse(text).field()) in ("done", "InputError", "LimitError")

@@ -52,7 +52,6 @@ def unit_of(value: str) -> Fraction:
 # -- against values from elsewhere ----------------------------------------------------------------
 
 
-@pytest.mark.sample(2)
 @vectors
 def test_mpmath_at_50_digits_gives_all_the_digits_of_the_vectors(case: dict[str, Any]) -> None:
     found = run_case(case, arithmetic="mpmath", digits=50)

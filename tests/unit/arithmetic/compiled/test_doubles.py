@@ -23,6 +23,7 @@ def chain(scheme: str, n: int) -> tuple[Kernel, list[Any]]:
     return kernel, [float(x) for x in (*run.inputs(kernel, 0).values(), *point.values())]
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("scheme", ["stormer-verlet", "lie2", "rk4"])
 def test_a_long_kernel_has_the_bits_of_numba(scheme: str) -> None:
     kernel, given = chain(scheme, 6)

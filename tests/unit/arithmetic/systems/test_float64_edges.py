@@ -46,6 +46,7 @@ def same(x: Any, y: Any) -> bool:
     return bool(x == y and math.copysign(1.0, x) == math.copysign(1.0, y))
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize(
     ("formula", "scheme"),
     [*((text, "lie2") for text in FORMULAS), ("1/(q**2 + 1) - 4*p**5/3", "implicit-midpoint")],

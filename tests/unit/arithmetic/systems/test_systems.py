@@ -111,6 +111,7 @@ UNDEFINED = [
 ]  # fmt: skip
 
 
+@pytest.mark.sample(74)
 @every_system
 @pytest.mark.parametrize("source", UNDEFINED)
 def test_what_is_not_a_number_is_raised_or_not_finite(name: str, digits: int, source: str) -> None:
@@ -208,6 +209,7 @@ def odd_global_state() -> Iterator[None]:
         mpmath.mp.prec, mpmath.iv.prec = before
 
 
+@pytest.mark.sample(5)
 @every_system
 @pytest.mark.parametrize(("h", "scheme"), SMALL)
 def test_a_run_is_repeated_to_the_last_bit_whatever_the_global_precision_which_stays(

@@ -270,6 +270,7 @@ def test_a_property_holds_and_fails_with_an_error_planted(
     must_fail(name, plant, example_of(scheme), monkeypatch)
 
 
+@pytest.mark.sample(99)
 @pytest.mark.parametrize("name", properties.names())
 @pytest.mark.parametrize("scheme", ["lie1", "lie4", "rk4", "gauss4", "implicit-midpoint", "ruth3"])
 def test_a_property_holds_or_does_not_speak(name: str, scheme: str) -> None:

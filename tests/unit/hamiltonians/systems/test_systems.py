@@ -109,6 +109,7 @@ def test_the_flow_is_a_group_to_45_digits(name: str, regime: str) -> None:
         assert group_defect(case, s, t) < 1e-45
 
 
+@pytest.mark.sample(24)
 @every_regime
 def test_the_numerical_flow_agrees(name: str, regime: str) -> None:
     case = example(ALL[name], regime)

@@ -70,6 +70,7 @@ def checked(path: str, name: str, claims: Claims, formula: str = "p**2/2 - cos(q
     return check_integrator(step, Hamiltonian.parse(formula), claims)
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("name", OF_C)
 def test_a_step_in_c_is_measured_to_the_digits_of_its_type(name: str, tmp_path: Path) -> None:
     begun = time.perf_counter()
@@ -159,6 +160,7 @@ def test_a_program_of_order_1_is_refuted_with_a_counterexample() -> None:
     assert found.counterexample is not None
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize(
     ("mode", "said"),
     [
@@ -188,6 +190,7 @@ def test_a_program_that_misbehaves_is_named_and_ends_nothing(
     assert time.perf_counter() - begun < 60
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("mode", "said"),
     [("crash-late", "SIGSEGV"), ("chatter", "not asked for"), ("single", "coarse")],

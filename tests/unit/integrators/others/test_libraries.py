@@ -233,6 +233,7 @@ def test_nodepys_lambert_is_of_order_two_and_its_misprint_is_found() -> None:
     assert "3/16, 1/16 in place of 1/8, 1/8" in claim.evidence
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("name", "integrator", "order"),
     [

@@ -42,6 +42,7 @@ def ran(code: str) -> str:
     return printed.getvalue()
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     "name", ["Blanes–Moan S10", "Blanes–Moan SRKN14a", "Yoshida 8, solution E"]
 )

@@ -119,6 +119,7 @@ def test_a_curve_that_bounds_no_area_is_told() -> None:
 # -- changes of area ------------------------------------------------------------------------------
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize(
     ("scheme", "outline"),
     [("lie1", SQUARE), ("lie2", CIRCLE), ("lie3", SQUARE), ("lie2", CAT), ("lie4", CIRCLE)],

@@ -78,6 +78,7 @@ def product(x: list[list[Fraction]], y: list[list[Fraction]]) -> list[list[Fract
     ]
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("plane", [1, 2])
 @pytest.mark.parametrize("digits", [17, 40])
 def test_a_linear_map_changes_it_by_what_its_matrix_says(plane: int, digits: int) -> None:
@@ -105,6 +106,7 @@ def test_a_symplectic_map_keeps_it_within_the_error(scheme: str) -> None:
     assert abs(shares[1]) > Fraction(1, 10**4)  # it is the sum that is kept
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("scheme", ["lie2", "lie3", "rk4"])
 def test_the_change_is_the_mean_of_the_defect(scheme: str) -> None:
     """The target: lie2 in Hénon–Heiles, a cat in (q1, p1), a hundred times above the error."""

@@ -154,6 +154,7 @@ def test_an_orbit_that_escapes_says_at_which_step() -> None:
     assert before.status == "finished"
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("system", "parameters", "scheme", "q", "p"),
     [

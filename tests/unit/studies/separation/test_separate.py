@@ -196,6 +196,7 @@ def test_where_rounding_cannot_be_counted_a_rerun_estimates_it() -> None:
         assert abs(x - y) <= dx + dy, name
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("text", "at"),
     [("p**2/2 + 1/(2 + q**2)", 1), ("p**2/2 + sin(q)", 40000), ("p**2/2 - q**2/2 + sin(q)", 3)],

@@ -32,6 +32,7 @@ CASES = [("duffing", x) for x in (*SLOPES, *WRONG)]
 CASES += [("mathieu", x) for x in ("stormer-verlet", "rk4", WRONG[0])]
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize(("name", "scheme"), CASES)
 def test_right_clocks_keep_the_order_and_wrong_ones_leave_1(name: str, scheme: str) -> None:
     ladder = Ladder(problem(SCENES[name]), scheme)
@@ -67,6 +68,7 @@ def test_energy_is_none_and_t0_counts() -> None:
     assert (early.t0, late.t0) == ("0", "2")
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("name", peers.libraries())
 @pytest.mark.parametrize("t0", [Fraction(1, 3), Fraction(1000)])
 def test_a_peer_solves_it_from_its_t0(name: str, t0: Fraction) -> None:

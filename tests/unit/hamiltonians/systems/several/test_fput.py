@@ -36,6 +36,7 @@ def somewhere(n: int) -> Example:
     return Example(values, q, p, FPUT.hamiltonian(values))
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("n", [2, 3, 5, 16, 64])
 def test_it_is_the_chain_of_n_masses(n: int) -> None:
     at = somewhere(n)
