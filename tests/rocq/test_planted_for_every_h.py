@@ -56,7 +56,7 @@ ERRORS = [
     planted("what is left out of the map, left out", "every_lie2", NUMBER,
             ("+ h ^ 4 * (bracket K P w + bracket K u Q + h ^ 4 * bracket K u w).", ".")),
     planted("an h that derivations see", "every_lie2", NUMBER,
-            ("forall h u w : K, constant K h -> let", "forall h u w : K, True -> let")),
+            ("forall h u w : K, is_constant K h -> let", "forall h u w : K, True -> let")),
     planted("an order less over the reals", "every_lie2", REALS,
             ("value (L s) z * h ^ 3", "value (L s) z * h ^ 2")),
     planted("another L over the reals", "every_lie2", REALS,

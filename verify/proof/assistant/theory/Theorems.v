@@ -18,7 +18,7 @@ Local Open Scope nat_scope.
     S = J^T Omega J - Omega is h^(eta+1) [leading] and terms of higher order, where [leading] is
     - sum_i (d(D^(eta+1) p_i) /\ dq_i + dp_i /\ d(D^(eta+1) q_i)) / (eta+1)!. *)
 Theorem defect_of_lie : forall (K : differential_ring) (s : system K) (eta : nat) (h : K) (a b : nat),
-  constant K h -> (a < 2 * degrees s)%nat -> (b < 2 * degrees s)%nat ->
+  is_constant K h -> (a < 2 * degrees s)%nat -> (b < 2 * degrees s)%nat ->
   same (step_defect K s eta h a b)
     (add (mul (power K h (S eta)) (leading K s eta a b))
          (mul (power K h (S (S eta))) (rest K s eta h a b))).
@@ -30,7 +30,7 @@ Theorem determinant_of_lie : forall (K : differential_ring) (s : system K) (eta 
   same (volume K s eta 0) one /\
   (forall m, (S m <= eta)%nat -> same (volume K s eta (S m)) zero) /\
   same (volume K s eta (S eta)) (first_coefficient K s eta) /\
-  exists m, ends K (volume K s eta) m /\ forall h, constant K h ->
+  exists m, ends K (volume K s eta) m /\ forall h, is_constant K h ->
     same (Determinants.determinant (2 * degrees s) (jacobian K s eta h))
       (add (add one (mul (power K h (S eta)) (first_coefficient K s eta)))
            (mul (power K h (S (S eta)))
@@ -43,7 +43,7 @@ Qed.
 (** In the plane. *)
 Theorem determinant_of_lie_in_plane :
   forall (K : differential_ring) (s : system K), degrees s = 1%nat -> forall (eta : nat) (h : K),
-  constant K h ->
+  is_constant K h ->
   same (Plane.determinant K s eta h)
     (add (add one (mul (power K h (S eta)) (first_of_determinant K s eta)))
          (mul (power K h (S (S eta))) (rest K s eta h 0 1))).

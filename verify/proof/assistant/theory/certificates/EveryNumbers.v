@@ -55,7 +55,7 @@ Section EveryNumbers.
   (** The new value of the coordinate c at h, as far as the coefficients tell. *)
   Definition told (h : K) (c : nat) : K := polynomial h (elements c).
 
-  Lemma pairs_told : forall m h a b, of_length x m = true -> constant K h ->
+  Lemma pairs_told : forall m h a b, of_length x m = true -> is_constant K h ->
     pairs K s (told h) (told h) a b
     == partial_sum K h (fun j => defect_coefficient K s A j a b) (m + m).
   Proof.
@@ -76,7 +76,7 @@ Section EveryNumbers.
   (** S of a map: L h^r, the l coefficients that are left, and what the part u h^(known+1) of the map
       adds, of which nothing is told. *)
   Theorem form_at_number : forall r m l, order x = Some r -> (1 <= r <= known x)%nat ->
-    of_length x m = true -> (m + m <= S (S r + l))%nat -> forall h u, constant K h ->
+    of_length x m = true -> (m + m <= S (S r + l))%nat -> forall h u, is_constant K h ->
     forall a b, (a < b)%nat -> (b < 2 * n)%nat ->
     pairs K s (fun c => told h c + h ^ S (known x) * u c) (fun c => told h c + h ^ S (known x) * u c) a b
     == canonical K s a b + h ^ r * value (leading_entry x a b)
@@ -109,7 +109,7 @@ Section EveryNumbers.
 
   (** So it keeps the form at each number h. *)
   Theorem form_is_kept : forall m, order x = None -> of_length x m = true ->
-    (m + m <= S (S (known x)))%nat -> forall h, constant K h ->
+    (m + m <= S (S (known x)))%nat -> forall h, is_constant K h ->
     forall a b, (a < b)%nat -> (b < 2 * n)%nat ->
     pairs K s (told h) (told h) a b == canonical K s a b.
   Proof.
@@ -130,7 +130,7 @@ Section EveryNumbers.
     (determinant_coefficient (coefficients (elements 0)) (coefficients (elements 1))).
 
   Theorem determinant_at_number : forall r m l, order x = Some r -> (1 <= r <= known x)%nat ->
-    of_length x m = true -> (m + m <= S (S r + l))%nat -> forall h u w, constant K h ->
+    of_length x m = true -> (m + m <= S (S r + l))%nat -> forall h u w, is_constant K h ->
     bracket K (P h + h ^ S (known x) * u) (Q h + h ^ S (known x) * w)
     == one + h ^ r * value (leading_entry x 0 1)
        + h ^ S r * partial_sum K h (fun k => det_coefficient (S r + k)%nat) l
@@ -156,7 +156,7 @@ Section EveryNumbers.
   Qed.
 
   Theorem determinant_is_one : forall m, order x = None -> of_length x m = true ->
-    (m + m <= S (S (known x)))%nat -> forall h, constant K h -> bracket K (P h) (Q h) == one.
+    (m + m <= S (S (known x)))%nat -> forall h, is_constant K h -> bracket K (P h) (Q h) == one.
   Proof.
     intros m E short L h C. assert (N := one_degree e x checked K s member plane).
     rewrite <- (pairs_in_plane K s plane (told h) (told h)).

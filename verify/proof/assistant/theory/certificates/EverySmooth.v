@@ -106,7 +106,7 @@ Section SmoothMaps.
   (** A number is an element that no derivation sees. *)
   Definition number (h : R) : K := smooth_constant h.
 
-  Lemma number_is_constant : forall h, constant K (number h).
+  Lemma number_is_constant : forall h, is_constant K (number h).
   Proof. intros h i. apply derivation_constant. Qed.
 
   Lemma value_of_polynomial : forall h (l : list K) y,
@@ -118,7 +118,7 @@ Section SmoothMaps.
 
   (** A map that keeps the form as an element at each number. *)
   Theorem smooth_map_keeps_form : forall (l : nat -> list K),
-    (forall h, constant K h -> forall a b, (a < b)%nat -> (b < 2 * n)%nat ->
+    (forall h, is_constant K h -> forall a b, (a < b)%nat -> (b < 2 * n)%nat ->
       @same K (pairs K s (fun c => polynomial h (l c)) (fun c => polynomial h (l c)) a b)
         (canonical K s a b)) ->
     forall z, U z -> forall h, exists J,

@@ -20,7 +20,7 @@ Section Determinant.
   Definition jacobian (h : K) (c a : nat) : K := d a (new_value K s eta h c).
 
   (** det J is the value at h of the series of its coefficients. *)
-  Lemma determinant_has_value : forall h, constant K h ->
+  Lemma determinant_has_value : forall h, is_constant K h ->
     has_value K h volume (determinant (2 * n) (jacobian h)).
   Proof.
     intros h C. apply value_of_determinant. intros c a _ _. exists (S eta). split.
@@ -35,7 +35,7 @@ Section Determinant.
   (** In n degrees of freedom, a step of lie_eta: the coefficients of the rest do not depend on h
       and end. *)
   Theorem determinant_of_jacobian : exists m, ends K volume m /\
-    forall h, constant K h -> determinant (2 * n) (jacobian h)
+    forall h, is_constant K h -> determinant (2 * n) (jacobian h)
       == one + power h (S eta) * first_coefficient
          + power h (S (S eta)) * partial_sum K h (fun k => volume (S (S eta) + k)%nat) m.
   Proof.

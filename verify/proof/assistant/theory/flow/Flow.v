@@ -80,7 +80,7 @@ Section Flow.
     - intros i _. rewrite !derivation_mul. ring.
   Qed.
 
-  Lemma along_flow_constant : forall c, constant K c -> along_flow c == zero.
+  Lemma along_flow_constant : forall c, is_constant K c -> along_flow c == zero.
   Proof.
     intros c C. unfold along_flow, along_field. rewrite (C _).
     rewrite total_zero; [ring|]. intros i _. rewrite !(C _). ring.
@@ -95,7 +95,7 @@ Section Flow.
     apply along_flow_proper. symmetry. apply rational_zero.
   Qed.
 
-  Lemma along_flow_scaled : forall c f, constant K c -> along_flow (c * f) == c * along_flow f.
+  Lemma along_flow_scaled : forall c f, is_constant K c -> along_flow (c * f) == c * along_flow f.
   Proof. intros c f C. rewrite along_flow_mul, along_flow_constant by exact C. ring. Qed.
 
   Lemma along_flow_total : forall m f,
@@ -167,7 +167,7 @@ Section Flow.
     intros i _. ring.
   Qed.
 
-  Lemma lie_derivative_scaled : forall c w a b, constant K c ->
+  Lemma lie_derivative_scaled : forall c w a b, is_constant K c ->
     lie_derivative (fun a b => c * w a b) a b == c * lie_derivative w a b.
   Proof.
     intros c w a b C. unfold lie_derivative. rewrite along_flow_scaled by exact C.

@@ -111,7 +111,7 @@ Section LieScheme.
   Definition potential : form K := fun a b => - (inverse_factorial (S eta) * total (S eta) (fun k =>
     sign k * pairs (fun i => iterated (eta - k) (z i)) (fun i => iterated k (z i)) a b)).
 
-  Lemma sign_constant : forall k, constant K (sign k).
+  Lemma sign_constant : forall k, is_constant K (sign k).
   Proof.
     intros k i. unfold sign. destruct (Nat.even k); rewrite ?derivation_opp, derivation_one; ring.
   Qed.
@@ -121,9 +121,9 @@ Section LieScheme.
   Proof.
     intros even a b La Lb. unfold potential.
     set (V := fun k l => pairs (fun i => iterated k (z i)) (fun i => iterated l (z i))).
-    assert (opposite : constant K (- one)).
+    assert (opposite : is_constant K (- one)).
     { intro i. rewrite derivation_opp, derivation_one. ring. }
-    assert (factorial : constant K (inverse_factorial (S eta))).
+    assert (factorial : is_constant K (inverse_factorial (S eta))).
     { intro i. apply derivation_rational. }
     transitivity (- one * (inverse_factorial (S eta) * total (S eta) (fun k =>
       sign k * (V (S (eta - k)) k a b + V (eta - k)%nat (S k) a b)))).

@@ -54,7 +54,7 @@ Section Plane.
   Definition determinant (h : K) : K := bracket K (new_value K s eta h 0) (new_value K s eta h 1).
 
   (** The first power of h in det J - 1 is h^(eta+1), with this coefficient. *)
-  Theorem determinant_of_step : forall h, constant K h ->
+  Theorem determinant_of_step : forall h, is_constant K h ->
     determinant h == one + power K h (S eta) * first_of_determinant
       + power K h (S (S eta)) * rest K s eta h 0 1.
   Proof.

@@ -31,7 +31,7 @@ Section Step.
     partial_sum K h (fun m => defect K s eta (S (S eta) + m) a b) eta.
 
   (** The defect of a step of lie_eta, for every H in n degrees of freedom. *)
-  Theorem defect_of_step : forall h a b, constant K h -> (a < 2 * n)%nat -> (b < 2 * n)%nat ->
+  Theorem defect_of_step : forall h a b, is_constant K h -> (a < 2 * n)%nat -> (b < 2 * n)%nat ->
     step_defect h a b
     == power h (S eta) * leading K s eta a b + power h (S (S eta)) * rest h a b.
   Proof.

@@ -99,7 +99,7 @@ Section Taylor.
   Qed.
 
   (** So sum_i dp_i' /\ dq_i' is the sum of its coefficients, at each number h. *)
-  Theorem pairs_at_number : forall h A m a b, constant K h ->
+  Theorem pairs_at_number : forall h A m a b, is_constant K h ->
     (forall k i, (m <= k)%nat -> A k i == zero) ->
     pairs (at_number h A m) (at_number h A m) a b
     == partial_sum K h (fun j => defect_coefficient A j a b) (m + m).
@@ -124,7 +124,7 @@ Section Taylor.
   Qed.
 
   (** What is added to a map with a factor g, a number, adds this. *)
-  Lemma pairs_with_remainder : forall g A u a b, constant K g ->
+  Lemma pairs_with_remainder : forall g A u a b, is_constant K g ->
     pairs (fun i => A i + g * u i) (fun i => A i + g * u i) a b
     == pairs A A a b + g * (pairs A u a b + pairs u A a b + g * pairs u u a b).
   Proof.

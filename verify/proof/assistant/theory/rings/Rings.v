@@ -150,9 +150,9 @@ Section Derivations.
   Qed.
 
   (** What no derivation sees, as it does not see a number h. *)
-  Definition constant (h : K) : Prop := forall i, by_coordinate i h == zero.
+  Definition is_constant (h : K) : Prop := forall i, by_coordinate i h == zero.
 
-  Lemma power_constant : forall h k, constant h -> constant (h ^ k).
+  Lemma power_constant : forall h k, is_constant h -> is_constant (h ^ k).
   Proof.
     intros h k C i. induction k as [|k IH]; simpl; [apply derivation_one|].
     rewrite derivation_mul, IH, (C i). ring.
