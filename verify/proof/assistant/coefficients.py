@@ -112,7 +112,7 @@ class _Numbers:
 
     def __init__(self, entries: Stages | Tableau, template: str) -> None:
         self.numbers = entries.numbers
-        words = frozenset().union(*map(template_words, (template, "numbers", "relations", "area")))
+        words = template_words(template)
         # What is said of a number is called by its name, too.
         said = ("is_", "there_is_", "E_")
         self.written = safe([number.name for number in self.numbers], words, said)
@@ -127,11 +127,12 @@ class _Numbers:
             "numbers": list(map(self._number, self.numbers)),
             "names": names,
             "parameters": f"({' '.join(names)} : R) " if names else "",
-            "arguments": "".join(f"{name} " for name in names),
-            "proofs": "".join(f"E_{name} " for name in names),
-            "introduced": "".join(f"{x} " for x in (*names, *(f"E_{name}" for name in names))),
-            "over": f"forall {' '.join(names)} : R, " * bool(names)
-            + "".join(f"is_{name} {name} -> " for name in names),
+            # Each with a blank before it.
+            "arguments": "".join(f" {name}" for name in names),
+            "proofs": "".join(f" E_{name}" for name in names),
+            "equations": "".join(f" (proj1 E_{name})" for name in names),
+            "over": f" forall {' '.join(names)} : R," * bool(names)
+            + "".join(f" is_{name} {name} ->" for name in names),
         }
 
     def checked(self, gaps: Sequence[Poly]) -> dict[str, str]:

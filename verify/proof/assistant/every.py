@@ -36,7 +36,6 @@ _SHALLOW = Spelling(
     number=lambda c: f"rational {rational(c)}",
     name=lambda name: name,
     power=lambda base, n: f"{base} ^ {n}",
-    scope="F",
 )
 
 
@@ -50,13 +49,15 @@ def of_every(entries: Expansion) -> Export:
     return Export(
         needs=_NEEDS if shown is None else (*_NEEDS, "EveryNonzero"),
         template="every",
+        of_rings=True,
         values={
             "n": n,
             "planar": entries.planar,
             "which": _WHICH[entries.separable, entries.timed],
             "timed": whole(entries.timed),
             "separable": whole(entries.separable),
-            "derivatives": list_of(map(list_of, names.derived)),
+            "coordinates": " ".join(f"let {x} := {k} in" for x, k in names.coordinates.items()),
+            "derivatives": list_of(map(list_of, names.derived_by_name)),
             "maps": [
                 {
                     "coordinate": name,
@@ -99,6 +100,8 @@ class _Names:
         # The formulas are derived once more, and the slopes of H twice.
         derived |= {(k,) for k in range(2 * self.n)}
         self.derived = sorted(derived | set(self._slopes(derived)), key=lambda x: (len(x), x))
+        letters = list(self.coordinates)
+        self.derived_by_name = [[letters[k] for k in index] for index in self.derived]
         numbers = {name: k + 1 for name, k in self.coordinates.items()}
         numbers |= {self._name(x): len(numbers) + k for k, x in enumerate(self.derived, start=1)}
         self.deep = deep(numbers)
@@ -112,8 +115,8 @@ class _Names:
         if derived:
             bound.append("let H := hamiltonian s in")
         for index in derived:
-            slopes = "".join(f"by_coordinate {k} (" for k in index)
-            bound.append(f"let {self._name(index)} := {slopes}H{')' * len(index)} in")
+            slopes = " (".join(f"by_coordinate {k}" for k in index)
+            bound.append(f"let {self._name(index)} := {slopes} H{')' * (len(index) - 1)} in")
         return "\n  ".join([*bound, text])
 
     def form(self, x: Form) -> str:

@@ -10,7 +10,7 @@ from verify.proof.assistant.coefficients import of_stages, of_tableau
 from verify.proof.assistant.every import of_every
 from verify.proof.assistant.formulas import KEYWORDS
 from verify.proof.assistant.one import of_one
-from verify.proof.assistant.text import Export, body_of, written
+from verify.proof.assistant.text import Export, body_of, theorems_of, written
 from verify.proof.certificates.checker import check
 from verify.proof.certificates.coefficients import Stages, Tableau
 from verify.proof.certificates.entries import Expansion
@@ -18,7 +18,6 @@ from verify.proof.certificates.established import Established, established
 from verify.proof.certificates.file import FORMAT
 
 _FILE = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\.v")
-_THEOREM = re.compile(r"^Theorem (\w+)", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -46,8 +45,8 @@ def exported(path: Path, *, stands_alone: bool = True) -> Exported:
     except RecursionError:
         said = "is refused: its functions are nested too deeply, or too many"
         raise InputError("file", str(path), said) from None
-    theorems = tuple(_THEOREM.findall(body_of(export)))
-    return Exported(written(export, of, stands_alone=stands_alone), of, theorems)
+    text = written(export, of, stands_alone=stands_alone)
+    return Exported(text, of, theorems_of(body_of(export)))
 
 
 def check_file_name(path: Path) -> None:

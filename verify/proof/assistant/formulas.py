@@ -11,6 +11,7 @@ from verify.proof.certificates.entries import Form
 from verify.proof.certificates.readers import Poly
 
 _SIGNS = (" + ", " - ")
+_WORD = re.compile(r"[\w']+")
 KEYWORDS = frozenset(
     [
         "as",
@@ -62,15 +63,24 @@ class Spelling:
 
     def scoped(self, x: Poly) -> str:
         """The polynomial, read by these rules wherever it stands."""
-        return f"({self.poly(x)})%{self.scope}" if self.scope else self.poly(x)
+        if not self.scope:
+            return self.poly(x)
+        return self.argument(x) if is_name(x) else f"({self.poly(x)})%{self.scope}"
+
+    def argument(self, x: Poly) -> str:
+        """The polynomial as a function is applied to it."""
+        text = self.poly(x)
+        return text if is_name(x) and _WORD.fullmatch(text) else f"({text})"
 
     def poly(self, x: Poly) -> str:
         """The sum of the terms, long ones first, one after the other."""
         text = ""
         for names, c in sorted(x.items(), key=lambda term: (-len(term[0]), term[0])):
             first, term = not text, self._term(names, abs(c))
-            # What stands behind a sign alone is in brackets: else it is the first factor's.
-            text += f"- ({term})" if c < 0 and first else f"{'' if first else _SIGNS[c < 0]}{term}"
+            if c < 0 and first:  # of a product the sign would be the first factor's
+                text = f"- {term}" if c == -1 and _is_power(names) else f"- ({term})"
+            else:
+                text += f"{'' if first else _SIGNS[c < 0]}{term}"
         return text or self.number(Fraction(0))
 
     def _term(self, names: Sequence[str], c: Fraction) -> str:
@@ -83,6 +93,15 @@ class Spelling:
     def list(self, series: Iterable[Poly]) -> str:
         """A list of polynomials, one a line."""
         return "[" + ";\n    ".join(self.scoped(x) for x in series) + "]"
+
+
+def is_name(x: Poly) -> bool:
+    """Whether the polynomial is one name alone."""
+    return [(len(names), c) for names, c in x.items()] == [(1, 1)]
+
+
+def _is_power(names: Sequence[str]) -> bool:
+    return len(set(names)) == 1
 
 
 def deep(numbers: dict[str, int]) -> Spelling:

@@ -33,6 +33,7 @@ _NEEDS = [
     "RealClaims",
     "MapClaims",
     "FlowClaims",
+    "AgreementClaims",
 ]
 _OWN = frozenset(("True", "I", "conj", "proj1", "proj2"))  # words that are written here
 _OF_ORDER = ("RationalValues", "Nonzero")
@@ -68,7 +69,7 @@ def of_one(entries: Expansion, hamiltonian: Poly) -> Export:
             "domain": names.domain(),
             "inverses": names.inside(),
             "maps": [
-                {"name": f"{name}_next", "coefficients": shallow.list(series)}
+                {"coordinate": name, "coefficients": shallow.list(series)}
                 for name, series in zip(entries.coordinates, entries.after, strict=True)
             ],
             "shallow": {
@@ -107,17 +108,17 @@ class _Names:
         self.numbers = {name: k for k, name in enumerate(known, start=1)}
         self.deep = deep(self.numbers)
         self.written = safe(entries.parameters, template_words("one") | _OWN)
-        self.shallow = Spelling(real, self._word, power=lambda base, n: f"{base} ^ {n}")
+        self.shallow = Spelling(real, self._word, self._power)
         self.calls = dict[str, str]()
         for function in entries.functions:  # inner ones first
-            argument = self.shallow.poly(function.argument)
-            inverse = f"(/ ({argument}))"
-            self.calls[function.name] = (
-                inverse if function.kind == "inverse" else f"{function.kind} ({argument})"
-            )
+            kind = "/" if function.kind == "inverse" else function.kind
+            self.calls[function.name] = f"{kind} {self.shallow.argument(function.argument)}"
 
     def _word(self, name: str) -> str:
         return self.calls.get(name) or self.written.get(name, name)
+
+    def _power(self, base: str, n: int) -> str:
+        return f"({base}) ^ {n}" if " " in base else f"{base} ^ {n}"
 
     def made(self, function: Function) -> str:
         """A function of the vocabulary: its kind, with the number of its partner, and argument."""
@@ -133,7 +134,7 @@ class _Names:
 
     def domain(self) -> str:
         """That no denominator is 0."""
-        conditions = [f"({self.shallow.poly(x)}) <> 0" for x in self._below()]
+        conditions = [f"{self.shallow.argument(x)} <> 0" for x in self._below()]
         return self.bound(" /\\ ".join(conditions) or "True")
 
     def inside(self) -> list[str]:
@@ -173,7 +174,7 @@ class _Names:
         at = [f"({signed(x)})" for x in given]
         moving = [*self.entries.coordinates, *("t",) * self.entries.timed]
         proofs = [
-            f"(Y (nth {k} (made names) (Exponential, Number 0)) ltac:(simpl; tauto) eq_refl)"
+            f"(Y (nth {k} (made Data.names) (Exponential, Number 0)) ltac:(simpl; tauto) eq_refl)"
             for k, f in enumerate(self.entries.functions)
             if f.kind == "inverse"
         ]

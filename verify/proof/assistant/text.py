@@ -17,16 +17,24 @@ from verify.proof.certificates.established import Established
 _LONGEST = 2000  # characters of a formula in the words
 _WIDTH = 88
 _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+_INCLUDED = re.compile(r'{% include "(\w+)\.jinja" %}')
+_STATED = re.compile(r"^(?:Lemma|Theorem) (\w+)", re.MULTILINE)
+_THEOREM = re.compile(r"^Theorem (\w+)", re.MULTILINE)
+_CLAIMED, _OVER_THE_REALS = "(** * What is proved", "(** * Over the real numbers"
 _TEMPLATES = Path(__file__).parent / "templates"
 
 
 @dataclass(frozen=True)
 class Export:
-    """`needs`: files of the theory; `template`, with `values`: definitions, theorems, proofs."""
+    """`needs`: files of the theory; `template`, with `values`: definitions, theorems, proofs.
+
+    `of_rings`: whether the theorems are of any ring, and assume nothing.
+    """
 
     needs: Sequence[str]
     template: str
     values: dict[str, Any]
+    of_rings: bool = False
 
 
 def written(export: Export, of: Established, *, stands_alone: bool) -> str:
@@ -36,7 +44,9 @@ def written(export: Export, of: Established, *, stands_alone: bool) -> str:
     statement = "\n    ".join(wrap(_comment(of.statement), _WIDTH))
     words = {"statement": statement, "said": said, "alone": stands_alone}
     head = _environment().get_template("head.jinja").render(words)
-    return lines(f"{head}{theory}\n{body_of(export)}")
+    body = body_of(export)
+    asked = _asked(body[body.index(_CLAIMED) :], of_rings=export.of_rings)
+    return lines(f"{head}{theory}\n{body.rstrip()}\n\n(** * What they assume *)\n\n{asked}")
 
 
 def body_of(export: Export) -> str:
@@ -44,10 +54,33 @@ def body_of(export: Export) -> str:
     return _environment().get_template(f"{export.template}.jinja").render(export.values)
 
 
+def theorems_of(body: str) -> tuple[str, ...]:
+    """The names of the theorems, in order."""
+    return tuple(_THEOREM.findall(body))
+
+
+def _asked(claimed: str, *, of_rings: bool) -> str:
+    """By which Rocq prints what the theorems assume.
+
+    For each theorem over the real numbers it would go through the library's anew, for more than a
+    second: it is asked of all of them together.
+    """
+    rings, _, reals = claimed.partition(_OVER_THE_REALS) if of_rings else ("", "", claimed)
+    singly, together = _STATED.findall(rings), _STATED.findall(reals)
+    defined = ""
+    if len(together) > 1:
+        listed = ",\n  ".join(together)
+        together = ["theorems_over_the_reals"]
+        defined = f"Definition {together[0]} := (\n  {listed}).\n\n"
+    return defined + "".join(f"Print Assumptions {name}.\n" for name in [*singly, *together])
+
+
 @cache
 def template_words(template: str) -> frozenset[str]:
-    """The words of a template, which a name of the certificate's must not hide."""
-    return frozenset(_WORD.findall((_TEMPLATES / f"{template}.jinja").read_text(encoding="utf-8")))
+    """The words of a template and of those it includes, which no name of a certificate may hide."""
+    text = (_TEMPLATES / f"{template}.jinja").read_text(encoding="utf-8")
+    included = (template_words(name) for name in _INCLUDED.findall(text))
+    return frozenset(_WORD.findall(text)).union(*included)
 
 
 @cache

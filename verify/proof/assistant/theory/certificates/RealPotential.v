@@ -2,9 +2,27 @@
     a function G, and in general that of a 2-form. *)
 
 From Coq Require Import Reals QArith List Lia.
-From AreaPreservation Require Import Sums Differential Rings Flow Formulas Smooth Identities Certified RealFormulas RealNames OneHamiltonian RealDefect RealClaims.
+From AreaPreservation Require Import Sums Differential Rings Flow Formulas Smooth Identities Certified RealFormulas OneHamiltonian RealDefect RealClaims AgreementClaims.
 Import ListNotations.
 Local Open Scope R_scope.
+
+(** The 2-form with the entries w above the diagonal. *)
+Notation antisymmetric := (two_form 0 Ropp).
+
+(** The 2-form w has at z the Lie derivative L along the flow of H, whose slopes by the 2n
+    coordinates [H1] holds: with f' for the derivative of f along the flow and f_a for that by the
+    coordinate a, L_ab = w_ab' + sum over i of H_(p_i)a w_(q_i)b - H_(q_i)a w_(p_i)b
+    + H_(p_i)b w_a(q_i) - H_(q_i)b w_a(p_i). *)
+Definition lie_derivative_along_flow (n : nat) (H1 : point -> list R)
+    (w : point -> nat -> nat -> R) (z : point) (L : nat -> nat -> R) : Prop :=
+  exists H2 w' : nat -> nat -> R,
+    (forall a c, (a < 2 * n)%nat -> (c < 2 * n)%nat ->
+      derivable_pt_lim (fun s => nth a (H1 (moved z c s)) 0) (z c) (H2 a c)) /\
+    (forall a b, derivative_along_flow n H1 (fun y => antisymmetric (w y) a b) z (w' a b)) /\
+    forall a b, (a < b)%nat -> (b < 2 * n)%nat ->
+      w' a b + sum n (fun i =>
+        (H2 i a * antisymmetric (w z) (n + i) b - H2 (n + i)%nat a * antisymmetric (w z) i b)
+        + (H2 i b * antisymmetric (w z) a (n + i) - H2 (n + i)%nat b * antisymmetric (w z) a i)) = L a b.
 
 Section RealPotential.
   Context (v : vocabulary) (energy : formula) (x : certificate).
@@ -22,6 +40,39 @@ Section RealPotential.
   Notation names := (elements v names_ok given enough n size).
   Notation its_meaning := (meaning v energy x factors checked given enough).
 
+  Lemma leading_is : forall w, primitive x = Some w -> forall z a b, U z ->
+    (a < b)%nat -> (b < 2 * n)%nat -> value_at z (lie_formula x w a b) = value_at z (leading_entry x a b).
+  Proof.
+    intros w W z a b I L Lb. apply gap_is_closed, (gaps_vanish v energy x factors checked given enough z I).
+    apply in_app_iff. right. apply in_app_iff. right. unfold primitive_gaps. rewrite W.
+    apply in_map_iff. exists (a, b). split; [reflexivity|]. apply pair_listed; assumption.
+  Qed.
+
+  (** In any number of degrees of freedom. *)
+  Theorem leading_is_lie_derivative : forall w, primitive x = Some w ->
+    forall (H1 : point -> list R) (G L : point -> nat -> nat -> R),
+    (forall y a, (a < 2 * n)%nat -> nth a (H1 y) 0 = value_at y (slope_of_energy x a)) ->
+    (forall y a b, value_at y (w a b) = G y a b) ->
+    (forall y a b, value_at y (leading_entry x a b) = L y a b) ->
+    forall z, U z -> lie_derivative_along_flow n H1 G z (L z).
+  Proof.
+    intros w W H1 G L H1_is G_is L_is z I.
+    assert (form_is : forall y a b, antisymmetric (G y) a b = value_at y (form_formula w a b)).
+    { intros y a b. unfold two_form. rewrite <- !G_is.
+      destruct (a <? b)%nat; [reflexivity|]. destruct (b <? a)%nat; reflexivity. }
+    exists (fun a c => value_at z (slope x c (slope_of_energy x a))),
+      (fun a b => value_at z (flow_formula x (form_formula w a b))). split; [|split].
+    - intros a c La Lc.
+      apply (derivable_pt_lim_ext (fun s => value_at (moved z c s) (slope_of_energy x a))).
+      + intro s. symmetry. apply H1_is, La.
+      + apply (value_of_slope_is v names_ok given enough x size slopes_ok z I). lia.
+    - intros a b. apply (formula_along_flow v energy x factors checked given enough H1 H1_is z I).
+      intro y. apply form_is.
+    - intros a b La Lb. rewrite <- L_is, <- (leading_is w W z a b I La Lb). unfold lie_formula.
+      cbn [value_of]. rewrite (value_of_sum_up_to real_numbers), total_is_sum.
+      apply (f_equal (Rplus _)), sum_of_equals. intros i _. rewrite !form_is. reflexivity.
+  Qed.
+
   (** The mixed derivatives of H are equal, also as the certificate has them. *)
   Lemma mixed_slopes_equal : forall z a b, U z -> (a < 2 * n)%nat -> (b < 2 * n)%nat ->
     value_at z (slope x a (slope_of_energy x b)) = value_at z (slope x b (slope_of_energy x a)).
@@ -38,22 +89,13 @@ Section RealPotential.
     exact (derivations_commute K a b (hamiltonian sys) z I).
   Qed.
 
-  Lemma primitive_closed : forall w, primitive x = Some w -> forall z a b, U z -> (a < b)%nat ->
-    (b < 2 * n)%nat -> value_at z (lie_formula x w a b) = value_at z (leading_entry x a b).
-  Proof.
-    intros w W z a b I L Lb. apply gap_is_closed.
-    apply (gaps_vanish v energy x factors checked given enough z I).
-    apply in_app_iff. right. apply in_app_iff. right. unfold primitive_gaps. rewrite W.
-    apply in_map_iff. exists (a, b). split; [reflexivity|]. apply pair_listed; assumption.
-  Qed.
-
-  (** In the plane: G_t + H_p G_q - H_q G_p is the leading entry. *)
+  (** In the plane: G_t + (H_p G_q - H_q G_p) is the leading entry. *)
   Theorem leading_is_derivative_of_potential : n = 1%nat -> forall w, primitive x = Some w ->
     forall z, U z -> exists Gp Gq Gt,
     derivable_pt_lim (fun s => value_at (moved z 0 s) (w 0%nat 1%nat)) (z 0%nat) Gp /\
     derivable_pt_lim (fun s => value_at (moved z 1 s) (w 0%nat 1%nat)) (z 1%nat) Gq /\
     derivable_pt_lim (fun s => value_at (moved z 2 s) (w 0%nat 1%nat)) (z 2%nat) Gt /\
-    Gt + value_at z (slope_of_energy x 0) * Gq - value_at z (slope_of_energy x 1) * Gp
+    Gt + (value_at z (slope_of_energy x 0) * Gq - value_at z (slope_of_energy x 1) * Gp)
     = value_at z (leading_entry x 0 1).
   Proof.
     intros N w W z I. set (G := w 0%nat 1%nat).
@@ -61,7 +103,7 @@ Section RealPotential.
     rewrite N in D. exists (value_at z (slope x 0 G)), (value_at z (slope x 1 G)),
       (value_at z (slope x 2 G)).
     split; [apply D; lia|split; [apply D; lia|split; [apply D; lia|]]].
-    rewrite <- (primitive_closed w W z 0 1 I) by lia.
+    rewrite <- (leading_is w W z 0 1 I ltac:(lia) ltac:(lia)).
     assert (M := mixed_slopes_equal z 0 1 I ltac:(lia) ltac:(lia)).
     unfold lie_formula, flow_formula. rewrite N.
     cbn [sum_up_to sum_of seq map fold_right Nat.mul Nat.add].
@@ -70,52 +112,5 @@ Section RealPotential.
     change (@add real_numbers) with Rplus. change (@mul real_numbers) with Rmult.
     change (@sub real_numbers) with Rminus. rewrite M.
     change (@rational real_numbers 0) with 0. ring.
-  Qed.
-
-  (** In any number of degrees of freedom it is the Lie derivative of a 2-form along the flow: of its
-      entries G, their slopes G1 a b c by the coordinate c, the slopes of H and theirs, H2 i c. *)
-  Theorem leading_is_lie_derivative : forall slopes form leading,
-    slope_of_energy x = (fun a => nth a slopes (Number 0)) ->
-    primitive x = Some (entry (Number 0) form) -> leading_entry x = entry (Number 0) leading ->
-    let entries z l : nat -> nat -> R := entry 0 (map (fun e => (fst e, value_at z (snd e))) l) in
-    let H1 z i : R := nth i (map (fun f => value_at z f) slopes) 0 in
-    forall z, U z -> exists (G1 : nat -> nat -> nat -> R) (H2 : nat -> nat -> R),
-    (forall a b c, (a < b)%nat -> (b < 2 * n)%nat -> (c <= 2 * n)%nat ->
-      derivable_pt_lim (fun s => entries (moved z c s) form a b) (z c) (G1 a b c)) /\
-    (forall i c, (i < 2 * n)%nat -> (c < 2 * n)%nat ->
-      derivable_pt_lim (fun s => H1 (moved z c s) i) (z c) (H2 i c)) /\
-    let w := two_form 0 Ropp (entries z form) in
-    forall a b, (a < b)%nat -> (b < 2 * n)%nat ->
-      G1 a b (2 * n)%nat
-      + sum n (fun i => H1 z i * G1 a b (n + i)%nat - H1 z (n + i)%nat * G1 a b i)
-      + sum n (fun i => H2 i a * w (n + i)%nat b - H2 (n + i)%nat a * w i b
-                      + (H2 i b * w a (n + i)%nat - H2 (n + i)%nat b * w a i))
-      = entries z leading a b.
-  Proof.
-    intros slopes form leading Es Ew El entries H1 z I. set (G := entry (Number 0) form).
-    assert (entry_is : forall y l a b, value_at y (entry (Number 0) l a b) = entries y l a b).
-    { intros y l a b. apply (entry_of_map _ _ (fun f => value_at y f)). }
-    assert (slope_is : forall y i, value_at y (slope_of_energy x i) = H1 y i).
-    { intros y i. rewrite Es. unfold H1. change 0 with (value_at y (Number 0)).
-      rewrite (map_nth (fun f => value_at y f)). reflexivity. }
-    exists (fun a b c => value_at z (slope x c (G a b))),
-      (fun i c => value_at z (slope x c (slope_of_energy x i))).
-    assert (D := fun f c => value_of_slope_is v names_ok given enough x size slopes_ok z I f c).
-    split; [|split].
-    - intros a b c _ _ L. apply derivable_pt_lim_ext with (2 := D (G a b) c ltac:(lia)).
-      intro s. apply entry_is.
-    - intros i c _ L. apply derivable_pt_lim_ext with (2 := D (slope_of_energy x i) c ltac:(lia)).
-      intro s. apply slope_is.
-    - intros w a b L Lb.
-      assert (form_is : forall i j, value_at z (form_formula G i j) = w i j).
-      { intros i j. unfold w, two_form. rewrite <- !entry_is.
-        destruct (i <? j)%nat; [reflexivity|]. destruct (j <? i)%nat; reflexivity. }
-      rewrite <- entry_is, <- El, <- (primitive_closed G Ew z a b I L Lb).
-      unfold lie_formula, flow_formula. cbn [value_of].
-      rewrite !(value_of_sum_up_to real_numbers), !total_is_sum.
-      replace (form_formula G a b) with (G a b) by
-        (unfold two_form; rewrite (proj2 (Nat.ltb_lt a b) L); reflexivity).
-      apply f_equal2; [apply f_equal|]; apply sum_of_equals; intros i Li; cbn [value_of];
-        rewrite ?form_is, ?slope_is; reflexivity.
   Qed.
 End RealPotential.
