@@ -8,7 +8,6 @@ from tests.rocq.planted import Planted, check_refused, planted
 
 CHECKED, ORDER = "checked", "determinant_has_its_order"
 AGREES, TELESCOPES = "map_agrees_with_flow", "first_coefficient_telescopes"
-NOT_ZERO = "first_coefficient_is_not_zero"
 NUMBER, REALS = "determinant_at_each_number", "determinant_over_the_reals"
 FORM_NUMBER, FORM_REALS = "defect_at_each_number", "defect_over_the_reals"
 VANISH, KEPT, KEPT_REALS = (
@@ -16,6 +15,7 @@ VANISH, KEPT, KEPT_REALS = (
     "area_is_preserved",
     "area_is_preserved_over_the_reals",
 )
+SHOWN = "shown"
 # A term of L, of G and of p', as a person reads it and as formulas; and each with another factor.
 L_READ = ("rational (1 # 2) * H_p * H_pp * H_qqq", "rational (1 # 3) * H_p * H_pp * H_qqq")
 L_TOLD = (
@@ -24,7 +24,7 @@ L_TOLD = (
 )
 G_READ = ("rational (1 # 2) * H_pp * H_qq -", "rational (1 # 2) * H_pp * H_qq +")
 G_TOLD = ("Number (1 # 2) * Name 6 * Name 8 -", "Number (1 # 2) * Name 6 * Name 8 +")
-P_READ = ("rational (1 # 2) * H_pq * H_q)", "rational (2 # 3) * H_pq * H_q)")
+P_READ = ("rational (1 # 2) * H_pq * H_q;", "rational (2 # 3) * H_pq * H_q;")
 P_TOLD = ("Number (1 # 2) * Name 7 * Name 5)", "Number (2 # 3) * Name 7 * Name 5)")
 ERRORS = [
     planted("a coefficient of L", "every_lie2", CHECKED, L_READ, L_TOLD),
@@ -68,17 +68,20 @@ ERRORS = [
     planted("any slopes of what is left out", "every_lie2", REALS,
             ("slopes_bounded 1 rest z ->", "True ->")),
     planted("a point outside", "every_lie2", REALS, ("forall z, U z ->", "forall z, True ->")),
+    planted("time in what is meant", "every_lie2", AGREES,
+            ("timed := false; separable := false; named_derivatives := Data.derivatives",
+             "timed := true; separable := false; named_derivatives := Data.derivatives")),
     planted("an agreement more", "every_lie2", CHECKED, ("agreement := 2", "agreement := 3")),
     planted("an agreement more in the theorem", "every_lie2", AGREES, ("(k <= 2)", "(k <= 3)")),
     planted("two derivatives exchanged", "every_lie2", CHECKED,
-            ("[0; 0]; [0; 1]", "[0; 1]; [0; 0]")),
+            ("[p; p]; [p; q]", "[p; q]; [p; p]")),
     planted(
-        "an H for which L is 0", "every_lie2", NOT_ZERO, ("(Number (1 # 6) * (Name 1) ^ 3 +", "(")
+        "an H for which L is 0", "every_lie2", SHOWN, ("(Number (1 # 6) * (Name 1) ^ 3 +", "(")
     ),
     planted("every H for a separable one", "every_separable", CHECKED,
-            ("separable := true", "separable := false")),
+            ("separable := true", "separable := false", 2)),
     planted("no time for an H with it", "every_in_time", CHECKED,
-            ("timed := true", "timed := false")),
+            ("timed := true", "timed := false", 2)),
     planted(
         "a leading form of other coordinates", "every_two_odd", CHECKED,
         ("(1%nat, 3%nat, (", "(1%nat, 2%nat, (", 2),
@@ -105,9 +108,9 @@ ERRORS = [
     planted("entries in another order", "every_kick_of_two", "form_is_preserved_over_the_reals",
             ("defect_entry 2 J a b = 0", "defect_entry 2 J a b = 1")),
     planted("a kick that is longer", "every_kick", "map_agrees_with_flow",
-            ("[(p)%F; (- (H_q))%F]", "[(p)%F; (- (H_q))%F; (H_q)%F]")),
+            ("[p; - H_q]", "[p; - H_q; H_q]")),
     planted("a kick by a function of p, too", "every_kick", CHECKED,
-            ("(- (Name 5))", "(- (Name 5 * Name 4))")),
+            ("(- Name 5)", "(- (Name 5 * Name 4))")),
 ]  # fmt: skip
 
 

@@ -15,8 +15,8 @@ EVERYWHERE = "step_is_symplectic_everywhere"
 POINT, INTERVAL = ("1 <= w <= 2", "2 <= w <= 3"), ("]%Z (1 # 1) (2 # 1)", "]%Z (2 # 1) (3 # 1)")
 B_READ = ("nth i [1 / 2; 1 / 2]", "nth i [1 / 3; 1 / 2]")
 B_TOLD = (
-    "b_formulas : list formula := [(Number (1 # 2))",
-    "b_formulas : list formula := [(Number (1 # 3))",
+    "b : list formula := [(Number (1 # 2))",
+    "b : list formula := [(Number (1 # 3))",
 )
 A_READ = ("[1 / 6 * w + 1 / 4; 1 / 4]]", "[1 / 6 * w + 1 / 3; 1 / 4]]")
 A_TOLD = (
@@ -33,15 +33,17 @@ ERRORS = [
             ("near (2 * 1) x (solves_method 1 2 h", "near (2 * 1) x (solves_method 1 1 h")),
     planted("a root of another polynomial", "gauss4", HOLD,
             ("[((Name 1) ^ 2 - Number (3 # 1))", "[((Name 1) ^ 2 - Number (2 # 1))")),
-    planted("another equation of the root", "gauss4", ROOT, ("w ^ 2 - 3 = 0", "w ^ 2 - 2 = 0")),
+    planted("another equation of the root", "gauss4", ROOT,
+            ("w ^ 2 - 3 = 0 /\\", "w ^ 2 - 2 = 0 /\\")),
     planted("an interval that has no root", "gauss4", ROOT, POINT, INTERVAL),
     planted("an interval as it is read", "gauss4", ROOT, POINT),
     planted("a polynomial without a root", "gauss4", ROOT,
-            ("[-3; 0; 1]%Z", "[3; 0; 1]%Z", 2), ("w ^ 2 - 3 = 0", "w ^ 2 + 3 = 0")),
+            ("[-3; 0; 1]%Z", "[3; 0; 1]%Z", 2), ("w ^ 2 - 3 = 0 /\\", "w ^ 2 + 3 = 0 /\\")),
     planted("another factor", "fit_by_a_root", CHECKED,
             ("(Number (1 # 2))%formula)]; []]", "(Number (1 # 3))%formula)]; []]")),
     planted("another relation", "fit_by_a_root", CHECKED,
             ("[((Name 1) ^ 2 - Number (2 # 1))", "[((Name 1) ^ 2 - Number (5 # 1))"),
+            ("w ^ 2 - 2 = 0 ->", "w ^ 2 - 5 = 0 ->"),
             ("w ^ 2 - 2 = 0 /\\ 1 <= w <= 2", "w ^ 2 - 5 = 0 /\\ 1 <= w <= 3"),
             ("[-2; 0; 1]%Z", "[-5; 0; 1]%Z", 2), ("]%Z (1 # 1) (2 # 1)", "]%Z (1 # 1) (3 # 1)")),
     planted("a share", "two_roots", CHECKED, ("share_p := 1 / 3", "share_p := 1 / 2"),

@@ -50,6 +50,7 @@ def of_every(entries: Expansion) -> Export:
         needs=_NEEDS if shown is None else (*_NEEDS, "EveryNonzero"),
         template="every",
         of_rings=True,
+        shows_nonzero=order is None or shown is not None,
         values={
             "n": n,
             "planar": entries.planar,
@@ -73,9 +74,9 @@ def of_every(entries: Expansion) -> Export:
             "order": order,
             "shown": shown
             and {
-                "entry": tuple(names.coordinates[x] for x in shown[0]),
-                "energy": spelled.scoped(shown[1]),
-                "point": list_of("0" for _ in names.coordinates),
+                "entry": tuple(names.coordinates[x] for x in shown.entry),
+                "energy": spelled.scoped(shown.energy),
+                "point": list_of(rational(shown.point[x]) for x in names.coordinates),
             },
             "leading": names.form(entries.leading),
             "potential": None if potential is None else names.form(potential),

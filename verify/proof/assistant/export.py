@@ -37,7 +37,8 @@ def exported(path: Path, *, stands_alone: bool = True) -> Exported:
     data = read_json(path, FORMAT)
     try:
         entries = check(data)
-        of, export = established(entries), _export(entries)
+        export = _export(entries)
+        of = established(entries, nonzero=export.shows_nonzero)
     except InputError:
         raise
     except ValueError as reason:

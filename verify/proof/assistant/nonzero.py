@@ -1,45 +1,81 @@
 """What shows that the first coefficient of a defect is not 0: numbers that Rocq calculates with.
 
-For every H, a polynomial H for which it is not 0 at p = q = 0. For one H, a derivative of it at a
-rational point at which sin, cos and exp are taken of 0, so that all values are rational.
+For every H, a polynomial H for which it is not 0 at a rational point. For one H, a derivative of it
+at a rational point at which sin, cos and exp are taken of 0, so that all values are rational.
 """
 
-from collections.abc import Iterator, Mapping
+import random
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations_with_replacement, islice, product
 from math import factorial, prod
 
 from verify.proof.certificates.checker import Identities
-from verify.proof.certificates.entries import Expansion, derived_by
+from verify.proof.certificates.entries import Expansion, Function, derived_by
 from verify.proof.certificates.readers import Poly
 
 _POINTS = 4000
 _TRIED = 40  # of them, those where all is defined
 _NUMBERS = tuple(map(Fraction, ("0", "1", "-1", "2", "1/2", "-2", "3")))
+_ENERGIES = 20  # that are drawn
 _DERIVATIVES = 6  # by how many coordinates the coefficient is derived
 _AT_ZERO = {"sin": Fraction(0), "cos": Fraction(1), "exp": Fraction(1)}
 Entry = tuple[str, str]
 
 
-def energy_that_shows(entries: Expansion) -> tuple[Entry, Poly] | None:
-    """The entry of L that is not 0 for an H, and that polynomial H; None where none is found."""
+@dataclass(frozen=True)
+class ShownByEnergy:
+    """An entry of L, and a polynomial H for which it is not 0 at a point, by its coordinates."""
+
+    entry: Entry
+    energy: Poly
+    point: Mapping[str, Fraction]
+
+
+def energy_that_shows(entries: Expansion) -> ShownByEnergy | None:
+    """What shows that L is not 0 for every H; None where nothing is found."""
     for entry, leading in entries.leading.items():
-        for names in sorted(leading, key=len):  # one term that is not 0, and not many beside it
-            values = {name: Fraction(1) for name in names if name.startswith("H_")}
+        for values in _values_of_derivatives(leading):
             if _value(leading, values):
-                return entry, _energy(values)
+                point = {x: values.get(x, Fraction(0)) for x in (*entries.coordinates, "t")}
+                return ShownByEnergy(entry, _energy(values, point), point)
     return None
 
 
-def _energy(values: Mapping[str, Fraction]) -> Poly:
-    """The polynomial whose derivatives at 0 these are."""
+def _values_of_derivatives(leading: Poly) -> Iterator[dict[str, Fraction]]:
+    """Values that some H has: derivatives at a point are free."""
+    for names in sorted(leading, key=len):  # one term that is not 0, and not many beside it
+        yield dict.fromkeys(names, Fraction(1))
+    names_of_all = sorted({name for names in leading for name in names})
+    for attempt in range(_ENERGIES):
+        drawn = random.Random(attempt)  # noqa: S311 - no secret
+        yield {name: Fraction(drawn.randint(-3, 3)) for name in names_of_all}
+
+
+def _energy(values: Mapping[str, Fraction], point: Mapping[str, Fraction]) -> Poly:
+    """The polynomial whose derivatives at the point these are."""
     made: Poly = {}
     for name, value in values.items():
+        if not name.startswith("H_") or not value:
+            continue
         by = derived_by(name)
-        if value:
-            made[tuple(sorted(by))] = value / prod(factorial(by.count(x)) for x in set(by))
+        term: Poly = {(): value / prod(factorial(by.count(x)) for x in set(by))}
+        for x in by:  # times (x - its value)
+            term = _sum([*_times(term, x, Fraction(1)), *_times(term, None, -point[x])])
+        made = _sum([*made.items(), *term.items()])
     return made
+
+
+def _times(x: Poly, name: str | None, c: Fraction) -> list[tuple[tuple[str, ...], Fraction]]:
+    return [(tuple(sorted([*names, *([name] if name else [])])), c * d) for names, d in x.items()]
+
+
+def _sum(terms: Iterable[tuple[tuple[str, ...], Fraction]]) -> Poly:
+    total: Poly = {}
+    for names, c in terms:
+        total[names] = total.get(names, Fraction(0)) + c
+    return {names: c for names, c in total.items() if c}
 
 
 def _value(x: Poly, values: Mapping[str, Fraction]) -> Fraction:
@@ -89,15 +125,40 @@ def _points(entries: Expansion) -> Iterator[dict[str, Fraction]]:
     # 0 first, as arguments have to be; of a parameter last, as it may hide what is sought.
     own = (*_NUMBERS[1:], _NUMBERS[0])
     choices = [own if name in entries.parameters else _NUMBERS[:4] for name in names]
+    seen: list[dict[str, Fraction]] = []
     for tried in islice(product(*choices), _POINTS):
-        values = dict(zip(names, tried, strict=True))
-        for made in entries.functions:
-            argument = _value(made.argument, values)
-            if made.kind == "inverse" and argument:
-                values[made.name] = 1 / argument
-            elif made.kind != "inverse" and not argument:
-                values[made.name] = _AT_ZERO[made.kind]
-            else:
-                break
-        else:
-            yield values
+        found = _moved(entries.functions, dict(zip(names, tried, strict=True)))
+        if found is not None and found not in seen:
+            seen.append(found)
+            yield found
+
+
+def _moved(
+    functions: Sequence[Function], at: Mapping[str, Fraction]
+) -> dict[str, Fraction] | None:
+    """Such a point, with the values of all functions there: this one, or one beside it.
+
+    Where a function is of something else than 0, one of the names in its argument gets another
+    value, which no function before it depends on.
+    """
+    values, kept = dict(at), set[str]()
+    for made in functions:
+        argument = _value(made.argument, values)
+        if made.kind == "inverse" and not argument:
+            return None
+        if made.kind != "inverse" and argument:
+            name = next((x for x in at if x not in kept and _slope(made, x, values)), None)
+            if name is None:
+                return None
+            values[name] -= argument / _slope(made, name, values)
+        kept |= {name for names in made.argument for name in names}
+        values[made.name] = 1 / argument if made.kind == "inverse" else _AT_ZERO[made.kind]
+    return values
+
+
+def _slope(made: Function, name: str, values: Mapping[str, Fraction]) -> Fraction:
+    """By how much the argument grows with the name; 0 where not by the same everywhere."""
+    if any(names.count(name) > 1 for names in made.argument):
+        return Fraction(0)
+    rest = {tuple(x for x in m if x != name): c for m, c in made.argument.items() if name in m}
+    return _value(rest, values)

@@ -50,10 +50,12 @@ def of_one(entries: Expansion, hamiltonian: Poly) -> Export:
     slopes = [algebra.slopes[by] for by in entries.coordinates]
     known = known_power(entries)
     spelled, shallow = names.deep, names.shallow
+    shown = point_that_shows(entries) if order is not None else None
     needs = (*_NEEDS, *(_EXACT if order is None else _OF_ORDER))
     return Export(
         needs=needs if potential is None else (*needs, *_TELESCOPING),
         template="one",
+        shows_nonzero=order is None or shown is not None,
         values={
             "n": len(entries.coordinates) // 2,
             "planar": entries.planar,
@@ -63,7 +65,7 @@ def of_one(entries: Expansion, hamiltonian: Poly) -> Export:
             "agreement": entries.convergence_order,
             "known": known,
             "degree": max(map(len, entries.after)) - 1,
-            "shown": names.shown(point_that_shows(entries)) if order is not None else None,
+            "shown": names.shown(shown),
             "order": order,
             "potential": potential,
             "domain": names.domain(),

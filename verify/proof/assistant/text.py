@@ -28,13 +28,15 @@ _TEMPLATES = Path(__file__).parent / "templates"
 class Export:
     """`needs`: files of the theory; `template`, with `values`: definitions, theorems, proofs.
 
-    `of_rings`: whether the theorems are of any ring, and assume nothing.
+    `of_rings`: whether the theorems are of any ring, and assume nothing. `shows_nonzero`: whether
+    one of them is that L is not 0, where there is an L.
     """
 
     needs: Sequence[str]
     template: str
     values: dict[str, Any]
     of_rings: bool = False
+    shows_nonzero: bool = True
 
 
 def written(export: Export, of: Established, *, stands_alone: bool) -> str:
@@ -42,7 +44,12 @@ def written(export: Export, of: Established, *, stands_alone: bool) -> str:
     theory = as_modules(export.needs) if stands_alone else imported(export.needs)
     said = [line for text in _said(of) for line in wrap(text, _WIDTH, subsequent_indent="  ")]
     statement = "\n    ".join(wrap(_comment(of.statement), _WIDTH))
-    words = {"statement": statement, "said": said, "alone": stands_alone}
+    words = {
+        "statement": statement,
+        "said": said,
+        "alone": stands_alone,
+        "shows_nonzero": export.shows_nonzero,
+    }
     head = _environment().get_template("head.jinja").render(words)
     body = body_of(export)
     asked = _asked(body[body.index(_CLAIMED) :], of_rings=export.of_rings)
@@ -98,10 +105,14 @@ def _environment() -> Environment:
 def _said(of: Established) -> list[str]:
     told = {"H": of.hamiltonian, "L": of.leading, "G": of.potential, "map": of.scheme}
     return [
-        f"{name} = {_comment(text if len(text) <= _LONGEST else text[:_LONGEST] + ' ...')}"
+        f"{name} = {_comment(text if len(text) <= _LONGEST else _cut(text))}"
         for name, text in told.items()
         if text
     ] + [f"where {_comment(text)}" for text in of.domain]
+
+
+def _cut(text: str) -> str:
+    return f"{text[:_LONGEST].rsplit(' ', 1)[0]} ..."
 
 
 def _comment(text: str) -> str:

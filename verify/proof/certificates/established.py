@@ -52,14 +52,16 @@ class Established:
     numbers: tuple[str, ...] = ()
 
 
-def established(entries: Stages | Tableau | Expansion) -> Established:
+def established(entries: Stages | Tableau | Expansion, *, nonzero: bool = True) -> Established:
     """What the theorem of `verify.proof.certificates.checker` says of these entries.
+
+    `nonzero`: whether it is said that L is not 0.
 
     Raises ValueError where a formula is too long to be written out.
     """
     if isinstance(entries, Stages):
         return _of_stages(entries)
-    return _of_tableau(entries) if isinstance(entries, Tableau) else _of_expansion(entries)
+    return _of_tableau(entries) if isinstance(entries, Tableau) else _of_expansion(entries, nonzero)
 
 
 def _of_stages(entries: Stages) -> Established:
@@ -142,7 +144,7 @@ def _between(start: str, end: str, share: Poly) -> str:
     return f"{start} + ({_poly(share)})*({end} - {start})"
 
 
-def _of_expansion(entries: Expansion) -> Established:
+def _of_expansion(entries: Expansion, nonzero: bool) -> Established:
     written = _Writer(entries.functions, planar=entries.planar)
     which, degrees = _WHICH[entries.separable, entries.timed], len(entries.coordinates) // 2
     what, less = ("det J", "det J − 1") if entries.planar else (_SYMPLECTIC, _SYMPLECTIC)
@@ -152,8 +154,9 @@ def _of_expansion(entries: Expansion) -> Established:
     agreed, order = entries.convergence_order, entries.order
     area = f"{what} = {1 if entries.planar else 0}"
     if order is not None:
-        where = "" if of_one else " for some H"
-        area = f"{less} = L h^{order} + O(h^{order + 1}), L not zero{where}"
+        area = f"{less} = L h^{order} + O(h^{order + 1})"
+        if nonzero:
+            area += f", L not zero{'' if of_one else ' for some H'}"
     flow = f"which agrees with the flow up to h^{agreed}{_telescopes(entries)}"
     formulas = [written.series(x, entries.last) for x in entries.after]
     p_next: str | tuple[str, ...] = formulas[0] if entries.planar else tuple(formulas[:degrees])

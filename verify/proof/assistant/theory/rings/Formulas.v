@@ -168,7 +168,7 @@ Section Soundness.
     rewrite seq_S, map_app, value_of_terms, IH. simpl. rewrite (rational_zero K). ring.
   Qed.
 
-  Lemma value_of_sum : forall names terms, 
+  Lemma value_of_sum : forall names terms,
     (forall f, In f terms -> value_of names f == @zero K) ->
     value_of names (sum_of terms) == @zero K.
   Proof.
