@@ -8,6 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from tests.helpers.two_names import with_square
 from verify.commands.main import cli
 from verify.proof.assistant.export import Exported, exported
 from verify.proof.certificates.file import FORMAT
@@ -107,7 +108,12 @@ WRITTEN = {
     | {"separable": True, "numbers": [_ROOT_OF_2, _ROOT_OF_3],
        "stages": [[[_W], [_V], "1/3", "2/3"]]},
 }  # fmt: skip
-ALL = {**EVERY, **ONE, **COEFFICIENTS, **WRITTEN}
+# Where a function has two names, and what is 0 is seen to be so by both of their relations.
+RENAMED = {
+    "two_names": ("quotient", "inverse", [["1", "q", "q"]]),
+    "two_names_of_sum": ("functions", "inverse", [["1"], ["2", "q", "q"], ["1", *"qqqq"]]),
+}
+ALL = {**EVERY, **ONE, **COEFFICIENTS, **WRITTEN, **RENAMED}
 
 
 def certificate(name: str) -> dict[str, Any]:
@@ -117,6 +123,11 @@ def certificate(name: str) -> dict[str, Any]:
 
 @cache
 def _text(name: str) -> str:
+    if name in RENAMED:
+        of, kind, argument = RENAMED[name]
+        data = certificate(of)
+        old = next(own for own, its_kind, _ in data["functions"] if its_kind == kind)
+        return json.dumps(with_square(data, old, "#99", argument))
     asked = {**EVERY, **ONE, **COEFFICIENTS}
     return json.dumps(WRITTEN[name] if name in WRITTEN else proved(asked[name]))
 

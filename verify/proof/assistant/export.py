@@ -11,6 +11,7 @@ from verify.proof.assistant.every import of_every
 from verify.proof.assistant.formulas import KEYWORDS
 from verify.proof.assistant.one import of_one
 from verify.proof.assistant.text import Export, body_of, theorems_of, written
+from verify.proof.assistant.used import with_used_functions
 from verify.proof.certificates.checker import check
 from verify.proof.certificates.coefficients import Stages, Tableau
 from verify.proof.certificates.entries import Expansion
@@ -37,6 +38,8 @@ def exported(path: Path, *, stands_alone: bool = True) -> Exported:
     data = read_json(path, FORMAT)
     try:
         entries = check(data)
+        if isinstance(entries, Expansion):
+            entries = with_used_functions(entries)
         export = _export(entries)
         of = established(entries, nonzero=export.shows_nonzero)
     except InputError:

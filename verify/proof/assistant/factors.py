@@ -11,6 +11,7 @@ from fractions import Fraction
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from verify.errors import NOT_GIVEN, InputError
+from verify.proof.assistant.basis import Basis
 from verify.proof.certificates.checker import Identities
 from verify.proof.certificates.entries import Expansion
 from verify.proof.certificates.readers import Poly
@@ -73,10 +74,10 @@ class Reducer:
         # The ring's own names: what a certificate calls a function is no name there.
         plain = [f"x{k}" for k in range(len(names))]
         self.ring = fmpq_mpoly_ctx.get(plain, Ordering.lex)
-        self.relations = [(number, self.element(x)) for number, x in relations]
+        self.basis = Basis(self.ring, [(number, self.element(x)) for number, x in relations])
 
     def all_factors(self, gaps: Iterable[Poly]) -> list[Factors]:
-        """Those of each gap; InputError where reducing one does not end at 0."""
+        """Those of each gap; InputError where one is not seen to be 0."""
         return [self.factors(gap) for gap in gaps]
 
     def element(self, x: Poly) -> fmpq_mpoly:
@@ -97,15 +98,7 @@ class Reducer:
 
     def factors(self, gap: Poly) -> Factors:
         """The factors of this gap."""
-        left, found = self.element(gap), dict[int, fmpq_mpoly]()
-        changed = True
-        while changed and not left.is_zero():
-            changed = False
-            for number, relation in self.relations:
-                quotient, left = divmod(left, relation)
-                if not quotient.is_zero():
-                    changed = True
-                    found[number] = found.get(number, self.ring.from_dict({})) + quotient
-        if not left.is_zero():
+        found = self.basis.sum_of(self.element(gap))
+        if found is None:
             raise InputError("certificate", NOT_GIVEN, "an identity is not seen by reducing")
-        return [(number, self.poly(factor)) for number, factor in sorted(found.items())]
+        return [(number, self.poly(factor)) for number, factor in sorted(found.items()) if factor]

@@ -39,6 +39,7 @@ _OWN = frozenset(("True", "I", "conj", "proj1", "proj2"))  # words that are writ
 _OF_ORDER = ("RationalValues", "Nonzero")
 _EXACT = ("RealExact", "ExactClaims")
 _TELESCOPING = ("RealPotential",)
+_LONGEST = 20_000  # characters of a function, written out
 _PARTNERS = {"sin": "cos", "cos": "sin"}
 _KINDS = {"sin": "Sine", "cos": "Cosine", "exp": "Exponential", "inverse": "Inverse"}
 
@@ -69,7 +70,6 @@ def of_one(entries: Expansion, hamiltonian: Poly) -> Export:
             "order": order,
             "potential": potential,
             "domain": names.domain(),
-            "inverses": names.inside(),
             "maps": [
                 {"coordinate": name, "coefficients": shallow.list(series)}
                 for name, series in zip(entries.coordinates, entries.after, strict=True)
@@ -114,7 +114,10 @@ class _Names:
         self.calls = dict[str, str]()
         for function in entries.functions:  # inner ones first
             kind = "/" if function.kind == "inverse" else function.kind
-            self.calls[function.name] = f"{kind} {self.shallow.argument(function.argument)}"
+            call = f"{kind} {self.shallow.argument(function.argument)}"
+            if len(call) > _LONGEST:
+                raise ValueError("a function is too long to be written out")
+            self.calls[function.name] = call
 
     def _word(self, name: str) -> str:
         return self.calls.get(name) or self.written.get(name, name)
@@ -138,17 +141,6 @@ class _Names:
         """That no denominator is 0."""
         conditions = [f"{self.shallow.argument(x)} <> 0" for x in self._below()]
         return self.bound(" /\\ ".join(conditions) or "True")
-
-    def inside(self) -> list[str]:
-        """How `domain` shows that each function is defined, in their order."""
-        proofs, seen, count = [], 0, len(self._below())
-        for function in self.entries.functions:
-            if function.kind != "inverse":
-                proofs.append("discriminate F")
-                continue
-            proofs.append(f"exact ({_nested(seen, seen == count - 1)})")
-            seen += 1
-        return proofs
 
     def bound(self, text: str) -> str:
         """The text, in which the coordinates are those of z where there are several degrees."""
@@ -175,11 +167,6 @@ class _Names:
         given = [values[name] for name in self.entries.parameters]
         at = [f"({signed(x)})" for x in given]
         moving = [*self.entries.coordinates, *("t",) * self.entries.timed]
-        proofs = [
-            f"(Y (nth {k} (made Data.names) (Exponential, Number 0)) ltac:(simpl; tauto) eq_refl)"
-            for k, f in enumerate(self.entries.functions)
-            if f.kind == "inverse"
-        ]
         return {
             "at": " ".join([*at, *(moving if self.entries.planar else ["z"])]),
             "entry": [f"{self.coordinates[x]}%nat" for x in found.entry],
@@ -187,21 +174,8 @@ class _Names:
             "given": list_of(map(rational, given)),
             "numbers": list_of(rational(values[name]) for name in names),
             "by": list_of(self.coordinates[x] for x in found.by),
-            "defined": _conjunction(proofs) if proofs else "I",
         }
 
     def factor_list(self, factors: Iterable[tuple[int, Poly]]) -> str:
         """The factors of a gap, each with the number of its relation."""
         return list_of(f"({k}%nat, {self.deep.scoped(x)})" for k, x in factors)
-
-
-def _conjunction(proofs: list[str]) -> str:
-    return proofs[0] if len(proofs) == 1 else f"(conj {proofs[0]} {_conjunction(proofs[1:])})"
-
-
-def _nested(place: int, last: bool) -> str:
-    """That of this place in D : A /\\ (B /\\ (C /\\ …))."""
-    found = "D"
-    for _ in range(place):
-        found = f"proj2 ({found})"
-    return found if last else f"proj1 ({found})"

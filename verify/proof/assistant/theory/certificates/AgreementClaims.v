@@ -102,3 +102,52 @@ Proof.
   intros f t slope rest whole D E.
   rewrite <- E, (uniqueness_limite _ _ _ _ D (derivable_pt_lim_const f t)). ring.
 Qed.
+
+(** Where names are defined depends on the coordinates alone; two points whose coordinates are the
+    same need not be told to be so by writing out all functions. *)
+Lemma inside_at_same : forall v given y z, (forall c, (c < dimension v)%nat -> y c = z c) ->
+  inside v given z -> inside v given y.
+Proof.
+  intros v given y z E I m M K.
+  replace (names_at v given y) with (names_at v given z); [exact (I m M K)|].
+  unfold names_at. f_equal. f_equal. apply map_ext_in. intros c C. apply in_seq in C.
+  symmetry. apply E. lia.
+Qed.
+
+(** What is divided by. *)
+Definition denominators (l : list (kind * formula)) : list formula :=
+  flat_map (fun m => match fst m with Inverse => [snd m] | _ => [] end) l.
+
+(** None of these is 0, as one writes that. *)
+Fixpoint none_is_zero (names : list R) (l : list formula) : Prop :=
+  match l with
+  | [] => True
+  | [f] => @value_of real_numbers names f <> 0
+  | f :: others => @value_of real_numbers names f <> 0 /\ none_is_zero names others
+  end.
+
+Lemma inside_where_none_is_zero : forall v given z,
+  none_is_zero (names_at v given z) (denominators (made v)) -> inside v given z.
+Proof.
+  intros v given z D m M K.
+  assert (I : In (snd m) (denominators (made v))).
+  { apply in_flat_map. exists m. rewrite K. split; [exact M|left; reflexivity]. }
+  revert D I. generalize (denominators (made v)) as l. induction l as [|f l IH]; [intros _ []|].
+  intros D [E|I].
+  - rewrite <- E. destruct l; [exact D|exact (proj1 D)].
+  - destruct l; [destruct I|exact (IH (proj2 D) I)].
+Qed.
+
+Lemma none_is_zero_inside : forall v given z, inside v given z ->
+  none_is_zero (names_at v given z) (denominators (made v)).
+Proof.
+  intros v given z I.
+  assert (D : forall f, In f (denominators (made v)) ->
+    @value_of real_numbers (names_at v given z) f <> 0).
+  { intros f F. apply in_flat_map in F. destruct F as [[k g] [M F]].
+    destruct k; simpl in F; try contradiction. destruct F as [<-|[]]. exact (I _ M eq_refl). }
+  revert D. generalize (denominators (made v)) as l.
+  induction l as [|f l IH]; intro D; [exact Logic.I|].
+  destruct l as [|g l]; [apply D; left; reflexivity|].
+  split; [apply D; left; reflexivity|apply IH; intros h F; apply D; right; exact F].
+Qed.
