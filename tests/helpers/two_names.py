@@ -8,7 +8,6 @@ from verify.proof.certificates.entries import read
 from verify.proof.certificates.readers import Poly
 
 
-
 class _Gaps(Identities):
     """What the small checker asks to be 0, by the names that it has for cofactors of it."""
 

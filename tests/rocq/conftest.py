@@ -28,7 +28,8 @@ def exports(tmp_path_factory: pytest.TempPathFactory, theory: Path) -> Path:
         def compile_one(name: str) -> None:
             folders = {} if name in alone else beside(theory)
             try:
-                accepted(folder / f"{name}.v", {**texts, **alone}[name], folders)
+                said = accepted(folder / f"{name}.v", {**texts, **alone}[name], folders)
+                (folder / f"{name}.said").write_text(said, encoding="utf-8")
             except AssertionError as error:
                 (folder / f"{name}.refused").write_text(str(error), encoding="utf-8")
 

@@ -6,7 +6,7 @@ import pytest
 
 from tests.helpers.exports import ALL, EVERY, WRITTEN, export
 from tests.helpers.rocq import accepted, beside, changed, coqc
-from tests.helpers.rocq_assumptions import OF_THE_REALS, asked_together, printed_assumptions
+from tests.helpers.rocq_assumptions import OF_THE_REALS, printed_assumptions
 from tests.rocq import STAND_ALONE
 
 ALONE = [f"{name}_alone" for name in STAND_ALONE]
@@ -21,23 +21,22 @@ def test_coqc_takes_the_export(exports: Path, name: str) -> None:
     assert (exports / f"{name}.vo").exists()
 
 
-def test_theorems_of_exports_assume_what_the_reals_do_or_nothing(
-    theory: Path, exports: Path, tmp_path: Path
+@pytest.mark.parametrize("name", [*ALL, *ALONE])
+def test_an_export_prints_that_it_assumes_what_the_reals_do_or_nothing(
+    exports: Path, name: str
 ) -> None:
-    every = [name for name in (*EVERY, *WRITTEN) if name.startswith("every")]
-    groups: dict[str, list[str]] = {"of_rings": [], "of_reals": []}
-    for name in [*ALL, *ALONE]:
-        for theorem in export(name.removesuffix("_alone")).theorems:
-            of_rings = name in every and not theorem.endswith(OF_REALS)
-            groups["of_rings" if of_rings else "of_reals"].append(f"{name}.{theorem}")
-    assert all(any(x.startswith(f"{name}.") for x in groups["of_rings"]) for name in every)
-    asked = f"Require {' '.join([*ALL, *ALONE])}.\n" + "".join(
-        asked_together(group, theorems) for group, theorems in groups.items()
-    )
-    folders = {**beside(theory), "": exports}  # their names stand alone
-    algebraic, real = printed_assumptions(accepted(tmp_path / "asked.v", asked, folders))
-    assert algebraic == frozenset()
-    assert frozenset() < real <= OF_THE_REALS
+    found = printed_assumptions((exports / f"{name}.said").read_text(encoding="utf-8"))
+    plain = name.removesuffix("_alone")
+    theorems = export(plain).theorems
+    if plain not in (*EVERY, *WRITTEN) or not plain.startswith("every"):
+        (of_all,) = found
+        assert frozenset() < of_all <= OF_THE_REALS
+        return
+    # Those of rings are asked one by one, and those over the reals together.
+    *of_rings, of_reals = found
+    assert len(of_rings) == sum(not theorem.endswith(OF_REALS) for theorem in theorems)
+    assert set(of_rings) == {frozenset()}
+    assert frozenset() < of_reals <= OF_THE_REALS
 
 
 def test_an_axiom_in_an_export_is_told_by_rocq(theory: Path, tmp_path: Path) -> None:
@@ -49,8 +48,26 @@ def test_an_axiom_in_an_export_is_told_by_rocq(theory: Path, tmp_path: Path) -> 
         "Axiom checked : sound_for_every meant certified.",
     )
     path = tmp_path / f"{name}.v"
-    of_rings = [x for x in export(name).theorems if not x.endswith(OF_REALS)]
-    path.write_text(text + asked_together("asked", of_rings), encoding="utf-8")
+    path.write_text(text, encoding="utf-8")
     found = coqc(path, beside(theory))
     assert found.status == 0, found.complaints
-    assert printed_assumptions(found.said) == [frozenset({"checked"})]
+    *of_rings, of_reals = printed_assumptions(found.said)
+    assert set(of_rings) == {frozenset({"Data.checked"})}
+    assert of_reals - OF_THE_REALS == {"Data.checked"}
+
+
+def test_what_stands_in_the_data_hides_nothing_of_what_is_read(
+    theory: Path, tmp_path: Path
+) -> None:
+    """H, and a word of the theory, that mean something else there."""
+    name = "every_kick"
+    text = changed(
+        export(name).text,
+        "End Data.",
+        "Definition meant_otherwise := meant. Definition belongs := True. "
+        'Definition hamiltonian := 0. Notation "x == y" := True : ring_of_functions. End Data.',
+    )
+    said = accepted(tmp_path / f"{name}.v", text, beside(theory))
+    *of_rings, of_reals = printed_assumptions(said)
+    assert set(of_rings) == {frozenset()}
+    assert of_reals <= OF_THE_REALS

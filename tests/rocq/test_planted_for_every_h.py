@@ -84,10 +84,10 @@ ERRORS = [
             ("timed := true", "timed := false", 2)),
     planted(
         "a leading form of other coordinates", "every_two_odd", CHECKED,
-        ("(1%nat, 3%nat, (", "(1%nat, 2%nat, (", 2),
+        ("(1%nat, 3%nat, (", "(1%nat, 2%nat, ("), ("(1%nat, 3%nat, H", "(1%nat, 2%nat, H"),
     ),
     planted("a form that is read of other coordinates", "every_two_odd", "defect_has_its_order",
-            ("(1%nat, 3%nat, (H_", "(1%nat, 2%nat, (H_")),
+            ("(1%nat, 3%nat, H_", "(1%nat, 2%nat, H_")),
     planted("an order less of a form at a number", "every_two_odd", FORM_NUMBER,
             ("h ^ 2 * L s a b", "h ^ 1 * L s a b")),
     planted("another entry at a number", "every_two_odd", FORM_NUMBER,

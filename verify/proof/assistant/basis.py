@@ -23,9 +23,7 @@ class _Element(NamedTuple):
 class Basis:
     """Relations, each with its number, of polynomials in one ring."""
 
-    def __init__(
-        self, ring: fmpq_mpoly_ctx, relations: Iterable[tuple[int, fmpq_mpoly]]
-    ) -> None:
+    def __init__(self, ring: fmpq_mpoly_ctx, relations: Iterable[tuple[int, fmpq_mpoly]]) -> None:
         self.ring = ring
         one = ring.constant(1)
         self.elements = [_Element(x, {number: one}) for number, x in relations if x]

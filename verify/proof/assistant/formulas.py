@@ -97,7 +97,7 @@ class Spelling:
 
 def is_name(x: Poly) -> bool:
     """Whether the polynomial is one name alone."""
-    return [(len(names), c) for names, c in x.items()] == [(1, 1)]
+    return len(x) == 1 and all(len(names) == 1 and c == 1 for names, c in x.items())
 
 
 def _is_power(names: Sequence[str]) -> bool:

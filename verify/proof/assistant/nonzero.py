@@ -133,9 +133,7 @@ def _points(entries: Expansion) -> Iterator[dict[str, Fraction]]:
             yield found
 
 
-def _moved(
-    functions: Sequence[Function], at: Mapping[str, Fraction]
-) -> dict[str, Fraction] | None:
+def _moved(functions: Sequence[Function], at: Mapping[str, Fraction]) -> dict[str, Fraction] | None:
     """Such a point, with the values of all functions there: this one, or one beside it.
 
     Where a function is of something else than 0, one of the names in its argument gets another

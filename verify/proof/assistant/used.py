@@ -27,7 +27,9 @@ def with_used_functions(entries: Expansion) -> Expansion:
             kept.append(made)
     order = {made.name: k for k, made in enumerate(entries.functions)}
     functions = tuple(sorted(kept, key=lambda made: order[made.name]))
-    need(len(functions) <= _MOST, f"it needs more than {_MOST} functions, which coqc takes long for")
+    need(
+        len(functions) <= _MOST, f"it needs more than {_MOST} functions, which coqc takes long for"
+    )
     said = f"its functions are nested more than {_DEEPEST} deep, which coqc takes long for"
     need(_depth(functions) <= _DEEPEST, said)
     return replace(entries, functions=functions)
@@ -44,9 +46,7 @@ def _depth(functions: Iterable[Function]) -> int:
 
 def _is_partner(made: Function, kept: list[Function]) -> bool:
     """Whether it is the cos of a sin, or the sin of a cos, that is needed."""
-    return any(
-        f.argument == made.argument and _PARTNERS.get(f.kind) == made.kind for f in kept
-    )
+    return any(f.argument == made.argument and _PARTNERS.get(f.kind) == made.kind for f in kept)
 
 
 def _polys(entries: Expansion) -> Iterator[Poly]:

@@ -9,7 +9,9 @@ from tests.helpers.rocq_assumptions import without_comments
 from verify.proof.assistant.shipped import files, text_of
 
 _STATED = re.compile(r"^(?:Theorem|Lemma) (\w+)", re.MULTILINE)
-_DEFINED = re.compile(r"^(?:Theorem|Lemma|Definition|Fixpoint|Record|Inductive) (\w+)", re.MULTILINE)
+_DEFINED = re.compile(
+    r"^(?:Theorem|Lemma|Definition|Fixpoint|Record|Inductive) (\w+)", re.MULTILINE
+)
 _NOTATION = re.compile(r'^\s*(?:Notation|Infix) "[^"]*" := .*?\.$', re.MULTILINE)
 # By these a text changes what others mean, and in no module of their own.
 _FAR_REACHING = r"\b(?:Notation|Infix|Coercion|Canonical|Global|Export|Open Scope|Arguments|Bind)\b"
@@ -81,4 +83,7 @@ def test_the_theory_gives_no_notation_of_the_library_another_meaning() -> None:
             r"^Section (\w+)\.$.*?^End \1\.$", "", text_of(name), flags=re.DOTALL | re.MULTILINE
         )
         for notation in _NOTATION.findall(without_comments(outside)):
-            assert re.search(r": (?:formula_scope|ring_of_functions)\.$", notation), (name, notation)
+            assert re.search(r": (?:formula_scope|ring_of_functions)\.$", notation), (
+                name,
+                notation,
+            )
