@@ -102,7 +102,7 @@ ERRORS = [
     planted("another determinant", "every_kick", KEPT,
             ("(q_next s)) == one", "(q_next s)) == zero")),
     planted("another determinant over the reals", "every_kick", KEPT_REALS,
-            ("J 1%nat 0%nat = 1.", "J 1%nat 0%nat = 2.")),
+            ("J 1%nat 0%nat = 1)%R.", "J 1%nat 0%nat = 2)%R.")),
     planted("a map that is said to end sooner", "every_kick", VANISH,
             ("member) 2 eq_refl eq_refl", "member) 1 eq_refl eq_refl", 2)),
     planted("entries in another order", "every_kick_of_two", "form_is_preserved_over_the_reals",
