@@ -10,8 +10,6 @@ from tests.helpers.rocq_assumptions import OF_THE_REALS, printed_assumptions
 from tests.rocq import STAND_ALONE
 
 ALONE = [f"{name}_alone" for name in STAND_ALONE]
-# Of these theorems of an export for every H the H is one of real numbers.
-OF_REALS = ("first_coefficient_is_not_zero", "_over_the_reals")
 
 
 @pytest.mark.parametrize("name", [*ALL, *ALONE])
@@ -27,15 +25,13 @@ def test_an_export_prints_that_it_assumes_what_the_reals_do_or_nothing(
 ) -> None:
     found = printed_assumptions((exports / f"{name}.said").read_text(encoding="utf-8"))
     plain = name.removesuffix("_alone")
-    theorems = export(plain).theorems
     if plain not in (*EVERY, *WRITTEN) or not plain.startswith("every"):
         (of_all,) = found
         assert frozenset() < of_all <= OF_THE_REALS
         return
-    # Those of rings are asked one by one, and those over the reals together.
-    *of_rings, of_reals = found
-    assert len(of_rings) == sum(not theorem.endswith(OF_REALS) for theorem in theorems)
-    assert set(of_rings) == {frozenset()}
+    # Those of rings are asked together, and those over the reals.
+    of_rings, of_reals = found
+    assert of_rings == frozenset()
     assert frozenset() < of_reals <= OF_THE_REALS
 
 
@@ -51,8 +47,8 @@ def test_an_axiom_in_an_export_is_told_by_rocq(theory: Path, tmp_path: Path) -> 
     path.write_text(text, encoding="utf-8")
     found = coqc(path, beside(theory))
     assert found.status == 0, found.complaints
-    *of_rings, of_reals = printed_assumptions(found.said)
-    assert set(of_rings) == {frozenset({"Data.checked"})}
+    of_rings, of_reals = printed_assumptions(found.said)
+    assert of_rings == {"Data.checked"}
     assert of_reals - OF_THE_REALS == {"Data.checked"}
 
 
@@ -68,6 +64,6 @@ def test_what_stands_in_the_data_hides_nothing_of_what_is_read(
         'Definition hamiltonian := 0. Notation "x == y" := True : ring_of_functions. End Data.',
     )
     said = accepted(tmp_path / f"{name}.v", text, beside(theory))
-    *of_rings, of_reals = printed_assumptions(said)
-    assert set(of_rings) == {frozenset()}
+    of_rings, of_reals = printed_assumptions(said)
+    assert of_rings == frozenset()
     assert of_reals <= OF_THE_REALS

@@ -67,19 +67,21 @@ def theorems_of(body: str) -> tuple[str, ...]:
 
 
 def _asked(claimed: str, *, of_rings: bool) -> str:
-    """By which Rocq prints what the theorems assume.
+    """By which Rocq prints what the theorems assume: of rings, and over the real numbers.
 
-    For each theorem over the real numbers it would go through the library's anew, for more than a
-    second: it is asked of all of them together.
+    For each theorem it would go through the library anew, for about a second: it is asked of all
+    of a kind together.
     """
     rings, _, reals = claimed.partition(_OVER_THE_REALS) if of_rings else ("", "", claimed)
-    singly, together = _STATED.findall(rings), _STATED.findall(reals)
-    defined = ""
-    if len(together) > 1:
-        listed = ",\n  ".join(together)
-        together = ["theorems_over_the_reals"]
-        defined = f"Definition {together[0]} := (\n  {listed}).\n\n"
-    return defined + "".join(f"Print Assumptions {name}.\n" for name in [*singly, *together])
+    kinds = {"theorems_of_rings": rings, "theorems_over_the_reals": reals}
+    return "\n".join(_asked_of(name, _STATED.findall(text)) for name, text in kinds.items() if text)
+
+
+def _asked_of(name: str, theorems: Sequence[str]) -> str:
+    if len(theorems) == 1:
+        return f"Print Assumptions {theorems[0]}.\n"
+    listed = ",\n  ".join(theorems)
+    return f"Definition {name} := (\n  {listed}).\n\nPrint Assumptions {name}.\n"
 
 
 @cache
