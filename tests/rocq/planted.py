@@ -32,8 +32,11 @@ class Planted:
 def planted(
     what: str, name: str, place: str, *edits: tuple[str, str] | tuple[str, str, int]
 ) -> object:
-    """A parameter of a test, called after what is planted where."""
-    return pytest.param(Planted(what, name, place, edits), id=f"{name}: {what}")
+    """A parameter of a test, called after what is planted where.
+
+    A sample has each export and each place before it has one of them again.
+    """
+    return pytest.param(Planted(what, name, place, edits), id=f"{name}-{place}-{what}")
 
 
 def check_refused(it: Planted, theory: Path, folder: Path) -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from tests.helpers.exports import ALL, EVERY, WRITTEN, export
-from tests.helpers.rocq import accepted, beside, changed, coqc
+from tests.helpers.rocq import beside, changed, coqc
 from tests.helpers.rocq_assumptions import OF_THE_REALS, printed_assumptions
 from tests.rocq import STAND_ALONE
 
@@ -63,7 +63,10 @@ def test_what_stands_in_the_data_hides_nothing_of_what_is_read(
         "Definition meant_otherwise := meant. Definition belongs := True. "
         'Definition hamiltonian := 0. Notation "x == y" := True : ring_of_functions. End Data.',
     )
-    said = accepted(tmp_path / f"{name}.v", text, beside(theory))
-    of_rings, of_reals = printed_assumptions(said)
+    path = tmp_path / f"{name}.v"
+    path.write_text(text, encoding="utf-8")
+    found = coqc(path, beside(theory))  # which warns of the notation
+    assert found.status == 0, found.complaints
+    of_rings, of_reals = printed_assumptions(found.said)
     assert of_rings == frozenset()
     assert of_reals <= OF_THE_REALS

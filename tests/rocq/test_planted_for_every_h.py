@@ -114,6 +114,7 @@ ERRORS = [
 ]  # fmt: skip
 
 
+@pytest.mark.sample(14)
 @pytest.mark.parametrize("error", ERRORS)
 def test_a_planted_error_is_refused(error: Planted, theory: Path, tmp_path: Path) -> None:
     check_refused(error, theory, tmp_path)

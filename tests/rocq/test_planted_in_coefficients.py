@@ -77,6 +77,7 @@ ERRORS = [
 ]  # fmt: skip
 
 
+@pytest.mark.sample(9)
 @pytest.mark.parametrize("error", ERRORS)
 def test_a_planted_error_is_refused(error: Planted, theory: Path, tmp_path: Path) -> None:
     check_refused(error, theory, tmp_path)

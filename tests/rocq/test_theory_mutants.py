@@ -100,6 +100,7 @@ IDENTITIES = [
 ]  # fmt: skip
 
 
+@pytest.mark.sample(8)
 @pytest.mark.parametrize(
     ("name", "old", "new", "place"),
     [pytest.param(*each, id=f"{each[0]}: {each[-1]}") for each in [*MUTANTS, *CHECKS]],
@@ -120,6 +121,7 @@ def certified(identities: str) -> str:
     return f"{''.join(loaded)}{module}{rest}"
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(("old", "new", "place"), IDENTITIES, ids=lambda x: x.split()[0])
 def test_what_follows_from_identities_has_no_proof_from_others(
     theory: Path, tmp_path: Path, old: str, new: str, place: str
