@@ -93,10 +93,7 @@ def exact_motion(
         at = float(t0 + time)
         said = f"is `{_FAR:.0e}` times as far out as z0 at t = `{at:.6g}`"
         return search.found("escapes", read_prose(said), points)
-    if hamiltonian.time_dependent:
-        kind: Kind = "driven"
-    else:
-        kind = "bounded"
+    kind: Kind = "driven" if hamiltonian.time_dependent else "bounded"
     found = search.found(kind, prose(), points)
     near = moved(state, found.reach, _NEAR)
     try:
