@@ -30,20 +30,14 @@ from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.chunked_loop import ENTRIES
 from verify.kernels.step.in_degrees import map_of, preserves
-from verify.kernels.stepping import KernelRun
-from verify.runs.digits_on_demand import choose, measure
+from verify.kernels.stepping import KernelRun, Outcome
+from verify.runs.digits_on_demand import choose
 from verify.runs.estimated import working_digits
-from verify.studies.separation.chain import Chain, clock_is_exact, last_system, with_inputs
+from verify.studies.separation import links as separation
+from verify.studies.separation.chain import Chain
 from verify.studies.separation.form_run import POINTS, FormRun, FormWorking, Links, Size, links_of
-from verify.studies.separation.working import (
-    Advance,
-    Kind,
-    Link,
-    Stopped,
-    exact_link,
-    marks_of,
-    rounded_inputs,
-)
+from verify.studies.separation.links import AsLink, last_system
+from verify.studies.separation.working import Advance, exact_link
 
 PARTS = ("input", "trajectory", "derivatives", "product")  # of rounding, in the chain's order
 PARTS_IN_TIME = ("input", "clock", "trajectory", "derivatives", "product")
@@ -51,7 +45,6 @@ _CANCELLED = 20  # digits that the differences between links cancel
 _PRODUCTS = 20  # and those that MᵀΩM − Ω does
 _HIDDEN = 25  # digits further below the greatest entry a part is taken for noise
 _ATTEMPTS = 4
-_DOUBLINGS = 6
 
 
 @dataclass(frozen=True)
@@ -96,12 +89,12 @@ def form_chains(
     begun = lockstep.clock()
     if arithmetic == AUTO:
         arithmetic = choose(kernel_run, digits + _CANCELLED)
-    links = _Links(kernel_run, arithmetic, digits + _CANCELLED, advance)
+    links = _FormLinks(kernel_run, arithmetic, digits + _CANCELLED, advance)
     for _ in range(_ATTEMPTS):
         plain, closed = links.chains()
         if not links.refine(_lacking((*plain, *closed), digits)):
             break
-    return FormChains(plain, closed, links.sizes, arithmetic, lockstep.clock() - begun)
+    return FormChains(plain, closed, links.working.sizes, arithmetic, lockstep.clock() - begun)
 
 
 def _lacking(chains: Sequence[Chain], digits: int) -> list[int]:
@@ -111,115 +104,44 @@ def _lacking(chains: Sequence[Chain], digits: int) -> list[int]:
     return [max(each) for each in zip(*(x.lacking(digits, least) for x in chains), strict=True)]
 
 
-class _Links:
-    """The links of all entries, each made when it is asked for, at its own number of digits."""
+class _FormLinks(separation.Links[Links, FormWorking]):
+    """The links of all entries of W."""
+
+    observable = "symplectic_defect"
 
     def __init__(
         self, kernel_run: KernelRun, arithmetic: str, digits: int, advance: Advance
     ) -> None:
-        self.kernel_run, self.arithmetic, self.advance = kernel_run, arithmetic, advance
-        self.marks = marks_of(kernel_run.steps, POINTS)
-        self.digits = {"first": digits, "second": digits, "beside": digits + _PRODUCTS}
-        self.inputs = rounded_inputs(kernel_run)
-        self.rounded = with_inputs(kernel_run, self.inputs)
-        self.same = (
-            self.rounded.start == kernel_run.start
-            and self.rounded.parameters == kernel_run.parameters
-        )
-        self.zero: Links | None = None
+        super().__init__(kernel_run, arithmetic, digits, POINTS, advance)
+        self.digits["beside"] += _PRODUCTS
         if preserves(map_of(kernel_run.hamiltonian, kernel_run.scheme)):
             nothing = exact_link([Fraction(0)] * len(self.marks), "S ≡ 0")
             size = len(kernel_run.hamiltonian.coordinates)
-            self.zero = (nothing,) * (size * (size - 1) // 2)
-        self.made: dict[str, Links] = {}
-        self.working: FormWorking | None = None
-
-    @property
-    def sizes(self) -> tuple[Size, ...]:
-        assert self.working is not None  # noqa: S101 - after `chains`
-        return self.working.sizes
+            self.proved = self.constant = (nothing,) * (size * (size - 1) // 2)
 
     def chains(self) -> tuple[tuple[Chain, ...], tuple[Chain, ...]]:
         """Those of the plain way and of the closed form."""
-        # Before the longer runs: where float64 leaves its range there is nothing to separate.
-        working = self.working = self.working or self._beside()
-        first = self.zero or self._reference(self.kernel_run, "first")
-        second = first if self.same else self.zero or self._reference(self.rounded, "second")
-        shared = [first, second]
-        if self.kernel_run.hamiltonian.time_dependent:
-            known = clock_is_exact(self.rounded)
-            shared.append(second if known or working.clock is None else working.clock)
-        shared.append(working.trajectory or second)
-        parts = PARTS_IN_TIME if len(shared) > 3 else PARTS
-        closed = working.closed_derivatives or first, working.closed_form or first
+        shared, working = self.shared(), self.working
+        parts = PARTS_IN_TIME if self.kernel_run.hamiltonian.time_dependent else PARTS
 
         def chains(*links: Links) -> tuple[Chain, ...]:
             each = zip(*shared, *links, strict=True)
             return tuple(Chain(self.marks, own, parts) for own in each)
 
+        first = shared[0]
+        closed = working.closed_derivatives or first, working.closed_form or first
         return chains(working.derivatives, working.plain), chains(*closed)
 
-    def refine(self, lacking: Sequence[int]) -> bool:
-        """Asks for so many more digits of the links; False where no run lacks any."""
-        first, second, *beside = lacking
-        if self.same:
-            first, second = max(first, second), 0
-        wanted = {"first": first, "second": second, "beside": max(beside)}
-        if self.zero:
-            wanted |= {"first": 0, "second": 0}
-        self.advance = lambda _: None  # what was foreseen is done
-        for name, more in wanted.items():
-            if more:
-                self.digits[name] += more + 2
-                self.made.pop(name, None)
-        if wanted["beside"]:
-            self.working = None
-        return any(wanted.values())
-
-    def _beside(self) -> FormWorking:
-        """The float64 run, beside what has every range and function."""
-        follow = self.zero is None and self.kernel_run.steps > 1
+    def beside(self) -> FormWorking:
+        """In what has every range and function."""
+        follow = self.proved is None and self.kernel_run.steps > 1
         digits = working_digits(self.digits["beside"], self.kernel_run.steps)
-        name = self.arithmetic
-        asked = number_systems.get(name, digits)
+        asked = number_systems.get(self.arithmetic, digits)
         own = last_system().make(digits) if asked.absolute or asked.radius else asked
         return FormRun(self.kernel_run, self.inputs, follow).step_through(own, self.advance)
 
-    def _reference(self, kernel_run: KernelRun, name: str) -> Links:
-        if name not in self.made:
-            digits = self.digits[name]
-            about = number_systems.about(self.arithmetic)
-            own = about.name if digits <= about.most_digits else last_system().name
-            self.made[name] = _reference(kernel_run, own, digits, self.advance)
-        return self.made[name]
-
-
-def _reference(kernel_run: KernelRun, arithmetic: str, digits: int, advance: Advance) -> Links:
-    """W in exact arithmetic's stead, its greatest entry to so many digits; Stopped where a run
-    cannot give it."""
-    last = 0
-
-    def progress(done: int) -> None:
-        nonlocal last
-        advance(max(done - last, 0))
-        last = max(done, last)
-
-    measured = measure(kernel_run, arithmetic, digits, progress)
-    found, run = measured.bounds, measured.outcome
-    if found.status != "finished":
-        reason = f"in exact arithmetic: {found.method}"
-        raise Stopped(found.status, found.failed_step, reason)
-    value, bound = found.values["symplectic_defect"]
-    kind: Kind = "enclosed" if found.rigorous else "estimated"
-    # As for Λ: the bound is that of the entries at every checkpoint, and where it is an estimate
-    # they must be those of a run that agrees with it.
-    more = working_digits(digits, kernel_run.steps)
-    for _ in range(_DOUBLINGS):
-        own = run.values["symplectic_defect"] if run.done == kernel_run.steps else None
-        if own is not None and abs(own - value) <= bound:
-            names = [n for n in run.tangents[0] if n.startswith("w_")]
-            trail = [tuple(note[n] for n in names) for note in run.tangents]
-            return links_of(trail, lambda each: Link(each, bound, kind, found.method))
-        more *= 2
-        run = kernel_run.run(last_system().make(more))
-    raise Stopped("unresolved", None, f"in exact arithmetic: {found.method}")
+    def read(self, run: Outcome, last: Fraction, as_link: AsLink) -> Links:
+        """Each entry at every checkpoint; `last` is of the greatest alone."""
+        names = [n for n in run.tangents[0] if n.startswith("w_")]
+        trail = [tuple(note[n] for n in names) for note in run.tangents]
+        return links_of(trail, as_link)

@@ -15,9 +15,9 @@ from typing import Literal
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
 from verify.runs.tangent_growth import finite_time_lyapunov
-from verify.studies.separation.chain import last_system
 from verify.studies.separation.form_growth import motion_of
 from verify.studies.separation.form_run import POINTS
+from verify.studies.separation.links import last_system
 from verify.studies.separation.working import marks_of
 
 _DIGITS = 20

@@ -1,0 +1,176 @@
+"""The links of a separation, each made when it is asked for, at its own number of digits.
+
+What one degree of freedom and several have in common: a link is of Λ, or one for each entry of W.
+
+What is known is not run: a link that a proof gives, and the second where every input is a float64.
+Equal links are one object, and the part between them is exactly 0.
+"""
+
+import copy
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import Any, ClassVar, Generic, Protocol, TypeVar
+
+from verify import arithmetic as number_systems
+from verify.arithmetic.number_system import NumberSystem
+from verify.kernels.stepping import KernelRun, Outcome
+from verify.runs.digits_on_demand import measure
+from verify.runs.estimated import working_digits
+from verify.studies.separation.working import (
+    Advance,
+    Kind,
+    Link,
+    Stopped,
+    marks_of,
+    rounded_inputs,
+)
+
+_MANTISSAS = 2**53  # whole numbers up to here are float64s
+_DOUBLINGS = 6
+AsLink = Callable[[Sequence[Fraction]], Link]  # of values at the checkpoints
+
+
+class Followed(Protocol):
+    """What a run in float64 found, with exact arithmetic beside it; None: not followed."""
+
+    @property
+    def clock(self) -> Any: ...
+    @property
+    def trajectory(self) -> Any: ...
+
+
+L = TypeVar("L")  # Link, or one for each entry
+W = TypeVar("W", bound=Followed)
+
+
+class Links(ABC, Generic[L, W]):
+    """The links that all ways to evaluate share, and how many digits each is asked for.
+
+    `proved`, `constant`: the first link and the second where a proof gives them.
+    """
+
+    observable: ClassVar[str]  # of a run in exact arithmetic's stead
+
+    def __init__(
+        self, kernel_run: KernelRun, arithmetic: str, digits: int, points: int, advance: Advance
+    ) -> None:
+        self.kernel_run, self.arithmetic, self.advance = kernel_run, arithmetic, advance
+        self.marks = marks_of(kernel_run.steps, points)
+        self.digits = {"first": digits, "second": digits, "beside": digits}
+        self.inputs = rounded_inputs(kernel_run)
+        self.rounded = _with_inputs(kernel_run, self.inputs)
+        self.same = (
+            self.rounded.start == kernel_run.start
+            and self.rounded.parameters == kernel_run.parameters
+        )
+        self.proved: L | None = None
+        self.constant: L | None = None
+        self._working: W | None = None
+        self._made: dict[str, L] = {}
+
+    @abstractmethod
+    def beside(self) -> W:
+        """The run in float64, exact arithmetic beside it; Stopped where it leaves its range."""
+
+    @abstractmethod
+    def read(self, run: Outcome, last: Fraction, as_link: AsLink) -> L:
+        """The link of a run in exact arithmetic's stead, of whose last value `last` is known."""
+
+    @property
+    def working(self) -> W:
+        if self._working is None:
+            self._working = self.beside()
+        return self._working
+
+    def shared(self) -> list[L]:
+        """The links before those in which ways to evaluate differ."""
+        # Before the longer runs: where float64 leaves its range there is nothing to separate.
+        working = self.working
+        first = self.proved or self._reference(self.kernel_run, "first")
+        second = first if self.same else self.constant or self._reference(self.rounded, "second")
+        links = [first, second]
+        if self.kernel_run.hamiltonian.time_dependent:
+            known = _clock_is_exact(self.rounded)
+            links.append(second if known or working.clock is None else working.clock)
+        return [*links, working.trajectory or second]
+
+    def refine(self, lacking: Sequence[int]) -> bool:
+        """Asks for so many more digits of the links; False where no run lacks any."""
+        first, second, *beside = lacking
+        # One run that serves as two links is made once, with the digits of the one that lacks more.
+        if self.same:
+            first, second = max(first, second), 0
+        wanted = {
+            "first": 0 if self.proved else first,
+            "second": 0 if self.constant else second,
+            "beside": max(beside),
+        }
+        self.advance = lambda _: None  # what was foreseen is done
+        for name, more in wanted.items():
+            if more:
+                self.digits[name] += more + 2
+                self._made.pop(name, None)
+        if wanted["beside"]:
+            self._working = None
+        return any(wanted.values())
+
+    def system(self, digits: int) -> str:
+        """The arithmetic for so many digits: one that compiles takes ever longer to do it."""
+        asked = number_systems.about(self.arithmetic)
+        return asked.name if digits <= asked.most_digits else last_system().name
+
+    def _reference(self, kernel_run: KernelRun, name: str) -> L:
+        if name not in self._made:
+            self._made[name] = self._in_exact_stead(kernel_run, self.digits[name])
+        return self._made[name]
+
+    def _in_exact_stead(self, kernel_run: KernelRun, digits: int) -> L:
+        """A run to so many digits; Stopped where a run cannot give them."""
+        last = 0
+
+        def progress(done: int) -> None:
+            nonlocal last
+            self.advance(max(done - last, 0))
+            last = max(done, last)
+
+        measured = measure(kernel_run, self.system(digits), digits, progress)
+        found, run = measured.bounds, measured.outcome
+        if found.status != "finished":
+            reason = f"in exact arithmetic: {found.method}"
+            raise Stopped(found.status, found.failed_step, reason)
+        value, bound = found.values[self.observable]
+        kind: Kind = "enclosed" if found.rigorous else "estimated"
+        # A rigorous bound is the run's own, and the last value's is the greatest. An estimate may
+        # be that of a run with more digits; the checkpoints must be those of a run that agrees
+        # with it.
+        more = working_digits(digits, kernel_run.steps)
+        for _ in range(_DOUBLINGS):
+            done = run.done == kernel_run.steps
+            if done and abs(run.values[self.observable] - value) <= bound:
+                return self.read(run, value, lambda x: Link(tuple(x), bound, kind, found.method))
+            more *= 2
+            run = kernel_run.run(last_system().make(more))
+        raise Stopped("unresolved", None, f"in exact arithmetic: {found.method}")
+
+
+def last_system() -> NumberSystem:
+    """The number system that has every range and function."""
+    return number_systems.automatic()[-1]
+
+
+def _clock_is_exact(rounded: KernelRun) -> bool:
+    """Whether t ← t + h rounds nothing in any step: all times are few multiples of one 2^−k."""
+    first, h = rounded.start["t"], rounded.start["h"]
+    unit = Fraction(1, max(first.denominator, h.denominator))  # of float64s, powers of 2
+    latest = max(abs(first), abs(first + rounded.steps * h))
+    return latest / unit <= _MANTISSAS
+
+
+def _with_inputs(kernel_run: KernelRun, inputs: dict[str, float]) -> KernelRun:
+    """The same run from the rounded inputs; parameters that the kernel has inside stay exact."""
+    rounded = copy.copy(kernel_run)
+    rounded.start = {n: Fraction(inputs[n]) for n in kernel_run.start}
+    parameters = {n: Fraction(inputs[n]) for n in kernel_run.hamiltonian.parameters}
+    rounded.parameters = {**kernel_run.parameters, **parameters}
+    return rounded
