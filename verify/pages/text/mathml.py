@@ -25,7 +25,8 @@ from verify.pages.text.terms import Term, factor_key, terms_of
 Expr: TypeAlias = sympy.Expr
 
 LONGEST_SHOWN = 600  # characters of a formula that is shown as text
-_STACKED_FROM = 4  # terms from which a sum is set one term a line
+_STACKED_FROM = 4  # terms from which a sum is set one term a line, where it is
+_LONGEST_LINE = 40  # signs and names longer than that
 
 _NAMES = {"log": "ln", "atan": "arctan"}
 GREEK = {
@@ -35,6 +36,7 @@ GREEK = {
     "chi": "χ", "psi": "ψ", "omega": "ω", "Gamma": "Γ", "Delta": "Δ", "Theta": "Θ",
     "Lambda": "Λ", "Xi": "Ξ", "Pi": "Π", "Sigma": "Σ", "Phi": "Φ", "Psi": "Ψ", "Omega": "Ω",
 }  # fmt: skip
+_TAGS = re.compile("<[^>]*>")
 _TIMES = "<mo>\u2062</mo>"
 _TIMES_THIN = '<mo lspace="0.17em" rspace="0">\u2062</mo>'  # before a function's name
 _APPLY = '<mo lspace="0" rspace="0">\u2061</mo>'
@@ -58,8 +60,9 @@ def equation(left: str, text: str) -> Markup:
     if expression is None:
         return _math(f"{left}<mo>=</mo>") + plain(text)
     terms = terms_of(expression)
-    if len(terms) < _STACKED_FROM:
-        return _math(f"{left}<mo>=</mo>{_sum(expression)}", display=True)
+    line = _sum(expression)
+    if len(terms) < _STACKED_FROM or len(_TAGS.sub("", line)) <= _LONGEST_LINE:
+        return _math(f"{left}<mo>=</mo>{line}", display=True)
     rows = []
     for index, term in enumerate(terms):
         sign = _sign(term, first=index == 0)

@@ -207,8 +207,16 @@ def test_fractions_powers_and_indices_have_two_parts(text: str) -> None:
 
 
 def test_a_long_sum_is_stacked_one_term_a_line() -> None:
-    markup = mathml.equation(mathml.NAMED["p′"], "p + h*q + h**2*p + h**3*q")
-    assert str(markup).count("<mtr>") == 4
+    terms = [f"h**{k}*p*(1 + {k}*q**2)" for k in range(1, 6)]
+    markup = mathml.equation(mathml.NAMED["p′"], " + ".join(terms))
+    assert str(markup).count("<mtr>") == 5
+    assert "display" in markup
+
+
+def test_what_fits_a_line_is_one_however_many_its_terms() -> None:
+    henon_heiles = "p1**2/2 + p2**2/2 + q1**2/2 + q1**2*q2 + q2**2/2 - q2**3/3"
+    markup = mathml.equation(mathml.NAMED["H"], henon_heiles)
+    assert "<mtr>" not in markup
     assert "display" in markup
 
 
