@@ -1,8 +1,10 @@
 """Regimes of systems in several degrees of freedom, and their H against one written by hand."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, NamedTuple
+from functools import cached_property
+from typing import Any
 
 import mpmath
 import sympy
@@ -17,20 +19,25 @@ _STEP = 20  # central differences over 10⁻²⁰ are right to some 40 digits
 Textbook = Callable[..., Any]  # of the lists q and p, of t, and of the parameters by their names
 
 
-class Example(NamedTuple):
+@dataclass(frozen=True)
+class Example:
     """A regime of a system, read by nothing of ours but its names."""
 
+    name: str
     values: Mapping[str, Fraction]
     q: Sequence[Fraction]
     p: Sequence[Fraction]
-    hamiltonian: Hamiltonian
+
+    @cached_property
+    def hamiltonian(self) -> Hamiltonian:
+        return systems.get(self.name).hamiltonian(self.values)
 
 
 def example(name: str, regime: str) -> Example:
     texts = dict(systems.get(name).regimes[regime])
     q, p = ([Fraction(x) for x in texts.pop(letter).split(",")] for letter in "qp")
     values = {key: Fraction(x) for key, x in texts.items()}
-    return Example(values, q, p, systems.get(name).hamiltonian(values))
+    return Example(name, values, q, p)
 
 
 def gradients_apart(at: Example, textbook: Textbook, t: Fraction = Fraction(2, 3)) -> float:

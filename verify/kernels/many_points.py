@@ -1,8 +1,7 @@
 """One step map iterated on many points at once, in any number system.
 
-In float64 and in fixed point points are stepped in lanes, and threads share them. Where a float64
-kernel solves equations its loop gets an inner one over some points instead, which a compiler may
-turn into vector instructions. Other number systems take point after point.
+In float64 and in fixed point points are stepped in lanes, and threads share them. Float64 kernels
+that solve equations take point after point, on threads too; so do other number systems, on one.
 """
 
 import contextlib
@@ -22,14 +21,12 @@ from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.clock import clock_inputs, first_rest
-from verify.kernels.kernel import LOOP, Kernel, kernel_for
+from verify.kernels.kernel import Kernel, kernel_for
 from verify.kernels.reach import limits
 from verify.kernels.stepping import KernelRun
 
 _ZERO = Fraction(0)
-_LANES = 64  # points whose states stay in the nearest cache
-_SHARE = 256  # points that a thread takes at a time: some milliseconds and more
-_WIDE_SHARE = 32  # the same in fixed point
+_SHARE = 32  # points that a thread takes at a time: some milliseconds and more
 # Sequences of numbers, arrays or lists, by name: the coordinates and what else is carried.
 Values = Mapping[str, Any]
 
@@ -148,12 +145,12 @@ class PointMap:
             return
 
         def advance(first: int) -> list[list[Sequence[Number]]]:
-            share = calls[first : first + _WIDE_SHARE]
+            share = calls[first : first + _SHARE]
             ended = dict(lockstep.together(iter(share), len(share)))
             return [ended[k].result() for k in range(len(share))]
 
         with ThreadPoolExecutor(os.cpu_count()) as threads:  # native code runs beside Python
-            for part in threads.map(advance, range(0, len(calls), _WIDE_SHARE)):
+            for part in threads.map(advance, range(0, len(calls), _SHARE)):
                 yield from part
 
     def _limits(self, given: Sequence[Sequence[Number]]) -> tuple[Fraction, ...]:
@@ -177,30 +174,10 @@ def _stepper(kernel: Kernel) -> tuple[Callable[[int, np.ndarray, np.ndarray], No
     """`run(steps, inputs, rows)`, in place, and how many columns it takes at a time."""
     with contextlib.suppress(NotImplementedError):
         return on_points(kernel.source, kernel.names, len(kernel.state_names)), POINTS
-    many = _compiled(kernel)
-    return lambda steps, inputs, rows: many(steps, *inputs, *rows), _SHARE
+    one = float64.compiled_at_once().compile(kernel.source, "kernel", kernel.names)
 
+    def run(steps: int, inputs: np.ndarray, points: np.ndarray) -> None:
+        for at, point in enumerate(points.T.tolist()):
+            points[:, at] = one(steps, *inputs, *point)[1:]
 
-def _compiled(kernel: Kernel) -> Callable[..., None]:
-    """`many(steps, h, …, p, q, …)`, or p1 … qn: the loop on arrays, in place, compiled by numba."""
-    head, _, loop = kernel.source.partition(f"{LOOP}\n")
-    signature, _, before = head.partition("\n")
-    body = loop.rpartition("    return ")[0].splitlines()
-    named = signature[signature.index("(") + 1 : signature.rindex(")")].split(",")
-    names = [each.partition(":")[0].strip() for each in named]
-    arrays = [f"{name}_all" if name in kernel.state_names else name for name in names]
-    points = f"{kernel.coordinates[0]}_all"
-    source = "\n".join(
-        [
-            f"def many({', '.join(arrays)}):",
-            before.rstrip("\n"),
-            f"    for first in range(0, len({points}), {_LANES}):",
-            "        for k in range(steps):",
-            f"            for i in range(first, min(first + {_LANES}, len({points}))):",
-            *(f"                {name} = {name}_all[i]" for name in kernel.state_names),
-            *(f"        {line}" for line in body),
-            *(f"                {name}_all[i] = {name}" for name in kernel.state_names),
-            "",
-        ]
-    )
-    return float64.compiled_at_once().compile(source, "many", kernel.names)
+    return run, _SHARE

@@ -32,7 +32,7 @@ def kernels(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def call(source: str = SOURCE, start: Any = 0.25, **names: object) -> tuple[object, int]:
     """What a new dispatcher gives, and how much of that it did not compile."""
-    dispatcher: Any = float64._compiled(source, "kernel", NAMES | names)
+    dispatcher: Any = float64._by_numba(source, "kernel", NAMES | names)
     return dispatcher(50, start), sum(dispatcher.stats.cache_hits.values())
 
 

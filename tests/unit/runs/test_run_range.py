@@ -296,7 +296,6 @@ def test_a_grid_of_step_sizes_and_parameters_compiles_one_kernel(
                 fresh.with_values({"a": a, "b": b}), "lie3", q="0.1", p="0.2", step_size=h, steps=50
             )
     assert len(compiled) == 1
-    assert len(compiled[0].signatures) == 1, "numba compiled it for one set of types"
     run(fresh.with_values({"a": 1, "b": 0}), "lie3", q=1, p=0, step_size="0.1", steps=50)
     assert len(compiled) == 2, "a vanishing term has a kernel of its own"
 

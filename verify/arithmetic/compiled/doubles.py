@@ -1,5 +1,5 @@
 """float64 kernels compiled by LLVM: on many points at once, in sets of lanes that take turns, and
-long ones on one point.
+on one point.
 
 The source is a float64 kernel's own, in the language of `verify.arithmetic.wide.translate`; each
 operation is rounded as there, and functions are the C library's, lane by lane. So a point has the
@@ -7,8 +7,9 @@ bits that it has by itself.
 """
 
 import ctypes
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from struct import Struct
 from typing import Any
 
 import numpy as np
@@ -55,25 +56,32 @@ def on_points(source: str, names: Mapping[str, Any], carried: int) -> Callable[.
     return run
 
 
-def one_point(source: str, names: Mapping[str, Any]) -> Callable[..., tuple[Any, ...]]:
-    """The kernel as a function of its own arguments, in a tenth of the time that numba takes.
+def one_point(source: str, names: Mapping[str, Any]) -> Callable[..., Any]:
+    """The kernel as a function of its own arguments, a tuple or one number as it returns.
 
     Raises NotImplementedError as `on_points` does.
     """
     constants = tuple(sorted((n, x) for n, x in names.items() if isinstance(x, float)))
     layout, linked = Source(_annotated(source), _WIDTH, _FRACTION, constants, "doubles").compiled()
+    given, found = (_record(kinds) for kinds in (layout.arguments, layout.results))
     size = layout.result_at[-1] + 8
 
-    def kernel(*arguments: Any) -> tuple[Any, ...]:
-        found = ctypes.create_string_buffer(size)
-        linked()(layout.packed(arguments), found)
-        return layout.unpacked(found.raw)  # type: ignore[return-value]
+    def kernel(*arguments: Any) -> Any:
+        result = ctypes.create_string_buffer(size)
+        linked()(given.pack(*arguments), result)
+        values = found.unpack_from(result)
+        return values if layout.returns_tuple else values[0]
 
     def prepared(*arguments: Any) -> Callable[[], None]:
-        return partial(linked(), layout.packed(arguments), ctypes.create_string_buffer(size))
+        return partial(linked(), given.pack(*arguments), ctypes.create_string_buffer(size))
 
     kernel.prepared = prepared  # type: ignore[attr-defined]
     return kernel
+
+
+def _record(kinds: Sequence[str]) -> Struct:
+    """How integers and float64 lie side by side."""
+    return Struct("=" + "".join("q" if kind == "int" else "d" for kind in kinds))
 
 
 def prepared_call(kernel: Callable[..., Any], *arguments: Any) -> Callable[[], object]:

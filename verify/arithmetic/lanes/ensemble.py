@@ -166,6 +166,9 @@ class Ensemble:
             self._fetch(carried, own)
             self._of_sets.append(self._known)
 
+    def leave(self) -> None:
+        raise NotImplementedError("a loop that some lanes leave before others")
+
     def ordered(self, statements: list[ast.stmt]) -> list[ast.stmt]:
         return reordered(statements)
 

@@ -1,4 +1,4 @@
-"""IEEE double precision, compiled by numba where it repays: the arithmetic that is under test.
+"""IEEE double precision, compiled by LLVM where it repays: the arithmetic that is under test.
 
 No fast-math: operations are rounded one by one, as the source writes them. Division by zero and
 overflow give infinities and NaN, which the run finds.
@@ -18,9 +18,8 @@ from verify.arithmetic import numba_code
 from verify.arithmetic.number_system import Arithmetic, NumberSystem, interpreted
 
 NAME = "float64"
-_REPAID = 200_000  # steps: Python takes some 2 µs each, and numba's import and compilation 1 s
-_LONG = 500  # lines of a kernel, of many degrees of freedom: numba takes some 5 ms for each
-_REPAID_SOLVING = 50_000  # steps with a loop in them, which solves equations: 4 … 25 µs
+_REPAID = 50_000  # steps: Python takes some 2 µs each, and llvmlite's import and compilation 0.1 s
+_REPAID_SOLVING = 10_000  # steps with a loop in them, which solves equations: 4 … 25 µs
 
 
 def make(digits: int) -> Arithmetic:
@@ -45,12 +44,9 @@ def make(digits: int) -> Arithmetic:
     )
 
 
-def compiled_at_once(*, lightly: bool = False) -> Arithmetic:
-    """The same number system, each kernel compiled at its first call: for timing it.
-
-    `lightly`: in a tenth of the time, to code as fast, which a call enters by some µs more.
-    """
-    return replace(make(17), compile=_lightly if lightly else _compiled)
+def compiled_at_once() -> Arithmetic:
+    """The same number system, each kernel compiled at its first call: for timing it."""
+    return replace(make(17), compile=_compiled)
 
 
 NUMBER_SYSTEM = NumberSystem(
@@ -114,11 +110,6 @@ def _unrefused(source: str, name: str, namespace: Mapping[str, Any]) -> Callable
 
 
 def _compiled(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
-    make = _lightly if source.count("\n") > _LONG else _by_numba
-    return make(source, name, namespace)
-
-
-def _lightly(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
     if "for k in range(steps)" in source:
         from verify.arithmetic.compiled.doubles import one_point
 

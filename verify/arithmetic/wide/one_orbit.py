@@ -1,6 +1,7 @@
 """One orbit's numbers as LLVM IR: integers of any width, and variables in registers."""
 
 import ast
+import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -24,6 +25,7 @@ class OneOrbit:
                       "float": DOUBLE, "int": I64}  # fmt: skip
         self._kinds = {str(kind_type): kind for kind, kind_type in self.types.items()}
         self._variables: dict[str, Value] = {}
+        self._ends: list[ir.Block] = []  # of the loops that are being written
 
     # -- the function -------------------------------------------------------------------------
 
@@ -69,10 +71,15 @@ class OneOrbit:
         at = self.load(name)
         self.b.cbranch(self.b.icmp_signed("<", at, limit), inside, after)
         self.b.position_at_end(inside)
+        self._ends.append(after)
         body()
+        self._ends.pop()
         self.assign(name, self.b.add(at, constant(1, 64)))
         self.b.branch(head)
         self.b.position_at_end(after)
+
+    def leave(self) -> None:
+        self.b.branch(self._ends[-1])
 
     def ordered(self, statements: list[ast.stmt]) -> list[ast.stmt]:
         return statements
@@ -174,6 +181,8 @@ class OneOrbit:
             top = ir.Constant(DOUBLE, 2.0 ** (width - 1 - self.fraction))
             self._require(b.fcmp_ordered("<", self._absolute(x), top))
             return [from_double(b, x, width, self.fraction)]
+        if name == "root" and x.type == DOUBLE:
+            return [self._float_root(x, values[1])]
         if x.type == DOUBLE:
             return [self._float_function(name, x)]
         packed = b.call(self.functions.get(name), [x])
@@ -201,6 +210,18 @@ class OneOrbit:
     def _float_function(self, name: str, x: Value) -> Value:
         return self.b.call(float_function(self.module, name), [x])
 
+    def _float_root(self, x: Value, n: Value) -> Value:
+        """As `verify.arithmetic.systems.float64` has it, operation by operation."""
+        b, zero, one = self.b, ir.Constant(DOUBLE, 0.0), ir.Constant(DOUBLE, 1.0)
+        power = _of_libm(self.module, "pow", 2)
+        n = b.sitofp(n, DOUBLE)
+        root = b.call(power, [x, b.fdiv(one, n)])
+        excess = b.fsub(b.call(power, [root, n]), x)
+        slope = b.fmul(n, b.call(power, [root, b.fsub(n, one)]))
+        better = b.fsub(root, b.fdiv(excess, slope))
+        found = b.select(b.fcmp_ordered(">", root, zero), better, root)
+        return b.select(b.fcmp_ordered("<", x, zero), ir.Constant(DOUBLE, math.nan), found)
+
 
 def float_function(module: ir.Module, name: str) -> ir.Function:
     """The function of one float64 that a source calls by that name; NotImplementedError."""
@@ -209,6 +230,11 @@ def float_function(module: ir.Module, name: str) -> ir.Function:
         return module.declare_intrinsic(f"llvm.{plain}", [DOUBLE])
     if plain not in LIBM_FUNCTIONS:
         raise NotImplementedError(name)
-    if plain not in module.globals:
-        ir.Function(module, ir.FunctionType(DOUBLE, [DOUBLE]), plain)
-    return module.globals[plain]
+    return _of_libm(module, plain, 1)
+
+
+def _of_libm(module: ir.Module, name: str, count: int) -> ir.Function:
+    """The C library's function of so many float64."""
+    if name not in module.globals:
+        ir.Function(module, ir.FunctionType(DOUBLE, [DOUBLE] * count), name)
+    return module.globals[name]

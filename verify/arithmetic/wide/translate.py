@@ -1,8 +1,9 @@
 """A kernel's source → LLVM IR in which wide fixed-point numbers and float64 stand side by side.
 
 The source is the small language that `verify.kernels.kernel` writes: assignments, + − * /,
-comparisons, calls by name, `if`, one loop `for k in range(steps)`, `return`. A variable's kind is
-that of what is first assigned to it, an argument's is its annotation:
+comparisons, calls by name, `if`, one loop `for k in range(steps)`, `return`; for one orbit also
+loops within that one, and `break`. A variable's kind is that of what is first assigned to it, an
+argument's is its annotation:
 
 - `wide`  (where there is none): a number of the format;
 - `sum`   a sum of such numbers, with 64 bits more before the point, so that no sum overflows;
@@ -90,6 +91,9 @@ class Target(Protocol):
     def loop(self, name: str, limit: Value, body: Callable[[], None], changed: set[str]) -> None:
         """`for name in range(limit)`; `changed`: all variables that the body assigns."""
 
+    def leave(self) -> None:
+        """Ends the innermost loop; NotImplementedError where orbits would part."""
+
     def ordered(self, statements: list[ast.stmt]) -> list[ast.stmt]:
         """A loop's statements in the order in which they are best written."""
 
@@ -122,20 +126,20 @@ class Translator:
         for statement in statements:
             known: dict[type, Callable[[Ours], None]] = {
                 ast.Assign: self._assignment, ast.If: self._if, ast.For: self._for,
-                ast.Return: self._return,
+                ast.Break: self._break, ast.Return: self._return,
             }  # fmt: skip
             if type(statement) not in known:
                 raise NotImplementedError(ast.dump(statement))
             known[type(statement)](statement)
 
     def _assignment(self, statement: Ours) -> None:
-        target = statement.targets[0]
-        if hasattr(target, "elts"):
-            values = self._call(statement.value)
-            for element, value in zip(target.elts, values, strict=True):
-                self.target.assign(element.id, value)
+        names = statement.targets
+        if hasattr(names[0], "elts"):
+            names, values = names[0].elts, self._call(statement.value)
         else:
-            self.target.assign(target.id, self._expression(statement.value))
+            values = [self._expression(statement.value)] * len(names)
+        for name, value in zip(names, values, strict=True):
+            self.target.assign(name.id, value)
 
     def _if(self, statement: ast.If) -> None:
         self.target.when(self._condition(statement.test), lambda: self._block(statement.body))
@@ -151,6 +155,9 @@ class Translator:
         limit = self._expression(statement.iter.args[0])
         body = self.target.ordered(statement.body)
         self.target.loop(statement.target.id, limit, lambda: self._block(body), changed)
+
+    def _break(self, _: Ours) -> None:
+        self.target.leave()
 
     def _return(self, statement: Ours) -> None:
         value = statement.value

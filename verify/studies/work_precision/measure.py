@@ -77,8 +77,7 @@ def work_precision(
     begun = perf_counter()
     begun_at = point_of(hamiltonian, q, p)
     problem = _problem(hamiltonian, begun_at, time, t0)
-    if hamiltonian.planar:  # numba's, which compiles no loop of more degrees of freedom
-        _wake_compiler()
+    _wake_compiler()
     ladders = [Ladder(problem, name) for name in schemes]
     own = [[_scheme_point(ladder, h, advance) for h in step_sizes] for ladder in ladders]
     others = [_peer(problem, name, advance) for name in peers]
@@ -132,8 +131,8 @@ def _problem(
 
 def _wake_compiler() -> None:
     """The first compilation of a process takes longer than the next; no scheme shall pay that."""
-    same = float64.compiled_at_once().compile("def same(x):\n    return x\n", "same", {})
-    same(1.0)
+    source = "def same(steps, x):\n    for k in range(steps):\n        x = x\n    return steps, x\n"
+    float64.compiled_at_once().compile(source, "same", {})(1, 1.0)
 
 
 def _scheme_point(ladder: Ladder, h: Fraction, advance: Advance) -> _Timing:

@@ -121,8 +121,7 @@ class Ladder:
         self.problem, self.scheme = problem, get(scheme)
         self.name = scheme
         self.preserves_area = preserves(map_of(problem.hamiltonian, scheme))
-        lightly = not problem.hamiltonian.planar
-        self.arithmetic: Arithmetic = float64.compiled_at_once(lightly=lightly)
+        self.arithmetic: Arithmetic = float64.compiled_at_once()
         step_map = map_of(self._kernel_run(problem.time, frozenset()).hamiltonian, scheme)
         begun = time.perf_counter()
         self.kernel: Kernel = Writer(step_map, self.arithmetic, frozenset(), False).kernel()

@@ -1,5 +1,6 @@
-"""Long float64 kernels by LLVM alone: numba's bits, and what they do not know is left to it."""
+"""float64 kernels by LLVM alone: numba's bits, and what they do not know is left to it."""
 
+import math
 from fractions import Fraction
 from typing import Any
 
@@ -7,6 +8,7 @@ import pytest
 
 from verify.arithmetic.compiled import doubles
 from verify.arithmetic.systems import float64
+from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.systems import get
 from verify.kernels.kernel import Kernel, kernel_for
 from verify.kernels.stepping import KernelRun
@@ -35,21 +37,52 @@ def test_a_long_kernel_has_the_bits_of_numba(scheme: str) -> None:
     assert ours(0, *given) == (0, *given[-12:])
 
 
-def test_long_ones_are_so_compiled_and_short_ones_not(monkeypatch: pytest.MonkeyPatch) -> None:
-    made: list[str] = []
-    monkeypatch.setattr(doubles, "one_point", lambda source, _: made.append(source))
-    long, short = ("def kernel(steps):\n    for k in range(steps):\n" + "        x = 1\n" * n
-                   for n in (float64._LONG, 3))  # fmt: skip
-    for source in (short, long):
-        float64._compiled(source + "    return steps, steps\n", "kernel", {})
-    assert [len(source) for source in made] == [len(long) + len("    return steps, steps\n")]
+PLANE = {
+    "polynomial": "p**2/2 + q**2/2 + q**4/4",
+    "sine": "p**2/2 - cos(q)",
+    "functions": "p**2/2 + exp(q) - q + sinh(q)**2 + atan(q)",
+    "not separable": "(p**2 + 1)*(q**2 + 1)/2",
+}
 
 
-def test_a_function_that_is_not_in_the_language_is_left_to_numba() -> None:
-    lines = "        x = x + root(x, 3)\n" * float64._LONG
-    source = f"def kernel(steps, x):\n    for k in range(steps):\n{lines}    return steps, x\n"
+@pytest.mark.parametrize("text", PLANE.values(), ids=PLANE)
+@pytest.mark.parametrize("scheme", ["lie2", "implicit-midpoint", "gauss4"])
+def test_a_kernel_of_the_plane_has_the_bits_of_numba(scheme: str, text: str) -> None:
+    """Loops in the loop too, which solve equations."""
+    hamiltonian = Hamiltonian.parse(text)
+    asked = frozenset({"lambda", "lambda_plain", "lambda_max", "mse"})
+    kernel = kernel_for(hamiltonian, scheme, _OWN, asked)
+    start = [0.05, 0.3, 0.7, *map(float, kernel.start)]
+    by_numba = float64._by_numba(kernel.source, "kernel", kernel.names)
+    assert doubles.one_point(kernel.source, kernel.names)(300, *start) == by_numba(300, *start)
+
+
+LOOP = "def kernel(steps, x):\n    for k in range(steps):\n        x = {0}\n    return steps, x\n"
+
+
+@pytest.mark.parametrize("n", [2, 3, 5, 10])
+def test_roots_have_the_bits_of_python(n: int) -> None:
+    root = doubles.one_point(LOOP.format(f"root(x, {n})"), {})
+    for x in (*(1.7**k / 3 for k in range(-300, 300)), 0.0, -0.0, 5e-324, 1e308):
+        found = root(1, x)[1]
+        assert (found, math.copysign(1, found)) == (
+            float64._root(x, n), math.copysign(1, float64._root(x, n)),
+        )  # fmt: skip
+    assert all(math.isnan(root(1, x)[1]) for x in (-1.0, -math.inf, math.nan))
+
+
+def test_what_is_not_in_the_language_is_left_to_numba() -> None:
+    source = LOOP.format("expm1(x)")
     with pytest.raises(NotImplementedError):
         doubles.one_point(source, {})
+    by_numba = float64._compiled(source, "kernel", {"expm1": math.expm1})
+    assert by_numba(2, 0.5) == (2, math.expm1(math.expm1(0.5)))
+
+
+def test_lanes_that_would_part_are_left_to_one_point_after_another() -> None:
+    kernel = kernel_for(Hamiltonian.parse(PLANE["sine"]), "gauss4", _OWN, frozenset())
+    with pytest.raises(NotImplementedError):
+        doubles.on_points(kernel.source, kernel.names, 2)
 
 
 @pytest.mark.parametrize("scheme", ["stormer-verlet", "lie2", "rk4", "lie4"])

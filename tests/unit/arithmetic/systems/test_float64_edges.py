@@ -1,6 +1,6 @@
 """float64 in Python where Python refuses: the bits of the compiled kernel, and nothing compiled.
 
-Orbits leave the range in few steps; the oracle is numba's kernel of the same source.
+Orbits leave the range in few steps; the oracle is LLVM's kernel of the same source.
 """
 
 import math

@@ -36,13 +36,13 @@ def right_tables() -> list[tuple[TableEntry, int]]:
     return found
 
 
-@pytest.mark.parametrize(
-    ("entry", "order"), right_tables()[::SOME], ids=lambda x: getattr(x, "name", x)
-)
-def test_a_right_table_is_not_shown_to_be_wrong(entry: TableEntry, order: int) -> None:
-    look = at_table(entry, "order", order)
-    assert not look.shown, look.said
-    assert all(x.order is None or x.order >= order for x in look.slopes)
+def test_a_right_table_is_not_shown_to_be_wrong() -> None:
+    some = right_tables()[::SOME]
+    assert some
+    for entry, order in some:
+        look = at_table(entry, "order", order)
+        assert not look.shown, (entry.name, look.said)
+        assert all(x.order is None or x.order >= order for x in look.slopes), entry.name
 
 
 # Splittings of Nielsen for nearly harmonic systems, arXiv:1501.04345: of order 6 and 7 for the

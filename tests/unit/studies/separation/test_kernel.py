@@ -1,4 +1,4 @@
-"""The mixed kernel: its float64 lines have the bits of the real kernel, compiled by numba."""
+"""The mixed kernel: its float64 lines have the bits of the real kernel, compiled by LLVM."""
 
 import math
 import re
@@ -41,7 +41,7 @@ def test_states_and_products_have_the_bits_of_the_compiled_float64_kernel(
         pytest.skip("fixed has neither these roots nor atan")
     start = {"p": Fraction(1, 3), "q": Fraction(3, 2), "h": Fraction(1, 1000)}
     found = states(hamiltonian, scheme, start, steps, name)
-    compiled = by_numba(hamiltonian, scheme)
+    compiled = by_llvm(hamiltonian, scheme)
     inputs = [float(x) for x in (start["h"], *dict(hamiltonian.values).values())]
     for mark in range(steps // 10, steps + 1, steps // 10):
         begun = [float(start["p"]), float(start["q"]), *map(float, compiled.start)]
@@ -50,7 +50,7 @@ def test_states_and_products_have_the_bits_of_the_compiled_float64_kernel(
         assert (at["f_p"], at["f_q"], at["f_plain"]) == (point["p"], point["q"], point["plain"])
 
 
-def by_numba(hamiltonian: Hamiltonian, scheme: str) -> Kernel:
+def by_llvm(hamiltonian: Hamiltonian, scheme: str) -> Kernel:
     """The float64 kernel of `verify run`, by the compiler that long runs have it from."""
     made = replace(arithmetic.get("float64", 17), compile=float64._compiled)
     step_map = get(scheme).step_map(hamiltonian.with_symbols())
