@@ -19,6 +19,8 @@ def html_of_math(node: Node) -> Node:
             return Node("", {}, [base, Node("sup", {}, [upper])])
         case "msub", [base, lower]:
             return Node("", {}, [base, Node("sub", {}, [lower])])
+        case "msubsup", [base, lower, upper]:
+            return Node("", {}, [base, Node("sub", {}, [lower]), Node("sup", {}, [upper])])
         case "mfrac", [above, below]:
             return Node("", {}, [*_closed(above), "/", *_closed(below)])
         case "msqrt", _:

@@ -31,7 +31,10 @@ def _flat(node: Element, *, alone: bool) -> Element:
     """`alone`: whether nothing is multiplied with it."""
     children = list(node)
     product = node.tag == "mrow" and any(_is_times(child) for child in children)
-    inner = [_flat(child, alone=not product and node.tag != "msup") for child in children]
+    inner = [
+        _flat(child, alone=not product and node.tag not in ("msup", "msubsup"))
+        for child in children
+    ]
     if node.tag == "mfrac":
         return _in_a_row(*inner, alone=alone)
     made = Element(node.tag, node.attrib)

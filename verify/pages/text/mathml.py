@@ -243,6 +243,8 @@ def _power(factor: Expr) -> str:
     upper = _exponent(exponent)
     if base.is_Function:
         return _call(base, upper)
+    if base.is_Symbol:
+        return identifier(str(base), upper)
     return f"<msup>{_atom(base)}{upper}</msup>"
 
 
@@ -282,13 +284,18 @@ def _bracketed(expression: Expr) -> str:
     return f"<mrow>{_OPEN}{inside}{_CLOSE}</mrow>"
 
 
-def identifier(text: str) -> str:
-    """A name as markup: Greek where it names a Greek letter, trailing digits as a subscript."""
+def identifier(text: str, power: str = "") -> str:
+    """A name as markup: Greek where it names a Greek letter, trailing digits as a subscript.
+
+    `power`: markup that stands above the subscript.
+    """
     stem, below = _parts(text)
     letter = _word(GREEK.get(stem, stem))
     if not below:
-        return letter
+        return f"<msup>{letter}{power}</msup>" if power else letter
     index = f"<mn>{below}</mn>" if below.isdigit() else _word(GREEK.get(below, below))
+    if power:
+        return f"<msubsup>{letter}{index}{power}</msubsup>"
     return f"<msub>{letter}{index}</msub>"
 
 

@@ -108,7 +108,8 @@ def fitted(found: Sequence[tuple[WorkPoint, Value | None]]) -> SlopeResult:
     )
     settled = _settled(places)
     if len(settled) < FEWEST:
-        few = f"{len(places)} points are limited by truncation"
+        count = len(places)
+        few = f"{count} point{' is' if count == 1 else 's are'} limited by truncation"
         if len(places) >= FEWEST:
             few += f", and the slopes of only the {len(settled)} smallest have settled"
         return SlopeResult(value=None, standard_error=None, points=len(settled), reason=few)

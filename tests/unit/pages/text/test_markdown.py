@@ -321,7 +321,7 @@ def test_the_same_report_gives_the_same_text() -> None:
     [
         ("p**2/2 - cos(q)", r"\tfrac{1}{2}\,p^{2}-\cos q"),
         ("3*delta*h**3*p*q", r"3\,h^{3}\,\delta \,p\,q"),
-        ("sqrt(p)/(1 + omega0**2)", r"\sqrt{p}/(1+{{\omega }_{0}}^{2})"),
+        ("sqrt(p)/(1 + omega0**2)", r"\sqrt{p}/(1+{\omega }_{0}^{2})"),
         ("k_max*exp(-q)", r"k_{\mathrm{max}}\,e^{-q}"),
     ],
 )

@@ -53,7 +53,7 @@ SNAPSHOTS = {
         f"</mrow>{CLOSE}</mrow></mrow></mfrac>"
     ),
     "omega0**2*q": (
-        f"<mrow><msup><msub><mi>ω</mi><mn>0</mn></msub><mn>2</mn></msup>{TIMES}<mi>q</mi></mrow>"
+        f"<mrow><msubsup><mi>ω</mi><mn>0</mn><mn>2</mn></msubsup>{TIMES}<mi>q</mi></mrow>"
     ),
     "k_max*mass": f"<mrow><msub><mi>k</mi>{MAX}</msub>{TIMES}{MASS}</mrow>",
     "log(q) + atan(p)": (
@@ -138,12 +138,18 @@ def value(element: ElementTree.Element) -> float:
         case "msup":
             return value(children[0]) ** value(children[1])
         case "msub":
-            return AT[{"ω0": "omega0", "kmax": "k_max"}["".join(element.itertext())]]
+            return indexed(children)
+        case "msubsup":
+            return indexed(children[:2]) ** value(children[2])
         case "mn":
             digits = element.text or ""
             return numeric(digits) if len(digits) == 1 else float(digits)
     constants = {"e": math.e, "π": math.pi}
     return (constants | AT)[element.text or ""]
+
+
+def indexed(children: list[ElementTree.Element]) -> float:
+    return AT[{"ω0": "omega0", "kmax": "k_max"}["".join(x.text or "" for x in children)]]
 
 
 def row(children: list[ElementTree.Element]) -> float:
@@ -201,6 +207,8 @@ def test_fractions_powers_and_indices_have_two_parts(text: str) -> None:
     for element in tree(stacked(text)).iter():
         if element.tag in ("mfrac", "msup", "msub", "mroot"):
             assert len(element) == 2, element.tag
+        if element.tag == "msubsup":
+            assert len(element) == 3
 
 
 # -- displays, long formulas, and text that is no formula -----------------------------------------
