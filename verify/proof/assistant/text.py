@@ -41,7 +41,6 @@ class Export:
 
 def written(export: Export, of: Established, *, stands_alone: bool) -> str:
     """The whole file."""
-    theory = as_modules(export.needs) if stands_alone else imported(export.needs)
     said = [line for text in _said(of) for line in wrap(text, _WIDTH, subsequent_indent="  ")]
     statement = "\n    ".join(wrap(_comment(of.statement), _WIDTH))
     words = {
@@ -52,6 +51,7 @@ def written(export: Export, of: Established, *, stands_alone: bool) -> str:
     }
     head = _environment().get_template("head.jinja").render(words)
     body = body_of(export)
+    theory = as_modules(export.needs, by=body) if stands_alone else imported(export.needs)
     asked = _asked(body[body.index(_CLAIMED) :], of_rings=export.of_rings)
     return lines(f"{head}{theory}\n{body.rstrip()}\n\n(** * What they assume *)\n\n{asked}")
 
