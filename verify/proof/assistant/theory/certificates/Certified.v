@@ -105,11 +105,12 @@ Section Certified.
     intros w a b W La Lb. unfold lie_derivative, lie_formula. cbn [value_of].
     rewrite value_of_flow by (apply form_ok; assumption). apply add_extends; [reflexivity|].
     rewrite (value_of_sum_up_to K), (same_degrees _ _ _ _ meaning). apply total_same. intros i L.
-    cbn [value_of]. rewrite <- !value_of_slope by (lia || (apply energy_ok; lia)).
     assert (E : forall c d, (c <= 2 * n)%nat -> (d < 2 * n)%nat -> by_coordinate c
-        (by_coordinate d (hamiltonian s)) == by_coordinate c (value (slope_of_energy x d))).
-    { intros c d _ Ld. apply derivation_extends. symmetry. apply (names_energy _ _ _ _ meaning), Ld. }
-    rewrite !E by lia. reflexivity.
+        (by_coordinate d (hamiltonian s)) == value (slope x c (slope_of_energy x d))).
+    { intros c d Lc Ld. etransitivity; [|apply value_of_slope; [exact Lc|apply energy_ok, Ld]].
+      apply derivation_extends. symmetry. apply (names_energy _ _ _ _ meaning), Ld. }
+    cbn [value_of].
+    apply add_extends; apply sub_extends; apply mul_extends; reflexivity || (apply E; lia).
   Qed.
 
   (** A gap is 0 where the two sides are the same. *)

@@ -84,11 +84,15 @@ Ltac compare_numbers :=
 
 Lemma identity_preserves_form : forall n, preserves_form n pick.
 Proof.
-  intros n a b A B. unfold pairing.
-  destruct (Nat.eqb_spec b (n + a)) as [ E | D ]; [ | destruct (Nat.eqb_spec a (n + b)) ].
-  - rewrite (sum_of_single n a); [ | lia | intros ]; unfold pick; compare_numbers.
-  - rewrite (sum_of_single n b); [ | lia | intros ]; unfold pick; compare_numbers.
-  - apply sum_of_zeros. intros. unfold pick. compare_numbers.
+  assert (half : forall n a b, (b < 2 * n)%nat ->
+    sum n (fun i => pick i a * pick (n + i) b) = if Nat.eqb b (n + a) then 1 else 0).
+  { intros n a b B. destruct (Nat.lt_ge_cases a n) as [ L | L ].
+    - etransitivity; [ | exact (sum_picks n a (fun i => pick (n + i) b) L) ].
+      apply sum_of_equals. intros i _. f_equal. unfold pick. rewrite Nat.eqb_sym. reflexivity.
+    - rewrite (proj2 (Nat.eqb_neq b (n + a))) by lia. apply sum_of_zeros. intros i I.
+      unfold pick. rewrite (proj2 (Nat.eqb_neq a i)) by lia. apply Rmult_0_l. }
+  intros n a b A B. unfold pairing. rewrite sum_of_difference, !half by assumption.
+  destruct (Nat.eqb_spec b (n + a)); destruct (Nat.eqb_spec a (n + b)); lia || lra.
 Qed.
 
 (** A matrix that preserves the form in the directions of the coordinates does so in all. *)
