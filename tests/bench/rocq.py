@@ -47,9 +47,10 @@ def main() -> None:
         if shutil.which("coqc") is None:
             print("coqc is not installed: no more is measured")
             return
-        alone = (folder / "every_lie6.v").read_text(encoding="utf-8")
-        with measured("coqc, lie6 for every H, standing alone", "20 s"):
-            accepted(folder / "every_lie6.v", alone)
+        for case, target in {"every_lie2": "–", "every_lie6": "20 s", "duffing_lie2": "–"}.items():
+            alone = (folder / f"{case}.v").read_text(encoding="utf-8")
+            with measured(f"coqc, {case}, standing alone", target):
+                accepted(folder / f"{case}.v", alone)
         texts, theory = {case: export(case).text for case in ALL}, folder / "theory"
         with measured("coqc, two at a time, all of the following", "120 s on two cores"):
             with measured("coqc, two at a time, the theory"):

@@ -20,8 +20,9 @@ from verify.proof.assistant import shipped as theory
 
 PROCESSES = 2
 LONGEST = 300  # seconds for a file on a machine that does much else
-# By itself coqc has 256 MB for young objects, which takes longer to fill than most files to check.
-_MEMORY = {"OCAMLRUNPARAM": "s=4M,o=400"}
+# By itself coqc has 256 MB for young objects, which takes longer to fill than most files to check,
+# and looks through what it loaded for what may go, of which there is nothing.
+_MEMORY = {"OCAMLRUNPARAM": "s=1M,o=1000"}
 _STOPPED = re.compile(r'^File "[^"]*", line (\d+), characters', re.MULTILINE)
 _NAMED = re.compile(
     r"^\s*(?:Local |Global )?(?:Theorem|Corollary|Lemma|Definition|Fixpoint|Record|Instance) (\w+)"

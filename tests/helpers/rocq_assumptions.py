@@ -32,6 +32,7 @@ _WORDS = (
 )
 _ASSUMING = re.compile(rf"\b(?:{'|'.join(_WORDS)})\b")
 _BEGUN = re.compile(r"^(Axioms:|Closed under the global context)$", re.MULTILINE)
+ASKED = re.compile(r"^Print Assumptions (\w+)\.\n", re.MULTILINE)
 _SENTENCE = re.compile(r"\b(Section|End|Context)\b\s*(\w*)")
 
 

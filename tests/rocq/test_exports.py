@@ -4,35 +4,57 @@ from pathlib import Path
 
 import pytest
 
-from tests.helpers.exports import ALL, EVERY, WRITTEN, export
-from tests.helpers.rocq import beside, changed, coqc
-from tests.helpers.rocq_assumptions import OF_THE_REALS, printed_assumptions
-from tests.rocq import STAND_ALONE
+from tests.helpers.exports import ALL, export
+from tests.helpers.rocq import accepted, beside, changed, coqc
+from tests.helpers.rocq_assumptions import (
+    ASKED,
+    OF_THE_REALS,
+    asked_together,
+    printed_assumptions,
+)
 
-ALONE = [f"{name}_alone" for name in STAND_ALONE]
 
-
-@pytest.mark.parametrize("name", [*ALL, *ALONE])
+@pytest.mark.parametrize("name", ALL)
 def test_coqc_takes_the_export(exports: Path, name: str) -> None:
     refused = exports / f"{name}.refused"
     assert not refused.exists(), refused.read_text(encoding="utf-8")
     assert (exports / f"{name}.vo").exists()
 
 
-@pytest.mark.parametrize("name", [*ALL, *ALONE])
-def test_an_export_prints_that_it_assumes_what_the_reals_do_or_nothing(
-    exports: Path, name: str
+def of_rings_in(name: str) -> bool:
+    """Whether an export has theorems of rings, which it asks about first; then those of reals."""
+    return name.startswith("every_")
+
+
+def test_all_exports_assume_what_the_reals_do_or_nothing(
+    theory: Path, exports: Path, tmp_path: Path
 ) -> None:
-    found = printed_assumptions((exports / f"{name}.said").read_text(encoding="utf-8"))
-    plain = name.removesuffix("_alone")
-    if plain not in (*EVERY, *WRITTEN) or not plain.startswith("every"):
-        (of_all,) = found
-        assert frozenset() < of_all <= OF_THE_REALS
-        return
-    # Those of rings are asked together, and those over the reals.
-    of_rings, of_reals = found
-    assert of_rings == frozenset()
-    assert frozenset() < of_reals <= OF_THE_REALS
+    """As they ask themselves, each apart: that is done in the next test."""
+    asked = {name: ASKED.findall(export(name).text) for name in ALL}
+    rings = [f"{name}.{asked[name].pop(0)}" for name in ALL if of_rings_in(name)]
+    reals = [f"{name}.{of_all}" for name in ALL for of_all in asked[name]]
+    assert len(reals) == len(ALL)
+    loaded = f"Require {' '.join(ALL)}.\n"
+    text = loaded + asked_together("of_rings", rings) + asked_together("of_reals", reals)
+    said = accepted(tmp_path / "asked.v", text, {**beside(theory), "": exports})
+    check_assumptions(said, of_rings=True)
+
+
+@pytest.mark.sample(2)
+@pytest.mark.parametrize("name", ALL)
+def test_coqc_takes_an_export_that_stands_alone_and_says_what_it_assumes(
+    name: str, tmp_path: Path
+) -> None:
+    """With what it needs of the theory, which takes as long as to compile that."""
+    said = accepted(tmp_path / f"{name}.v", export(name, stands_alone=True).text)
+    check_assumptions(said, of_rings=of_rings_in(name))
+
+
+def check_assumptions(said: str, *, of_rings: bool) -> None:
+    """That Rocq says, of theorems of rings, that they assume nothing; of others, what reals do."""
+    *rings, reals = printed_assumptions(said)
+    assert rings == [frozenset()] * of_rings
+    assert frozenset() < reals <= OF_THE_REALS
 
 
 def test_an_axiom_in_an_export_is_told_by_rocq(theory: Path, tmp_path: Path) -> None:
