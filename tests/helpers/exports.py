@@ -53,6 +53,7 @@ ONE = {
     "quotient": _hamiltonian("p**2/2 - a/q", "lie2"),
     "functions": _hamiltonian("p**2/2 - 1/(1 + q**2) + exp(q)/3", "lie2"),
     "not_shown": _hamiltonian("p**2/2 - cos(q + 1/3)", "lie2"),
+    "nested": _hamiltonian("p**2/2 - " + "sin(" * 20 + "q" + ")" * 20, "lie1"),
     "driven_kick": _hamiltonian("p**2/2 + t*q**4", "stormer-verlet"),
 }
 COEFFICIENTS = {

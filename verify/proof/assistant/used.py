@@ -6,7 +6,7 @@ from dataclasses import replace
 from verify.proof.certificates.entries import Expansion, Function
 from verify.proof.certificates.readers import Poly, need
 
-_MOST, _DEEPEST = 100, 8  # the time of coqc grows with the square, and twofold with each
+_MOST, _DEEPEST = 100, 20  # the time of coqc grows with the square of both
 _PARTNERS = {"sin": "cos", "cos": "sin"}
 
 
