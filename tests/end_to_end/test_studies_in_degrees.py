@@ -57,9 +57,9 @@ def test_what_is_of_the_plane_is_refused(
 ) -> None:
     file = tmp_path / "mine.toml"
     file.write_text(
-        'system = "henon-heiles"\nschemes = ["rk4"]\n[[largest_step]]\ntime = 1\n'
-        "initial_value = { q = 1, p = 0 }\n"
+        'system = "henon-heiles"\nschemes = ["rk4"]\ncriteria = [1]\n[[largest_step]]\ntime = 1\n'
+        "initial_value = { q = [0, 0.1], p = [0, 0] }\n"
     )
     status, _, err = here(capsys, "stability", str(file))
     assert status == 2
-    assert "largest_step takes p and q" in err
+    assert "criteria takes p and q" in err

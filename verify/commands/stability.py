@@ -104,7 +104,11 @@ def _print(found: "StabilityFindings") -> None:
     for step in found.largest_steps:
         measured = f"bounded up to h = {step.bounded}" if step.bounded else "never bounded"
         linear = f"linear theory {step.linear}" if step.linear else "linear theory sets no limit"
-        click.echo(f"{step.scheme}: {measured} until t = {step.time}; {linear}  {step.detail}")
+        within = [f"energy error ≤ {step.energy_error}"] * bool(step.energy_error)
+        within += [f"|W| ≤ {step.symplectic_defect}"] * bool(step.symplectic_defect)
+        with_ = f" with {' and '.join(within)}" if within else ""
+        said = f"{measured}{with_} until t = {step.time}; {linear}  {step.detail}"
+        click.echo(f"{step.scheme}: {said}")
     for over in found.maps:
         counted = ", ".join(f"{n} {kind}" for kind, n in over.counted().items())
         click.echo(f"{over.scheme}: {over.parameter} and step size: {counted}")

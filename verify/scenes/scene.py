@@ -91,7 +91,7 @@ from verify.scenes.values import (
 from verify.schemes.degrees import check_takes
 
 _MAX_DEPTH = 12
-_OF_THE_PLANE = ("criteria", "stroboscopic", "largest_step", "stability_map")
+_OF_THE_PLANE = ("criteria", "stroboscopic")
 _IDENTITY = ("name", "title", "system", "hamiltonian", "parameters", "t0", "schemes")
 
 
@@ -190,7 +190,8 @@ class Scene(Frozen):
         """InputError where something of the plane is asked for."""
         asked = {name for name in _OF_THE_PLANE if getattr(self, name)}
         asked |= {"grid.growth"} if self.grid and self.grid.growth else set()
-        if self.separation or (self.grid and self.grid.separate):
+        of_form = any(over.symplectic_defect is not None for over in self.largest_step)
+        if self.separation or (self.grid and self.grid.separate) or of_form:
             check_observables(exact, ("symplectic_defect",))  # W is what is separated
         if asked:
             names = ", ".join(exact.coordinates)

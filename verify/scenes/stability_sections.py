@@ -10,6 +10,8 @@ schemes = ["lie2", "stormer-verlet"]   # the scene's, where it is left out
 [[largest_step]]                       # the largest step with bounded motion, by bisection
 time = 100
 initial_value = { q = 1, p = 0 }
+energy_error = 0.01                    # and with an energy kept to a hundredth of its scale
+symplectic_defect = 1e-3               # and with |W|, in the plane |Λ|, below so much
 
 [[stability_map]]                      # verdicts over step size and stiffness, a picture a scheme
 parameter = "delta"
@@ -26,12 +28,11 @@ from typing import Annotated, Any, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from verify import schemes as scheme_catalogue
-from verify.arithmetic.exact import decimal, positive, whole
+from verify.arithmetic.exact import decimal, positive, text, whole
 from verify.arithmetic.systems import mpfr
 from verify.errors import NOT_GIVEN, InputError
 from verify.scenes.frozen import Section
 from verify.scenes.values import (
-    InitialValue,
     Number,
     SchemeName,
     Start,
@@ -127,8 +128,21 @@ class LargestStepOver(OfSchemes):
 
     time: Time
     """Until when the motion is to stay bounded."""
-    initial_value: InitialValue
+    initial_value: Start
     """Where the runs start."""
+    energy_error: Number | None = None
+    """The greatest |H − H(z0)| that is allowed, in parts of the orbit's energy scale."""
+    symplectic_defect: Number | None = None
+    """The greatest |entry| of W that is allowed, the symplectic defect of all steps; in the plane
+    |Λ|."""
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        for name in ("energy_error", "symplectic_defect"):
+            most = getattr(self, name)
+            if most is not None and most <= 0:
+                raise InputError(name, text(most), "must be greater than 0")
+        return self
 
 
 class StabilityMap(OfSchemes):
@@ -142,7 +156,7 @@ class StabilityMap(OfSchemes):
     """The step sizes, likewise."""
     steps: Annotated[int, Field(ge=1, le=_MOST_MAP_STEPS, strict=True)]
     """The number of steps of each run."""
-    initial_value: InitialValue
+    initial_value: Start
     """Where the runs start."""
 
     @model_validator(mode="after")

@@ -60,17 +60,20 @@ class LargestStepResult(OfScheme, WithProse):
 
     `bounded`: the motion stays bounded with it; `unbounded`: with this next one, a thousandth
     greater, it does not; None where no step size looked at is of that kind. `linear`: the step size
-    that linear theory allows where the orbit is stiffest; "0" where it allows none.
+    that linear theory allows where the orbit is stiffest; "0" where it allows none. `energy_error`
+    and `symplectic_defect`: what the motion had to keep within beside its bounds, if anything.
     """
 
     time: str
-    q: str
-    p: str
+    q: str | tuple[str, ...]
+    p: str | tuple[str, ...]
     t0: str | None = None
     bounded: str | None
     unbounded: str | None
     linear: str | None
     h_omega: str | None
+    energy_error: str | None = None
+    symplectic_defect: str | None = None
     exact_orbit: Said
     detail: Said
 
@@ -93,8 +96,8 @@ class StabilityMapResult(OfScheme):
     values: Annotated[tuple[str, ...], Field(min_length=1)]
     step_sizes: Annotated[tuple[str, ...], Field(min_length=1)]
     steps: int
-    q: str
-    p: str
+    q: str | tuple[str, ...]
+    p: str | tuple[str, ...]
     t0: str | None = None
     cells: tuple[tuple[MapCell, ...], ...]
     linear: tuple[str | None, ...]

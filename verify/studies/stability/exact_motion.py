@@ -54,7 +54,8 @@ class Sensitivity:
 @dataclass(frozen=True)
 class ExactMotion:
     """`reach`: of each coordinate, the greatest of its kind; `scale`: of the energy; `period`:
-    about the time in which the quickest coordinate turns round."""
+    about the time in which the quickest coordinate turns round; `states`: where it was looked at,
+    at these `times`."""
 
     kind: Kind
     summary: Prose
@@ -62,6 +63,8 @@ class ExactMotion:
     reach: State
     scale: Fraction
     period: Fraction | None
+    states: tuple[State, ...]
+    times: tuple[Fraction, ...]
     sensitivity: Sensitivity | None = None
 
 
@@ -160,6 +163,8 @@ class _Search:
             reach,
             sum(products, Fraction(0)) / 2 or Fraction(1),
             period,
+            tuple(points),
+            tuple(self.t0 + k * self.part for k in range(len(points))),
             sensitivity,
         )
 

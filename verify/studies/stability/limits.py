@@ -1,8 +1,9 @@
 """How far a scheme can be pushed: the largest step with bounded motion, and the (h, stiffness) map.
 
 Linear theory says of a step size h that h ω has to lie in the scheme's interval (see
-`verify.studies.stability.linear`), ω² being the greatest det Hess H on the exact orbit, where that
-is stiffest. What bounded motion is, is told in `verify.studies.stability.run_motion`.
+`verify.studies.stability.linear`), ω being the greatest frequency on the exact orbit, where that is
+stiffest (`verify.studies.stability.frequency`). What bounded motion is, is told in
+`verify.studies.stability.run_motion` and `verify.studies.stability.verdict_in_degrees`.
 """
 
 from collections.abc import Callable, Sequence
@@ -12,16 +13,14 @@ from functools import lru_cache
 import sympy
 
 from verify.arithmetic.exact import decimal, text
-from verify.arithmetic.systems import mpfr
 from verify.errors import InputError
-from verify.flows.orbit import ExactOrbit, exact_orbit
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.start import Given, point_of, shown_of
 from verify.prose import Prose, prose
 from verify.scenes.results.stability import LargestStepResult, MapCell, StabilityMapResult
+from verify.studies.stability.exact_motion import ExactMotion
+from verify.studies.stability.held import Within, held
 from verify.studies.stability.linear import linear_stability
-from verify.studies.stability.run_motion import RunMotion
-from verify.studies.stability.trail import Run
-from verify.studies.stability.verdict_on_run import bounded, judge
 
 _FINER = Fraction(1001, 1000)  # how near the largest step is found
 _LADDER = Fraction(119, 100)  # about 2^(1/4), between the step sizes that are looked at first
@@ -41,19 +40,9 @@ def linear_limit(scheme: str) -> Fraction | None:
     return Fraction(found.decimal())
 
 
-def frequency(orbit: ExactOrbit) -> Fraction:
-    """The greatest ω on the orbit, to some 20 digits; 0 where nothing oscillates."""
-    if orbit.stiffness <= 0:
-        return Fraction(0)
-    arithmetic = mpfr.make(20)
-    with arithmetic.context():
-        omega = arithmetic.functions["sqrt"](arithmetic.number(orbit.stiffness))
-    return arithmetic.exact(omega)
-
-
-def _linear_step(scheme: str, orbit: ExactOrbit) -> Fraction | None:
-    """The step size that linear theory allows on the orbit; None where it does not say."""
-    omega, limit = frequency(orbit), linear_limit(scheme)
+def _linear_step(scheme: str, omega: Fraction) -> Fraction | None:
+    """The step size that linear theory allows at this ω; None where it does not say."""
+    limit = linear_limit(scheme)
     return limit / omega if limit is not None and omega else None
 
 
@@ -66,27 +55,34 @@ def largest_step(
     hamiltonian: Hamiltonian,
     scheme: str,
     *,
-    p: Fraction,
-    q: Fraction,
+    p: Given,
+    q: Given,
     time: Fraction,
     t0: Fraction | None = None,
+    energy_error: Fraction | None = None,
+    symplectic_defect: Fraction | None = None,
 ) -> LargestStepResult:
-    """The largest h with bounded motion in float64 from (p, q) for the length `time`, by bisection.
+    """The largest h with bounded motion in float64 from (p, q) for the length `time`, by bisection;
+    and, where these are given, with no greater energy error, in parts of the orbit's energy scale,
+    and no greater |entry| of W.
 
     From small steps upwards until the first that is not bounded; beyond it there may be other
     steps with bounded motion, by resonance, which are not looked for.
     """
-    begin = t0 or Fraction(0)
-    orbit = exact_orbit(hamiltonian, p, q, time, begin)
-    omega, linear = frequency(orbit), _linear_step(scheme, orbit)
+    point, within = point_of(hamiltonian, q, p), Within(energy_error, symplectic_defect)
+    of = held(hamiltonian, point, time, t0 or Fraction(0))
+    orbit, omega = of.exact, of.frequency
+    linear = _linear_step(scheme, omega)
     good = bad = None
 
     def stays(h: Fraction) -> bool:
         steps = time // h
-        return steps >= 1 and bounded(Run(hamiltonian, scheme, h, q, p, steps, t0=begin))
+        return steps >= 1 and of.keeps(scheme, h, steps, within)
 
     if orbit.kind == "escapes":
         detail = prose("the exact solution ", orbit.summary)
+    elif isinstance(orbit, ExactMotion) and orbit.kind == "unknown":
+        detail = prose("the exact solution, to be held against, is not known: ", orbit.summary)
     else:
         middle = linear or (1 / omega if omega else time / 100)
         good, bad = _bracket(stays, min(middle, time / 2), time)
@@ -99,13 +95,15 @@ def largest_step(
         **hamiltonian.texts,
         scheme=scheme,
         time=text(time),
-        q=text(q),
-        p=text(p),
+        q=shown_of(hamiltonian, point, "q"),
+        p=shown_of(hamiltonian, point, "p"),
         t0=None if t0 is None else text(t0),
         bounded=shortened(good),
         unbounded=shortened(bad),
         linear=shortened(linear),
         h_omega=shortened(good * omega) if good else None,
+        energy_error=None if energy_error is None else text(energy_error),
+        symplectic_defect=None if symplectic_defect is None else text(symplectic_defect),
         exact_orbit=orbit.summary,
         detail=detail,
     )
@@ -146,21 +144,21 @@ def stability_map(
     values: Sequence[Fraction],
     step_sizes: Sequence[Fraction],
     steps: int,
-    p: Fraction,
-    q: Fraction,
+    p: Given,
+    q: Given,
     t0: Fraction | None = None,
 ) -> StabilityMapResult:
     """For each value of the parameter, a row: the verdicts with each step size, and the step size
     of linear theory.
     """
     cells, linear, begin = [], [], t0 or Fraction(0)
+    point = point_of(hamiltonian, q, p)
     for value in values:
         own = hamiltonian.with_values({**dict(hamiltonian.values), parameter: value})
-        orbit = exact_orbit(own, p, q, max(step_sizes) * steps, begin)
-        runs = (Run(own, scheme, h, q, p, steps, t0=begin) for h in step_sizes)
-        row = (judge(RunMotion(run)) for run in runs)
+        of = held(own, point, max(step_sizes) * steps, begin)
+        row = (of.judged(scheme, h, steps) for h in step_sizes)
         cells.append(tuple(MapCell(kind=found.kind, step=found.step) for found in row))
-        linear.append(shortened(_linear_step(scheme, orbit)))
+        linear.append(shortened(_linear_step(scheme, of.frequency)))
     return StabilityMapResult(
         **hamiltonian.texts,
         scheme=scheme,
@@ -168,8 +166,8 @@ def stability_map(
         values=tuple(map(text, values)),
         step_sizes=tuple(map(text, step_sizes)),
         steps=steps,
-        q=text(q),
-        p=text(p),
+        q=shown_of(hamiltonian, point, "q"),
+        p=shown_of(hamiltonian, point, "p"),
         t0=None if t0 is None else text(t0),
         cells=tuple(cells),
         linear=tuple(linear),

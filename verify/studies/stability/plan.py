@@ -49,7 +49,10 @@ def largest_step_tasks(scene: Scene) -> Iterator[LargestStepTask]:
     for section in scene.largest_step:
         at = section.initial_value
         for scheme in section.schemes or scene.schemes:
-            yield LargestStepTask(**given, scheme=scheme, time=section.time, q=at.q, p=at.p)
+            yield LargestStepTask(
+                **given, scheme=scheme, time=section.time, q=at.q, p=at.p,
+                energy_error=section.energy_error, symplectic_defect=section.symplectic_defect,
+            )  # fmt: skip
 
 
 def stability_map_tasks(scene: Scene) -> Iterator[StabilityMapTask]:

@@ -5,7 +5,7 @@ from typing import Literal
 
 from verify.arithmetic import AUTO, step_cost
 from verify.execution.keeping import Keeper
-from verify.execution.task import InitialValueTask, StartTask
+from verify.execution.task import StartTask
 from verify.hamiltonians.start import point_of
 from verify.scenes.results.stability import (
     LargestStepResult,
@@ -17,14 +17,15 @@ from verify.scenes.values import Number, StepSize
 _RUN_COST = 40_000_000  # about what a run costs that is judged, however short
 _BISECTION_COST = 3 * _RUN_COST
 _CELL_COST = _RUN_COST // 8  # of a map, most of whose cells are judged by one short run
+_MOTION_COST = 1_000_000  # of a unit of time of the exact motion in n degrees of freedom, at ω = 1
 
 
-class _FromATime(InitialValueTask):
+class _FromATime(StartTask):
     t0: Number | None = None
     """None where H does not depend on time."""
 
 
-class StabilityTask(StartTask):
+class StabilityTask(_FromATime):
     """Judge one run: stable, drifting, unstable, and whose fault it is."""
 
     result = StabilityResult
@@ -34,7 +35,6 @@ class StabilityTask(StartTask):
         "verify.studies.stability.trail",
     )
     kind: Literal["stability"] = "stability"
-    t0: Number | None = None
     step_size: StepSize
     steps: int
 
@@ -62,6 +62,8 @@ class LargestStepTask(_FromATime):
     imports = ("verify.studies.stability.limits",)
     kind: Literal["largest_step"] = "largest_step"
     time: Number
+    energy_error: Number | None = None
+    symplectic_defect: Number | None = None
 
     @property
     def cost(self) -> int:
@@ -86,7 +88,11 @@ class StabilityMapTask(_FromATime):
 
     @property
     def cost(self) -> int:
-        return _CELL_COST * len(self.values) * len(self.step_sizes)
+        cells = _CELL_COST * len(self.values) * len(self.step_sizes)
+        if isinstance(self.q, Fraction):
+            return cells
+        motion = int(_MOTION_COST * self.steps * max(self.step_sizes))
+        return cells + motion * len(self.values)
 
     def compute(self, keeper: Keeper) -> StabilityMapResult:
         from verify.studies.stability.limits import stability_map

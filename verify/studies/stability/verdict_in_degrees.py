@@ -55,9 +55,11 @@ _PERIODS = 8  # that a run lasts at least, for a drift to be told from a swing
 class MotionInDegrees:
     """What is seen of one run; each thing is made when it is looked at."""
 
-    def __init__(self, run: RunInDegrees) -> None:
+    def __init__(self, run: RunInDegrees, orbit: ExactMotion | None = None) -> None:
+        """`orbit`: the exact motion from there, over the run's time or longer, if it is known."""
         self.run, self.digits = run, _DIGITS
-        self.orbit: ExactMotion = exact_motion(run.hamiltonian, run.state, run.time, run.t0)
+        of = run.hamiltonian, run.state, run.time, run.t0
+        self.orbit: ExactMotion = exact_motion(*of) if orbit is None else orbit
 
     @cached_property
     def precise(self) -> Trail:
@@ -106,6 +108,12 @@ class MotionInDegrees:
 
     def energy_errors(self, trail: Trail) -> list[Fraction | None]:
         return [self.energy_error(point) for point in trail.points]
+
+    def worst(self, trail: Trail) -> Fraction | None:
+        """The greatest energy error seen in a run, in size; None where H depends on time."""
+        if self.run.hamiltonian.time_dependent:
+            return None
+        return max((abs(x) for x in self.energy_errors(trail) if x is not None), default=None)
 
     def beyond(self, point: Point) -> bool:
         orbit = self.orbit
@@ -170,7 +178,7 @@ def _parts(motion: MotionInDegrees) -> Judgement:
     step = first_apart(motion.float64, motion.precise, motion.apart)
     at = f"at step {step}" if step is not None else f"before step {motion.float64.done + 1}"
     told = prose(f"float64 parts {at} from the same scheme in {motion.digits} digits")
-    worst = _worst(motion, motion.precise)
+    worst = motion.worst(motion.precise)
     exact = prose("; the exact solution ", motion.orbit.summary)
     if _sensitive(motion):
         return Judgement("sensitive", told + exact, step=step, energy_error=worst)
@@ -191,14 +199,8 @@ def _bounded(motion: MotionInDegrees) -> Judgement:
         told = prose(f"bounded over the {precise.steps} steps that were done in high precision")
     told += prose("; the exact solution ", motion.orbit.summary)
     rate = _drift(motion)
-    worst = _worst(motion, precise)
+    worst = motion.worst(precise)
     return Judgement("stable" if rate is None else "drifts", told, rate=rate, energy_error=worst)
-
-
-def _worst(motion: MotionInDegrees, trail: Trail) -> Fraction | None:
-    if motion.run.hamiltonian.time_dependent:
-        return None
-    return max((abs(x) for x in motion.energy_errors(trail) if x is not None), default=None)
 
 
 def _drift(motion: MotionInDegrees) -> Fraction | None:

@@ -27,7 +27,6 @@ from verify.studies.stability.energy_drift import drift_of, too_short
 from verify.studies.stability.rounded_start import describe_rounded_start
 from verify.studies.stability.run_motion import RunMotion, float64
 from verify.studies.stability.trail import (
-    Run,
     Trail,
     first_apart,
     first_step,
@@ -76,12 +75,6 @@ def judge(motion: RunMotion) -> Judgement:
     if lost:
         return Judgement("underflow", lost, energy_error=motion.worst(motion.float64))
     return _bounded(motion)
-
-
-def bounded(run: Run) -> bool:
-    """Whether the float64 run stays within the exact orbit's bounds."""
-    motion = RunMotion(run)
-    return motion.stays(motion.float64)
 
 
 def _scheme(motion: RunMotion) -> Judgement:

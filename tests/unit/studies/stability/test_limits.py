@@ -6,7 +6,8 @@ import pytest
 
 from verify.flows.orbit import exact_orbit
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.studies.stability.limits import frequency, largest_step, linear_limit, stability_map
+from verify.studies.stability.frequency import frequency
+from verify.studies.stability.limits import largest_step, linear_limit, stability_map
 
 ONE, NONE = Fraction(1), Fraction(0)
 HARMONIC = Hamiltonian.parse("p**2/2 + w**2*q**2/2", {"w": "3"})

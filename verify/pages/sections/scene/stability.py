@@ -120,7 +120,14 @@ def _largest(found: LargestStepResult) -> Row:
         if found.bounded and Fraction(found.linear):
             ratio = f"{float(Fraction(found.bounded) / Fraction(found.linear)):.3f}"
     measured = _four(found.bounded) if found.bounded else prose(found.detail)
-    return Row(found.scheme, (measured, linear, ratio))
+    return Row(f"{found.scheme}{_within(found)}", (measured, linear, ratio))
+
+
+def _within(found: LargestStepResult) -> str:
+    """What it had to keep beside its bounds."""
+    asked = (("energy error", found.energy_error), ("|W|", found.symplectic_defect))
+    said = [f"{what} ≤ {number(most)}" for what, most in asked if most]
+    return f", {' and '.join(said)}" if said else ""
 
 
 def _four(x: str) -> str:
@@ -167,9 +174,13 @@ def _caption(maps: Sequence[StabilityMapResult], counts: str) -> str:
     if never:
         limit += f" For {listed(never)} linear theory has no stable step."
     return (
-        f"Each mark is a run of {whole(over.steps)} steps from q = {number(over.q)}, "
-        f"p = {number(over.p)}.{limit}" + f" {counts}." * (len(maps) == 1)
+        f"Each mark is a run of {whole(over.steps)} steps from q = {_numbers(over.q)}, "
+        f"p = {_numbers(over.p)}.{limit}" + f" {counts}." * (len(maps) == 1)
     )
+
+
+def _numbers(given: str | tuple[str, ...]) -> str:
+    return number(given) if isinstance(given, str) else f"({', '.join(map(number, given))})"
 
 
 def _is_positive(step_size: str | None) -> bool:

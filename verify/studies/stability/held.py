@@ -1,0 +1,129 @@
+"""The exact motion from one start, and whether runs keep to it: the same questions in the plane and
+in n degrees of freedom.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Protocol
+
+from verify.flows.orbit import ExactOrbit, exact_orbit
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.runs.run import run as run_of
+from verify.studies.stability.exact_motion import ExactMotion, exact_motion
+from verify.studies.stability.frequency import frequency, frequency_in_degrees
+from verify.studies.stability.run_in_degrees import RunInDegrees
+from verify.studies.stability.run_motion import RunMotion, float64
+from verify.studies.stability.trail import Followed, Run, State, follow
+from verify.studies.stability.verdict_in_degrees import MotionInDegrees, judge_in_degrees
+from verify.studies.stability.verdict_on_run import Judgement, judge
+
+
+@dataclass(frozen=True)
+class Within:
+    """What a run must not exceed, beside the exact motion's bounds: |H − H(z₀)| in parts of the
+    orbit's energy scale, and the greatest |entry| of W, which in the plane is |Λ|."""
+
+    energy_error: Fraction | None = None
+    symplectic_defect: Fraction | None = None
+
+    def holds(self, run: Followed, energy_error: Fraction | None) -> bool:
+        """Of a run whose energy error is so great at most."""
+        most = self.energy_error
+        if most is not None and (energy_error is None or energy_error > most):
+            return False
+        return self.symplectic_defect is None or self._keeps_the_form(run, self.symplectic_defect)
+
+    def _keeps_the_form(self, run: Followed, most: Fraction) -> bool:
+        of, start, planar = run.hamiltonian, run.start, run.hamiltonian.planar
+        p, q = ([start[x] for x in of.coordinates if x[0] == letter] for letter in "pq")
+        name = "lambda" if planar else "symplectic_defect"
+        done = run_of(
+            of, run.scheme, q=q[0] if planar else q, p=p[0] if planar else p,
+            step_size=run.step_size, steps=run.steps, t0=start["t"], observables=(name,),
+        )  # fmt: skip
+        return name in done.values and abs(done.values[name]) <= most
+
+
+class Held(Protocol):
+    """The exact motion from one start for some time, and what is asked of runs from there."""
+
+    @property
+    def exact(self) -> ExactOrbit | ExactMotion: ...
+    @property
+    def frequency(self) -> Fraction:
+        """The greatest ω; 0 where nothing oscillates."""
+
+    def keeps(self, scheme: str, h: Fraction, steps: int, within: Within) -> bool:
+        """Whether the float64 run keeps within the bounds."""
+
+    def judged(self, scheme: str, h: Fraction, steps: int) -> Judgement:
+        """The verdict on the run."""
+
+
+def held(
+    hamiltonian: Hamiltonian, point: Mapping[str, Fraction], time: Fraction, t0: Fraction
+) -> Held:
+    """The motion from a point, given by the names of its coordinates, at t0."""
+    state = tuple(point[name] for name in hamiltonian.coordinates)
+    return (_InPlane if hamiltonian.planar else _InDegrees)(hamiltonian, state, time, t0)
+
+
+@dataclass(frozen=True)
+class _InPlane:
+    hamiltonian: Hamiltonian
+    state: State
+    time: Fraction
+    t0: Fraction
+
+    @property
+    def exact(self) -> ExactOrbit:
+        return exact_orbit(self.hamiltonian, *self.state, self.time, self.t0)
+
+    @property
+    def frequency(self) -> Fraction:
+        return frequency(self.exact)
+
+    def _motion(self, scheme: str, h: Fraction, steps: int) -> RunMotion:
+        p, q = self.state
+        return RunMotion(Run(self.hamiltonian, scheme, h, q, p, steps, t0=self.t0))
+
+    def keeps(self, scheme: str, h: Fraction, steps: int, within: Within) -> bool:
+        motion = self._motion(scheme, h, steps)
+        trail = motion.float64
+        return motion.stays(trail) and within.holds(motion.run, motion.worst(trail))
+
+    def judged(self, scheme: str, h: Fraction, steps: int) -> Judgement:
+        return judge(self._motion(scheme, h, steps))
+
+
+@dataclass(frozen=True)
+class _InDegrees:
+    """Where the motion is bounded it is followed once, over the whole time, for all runs."""
+
+    hamiltonian: Hamiltonian
+    state: State
+    time: Fraction
+    t0: Fraction
+
+    @property
+    def exact(self) -> ExactMotion:
+        return exact_motion(self.hamiltonian, self.state, self.time, self.t0)
+
+    @cached_property
+    def frequency(self) -> Fraction:
+        return frequency_in_degrees(self.hamiltonian, self.exact)
+
+    def _motion(self, scheme: str, h: Fraction, steps: int) -> MotionInDegrees:
+        run = RunInDegrees(self.hamiltonian, scheme, h, self.state, steps, self.t0)
+        known = self.exact.kind in ("bounded", "driven")
+        return MotionInDegrees(run, self.exact if known else None)
+
+    def keeps(self, scheme: str, h: Fraction, steps: int, within: Within) -> bool:
+        motion = self._motion(scheme, h, steps)
+        trail = follow(motion.run, float64())
+        return motion.stays(trail) and within.holds(motion.run, motion.worst(trail))
+
+    def judged(self, scheme: str, h: Fraction, steps: int) -> Judgement:
+        return judge_in_degrees(self._motion(scheme, h, steps))
