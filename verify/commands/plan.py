@@ -93,5 +93,9 @@ _LINES: Mapping[str, Callable[[Task], str]] = {
         f"bisect the largest step of {task['scheme']} until {task['time']}"
     ),
     "stability_map": _map,
+    "orbit_map": lambda task: (
+        f"step {task['scheme']} from {len(task['across']) * len(task['upwards'])} starts over "
+        f"{' and '.join(task['axes'])}"
+    ),
     "flow": _flow,
 }

@@ -38,7 +38,8 @@ def stability(
 
     stable, drifts, unstable: scheme, unstable: arithmetic, escapes, overflow at step k, underflow;
     in n degrees of freedom sensitive, where the exact motion parts from its neighbours itself.
-    Nothing of the scene is done but its [[stability]], [[largest_step]] and [[stability_map]].
+    Nothing of the scene is done but its [[stability]], [[largest_step]], [[stability_map]] and
+    [[orbit_map]].
 
     \b
     verify stability stiff
@@ -78,7 +79,7 @@ def _of_scenes(
 
     plan = plan_of(scenes, need_stability)
     if not plan.tasks:
-        problem = "asks for no [[stability]], [[largest_step]] or [[stability_map]]; add one"
+        problem = "asks for no [[stability]], [[largest_step]], [[stability_map]] or [[orbit_map]]"
         raise InputError("SCENE", scene or NOT_GIVEN, problem)
     found = findings_of(scenes, perform(plan, keep, where))
     notes = [
@@ -112,6 +113,9 @@ def _print(found: "StabilityFindings") -> None:
     for over in found.maps:
         counted = ", ".join(f"{n} {kind}" for kind, n in over.counted().items())
         click.echo(f"{over.scheme}: {over.parameter} and step size: {counted}")
+    for starts in found.orbit_maps:
+        counted = ", ".join(f"{n} {kind}" for kind, n in starts.counted().items())
+        click.echo(f"{starts.scheme}: orbits over {' and '.join(starts.axes)}: {counted}")
 
 
 def _linear(scheme: str) -> Answer:

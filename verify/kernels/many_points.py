@@ -71,10 +71,14 @@ class PointMap:
 
         Raises LeftRangeError.
         """
-        found: Sequence[Any]
+        found: Any
         given = [points[name] for name in self.kernel.coordinates]
         if self.arithmetic.name == float64.NAME:
-            found = self._in_lanes(np.array(given, dtype=np.float64))
+            z = np.array(given, dtype=np.float64)
+            found = self.followed(z)
+            lost = np.flatnonzero(~np.all(np.isfinite(found), axis=0))
+            if lost.size:
+                raise self._out_of_range(z[:, lost[0]].tolist())
         else:
             found = self._one_by_one(given)
         return dict(zip(self.kernel.state_names, found, strict=True))
@@ -94,7 +98,9 @@ class PointMap:
         exact = (start[x] if isinstance(x, str) else Fraction(x) for x in self.kernel.start)
         return [self.arithmetic.number(x) for x in exact]
 
-    def _in_lanes(self, given: np.ndarray) -> list[np.ndarray]:
+    def followed(self, given: np.ndarray) -> np.ndarray:
+        """All that is carried, in float64, of points (coordinates, points): a row each, and no
+        finite number where a point has left the range."""
         run, share = _stepper(self.kernel)
         inputs = np.array(self._inputs(), dtype=np.float64)
         count = given.shape[1]
@@ -107,11 +113,7 @@ class PointMap:
 
         with ThreadPoolExecutor(os.cpu_count()) as threads:
             list(threads.map(advance, range(0, count, share)))
-        carried = carried[:, :count]
-        lost = np.flatnonzero(~np.all(np.isfinite(carried), axis=0))
-        if lost.size:
-            raise self._out_of_range(given[:, lost[0]].tolist())
-        return list(carried)
+        return carried[:, :count]
 
     def _one_by_one(self, given: Sequence[Sequence[Number]]) -> list[list[Number]]:
         made = self.arithmetic

@@ -77,6 +77,7 @@ from verify.scenes.frozen import Frozen, Section
 from verify.scenes.mistakes.syntax import toml_mistake
 from verify.scenes.mistakes.values import one_line
 from verify.scenes.observables import check_observables
+from verify.scenes.orbit_map_section import OrbitMap
 from verify.scenes.poincare_section import Poincare
 from verify.scenes.region_sections import Flow
 from verify.scenes.run_sections import Grid, SeparationOver, Series
@@ -137,6 +138,8 @@ class Scene(Frozen):
     """The largest step size with bounded motion."""
     stability_map: tuple[StabilityMap, ...] = ()
     """Verdicts over step size and one parameter, as a picture."""
+    orbit_map: tuple[OrbitMap, ...] = ()
+    """What orbits do over two of their initial values, as a picture."""
     reference: tuple[Reference, ...] = ()
     """Numbers to test integrators against: `verify reference make`."""
 
@@ -176,6 +179,8 @@ class Scene(Frozen):
             self._check_no_plane(exact)
         for passed in self.poincare:
             passed.check_hamiltonian(exact)
+        for over in self.orbit_map:
+            over.check_hamiltonian(exact)
         for section in self.sections():
             starts = getattr(section, "initial_values", None) or ()
             one = getattr(section, "initial_value", None)

@@ -334,6 +334,14 @@ step_size = 0.1
 steps = [3]
 exact = false
 
+[[orbit_map]]
+axes = ["q2", "p2"]
+across = { from = 0, to = 0.5, count = 3 }
+upwards = [0.1]
+initial_value = { q = [0, 0], p = [0.1, 0] }
+step_size = 0.1
+steps = 20
+
 [[poincare]]
 step_size = 0.1
 steps = 90

@@ -19,7 +19,12 @@ from verify.scenes.results.regions import FlowResult
 from verify.scenes.results.run import RunResult
 from verify.scenes.results.separation import SeparationGrid
 from verify.scenes.results.separation_in_degrees import SeparationGridInDegrees
-from verify.scenes.results.stability import LargestStepResult, StabilityMapResult, StabilityResult
+from verify.scenes.results.stability import (
+    LargestStepResult,
+    OrbitMapResult,
+    StabilityMapResult,
+    StabilityResult,
+)
 from verify.scenes.results.statement import StatementResult
 from verify.scenes.results.stroboscopic import StroboscopicResult
 from verify.scenes.results.work_precision import WorkPrecisionResult
@@ -40,7 +45,8 @@ class SceneResult(Frozen):
     proved of its schemes for every H, `work_precision` error against run time,
     `flows` what maps do to regions, `stroboscopic` orbits once in each period, `poincare` orbits
     where they pass a surface;
-    `stability`, `largest_steps` and `stability_maps` how stable they are.
+    `stability`, `largest_steps` and `stability_maps` how stable they are, `orbit_maps` what orbits
+    do over two of their initial values.
     """
 
     name: str
@@ -68,6 +74,7 @@ class SceneResult(Frozen):
     stability: tuple[StabilityResult, ...] = ()
     largest_steps: tuple[LargestStepResult, ...] = ()
     stability_maps: tuple[StabilityMapResult, ...] = ()
+    orbit_maps: tuple[OrbitMapResult, ...] = ()
 
 
 class Provenance(Frozen):

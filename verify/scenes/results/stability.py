@@ -1,6 +1,7 @@
 """What was found of a scheme's stability: frozen results."""
 
 from collections import Counter
+from collections.abc import Iterator
 from typing import Annotated, Literal
 
 from pydantic import Field
@@ -12,6 +13,9 @@ Kind = Literal[
     "underflow", "sensitive", "undecided",
 ]  # fmt: skip
 KINDS: tuple[Kind, ...] = Kind.__args__  # type: ignore[attr-defined]
+OrbitKind = Literal["regular", "sensitive", "undecided", "leaves"]
+ORBIT_KINDS: tuple[OrbitKind, ...] = OrbitKind.__args__  # type: ignore[attr-defined]
+Rows = Annotated[tuple[tuple[str | None, ...], ...], Field(min_length=1)]
 
 
 class StabilityResult(WithProse):
@@ -106,3 +110,45 @@ class StabilityMapResult(OfScheme):
         """How many cells there are of each kind that occurs."""
         seen = Counter(cell.kind for row in self.cells for cell in row)
         return {kind: seen[kind] for kind in KINDS if seen[kind]}
+
+
+class OrbitMapResult(OfScheme):
+    """Orbits of one scheme over two initial values, in float64: measured, over so many steps.
+
+    `rows` hold a list for each value of the second axis, with an entry for each of the first.
+    `kinds`: regular, where neighbours part no faster than a power of t; sensitive, where they part
+    exponentially; undecided, where the time does not tell, or H is not defined there; leaves, where
+    a coordinate is beyond `beyond` or float64's range, seen after `left` steps, which are looked at
+    every `every` steps. `lyapunov`: the rate at which a neighbour parts, by the distance that it
+    began with, until a tenth of the greatest start. `defects`: max |W| after all steps, the
+    symplectic defect, in the plane |Λ|; "0" where it is proved, None where the orbit leaves or W is
+    not carried in so many degrees of freedom. `energies`: H at the start, None where H depends on
+    time.
+    """
+
+    axes: tuple[str, str]
+    across: tuple[str, ...]
+    upwards: tuple[str, ...]
+    q: str | tuple[str, ...]
+    p: str | tuple[str, ...]
+    t0: str | None = None
+    step_size: str
+    steps: int
+    beyond: str
+    every: int
+    kinds: tuple[tuple[OrbitKind, ...], ...]
+    left: tuple[tuple[int | None, ...], ...]
+    lyapunov: Rows
+    defects: Rows
+    energies: Rows
+
+    def counted(self) -> dict[OrbitKind, int]:
+        """How many orbits there are of each kind that occurs."""
+        seen = Counter(kind for row in self.kinds for kind in row)
+        return {kind: seen[kind] for kind in ORBIT_KINDS if seen[kind]}
+
+    def places(self) -> Iterator[tuple[int, int]]:
+        """The indices of all cells: row, then column."""
+        for i in range(len(self.upwards)):
+            for j in range(len(self.across)):
+                yield i, j

@@ -6,9 +6,19 @@ from typing import Any
 
 from verify.execution.study import Results, known_results
 from verify.scenes.frozen import PLAIN
-from verify.scenes.results.stability import LargestStepResult, StabilityMapResult, StabilityResult
+from verify.scenes.results.stability import (
+    LargestStepResult,
+    OrbitMapResult,
+    StabilityMapResult,
+    StabilityResult,
+)
 from verify.scenes.scene import Scene
-from verify.studies.stability.plan import largest_step_tasks, stability_map_tasks, stability_tasks
+from verify.studies.stability.plan import (
+    largest_step_tasks,
+    orbit_map_tasks,
+    stability_map_tasks,
+    stability_tasks,
+)
 
 
 @dataclass(frozen=True)
@@ -18,9 +28,10 @@ class StabilityFindings:
     runs: tuple[StabilityResult, ...]
     largest_steps: tuple[LargestStepResult, ...]
     maps: tuple[StabilityMapResult, ...]
+    orbit_maps: tuple[OrbitMapResult, ...] = ()
 
     def as_json(self) -> dict[str, list[dict[str, Any]]]:
-        """As a report's JSON has them, under `cases`, `largest_steps` and `maps`."""
+        """As a report's JSON has them, under `cases`, `largest_steps`, `maps` and `orbit_maps`."""
         return {
             "cases": [
                 {"id": run.id, "verdict": run.verdict}
@@ -29,6 +40,7 @@ class StabilityFindings:
             ],
             "largest_steps": [x.model_dump(mode="json", context=PLAIN) for x in self.largest_steps],
             "maps": [x.model_dump(mode="json") for x in self.maps],
+            "orbit_maps": [x.model_dump(mode="json") for x in self.orbit_maps],
         }
 
 
@@ -42,8 +54,10 @@ def findings_of(scenes: Sequence[Scene], results: Results) -> StabilityFindings:
     )
     steps = (task for scene in scenes for task in largest_step_tasks(scene))
     maps = (task for scene in scenes for task in stability_map_tasks(scene))
+    orbits = (task for scene in scenes for task in orbit_map_tasks(scene))
     return StabilityFindings(
         tuple(runs),
         tuple(known_results(LargestStepResult, steps, results)),
         tuple(known_results(StabilityMapResult, maps, results)),
+        tuple(known_results(OrbitMapResult, orbits, results)),
     )

@@ -7,7 +7,12 @@ from verify.arithmetic.exact import short
 from verify.execution.plan import Plan
 from verify.execution.study import called
 from verify.scenes.scene import Scene
-from verify.studies.stability.task import LargestStepTask, StabilityMapTask, StabilityTask
+from verify.studies.stability.task import (
+    LargestStepTask,
+    OrbitMapTask,
+    StabilityMapTask,
+    StabilityTask,
+)
 
 
 def need_stability(plan: Plan, scene: Scene) -> None:
@@ -19,6 +24,8 @@ def need_stability(plan: Plan, scene: Scene) -> None:
         plan.need(largest, f"{name}: the largest step with bounded motion")
     for over in stability_map_tasks(scene):
         plan.need(over, f"{name}: stability over step size and {over.parameter}")
+    for over_starts in orbit_map_tasks(scene):
+        plan.need(over_starts, f"{name}: orbits over {' and '.join(over_starts.axes)}")
 
 
 def _given(scene: Scene) -> dict[str, Any]:
@@ -69,4 +76,23 @@ def stability_map_tasks(scene: Scene) -> Iterator[StabilityMapTask]:
                 steps=section.steps,
                 q=at.q,
                 p=at.p,
+            )
+
+
+def orbit_map_tasks(scene: Scene) -> Iterator[OrbitMapTask]:
+    given = _given(scene) if scene.orbit_map else {}
+    for section in scene.orbit_map:
+        at = section.initial_value
+        for scheme in section.schemes or scene.schemes:
+            yield OrbitMapTask(
+                **given,
+                scheme=scheme,
+                axes=section.axes,
+                across=section.across,
+                upwards=section.upwards,
+                q=at.q,
+                p=at.p,
+                step_size=section.step_size,
+                steps=section.count,
+                beyond=section.farthest(scene.exact_hamiltonian()),
             )

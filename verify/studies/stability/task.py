@@ -9,6 +9,7 @@ from verify.execution.task import StartTask
 from verify.hamiltonians.start import point_of
 from verify.scenes.results.stability import (
     LargestStepResult,
+    OrbitMapResult,
     StabilityMapResult,
     StabilityResult,
 )
@@ -18,6 +19,8 @@ _RUN_COST = 40_000_000  # about what a run costs that is judged, however short
 _BISECTION_COST = 3 * _RUN_COST
 _CELL_COST = _RUN_COST // 8  # of a map, most of whose cells are judged by one short run
 _MOTION_COST = 1_000_000  # of a unit of time of the exact motion in n degrees of freedom, at ω = 1
+
+_STEPS_OF_A_CELL = 4  # for each of its steps: a neighbour's, and those with W
 
 
 class _FromATime(StartTask):
@@ -98,3 +101,27 @@ class StabilityMapTask(_FromATime):
         from verify.studies.stability.limits import stability_map
 
         return stability_map(self.exact_hamiltonian(), **self.asked())
+
+
+class OrbitMapTask(_FromATime):
+    """What orbits do over two of their initial values."""
+
+    result = OrbitMapResult
+    imports = ("verify.studies.stability.orbit_map",)
+    kind: Literal["orbit_map"] = "orbit_map"
+    axes: tuple[str, str]
+    across: tuple[Number, ...]
+    upwards: tuple[Number, ...]
+    step_size: StepSize
+    steps: int
+    beyond: Number
+
+    @property
+    def cost(self) -> int:
+        cells = len(self.across) * len(self.upwards)
+        return _RUN_COST + cells * self.steps * _STEPS_OF_A_CELL
+
+    def compute(self, keeper: Keeper) -> OrbitMapResult:
+        from verify.studies.stability.orbit_map import orbit_map
+
+        return orbit_map(self.exact_hamiltonian(), **self.asked())
