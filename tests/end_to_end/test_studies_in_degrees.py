@@ -1,5 +1,6 @@
 """`bench` and `stability` of H(p1 … pn, q1 … qn), in one line and from files."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -63,3 +64,32 @@ def test_what_is_of_the_plane_is_refused(
     status, _, err = here(capsys, "stability", str(file))
     assert status == 2
     assert "criteria takes p and q" in err
+
+
+def test_linear_theory_at_an_equilibrium(capsys: pytest.CaptureFixture[str]) -> None:
+    trap = ["--system", "magnetic", "--param", "b=3/2", "--param", "k=1", "--param", "c=1"]
+    asked = ["stability", "--linear", "--scheme", "rk4", *trap, "--json"]
+    status, shown, _ = here(capsys, *asked, "--step-size", "1.2", "--step-size", "1.5")
+    found = json.loads(shown)
+    assert status == 0
+    assert [f["exact"] for f in found["frequencies"]] == ["1/2", "2"]
+    assert [x["bounded"] for x in found["decided"]] == [True, False]
+    assert found["step_size"] is None
+    status, _, err = here(capsys, *asked)
+    assert (status, err.count("\n")) == (2, 1)
+    assert "--step-size: is needed" in err
+    away = ["--system", "henon-heiles", "--q", "0,2", "--p", "0,0"]
+    status, _, err = here(capsys, "stability", "--linear", "--scheme", "rk4", *away)
+    assert (status, err.count("\n")) == (2, 1)
+    assert "is no equilibrium: ∂H/∂q2 = -2 there, not 0" in err
+
+
+def test_orbits_over_two_initial_values(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "mine.toml"
+    file.write_text(
+        'system = "henon-heiles"\nschemes = ["rk4"]\n[[orbit_map]]\naxes = ["q2", "p2"]\n'
+        "across = { from = 0, to = 1.2, count = 3 }\nupwards = [0.1]\ntime = 100\n"
+        "initial_value = { q = [0, 0], p = [0.1, 0] }\nstep_size = 0.1\n"
+    )
+    status, shown, _ = here(capsys, "stability", str(file))
+    assert (status, shown) == (0, "rk4: orbits over q2 and p2: 2 regular, 1 leaves\n")

@@ -1,13 +1,13 @@
 """The command `verify stability`: the runs of a scene, judged, and linear theory, exactly."""
 
 import textwrap
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from verify.commands.shared.answer import Answer
+from verify.commands.shared.linear_theory import linear_answer
 from verify.commands.shared.one_line import scenes_of, start_options, with_one_line
 from verify.commands.shared.output import print_once
 from verify.commands.shared.tasks import perform, with_tasks
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from verify.execution.executors import Placement
     from verify.scenes.scene import Scene
     from verify.studies.stability.findings import StabilityFindings
-    from verify.studies.stability.linear import LinearStability
 
 _PLAIN = ("stable", "drifts")  # verdicts that say all there is
 _WIDTH, _IN = 100, " " * 6
@@ -29,7 +28,11 @@ _WIDTH, _IN = 100, " " * 6
     click.option("--time", metavar="T", help="N is T/H rounded down."),
 )
 @start_options
-@click.option("--linear", is_flag=True, help="One scheme on the harmonic oscillator, by algebra.")
+@click.option(
+    "--linear",
+    is_flag=True,
+    help="One scheme on the harmonic oscillator, or at an equilibrium of H, by algebra.",
+)
 @with_tasks
 def stability(
     scene: str | None, linear: bool, keep: Path | None, where: "Placement", **given: Any
@@ -45,24 +48,12 @@ def stability(
     verify stability stiff
     verify stability --system pendulum --scheme lie2 --step-size 0.1 --time 100 --q 1 --p 0
     verify stability --linear --scheme lie4
+    verify stability --linear --scheme rk4 --system fput --param n=8 --param alpha=1 --param beta=0
     """
     if linear:
-        return _linear(_of_linear(scene, given))
+        return linear_answer(scene, given)
     scenes = scenes_of(scene, given, ("q", "p"), _section, several=True)
     return _of_scenes(scene, scenes, keep, where)
-
-
-def _of_linear(scene: str | None, given: Mapping[str, Any]) -> str:
-    """The scheme that linear theory is asked of; InputError for whatever else is given."""
-    if scene is not None:
-        raise InputError("SCENE", scene, "does not go with --linear; leave it out")
-    for name, x in given.items():
-        if name != "schemes" and x not in (None, ()):
-            raise InputError(name, x, "does not go with --linear; leave it out")
-    if len(given["schemes"]) != 1:
-        shown = ", ".join(given["schemes"]) or NOT_GIVEN
-        raise InputError("schemes", shown, "give one with --linear")
-    return str(given["schemes"][0])
 
 
 def _section(*, q: Any, p: Any, **rest: Any) -> dict[str, Any]:
@@ -116,26 +107,3 @@ def _print(found: "StabilityFindings") -> None:
     for starts in found.orbit_maps:
         counted = ", ".join(f"{n} {kind}" for kind, n in starts.counted().items())
         click.echo(f"{starts.scheme}: orbits over {' and '.join(starts.axes)}: {counted}")
-
-
-def _linear(scheme: str) -> Answer:
-    from verify.algebra.formula import to_text
-    from verify.studies.stability.linear import linear_stability
-
-    found = linear_stability(scheme)
-    data = {
-        "scheme": found.scheme,
-        "interval": found.decimal(),
-        "interval_exact": found.exact,
-        "delta_j": to_text(found.delta_j),
-    }
-    return Answer(lambda: data, lambda: _print_linear(found, data["delta_j"]))
-
-
-def _print_linear(found: "LinearStability", delta_j: str) -> None:
-    ends = {"infinite": "for every hω > 0", "0": "for no hω > 0"}
-    shown = ends.get(found.exact, f"for 0 < hω < {found.decimal(12)}")
-    click.echo(f"{found.scheme} on the harmonic oscillator is stable {shown}")
-    if found.exact not in ends and not found.exact.isdecimal():
-        click.echo(f"  exactly  {found.exact}")
-    click.echo(f"  ΔJ       {delta_j}, y = hω")

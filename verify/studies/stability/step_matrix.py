@@ -1,0 +1,207 @@
+"""The matrix of a step of a scheme on a linear system, exactly; whether its powers stay bounded.
+
+A scheme's step is made of few operations (`verify.schemes.degrees.step_algebra`). Here a value is a
+row: a linear function of z, and, inside of equations, of their unknowns too. So a step of size h, a
+rational, is a 2n × 2n matrix M of rationals.
+
+Powers of M stay bounded exactly where no eigenvalue is greater than 1 in size and those of size 1
+have no Jordan block. With c its characteristic polynomial and c* that of the inverses, an
+eigenvalue of size 1 is a root of both, since its inverse is its conjugate: of r = gcd(c, c*). The
+rest of c has no root of size 1, and balls decide where each of its roots lies. The roots of r come
+in pairs x, 1/x, apart from ±1; a pair is of size 1 exactly where x + 1/x is real and in [−2, 2],
+which is decided by the real roots of a polynomial with integer coefficients.
+"""
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import Any
+
+import flint
+
+from verify.algebra.ring import Poly
+from verify.arithmetic.flint_precision import working_precision
+from verify.errors import InputError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.schemes import get
+from verify.schemes.degrees import map_in_degrees
+from verify.schemes.degrees.step_algebra import Number, StepAlgebra
+from verify.studies.stability.positive_roots import positive_roots
+
+_BITS, _MOST_BITS = 128, 4096
+Row = flint.fmpq_mat  # 1 × (2n + unknowns)
+
+
+class _IrrationalError(Exception):
+    """A coefficient of the scheme is no rational."""
+
+
+class LinearAlgebra:
+    """A step of size h of z' = A z: values are rows, changes of z as functions of it."""
+
+    def __init__(self, matrix: flint.fmpq_mat, h: flint.fmpq, unknowns: int = 0) -> None:
+        self.matrix, self.h, self.unknowns = matrix, h, unknowns
+        self.size = matrix.nrows()
+
+    @property
+    def _width(self) -> int:
+        return self.size + self.unknowns
+
+    @property
+    def nothing(self) -> Row:
+        return flint.fmpq_mat(1, self._width)
+
+    def unit(self, k: int) -> Row:
+        """The k-th coordinate, or unknown, itself."""
+        return flint.fmpq_mat(1, self._width, [int(k == j) for j in range(self._width)])
+
+    def along_flow(self, eta: int) -> list[Row]:
+        total, power = flint.fmpq_mat(self.size, self.size), self.matrix * self.h
+        for n in range(1, eta + 1):
+            total += power
+            power = power * self.matrix * (self.h / (n + 1))
+        return [self._wide(row) for row in total.tolist()]
+
+    def slopes(self, changes: Sequence[Row], clock: Number, places: Sequence[int]) -> list[Row]:
+        moved = [self.unit(k) + self._fit(change) for k, change in enumerate(changes)]
+        return [self._sum([self.matrix[k, j] for j in range(self.size)], moved) for k in places]
+
+    def moved(self, change: Row, weights: Sequence[Number], slopes: Sequence[Row]) -> Row:
+        return self._fit(change) + self._sum(list(map(_rational, weights)), slopes) * self.h
+
+    def between(self, x: Row, y: Row, share: Fraction) -> Row:
+        return self._fit(x) + self._fit(y) * _rational(share)
+
+    def solved(
+        self, count: int, right: Callable[[StepAlgebra[Any], Sequence[Row]], list[Row]]
+    ) -> list[Row]:
+        """Z = R + L Z is solved with the unknowns as further columns. Equations are not nested."""
+        inner = LinearAlgebra(self.matrix, self.h, count)
+        rows = right(inner, [inner.unit(self.size + k) for k in range(count)])
+        known = flint.fmpq_mat(count, self.size, [r[0, j] for r in rows for j in range(self.size)])
+        own = [r[0, self.size + j] for r in rows for j in range(count)]
+        equations = flint.fmpq_mat(count, count, [-x for x in own])
+        for k in range(count):
+            equations[k, k] += 1
+        try:
+            found = equations.solve(known)
+        except ZeroDivisionError:
+            raise InputError("step_size", str(self.h), "its equations have no solution") from None
+        return [self._wide(row) for row in found.tolist()]
+
+    def _wide(self, row: Sequence[flint.fmpq]) -> Row:
+        return flint.fmpq_mat(1, self._width, [*row, *[0] * (self._width - len(row))])
+
+    def _fit(self, row: Row) -> Row:
+        """Where it is of the algebra around equations, with 0 for their unknowns."""
+        return row if row.ncols() == self._width else self._wide(row.entries())
+
+    def _sum(self, weights: Sequence[flint.fmpq], rows: Sequence[Row]) -> Row:
+        total = self.nothing
+        for weight, row in zip(weights, rows, strict=True):
+            if weight:
+                total += row * weight
+        return total
+
+
+def step_matrix(
+    scheme: str, hamiltonian: Hamiltonian, matrix: flint.fmpq_mat, h: Fraction
+) -> flint.fmpq_mat | None:
+    """M of a step of z' = `matrix` z, the field of a quadratic H; None where the scheme has
+    irrational coefficients. InputError for formulas of a user's own, and where the scheme does not
+    take H."""
+    made = map_in_degrees(get(scheme), hamiltonian)
+    if made.step is None:
+        raise InputError("scheme", scheme, "is a formula; linear theory takes a named scheme")
+    algebra = LinearAlgebra(matrix, _rational(h))
+    try:
+        changes = made.step(algebra)
+    except _IrrationalError:
+        return None
+    size = algebra.size
+    rows = [algebra.unit(k) + change for k, change in enumerate(changes)]
+    return flint.fmpq_mat(size, size, [row[0, j] for row in rows for j in range(size)])
+
+
+def stays_bounded(matrix: flint.fmpq_mat) -> bool | None:
+    """Whether all powers of M stay bounded, exactly; None where balls do not tell a size from 1."""
+    c = matrix.charpoly()
+    on = c.gcd(flint.fmpq_poly(list(reversed(c.coeffs()))))
+    off = c
+    while (common := off.gcd(on)).degree() > 0:  # of whatever multiplicity
+        off = off // common
+    inside = _inside(off)
+    if inside is False or not _of_size_one(on):
+        return False
+    return inside and _is_root(_squarefree(on) * off, matrix)
+
+
+def _is_root(polynomial: flint.fmpq_poly, matrix: flint.fmpq_mat) -> bool:
+    """Whether it is 0 at the matrix: no root that it has once only has a Jordan block."""
+    one = matrix * 0
+    for k in range(matrix.nrows()):
+        one[k, k] = flint.fmpq(1)
+    total = matrix * 0
+    for coefficient in reversed(polynomial.coeffs()):
+        total = total * matrix + one * coefficient
+    return bool(total == matrix * 0)
+
+
+def _squarefree(polynomial: flint.fmpq_poly) -> flint.fmpq_poly:
+    return polynomial // polynomial.gcd(polynomial.derivative())
+
+
+def _inside(polynomial: flint.fmpq_poly) -> bool | None:
+    """Whether all of its roots, none of which is of size 1, are smaller."""
+    if polynomial.degree() < 1:
+        return True
+    integral, bits = _squarefree(polynomial).numer(), _BITS
+    while bits <= _MOST_BITS:
+        with working_precision(bits):
+            roots: Any = integral.complex_roots()  # pairs; the stubs say otherwise
+            sizes = [abs(root) for root, _ in roots]
+            if any(size > 1 for size in sizes):
+                return False
+            if all(size < 1 for size in sizes):
+                return True
+        bits *= 2
+    return None
+
+
+def _of_size_one(polynomial: flint.fmpq_poly) -> bool:
+    """Whether all roots of a polynomial whose roots come in pairs x, 1/x are of size 1."""
+    rest = _squarefree(polynomial)
+    for one in (1, -1):
+        if rest.degree() > 0 and rest(flint.fmpq(one)) == 0:
+            rest = rest // flint.fmpq_poly([-one, 1])
+    if rest.degree() < 1:
+        return True
+    sums = _of_sums(rest)
+    below, above = (sums(flint.fmpq_poly(line)).numer() for line in ([2, -1], [-2, 1]))
+    return len(positive_roots([below])) == len(positive_roots([above])) == sums.degree()
+
+
+def _of_sums(polynomial: flint.fmpq_poly) -> flint.fmpq_poly:
+    """g with x^m g(x + 1/x) = the polynomial, which reads the same from both ends, of degree 2m."""
+    m = polynomial.degree() // 2
+    y = flint.fmpq_poly([0, 1])
+    powers = [flint.fmpq_poly([2]), y]  # x^k + x^−k as polynomials in x + 1/x
+    while len(powers) <= m:
+        powers.append(y * powers[-1] - powers[-2])
+    coefficients = polynomial.coeffs()
+    total = flint.fmpq_poly([coefficients[m]])
+    for k in range(1, m + 1):
+        total += powers[k] * coefficients[m + k]
+    return total
+
+
+def _rational(x: Number) -> flint.fmpq:
+    return flint.fmpq(x.numerator, x.denominator) if isinstance(x, Fraction) else _constant(x)
+
+
+def _constant(x: Poly) -> flint.fmpq:
+    if x.is_zero():
+        return flint.fmpq(0)
+    if not x.is_constant():
+        raise _IrrationalError
+    found: flint.fmpq = x.leading_coefficient()
+    return found
