@@ -23,6 +23,15 @@ from verify.errors import InputError
 from verify.flows import closed_form
 from verify.flows.extrapolation import NoFlowError
 from verify.flows.extrapolation_of_many import follow
+from verify.flows.sample_check import (
+    COLUMNS,
+    DIGITS,
+    METHOD,
+    SAMPLE,
+    TRUSTED,
+    UNIT,
+    checked_bound,
+)
 from verify.flows.solution import exact_solution
 from verify.hamiltonians import known_flows
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -31,12 +40,7 @@ from verify.prose import read_prose
 
 Array = Any  # numpy.ndarray, which is imported where it is used
 _ZERO = Fraction(0)
-_UNIT = 2.0**-53  # the rounding of a result, relative to it
 _UPWARDS = 1 + 2.0**-50  # for a bound that is itself rounded
-_SAFETY = 4  # an error is at most so many times what it is estimated to be by another evaluation
-_TRUSTED = 1e-8  # the most, of an orbit's scale, that two numerical flows may be apart
-_SAMPLE = 3  # points held against `exact_solution`
-_DIGITS = 20
 _REMEMBERED = 1 << 16  # points in closed form, of which one takes a tenth of a millisecond
 _FINE = 1e-18  # of an orbit's scale: a ball's radius, far below float64's rounding
 
@@ -187,14 +191,14 @@ class _Work:
         import numpy as np
 
         given = self.hamiltonian, (self.p, self.q), self.times
-        fine, rough = (follow(*given, columns, self.t0) for columns in (8, 7))
+        fine, rough = (follow(*given, columns, self.t0) for columns in COLUMNS)
         self.found[:] = fine
         every = np.arange(len(self.p))
         for k in range(len(self.times)):
             apart = np.max(abs(fine[:, k] - rough[:, k]), axis=0)
             scale = self._scale(k, every)
-            self.alone.update(int(i) for i in every[~(apart <= _TRUSTED * scale)])  # nan is not
-            self.error[k] = apart + _UNIT * scale
+            self.alone.update(int(i) for i in every[~(apart <= TRUSTED * scale)])  # nan is not
+            self.error[k] = apart + UNIT * scale
 
     def _scale(self, k: int, group: Array) -> Array:
         """The largest of |p| and |q| at both ends, for each of the points."""
@@ -208,13 +212,11 @@ class _Work:
         for i in sorted(self.alone):
             for k in range(len(self.times)):
                 self.found[:, k, i], bound = self._exact(i, k)
-                self.error[k, i] = bound + _UNIT * self._scale(k, [i])[0]
+                self.error[k, i] = bound + UNIT * self._scale(k, [i])[0]
 
     def _exact(self, i: int, k: int) -> tuple[tuple[float, float], float]:
         def solved(p: Fraction, q: Fraction, time: Fraction) -> tuple[tuple[float, float], float]:
-            found = exact_solution(
-                self.hamiltonian, p=p, q=q, time=time, digits=_DIGITS, t0=self.t0
-            )
+            found = exact_solution(self.hamiltonian, p=p, q=q, time=time, digits=DIGITS, t0=self.t0)
             return (float(found.p), float(found.q)), float(found.bound)
 
         found: tuple[tuple[float, float], float] = self._told(
@@ -224,31 +226,25 @@ class _Work:
 
     def checked(self) -> Points:
         """What was found, where the sample's errors are no larger than they are estimated."""
-        estimated = _SAFETY * float(self.error.max(initial=0.0))
-        worst = 0.0
         # Digits of a numerical flow take long: it is held at the longest time.
-        for k in sorted(range(len(self.times)), key=lambda k: abs(self.times[k]))[-1:]:
-            for i in self._sample():
-                true, bound = self._exact(i, k)
-                error = max(abs(x - y) for x, y in zip(self.found[:, k, i], true, strict=True))
-                worst = max(worst, float(error) + bound)
-                if error > _SAFETY * estimated:
-                    raise NoFlowError(
-                        f"point {i} is wrong by `{error:.2g}` at t = `{float(self.times[k]):.6g}`, "
-                        f"where `{estimated:.2g}` was estimated"
-                    )
-        bound = max(estimated, _SAFETY * worst)
-        method = "numerical flow: Gragg's method, extrapolated, in long double"
+        k = max(range(len(self.times)), key=lambda k: abs(self.times[k]), default=None)
+        bound = checked_bound(
+            lambda i: self.found[:, k, i],
+            lambda i: self._exact(i, k or 0),
+            () if k is None else self._sample(),
+            float(self.error.max(initial=0.0)),
+            _ZERO if k is None else self.times[k],
+        )
         p, q = self.found
         alone = tuple(sorted(self.alone))
-        return Points(p, q, bound, method if len(p.T) else "no points", alone)
+        return Points(p, q, bound, METHOD if len(p.T) else "no points", alone)
 
     def _sample(self) -> list[int]:
         """Points found together: one of extreme p, and others evenly between."""
         import numpy as np
 
         together = np.setdiff1d(np.arange(len(self.p)), sorted(self.alone))
-        if len(together) <= _SAMPLE:
+        if len(together) <= SAMPLE:
             return [int(i) for i in together]
-        evenly = np.linspace(0, len(together) - 1, _SAMPLE - 1).round().astype(int)
+        evenly = np.linspace(0, len(together) - 1, SAMPLE - 1).round().astype(int)
         return sorted({int(together[i]) for i in (self.p[together].argmax(), *evenly)})

@@ -13,17 +13,20 @@ from typing import Any
 from verify.flows.degrees.solution import solution_in_degrees
 from verify.flows.extrapolation import NoFlowError
 from verify.flows.extrapolation_of_many import follow
+from verify.flows.sample_check import (
+    COLUMNS,
+    DIGITS,
+    METHOD,
+    SAMPLE,
+    TRUSTED,
+    UNIT,
+    checked_bound,
+)
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.prose import read_prose
 
 Array = Any  # numpy.ndarray, which is imported where it is used
 _ZERO = Fraction(0)
-_UNIT = 2.0**-53  # the rounding of a result, relative to it
-_SAFETY = 4  # an error is at most so many times what it is estimated to be by another evaluation
-_TRUSTED = 1e-8  # the most, of an orbit's scale, that two numerical flows may be apart
-_SAMPLE, _DIGITS = 3, 20  # points held against `solution_in_degrees`, with so many digits
-_COLUMNS = 8, 7  # of the two extrapolations
-METHOD = "numerical flow: Gragg's method, extrapolated, in long double"
 
 
 @dataclass(frozen=True)
@@ -49,16 +52,19 @@ def points_in_degrees(
 
     names = hamiltonian.coordinates
     given = np.array([points[name] for name in names], dtype=np.float64)
-    fine, rough = (follow(hamiltonian, given, [time], k, t0)[:, 0] for k in _COLUMNS)
+    fine, rough = (follow(hamiltonian, given, [time], k, t0)[:, 0] for k in COLUMNS)
     apart = abs(fine - rough).max(axis=0)
     scale = np.maximum(abs(given).max(axis=0), abs(fine).max(axis=0))
-    alone = np.flatnonzero(~(apart <= _TRUSTED * scale))  # nan is not
+    alone = np.flatnonzero(~(apart <= TRUSTED * scale))  # nan is not
     own = _Exact(hamiltonian, names, given, time, t0)
     for i in map(int, alone):
         fine[:, i], apart[i] = own(i)
-    estimated = _SAFETY * float((apart + _UNIT * scale).max(initial=0.0))
-    worst = own.checked(fine, np.setdiff1d(np.arange(given.shape[1]), alone), estimated)
-    return PointsInDegrees(dict(zip(names, fine, strict=True)), max(estimated, _SAFETY * worst))
+    together = np.setdiff1d(np.arange(given.shape[1]), alone)
+    places = np.linspace(0, len(together) - 1, min(SAMPLE, len(together))).round().astype(int)
+    sample = sorted({int(together[k]) for k in places})
+    greatest = float((apart + UNIT * scale).max(initial=0.0))
+    bound = checked_bound(lambda i: fine[:, i], own, sample, greatest, time)
+    return PointsInDegrees(dict(zip(names, fine, strict=True)), bound)
 
 
 @dataclass(frozen=True)
@@ -75,26 +81,9 @@ class _Exact:
         """Where point i comes to, and the error of each coordinate. Raises NoFlowError."""
         start = {name: Fraction(x) for name, x in zip(self.names, self.given[:, i], strict=True)}
         try:
-            found = solution_in_degrees(self.hamiltonian, start, self.time, _DIGITS, self.t0)
+            found = solution_in_degrees(self.hamiltonian, start, self.time, DIGITS, self.t0)
         except NoFlowError as error:
             where = ", ".join(f"{name} = `{float(x):.6g}`" for name, x in start.items())
             at = read_prose(f"point {i}, {where}, to t = `{float(self.time):.6g}`: ")
             raise NoFlowError(at + error.said) from None
         return [float(found.point[name]) for name in self.names], float(found.bound)
-
-    def checked(self, found: Array, together: Array, estimated: float) -> float:
-        """The greatest error of the sample; NoFlowError where it is larger than it may be."""
-        import numpy as np
-
-        worst = 0.0
-        places = np.linspace(0, len(together) - 1, min(_SAMPLE, len(together))).round().astype(int)
-        for i in sorted({int(together[k]) for k in places}):
-            true, bound = self(i)
-            error = float(abs(found[:, i] - np.array(true)).max())
-            worst = max(worst, error + bound)
-            if error > _SAFETY * estimated:
-                raise NoFlowError(
-                    f"point {i} is wrong by `{error:.2g}` at t = `{float(self.time):.6g}`, where "
-                    f"`{estimated:.2g}` was estimated"
-                )
-        return worst

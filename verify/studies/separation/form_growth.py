@@ -6,20 +6,19 @@ is ‖M‖² at most. Where motion is quasi-periodic ‖M‖ grows like N at mos
 max |W| over the checkpoints, in logarithms, says whether W stays bounded or grows like N or N². In
 chaos ‖M‖ grows exponentially and no power is fitted: what W grows by then is the motion's.
 
-Exponential is said of a run whose ‖M‖ rises over its last doubling of N by more than N³ would. A
-power of that size is not met where motion is quasi-periodic; an orbit that is chaotic, but not yet
-in this time, is not found so, and of an M that has hardly grown nothing is said.
+Whether it grew exponentially is told as everywhere (`verify.runs.tangent_growth`), and of an M that
+has hardly grown nothing is said.
 """
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import accumulate
 from typing import Literal
 
 from verify.arithmetic.arb import slope
 from verify.prose import Number, Prose, prose
+from verify.runs.tangent_growth import is_exponential
 from verify.studies.separation.growth import envelope, log, log_spaced
 
 Law = Literal["bounded", "N", "N²", "exponential", "undecided"]
@@ -27,7 +26,6 @@ Kind = Literal["exponential", "polynomial", "undecided"]
 _LAWS: tuple[Law, ...] = ("bounded", "N", "N²")
 _NEAR = 0.25  # of a whole exponent, at least
 _WIDTH = 2.5  # standard errors, each way
-_STEEP, _FLAT = 3.0, 1.5  # exponents of ‖M‖ over the last doubling of N
 _GROWN = 10  # times ‖M‖² has grown where something is said of how
 _FIRST, _LEAST, _MOST = 8, 5, 32  # checkpoints: left out, of a fit at least, and at most
 _DECADES = 1.2
@@ -46,15 +44,11 @@ class PowerLaw:
 
 
 def motion_of(marks: Sequence[int], squares: Sequence[Fraction]) -> Kind:
-    """Whether ‖M‖ grew exponentially in this run, by its last doubling of N; from ‖M‖²."""
-    tops = list(accumulate(squares, max))
-    half = next((k for k, n in enumerate(marks) if 2 * n >= marks[-1]), 0)
-    if len(marks) < _LEAST or half == len(marks) - 1:
+    """Whether ‖M‖ grew exponentially in this run; from ‖M‖²."""
+    if len(marks) < _LEAST or max(squares) < _GROWN * squares[0]:
         return "undecided"
-    if tops[-1] < _GROWN * tops[0]:
-        return "undecided"
-    rise = log(tops[-1] / tops[half]) / 2 / math.log(marks[-1] / marks[half])
-    return "exponential" if rise > _STEEP else "polynomial" if rise < _FLAT else "undecided"
+    found = is_exponential([float(n) for n in marks], [log(x) / 2 for x in squares])
+    return "undecided" if found is None else "exponential" if found else "polynomial"
 
 
 def power_law(
