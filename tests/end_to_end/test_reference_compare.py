@@ -172,3 +172,24 @@ def test_what_rounding_leaves_no_digit_of_is_not_said_to_have_0_digits(
     assert [(x["verdict"], x["digits"], x["rows"]) for x in shown["columns"]] == [
         ("lost", None, 0)
     ] * 2
+
+
+@pytest.mark.parametrize(("kick", "status"), [(1.0, 0), (1.0 + 1e-9, 1)])
+def test_a_table_of_two_degrees_of_freedom_is_held_against_the_published_data(
+    kick: float, status: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Störmer and Verlet's method on Hénon and Heiles's H, in doubles; and with a wrong kick."""
+    h, p1, p2, q1, q2 = 0.1, 0.4, 0.0, 0.0, 0.1
+    rows = ["step,p1,p2,q1,q2"]
+    for n in range(101):
+        rows.append(f"{n},{p1!r},{p2!r},{q1!r},{q2!r}")
+        p1, p2 = p1 - kick * h / 2 * (q1 + 2 * q1 * q2), p2 - h / 2 * (q2 + q1**2 - q2**2)
+        q1, q2 = q1 + h * p1, q2 + h * p2
+        p1, p2 = p1 - h / 2 * (q1 + 2 * q1 * q2), p2 - h / 2 * (q2 + q1**2 - q2**2)
+    table = tmp_path / "mine.csv"
+    table.write_text("\n".join(rows) + "\n")
+    given = ["--scene", "several-henon-heiles", "--scheme", "stormer-verlet", "--step-size", "0.1"]
+    start = ["--q", "0,0.1", "--p", "0.4,0"]
+    found, out, _ = here(capsys, "reference", "compare", str(table), *given, *start)
+    assert found == status
+    assert out.startswith("4 rows of 1 run compared; 101 rows read\n")
