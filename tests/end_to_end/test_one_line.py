@@ -213,3 +213,17 @@ def test_a_page_for_a_scheme_of_ones_own(
     assert scene["series"][0]["step_size"] == "0.2"
     assert {*given} <= {*shlex.split(made["provenance"]["command"])}
     assert (folder / "index.html").exists()
+
+
+def test_a_page_in_two_degrees_of_freedom_splits_w(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    given = ["--system", "henon-heiles", "--scheme", "lie2", "--scheme", "stormer-verlet",
+             "--q", "0,0.1", "--p", "0.4,0", "--step-size", "0.1", "--time", "10"]  # fmt: skip
+    status, out, _ = here(capsys, "report", *given, "-o", str(tmp_path / "mine"), "--json")
+    assert status == 0
+    made = json_of(out)
+    (scene,) = made["scenes"]
+    (split,) = scene["form_separations"]
+    assert [x["scheme"] for x in split["points"]] == ["lie2"]
+    assert any("stormer-verlet" in x and "exactly 0" in why for x, why in made["left_out"])

@@ -139,11 +139,12 @@ def _sections(
 ) -> dict[str, Any]:
     """All that is known of a scheme on one orbit, its largest step over time, and for every H."""
     from verify.arithmetic.exact import positive
+    from verify.scenes.observables import carries_defect
 
     exact = hamiltonian_of(given["system"], given["hamiltonian"], given["params"])
     start = {"q": q, "p": p}
     grid: dict[str, Any] = {"step_sizes": step_sizes, "initial_values": [start]}
-    grid |= {"separate": True} if exact.planar else {}
+    grid |= {"separate": True} if exact.planar or carries_defect(exact) else {}
     grid |= {"growth": True} if exact.planar and not exact.time_dependent else {}
     largest = max(positive(h, "step_size") for h in step_sizes)
     return {
