@@ -15,8 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from verify.reference.compare.compare import Column, Compared, Explained, Separated
-    from verify.reference.compare.submitted import Theirs
-    from verify.reference.compare.submitted_in_degrees import TheirsInDegrees
+    from verify.reference.compare.rows import Theirs
 
 _MOST_SHOWN = 5
 _MOST_NAMED = 4  # mistakes of which one fits
@@ -83,7 +82,7 @@ def compare(
 
     said = {name: x for name, x in {"scene": scene, **given}.items() if x is not None}
     names, folder = _names(columns), data or PUBLISHED
-    table: Theirs | TheirsInDegrees
+    table: Theirs[Any]
     if has_degrees(theirs, names):
         of_degrees = load_in_degrees(folder, scene)
         table = several = read_in_degrees(theirs, of_degrees, said, names)
@@ -114,7 +113,7 @@ def _names(columns: tuple[str, ...]) -> dict[str, str]:
 # -- for programs ---------------------------------------------------------------------------------
 
 
-def _as_json(table: "Theirs | TheirsInDegrees", found: "Compared") -> dict[str, Any]:
+def _as_json(table: "Theirs[Any]", found: "Compared") -> dict[str, Any]:
     return {
         **picked(found, "agrees", "rows", "runs"),
         "rows_read": table.rows,
@@ -157,7 +156,7 @@ def _separation_json(x: "Separated") -> dict[str, Any]:
 # -- for people -----------------------------------------------------------------------------------
 
 
-def _print(table: "Theirs | TheirsInDegrees", found: "Compared") -> None:
+def _print(table: "Theirs[Any]", found: "Compared") -> None:
     from verify.arithmetic.exact import short
 
     of = f"{_count(found.rows, 'row')} of {_count(found.runs, 'run')} compared"

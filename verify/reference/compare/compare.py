@@ -1,7 +1,7 @@
 """A table of somebody's numbers against the reference data: what agrees, what parts, and why."""
 
 from collections import Counter
-from collections.abc import Callable, Container, Iterable, Iterator
+from collections.abc import Callable, Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
@@ -13,9 +13,9 @@ from verify.reference.compare.findings import Named, Of, RunFindings, Verdict
 from verify.reference.compare.judge import Judge
 from verify.reference.compare.mistakes import of_states
 from verify.reference.compare.published import Published, PublishedRun
+from verify.reference.compare.rows import Row, Theirs
 from verify.reference.compare.scatter import Scatters
 from verify.reference.compare.setting import Points, Setting
-from verify.reference.compare.submitted import Theirs
 from verify.scenes.results.separation import SeparationResult
 from verify.studies.separation.separate import separate
 
@@ -67,6 +67,16 @@ class Compared:
     overflows: dict[str, int] = field(default_factory=dict)
     separated: Separated | None = None
 
+    def take(self, names: Sequence[str], judged: Sequence[RunFindings]) -> None:
+        """Takes up what was found of each run. InputError where no cell could be compared."""
+        if not judged:
+            raise InputError("table", "all cells", "are empty where the data have a number")
+        self.columns = [
+            _column(name, judged) for name in names if any(name in x.columns for x in judged)
+        ]
+        self.unexplained = [x.label for x in judged if x.verdict is Verdict.MORE and not x.mistakes]
+        self.lost = {x.label: x.lost_from for x in judged if x.lost_from is not None}
+
     @property
     def agrees(self) -> bool:
         """Whether nothing is there that rounding cannot explain."""
@@ -74,18 +84,18 @@ class Compared:
 
 
 def compare(
-    ours: Published, theirs: Theirs, done: Callable[[int, int], None] = lambda *_: None
+    ours: Published,
+    theirs: Theirs[PublishedRun],
+    done: Callable[[int, int], None] = lambda *_: None,
 ) -> Compared:
     """Everything of the table that the reference data have; `done` hears of runs, of how many.
 
     Verdicts are of columns, over all runs together; mistakes are looked for where one differs by
     more than rounding. InputError where the table has no row, or no cell, that the data have.
     """
-    if not theirs.runs:
-        steps = f"{theirs.other_steps} rows of other steps" if theirs.other_steps else "no rows"
-        raise InputError("table", theirs.first_outside or steps, "has no row of these data")
-    how = _printings(theirs)
-    found = Compared(rows=sum(len(rows) for _, rows in theirs.runs.values()), runs=len(theirs.runs))
+    kept = theirs.kept()
+    how = printings(kept)
+    found = Compared(rows=len(kept), runs=len(theirs.runs))
     judged: list[RunFindings] = []
     off: list[_Off] = []  # Λ, by no more than rounding may do
     search = _Search()
@@ -103,13 +113,8 @@ def compare(
             judged.append(each)
             off += _off_by_rounding(judge, each)
         done(count, len(theirs.runs))
-    if not judged:
-        raise InputError("table", "all cells", "are empty where the data have a number")
-    names = [n for n in theirs.columns if any(n in x.columns for x in judged)]
-    found.columns = [_column(name, judged) for name in names]
+    found.take(theirs.columns, judged)
     found.diagnoses = _diagnoses(judged)
-    found.unexplained = [x.label for x in judged if x.verdict is Verdict.MORE and not x.mistakes]
-    found.lost = {x.label: x.lost_from for x in judged if x.lost_from is not None}
     found.overflows = {x.label: x.overflow_from for x in judged if x.overflow_from is not None}
     found.separated = _separated(off)
     return found
@@ -144,9 +149,9 @@ def _separated(off: list[_Off]) -> Separated | None:
     return Separated(run.label, step, apart, result) if result.plain else None
 
 
-def _printings(theirs: Theirs) -> dict[str, Printing]:
-    rows = [row for _, own in theirs.runs.values() for row in own.values()]
-    return {name: printing(row.cells[name] for row in rows) for name in theirs.columns}
+def printings(rows: Sequence[Row]) -> dict[str, Printing]:
+    """How each column is printed."""
+    return {name: printing(row.cells[name] for row in rows) for name in rows[0].cells}
 
 
 class _Search:

@@ -13,14 +13,12 @@ from fractions import Fraction
 from functools import cache
 from itertools import combinations
 
-from verify.errors import InputError
-from verify.reference.compare.agreement import Cell, Printing, beside, printing
+from verify.reference.compare.agreement import Cell, Printing, beside
 from verify.reference.compare.allowance_in_degrees import AllowanceInDegrees
-from verify.reference.compare.compare import Column, Compared, Explained
+from verify.reference.compare.compare import Compared, Explained, printings
 from verify.reference.compare.findings import Named, Of, RunFindings, Verdict
 from verify.reference.compare.published_in_degrees import Bounded, RunOfDegrees
-from verify.reference.compare.submitted import Row
-from verify.reference.compare.submitted_in_degrees import TheirsInDegrees
+from verify.reference.compare.rows import Row, Theirs
 from verify.reference.make.models_in_degrees import values_in_degrees
 from verify.reference.make.points_in_degrees import OrbitInDegrees, orbit_points
 
@@ -31,18 +29,15 @@ Reading = Callable[[int], Mapping[str, Bounded] | None]  # what a row of a step 
 
 def compare_in_degrees(
     ours: Sequence[RunOfDegrees],
-    theirs: TheirsInDegrees,
+    theirs: Theirs[RunOfDegrees],
     done: Callable[[int, int], None] = lambda *_: None,
 ) -> Compared:
     """Everything of the table that the reference data have; `done` hears of runs, of how many.
 
     InputError where the table has no row, or no cell, that the data have.
     """
-    if not theirs.runs:
-        steps = f"{theirs.other_steps} rows of other steps" if theirs.other_steps else "no rows"
-        raise InputError("table", theirs.first_outside or steps, "has no row of these data")
-    rows = [row for _, own in theirs.runs.values() for row in own.values()]
-    how = {name: printing(row.cells[name] for row in rows) for name in theirs.columns}
+    rows = theirs.kept()
+    how = printings(rows)
     found = Compared(rows=len(rows), runs=len(theirs.runs))
     judged = []
     for count, (run, own) in enumerate(theirs.runs.values(), start=1):
@@ -50,24 +45,10 @@ def compare_in_degrees(
         if each.columns:
             judged.append(each)
         done(count, len(theirs.runs))
-    if not judged:
-        raise InputError("table", "all cells", "are empty where the data have a number")
-    names = [n for n in theirs.columns if any(n in x.columns for x in judged)]
-    found.columns = [_column(name, judged) for name in names]
+    found.take(theirs.columns, judged)
     counts = Counter(tuple(group) for each in judged for group in each.mistakes)
     found.diagnoses = [Explained(group, count) for group, count in counts.items()]
-    found.unexplained = [x.label for x in judged if x.verdict is Verdict.MORE and not x.mistakes]
-    found.lost = {x.label: x.lost_from for x in judged if x.lost_from is not None}
     return found
-
-
-def _column(name: str, judged: Sequence[RunFindings]) -> Column:
-    own = [(x.label, x.columns[name]) for x in judged if name in x.columns]
-    label, least = min(own, key=lambda x: x[1].digits)
-    parted = [(of.parts_at, label) for label, of in own if of.parts_at is not None]
-    parts_at, parts_run = min(parted, default=(None, None))
-    verdict, rows = max(of.verdict for _, of in own), sum(of.rows for _, of in own)
-    return Column(verdict, rows, least.digits, least.step, parts_at, name, label, parts_run)
 
 
 class _Judged:

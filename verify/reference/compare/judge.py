@@ -16,9 +16,9 @@ from verify.reference.compare.column_meanings import Foretold
 from verify.reference.compare.findings import DOUBLE, Fit, Of, RunFindings, Verdict
 from verify.reference.compare.overflow import may_overflow
 from verify.reference.compare.published import PublishedRun
+from verify.reference.compare.rows import Row
 from verify.reference.compare.scatter import Scatters
 from verify.reference.compare.setting import Bounded, Points, Setting, numbers_of
-from verify.reference.compare.submitted import Row
 
 STATE, AREA = ("p", "q"), ("delta_j", "mse", "lambda")
 _DOUBLE_DIGITS = 17  # more than these may be of a more precise number

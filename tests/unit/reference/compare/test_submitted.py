@@ -9,7 +9,8 @@ import pytest
 from tests.helpers.submitted_programs import Program
 from verify.errors import InputError
 from verify.reference.compare.published import Published, load
-from verify.reference.compare.submitted import Theirs, read
+from verify.reference.compare.rows import Theirs
+from verify.reference.compare.submitted import read
 from verify.reference.make.make import PUBLISHED
 
 GIVEN = {"scene": "duffing", "scheme": "lie2", "step_size": "0.01", "q0": "1.5", "p0": "0"}
