@@ -7,8 +7,6 @@ motion was looked at.
 
 from fractions import Fraction
 
-import numpy as np
-
 from verify.arithmetic.systems import mpfr
 from verify.flows.extrapolation import functions_at
 from verify.flows.orbit import ExactOrbit
@@ -32,6 +30,8 @@ def frequency(orbit: ExactOrbit) -> Fraction:
 
 def frequency_in_degrees(hamiltonian: Hamiltonian, motion: ExactMotion) -> Fraction:
     """The same in n degrees of freedom, to some three digits; 0 where nothing oscillates."""
+    import numpy as np
+
     field, _ = canonical_field(hamiltonian)
     size, ring = len(field.names), field.ring
     names = (*field.names, "t") if field.timed else field.names
