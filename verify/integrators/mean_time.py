@@ -56,7 +56,7 @@ def _means(trial: Trial, how: str, point: Point) -> Iterator[Fraction]:
 def _gap(trial: Trial, how: str, point: Point, h: Fraction) -> Sequence[Fraction]:
     """p' and q' less the exact flow's."""
     probe, flow = PROBES[how](trial.step), flow_of(trial.hamiltonian, how, trial.step.numbers)
-    here = probe.at(point, h)[0]
+    here, _ = probe.end(point, h)
     start = tuple(map(flow.number, (*point, trial.step.clock(*point))))
     end = flow.advance(start, flow.number(h))
     with flow.arithmetic.context():

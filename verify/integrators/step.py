@@ -106,8 +106,10 @@ class Step:
         """(p', q') as floats; without t at the point's own. Raises StepError, also for what is not
         finite."""
         with self.limited():
-            result = self.called(self.function, p, q, h, self.clock(p, q) if t is None else t)
-        x, y = (real(x) for x in self.pair(result))
+            return self._floats(p, q, h, self.clock(p, q) if t is None else t)
+
+    def _floats(self, p: float, q: float, h: float, t: float) -> State:
+        x, y = map(real, self.pair(self.called(self.function, p, q, h, t)))
         if x - x != 0 or y - y != 0:
             found = prose(Number(f"{x:g}"), ", ", Number(f"{y:g}"))
             raise StepError(prose("it returns ", found, line_of_error(p, q, h)))
@@ -117,13 +119,18 @@ class Step:
         """The nearest number of its type, within its range."""
         return self.numbers.rounded(x)
 
-    def exactly(self, p: Fraction, q: Fraction, h: Fraction, t: Fraction) -> list[Fraction]:
-        """(p', q') as the numbers of its type that they are. Raises StepError, as `at`."""
+    def exactly(
+        self, points: Sequence[Sequence[Fraction]], h: Fraction, t: Fraction
+    ) -> list[list[Fraction]]:
+        """(p', q') of each (p, q), as the numbers of its type that they are, in one limit of time,
+        which takes longer to set than many a step. Raises StepError, as `at`."""
+        with limited(self, "calls of it do not end"):
+            return [[Fraction(x) for x in self._of_its_type(p, q, h, t)] for p, q in points]
+
+    def _of_its_type(self, p: Fraction, q: Fraction, h: Fraction, t: Fraction) -> Sequence[Theirs]:
         if self.numbers is DOUBLE:
-            return [Fraction(x) for x in self.at(*map(float, (p, q, h, t)))]
-        with self.limited():
-            found = self.pair(self.called(self.function, p, q, h, t))
-        return [Fraction(x) for x in found]
+            return self._floats(float(p), float(q), float(h), float(t))
+        return self.pair(self.called(self.function, p, q, h, t))
 
     def pair(self, result: Theirs) -> tuple[Theirs, Theirs]:
         """p' and q' of what was returned, each a single number. Raises StepError."""
@@ -144,13 +151,13 @@ class Limited(Protocol):
 
 
 @contextlib.contextmanager
-def limited(owner: Limited) -> Iterator[None]:
+def limited(owner: Limited, too_long: str = "a call of it does not end") -> Iterator[None]:
     """Around every call of a user's code: what it prints, what it raises, and how long it takes."""
     if owner.left <= 0:
         raise StepError("its calls took all the time that there is")
     begun = time.perf_counter()
     try:
-        with quiet(), within(owner.left, f"a call of it does not end within {owner.left:.3g} s"):
+        with quiet(), within(owner.left, f"{too_long} within {owner.left:.3g} s"):
             yield
     except SystemExit:
         raise StepError("it calls sys.exit") from None

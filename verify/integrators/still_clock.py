@@ -10,7 +10,7 @@ from verify.algebra.formula import symbol
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.fitted_order import fitted
 from verify.integrators.mean_time import mean_time
-from verify.integrators.probe import LADDERS, PROBES, Point, Trial, flow_of, reading
+from verify.integrators.probe import LADDERS, PROBES, Point, Trial, distance, flow_of
 from verify.integrators.tracing.clocks import MOMENTS, stands_still
 
 _POINTS = 2
@@ -23,17 +23,20 @@ def measured_mistakes(trial: Trial, how: str, order: int | None) -> list[str]:
     if order is None or not trial.step.moving:
         return []
     for words, part in MOMENTS.items():
-        found = _order(trial, how, part)
-        if found is not None and found > order:
+        found = _order(trial, how, part, order)
+        if found is not None:
             return [stands_still(f"of order {found}", words)]
     return mean_time(trial, how) if order == 1 else []
 
 
-def _order(trial: Trial, how: str, part: Fraction) -> int | None:
-    """That of the distance from the flow of H at t + part·h; None where it is not the same at two
-    points, as where what shrinks slowly is small at one."""
-    orders = {_order_at(trial, how, point, part) for point in trial.points[:_POINTS]}
-    return orders.pop() if len(orders) == 1 else None
+def _order(trial: Trial, how: str, part: Fraction, beyond: int) -> int | None:
+    """That of the distance from the flow of H at t + part·h; None where it is not beyond that, or
+    not the same at two points, as where what shrinks slowly is small at one."""
+    first, *others = trial.points[:_POINTS]
+    found = _order_at(trial, how, first, part)
+    if found is None or found <= beyond:
+        return None
+    return found if all(_order_at(trial, how, x, part) == found for x in others) else None
 
 
 def _order_at(trial: Trial, how: str, point: Point, part: Fraction) -> int | None:
@@ -41,7 +44,7 @@ def _order_at(trial: Trial, how: str, point: Point, part: Fraction) -> int | Non
     for h in LADDERS[how][_SIZES]:
         moment = trial.step.clock(*point) + part * h
         still = Hamiltonian(trial.hamiltonian.exact.subs(symbol("t"), moment))
-        told = reading(probe, flow_of(still, how, trial.step.numbers), point, h)
-        rows.append((float(h), told.error, told.error_noise))
+        flow = flow_of(still, how, trial.step.numbers)
+        rows.append((float(h), *distance(probe, flow, point, h)))
     found = fitted(rows, probe.opaque)
     return None if found.power is None or found.tail is not None else found.power - 1

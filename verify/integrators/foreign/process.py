@@ -47,6 +47,7 @@ class Program:
     last_words: list[str] = field(default_factory=list)
     _running: "subprocess.Popen[bytes] | None" = None
     _waiting: bytes = b""
+    _looked: float = 0.0  # when its memory was
 
     def ask(self, line: str, shown: str = "") -> str:
         """Its answer to a line, which is `shown` so. Raises StepError for what it does instead."""
@@ -161,7 +162,7 @@ class Program:
                 self.waits += 1
                 self.close()
                 raise StepError(f"a call of it does not end within {seconds:g} s")
-            if self._memory(own) > MOST_MEMORY:
+            if self._takes_too_much(own):
                 self.close()
                 raise StepError(f"it takes more than {MOST_MEMORY / 2**30:g} GiB of memory")
             if not self._readable(own, min(left, _WATCHED)):
@@ -198,6 +199,14 @@ class Program:
     def _read(self, own: "subprocess.Popen[bytes]") -> bytes:
         assert own.stdout is not None  # noqa: S101 - it is a pipe
         return os.read(own.stdout.fileno(), _LONGEST)
+
+    def _takes_too_much(self, own: "subprocess.Popen[bytes]") -> bool:
+        """Looked at now and then: it takes as long as several short calls."""
+        now = time.monotonic()
+        if now - self._looked < _WATCHED:
+            return False
+        self._looked = now
+        return self._memory(own) > MOST_MEMORY
 
     def _memory(self, own: "subprocess.Popen[bytes]") -> int:
         """Bytes that it and what it has started hold now, 0 where that is not known."""
