@@ -100,32 +100,36 @@ def step(kind: str, parts: Sequence[Mapping[str, E]], most: int, one: E) -> dict
     """The coefficients of all words up to weight `most` in Π exp(part), in the ring of `one`."""
     all_words = words(kind, most)
     shares = [one / n for n in range(1, most + 1)]
-    series = {"": one}
+    zero = one * 0
+    # By the words' places: tables are judged by many hundred steps.
+    series: list[E | None] = [None if word else one for word in all_words]
     for part in parts:
         factor = _exponential(part, all_words, shares)
-        after = {}
-        for word, cuts in _cuts(kind, most):
-            total = series.get(word)
-            for head, tail in cuts:
-                share = factor.get(tail)
-                if share is None:
-                    break
-                before = series.get(head)
+        ends = [factor.get(word, zero) for word in all_words]
+        for place, cuts in _cuts(kind, most, frozenset(part)):
+            total = series[place]
+            for head, end in cuts:
+                before = series[head]
                 if before is not None:
-                    total = before * share if total is None else total + before * share
-            if total is not None:
-                after[word] = total
-        series = after
-    return {word: series.get(word, one * 0) for word in all_words}
+                    total = before * ends[end] if total is None else total + before * ends[end]
+            series[place] = total
+    return {w: zero if x is None else x for w, x in zip(all_words, series, strict=True)}
 
 
 @cache
-def _cuts(kind: str, most: int) -> tuple[tuple[str, tuple[tuple[str, str], ...]], ...]:
-    """Each word with its cuts in two, the shortest ends first."""
-    return tuple(
-        (word, tuple((word[:-n], word[-n:]) for n in range(1, len(word) + 1)))
-        for word in words(kind, most)
-    )
+def _cuts(
+    kind: str, most: int, letters: frozenset[str]
+) -> tuple[tuple[int, tuple[tuple[int, int], ...]], ...]:
+    """The places of the words that end in such letters, with those of heads and of such ends, the
+    shortest first; the longest words first, so that heads are still as they were before."""
+    own = words(kind, most)
+    places = {word: k for k, word in enumerate(own)}
+    found = []
+    for word in sorted(own, key=len, reverse=True):
+        ends = len(word) - len(word.rstrip("".join(letters)))
+        cuts = tuple((places[word[:-n]], places[word[-n:]]) for n in range(1, ends + 1))
+        found += [(places[word], cuts)] if cuts else []
+    return tuple(found)
 
 
 def _exponential(
