@@ -3,6 +3,7 @@
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import cached_property
 from typing import Any
 from unittest import mock
 
@@ -35,17 +36,21 @@ def _forget() -> None:
 
 
 class Both:
-    """A function of one orbit and the same in lanes, of one width."""
+    """A function of one orbit and the same in lanes, of one width, which takes long to compile."""
 
     def __init__(self, text: str, width: int, way: str, names: Mapping[str, Any] | None = None):
         made = fixed.at_bits(width - fixed.INTEGER_BITS)
         known = tuple(sorted({**made.functions, **(names or {})}.items()))
         own = Source(text, width, made.bits, known)
         target = paths.Path(way).target
-        lanes = Source(text, width, made.bits, known, f"lanes, {way}", target)
+        self._source = Source(text, width, made.bits, known, f"lanes, {way}", target)
         self.one = engine.NativeFunction(own, anew=True)
-        self.layout, linked = lanes.compiled(anew=True)
-        self._lanes = linked()
+
+    @cached_property
+    def _lanes(self) -> tuple[Any, Any]:
+        """Its layout, and the function."""
+        layout, linked = self._source.compiled(anew=True)
+        return layout, linked()
 
     def of_one(self, arguments: Sequence[Any]) -> Any:
         """What the function of one orbit gives; None where it has no value."""
@@ -56,16 +61,17 @@ class Both:
 
     def in_lanes(self, rows: Sequence[Sequence[Any]]) -> list[Any]:
         """The same of each of up to eight rows of arguments."""
-        given = [self.layout.packed(row) for row in rows]
+        layout, function = self._lanes
+        given = [layout.packed(row) for row in rows]
         given += [given[0]] * (paths.LANES - len(rows))
         words = [np.frombuffer(row, dtype=np.uint64) for row in given]
-        size = sum(self.layout.result_sizes) // 8 + 1
-        found = engine._called(self._lanes, size, np.ascontiguousarray(np.stack(words, axis=1)))
+        size = sum(layout.result_sizes) // 8 + 1
+        found = engine._called(function, size, np.ascontiguousarray(np.stack(words, axis=1)))
         return [self._read(column.tobytes()) for column in found.T[: len(rows)]]
 
     def _read(self, raw: bytes) -> Any:
         try:
-            return self.layout.unpacked(raw)
+            return self._lanes[0].unpacked(raw)
         except ValueError:
             return None
 

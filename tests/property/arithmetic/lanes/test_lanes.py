@@ -1,6 +1,6 @@
 """Numbers in lanes have the bits of one orbit's, whatever stands in the other lanes."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from functools import cache
 from itertools import product
@@ -67,15 +67,17 @@ class Draws:
         return float(self.generator.random())
 
 
-def differing(pair: Both, rows: Sequence[Sequence[Any]]) -> list[Any]:
+def differing(pair: Both, rows: Sequence[Sequence[Any]]) -> Iterator[Sequence[Any]]:
     """Rows whose values are not those of one orbit."""
-    wrong = []
     for first in range(0, len(rows), LANES):
         part = rows[first : first + LANES]
         for row, found in zip(part, pair.in_lanes(part), strict=True):
             if not same(pair.of_one(row), found):
-                wrong.append(row)
-    return wrong
+                yield row
+
+
+def first_differing(pair: Both, rows: Sequence[Sequence[Any]]) -> Sequence[Any] | None:
+    return next(differing(pair, rows), None)
 
 
 def operands(width: int, seed: int, count: int) -> list[Any]:
@@ -111,7 +113,7 @@ def operands(width: int, seed: int, count: int) -> list[Any]:
 @pytest.mark.parametrize("width", WIDTHS)
 def test_operations_have_the_bits_of_one_orbit(width: int, way: str) -> None:
     rows = operands(width, seed=width, count=400)
-    assert not differing(both(OPERATIONS, width, way), rows)
+    assert not first_differing(both(OPERATIONS, width, way), rows)
 
 
 def arguments(name: str, width: int) -> list[Any]:
@@ -140,7 +142,7 @@ WAYS = [x for x in WAYS if x[1] == IN_LANES[0] or x[0] in (WIDTHS[0], WIDTHS[3])
 @pytest.mark.parametrize(("width", "way"), WAYS)
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_functions_have_the_bits_of_one_orbit(name: str, width: int, way: str) -> None:
-    assert not differing(both(FUNCTIONS[name], width, way), arguments(name, width))
+    assert not first_differing(both(FUNCTIONS[name], width, way), arguments(name, width))
 
 
 # -- controls -------------------------------------------------------------------------------------
@@ -152,7 +154,7 @@ def test_lanes_that_never_ask_for_the_last_bit_are_caught(monkeypatch: pytest.Mo
     monkeypatch.setattr(circle, "_lost", lambda count: 0)
     pair = Both(FUNCTIONS["circle"], 256, IN_LANES[0])
     draws = Draws(5)
-    assert differing(pair, [(number(draws.bits(244), 256),) for _ in range(20_000)])
+    assert first_differing(pair, [(number(draws.bits(244), 256),) for _ in range(20_000)])
 
 
 def test_what_one_orbit_loses_is_less_than_lanes_allow_for() -> None:
@@ -161,7 +163,7 @@ def test_what_one_orbit_loses_is_less_than_lanes_allow_for() -> None:
     pair = both(FUNCTIONS["circle"], width, IN_LANES[0])
     finer = both(FUNCTIONS["circle"], 2 * width, IN_LANES[0])
     most = Fraction(0)
-    for _ in range(3000):
+    for _ in range(600):
         raw = draws.bits(width - 2) - (1 << (width - 3))
         found = pair.of_one((number(raw, width),))
         true = finer.of_one((number(raw << width, 2 * width),))
@@ -177,7 +179,7 @@ def test_what_one_orbits_exp_loses_is_less_than_lanes_allow_for() -> None:
     draws, width = Draws(13), 128
     pair = both(FUNCTIONS["exp"], width, IN_LANES[0])
     finer = both(FUNCTIONS["exp"], 2 * width, IN_LANES[0])
-    for _ in range(3000):
+    for _ in range(600):
         raw = draws.bits(width - 12) - (1 << (width - 13))  # |x| < 8
         x = pair.of_one((number(raw, width),))
         y = finer.of_one((number(raw << width, 2 * width),))
@@ -191,7 +193,7 @@ def test_exp_that_never_asks_for_the_last_bit_is_caught(monkeypatch: pytest.Monk
     monkeypatch.setattr(exponential, "_lost", lambda count: 0)
     pair = Both(FUNCTIONS["exp"], 256, IN_LANES[0])
     draws = Draws(7)
-    assert differing(pair, [(number(draws.bits(244), 256),) for _ in range(20_000)])
+    assert first_differing(pair, [(number(draws.bits(244), 256),) for _ in range(20_000)])
 
 
 @pytest.mark.sample(8)
@@ -207,7 +209,7 @@ def test_most_lanes_do_not_ask_one_orbit(name: str, monkeypatch: pytest.MonkeyPa
     pair = Both(FUNCTIONS[name], 128, IN_LANES[0])
     draws = Draws(17)
     rows = [(number(draws.bits(111) + (1 << 111), 128),) for _ in range(2000)]  # ½ … 1
-    wrong = len(differing(pair, rows))
+    wrong = len(list(differing(pair, rows)))
     assert wrong <= (0 if name in ("sqrt", "inverse") else 100)
 
 
@@ -222,4 +224,4 @@ def test_a_step_left_out_of_a_product_is_caught(
     }
     monkeypatch.setattr(Numbers, planted, wrong[planted])
     pair = Both(OPERATIONS, 128, IN_LANES[0], {"limit": number(3 << 109, 128)})
-    assert differing(pair, operands(128, seed=1, count=40))
+    assert first_differing(pair, operands(128, seed=1, count=40))
