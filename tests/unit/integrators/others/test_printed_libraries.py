@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,7 @@ CLOCKS = ("SPRK_LEAPFROG", "SPRK_CANDY", "SPRK_MCLACHLAN_4", "PseudoVerletLeapfr
           "CalvoSanz4", "SYMPLECTICVELVERLET", "TableauRK42", "BPR3", "RKM")  # fmt: skip
 
 
+@cache
 def of_some(path: Path) -> list[ClaimResult]:
     whole = read_tables(path)
     chosen = [
