@@ -7,7 +7,7 @@ library does, and the solution is Taylor's, by `mpmath.odefun`.
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import singledispatch
+from functools import cache, singledispatch
 from itertools import pairwise
 from typing import Any
 
@@ -58,6 +58,7 @@ _QUADRATIC = "p²/2"
 _QUARTIC = "p²/2 + p⁴/4"
 
 
+@cache
 def systems(timed: bool, quadratic: bool) -> tuple[System, System]:
     """A pendulum, and an oscillator of degree 4; with a kinetic energy of degree 4 for methods of
     any T(p); driven, where a time is judged."""
@@ -108,10 +109,7 @@ def slopes_of(
 
 
 def _of(system: System, step: Step, noise: float, sizes: Sequence[Any]) -> Slopes:
-    t, p, q = mp.mpf(3) / 4, mp.mpf(1) / 3, mp.mpf(3) / 5
-    flow = mp.odefun(
-        lambda s, z: [system.kick(s, *z), system.drift(s, *z)], t, [p, q], tol=mp.mpf(10) ** -45
-    )
+    (t, p, q), flow = _solution(system)
     errors = []
     for h in sizes:
         there = step(system, t, p, q, h)
@@ -121,6 +119,15 @@ def _of(system: System, step: Step, noise: float, sizes: Sequence[Any]) -> Slope
     powers = [math.log(x / y) / math.log(h / k) for (h, x), (k, y) in pairwise(seen)]
     last = tuple(powers[-2:])
     return Slopes(system.said, rows, _order(last), last)
+
+
+@cache
+def _solution(system: System) -> tuple[Vector, Callable[[Any], Vector]]:
+    """t, p and q at the start, and the solution from there: the same for all tables."""
+    t, p, q = mp.mpf(3) / 4, mp.mpf(1) / 3, mp.mpf(3) / 5
+    return [t, p, q], mp.odefun(
+        lambda s, z: [system.kick(s, *z), system.drift(s, *z)], t, [p, q], tol=mp.mpf(10) ** -45
+    )
 
 
 def _order(powers: Sequence[float]) -> int | None:
