@@ -4,6 +4,7 @@
 In a checkout both lie beside the package, in a wheel inside it, in `verify/data`.
 """
 
+import os
 from collections.abc import Iterator
 from importlib.resources import files
 from pathlib import Path
@@ -65,12 +66,15 @@ def _is_content(name: str) -> bool:
     return name.partition("/")[0] == _INSTALLED
 
 
-def _below(folder: Path) -> Iterator[tuple[str, Path]]:
-    for path in folder.rglob("*"):
-        name = path.relative_to(folder)
-        left_behind = any(
-            part.startswith(".") or part.endswith("~") or part == "__pycache__"
-            for part in name.parts
-        )
-        if path.is_file() and not left_behind:
-            yield name.as_posix(), path
+def _below(folder: str | Path, prefix: str = "") -> Iterator[tuple[str, Path]]:
+    # Each command that keeps results goes through all files: scandir knows their kinds at once,
+    # which is ten times as fast as to ask each path.
+    with os.scandir(folder) as entries:
+        for entry in entries:
+            name = entry.name
+            if name.startswith(".") or name.endswith("~") or name == "__pycache__":
+                continue  # left behind
+            if entry.is_dir(follow_symlinks=False):
+                yield from _below(entry.path, f"{prefix}{name}/")
+            elif entry.is_file():
+                yield f"{prefix}{name}", Path(entry.path)

@@ -12,7 +12,8 @@ import pytest
 
 from tests.end_to_end.test_command_line import here, json_of
 from tests.helpers.local_cluster import local_cluster
-from verify.exploration import explore, hunting
+from verify.exploration import explore, gallery, hunting
+from verify.pages import page
 
 distributed = pytest.importorskip("distributed")
 ASKED = ("explore", "--property", "quadratic-hamiltonians", "--property", "time-scaling",
@@ -71,6 +72,8 @@ def test_a_hunt_finds_the_same_on_a_cluster(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(hunting, "_ISLAND", 4)  # three islands, two of them at a time
+    monkeypatch.setattr(gallery, "_LONGER", 10)
+    monkeypatch.setattr(page, "write", lambda *_: Path("index.html"))  # of what is found here
     with distributed.Client(cluster, set_as_default=False) as client:
         client.wait_for_workers(2, timeout=30)
     address = str(cluster.scheduler_address)

@@ -69,9 +69,10 @@ def middle_and_radius(x: Ball) -> tuple[Fraction, Fraction]:
 
 
 def _rational(mantissa: flint.fmpz, exponent: flint.fmpz) -> Fraction:
-    if abs(int(exponent)) > _MOST_EXPONENT:
+    numerator, power = int(mantissa), int(exponent)
+    if abs(power) > _MOST_EXPONENT:
         raise OverflowError("a ball is too large, or too small, for a rational")
-    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
+    return Fraction(numerator << power) if power > 0 else Fraction(numerator, 1 << -power)
 
 
 def bounds(x: Ball) -> tuple[Fraction, Fraction]:

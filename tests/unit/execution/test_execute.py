@@ -187,7 +187,7 @@ def fresh() -> str:
     return fingerprint()
 
 
-def one_file_of_each_room() -> list[str]:
+def one_file_of_each_folder() -> list[str]:
     """Of each folder of the package, whatever kind of file, and of each folder of the content."""
     files: dict[Path, Path] = {}
     for folder in ("verify", "reports", "reference"):
@@ -200,15 +200,17 @@ def one_file_of_each_room() -> list[str]:
 def test_the_fingerprint_covers_every_room_and_all_data(copy: Path) -> None:
     first = fresh()
     assert first == fresh(), "the same code has the same name"
-    names = one_file_of_each_room()
-    assert len({Path(name).parts[1] for name in names if name.startswith("verify/")}) >= 18
+    names = one_file_of_each_folder()
+    assert set(names) <= set(shipped.shipped_files()), "of which it is the digest"
+    rooms = {Path(name).parts[:2]: name for name in names}
+    assert len([room for room in rooms if room[0] == "verify"]) >= 18
     seen = {first}
-    for name in names:
+    for name in rooms.values():
         raw = (copy / name).read_bytes()
         (copy / name).write_bytes(raw + b" ")
         seen.add(fresh())
         (copy / name).write_bytes(raw)
-    assert len(seen) == len(names) + 1, "each change gives another name"
+    assert len(seen) == len(rooms) + 1, "each change gives another name"
     assert fresh() == first
     (copy / "verify" / "algebra" / "new.py").touch()
     assert fresh() not in seen, "and so does a file that is new"

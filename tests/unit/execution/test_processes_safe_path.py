@@ -19,10 +19,10 @@ PLANTED = sorted(
 SCENE = """
 system = "duffing"
 parameters = { delta = 1 }
-schemes = ["lie2", "rk4"]
+schemes = ["lie2"]
 [grid]
-time = 1
-step_sizes = [0.01, 0.02]
+steps = 2
+step_sizes = [0.01]
 initial_values = [{ q = 1, p = 0 }]
 """
 LOG = "executed.log"

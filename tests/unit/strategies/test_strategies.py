@@ -314,8 +314,8 @@ def test_scenes_in_time_are_valid_and_begin_at_drawn_times() -> None:
     own = s.scenes(hamiltonians=s.hamiltonians(time_dependent=True), initial_times=st.just("1/3"))
     lies = s.scenes(schemes=s.schemes(names=["lie2", "ruth3"]), time_dependent=True)
     for strategy in (s.scenes(time_dependent=True), lies, own):
-        drawn = fuzzed(strategy, 60)
-        assert len(drawn) >= 55
+        drawn = fuzzed(strategy, 24)
+        assert len(drawn) >= 22
         assert all(valid(scene) == scene for scene in drawn)
         assert all(scene.exact_hamiltonian().time_dependent for scene in drawn)
         assert len({scene.t0 for scene in drawn}) > 5 or {scene.t0 for scene in drawn} == {

@@ -1,6 +1,7 @@
 """A page of many runs: of a bounded size; it says what it leaves out, and leaves out no failure."""
 
 import re
+from functools import cache
 from typing import Any
 
 import pytest
@@ -38,20 +39,25 @@ def page_of(found: tuple[RunResult, ...]) -> str:
     return render(report((scene(runs=found),)))
 
 
+@cache
+def page_with(starts: int) -> str:
+    return page_of(runs(starts))
+
+
 def rows_of(page: str) -> int:
     return len(re.findall(r'<tr><th scope="row">', page))
 
 
 def test_a_table_has_room_for_so_many_rows_and_the_page_says_of_how_many() -> None:
-    page = text_of(page_of(runs(400)))
+    page = text_of(page_with(400))
     assert "All 1,200 runs of lie2" in page
     assert f"{MOST_ROWS} of 1,200 are shown; all are in results.json." in page
-    small = text_of(page_of(runs(MOST_ROWS // 3)))
+    small = text_of(page_with(MOST_ROWS // 3))
     assert "are shown" not in small
 
 
 def test_five_times_as_many_runs_make_hardly_a_larger_page() -> None:
-    few, many = page_of(runs(400)), page_of(runs(2000))
+    few, many = page_with(400), page_with(2000)
     assert rows_of(few) == rows_of(many)
     assert len(many) < 1.02 * len(few)
 
@@ -75,14 +81,14 @@ def test_what_failed_has_room_first_and_the_order_stays() -> None:
 
 
 def test_a_figure_draws_so_many_lines_with_both_extremes_and_says_so() -> None:
-    page = page_of(runs(400))
+    page = page_with(400)
     assert f"{MOST_LINES} of them are drawn, from the highest to the lowest." in text_of(page)
     drawn = [
         len([e for e in svg.iter() if e.tag == "path" and e.get("d", "").count("L") == 2])
         for svg in figures(page)
     ]
     assert max(drawn) <= 2 * MOST_LINES
-    assert "of them are drawn" not in text_of(page_of(runs(MOST_LINES)))
+    assert "of them are drawn" not in text_of(page_with(MOST_LINES))
 
 
 @pytest.mark.parametrize("count", [1, 2, MOST_LINES, MOST_LINES + 1, 1000])

@@ -80,6 +80,7 @@ def test_every_order_from_1_to_100_is_a_scheme(eta: int) -> None:
 # -- claims -----------------------------------------------------------------------------------
 
 
+@pytest.mark.sample(90)
 @pytest.mark.parametrize("system", SYSTEMS)
 @pytest.mark.parametrize("name", NAMES)
 def test_the_claims_of_a_scheme_are_proved_for_every_system_it_takes(
