@@ -85,9 +85,10 @@ class Dual:
         return Dual(-self.v, *(-a for a in self.slopes))
 
     def __mul__(self, other: Any) -> "Dual":
-        o = self.like(other)
-        slopes = (a * o.v + self.v * b for a, b in zip(self.slopes, o.slopes, strict=True))
-        return Dual(self.v * o.v, *slopes)
+        if not isinstance(other, Dual):  # a constant
+            return Dual(self.v * other, *(a * other for a in self.slopes))
+        slopes = (a * other.v + self.v * b for a, b in zip(self.slopes, other.slopes, strict=True))
+        return Dual(self.v * other.v, *slopes)
 
     def chained(self, value: Series, slope: Series) -> "Dual":
         return Dual(value, *(slope * a for a in self.slopes))

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis.strategies import SearchStrategy
 
+from tests.examples import drawn
 from verify import strategies
 from verify.exploration import properties
 from verify.exploration.sample import Sample
@@ -22,7 +23,7 @@ IN_TIME = strategies.scenes(steps=(1, 8), time_dependent=True)
 def test_a_property_holds_of_drawn_scenes(name: str, scenes: SearchStrategy[Scene]) -> None:
     asked = properties.get(name)
 
-    @settings(deadline=None, max_examples=12, suppress_health_check=[HealthCheck.too_slow])
+    @settings(drawn(12), suppress_health_check=[HealthCheck.too_slow])
     @given(scenes)
     def holds(scene: Scene) -> None:
         asked.holds(Sample.of(scene))

@@ -11,9 +11,10 @@ from typing import Any
 import mpmath
 import pytest
 import sympy
-from hypothesis import HealthCheck, find, given, reject, settings
+from hypothesis import HealthCheck, Phase, find, given, reject, settings
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from verify.algebra.formula import symbol, to_text
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -28,7 +29,7 @@ p, q, t, h = map(symbol, "pqth")
 DIGITS = 25
 SIZE = Fraction(1, 64)
 START = {"p": Fraction(1, 3), "q": Fraction(-2, 5)}
-few = settings(max_examples=12, deadline=None, derandomize=True, database=None,
+few = settings(drawn(12), derandomize=True, database=None,
                suppress_health_check=list(HealthCheck))  # fmt: skip
 moments = st.fractions(-3, 3, max_denominator=7)
 in_time = hamiltonians(time_dependent=True, degree=4, terms=3)
@@ -240,7 +241,7 @@ def test_what_exceeds_them_is_drawn_where_it_is_allowed(kinds: list[str], degree
         driving = made.exact.diff(t)
         return driving.has(sympy.cos(q)) or driving.diff(q, 3) != 0
 
-    quietly = settings(few, max_examples=1000)
+    quietly = settings(few, max_examples=1000, phases=[Phase.generate])
     assert find(hamiltonians(kinds, time_dependent=True, degree=degree), beyond, settings=quietly)
 
 
