@@ -196,13 +196,17 @@ def defined(form: Format, kind: str, x: Fraction) -> bool | None:
     Its value has to be in the format, and its slope; sinh and cosh are given while e^|x| < 2^14.
     """
     unit, octave = form.value(1), 256 * step_of("octave")
-    borders = {
-        "exp": 15 * octave - x, "sinh": 14 * octave - abs(x), "cosh": 14 * octave - abs(x),
-        "log": x - unit / 2, "root": x - Fraction(1, 2**26) + unit / 2,
-        "inverse": abs(x) - Fraction(1, 2**14) + unit / 2,
-    }  # fmt: skip
-    inside = borders.get(kind, Fraction(1))
-    return None if kind in ("exp", "sinh", "cosh") and abs(inside) <= 8 * unit else inside > 0
+    match kind:
+        case "exp" | "sinh" | "cosh":
+            inside = 15 * octave - x if kind == "exp" else 14 * octave - abs(x)
+            return None if abs(inside) <= 8 * unit else inside > 0
+        case "log":
+            return x > unit / 2
+        case "root":
+            return x > Fraction(1, 2**26) - unit / 2
+        case "inverse":
+            return abs(x) > Fraction(1, 2**14) - unit / 2
+    return True
 
 
 def check_function(form: Format, kind: str, raw: int) -> None:
