@@ -163,7 +163,7 @@ def test_what_one_orbit_loses_is_less_than_lanes_allow_for() -> None:
     pair = both(FUNCTIONS["circle"], width, IN_LANES[0])
     finer = both(FUNCTIONS["circle"], 2 * width, IN_LANES[0])
     most = Fraction(0)
-    for _ in range(600):
+    for _ in range(3000):
         raw = draws.bits(width - 2) - (1 << (width - 3))
         found = pair.of_one((number(raw, width),))
         true = finer.of_one((number(raw << width, 2 * width),))
@@ -179,7 +179,7 @@ def test_what_one_orbits_exp_loses_is_less_than_lanes_allow_for() -> None:
     draws, width = Draws(13), 128
     pair = both(FUNCTIONS["exp"], width, IN_LANES[0])
     finer = both(FUNCTIONS["exp"], 2 * width, IN_LANES[0])
-    for _ in range(600):
+    for _ in range(3000):
         raw = draws.bits(width - 12) - (1 << (width - 13))  # |x| < 8
         x = pair.of_one((number(raw, width),))
         y = finer.of_one((number(raw << width, 2 * width),))
