@@ -14,6 +14,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from typing import Literal
 
 import sympy
@@ -90,8 +91,7 @@ def closed_orbit(hamiltonian: Hamiltonian, start: Start, digits: int, count: int
         zero = flow.number(Fraction(0))
         p, q = (flow.number(x) for x in start)
         return Orbit(flow, ((p, q),), None, (zero, zero))
-    rough = Flow(field, _ROUGH)
-    found = _ReturnSearch(rough, start, list(shifts(hamiltonian))).back()
+    found = _first_return(hamiltonian, start)
     for more in _MORE:
         orbit = _polished(Flow(field, digits + more), start, found, digits, count)
         if orbit is not None:
@@ -141,6 +141,13 @@ class _Return:
     time: float
     shift: tuple[Fraction, Fraction]
     reach: float
+
+
+@lru_cache(maxsize=8)
+def _first_return(hamiltonian: Hamiltonian, start: Start) -> _Return:
+    # An average asks for the same orbit twice and more, each time to other digits.
+    rough = Flow(hamiltonian.field()[0], _ROUGH)
+    return _ReturnSearch(rough, start, list(shifts(hamiltonian))).back()
 
 
 class _ReturnSearch:
