@@ -143,7 +143,7 @@ SYMPLECTIC = ("symplectic-euler", "stormer-verlet", "gauss4", "yoshida4")
 @pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("scheme", "hamiltonian"),
-    zip(SYMPLECTIC, (DUFFING, PENDULUM, DUFFING, PENDULUM), strict=True),
+    list(zip(SYMPLECTIC, (DUFFING, PENDULUM, DUFFING, PENDULUM), strict=True)),
 )
 def test_what_preserves_area_changes_it_by_nothing_that_the_probe_can_tell(
     scheme: str, hamiltonian: Hamiltonian
