@@ -46,7 +46,6 @@ PARTIAL = ("inverse", "root", "log", "exp", "sinh", "cosh")  # functions that ma
 SCALES = ("kappa", "down", "shift")  # 2^s h^r, 2^−s and s itself
 LIMITS = ("reach_p", "reach_q", "reach_part", "reach_value")
 _OF_MATRIX = "reach_m"  # where M is carried
-LOOP = "    for k in range(steps):"  # what is before this line is the same for every k
 
 
 @dataclass(frozen=True, eq=False)
@@ -305,7 +304,7 @@ class Writer:
             [
                 f"def kernel({arguments}):",
                 *(f"    {line}" for line in static),
-                LOOP,
+                "    for k in range(steps):",  # what is before it is the same for every k
                 *(f"        {line}" for line in [*dynamic, *statements]),
                 *([f"        if not ({guard}): return k, {names}"] if guard else []),
                 f"    return steps, {names}",

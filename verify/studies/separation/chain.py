@@ -23,7 +23,7 @@ from verify.runs.digits_on_demand import choose
 from verify.runs.estimated import working_digits
 from verify.runs.run import proved
 from verify.schemes.step_map import StepMap
-from verify.studies.separation.links import AsLink, Links, last_system
+from verify.studies.separation.links import AsLink, LinksOnDemand, last_system
 from verify.studies.separation.working import (
     POINTS,
     Advance,
@@ -165,7 +165,7 @@ def separated_chains(
     return Chains(plain, closed, arithmetic, lockstep.clock() - begun)
 
 
-class _AreaLinks(Links[Link, Working]):
+class _AreaLinks(LinksOnDemand[Link, Working]):
     """The links of Λ."""
 
     observable = "lambda"

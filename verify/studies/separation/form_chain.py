@@ -33,10 +33,9 @@ from verify.kernels.step.in_degrees import map_of, preserves
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.digits_on_demand import choose
 from verify.runs.estimated import working_digits
-from verify.studies.separation import links as separation
 from verify.studies.separation.chain import Chain
 from verify.studies.separation.form_run import POINTS, FormRun, FormWorking, Links, Size, links_of
-from verify.studies.separation.links import AsLink, last_system
+from verify.studies.separation.links import AsLink, LinksOnDemand, last_system
 from verify.studies.separation.working import Advance, exact_link
 
 PARTS = ("input", "trajectory", "derivatives", "product")  # of rounding, in the chain's order
@@ -104,7 +103,7 @@ def _lacking(chains: Sequence[Chain], digits: int) -> list[int]:
     return [max(each) for each in zip(*(x.lacking(digits, least) for x in chains), strict=True)]
 
 
-class _FormLinks(separation.Links[Links, FormWorking]):
+class _FormLinks(LinksOnDemand[Links, FormWorking]):
     """The links of all entries of W."""
 
     observable = "symplectic_defect"

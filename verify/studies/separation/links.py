@@ -44,7 +44,7 @@ L = TypeVar("L")  # Link, or one for each entry
 W = TypeVar("W", bound=Followed)
 
 
-class Links(ABC, Generic[L, W]):
+class LinksOnDemand(ABC, Generic[L, W]):
     """The links that all ways to evaluate share, and how many digits each is asked for.
 
     `proved`, `constant`: the first link and the second where a proof gives them.
