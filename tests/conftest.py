@@ -23,7 +23,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
     All its processes share it: each kernel is compiled by the first of them that calls it.
     """
-    sampling.add_marker(config)
+    sampling.add_markers(config)
     if not hasattr(config, "workerinput"):  # which a worker has, and the environment besides
         folder = tempfile.mkdtemp(prefix="verify-tests-")
         os.environ[VARIABLE] = folder

@@ -2,7 +2,8 @@
 
 `@pytest.mark.sample(3)` above such a test: three of its parameters, of which each brings as many
 new values as it can, and has the least hash of those that bring as many. So they stay the same
-until a test or a parameter is renamed. `pytest --whole` runs them all, and so does naming one.
+until a test or a parameter is renamed. `@pytest.mark.left_to_ci`: none of them, and CI runs them
+all by `pytest -m left_to_ci`. `pytest --whole` runs whatever there is, and so does naming a test.
 """
 
 from collections import defaultdict
@@ -10,22 +11,27 @@ from hashlib import sha256
 
 import pytest
 
+_LEFT = "left_to_ci"
+
 
 def add_option(parser: pytest.Parser) -> None:
     """`--whole`, for campaigns."""
     parser.addoption("--whole", action="store_true", help="all parameters of sampled tests, too")
 
 
-def add_marker(config: pytest.Config) -> None:
-    """`sample`, which pytest would refuse as unknown."""
+def add_markers(config: pytest.Config) -> None:
+    """Our markers, which pytest would refuse as unknown."""
     config.addinivalue_line("markers", "sample(count): so many of its parameters are run")
+    config.addinivalue_line("markers", f"{_LEFT}: it is run where it is asked for, and by CI")
 
 
 def leave_out(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Takes those out of `items` that are not of the sample."""
-    if config.getoption("--whole") or any("[" in asked for asked in config.args):
+    if config.getoption("--whole") or any("::" in asked for asked in config.args):
         return
     left = _unsampled(items)
+    if config.getoption("-m") != _LEFT:
+        left |= {item for item in items if item.get_closest_marker(_LEFT)}
     if left:
         config.hook.pytest_deselected(items=[item for item in items if item in left])
         items[:] = [item for item in items if item not in left]

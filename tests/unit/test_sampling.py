@@ -17,7 +17,7 @@ def pytest_addoption(parser):
     sampling.add_option(parser)
 
 def pytest_configure(config):
-    sampling.add_marker(config)
+    sampling.add_markers(config)
 
 def pytest_collection_modifyitems(config, items):
     sampling.leave_out(config, items)
@@ -36,6 +36,12 @@ def test_little(a): ...
 @pytest.mark.sample(3)
 @pytest.mark.parametrize("a", range(2))
 def test_less(a): ...
+
+@pytest.mark.left_to_ci
+def test_dear(): ...
+
+@pytest.mark.parametrize("a", [0, pytest.param(1, marks=pytest.mark.left_to_ci)])
+def test_partly_dear(a): ...
 """
 
 
@@ -56,6 +62,7 @@ def test_a_sample_has_so_many_and_each_value_of_a_parameter_if_it_can(tmp_path: 
     assert [{x[k] for x in much} for k in (0, 1)] == [{"0", "1", "2"}] * 2
     assert len([x for x in found if "little" in x]) == 4
     assert len([x for x in found if "less" in x]) == 2
+    assert [x.partition("::test_")[2] for x in found if "dear" in x] == ["partly_dear[0]"]
     assert collected(tmp_path) == found, "the same each time"
 
 
@@ -63,3 +70,19 @@ def test_a_sample_has_so_many_and_each_value_of_a_parameter_if_it_can(tmp_path: 
 def test_all_are_run_where_they_are_asked_for(tmp_path: Path, option: str) -> None:
     much = [x for x in collected(tmp_path, option) if "much" in x]
     assert len(much) == (9 if option == "--whole" else 1)
+
+
+@pytest.mark.parametrize(
+    ("options", "names"),
+    [
+        (["--whole"], ["dear", "partly_dear[0]", "partly_dear[1]"]),
+        (["-m", "left_to_ci"], ["dear", "partly_dear[1]"]),
+        (["test_it.py::test_dear"], ["dear"]),
+    ],
+)
+def test_what_is_left_to_ci_is_run_where_it_is_asked_for(
+    tmp_path: Path, options: list[str], names: list[str]
+) -> None:
+    found = [x.partition("::test_")[2] for x in collected(tmp_path, *options)]
+    assert [x for x in found if "dear" in x] == names
+    assert (len(found) == len(names)) == (options[0] != "--whole")
