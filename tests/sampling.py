@@ -43,20 +43,18 @@ def _unsampled(items: list[pytest.Item]) -> set[pytest.Item]:
         marker = item.get_closest_marker("sample")
         if marker is not None:
             groups[item.nodeid.partition("[")[0], *marker.args].append(item)
-    return {item for (_, count), each in groups.items() for item in _by_news(each)[count:]}
+    return set().union(*(_beyond_sample(each, count) for (_, count), each in groups.items()))
 
 
-def _by_news(items: list[pytest.Item]) -> list[pytest.Item]:
-    """Those first whose values of single parameters are not among those before them."""
-    left = sorted(items, key=lambda item: sha256(item.nodeid.encode()).digest())
-    found: list[pytest.Item] = []
+def _beyond_sample(items: list[pytest.Item], count: int) -> set[pytest.Item]:
+    """All but so many whose values of single parameters are not among those of the others."""
+    by_hash = sorted(items, key=lambda item: sha256(item.nodeid.encode()).digest())
+    left = {item: _values(item) for item in by_hash}
     seen: set[tuple[int, str]] = set()
-    while left:
-        best = max(left, key=lambda item: len(_values(item) - seen))
-        left.remove(best)
-        found.append(best)
-        seen |= _values(best)
-    return found
+    for _ in range(min(count, len(items))):
+        best = max(left, key=lambda item: len(left[item] - seen))
+        seen |= left.pop(best)
+    return set(left)
 
 
 def _values(item: pytest.Item) -> set[tuple[int, str]]:
