@@ -114,7 +114,7 @@ def compile_theory(folder: Path) -> None:
     each_after({name: theory.imports_of(name) for name in theory.files()}, compile_one)
 
 
-def made_once(paths: pytest.TempPathFactory, name: str, make: Callable[[Path], object]) -> Path:
+def made_once(paths: pytest.TempPathFactory, name: str, make: Callable[[Path], None]) -> Path:
     """A folder that one of pytest's processes makes, while the others wait for it."""
     base = paths.getbasetemp()
     # The workers of pytest-xdist have folders of their own in one that is the session's.

@@ -1,13 +1,12 @@
-"""The theory, and exports beside it, compiled once a session for all of its processes."""
+"""The theory, and all exports beside it, compiled once a session for all of its processes."""
 
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from tests.helpers.compilers import needed
-from tests.helpers.exports import export
-from tests.helpers.rocq import accepted, beside, compile_theory, made_once
+from tests.helpers.exports import ALL, export
+from tests.helpers.rocq import accepted, beside, compile_theory, each_after, made_once
 from tests.helpers.rocq_assumptions import ASKED
 
 
@@ -19,18 +18,23 @@ def theory(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def compiled(tmp_path_factory: pytest.TempPathFactory, theory: Path) -> Callable[[str], Path]:
-    """Of an export's name, the folder with it compiled; the test fails where `coqc` refuses it.
+def exports(tmp_path_factory: pytest.TempPathFactory, theory: Path) -> Path:
+    """Those that `coqc` takes are compiled there; what it says of the others lies beside them.
 
-    What exports assume is asked of many together, as to print it takes half of the time of one.
+    What they assume is asked of all together, as to print it takes half of the time of an export.
     """
 
-    def folder_of(name: str) -> Path:
-        text = ASKED.sub("", export(name).text)
-        return made_once(
-            tmp_path_factory,
-            f"export_{name}",
-            lambda folder: accepted(folder / f"{name}.v", text, beside(theory)),
-        )
+    def compile_exports(folder: Path) -> None:
+        texts = {name: export(name).text for name in ALL}
 
-    return folder_of
+        def compile_one(name: str) -> None:
+            try:
+                accepted(folder / f"{name}.v", ASKED.sub("", texts[name]), beside(theory))
+            except AssertionError as error:
+                (folder / f"{name}.refused").write_text(str(error), encoding="utf-8")
+
+        # What takes longest begins first.
+        long_first = sorted(texts, key=lambda name: -len(texts[name]))
+        each_after(dict.fromkeys(long_first, ()), compile_one)
+
+    return made_once(tmp_path_factory, "exports", compile_exports)

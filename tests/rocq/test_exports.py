@@ -1,6 +1,5 @@
 """Exported certificates of all kinds are proofs for `coqc`, which assume what they may assume."""
 
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -14,18 +13,14 @@ from tests.helpers.rocq_assumptions import (
     printed_assumptions,
 )
 
-PARTS = [list(ALL)[k::4] for k in range(4)]  # each of all kinds
+pytestmark = pytest.mark.left_to_ci
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        *PARTS[0],
-        *(pytest.param(x, marks=pytest.mark.left_to_ci) for part in PARTS[1:] for x in part),
-    ],
-)
-def test_coqc_takes_the_export(compiled: Callable[[str], Path], name: str) -> None:
-    assert (compiled(name) / f"{name}.vo").exists()
+@pytest.mark.parametrize("name", ALL)
+def test_coqc_takes_the_export(exports: Path, name: str) -> None:
+    refused = exports / f"{name}.refused"
+    assert not refused.exists(), refused.read_text(encoding="utf-8")
+    assert (exports / f"{name}.vo").exists()
 
 
 def of_rings_in(name: str) -> bool:
@@ -33,27 +28,21 @@ def of_rings_in(name: str) -> bool:
     return name.startswith("every_")
 
 
-@pytest.mark.parametrize(
-    "k", [0, *(pytest.param(k, marks=pytest.mark.left_to_ci) for k in range(1, 4))]
-)
-def test_exports_assume_what_the_reals_do_or_nothing(
-    compiled: Callable[[str], Path], theory: Path, k: int, tmp_path: Path
+def test_all_exports_assume_what_the_reals_do_or_nothing(
+    theory: Path, exports: Path, tmp_path: Path
 ) -> None:
     """As they ask themselves, each apart: that is done in the next test."""
-    asked = {name: ASKED.findall(export(name).text) for name in PARTS[k]}
-    rings = [f"{name}.{asked[name].pop(0)}" for name in asked if of_rings_in(name)]
-    reals = [f"{name}.{of_all}" for name in asked for of_all in asked[name]]
-    assert rings
-    assert len(reals) == len(asked)
-    for name in asked:
-        (tmp_path / f"{name}.vo").symlink_to(compiled(name) / f"{name}.vo")
-    loaded = f"Require {' '.join(asked)}.\n"
+    asked = {name: ASKED.findall(export(name).text) for name in ALL}
+    rings = [f"{name}.{asked[name].pop(0)}" for name in ALL if of_rings_in(name)]
+    reals = [f"{name}.{of_all}" for name in ALL for of_all in asked[name]]
+    assert len(reals) == len(ALL)
+    loaded = f"Require {' '.join(ALL)}.\n"
     text = loaded + asked_together("of_rings", rings) + asked_together("of_reals", reals)
-    said = accepted(tmp_path / "asked.v", text, beside(theory))
+    said = accepted(tmp_path / "asked.v", text, {**beside(theory), "": exports})
     check_assumptions(said, of_rings=True)
 
 
-@pytest.mark.sample(1)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("name", ALL)
 def test_coqc_takes_an_export_that_stands_alone_and_says_what_it_assumes(
     name: str, tmp_path: Path

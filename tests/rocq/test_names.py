@@ -5,10 +5,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from tests.helpers.exports import certificate, export, export_of, proved
 from tests.helpers.rocq import accepted, beside
 from verify.proof.assistant.formulas import KEYWORDS, safe
 from verify.proof.assistant.text import template_words
+
+pytestmark = pytest.mark.left_to_ci
 
 _NAME = re.compile(r"(?!H_)[A-Za-z][A-Za-z0-9_]*")
 _GRAMMARS = ("constr", "tactic", "vernac", "pattern")

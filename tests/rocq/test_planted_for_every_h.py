@@ -6,6 +6,8 @@ import pytest
 
 from tests.rocq.planted import Planted, check_refused, planted
 
+pytestmark = pytest.mark.left_to_ci
+
 CHECKED, ORDER = "checked", "determinant_has_its_order"
 AGREES, TELESCOPES = "map_agrees_with_flow", "first_coefficient_telescopes"
 NUMBER, REALS = "determinant_at_each_number", "determinant_over_the_reals"

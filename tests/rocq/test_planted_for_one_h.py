@@ -6,6 +6,8 @@ import pytest
 
 from tests.rocq.planted import Planted, check_refused, planted
 
+pytestmark = pytest.mark.left_to_ci
+
 CHECKED, ORDER, AGREES = "checked", "determinant_has_its_order", "map_agrees_with_flow"
 DERIVED, NEAR = "derivatives_of_H", "near_every_solution"
 TELESCOPES, SHOWN = "first_coefficient_telescopes", "shown"

@@ -9,6 +9,8 @@ import pytest
 
 from tests.rocq.planted import Planted, check_refused, planted
 
+pytestmark = pytest.mark.left_to_ci
+
 CHECKED, FIT, ROOT, HOLD = "checked", "weights_fit", "there_is_w", "relations_hold"
 STEP, AREA = "step_is_symplectic", "area_is_preserved"
 EVERYWHERE = "step_is_symplectic_everywhere"

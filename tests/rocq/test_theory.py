@@ -4,6 +4,8 @@ import re
 import subprocess
 from pathlib import Path
 
+import pytest
+
 from tests.helpers.compilers import needed
 from tests.helpers.rocq import LONGEST, accepted, beside
 from tests.helpers.rocq_assumptions import (
@@ -13,6 +15,8 @@ from tests.helpers.rocq_assumptions import (
     printed_assumptions,
 )
 from verify.proof.assistant.shipped import FOLDER, files, in_order, install, text_of
+
+pytestmark = pytest.mark.left_to_ci
 
 _THEOREM = re.compile(r"^ *(?:Theorem|Corollary|Lemma) (\w+)", re.MULTILINE)
 _LIBRARIES = re.compile(r"^From Coq Require Import ([^.]*)\.", re.MULTILINE)

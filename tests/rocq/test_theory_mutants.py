@@ -11,6 +11,8 @@ import pytest
 from tests.helpers.rocq import accepted, beside, changed, stops_at
 from verify.proof.assistant.shipped import text_of
 
+pytestmark = pytest.mark.left_to_ci
+
 # Of a file: what is there, what is put in its place, and the proof that then fails.
 MUTANTS = [
     ("LieScheme", "- (inverse_factorial (S eta) * total", "- (inverse_factorial eta * total",
