@@ -7,7 +7,7 @@ import tempfile
 
 import pytest
 
-from tests import sampling
+from tests import examples, sampling
 from verify.code_cache import VARIABLE
 
 # Objects; most of what an expression or a compiler makes on the way is gone by then.
@@ -24,6 +24,8 @@ def pytest_configure(config: pytest.Config) -> None:
     All its processes share it: each kernel is compiled by the first of them that calls it.
     """
     sampling.add_markers(config)
+    if config.getoption("--whole"):
+        examples.draw_all()
     if not hasattr(config, "workerinput"):  # which a worker has, and the environment besides
         folder = tempfile.mkdtemp(prefix="verify-tests-")
         os.environ[VARIABLE] = folder
