@@ -71,8 +71,12 @@ def until(found: Callable[[], T | None], digits: int) -> T:
 def blow_up(motion: Motion, sign: int, digits: int) -> Fraction | None:
     """|t| at which the solution ends, forwards (1) or backwards (−1); None where it does not."""
 
+    end_of = motion.blow_up
+    if end_of is None:
+        return None
+
     def found() -> tuple[Fraction | None] | None:
-        end = motion.blow_up(sign)
+        end = end_of(sign)
         if end is None:
             return (None,)
         known = end.is_finite() and end.rel_accuracy_bits() > bits_for(digits)
@@ -84,10 +88,13 @@ def blow_up(motion: Motion, sign: int, digits: int) -> Fraction | None:
 
 def ends_by(motion: Motion, time: Fraction) -> bool:
     """Whether the solution blows up until that time, or cannot be told not to."""
+    end_of = motion.blow_up
+    if end_of is None:
+        return False
     sign, at = (-1 if time < 0 else 1), exactly(abs(time))
 
     def found() -> bool | None:
-        end: arb | None = motion.blow_up(sign)
+        end = end_of(sign)
         if end is None or end > at:
             return False
         return True if end < at else None

@@ -42,6 +42,8 @@ Array = Any  # numpy.ndarray, which is imported where it is used
 _ZERO = Fraction(0)
 _UPWARDS = 1 + 2.0**-50  # for a bound that is itself rounded
 _REMEMBERED = 1 << 16  # points in closed form, of which one takes a tenth of a millisecond
+_FLOWS = 3  # for which so many points are
+_Told = tuple[str, tuple[tuple[float, float, float], ...]]
 _FINE = 1e-18  # of an orbit's scale: a ball's radius, far below float64's rounding
 
 
@@ -79,21 +81,26 @@ def exact_points(
     return work.checked()
 
 
-@lru_cache(maxsize=_REMEMBERED)
-def _of_point(
-    hamiltonian: Hamiltonian, p: float, q: float, times: tuple[Fraction, ...]
-) -> tuple[str, tuple[tuple[float, float, float], ...]]:
-    """By what motion a point goes, and at each time p, q and a bound of the error of each.
+@lru_cache(maxsize=_FLOWS)
+def _along_flow(hamiltonian: Hamiltonian, times: tuple[Fraction, ...]) -> Callable[..., _Told]:
+    """(p, q) ↦ by what motion a point goes, and at each time p, q and a bound of the error of each.
 
-    Several maps carry the same points of a region, and are held against the same exact ones. Raises
-    NoFlowError, and OverflowError beyond float64.
+    Several maps carry the same points of a region, and are held against the same exact ones. It
+    raises NoFlowError, and OverflowError beyond float64.
     """
-    motion = known_flows.closed_form(hamiltonian, Fraction(p), Fraction(q))
-    assert motion is not None  # noqa: S101 - as another point has one
     zero = Fraction(0)
-    for time in {max((zero, *times)), min((zero, *times))} - {zero}:
-        closed_form.ends_after(motion, time)
-    return motion.method, tuple(_rounded(motion, p, q, time) for time in times)
+    ends = {max((zero, *times)), min((zero, *times))} - {zero}
+    motion_from = known_flows.motions(hamiltonian)
+
+    @lru_cache(maxsize=_REMEMBERED)
+    def told(p: float, q: float) -> _Told:
+        motion = motion_from(Fraction(p), Fraction(q))
+        assert motion is not None  # noqa: S101 - as another point has one
+        for time in ends:
+            closed_form.ends_after(motion, time)
+        return motion.method, tuple(_rounded(motion, p, q, time) for time in times)
+
+    return told
 
 
 def _rounded(motion: Motion, p: float, q: float, time: Fraction) -> tuple[float, float, float]:
@@ -154,22 +161,21 @@ class _Work:
 
     def in_closed_form(self) -> Points:
         """Each point by its own motion. Raises NoFlowError."""
-        methods: list[str] = []
-        for i in range(len(self.p)):
-            start = float(self.p[i]), float(self.q[i])
-            method, states = self._told(i, self._farthest, _of_point, self.hamiltonian, *start,
-                                        self.times)  # fmt: skip
-            methods.append(method)
-            for k, (*z, error) in enumerate(states):
-                self.found[:, k, i], self.error[k, i] = z, error
-        bound = float(self.error.max(initial=0.0))
+        import numpy as np
+
+        follow_one, farthest = _along_flow(self.hamiltonian, self.times), self._farthest
+        starts = enumerate(zip(self.p.tolist(), self.q.tolist(), strict=True))
+        told = [self._told(i, farthest, follow_one, *start) for i, start in starts]
+        methods = [method for method, _ in told]
+        shape = len(told), len(self.times), 3
+        p, q, error = np.array([states for _, states in told], dtype=np.float64).reshape(shape).T
+        bound = float(error.max(initial=0.0))
         method = f"{max(set(methods), key=methods.count)}, in balls"
-        p, q = self.found
         return Points(p, q, bound, method)
 
     @property
     def _farthest(self) -> Fraction:
-        return max(self.times, key=abs)
+        return max(self.times, key=abs, default=_ZERO)
 
     def _told(self, i: int, time: Fraction, how: Callable[..., Any], *arguments: Any) -> Any:
         """What `how` finds; NoFlowError, naming the point, where it finds nothing."""

@@ -36,16 +36,23 @@ class Named:
 
 def closed_form(hamiltonian: Hamiltonian, p: Fraction, q: Fraction) -> Motion | None:
     """The motion from (p, q) in closed form; None where none is known."""
+    return motions(hamiltonian)(p, q)
+
+
+def motions(hamiltonian: Hamiltonian) -> Callable[[Fraction, Fraction], Motion | None]:
+    """`closed_form` of this Hamiltonian, for many points."""
     if hamiltonian.symbols or hamiltonian.time_dependent:
-        return None
+        return lambda p, q: None
     found = potential(hamiltonian)
     if found is not None:
-        return potential_motion.motion(*found, p, q)
-    for match in named(hamiltonian):
-        motion = match.system.flow(match.values, p, q) if match.system.flow else None
-        if motion is not None:
-            return motion
-    return None
+        return partial(potential_motion.motion, *found)
+    flows = [(match.system.flow, match.values) for match in named(hamiltonian)]
+
+    def motion(p: Fraction, q: Fraction) -> Motion | None:
+        ways = (flow(values, p, q) for flow, values in flows if flow)
+        return next((way for way in ways if way is not None), None)
+
+    return motion
 
 
 @lru_cache(maxsize=64)

@@ -41,21 +41,22 @@ def motion(alpha: fmpq, potential: Sequence[fmpq], p: Fraction, q: Fraction) -> 
     curve = Curve.through(alpha, potential, exactly(p), start)
     if curve.v == 0 and curve.b[1] == 0:
         return at_rest(p, q)
-    ends = curve.degree > 2
+    fast = curve.degree > 2  # where it goes to infinity it does so in a finite time
 
     def state(t: arb) -> State:
         y, slope = curve.at(t)
         return slope / alpha, start + y
 
     def blow_up(sign: int) -> arb | None:
-        to = curve.destination(sign) if ends else 0
+        to = curve.destination(sign)
         return curve.time_to_infinity(sign, to) if to else None
 
     def goes() -> str | None:
-        to = 0 if ends else curve.destination(1)
+        to = 0 if fast else curve.destination(1)
         return f"q goes to {'+' if to > 0 else '−'}∞ as t grows" if to else None
 
-    return Motion(state, _ELEMENTARY if curve.delta == 0 else _METHOD, blow_up, goes)
+    method = _ELEMENTARY if curve.delta == 0 else _METHOD
+    return Motion(state, method, blow_up if fast and not curve.confined else None, goes)
 
 
 @dataclass(frozen=True)
@@ -79,6 +80,11 @@ class Curve:
     @cached_property
     def degree(self) -> int:
         return next((k for k in (4, 3, 2, 1) if self.b[k]), 0)
+
+    @property
+    def confined(self) -> bool:
+        """Whether V rises without end on both sides, by its term of degree 4."""
+        return bool(self.b[4] < 0)
 
     @cached_property
     def invariants(self) -> tuple[fmpq, fmpq]:
@@ -142,8 +148,8 @@ class Curve:
 
         At a simple root of f the motion turns; a multiple one it never reaches.
         """
-        if self.b[4] < 0:
-            return 0  # V rises without end on both sides
+        if self.confined:
+            return 0
         towards = 1 if (sign * self.v or self.b[1]) > 0 else -1
         kept = self.b if self.v else self.b[1:]  # y = 0 is a root: the motion turns there
         # Mirrored so that the motion goes to the right.

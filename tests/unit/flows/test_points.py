@@ -186,6 +186,7 @@ def test_no_points_and_no_times_are_no_error() -> None:
     assert exact_points(Hamiltonian.parse(PENDULUM), none, none, TIMES).p.shape == (3, 0)
     assert exact_points(Hamiltonian.parse(SEXTIC), none, none, TIMES).p.shape == (3, 0)
     assert exact_points(Hamiltonian.parse(PENDULUM), none + 1, none, ()).p.shape == (0, 0)
+    assert exact_points(Hamiltonian.parse(PENDULUM), np.ones(2), np.ones(2), ()).p.shape == (0, 2)
 
 
 # -- planted errors -------------------------------------------------------------------------------
@@ -202,7 +203,7 @@ def bent(motion: Motion) -> Any:
 @pytest.fixture(autouse=True)
 def nothing_remembered() -> None:
     """Points that a planted error has moved are not those of another test."""
-    module._of_point.cache_clear()
+    module._along_flow.cache_clear()
 
 
 @pytest.mark.parametrize("wrong", [late, bent])
@@ -211,15 +212,19 @@ def test_a_closed_form_that_is_slightly_wrong_is_beyond_the_bound(
     formula: str, wrong: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The control of all that is held against `largest_error`, by the numerical flow."""
-    right = known_flows.closed_form
+    right = known_flows.motions
     h, (p, q), times = Hamiltonian.parse(formula), cloud(0.3, 1.0, 3), (Fraction(10),)
     assert by_numerical_flow(h, p, q, times[0], exact_points(h, p, q, times))
 
-    def planted(*arguments: Any) -> Any:
-        return replace(right(*arguments), state=wrong(right(*arguments)))
+    def planted(hamiltonian: Hamiltonian) -> Any:
+        def motion(*start: Fraction) -> Any:
+            true: Any = right(hamiltonian)(*start)
+            return replace(true, state=wrong(true))
 
-    monkeypatch.setattr(known_flows, "closed_form", planted)
-    module._of_point.cache_clear()
+        return motion
+
+    monkeypatch.setattr(known_flows, "motions", planted)
+    module._along_flow.cache_clear()
     assert not by_numerical_flow(h, p, q, times[0], exact_points(h, p, q, times))
 
 
