@@ -1,6 +1,7 @@
 """What a file of ours imports, and how, read from its source."""
 
 import ast
+import re
 from collections.abc import Iterator, Set
 from functools import cache, lru_cache
 from pathlib import Path
@@ -37,14 +38,14 @@ def at_module_level(tree: ast.Module) -> Iterator[ast.stmt]:
     waiting: list[ast.AST] = [tree]
     while waiting:
         node = waiting.pop()
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
             continue
         if isinstance(node, ast.If):
             waiting += may_run(node)
             continue
         if isinstance(node, ast.stmt):
             yield node
-        waiting += ast.iter_child_nodes(node)
+        waiting += (x for x in ast.iter_child_nodes(node) if not isinstance(x, ast.expr))
 
 
 @lru_cache(maxsize=1)
@@ -59,10 +60,19 @@ def nodes_of(path: Path) -> list[ast.AST]:
 
 
 @cache
+def import_statements(path: Path) -> list[ast.Import | ast.ImportFrom]:
+    """All those of a file; they stand in statements, so that no expression is gone through."""
+    found: list[ast.AST] = [tree_of(path)]
+    for node in found:
+        found += (x for x in ast.iter_child_nodes(node) if not isinstance(x, ast.expr))
+    return [node for node in found if isinstance(node, ast.Import | ast.ImportFrom)]
+
+
+@cache
 def imported(path: Path, everywhere: bool = False) -> frozenset[str]:
     """The modules that a file imports: at module level, or everywhere in it."""
     found: set[str] = set()
-    for node in nodes_of(path) if everywhere else at_module_level(tree_of(path)):
+    for node in import_statements(path) if everywhere else at_module_level(tree_of(path)):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
@@ -85,16 +95,27 @@ def rooms_of(name: str) -> str:
     return name.split(".")[1] if "." in name else name
 
 
+# Where a text, or a piece of one, may begin with our name: only such a file is gone through.
+QUOTED = re.compile(r"""(?:['"}]|\\\n)verify""")
+
+
 @cache
 def texts(path: Path) -> frozenset[str]:
-    """The texts in a file, and the pieces of those put together; but no docstrings."""
+    """The texts in a file that begin with `verify`, and such pieces of those put together; but no
+    docstrings."""
+    if not QUOTED.search(path.read_text(encoding="utf-8")):
+        return frozenset()
     told = {id(node.value) for node in nodes_of(path) if isinstance(node, ast.Expr)}
     nodes = [n for n in nodes_of(path) if isinstance(n, ast.Constant) and id(n) not in told]
-    return frozenset(node.value for node in nodes if isinstance(node.value, str))
+    values = (node.value for node in nodes if isinstance(node.value, str))
+    return frozenset(value for value in values if value.startswith("verify"))
 
 
 IMPORTERS = {"import_module", "__import__", "resolve_name", "walk_packages", "run_module",
              "run_path", "spec_from_file_location", "exec_module", "load_module"}  # fmt: skip
+
+
+NAMED = re.compile(rf"\b(?:exec|eval|modules|builtins|{'|'.join(sorted(IMPORTERS))})\b")
 
 
 def importer(node: ast.AST) -> str | None:
@@ -119,6 +140,8 @@ def importer(node: ast.AST) -> str | None:
 @cache
 def by_name(path: Path) -> frozenset[str]:
     """What a file uses to import by name."""
+    if not NAMED.search(path.read_text(encoding="utf-8")):
+        return frozenset()
     return frozenset(name for node in nodes_of(path) if (name := importer(node)))
 
 
@@ -136,7 +159,8 @@ def relative(path: Path) -> list[str]:
 
 def whole_package(path: Path) -> set[str]:
     """What a file imports so that all of `verify` can be reached by attributes from there."""
-    names = {a.name for n in nodes_of(path) if isinstance(n, ast.Import) for a in n.names}
+    statements = import_statements(path)
+    names = {a.name for n in statements if isinstance(n, ast.Import) for a in n.names}
     return {name for name in names if name.partition(".")[0] == "verify"}
 
 

@@ -3,31 +3,26 @@
 import ast
 from collections.abc import Collection, Iterator
 from functools import cache
-from pathlib import Path
 
 import pytest
 
-from tests.helpers.imports import NAMES, rooms_of
+from tests.helpers.imports import NAMES, import_statements, rooms_of, tree_of
 
 Definition = ast.FunctionDef | ast.ClassDef
 
 
 @cache
-def tree_of(path: Path) -> ast.Module:
-    return ast.parse(path.read_text(encoding="utf-8"))
-
-
-def taken() -> set[tuple[str, str]]:
+def taken() -> frozenset[tuple[str, str]]:
     """(module, name) of all that one room imports from another, modules apart."""
-    return {
+    return frozenset(
         (node.module, alias.name)
         for importer, path in NAMES.items()
-        for node in ast.walk(tree_of(path))
+        for node in import_statements(path)
         if isinstance(node, ast.ImportFrom) and node.module in NAMES
         for alias in node.names
         if rooms_of(node.module) != rooms_of(importer)
         and f"{node.module}.{alias.name}" not in NAMES
-    }
+    )
 
 
 def speaks_for_itself(method: ast.FunctionDef) -> bool:

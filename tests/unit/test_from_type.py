@@ -59,6 +59,7 @@ def test_the_classes_are_drawn_in_every_order_of_imports(order: str, installed: 
     assert said(ORDERS[order], installed) == "drawn"
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("order", ["hypothesis first", "strategies first"])
 def test_they_are_without_plugins_where_hypothesis_is_loaded_first(
     order: str, installed: Path

@@ -118,18 +118,20 @@ def test_every_mutant_compiles_differs_and_has_its_own_key() -> None:
         found = mutants(module)
         assert len({m.key for m in found}) == len(found), module
         sound = ast.dump(ast.parse(path_of(module).read_text(encoding="utf-8")))
-        for mutant in found[:: max(1, len(found) // 3)]:
+        for mutant in found[:: len(found) // 2 + 1]:
             tree = mutated(module, mutant.index)
             compile(tree, module, "exec")
             assert ast.dump(tree) != sound, mutant.key
 
 
 def test_mutants_are_enumerated_alike_in_every_process() -> None:
-    asked = "from tests.mutants.targets import sample; print([m.key for m in sample(60, 7)])"
+    few = ("verify.arithmetic.exact", "verify.proof.order", "verify.schemes.step_map")
+    keys = f"print([m.key for m in sample(60, 7, {few})])"
+    asked = f"from tests.mutants.targets import sample; {keys}"
     command = [sys.executable, "-c", asked]
     said = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT).stdout
-    assert said.strip() == str([m.key for m in sample(60, 7)])
-    assert [m.key for m in sample(60, 8)] != [m.key for m in sample(60, 7)]
+    assert said.strip() == str([m.key for m in sample(60, 7, few)])
+    assert [m.key for m in sample(60, 8, few)] != [m.key for m in sample(60, 7, few)]
 
 
 def test_a_sample_has_its_size_and_something_of_every_module() -> None:

@@ -78,6 +78,7 @@ def assigned(body: list[ast.stmt]) -> Iterator[str]:
             yield from (inner.id for inner in nodes if isinstance(inner, ast.Name))
 
 
+@cache
 def is_there(name: str) -> bool:
     """Whether it is a module, a name in one, or an attribute of a class in one."""
     parts = name.split(".")
@@ -88,9 +89,14 @@ def is_there(name: str) -> bool:
     return False
 
 
+@cache
+def exists(path: str) -> bool:
+    return (ROOT / path).exists()
+
+
 def stale(text: str) -> list[str]:
     names = [name for name in DOTTED.findall(text) if not is_there(without_dunder(name))]
-    paths = [path for path in PATHS.findall(text) if not (ROOT / path).exists()]
+    paths = [path for path in PATHS.findall(text) if not exists(path)]
     return [
         found
         for found in (*names, *paths)
@@ -121,7 +127,7 @@ def read(path: Path) -> str:
     """What is to be looked at in a file.
 
     The code of tests plants names and asks for what is not there; a name that is wrong otherwise
-    fails when it is run.
+    fails when it is run. So where all that a test's file names is there, no comment is looked for.
     """
     text = path.read_text(encoding="utf-8")
     if path.name == "CHANGELOG.md":
@@ -129,7 +135,7 @@ def read(path: Path) -> str:
     if path.parent == ROOT / "docs":
         return LINK.sub("]", text)  # relative to its folder; test_documentation.py follows it
     of_a_test = path.suffix == ".py" and path.is_relative_to(ROOT / "tests")
-    return told(text) if of_a_test else text
+    return told(text) if of_a_test and stale(text) else text
 
 
 def test_what_is_named_is_there() -> None:

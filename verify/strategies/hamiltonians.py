@@ -56,8 +56,8 @@ def hamiltonians(
     up to n − 1 terms of two degrees. `coupled`: True for one such term at least, False for a sum of
     planes, None for either. `bounded=False` is known along an axis of the first degree.
 
-    >>> from hypothesis import find, settings
-    >>> quietly = settings(database=None)
+    >>> from hypothesis import Phase, find, settings
+    >>> quietly = settings(database=None, phases=[Phase.generate, Phase.shrink])
     >>> find(hamiltonians(), lambda h: True, settings=quietly).formula
     'p**2/2 + q**2/2'
     >>> find(hamiltonians(time_dependent=True), lambda h: True, settings=quietly).formula
