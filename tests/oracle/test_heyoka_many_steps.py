@@ -117,7 +117,7 @@ def excess(found: RunResult, oracles: Theirs, value: str) -> float:
 def test_a_run_is_the_orbit_of_heyoka_with_its_area(
     name: str, precision: Precision, eta: int
 ) -> None:
-    found, oracles = ours(name, eta, "mpmath"), theirs(name, precision, eta)
+    found, oracles = ours(name, eta, "mpfr"), theirs(name, precision, eta)
     for value in VALUES:
         assert excess(found, oracles, value) <= 1, value
     assert abs(oracles.values["lambda"]) > 50 * oracles.bounds["lambda"], "Λ = 0 would pass"
@@ -128,7 +128,7 @@ def test_a_run_of_a_neighbouring_order_is_far_off(
     name: str, precision: Precision, eta: int
 ) -> None:
     for other in (eta - 1, eta + 1):
-        found, oracles = ours(name, other, "mpmath"), theirs(name, precision, eta)
+        found, oracles = ours(name, other, "mpfr"), theirs(name, precision, eta)
         for value in VALUES:
             assert excess(found, oracles, value) > 50, (other, value)
 
