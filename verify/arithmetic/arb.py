@@ -7,7 +7,7 @@ from typing import Protocol
 
 import flint
 
-from verify.arithmetic.exact import known_digits
+from verify.arithmetic.exact import known_text
 from verify.arithmetic.flint_precision import working_precision
 
 Ball = flint.arb
@@ -86,7 +86,7 @@ def shown(x: Ball, digits: int = 6) -> str:
     if not in_reach(x):
         return "unknown"
     low, high = bounds(x)
-    return known_digits((low + high) / 2, (high - low) / 2, digits)[0]
+    return known_text((low + high) / 2, (high - low) / 2, digits)
 
 
 def fixed(x: Ball, places: int) -> str:

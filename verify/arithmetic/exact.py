@@ -167,11 +167,14 @@ def decimal(value: Fraction, digits: int) -> str:
     """
     if value == 0:
         return "0"
-    units, exponent = rounded_units(value, digits)
+    return _written(*rounded_units(value, digits), digits)
+
+
+def _written(units: int, exponent: int, digits: int) -> str:
     mantissa = gmpy2.mpz(abs(units)).digits()  # str() stops at 4300 digits
     exponent += len(mantissa) - 1
     mantissa = mantissa[:digits]  # 9.99… rounded up to 10 has one more
-    sign = "-" if value < 0 else ""
+    sign = "-" if units < 0 else ""
     point = f".{mantissa[1:]}" if digits > 1 else ""
     return f"{sign}{mantissa[0]}{point}e{exponent:+03d}"
 
@@ -183,7 +186,16 @@ def rounded_units(value: Fraction, digits: int) -> tuple[int, int]:
     (3333, -4)
     """
     exponent = magnitude(value) - digits + 1
-    return round(value / Fraction(10) ** exponent), exponent
+    top, bottom = _in_units(value, exponent)
+    units, rest = divmod(top, bottom)
+    up = 2 * rest > bottom or (2 * rest == bottom and units % 2 == 1)
+    return units + up, exponent
+
+
+def _in_units(value: Fraction, exponent: int) -> tuple[int, int]:
+    """value/10^exponent as a quotient that is not in lowest terms, which would take long."""
+    top, bottom = value.numerator, value.denominator
+    return (top * 10**-exponent, bottom) if exponent < 0 else (top, bottom * 10**exponent)
 
 
 def magnitude(value: Fraction) -> int:
@@ -214,16 +226,29 @@ def known_digits(value: Fraction, bound: Fraction, most: int) -> tuple[str, str]
     >>> known_digits(Fraction(1, 3), Fraction(1, 10**5), 12)
     ('3.333e-01', '4.34e-05')
     """
-    if value == 0 and bound == 0:
-        return "0", "0"
-    digits = most
-    if bound > 0:
-        known = magnitude(value) - magnitude(2 * bound) if value else 0
-        if known < 1:
-            return "0", upper(abs(value) + bound)
-        digits = min(most, known)
+    digits = _known(value, bound, most)
+    if not digits:
+        return "0", upper(abs(value) + bound)
     units, exponent = rounded_units(value, digits)
-    return decimal(value, digits), upper(bound + abs(value - units * Fraction(10) ** exponent))
+    off = abs(value - units * Fraction(10) ** exponent)
+    return _written(units, exponent, digits), upper(bound + off)
+
+
+def known_text(value: Fraction, bound: Fraction, most: int) -> str:
+    """The text of `known_digits` alone, where its bound is not asked for.
+
+    >>> known_text(Fraction(1, 3), Fraction(1, 10**5), 12)
+    '3.333e-01'
+    """
+    digits = _known(value, bound, most)
+    return decimal(value, digits) if digits else "0"
+
+
+def _known(value: Fraction, bound: Fraction, most: int) -> int:
+    """How many digits the bound allows, `most` at most; 0 where none is known, or value = 0."""
+    if not value:
+        return 0
+    return min(most, max(0, magnitude(value) - magnitude(2 * bound))) if bound else most
 
 
 def upper(bound: Fraction) -> str:
@@ -234,5 +259,6 @@ def upper(bound: Fraction) -> str:
     """
     if bound == 0:
         return "0"
-    unit = Fraction(10) ** (magnitude(bound) - 2)
-    return decimal(-(-bound // unit) * unit, 3)
+    exponent = magnitude(bound) - 2
+    top, bottom = _in_units(bound, exponent)
+    return _written(-(-top // bottom), exponent, 3)

@@ -19,7 +19,7 @@ import flint
 from verify import arithmetic as number_systems
 from verify.algebra.enclosure import Enclosures
 from verify.arithmetic.arb import around, in_reach, middle_and_radius, rational_ball
-from verify.arithmetic.exact import known_digits, text, whole
+from verify.arithmetic.exact import known_text, text, whole
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError, bits_for
 from verify.arithmetic.systems import ball, float64, mpfr
@@ -215,7 +215,7 @@ class _Rows:
         return self._known(*middle_and_radius(x)) if x is not None and in_reach(x) else ""
 
     def _known(self, value: Fraction, radius: Fraction) -> str:
-        return known_digits(value, radius, self.digits)[0]
+        return known_text(value, radius, self.digits)
 
 
 class _DeltaJ:

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from verify import arithmetic as number_systems
-from verify.arithmetic.exact import decimal, known_digits, text, upper
+from verify.arithmetic.exact import decimal, known_text, text, upper
 from verify.arithmetic.number_system import UnsupportedError
 from verify.flows.extrapolation import NoFlowError
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -264,7 +264,7 @@ def _projections(measured: Measured, curves: Sequence[np.ndarray]) -> Iterator[P
 
 def _shown(value: Fraction, error: Fraction) -> tuple[str, str]:
     """The value with one digit more than is known, and its error with that of the text."""
-    shown = known_digits(value, error / 10, _SHOWN)[0]
+    shown = known_text(value, error / 10, _SHOWN)
     return shown, upper(error + abs(value - Fraction(shown)))
 
 

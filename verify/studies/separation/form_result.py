@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from math import isqrt, log, log10
 
-from verify.arithmetic.exact import decimal, known_digits, magnitude, text
+from verify.arithmetic.exact import decimal, known_text, magnitude, text
 from verify.prose import Number, Prose, prose
 from verify.runs.tangent_growth import finite_time_lyapunov
 from verify.scenes.results.bounded_value import Value
@@ -147,7 +147,7 @@ def _short(x: float) -> str:
 
 
 def _few(x: Fraction, noise: Fraction) -> str:
-    return known_digits(x, noise, _SHOWN)[0]
+    return known_text(x, noise, _SHOWN)
 
 
 def _named(name: str) -> str:

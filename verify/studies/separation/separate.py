@@ -41,7 +41,7 @@ from typing import Protocol
 
 from verify import arithmetic as number_systems
 from verify.arithmetic import AUTO
-from verify.arithmetic.exact import Exact, known_digits, positive, rational, text
+from verify.arithmetic.exact import Exact, known_text, positive, rational, text
 from verify.arithmetic.systems import float64
 from verify.errors import NOT_GIVEN, InputError
 from verify.execution.keeping import NOTHING, Keeper
@@ -236,7 +236,7 @@ def _evaluation(chain: Chain, digits: int) -> EvaluationResult:
     shown = log_spaced(range(len(chain.marks)), chain.marks, _CHECKPOINTS)
     return EvaluationResult(
         parts=PartsInTime(**parts) if "clock" in parts else Parts(**parts),
-        largest={n: known_digits(x, trails[n][1], _SHOWN)[0] for n, x in tops.items()},
+        largest={n: known_text(x, trails[n][1], _SHOWN) for n, x in tops.items()},
         growth={n: growth_result(growth(chain.marks, *trails[n])) for n in ("total", *chain.parts)},
         series=tuple(_at(chain, trails, k) for k in shown),
         error_kind=chain.kind,
@@ -245,7 +245,7 @@ def _evaluation(chain: Chain, digits: int) -> EvaluationResult:
 
 def _at(chain: Chain, trails: dict[str, tuple[tuple[Fraction, ...], Fraction]], k: int) -> PartsAt:
     names = (n for n in chain.quantities if n != "lambda_working")
-    shown = {n: known_digits(trails[n][0][k], trails[n][1], _SHOWN)[0] for n in names}
+    shown = {n: known_text(trails[n][0][k], trails[n][1], _SHOWN) for n in names}
     model = PartsInTimeAt if "clock" in shown else PartsAt
     return model(steps=chain.marks[k], **shown)
 
