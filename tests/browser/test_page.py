@@ -224,7 +224,7 @@ def test_the_contents_stand_at_the_side_and_fold_on_a_phone(browser: Browser, fo
         assert found.page.locator(link).is_visible()
 
 
-@pytest.mark.sample(3)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("full", [True, False])
 @pytest.mark.parametrize("name", NAMES)
 def test_on_paper_a_full_page_is_unfolded_another_says_what_was_found(

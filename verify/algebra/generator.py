@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import flint
 import sympy
@@ -35,9 +36,9 @@ class Generator:
         assert self.argument is not None  # noqa: S101 - the caller looks at the kind
         return self.argument
 
-    @property
+    @cached_property
     def name(self) -> str:
-        """Of a variable."""
+        """Of a variable; sympy takes long to print it."""
         assert self.kind == "variable"  # noqa: S101 - the caller looks at the kind
         return str(self.expression)
 

@@ -35,7 +35,7 @@ def test_after_one_period_the_flow_is_back_and_the_integral_is_that_of_the_avera
     assert found.period is not None
     hamiltonian = plain(formula)
     slopes = [-hamiltonian.diff(Q), hamiltonian.diff(P), Q**2 + P * Q / 3 - P**3]
-    with mpmath.workdps(30):
+    with mpmath.workdps(24):
         at = [sympy.lambdify((P, Q), slope, "mpmath") for slope in slopes]
         start = [mpmath.mpf(x.numerator) / x.denominator for x in (p, q)]
         flow = mpmath.odefun(lambda _, y: [f(y[0], y[1]) for f in at], 0, [*start, mpmath.mpf(0)])

@@ -200,7 +200,7 @@ def relative(result: RunResult, hamiltonian: Hamiltonian) -> float:
 @pytest.mark.parametrize("q", ["0.5", "1.5"])
 def test_over_long_times_the_relative_difference_is_of_order_h(q: str) -> None:
     hamiltonian = Hamiltonian.parse("p**2/2 - cos(q)")
-    for steps in (2000, 20_000, 100_000):
+    for steps in (2000, 20_000):
         result = run(hamiltonian, "lie2", q=q, p=0, step_size="0.01", steps=steps)
         assert relative(result, hamiltonian) < 0.01
 
