@@ -68,7 +68,7 @@ def test_runs_in_lockstep_have_the_bits_of_runs_one_by_one(name: str, way: str) 
 
 
 @pytest.mark.sample(1)
-@pytest.mark.parametrize("digits", [40, 53])
+@pytest.mark.parametrize("digits", [40, 53, 72])
 @pytest.mark.parametrize("scheme", ["lie2", "rk4", "stormer-verlet"])
 def test_wider_numbers_and_other_schemes_too(scheme: str, digits: int) -> None:
     few = runs("pendulum", scheme=scheme)[:4]
