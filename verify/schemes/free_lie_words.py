@@ -100,50 +100,53 @@ def step(kind: str, parts: Sequence[Mapping[str, E]], most: int, one: E) -> dict
     """The coefficients of all words up to weight `most` in Π exp(part), in the ring of `one`."""
     all_words = words(kind, most)
     shares = [one / n for n in range(1, most + 1)]
-    zero = one * 0
     # By the words' places: tables are judged by many hundred steps.
     series: list[E | None] = [None if word else one for word in all_words]
     for part in parts:
-        factor = _exponential(part, all_words, shares)
-        ends = [factor.get(word, zero) for word in all_words]
-        for place, cuts in _cuts(kind, most, frozenset(part)):
+        letters = frozenset(part)
+        factor = _exponential(part, _words_of(kind, most, letters), shares)
+        for place, cuts in _cuts(kind, most, letters):
             total = series[place]
             for head, end in cuts:
                 before = series[head]
                 if before is not None:
-                    total = before * ends[end] if total is None else total + before * ends[end]
+                    term = before * factor[end]
+                    total = term if total is None else total + term
             series[place] = total
+    zero = one * 0
     return {w: zero if x is None else x for w, x in zip(all_words, series, strict=True)}
+
+
+@cache
+def _words_of(kind: str, most: int, letters: frozenset[str]) -> tuple[str, ...]:
+    """The words of such letters alone, but for that of none; shorter ones first."""
+    return tuple(word for word in words(kind, most) if word and letters.issuperset(word))
 
 
 @cache
 def _cuts(
     kind: str, most: int, letters: frozenset[str]
-) -> tuple[tuple[int, tuple[tuple[int, int], ...]], ...]:
-    """The places of the words that end in such letters, with those of heads and of such ends, the
+) -> tuple[tuple[int, tuple[tuple[int, str], ...]], ...]:
+    """The places of the words that end in such letters, with those of heads and with such ends, the
     shortest first; the longest words first, so that heads are still as they were before."""
     own = words(kind, most)
     places = {word: k for k, word in enumerate(own)}
     found = []
     for word in sorted(own, key=len, reverse=True):
         ends = len(word) - len(word.rstrip("".join(letters)))
-        cuts = tuple((places[word[:-n]], places[word[-n:]]) for n in range(1, ends + 1))
+        cuts = tuple((places[word[:-n]], word[-n:]) for n in range(1, ends + 1))
         found += [(places[word], cuts)] if cuts else []
     return tuple(found)
 
 
 def _exponential(
-    part: Mapping[str, E], all_words: Sequence[str], shares: Sequence[E]
+    part: Mapping[str, E], own_words: Sequence[str], shares: Sequence[E]
 ) -> dict[str, E]:
     """The coefficients of exp(part) but for that of no letter, 1: Π c_l / n! of n letters."""
     found: dict[str, E] = {}
-    for word in all_words:
-        if word and word[-1] in part:
-            before = found.get(word[:-1])
-            if len(word) == 1:
-                found[word] = part[word]
-            elif before is not None:
-                found[word] = before * part[word[-1]] * shares[len(word) - 1]
+    for word in own_words:
+        last = part[word[-1]]
+        found[word] = last if len(word) == 1 else found[word[:-1]] * last * shares[len(word) - 1]
     return found
 
 

@@ -49,7 +49,8 @@ class Asked:
     """`entries`: polynomials in the numbers that are rounded. `by_form`: how many conditions more
     there are, that hold by the form of the table alone. `shares`: with which each counts in an
     error constant, as 1/σ(t) of a tree; 1 where none are given. `labels`: what the entries are
-    called, where one is looked for that alone is wrong."""
+    called, where one is looked for that alone is wrong. `some`: the residues of the conditions at
+    these places alone, where they are made with less work than all of them."""
 
     entries: tuple[sympy.Expr, ...]
     equations: tuple[Equation, ...]
@@ -57,6 +58,14 @@ class Asked:
     by_form: int = 0
     shares: tuple[Fraction, ...] = ()
     labels: tuple[str, ...] = ()
+    some: Callable[[Sequence[int]], Residues] | None = None
+
+    def residues_of(self, rows: Sequence[int], entries: Sequence[E], one: E) -> dict[int, E]:
+        """Those of the conditions at these places, by them."""
+        if self.some is not None:
+            return dict(zip(rows, self.some(rows)(entries, one), strict=True))
+        found = self.residues(entries, one)
+        return {k: found[k] for k in rows}
 
     def up_to(self, order: int) -> list[int]:
         """The places of the conditions of that order, and of lower ones."""

@@ -40,13 +40,13 @@ def _single(near: Nearby, k: int, rows: Sequence[int]) -> Misprint | None:
     slope = [near.slope[i][k].mid() for i in rows]
     for turn in range(_TURNS):
         if turn:
-            there = near.moved(at, k)
+            there = near.moved(at, k, rows)
             slope = [((there[i] - value[i]) / small()).mid() for i in rows]
         change = _least_squares(slope, [value[i] for i in rows])
         if change is None:
             return None
         at[k] = (at[k] - change).mid()
-        value = near.residues(at)
+        value = near.residues(at, rows)
         if turn == 0 and not all(abs(value[i]) < largest for i in rows):
             return None  # no change of this number alone brings them down
     for i in rows:

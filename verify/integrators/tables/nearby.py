@@ -38,6 +38,7 @@ _CLOSE = flint.arb(2) ** -290  # of a chord's step, the last one
 _DEPENDENT = 1e-10, 1e-5
 _FEW, _FAR = 12, 20  # numbers of which a solution is looked for far away, and how large they are
 HELD = Fraction(1, 2**200)
+Slopes = Mapping[int, Sequence[Ball]]  # of a condition's residue, by the numbers' places
 
 
 @dataclass(frozen=True)
@@ -82,26 +83,28 @@ class Nearby:
         self.start = [rational_ball(numbers.values[n]) for n in self.names]
         self.unit = [rational_ball(numbers.units[n]) for n in self.names]
         self.second = self._second()
-        self.value = self.residues(self.start)
-        self.at_print = [middle_and_radius(x)[0] for x in self.value]
-        self.slope = self._slopes(self.start, self.value)  # [condition][number]
+        self.value = self.residues(self.start, range(len(asked.equations)))
+        self.at_print = [middle_and_radius(x)[0] for x in self.value.values()]
+        self.slope: Slopes = self._slopes(self.start, self.value)
 
-    def residues(self, at: Sequence[Ball]) -> list[Ball]:
-        """Of all conditions, at those numbers."""
+    def residues(self, at: Sequence[Ball], rows: Sequence[int]) -> dict[int, Ball]:
+        """Of these conditions, at those numbers."""
         point = dict(zip(self.names, at, strict=True))
         entries = entries_at(self.asked.entries, point, ball_of)
-        return self.asked.residues(entries, flint.arb(1))
+        return self.asked.residues_of(rows, entries, flint.arb(1))
 
-    def moved(self, at: Sequence[Ball], k: int) -> list[Ball]:
+    def moved(self, at: Sequence[Ball], k: int, rows: Sequence[int]) -> dict[int, Ball]:
         """The residues where number k is larger by the difference quotient's step."""
-        return self.residues([x + small() if i == k else x for i, x in enumerate(at)])
+        return self.residues([x + small() if i == k else x for i, x in enumerate(at)], rows)
 
-    def _slopes(self, at: Sequence[Ball], value: Sequence[Ball]) -> list[list[Ball]]:
-        columns = []
+    def _slopes(self, at: Sequence[Ball], value: Mapping[int, Ball]) -> dict[int, list[Ball]]:
+        """The derivatives of the conditions whose values are given, by number."""
+        found: dict[int, list[Ball]] = {i: [] for i in value}
         for k in range(len(at)):
-            pairs = zip(value, self.moved(at, k), self.second, strict=True)
-            columns.append([(y - x) / small() + _around(small() * b) for x, y, b in pairs])
-        return [list(row) for row in zip(*columns, strict=True)]
+            for i, y in self.moved(at, k, list(value)).items():
+                slope = (y - value[i]) / small() + _around(small() * self.second[i])
+                found[i].append(slope)
+        return found
 
     def _second(self) -> list[Ball]:
         """Bounds of each residue's second derivatives within half the polydisc's radius."""
@@ -117,7 +120,7 @@ class Nearby:
         self,
         weights: Mapping[int, Ball],
         units: Fraction | int,
-        slopes: Sequence[Sequence[Ball]] | None = None,
+        slopes: Slopes | None = None,
     ) -> bool:
         """Whether Σ weight · residue is not 0 at any numbers within so many units.
 
@@ -167,7 +170,7 @@ class Nearby:
         slopes = self._over_box(units)
         return any(self._excludes(weights, units, slopes) for weights in combined)
 
-    def _over_box(self, units: Fraction | int) -> list[list[Ball]]:
+    def _over_box(self, units: Fraction | int) -> Slopes:
         """The derivatives over the box: slower than `_slopes`, and sharper than their bound."""
         wide = rational_ball(Fraction(units))
         box = [x + _around(u * wide) for x, u in zip(self.start, self.unit, strict=True)]
@@ -181,7 +184,7 @@ class Nearby:
                 entries = entries_at(self.asked.entries, point, _constant)
                 residues = self.asked.residues(entries, flint.arb_series([1], prec=2))
                 columns.append([x[1] for x in residues])
-        return [list(row) for row in zip(*columns, strict=True)]
+        return dict(enumerate(zip(*columns, strict=True)))
 
     # -- one exists -------------------------------------------------------------------------------
 
@@ -216,9 +219,7 @@ class Nearby:
             found.append(k)
         return sorted(rows[k] for k in found)
 
-    def _inverse(
-        self, rows: Sequence[int], slope: Sequence[Sequence[Ball]]
-    ) -> flint.arb_mat | None:
+    def _inverse(self, rows: Sequence[int], slope: Slopes) -> flint.arb_mat | None:
         """U Jᵀ(J U Jᵀ)⁻¹, nearly."""
         if not rows or len(rows) > len(self.names):
             return None
@@ -247,7 +248,7 @@ class Nearby:
             return None
         at = list(self.start)
         for _ in range(_TURNS):  # chords: far faster than they are needed
-            value = self.residues(at)
+            value = self.residues(at, chosen)
             change = (inverse * flint.arb_mat([[value[k].mid()] for k in chosen])).tolist()
             at = [(x - d).mid() for x, (d,) in zip(at, change, strict=True)]
             if all(abs(d) < _CLOSE for (d,) in change):
@@ -261,8 +262,9 @@ class Nearby:
             return None
         triples = list(zip(self.names, self.start, around, strict=True))
         off = max(_upper(y - x) / self.numbers.units[n] for n, x, y in triples)
-        there, others = self.residues(around), set(rows) - set(chosen)
-        rest = max((_upper(there[k]) for k in others), default=Fraction(0))
+        others = sorted(set(rows) - set(chosen))
+        there = self.residues(around, others).values() if others else ()
+        rest = max(map(_upper, there), default=Fraction(0))
         numbers = {n: middle_and_radius(y)[0] for n, _, y in triples}
         return Nearest(off, numbers, len(chosen), rest) if rest < HELD else None
 
@@ -273,7 +275,7 @@ class Nearby:
             return None
         at, slope = list(self.start), self.slope
         for _ in range(_TURNS):
-            value = self.residues(at)
+            value = self.residues(at, rows)
             chosen = self._choices(rows)[-1]
             inverse = self._inverse(chosen, slope)
             if inverse is None:
@@ -282,21 +284,22 @@ class Nearby:
             at = [(x - d).mid() for x, (d,) in zip(at, change, strict=True)]
             if all(abs(d) < _CLOSE for (d,) in change) or not all(abs(x) < _FAR for x in at):
                 break
-            slope = [[x.mid() for x in row] for row in self._slopes(at, self.residues(at))]
+            found = self._slopes(at, self.residues(at, rows))
+            slope = {k: [x.mid() for x in row] for k, row in found.items()}
         values = {n: middle_and_radius(x)[0] for n, x in zip(self.names, at, strict=True)}
         if not all(abs(x) < _FAR for x in at):
             return None
         own = AnyNumbers(self.numbers.numbers, values, self.numbers.units)
-        found = Nearby(own, self.asked).nearest(rows)
-        if found is None or found.shown < len(self.names):
+        near = Nearby(own, self.asked).nearest(rows)
+        if near is None or near.shown < len(self.names):
             return None
-        gaps = (abs(found.numbers[n] - x) / self.numbers.units[n] for n, x in
+        gaps = (abs(near.numbers[n] - x) / self.numbers.units[n] for n, x in
                 self.numbers.values.items())  # fmt: skip
-        return Nearest(max(gaps), found.numbers, found.shown, found.rest)
+        return Nearest(max(gaps), near.numbers, near.shown, near.rest)
 
     def _solution(self, rows: Sequence[int], at: Sequence[Ball]) -> list[Ball] | None:
         """Balls around `at` in which a solution lies; None where that is not shown."""
-        value = self.residues(at)
+        value = self.residues(at, rows)
         slope = self._slopes(at, value)
         inverse = self._inverse(rows, slope)
         if inverse is None:

@@ -9,7 +9,7 @@ import sympy
 
 from verify.arithmetic.number import E
 from verify.errors import InputError
-from verify.integrators.tables.asked import Asked
+from verify.integrators.tables.asked import Asked, Residues
 from verify.integrators.tables.judged import Judged, judge
 from verify.integrators.tables.printed_numbers import PrintedNumbers, power
 from verify.schemes.free_lie_words import (
@@ -126,16 +126,22 @@ class PrintedTable:
         """The conditions of order `order`, and some beyond, which tell where it ends."""
         highest = min(order + (1 if self.units else 2), self.most_order)
         equations = self.conditions(highest)
-        most = max((c.order for c in equations), default=1)
 
-        def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
-            series = step(self.kind, self.letters(entries), most, one)
-            return [(majorant if bound else residue)(series, c) for c in equations]
+        def some(rows: Sequence[int]) -> Residues:
+            chosen = [equations[k] for k in rows]
+            most = max((c.order for c in chosen), default=1)
+
+            def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
+                series = step(self.kind, self.letters(entries), most, one)
+                return [(majorant if bound else residue)(series, c) for c in chosen]
+
+            return residues
 
         own = [c for c in equations if c.order <= order]
         by_form = len(conditions(self.kind, order)) - len(own)
         labels = tuple(f"{name} {k + 1}" for k, (name, _) in enumerate(self.parts))
-        return Asked(self.sizes, equations, residues, by_form, labels=labels)
+        every = some(range(len(equations)))
+        return Asked(self.sizes, equations, every, by_form, labels=labels, some=some)
 
 
 def judge_order(table: PrintedTable, order: int) -> Judged:

@@ -14,7 +14,7 @@ import sympy
 
 from verify.arithmetic.number import E
 from verify.errors import InputError
-from verify.integrators.tables.asked import Asked, Named
+from verify.integrators.tables.asked import Asked, Named, Residues
 from verify.integrators.tables.judged import Judged, judge
 from verify.integrators.tables.misprint import Misprint
 from verify.integrators.tables.tableaux.table import TableauTable
@@ -68,9 +68,12 @@ def order_asked(table: TableauTable, order: int, timed: bool = False, first: int
         raise InputError("order", order, f"is too much to look at, of {size}")
     equations = tuple(Named(condition_text(table, tree), vertices(tree)) for tree in trees)
     shares = tuple(Fraction(1, symmetry(tree)) for tree in trees)
-    return Asked(
-        table.entries, equations, partial(_of_trees, table, trees), 0, shares, table.labels
-    )
+
+    def some(rows: Sequence[int]) -> Residues:
+        return partial(_of_trees, table, [trees[k] for k in rows])
+
+    every = some(range(len(trees)))
+    return Asked(table.entries, equations, every, 0, shares, table.labels, some)
 
 
 def condition_text(table: TableauTable, tree: Tree) -> str:
@@ -175,7 +178,7 @@ def both(first: Asked, second: Asked) -> Asked:
         return [*first.residues(entries, one, bound), *second.residues(entries, one, bound)]
 
     equations = (*first.equations, *second.equations)
-    return replace(first, equations=equations, residues=residues, shares=())
+    return replace(first, equations=equations, residues=residues, shares=(), some=None)
 
 
 # -- stage order ----------------------------------------------------------------------------------
