@@ -2,6 +2,7 @@
 
 import json
 import random
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -41,9 +42,13 @@ flow = false
 
 def made(scenes: dict[str, str] | None = None) -> list[Data]:
     """The data of the scenes."""
-    found = [scene_from_toml(toml, name) for name, toml in (scenes or SCENES).items()]
-    results = execute(plan_references(found), Store(None), where=THIS_PROCESS)
-    return [data_of(scene, results) for scene in found]
+    return [_made(name, toml) for name, toml in (scenes or SCENES).items()]
+
+
+@cache
+def _made(name: str, toml: str) -> Data:
+    scene = scene_from_toml(toml, name)
+    return data_of(scene, execute(plan_references([scene]), Store(None), where=THIS_PROCESS))
 
 
 def put(folder: Path, data: list[Data], scenes: dict[str, str] | None = None) -> None:

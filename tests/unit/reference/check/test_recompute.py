@@ -2,12 +2,11 @@
 
 import random
 from collections.abc import Iterator
-from functools import cache
 from typing import Any
 
 import pytest
 
-from tests.helpers.constructed.reference import changed, made
+from tests.helpers.constructed.reference import SCENES, changed, made
 from verify.reference.check.difference import Difference, Findings
 from verify.reference.check.recompute import recomputed
 from verify.reference.make.models import Data
@@ -47,9 +46,8 @@ steps = [1, 12]
 }
 
 
-@cache
 def data(name: str) -> Data:
-    return next(x for x in (*made(), *made(OTHERS)) if x.name == name)
+    return made({name: (SCENES | OTHERS)[name]})[0]
 
 
 def units(of: Data) -> Iterator[tuple[str, int]]:

@@ -150,13 +150,13 @@ def test_what_is_no_table_is_one_line_that_says_why(
 
 
 def test_a_long_table_is_not_held_in_memory(table: Callable[..., Theirs]) -> None:
-    lines = "".join(f"{n},0.123456789012345,1.23456789012345\n" for n in range(10_000, 110_000))
+    lines = "".join(f"{n},0.123456789012345,1.23456789012345\n" for n in range(10_000, 40_000))
     content = (GOOD + lines).encode()
     tracemalloc.start()
     before = tracemalloc.get_traced_memory()[0]
     found = table(content)
     peak = tracemalloc.get_traced_memory()[1] - before
     tracemalloc.stop()
-    assert found.rows == 100_004
-    assert found.other_steps == 100_000
-    assert peak < 2**20
+    assert found.rows == 30_004
+    assert found.other_steps == 30_000
+    assert peak < 2**20 < len(content)
