@@ -1,23 +1,44 @@
 """Ring elements as expressions and as text."""
 
 import re
+from collections.abc import Mapping
 
 import sympy
 
 from verify.algebra.differential_ring import DifferentialRing
 from verify.algebra.formula import to_text
 from verify.algebra.generator import Generator, Poly, generator_expression, rational_of, terms_of
+from verify.algebra.identities.polynomials import occurring
 
+_NO_NUMBERS = sympy.nan, sympy.zoo, sympy.oo, -sympy.oo
 _MOST_FACTORED = 300  # terms, beyond which factoring and sympy take seconds
 
 
 def as_expression(ring: DifferentialRing, x: Poly) -> sympy.Expr:
     """x as an expression, its terms as they stand in the ring."""
+    return _with(x, _occurring(ring, x))
+
+
+def as_expression_at_0(ring: DifferentialRing, x: Poly, symbol: sympy.Symbol) -> sympy.Expr:
+    """The same where the symbol is 0."""
+    generators = {k: g.subs(symbol, 0) for k, g in _occurring(ring, x).items()}
+    if any(g.has(*_NO_NUMBERS) for g in generators.values()):
+        return as_expression(ring, x).subs(symbol, 0)
+    return _with(x, generators)
+
+
+def _occurring(ring: DifferentialRing, x: Poly) -> dict[int, sympy.Expr]:
+    """The generators that stand in x, by their places."""
     generators = {g.index: g for g in ring.generators}
+    return {k: _of(ring, generators[k]) for k in occurring(x)}
+
+
+def _with(x: Poly, generators: Mapping[int, sympy.Expr]) -> sympy.Expr:
     terms = []
     for monomial, coefficient in terms_of(x):
-        factors = [_of(ring, generators[k]) ** int(n) for k, n in enumerate(monomial) if n]
-        terms.append(sympy.Mul(rational_of(coefficient), *factors))
+        factors = [(generators[k], int(n)) for k, n in enumerate(monomial) if n]
+        if all(g is not sympy.S.Zero for g, _ in factors):
+            terms.append(sympy.Mul(rational_of(coefficient), *(g**n for g, n in factors)))
     return sympy.Add(*terms)
 
 

@@ -11,6 +11,7 @@ from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.embedding import embed
 from verify.algebra.limits import checked
 from verify.algebra.ring import Decision, Poly, Ring
+from verify.algebra.ring_text import as_expression_at_0
 from verify.algebra.series.power_series import Series
 from verify.algebra.series.quotient_series import QuotientSeries
 from verify.errors import InputError, LimitError
@@ -97,7 +98,7 @@ class Expansion:
             return self.ring, self._quotient.coefficients[n]
         while len(self._derivatives) <= n:
             self._derivatives.append(self.ring.diff(self._derivatives[-1], "h"))
-        value = self.ring.expression(self._derivatives[n]).subs(H_STEP, 0)
+        value = as_expression_at_0(self.ring, self._derivatives[n], H_STEP)
         try:
             checked(value, "map", str(value))
         except InputError as error:

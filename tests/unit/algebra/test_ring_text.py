@@ -6,7 +6,9 @@ from typing import Any
 import mpmath
 import sympy
 
+from verify.algebra.embedding import embed
 from verify.algebra.formula import symbol
+from verify.algebra.ring_text import as_expression, as_expression_at_0
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.stages import Stages
 
@@ -55,3 +57,17 @@ def test_a_parameter_named_like_anything_keeps_its_name_in_a_long_text() -> None
     base = field.ring.expression(field.h_p) + field.ring.expression(field.h_q) + 1
     assert agrees(text, base, 6, at)
     assert not agrees(text.replace("g5_", "g_1"), base, 6, at)
+
+
+def test_where_h_is_0_terms_with_it_are_gone_and_so_it_is_in_arguments() -> None:
+    p, h = symbol("p"), symbol("h")
+    for x in (
+        sympy.cos(p + h) * (p + h) ** 2 + h * sympy.sin(p),
+        sympy.sin(h * p) * p + sympy.exp(h) / (1 + p * h),
+        p / h,  # no number there
+    ):
+        ring, (element,) = embed([x], ("p", "h"))
+        there = as_expression_at_0(ring, element, h)
+        assert there == as_expression(ring, element).subs(h, 0)
+        assert not there.has(h)
+    assert there.has(sympy.zoo)
