@@ -94,6 +94,7 @@ def formulas(
 # -- oracles ----------------------------------------------------------------------------------
 
 
+@lru_cache(maxsize=256)  # of a claim that is changed in one formula the others stay
 def plain(text: str) -> sympy.Expr:
     """The formula by sympy's own reader, on exact rationals."""
     return sympy.sympify(text.replace("^", "**"), locals=_LOCALS, rational=True)

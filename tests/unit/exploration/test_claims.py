@@ -58,11 +58,11 @@ def claims_of(tmp_path: Path, text: str = CLAIMS) -> tuple[str, ...]:
 
 def test_a_claim_is_asked_of_drawn_scenes(tmp_path: Path) -> None:
     texts = claims_of(tmp_path, CLAIMS[: CLAIMS.index('[[claim]]\nid = "small"')])
-    asked = exploration(properties=(), claims=texts, examples=25)
+    asked = exploration(properties=(), claims=texts, examples=9)
     report = explore(asked, Store(None), where=THIS_PROCESS)
     true, false = report.properties
     assert (true.name, true.failures) == ("third-order", 0)
-    assert true.looked_at == 25
+    assert true.looked_at == 9
     assert (false.name, false.failures > 0) == ("fourth-order", True)
     assert [f.property for f in report.failures] == ["fourth-order"]
     shrunk = json.dumps(report.failures[0].scene)
@@ -132,7 +132,7 @@ def test_a_true_claim_of_every_h_holds_of_each_and_a_false_one_fails(tmp_path: P
     asked = exploration(
         properties=(),
         claims=claims_of(tmp_path, OF_EVERY),
-        examples=25,
+        examples=9,
         drawn=SampleSpace(degree=3),
     )
     report = explore(asked, Store(None), where=THIS_PROCESS)
@@ -203,7 +203,7 @@ def test_two_of_one_name_are_refused(tmp_path: Path) -> None:
 
 def test_a_claim_is_written_under_a_name_that_a_file_can_have(tmp_path: Path) -> None:
     text = CLAIMS.partition('[[claim]]\nid = "small"')[0].replace("fourth-order", "../§2/eq.3")
-    asked = exploration(properties=(), claims=claims_of(tmp_path, text), examples=15,
+    asked = exploration(properties=(), claims=claims_of(tmp_path, text), examples=6,
                         drawn=SampleSpace(schemes=("lie1",), degree=3))  # fmt: skip
     report = explore(asked, Store(None), where=THIS_PROCESS)
     folder = tmp_path / "found"

@@ -101,7 +101,7 @@ def test_the_plan_of_a_million_scenes_is_that_of_some_thousand_tasks(examples: i
 
 
 def failing(**changes: object) -> ExploreReport:
-    asked = exploration(properties=("no-cubes",), examples=120, **changes)
+    asked = exploration(properties=("no-cubes",), examples=30, **changes)
     return explore(asked, Store(None), where=THIS_PROCESS)
 
 
@@ -109,8 +109,8 @@ def failing(**changes: object) -> ExploreReport:
 def test_a_failure_is_shrunk_to_the_simplest_scene(tmp_path: Path) -> None:
     report = failing()
     (summary,), (failure,) = report.properties, report.failures
-    assert summary.looked_at == 120
-    assert 0 < summary.failures < 120
+    assert summary.looked_at == 30
+    assert 0 < summary.failures < 30
     assert failure.message == "it has q**3"
     (path,) = save_failures(report, tmp_path)
     scene = load_scene(path)

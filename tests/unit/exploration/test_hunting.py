@@ -223,7 +223,7 @@ def test_nothing_that_is_drawn_depends_on_what_is_loaded(
     drawn: SampleSpace, plant: Plant, ranges: set[tuple[int | None, int | None]]
 ) -> None:
     plant(lambda _: 0.0)
-    search(task(drawn=drawn, steps=100_000))
+    search(task(drawn=drawn, steps=100_000, count=100))
     assert len(ranges) > 5
     assert list(beyond(ranges)) == []
 

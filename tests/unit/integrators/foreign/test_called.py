@@ -70,7 +70,7 @@ def checked(path: str, name: str, claims: Claims, formula: str = "p**2/2 - cos(q
     return check_integrator(step, Hamiltonian.parse(formula), claims)
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("name", OF_C)
 def test_a_step_in_c_is_measured_to_the_digits_of_its_type(name: str, tmp_path: Path) -> None:
     begun = time.perf_counter()
@@ -201,12 +201,12 @@ def test_a_program_that_misbehaves_at_times_is_undecided(mode: str, said: str) -
     assert any(said in text for text in (found.reason, *found.notes)), found.notes
 
 
-def test_no_process_is_left_behind(tmp_path: Path) -> None:
+def test_no_process_is_left_behind() -> None:
     step = of_command(shlex.join([sys.executable, BAD, "right"]), DOUBLE, 60)
-    found = check_integrator(step, PENDULUM, Claims(order=2))
-    assert found.verdict is Verdict.MEASURED
+    assert step.at(0.5, 0.25, 0.125, 0.0)
     own = step.function.program  # type: ignore[attr-defined]
     pid = own._running.pid
+    assert Path(f"/proc/{pid}").exists()
     own.close()
     assert not Path(f"/proc/{pid}").exists()
 

@@ -100,7 +100,7 @@ def test_a_right_clock_is_never_accused(
     assert all(x.verdict is not Verdict.MORE and x.digits > 12 for x in found.columns)
 
 
-@pytest.mark.sample(3)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("scheme", "step", "mistake"),
     [
