@@ -87,7 +87,7 @@ def notes(system: str, step: Step, **claims: Any) -> tuple[Finding, str]:
     return found, "\n".join(map(str, found.notes))
 
 
-@pytest.mark.sample(3)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("name", NAMED)
 def test_a_traced_step_is_told_what_its_clock_does_and_what_it_is_without(name: str) -> None:
     system, step, order, words, _ = NAMED[name]
@@ -97,7 +97,7 @@ def test_a_traced_step_is_told_what_its_clock_does_and_what_it_is_without(name: 
     assert f"is of order {order} " in said
 
 
-@pytest.mark.sample(3)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("name", [name for name in NAMED if NAMED[name][-1]])
 def test_a_measured_one_is_told_at_which_time_it_reads_in_the_mean(name: str) -> None:
     system, step, _, _, mean = NAMED[name]
