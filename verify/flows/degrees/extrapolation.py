@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from verify.arithmetic.systems import mpfr
+from verify.flows.degrees.gragg import gragg_rule
 from verify.flows.extrapolation import (
     GUARD,
     LOST_DIGITS,
@@ -28,6 +29,7 @@ class FlowInDegrees(Flow):
         self.names = (*field.names, "t") if self.timed else field.names
         elements = [(field.ring, x) for x in field.slopes]
         self._slopes = functions_at(self.arithmetic, elements, self.names)
+        self._rule = gragg_rule(self.arithmetic, elements, self.names)
         self._tolerance = self.arithmetic.number(Fraction(1, 10 ** (digits + GUARD - LOST_DIGITS)))
         self._columns = columns_for(digits)
 
@@ -47,9 +49,10 @@ class FlowInDegrees(Flow):
             return min(goal, (1 + size) / speed) if speed else goal
 
     def _extrapolated(self, z: State, time: Number) -> State | None:
-        above: list[list[Number]] = []
+        above: list[Sequence[Number]] = []
         for j in range(1, self._columns + 1):
-            row = [list(self._end(z, time, 2 * j))]
+            h = time / (2 * j)
+            row: list[Sequence[Number]] = [self._rule(*z, h, 2 * j)]
             for k, before in enumerate(above, start=1):
                 up, down = (j - k) ** 2, j**2 - (j - k) ** 2
                 pairs = zip(row[-1], before, strict=True)
@@ -62,20 +65,3 @@ class FlowInDegrees(Flow):
                     return (*row[-1], z[-1] + time) if self.timed else tuple(row[-1])
             above = row
         return None
-
-    def _end(self, z: State, time: Number, count: int) -> Sequence[Number]:
-        """Gragg's rule with so many steps, smoothed at its end."""
-        h, slopes = time / count, self._slopes
-        t = z[-1] if self.timed else None
-        before = z[:-1] if self.timed else z
-
-        def at(y: Sequence[Number], k: int) -> State:
-            return slopes(*y) if t is None else slopes(*y, t + k * h)
-
-        now = [x + h * dx for x, dx in zip(before, at(before, 0), strict=True)]
-        twice = 2 * h
-        for k in range(1, count):
-            move = at(now, k)
-            before, now = tuple(now), [x + twice * dx for x, dx in zip(before, move, strict=True)]
-        last = at(now, count)
-        return [(x + y + h * dx) / 2 for x, y, dx in zip(now, before, last, strict=True)]

@@ -99,11 +99,15 @@ class MotionInDegrees:
 
         return energy
 
+    @cached_property
+    def _first_energy(self) -> Fraction | None:
+        return self._energy(Point(0, self.run.state))
+
     def energy_error(self, point: Point) -> Fraction | None:
         """H − H(z₀) in parts of the orbit's scale; 0 where H depends on time."""
         if self.run.hamiltonian.time_dependent:
             return Fraction(0)
-        first, here = self._energy(Point(0, self.run.state)), self._energy(point)
+        first, here = self._first_energy, self._energy(point)
         return None if first is None or here is None else (here - first) / self.orbit.scale
 
     def energy_errors(self, trail: Trail) -> list[Fraction | None]:
