@@ -45,7 +45,7 @@ def excess(eta: int, y: Fraction) -> Fraction:
     return Fraction(real) ** 2 + Fraction(imaginary) ** 2 - 1
 
 
-@pytest.mark.sample(10)
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("eta", range(1, 21))
 def test_taylor_schemes_are_stable_up_to_there_and_not_beyond(eta: int) -> None:
     found = linear_stability(f"lie{eta}")
@@ -133,6 +133,7 @@ COMPOSED = [
 ]  # fmt: skip
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("name", COMPOSED)
 def test_the_product_of_the_parts_gives_what_the_closed_form_does(
     name: str, monkeypatch: pytest.MonkeyPatch
