@@ -45,6 +45,7 @@ PARTIAL = [
 ]  # fmt: skip
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(("potential", "a"), PARTIAL)
 def test_a_function_of_a_parameter_without_a_value_in_fixed_point_goes_to_mpfr(
     potential: str, a: str
@@ -120,6 +121,7 @@ def test_step_sizes_far_from_those_in_use_are_certified(h: str, arithmetic: Arit
     assert set(certified_and_contained(at, arithmetic)) >= {"p", "q", "mse", "lambda"}
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("asked", [(), ("mse",), ("lambda",), ("delta_j_max",), ("lambda", "mse")])
 def test_what_is_certified_is_what_was_asked_for(asked: tuple[str, ...]) -> None:
     kernel_run = case("p**2/2 - cos(q)", "lie2", "1.5", 0, "0.1", 30).kernel_run(frozenset(asked))

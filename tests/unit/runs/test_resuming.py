@@ -94,6 +94,7 @@ def test_a_run_that_is_interrupted_again_and_again_ends_with_the_same_bits(
     assert bits(found) == bits(go(name))
 
 
+@pytest.mark.sample(2)
 @every
 def test_a_run_that_needs_more_digits_than_it_began_with_does_so_after_an_interruption_too(
     name: str, tmp_path: Path
@@ -166,6 +167,7 @@ def test_a_damaged_checkpoint_is_not_taken_up(name: str, damage: str, tmp_path: 
     assert told[0] <= STEPS // POINTS, "it begins anew"
 
 
+@pytest.mark.sample(2)
 @every
 def test_a_checkpoint_with_one_digit_changed_is_not_taken_up(name: str, tmp_path: Path) -> None:
     """It reads well, and its state is another one."""
@@ -179,6 +181,7 @@ def test_a_checkpoint_with_one_digit_changed_is_not_taken_up(name: str, tmp_path
         assert bits(go(name, keeper)) == true
 
 
+@pytest.mark.sample(2)
 @every
 def test_a_checkpoint_is_taken_up_by_the_same_run_alone(name: str, tmp_path: Path) -> None:
     keeper, path = checkpoint(name, tmp_path)

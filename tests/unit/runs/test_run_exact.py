@@ -113,7 +113,7 @@ MAPS = {
 }
 
 
-@pytest.mark.sample(4)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("arithmetic", ["float64", "mpmath"])
 @pytest.mark.parametrize("text", OTHERS.values(), ids=OTHERS)
 def test_every_function_is_stepped_as_mpmath_steps_it(text: str, arithmetic: str) -> None:

@@ -89,6 +89,7 @@ def test_mpmath_stops_an_orbit_at_the_step_that_escapes(q: Any, p: Any, h: Any) 
     assert duffing_run("mpmath", true - 1, q=q, p=p, h=h).status == "finished"
 
 
+@pytest.mark.sample(8)
 @pytest.mark.parametrize("name", arithmetic.names())
 @pytest.mark.parametrize(
     "text",
@@ -123,13 +124,13 @@ def test_an_orbit_that_leaves_the_domain_of_h_is_stopped_or_stays_real(
 CHAOTIC = {"q": "0.01", "p": "-0.5", "step_size": 1, "steps": 1000}
 
 
-@pytest.mark.sample(3)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("name", arithmetic.names())
 def test_a_product_of_astronomical_size_is_not_written_out(name: str) -> None:
     """Λ = (1 + h²)^N − 1 is known in closed form, and has billions of digits."""
     turning = Hamiltonian.parse("p**2/2 + q**2/2")
     for q in (1, 0):
-        found = run(turning, "lie1", q=q, p=0, step_size=1000, steps=10**9, arithmetic=name)
+        found = run(turning, "lie1", q=q, p=0, step_size=10**60, steps=10**9, arithmetic=name)
         assert found.status == "left range"
         assert not found.values
 
@@ -162,7 +163,7 @@ def test_an_underflow_is_not_given_as_an_exact_zero(steps: int, h: str) -> None:
 # -- series ---------------------------------------------------------------------------------------
 
 
-@pytest.mark.sample(13)
+@pytest.mark.sample(8)
 @pytest.mark.parametrize("name", arithmetic.names())
 @pytest.mark.parametrize(
     ("steps", "points"),
@@ -182,6 +183,7 @@ def test_a_long_series_in_float64_has_at_most_so_many_points() -> None:
     assert len(found.series) <= 2
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("name", arithmetic.names())
 @pytest.mark.parametrize(("steps", "points"), [(50, 50), (1000, 13), (1000, 999)])
 def test_the_extremes_of_a_series_are_those_of_a_plain_loop(
@@ -204,11 +206,11 @@ def test_the_extremes_of_a_series_are_those_of_a_plain_loop(
     assert float(found.values["lambda"].value) == pytest.approx(lam, rel=1e-9)
 
 
-@pytest.mark.sample(3)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("name", arithmetic.names())
 def test_points_do_not_change_the_values(name: str) -> None:
-    plain = duffing_run(name, 1200, q=1, p=0, h=Fraction(1, 100), observables=REPORTED)
-    thinned = duffing_run(name, 1200, q=1, p=0, h=Fraction(1, 100), observables=REPORTED, points=40)
+    plain = duffing_run(name, 320, q=1, p=0, h=Fraction(1, 100), observables=REPORTED)
+    thinned = duffing_run(name, 320, q=1, p=0, h=Fraction(1, 100), observables=REPORTED, points=40)
     assert plain.values == thinned.values
     assert (plain.series, len(thinned.series)) == ((), 40)
 
@@ -234,7 +236,7 @@ def named_a() -> RunResult:
     return named("a", "mpmath")
 
 
-@pytest.mark.sample(22)
+@pytest.mark.sample(8)
 @pytest.mark.parametrize("parameter", OWN_NAMES)
 def test_the_name_of_a_parameter_does_not_change_what_is_found(parameter: str) -> None:
     found, expected = named(parameter, "mpmath"), named_a()
@@ -264,7 +266,7 @@ def peak(steps):
     return own, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 series(500_000)  # compiles, which takes four times as long where it is traced
 peak(500_000)
-print(*peak(500_000), *peak(5_000_000))
+print(*peak(500_000), *peak(2_000_000))
 """
 
 

@@ -77,7 +77,7 @@ def kind_of(expression: sympy.Expr) -> str:
 @pytest.mark.sample(3)
 @every_kind
 def test_a_kind_is_what_it_says(kind: str) -> None:
-    for h in fuzzed(s.hamiltonians([kind]), 80):
+    for h in fuzzed(s.hamiltonians([kind]), 30):
         assert kind_of(h.exact) == kind, h
         assert h.exact.free_symbols <= {P, Q}
         assert h.exact.free_symbols, f"{h} is constant"
@@ -88,7 +88,7 @@ def test_a_kind_is_what_it_says(kind: str) -> None:
 @every_kind
 @pytest.mark.parametrize("separable", [True, False])
 def test_the_ring_finds_separable_what_was_asked_to_be(kind: str, separable: bool) -> None:
-    for h in fuzzed(s.hamiltonians([kind], separable=separable), 30):
+    for h in fuzzed(s.hamiltonians([kind], separable=separable), 15):
         field, _ = h.field()
         assert field.separable() is separable, h
         assert mixed(h.exact) is not separable, h  # without the ring
@@ -100,7 +100,7 @@ def test_both_are_drawn_where_it_is_not_said() -> None:
 
 
 def test_no_denominator_vanishes_on_the_real_plane() -> None:
-    for h in fuzzed(s.hamiltonians(["rational"]), 100):
+    for h in fuzzed(s.hamiltonians(["rational"]), 35):
         denominator = sympy.fraction(sympy.together(h.exact))[1]
         for factor, _ in sympy.factor_list(denominator)[1]:
             form = sympy.Poly(factor, P, Q)
@@ -132,7 +132,7 @@ def least_on_circle(value: Callable[[Any, Any], Any], radius: int) -> Any:
 @pytest.mark.sample(3)
 @every_kind
 def test_bounded_grows_in_every_direction(kind: str) -> None:
-    for h in fuzzed(s.hamiltonians([kind], bounded=True), 25):
+    for h in fuzzed(s.hamiltonians([kind], bounded=True), 10):
         near, far = (least_on_circle(function_of(h.exact), r) for r in (10**3, 10**4))
         assert 0 < 10 * near < far, h
 
@@ -148,7 +148,7 @@ def grows_along(h: sympy.Expr, ray: tuple[int, int]) -> bool:
 def test_not_bounded_does_not_grow_along_some_ray(kind: str) -> None:
     lines = [(-k, 1) for k in range(-3, 4) if k] + [(k, -1) for k in range(-3, 4) if k]
     rays = [(1, 0), (-1, 0), (0, 1), (0, -1), *lines]
-    for h in fuzzed(s.hamiltonians([kind], bounded=False), 30):
+    for h in fuzzed(s.hamiltonians([kind], bounded=False), 12):
         # p + kq = const, where a parabolic form is constant, with a linear term in one direction
         assert not all(grows_along(h.exact, ray) for ray in rays), h
 
@@ -164,11 +164,11 @@ def test_what_tells_growth_tells_the_two_apart() -> None:
 
 def test_quadratic_forms_of_each_sort_occur() -> None:
     found = {"elliptic": 0, "hyperbolic": 0, "parabolic": 0}
-    for h in fuzzed(s.hamiltonians(), 500):
+    for h in fuzzed(s.hamiltonians(), 200):
         if h.exact.is_polynomial() and sympy.Poly(h.exact, P, Q).total_degree() == 2:
             sign = sympy.sign(sympy.hessian(h.exact, (P, Q)).det())
             found[{1: "elliptic", -1: "hyperbolic", 0: "parabolic"}[int(sign)]] += 1
-    assert min(found.values()) >= 15, found
+    assert min(found.values()) >= 6, found
 
 
 # -- parameters -------------------------------------------------------------------------------
@@ -282,7 +282,7 @@ def valid(scene: Scene) -> Scene:
 
 
 def test_scenes_are_valid() -> None:
-    drawn = fuzzed(s.scenes(steps=(3, 5)), 80)
+    drawn = fuzzed(s.scenes(steps=(3, 5)), 40)
     for scene in drawn:
         assert valid(scene) == scene
         assert scene.exact_hamiltonian().symbols == ()
@@ -297,12 +297,12 @@ def test_scenes_of_given_parts_have_them_and_are_valid() -> None:
     duffing = st.just(Hamiltonian.parse("p**2/2 + q**2/2 + delta*q**4/4"))
     both = s.scenes(hamiltonians=s.hamiltonians(separable=True), schemes=verlet)
     for strategy in (s.scenes(schemes=verlet), s.scenes(hamiltonians=duffing), both):
-        drawn = fuzzed(strategy, 40)
-        assert len(drawn) == 40
+        drawn = fuzzed(strategy, 15)
+        assert len(drawn) == 15
         assert all(valid(scene) == scene for scene in drawn)
     own = s.schemes(names=["p_next = p - h*q; q_next = q + h*p_next"])
     starts = st.just(InitialValue(q=1, p=0))
-    drawn = fuzzed(s.scenes(schemes=own, initial_values=starts, step_sizes=st.just("1/8")), 20)
+    drawn = fuzzed(s.scenes(schemes=own, initial_values=starts, step_sizes=st.just("1/8")), 8)
     assert {(x.grid.initial_values, x.grid.step_sizes) for x in drawn} == {
         ((InitialValue(q=1, p=0),), (Fraction(1, 8),))
     }
@@ -314,8 +314,8 @@ def test_scenes_in_time_are_valid_and_begin_at_drawn_times() -> None:
     own = s.scenes(hamiltonians=s.hamiltonians(time_dependent=True), initial_times=st.just("1/3"))
     lies = s.scenes(schemes=s.schemes(names=["lie2", "ruth3"]), time_dependent=True)
     for strategy in (s.scenes(time_dependent=True), lies, own):
-        drawn = fuzzed(strategy, 24)
-        assert len(drawn) >= 22
+        drawn = fuzzed(strategy, 12)
+        assert len(drawn) >= 11
         assert all(valid(scene) == scene for scene in drawn)
         assert all(scene.exact_hamiltonian().time_dependent for scene in drawn)
         assert len({scene.t0 for scene in drawn}) > 5 or {scene.t0 for scene in drawn} == {
@@ -345,10 +345,10 @@ def test_what_does_not_fit_is_rejected_not_drawn() -> None:
     ids=["scenes", "hamiltonians", "extreme"],
 )
 def test_random_bytes_are_taken_and_give_the_same_again(strategy: st.SearchStrategy[Any]) -> None:
-    first = fuzzed(strategy, 200, seed=7)
-    assert len(first) >= 190
-    assert first[:50] == fuzzed(strategy, 50, seed=7)[:50]
-    assert first[:50] != fuzzed(strategy, 50, seed=8)[:50]
+    first = fuzzed(strategy, 80, seed=7)
+    assert len(first) >= 76
+    assert first[:20] == fuzzed(strategy, 20, seed=7)[:20]
+    assert first[:20] != fuzzed(strategy, 20, seed=8)[:20]
 
 
 def uses(function: Any) -> Callable[[Hamiltonian], bool]:

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, lru_cache
-from math import prod
+from math import lcm, prod
 
 import flint
 import numpy as np
@@ -60,7 +60,18 @@ def rule(bits: int) -> Rule:
 @lru_cache(maxsize=8192)
 def nodes_between(bits: int, left: Fraction, right: Fraction) -> tuple[Fraction, ...]:
     """The nodes of that rule on left ≤ s ≤ right. Each curve is cut first in the same places."""
-    return tuple(left + (right - left) * s for s in rule(bits).nodes)
+    width, (shares, whole) = right - left, _common(bits)
+    first, step = left.numerator * width.denominator * whole, width.numerator * left.denominator
+    below = left.denominator * width.denominator * whole
+    return tuple(Fraction(first + step * share, below) for share in shares)
+
+
+@cache
+def _common(bits: int) -> tuple[list[int], int]:
+    """The nodes' numerators over one denominator, which takes one reduction a node and not three."""
+    nodes = rule(bits).nodes
+    whole = lcm(*(s.denominator for s in nodes))
+    return [int(s * whole) for s in nodes], whole
 
 
 def _root(k: int) -> tuple[Ball, Ball]:

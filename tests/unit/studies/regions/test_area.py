@@ -119,7 +119,7 @@ def test_a_curve_that_bounds_no_area_is_told() -> None:
 # -- changes of area ------------------------------------------------------------------------------
 
 
-@pytest.mark.sample(3)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("scheme", "outline"),
     [("lie1", SQUARE), ("lie2", CIRCLE), ("lie3", SQUARE), ("lie2", CAT), ("lie4", CIRCLE)],
@@ -191,7 +191,7 @@ CARRIED = [
 ]
 
 
-@pytest.mark.sample(3)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(("place", "stepped"), CARRIED)
 def test_float64_lies_within_its_bound_of_33_digits(place: Any, stepped: Any) -> None:
     hamiltonian, where, asked = place
@@ -209,7 +209,7 @@ def test_float64_lies_within_its_bound_of_33_digits(place: Any, stepped: Any) ->
 
 def test_what_rounding_leaves_is_within_its_bound_after_every_cut_too() -> None:
     """No cut makes a difference smaller that is rounding's: it is cut until the nodes are used."""
-    outline, given = placed(CIRCLE, *TINY), ("lie3", Fraction(1, 10), 60, PENDULUM)
+    outline, given = placed(CIRCLE, *TINY), ("lie3", Fraction(1, 10), 20, PENDULUM)
     found, true = (measured(outline, plane(*given), CHANGED) for plane in (floats, wide))
     assert found.nodes > 100 * true.nodes
     assert abs(found.change - true.change) <= found.error + true.error
