@@ -105,7 +105,7 @@ def test_an_identity_is_decided_zero(text: str) -> None:
     assert decide(text).zero is True
 
 
-@pytest.mark.sample(42)
+@pytest.mark.sample(20)
 @pytest.mark.parametrize("text", IDENTITIES)
 @pytest.mark.parametrize("slip", ["{} + 1/10**40", "({})*exp(pi) - 3/10**25*exp(-100)"])
 def test_its_twin_is_not(text: str, slip: str) -> None:

@@ -96,12 +96,17 @@ def test_a_process_that_has_loaded_kernels_compiles_others(kernels: Path) -> Non
     work = (
         "import json, numpy as np\n"
         "from verify.arithmetic.systems import float64\n"
-        "from verify.studies.regions.hausdorff import hausdorff, _compiled\n"
-        "square = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])\n"
-        "far = hausdorff([square], [square + 0.25])\n"
+        "from verify.arithmetic import numba_code\n"
+        "def halves(rows):\n"
+        "    found = np.empty(len(rows))\n"
+        "    for k in range(len(rows)):\n"
+        "        found[k] = rows[k] / 2\n"
+        "    return found\n"
+        "of_arrays = numba_code.compiled(halves, 'halves')\n"
+        "far = of_arrays(np.array([1.0, 3]))\n"
         "new = float64._compiled('def f(x):\\n    return x * c\\n', 'f', {'c': CONSTANT})\n"
-        "found = [far.value, far.bound, new(3.0) / CONSTANT]\n"
-        "hits = [sum(each.stats.cache_hits.values()) for each in (_compiled(), new)]\n"
+        "found = [far.tolist(), new(3.0) / CONSTANT]\n"
+        "hits = [sum(each.stats.cache_hits.values()) for each in (of_arrays, new)]\n"
         "print(json.dumps([found, hits]))\n"
     )
     answers = [
@@ -110,5 +115,5 @@ def test_a_process_that_has_loaded_kernels_compiles_others(kernels: Path) -> Non
     ]
     (first, none), (second, hits) = answers
     assert first == second
-    assert first[2] == 3
+    assert first == [[0.5, 1.5], 3]
     assert (none, hits) == ([0, 0], [1, 0])

@@ -12,8 +12,8 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 def test_a_flow_is_followed_there_and_back() -> None:
     flow = Flow(Hamiltonian.parse("p**2/2 + q**6/6").field()[0], 25)
     z0 = flow.number(Fraction(1)), flow.number(Fraction(1, 3))
-    there = flow.follow(z0, Fraction(200))
-    back = flow.follow(there, Fraction(-200))
+    there = flow.follow(z0, Fraction(60))
+    back = flow.follow(there, Fraction(-60))
     assert math.hypot(*(float(x - y) for x, y in zip(back, z0, strict=True))) < 1e-15
 
 

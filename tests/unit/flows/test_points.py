@@ -56,7 +56,7 @@ def size(*arrays: Any) -> float:
 # -- every system ---------------------------------------------------------------------------------
 
 
-@pytest.mark.sample(24)
+@pytest.mark.sample(10)
 @pytest.mark.parametrize(("name", "regime"), REGIMES, ids=map("-".join, REGIMES))
 def test_a_cloud_about_each_example_is_carried_within_the_bound(name: str, regime: str) -> None:
     values, p0, q0 = ALL[name].regime(regime)
@@ -80,7 +80,7 @@ LONG_LIVED = [
 ]  # fmt: skip
 
 
-@pytest.mark.sample(4)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(("name", "regime"), LONG_LIVED, ids=map("-".join, LONG_LIVED))
 def test_long_times_cost_no_digits_away_from_separatrices(name: str, regime: str) -> None:
     values, p0, q0 = ALL[name].regime(regime)

@@ -42,7 +42,7 @@ def apart(one: SolutionInDegrees, other: SolutionInDegrees) -> Fraction:
     return max(abs(one.point[name] - other.point[name]) for name in one.point)
 
 
-@pytest.mark.sample(4)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("name", ELLIPSES)
 @pytest.mark.parametrize("time", ["1/7", "3", "-2"])
 def test_an_ellipse_in_closed_form_is_that_of_the_numerical_flow(name: str, time: str) -> None:

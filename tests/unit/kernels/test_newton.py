@@ -50,7 +50,7 @@ def apart(x: tuple[Fraction, ...], y: tuple[Fraction, ...]) -> Fraction:
 # -- the equations hold ---------------------------------------------------------------------------
 
 
-@pytest.mark.sample(34)
+@pytest.mark.sample(14)
 @each_arithmetic
 @each_h
 @each_scheme
@@ -121,7 +121,7 @@ def differences(made: StepMap, digits: int) -> Fraction:
     return entries[0][0] * entries[1][1] - entries[0][1] * entries[1][0]
 
 
-@pytest.mark.sample(13)
+@pytest.mark.sample(6)
 @each_h
 @pytest.mark.parametrize("name", [*TABLEAUS, "radau"])
 def test_the_jacobian_is_the_one_of_finite_differences(name: str, text: str) -> None:
@@ -181,6 +181,7 @@ def test_errors_shrink_with_the_order_that_is_proved(name: str, order: int, case
 # -- Newton's method ------------------------------------------------------------------------------
 
 
+@pytest.mark.sample(20)
 @pytest.mark.parametrize(
     ("arithmetic", "digits", "most"), [("float64", 17, 4), ("mpfr", 30, 5), ("mpfr", 200, 8)]
 )
@@ -197,7 +198,7 @@ def test_few_updates_are_needed(
         assert needed >= 2, "they were counted"
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("arithmetic", ["float64", "mpfr", "mpmath"])
 @pytest.mark.parametrize("name", [*TABLEAUS, "implicit-symplectic-euler"])
 @pytest.mark.parametrize(

@@ -40,7 +40,7 @@ def same(fixed: RunResult, other: RunResult) -> bool:
     )
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("t0", [Fraction(10**6), HUGE, Fraction(1, 3)])
 @pytest.mark.parametrize("hamiltonian", [DRIVEN, TWO, TURNED])
 def test_from_a_large_t_on_it_is_the_run_of_floating_point(

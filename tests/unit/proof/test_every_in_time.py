@@ -58,6 +58,7 @@ def test_d_without_the_derivative_by_time_is_another_one(monkeypatch: pytest.Mon
     assert right[2] - wrong[2] == -jets.h(0, 1, 1)
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("name", [n for n in schemes.names() if schemes.get(n).needs_separable])
 def test_with_right_clocks_every_splitting_is_of_its_order(name: str) -> None:
     found = prove_every_in_time(name)

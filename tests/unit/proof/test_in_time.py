@@ -86,7 +86,7 @@ def test_a_parameter_and_not_t_is_what_a_proof_leaves_out() -> None:
 # -- clocks ---------------------------------------------------------------------------------------
 
 
-@pytest.mark.sample(32)
+@pytest.mark.sample(14)
 @pytest.mark.parametrize("name", SEPARABLE)
 @pytest.mark.parametrize("scheme", SPLITTINGS)
 def test_with_its_two_clocks_a_splitting_keeps_its_order(scheme: str, name: str) -> None:

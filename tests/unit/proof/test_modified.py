@@ -86,6 +86,7 @@ def test_a_step_keeps_the_modified_hamiltonian_to_the_next_order(name: str) -> N
     assert gained(wrong, step_map) == pytest.approx(5, abs=0.2)
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize(
     ("text", "name", "order"),
     [
@@ -124,6 +125,7 @@ def test_the_map_is_the_flow_of_the_field(text: str, name: str, order: int, plan
 OTHERS = [s for s in schemes.names() if not schemes.get(s).area_preserving]
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize("name", OTHERS)
 @pytest.mark.parametrize("text", [DUFFING, PENDULUM])
 def test_what_is_not_symplectic_has_no_modified_hamiltonian_further(text: str, name: str) -> None:

@@ -62,7 +62,7 @@ CASES = [
 ]
 
 
-@pytest.mark.sample(3)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(("text", "name", "order"), CASES)
 @pytest.mark.parametrize("planted", [False, True])
 def test_the_map_is_the_flow_of_the_field(text: str, name: str, order: int, planted: bool) -> None:
@@ -79,7 +79,7 @@ def test_the_map_is_the_flow_of_the_field(text: str, name: str, order: int, plan
     assert miss(text, name, vector) == pytest.approx(expected, abs=0.25)
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("text", [DUFFING, PENDULUM, HEAVIER])
 @pytest.mark.parametrize("name", ["stormer-verlet", "symplectic-euler", "implicit-midpoint"])
 def test_what_is_symplectic_has_a_function_in_each_term(text: str, name: str) -> None:

@@ -68,7 +68,7 @@ def nodes_between(bits: int, left: Fraction, right: Fraction) -> tuple[Fraction,
 
 @cache
 def _common(bits: int) -> tuple[list[int], int]:
-    """The nodes' numerators over one denominator, which takes one reduction a node and not three."""
+    """The nodes' numerators over one denominator, for one reduction a node, not three."""
     nodes = rule(bits).nodes
     whole = lcm(*(s.denominator for s in nodes))
     return [int(s * whole) for s in nodes], whole

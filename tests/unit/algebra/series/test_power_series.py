@@ -38,6 +38,7 @@ FUNCTIONS = [
 ]
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("text", FUNCTIONS)
 def test_a_function_at_a_point_is_its_taylor_series(text: str) -> None:
     ring, x = ring_with(text)

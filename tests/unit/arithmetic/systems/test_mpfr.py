@@ -44,7 +44,7 @@ def assert_the_same_bits(of: KernelRun, bits: int) -> None:
     assert ours.trail == theirs.trail
 
 
-@pytest.mark.sample(6)
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("bits", [24, 53, 113, 170, 1000])
 @pytest.mark.parametrize(("h", "scheme"), JOBS)
 def test_a_rational_step_has_the_bits_that_mpmath_has(

@@ -118,6 +118,7 @@ def test_what_is_not_a_number_is_raised_or_not_finite(name: str, digits: int, so
     conformance.check_undefined(get(name, digits), f"x: {source}", Fraction(1, 3))
 
 
+@pytest.mark.sample(6)
 @every_system
 @drawn(60)
 @given(x=middling, y=middling.filter(bool))
@@ -145,6 +146,7 @@ def test_the_points_cover_every_function_that_a_hamiltonian_can_need() -> None:
     assert set(conformance.POINTS) | {"root", "inverse"} == set(BALLS)
 
 
+@pytest.mark.sample(30)
 @every_system
 @pytest.mark.parametrize("kind", conformance.POINTS)
 def test_a_function_is_as_accurate_as_its_arithmetic(name: str, digits: int, kind: str) -> None:
@@ -209,7 +211,7 @@ def odd_global_state() -> Iterator[None]:
         mpmath.mp.prec, mpmath.iv.prec = before
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(3)
 @every_system
 @pytest.mark.parametrize(("h", "scheme"), SMALL)
 def test_a_run_is_repeated_to_the_last_bit_whatever_the_global_precision_which_stays(
@@ -230,6 +232,7 @@ def test_a_run_is_repeated_to_the_last_bit_whatever_the_global_precision_which_s
     assert global_state() == before
 
 
+@pytest.mark.sample(5)
 @every_system
 def test_nothing_global_is_changed_where_a_run_or_its_user_fails(name: str, digits: int) -> None:
     def stop(done: int) -> None:

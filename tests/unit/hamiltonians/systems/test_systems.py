@@ -88,6 +88,7 @@ def test_what_is_called_a_separatrix_is_one(name: str, regime: str) -> None:
 # -- what an exact flow satisfies -----------------------------------------------------------------
 
 
+@pytest.mark.sample(20)
 @every_regime
 def test_h_is_constant_to_50_digits(name: str, regime: str) -> None:
     case = example(ALL[name], regime)
@@ -109,7 +110,7 @@ def test_the_flow_is_a_group_to_45_digits(name: str, regime: str) -> None:
         assert group_defect(case, s, t) < 1e-45
 
 
-@pytest.mark.sample(24)
+@pytest.mark.sample(10)
 @every_regime
 def test_the_numerical_flow_agrees(name: str, regime: str) -> None:
     case = example(ALL[name], regime)
@@ -166,6 +167,7 @@ JACOBI = [
 ]  # fmt: skip
 
 
+@pytest.mark.sample(14)
 @pytest.mark.parametrize("wrong", [slightly_wrong_modulus, wrong_sign_of_cn, wrong_period])
 @pytest.mark.parametrize(
     ("name", "regime", "module"), JACOBI, ids=[f"{n}-{r}" for n, r, _ in JACOBI]

@@ -84,7 +84,7 @@ def test_a_tick_of_a_logarithmic_axis_says_where_it_stands(low: float, high: flo
         assert said == pytest.approx(place, abs=0.03)
 
 
-@pytest.mark.sample(3)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("source", ["Table $\\frac$ 9", "$a_b$", "T\x01\x00", "<b>T</b> & 9"])
 def test_a_source_stays_text_in_a_figure(source: str) -> None:
     made = real()

@@ -35,7 +35,7 @@ MAKERS: dict[str, Callable[[], Figure]] = {
 }
 
 
-@pytest.mark.sample(6)
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("name", MAKERS)
 def test_a_figure_has_labelled_axes_and_shows_itself(name: str) -> None:
     figure = MAKERS[name]()

@@ -57,7 +57,7 @@ def test_a_table_has_room_for_so_many_rows_and_the_page_says_of_how_many() -> No
 
 
 def test_five_times_as_many_runs_make_hardly_a_larger_page() -> None:
-    few, many = page_with(400), page_with(2000)
+    few, many = page_with(200), page_with(1000)
     assert rows_of(few) == rows_of(many)
     assert len(many) < 1.02 * len(few)
 

@@ -111,6 +111,7 @@ def displays(texts: Iterable[Prose]) -> list[str]:
     return [str(p) for text in texts for p in text.parts if isinstance(p, Display)]
 
 
+@pytest.mark.sample(16)
 @pytest.mark.parametrize("name", names())
 def test_every_formula_of_an_argument_is_set_whole(name: str) -> None:
     theorem = check_theorem(name)

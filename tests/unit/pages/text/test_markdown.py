@@ -146,7 +146,7 @@ def shown_with(text: str) -> str:
     return render(evil(text))[0]
 
 
-@pytest.mark.sample(4)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("text", WORST)
 def test_what_others_wrote_stays_text_in_a_whole_report(text: str) -> None:
     assert len(WORST) == 6
@@ -166,7 +166,7 @@ def test_what_others_wrote_stays_text_in_a_whole_report(text: str) -> None:
 # -- what it says ---------------------------------------------------------------------------------
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("name", REPORTS)
 def test_the_finding_and_every_claim_are_the_pages(name: str) -> None:
     made = REPORTS[name]()
@@ -228,7 +228,7 @@ def outline_of_the_text(made: Report) -> tuple[list[str], list[str]]:
     return [seen(t.content) for t in heads], [seen(t.content) for t in tokens if t.type == "image"]
 
 
-@pytest.mark.sample(4)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("name", SHOWN)
 def test_it_shows_what_the_page_shows_in_the_same_order(name: str) -> None:
     heads, figures = outline_of_the_page(SHOWN[name]())

@@ -18,7 +18,7 @@ from verify.proof.certificates.coefficients import Stages
 HOSTILE = '*) Axiom a : False. (* " (** **) *)) "" ((* ' * 3
 
 
-@pytest.mark.sample(20)
+@pytest.mark.sample(12)
 @pytest.mark.parametrize("name", ALL)
 def test_an_export_assumes_nothing_and_tells_its_theorems(name: str) -> None:
     text = export(name).text

@@ -101,7 +101,7 @@ def test_what_preserves_area_has_a_certificate_of_its_own_coefficients(name: str
             assert abs(sympy.N(x - sympy.sympify(y), 60, chop=False)) < sympy.Float("1e-50")
 
 
-@pytest.mark.sample(11)
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("name", SYMPLECTIC)
 def test_so_it_has_in_time_separable_and_in_several_degrees(name: str) -> None:
     scheme, separable = get(name), get(name).needs_separable

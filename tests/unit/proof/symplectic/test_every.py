@@ -57,7 +57,7 @@ CASES = [
 ]  # fmt: skip
 
 
-@pytest.mark.sample(3)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(("scheme", "formula", "timed"), CASES)
 def test_it_is_that_of_one_h(scheme: str, formula: str, timed: bool) -> None:
     hamiltonian = Hamiltonian.parse(formula)
@@ -75,6 +75,7 @@ def test_it_is_that_of_one_h(scheme: str, formula: str, timed: bool) -> None:
         assert ours == theirs
 
 
+@pytest.mark.sample(7)
 @pytest.mark.parametrize("scheme", ["lie1", "lie2", "lie3", "lie4", "rk4", "gauss4", "ruth3",
                                     "implicit-midpoint", "blanes-moan4"])  # fmt: skip
 @pytest.mark.parametrize("degrees", [1, 2])

@@ -167,7 +167,7 @@ def test_named_systems_are_separated(
     system: str, parameters: dict[str, Any], scheme: str, q: list[str], p: list[str]
 ) -> None:
     exact = systems.get(system).hamiltonian(parameters)
-    found = separate_in_degrees(exact, scheme, q=q, p=p, step_size="0.01", steps=40)
+    found = separate_in_degrees(exact, scheme, q=q, p=p, step_size="0.01", steps=15)
     assert found.status == "finished"
     assert found.closed_form is not None
     parts = found.closed_form.parts
@@ -250,6 +250,7 @@ class KeepsAll(Keeper):
         return self.kept.get(label)
 
 
+@pytest.mark.sample(1)
 @pytest.mark.parametrize("name", ["henon-heiles", "driven-henon-heiles"])
 def test_an_interrupted_run_goes_on_with_the_same_bits(name: str) -> None:
     exact, _, z, h, steps = CASES[name]

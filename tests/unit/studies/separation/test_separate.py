@@ -52,7 +52,7 @@ def test_the_working_value_is_what_run_reports_for_float64() -> None:
 @pytest.mark.parametrize("hamiltonian", [DUFFING, PENDULUM], ids=["duffing", "pendulum"])
 def test_fixed_and_mpfr_find_the_same_parts(hamiltonian: Hamiltonian) -> None:
     start = {"p": Fraction(1, 3), "q": Fraction(3, 2), "h": Fraction(1, 1000)}
-    run = hamiltonian, "lie2", start, 3000
+    run = hamiltonian, "lie2", start, 1000
     found = [separated_chains(*run, 17, name) for name in ("fixed", "mpfr")]
     for way in ("plain", "closed_form"):
         one, other = (getattr(each, way) for each in found)
@@ -174,7 +174,7 @@ def test_counted_bounds_hold_for_few_bits_and_are_not_far_off(
     hamiltonian: Hamiltonian, made: Arithmetic
 ) -> None:
     start = {"p": Fraction(1, 3), "q": Fraction(3, 2), "h": Fraction(1, 50)}
-    kernel_run = KernelRun(hamiltonian, "lie2", start, 2000, WORKING, 10)
+    kernel_run = KernelRun(hamiltonian, "lie2", start, 600, WORKING, 10)
     working = WorkingRun(kernel_run, rounded_inputs(kernel_run), follow=True)
     coarse, fine = (working.step_through(x, lambda _: None) for x in (made, mpfr.at_bits(300)))
     for name in ("trajectory", "determinant", "closed_delta_j"):

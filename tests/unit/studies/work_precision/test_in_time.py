@@ -27,7 +27,8 @@ WRONG = (
 @cache
 def scenes() -> dict[str, Scene]:
     """Those of the manual that ask for error against run time."""
-    files = {path.stem: load_scene(path) for path in sorted(DRIVEN.glob("*.toml"))}
+    asking = (x for x in sorted(DRIVEN.glob("*.toml")) if "[work_precision" in x.read_text())
+    files = {path.stem: load_scene(path) for path in asking}
     return {name: scene for name, scene in files.items() if scene.work_precision}
 
 
@@ -42,7 +43,7 @@ CASES = [("duffing", x) for x in (*SLOPES, *WRONG)]
 CASES += [("mathieu", x) for x in ("stormer-verlet", "rk4", WRONG[0])]
 
 
-@pytest.mark.sample(3)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize(("name", "scheme"), CASES)
 def test_right_clocks_keep_the_order_and_wrong_ones_leave_1(name: str, scheme: str) -> None:
     ladder = Ladder(problem(scenes()[name]), scheme)
@@ -78,7 +79,7 @@ def test_energy_is_none_and_t0_counts() -> None:
     assert (early.t0, late.t0) == ("0", "2")
 
 
-@pytest.mark.sample(3)
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("name", peers.libraries())
 @pytest.mark.parametrize("t0", [Fraction(1, 3), Fraction(1000)])
 def test_a_peer_solves_it_from_its_t0(name: str, t0: Fraction) -> None:

@@ -62,6 +62,7 @@ def test_kepler_starts_at_the_pericentre_of_its_eccentricity() -> None:
         assert (1 - q1) ** 2 == 1 - spin**2, "e² = 1 − L²"
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("name", SEVERAL)
 def test_proofs_take_it(name: str) -> None:
     lie2, midpoint = (verify.prove(name, scheme) for scheme in ("lie2", "implicit-midpoint"))
