@@ -19,7 +19,7 @@ from verify.studies.kinds.stroboscopic import STUDY
 from verify.studies.plan import plan_scenes
 
 KICKED = "p**2/2 - (1 + 3*cos(2*pi*t)/2)*cos(q)"
-LONG = 700  # periods, in which a wild orbit loses more digits than there are
+LONG = 500  # periods, in which a wild orbit loses more digits than there are
 SECTION_OF = """
 [[stroboscopic]]
 period = 1
@@ -66,7 +66,7 @@ def test_a_point_is_where_a_run_of_so_many_periods_ends(tmp_path: Path) -> None:
 
 def test_what_more_digits_do_not_confirm_is_not_called_known(tmp_path: Path) -> None:
     """Near the saddle an orbit loses its digits; in the middle of the island it keeps them."""
-    few, many = (found(tmp_path, periods=LONG, digits=digits) for digits in (17, 120))
+    few, many = (found(tmp_path, periods=LONG, digits=digits) for digits in (17, 80))
     for coarse, fine in zip(few.sections, many.sections, strict=True):
         (calm, wild), (also_calm, clear) = coarse.orbits, fine.orbits
         assert calm.known == also_calm.known == LONG
