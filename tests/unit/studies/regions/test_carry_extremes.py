@@ -7,8 +7,10 @@ import pytest
 from tests.helpers.known_areas import linear_determinant
 from tests.unit.studies.regions.test_carry import OSCILLATOR, carried, within
 from verify.scenes.region_sections import PlacedShape
+from verify.studies.regions import area
 from verify.studies.regions.distance import _greatest
 
+FEWER_NODES = 20_000  # what no number of nodes follows these do not either
 TRUE = linear_determinant("lie2", Fraction(1, 10), 10)
 
 
@@ -68,8 +70,11 @@ def test_where_the_exact_flow_blows_up_the_schemes_area_is_still_known() -> None
     assert carried(steps=1, **given).distance is not None
 
 
-def test_a_curve_too_long_for_the_nodes_is_not_tried_with_more_digits() -> None:
+def test_a_curve_too_long_for_the_nodes_is_not_tried_with_more_digits(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """float64's nodes do not resolve it, and so none do; a small change does need more digits."""
+    monkeypatch.setattr(area, "MOST_NODES", FEWER_NODES)
     pendulum = "p**2/2 - cos(q)"
     shape = {"shape": "circle", "scale": "0.1"}
     torn = carried(hamiltonian=pendulum, shape=shape, h=1000, steps=5, mean_lambda=False)
@@ -85,8 +90,11 @@ def test_a_greatest_value_is_no_better_known_than_those_that_may_be_greater() ->
     assert _greatest([(1.0, 0.25), (0.5, 2.0)]) == (1.0, 1.5)
 
 
-def test_an_image_that_is_not_resolved_is_told_even_where_area_is_preserved() -> None:
+def test_an_image_that_is_not_resolved_is_told_even_where_area_is_preserved(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """A step a thousand long shears the face beyond what any number of nodes follows."""
+    monkeypatch.setattr(area, "MOST_NODES", FEWER_NODES)
     image = carried(scheme="symplectic-euler", h=1000, steps=3, mean_lambda=False)
     assert "is not resolved" in image.problem
     assert image.area_change is None

@@ -103,7 +103,7 @@ def test_the_maximum_within_a_segment_is_found() -> None:
 
 def test_agreement_with_brute_force_on_curves_drawn_at_random() -> None:
     random = np.random.default_rng(5)
-    for case in range(60):
+    for case in range(24):
         sets = []
         for _ in range(2):
             count = int(random.integers(1, 4))
