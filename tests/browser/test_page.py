@@ -14,6 +14,8 @@ from tests.unit.pages.test_page import report
 from tests.unit.pages.test_wrong import GIVEN
 from verify.pages.page import render
 
+pytestmark = pytest.mark.left_to_ci
+
 PHONE, DESK = 360, 1280
 SHORT = "own scene"  # the page on which errors are planted
 A4 = 680  # px: 210 mm without the margins

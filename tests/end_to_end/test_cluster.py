@@ -27,6 +27,8 @@ from verify.scenes.results.work_precision import WorkPrecisionResult
 from verify.studies.plan import plan_scenes
 from verify.studies.work_precision.task import WorkPrecisionTask
 
+pytestmark = pytest.mark.left_to_ci
+
 distributed = pytest.importorskip("distributed")
 GIVEN_UP = 1  # workers that may be lost with a task, so that a test of it is short
 

@@ -15,6 +15,8 @@ from tests.helpers.local_cluster import local_cluster
 from verify.exploration import explore, gallery, hunting
 from verify.pages import page
 
+pytestmark = pytest.mark.left_to_ci
+
 distributed = pytest.importorskip("distributed")
 ASKED = ("explore", "--property", "quadratic-hamiltonians", "--property", "time-scaling",
          "--scheme", "lie2", "--degree", "3", "--seed", "5", "--json")  # fmt: skip

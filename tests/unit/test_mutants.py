@@ -14,6 +14,8 @@ from tests.mutants.run import ordered
 from tests.mutants.summary import found_in, share
 from tests.mutants.targets import modules, sample, shares
 
+pytestmark = pytest.mark.left_to_ci
+
 
 def made(source: str, operator: str | None = None) -> list[str]:
     """The sources of the mutants by one operator; by all where it is None."""
