@@ -2,10 +2,12 @@
 
 `@pytest.mark.sample(3)` above such a test: three of its parameters, of which each brings as many
 new values as it can, and has the least hash of those that bring as many. So they stay the same
-until a test or a parameter is renamed. `@pytest.mark.left_to_ci`: none of them, and CI runs them
-all by `pytest -m left_to_ci`. `pytest --whole` runs whatever there is, and so does naming a test.
+until a test or a parameter is renamed. What `@pytest.mark.left_to_ci` stands above runs in CI, and
+by hand where it is asked for: by `pytest -m left_to_ci`, by its name, or by `pytest --whole`, which
+runs whatever there is.
 """
 
+import os
 from collections import defaultdict
 from hashlib import sha256
 
@@ -22,7 +24,7 @@ def add_option(parser: pytest.Parser) -> None:
 def add_markers(config: pytest.Config) -> None:
     """Our markers, which pytest would refuse as unknown."""
     config.addinivalue_line("markers", "sample(count): so many of its parameters are run")
-    config.addinivalue_line("markers", f"{_LEFT}: it is run where it is asked for, and by CI")
+    config.addinivalue_line("markers", f"{_LEFT}: it is run in CI, or where it is asked for")
 
 
 def leave_out(config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -30,7 +32,7 @@ def leave_out(config: pytest.Config, items: list[pytest.Item]) -> None:
     if config.getoption("--whole") or any("::" in asked for asked in config.args):
         return
     left = _unsampled(items)
-    if config.getoption("-m") != _LEFT:
+    if not os.environ.get("CI") and config.getoption("-m") != _LEFT:
         left |= {item for item in items if item.get_closest_marker(_LEFT)}
     if left:
         config.hook.pytest_deselected(items=[item for item in items if item in left])

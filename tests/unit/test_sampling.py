@@ -1,5 +1,6 @@
 """Which parameters of a costly test are run."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -45,12 +46,13 @@ def test_partly_dear(a): ...
 """
 
 
-def collected(folder: Path, *options: str) -> list[str]:
+def collected(folder: Path, *options: str, **variables: str) -> list[str]:
     """What pytest would run there."""
     (folder / "conftest.py").write_text(CONFTEST)
     (folder / "test_it.py").write_text(TEST)
     command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "-q", "--collect-only"]
-    done = subprocess.run([*command, *options], cwd=folder, capture_output=True, text=True)
+    env = {name: value for name, value in os.environ.items() if name != "CI"} | variables
+    done = subprocess.run([*command, *options], cwd=folder, env=env, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
     return [line for line in done.stdout.splitlines() if "::" in line]
 
@@ -86,3 +88,12 @@ def test_what_is_left_to_ci_is_run_where_it_is_asked_for(
     found = [x.partition("::test_")[2] for x in collected(tmp_path, *options)]
     assert [x for x in found if "dear" in x] == names
     assert (len(found) == len(names)) == (options[0] != "--whole")
+
+
+def test_what_is_left_to_ci_is_run_there_and_samples_stay_samples(tmp_path: Path) -> None:
+    by_hand, there = collected(tmp_path), collected(tmp_path, CI="true")
+    assert {x.partition("::test_")[2] for x in set(there) - set(by_hand)} == {
+        "dear",
+        "partly_dear[1]",
+    }
+    assert set(by_hand) < set(there)
