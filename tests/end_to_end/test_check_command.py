@@ -178,6 +178,7 @@ def imported(*given: str) -> set[str]:
 HEAVY = {"numba", "llvmlite", "matplotlib", "numpy", "jinja2", "rich", "reports"}
 
 
+@pytest.mark.left_to_ci
 def test_symbolic_claims_import_no_compiler_and_no_plots(claims: Any) -> None:
     assert not imported("check", claims(SYMBOLIC)) & HEAVY
     assert not imported("check", claims(NUMBERS), "--only", "lambda") & (HEAVY - {"numpy"})
@@ -187,6 +188,7 @@ def test_symbolic_claims_import_no_compiler_and_no_plots(claims: Any) -> None:
 PRINTED = ("--only", "eq-19", "--only", "eq-2?", "--only", "eq-3?")  # equations 19–24 and 27–32
 
 
+@pytest.mark.left_to_ci
 def test_the_papers_equations_are_checked_in_seconds() -> None:
     """Measured: 1.1 s."""
     with of_children_below(5):
@@ -216,6 +218,7 @@ def test_what_is_finished_is_kept_and_taken_up(
     assert {f.name: f.stat().st_mtime_ns for f in kept.iterdir()} == written
 
 
+@pytest.mark.left_to_ci
 def test_an_interrupted_check_ends_with_130_and_says_what_is_kept(
     claims: Any, tmp_path: Path
 ) -> None:

@@ -29,6 +29,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+@pytest.mark.left_to_ci
 def test_a_plain_function_is_checked_in_under_five_seconds(folder: Path) -> None:
     with of_children_below(5):
         done = apart("check-integrator", "mine:step", "--system", "pendulum", "--json", cwd=folder)
@@ -96,6 +97,7 @@ PLANTED = {
 }
 
 
+@pytest.mark.left_to_ci
 def test_the_pytest_example_passes_and_fails_with_an_error(tmp_path: Path) -> None:
     for name, (old, new, _) in PLANTED.items():
         assert not old or (EXAMPLE + TESTED).count(old) == 1

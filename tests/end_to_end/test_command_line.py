@@ -304,6 +304,7 @@ print("IMPORTED", *sorted(roots), file=sys.stderr)
 """
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize(
     ("given", "absent"),
     [

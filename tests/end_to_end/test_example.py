@@ -16,6 +16,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     ).names
 
 
+@pytest.mark.left_to_ci
 def test_the_proof_has_order_3_and_shows_it(made: dict[str, Any]) -> None:
     assert made["proof"].order == 3
     assert "3*p*q" in made["proof"]._repr_html_()

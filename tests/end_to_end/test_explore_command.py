@@ -23,6 +23,7 @@ at_least = true
 """
 
 
+@pytest.mark.left_to_ci
 def test_the_same_seed_gives_the_same_bytes_on_one_worker_and_on_two(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -38,6 +39,7 @@ def test_the_same_seed_gives_the_same_bytes_on_one_worker_and_on_two(
     assert not (tmp_path / "explored").exists(), "nothing failed, nothing is written"
 
 
+@pytest.mark.left_to_ci
 def test_an_interrupted_exploration_goes_on_to_the_same_bytes(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -60,6 +62,7 @@ def test_an_interrupted_exploration_goes_on_to_the_same_bytes(
     assert resumed == fresh
 
 
+@pytest.mark.left_to_ci
 def test_a_terminated_exploration_leaves_no_process_and_keeps_what_is_finished(
     tmp_path: Path,
 ) -> None:
@@ -148,6 +151,7 @@ def test_where_nothing_can_be_written_nothing_is_begun(
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
 
 
+@pytest.mark.left_to_ci
 def test_what_cannot_be_written_is_told_all_the_same(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -210,6 +214,7 @@ def test_scenes_of_two_degrees_are_drawn_and_the_properties_speak(
     assert not sum(each["failures"] for each in found.values())
 
 
+@pytest.mark.left_to_ci
 def test_a_false_claim_fails_for_two_degrees_and_its_scene_is_written(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -117,6 +117,7 @@ def test_an_interruption_keeps_what_is_finished(
     assert here(capsys, *given)[:2] == (0, out)
 
 
+@pytest.mark.left_to_ci
 def test_the_installed_command_carries_and_plans(
     scene: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -75,6 +75,7 @@ def test_the_bytes_do_not_depend_on_the_workers_nor_on_what_was_kept(
     assert content(tmp_path / "one") == content(tmp_path / "two") == content(tmp_path / "again")
 
 
+@pytest.mark.left_to_ci
 def test_the_committed_set_is_of_its_scenes_small_and_agrees(
     capsys: pytest.CaptureFixture[str],
 ) -> None:

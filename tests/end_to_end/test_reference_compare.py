@@ -76,6 +76,7 @@ def by_python(folder: Path, source: str) -> str:
     return subprocess.run(command, cwd=folder, check=True, capture_output=True, text=True).stdout
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("name", "run"), [("lie2.c", by_c), ("lie2.f90", by_fortran), ("lie2.py", by_python)]
@@ -119,6 +120,7 @@ def test_a_mistake_is_told_to_people_and_to_programs(
     assert shown["other_steps"] == 4995
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize(
     ("content", "options", "told"),
     [

@@ -75,6 +75,7 @@ def test_a_report_of_a_users_scene_is_a_page_and_its_results(
     assert len(kept(folder)) == report.provenance.computed == 2 + 8 + 1
 
 
+@pytest.mark.left_to_ci
 def test_a_report_for_a_repository_is_markdown_with_its_figures(
     capsys: pytest.CaptureFixture[str], scene: str, tmp_path: Path
 ) -> None:
@@ -130,6 +131,7 @@ def test_an_orbit_that_leaves_the_range_does_not_end_the_report(
     assert "left range" in {run.status for run in runs}
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("workers", ["1", "2"])
 def test_a_map_with_a_pole_at_h_0_is_bad_input(tmp_path: Path, workers: str) -> None:
     path = tmp_path / "pole.toml"
@@ -189,6 +191,7 @@ def uninterrupted(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "out"
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("workers", ["1", "2"])
 def test_an_interrupted_report_goes_on_from_what_it_kept(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, uninterrupted: Path, workers: str
@@ -218,6 +221,7 @@ def test_an_interrupted_report_goes_on_from_what_it_kept(
     assert findings(folder) == findings(uninterrupted)
 
 
+@pytest.mark.left_to_ci
 def test_an_interruption_while_workers_are_begun_is_told_in_a_line(tmp_path: Path) -> None:
     """Those that are begun have imports to do, and say nothing of an interruption amid them."""
     path, folder = tmp_path / "long.toml", tmp_path / "out"
@@ -244,6 +248,7 @@ def group(leader: int) -> list[str]:
     return found
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("digits", [None, "30"], ids=["float64", "mpmath"])
 def test_an_interrupted_run_says_nothing_and_ends_with_130(digits: str | None) -> None:
     changes = {"steps": "100000000000", "digits": digits}

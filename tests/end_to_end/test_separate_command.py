@@ -119,6 +119,7 @@ def test_bad_input_is_one_line_on_standard_error_and_status_2(
     assert named in err
 
 
+@pytest.mark.left_to_ci
 def test_separate_imports_no_compiler() -> None:
     done = subprocess.run(
         [sys.executable, "-c", IMPORTED, *arguments("separate", SEPARATE)],

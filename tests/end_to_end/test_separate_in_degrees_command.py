@@ -70,6 +70,7 @@ def test_in_time_the_clock_is_a_part(capsys: pytest.CaptureFixture[str]) -> None
     assert any(any(map(Fraction, row)) for row in found["rounding"]["clock"])
 
 
+@pytest.mark.left_to_ci
 def test_people_read_the_greatest_entries_and_what_grew(
     capsys: pytest.CaptureFixture[str],
 ) -> None:

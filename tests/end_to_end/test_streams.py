@@ -26,6 +26,7 @@ def shell(text: str, tmp_path: Path, **more: str) -> subprocess.CompletedProcess
     )  # fmt: skip
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(3)
 @pytest.mark.parametrize(
     ("text", "status", "said"),
@@ -73,6 +74,7 @@ def test_no_control_character_reaches_the_terminal(
         assert all(c.isprintable() or c in "\n\t" for c in said), repr(said)
 
 
+@pytest.mark.left_to_ci
 def test_an_interruption_at_any_time_is_130_and_no_traceback(tmp_path: Path) -> None:
     """Also while the command is still imported; before that it is Python's own.
 

@@ -67,6 +67,7 @@ def silent() -> dict[str, set[str]]:
     return found
 
 
+@pytest.mark.left_to_ci
 def test_what_other_rooms_use_has_a_docstring() -> None:
     assert not silent()
 

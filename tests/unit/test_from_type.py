@@ -54,11 +54,13 @@ def installed(tmp_path: Path) -> Path:
     return tmp_path
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("order", ORDERS)
 def test_the_classes_are_drawn_in_every_order_of_imports(order: str, installed: Path) -> None:
     assert said(ORDERS[order], installed) == "drawn"
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("order", ["hypothesis first", "strategies first"])
 def test_they_are_without_plugins_where_hypothesis_is_loaded_first(

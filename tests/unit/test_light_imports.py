@@ -37,6 +37,7 @@ def test_what_is_to_be_light_is_there() -> None:
     assert set(LIGHT) <= set(NAMES)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("name", LIGHT)
 def test_the_command_line_itself_imports_nothing_slow(name: str) -> None:
     found = loaded_with(name, imports())
@@ -112,6 +113,7 @@ steps = [5]
 """
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("arguments", "loaded"),

@@ -100,6 +100,7 @@ def each_alone() -> dict[Asked, str]:
         return dict(zip(ALL, pool.map(alone, ALL, chunksize=1), strict=True))
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("backwards", [False, True])
 def test_results_are_those_of_a_process_that_has_made_nothing_else(
     each_alone: dict[Asked, str], backwards: bool

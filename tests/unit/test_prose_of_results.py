@@ -29,6 +29,7 @@ OWN = "p_next = p - h*q**2; q_next = q + h*p"
 HAMILTONIANS = {"duffing": "p**2/2 + q**2/2 + q**4/4", "pendulum": "p**2/2 - cos(q)"}
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("name", theorems())
 def test_theorems_are_marked(name: str) -> None:
     found = check_theorem(name)
@@ -95,6 +96,7 @@ STEPS = {
 }
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("step", STEPS.values(), ids=STEPS)
 @pytest.mark.parametrize("claims", [Claims(), Claims(order=2, area_order=3), Claims(2, 3, True)])
 def test_what_is_found_of_a_step_is_marked(step: Any, claims: Claims) -> None:

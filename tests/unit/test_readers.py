@@ -1,8 +1,11 @@
 """What is read is a value or one documented error: a sample of the campaign."""
 
+import pytest
+
 from tests.campaigns.readers import campaign
 
 
+@pytest.mark.left_to_ci
 def test_a_sample_of_fuzzed_inputs_gives_documented_errors_and_no_others() -> None:
     answers, wrong = campaign(1500, seed=5)
     assert wrong == []

@@ -7,6 +7,7 @@ from tests.campaigns.drawn_in_degrees import KINDS, looked
 COUNT, SEED = 5, 20
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize(("degrees", "timed"), KINDS)
 def test_no_property_fails_of_drawn_scenes(
     degrees: int, timed: bool, capsys: pytest.CaptureFixture[str]

@@ -161,6 +161,7 @@ LEAVING: list[tuple[str, str, str]] = [
 ]
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize(("text", "p", "q"), LEAVING)
 def test_what_leaves_or_lies_on_a_separatrix_is_not_closed(text: str, p: str, q: str) -> None:
     with pytest.raises(NoFlowError):

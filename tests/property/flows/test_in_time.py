@@ -31,6 +31,7 @@ def flow(formula: str, time: object, t0: object, digits: int = 25, **start: Frac
     )  # fmt: skip
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(4)
 @pytest.mark.parametrize("formula", CASES)
 @pytest.mark.parametrize(("t0", "time"), [("0", "1.5"), ("1/3", "-0.7")])

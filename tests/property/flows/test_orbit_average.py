@@ -3,6 +3,7 @@
 from fractions import Fraction
 
 import mpmath
+import pytest
 import sympy
 from hypothesis import assume, given
 from hypothesis import strategies as st
@@ -20,6 +21,7 @@ DIGITS = 20
 starts = st.integers(-8, 8).map(lambda n: Fraction(n, 10))
 
 
+@pytest.mark.left_to_ci
 @drawn(6)
 @given(wells(), starts, starts)
 def test_after_one_period_the_flow_is_back_and_the_integral_is_that_of_the_average(

@@ -54,6 +54,7 @@ def told(outcome: Outcome) -> Any:
     return own, [dict(x) for x in own.trail], [dict(x) for x in own.tangents]
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(2)
 @pytest.mark.parametrize("way", PATHS)
 @pytest.mark.parametrize("name", H)
@@ -67,6 +68,7 @@ def test_runs_in_lockstep_have_the_bits_of_runs_one_by_one(name: str, way: str) 
         assert len({x[0].done for x in alone}) > 3
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("digits", [40, 53, 72])
 @pytest.mark.parametrize("scheme", ["lie2", "rk4", "stormer-verlet"])
@@ -77,6 +79,7 @@ def test_wider_numbers_and_other_schemes_too(scheme: str, digits: int) -> None:
         assert [told(x) for x in done(few, digits, in_lockstep=True)] == alone
 
 
+@pytest.mark.left_to_ci
 def test_a_series_is_the_same() -> None:
     """Its kernel begins anew at every note, and is not called for a part of the way."""
     alone = [told(x) for x in done(runs("duffing", points=7), 33, in_lockstep=False)]
@@ -85,6 +88,7 @@ def test_a_series_is_the_same() -> None:
     assert all(len(x[0].series) == 7 for x in alone)
 
 
+@pytest.mark.left_to_ci
 def test_lanes_are_used_where_there_is_more_than_one_orbit(monkeypatch: pytest.MonkeyPatch) -> None:
     seen: list[int] = []
     true = walking.step_together

@@ -85,6 +85,7 @@ starts = st.fixed_dictionaries(
 asked = st.sampled_from([CLOSED_FORM, ("lambda_plain",), ("mse", "lambda_plain")])
 
 
+@pytest.mark.left_to_ci
 @drawn(150)
 @given(
     text=st.sampled_from(FAMILIES),
@@ -101,6 +102,7 @@ def test_a_run_is_right_or_ends_and_says_so(
     )
 
 
+@pytest.mark.left_to_ci
 @drawn(20)
 @given(
     text=strategies.polynomials(degree=5, most_terms=3) | strategies.trigonometric(most_terms=1),
@@ -255,6 +257,7 @@ def test_without_a_loss_no_kernel_run_is_wrong(monkeypatch: pytest.MonkeyPatch) 
     assert wrong_kernel_runs() == []
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("unseen", ["p", "q", "plain"])
 def test_a_loop_that_looks_away_from_one_number_is_caught(
     monkeypatch: pytest.MonkeyPatch, unseen: str

@@ -190,6 +190,7 @@ def test_floating_point_rounds_no_more_than_is_counted(
     check(text, scheme, (mpmath if other else mpfr).at_bits(bits), at, width)
 
 
+@pytest.mark.left_to_ci
 @drawn(10)
 @given(hamiltonians, schemes, st.sampled_from([112, 176, 304]), points, widths)
 def test_fixed_point_rounds_no_more_than_is_counted(
@@ -215,6 +216,7 @@ def _shown(x: Any) -> str:
     return {ALL: "", MORE: ""}.get(x, x) if isinstance(x, str) else str(x.name)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize(("text", "kind", "arithmetic"), KINDS, ids=_shown)
 def test_an_operation_that_is_taken_for_exact_is_caught(
     text: str, kind: str, arithmetic: Arithmetic

@@ -7,6 +7,7 @@ that ΔJ/h^(η+1) and the coefficient agree to 30 digits.
 from fractions import Fraction
 
 import mpmath
+import pytest
 import sympy
 from hypothesis import assume, given
 from hypothesis import strategies as st
@@ -41,6 +42,7 @@ def at(jets: Jets, x: object, hamiltonian: sympy.Expr, point: dict[str, Fraction
     return total
 
 
+@pytest.mark.left_to_ci
 @drawn(40)
 @given(
     text=polynomials(degree=4, most_terms=3) | trigonometric(),

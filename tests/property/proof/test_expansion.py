@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 from fractions import Fraction
 
+import pytest
 import sympy
 from hypothesis import assume, given
 from hypothesis import strategies as st
@@ -43,6 +44,7 @@ FREE = Hamiltonian.parse("p**2/2")
 INSIDE = ("1/(1 + ({})*h)", "exp(({})*h)", "1/(1 + ({})*h**2*q**2)", "cos(({})*h)", "exp(({})*h*q)")
 
 
+@pytest.mark.left_to_ci
 @drawn(5)
 @given(st.sampled_from(INSIDE), rationals(3), st.integers(0, 3), polynomials("pq", 2, 1))
 def test_a_map_with_h_in_its_functions_has_the_taylor_series_of_its_derivatives(

@@ -88,6 +88,7 @@ def test_the_closed_form_is_det_j_minus_one_to_40_digits(
         assert close(ours, expected, 40)
 
 
+@pytest.mark.left_to_ci
 @quick
 @given(trigonometric(most_terms=1), st.integers(1, 3), points("p", "q"))
 def test_the_leading_coefficient_is_the_limit_of_delta_j(

@@ -6,6 +6,7 @@ Where there is no certificate nothing is claimed, and nothing is checked.
 
 from fractions import Fraction
 
+import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
@@ -96,6 +97,7 @@ def test_what_is_certified_of_floating_point_runs_contains_the_true_value(
     check(case, arithmetic, observables)
 
 
+@pytest.mark.left_to_ci
 @drawn(15)
 @given(orbits, wide, some)
 def test_what_is_certified_of_fixed_point_runs_contains_the_true_value(

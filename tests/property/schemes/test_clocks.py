@@ -179,6 +179,7 @@ def test_the_order_by_conditions_is_that_of_the_map_by_hand(seed: int) -> None:
     assert order_by_conditions(parts, clock) == order_by_hand(parts, clock)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(3)
 @pytest.mark.parametrize("seed", range(6))
 def test_and_so_is_that_of_a_proof_for_one_h(seed: int) -> None:

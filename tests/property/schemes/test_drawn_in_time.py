@@ -121,6 +121,7 @@ def test_a_frozen_clock_is_another_step() -> None:
     assert abs(right[0][0] - wrong[0][0]) > right[0][1] + wrong[0][1]
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("scheme", ["lie2", "rk4"])
 @few
 @given(made=in_time, t0=moments, shift=moments)

@@ -98,12 +98,14 @@ def hold(case: Case) -> None:
     assert stays_bounded(gaps), (case, gaps)
 
 
+@pytest.mark.left_to_ci
 @drawn(20)
 @given(case=cases(wells(), 8))
 def test_in_a_random_well_the_remainder_has_the_proved_order(case: Case) -> None:
     hold(case)
 
 
+@pytest.mark.left_to_ci
 @drawn(12)
 @given(case=cases(pendulums(), 20))
 def test_swinging_or_going_round_the_remainder_has_the_proved_order(case: Case) -> None:
@@ -143,6 +145,7 @@ WRONG: dict[str, Callable[[GrowthLaw], GrowthLaw]] = {
 }
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("case", CONTROL.values(), ids=CONTROL)
 def test_the_controls_law_itself_holds(case: Case) -> None:
     gaps = remainders(case)
@@ -150,6 +153,7 @@ def test_the_controls_law_itself_holds(case: Case) -> None:
     assert stays_bounded(gaps), gaps
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(3)
 @pytest.mark.parametrize("name", ["lie2", "lie4", "round"])
 @pytest.mark.parametrize("change", WRONG.values(), ids=WRONG)

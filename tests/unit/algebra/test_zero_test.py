@@ -187,6 +187,7 @@ HOSTILE = [
 ]
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("text", HOSTILE)
 def test_what_is_out_of_reach_ends_soon(text: str) -> None:
     assert outcome(lambda: decide(text)) == "done"

@@ -47,6 +47,7 @@ def test_the_second_one_is_loaded_and_gives_the_same_bits(
     assert len(list(kernels.iterdir())) == 1
 
 
+@pytest.mark.left_to_ci
 def test_another_source_constant_function_or_type_is_compiled(kernels: Path) -> None:
     first, _ = call()
     others = [
@@ -91,6 +92,7 @@ def test_nothing_is_kept_where_that_is_off(monkeypatch: pytest.MonkeyPatch) -> N
     assert call() == call()
 
 
+@pytest.mark.left_to_ci
 def test_a_process_that_has_loaded_kernels_compiles_others(kernels: Path) -> None:
     """Loading prepares less of numba than compiling does; arrays need the most of it."""
     work = (

@@ -323,6 +323,7 @@ def test_values_that_follow_their_growth_law_have_a_pattern(
     assert [claim.verdict for claim in found] == [expected]
 
 
+@pytest.mark.left_to_ci
 def test_values_that_do_not_follow_the_law_are_not_refuted(tmp_path: Any) -> None:
     """The same runs with another Λ at the end of one of them."""
     path = tmp_path / "claims.toml"

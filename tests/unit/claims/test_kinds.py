@@ -143,6 +143,7 @@ def test_the_equations_of_the_issue_are_all_there() -> None:
     assert numbers == {*range(19, 25), *range(27, 33)}
 
 
+@pytest.mark.left_to_ci
 def test_there_are_at_least_500_mutants_and_those_that_are_true_are_explained() -> None:
     made = [m for claim in EQUATIONS.values() for m in mutated(claim)]
     assert len(made) >= 500
@@ -175,6 +176,7 @@ def test_an_equation_is_proved_as_it_is_printed(claim: Claim, proved: Findings) 
     assert found.evidence
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("claim", EQUATIONS.values(), ids=EQUATIONS)
 def test_an_equation_with_one_thing_changed_is_refuted(claim: Claim, proved: Findings) -> None:
     made = list(mutated(claim))
@@ -270,6 +272,7 @@ def short() -> tuple[Findings, dict[str, ClaimResult]]:
     return findings, {r.id: r for r in [claim.judge(findings) for claim in list(CLAIMS.values())]}
 
 
+@pytest.mark.left_to_ci
 def test_every_claim_of_the_paper_gets_a_verdict_with_evidence(short: Any) -> None:
     _, found = short
     assert set(found) == set(CLAIMS)

@@ -197,6 +197,7 @@ def one_file_of_each_folder() -> list[str]:
     return [str(path.relative_to(ROOT)) for path in files.values()]
 
 
+@pytest.mark.left_to_ci
 def test_the_fingerprint_covers_every_room_and_all_data(copy: Path) -> None:
     first = fresh()
     assert first == fresh(), "the same code has the same name"

@@ -208,6 +208,7 @@ def test_a_call_that_always_loses_its_worker_is_named_and_no_other_is_lost() -> 
     assert right(found, 2)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize(("methods", "begun"), [(None, "forkserver"), (["spawn"], "spawn_main")])
 def test_workers_are_forked_beside_this_process_from_one_that_has_imported_what_they_need(
     methods: list[str] | None, begun: str, monkeypatch: pytest.MonkeyPatch

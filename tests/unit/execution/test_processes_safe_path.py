@@ -121,6 +121,7 @@ def report(folder: Path, *where: str) -> subprocess.CompletedProcess[str]:
     )  # fmt: skip
 
 
+@pytest.mark.left_to_ci
 def test_a_report_by_workers_runs_nothing_of_the_folder(folder: Path) -> None:
     done = report(folder, "--workers", "2")
     assert (done.returncode, done.stderr, executed(folder)) == (0, "", [])
@@ -136,6 +137,7 @@ def address() -> Iterator[str]:
         yield str(cluster.scheduler_address)
 
 
+@pytest.mark.left_to_ci
 def test_nor_does_a_report_by_a_dask_client(folder: Path, address: str) -> None:
     done = report(folder, "--cluster", address)
     assert (done.returncode, done.stderr, executed(folder)) == (0, "", [])

@@ -105,6 +105,7 @@ def failing(**changes: object) -> ExploreReport:
     return explore(asked, Store(None), where=THIS_PROCESS)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.usefixtures("odd_is_wrong")
 def test_a_failure_is_shrunk_to_the_simplest_scene(tmp_path: Path) -> None:
     report = failing()

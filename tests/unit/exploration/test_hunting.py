@@ -84,6 +84,7 @@ def test_what_is_out_of_bounds_is_not_found(plant: Plant) -> None:
     assert Sample.of(scene_of(worst)).q == 2
 
 
+@pytest.mark.left_to_ci
 def test_a_planted_term_of_h_is_found(plant: Plant) -> None:
     """A needle that no slope leads to: only drawing finds it, and its coefficient is then moved."""
 

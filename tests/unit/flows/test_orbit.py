@@ -76,6 +76,7 @@ def test_the_stiffest_point_is_found() -> None:
     assert orbit("p**2/2 + q**2/2 + q**4/4", "1").stiffness == 4  # 1 + 3 q²
 
 
+@pytest.mark.left_to_ci
 def test_near_a_saddle_the_digits_of_the_initial_value_count() -> None:
     # Libration from π − ε has a quarter period near log(8/ε); at the saddle itself nothing moves.
     pi = Fraction("3.14159265358979323846264338327950288419716939937510582097494459")

@@ -83,6 +83,7 @@ EXACT_TO = [(name, digits) for name in CLOSED_FORMS for digits in (5, 20)]
 EXACT_TO += [("swing", 40), ("circle", 40)]
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(5)
 @pytest.mark.parametrize(("name", "digits"), EXACT_TO)
 def test_period_and_average_are_those_in_closed_form(name: str, digits: int) -> None:
@@ -191,6 +192,7 @@ REFUSED: dict[str, tuple[str, Exact, Exact, str]] = {
 }
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(3)
 @pytest.mark.parametrize("case", REFUSED.values(), ids=REFUSED)
 def test_what_is_not_known_to_be_closed_has_no_average(
@@ -204,6 +206,7 @@ def test_what_is_not_known_to_be_closed_has_no_average(
         averaged(formula, "q", p, q)
 
 
+@pytest.mark.left_to_ci
 def test_near_the_separatrix_the_digits_asked_for_are_there_all_the_same() -> None:
     found = averaged(PENDULUM, "cos(q)**2", "2.000000000001", 0, 12)
     with mpmath.workdps(60):

@@ -80,6 +80,7 @@ LONG_LIVED = [
 ]  # fmt: skip
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(2)
 @pytest.mark.parametrize(("name", "regime"), LONG_LIVED, ids=map("-".join, LONG_LIVED))
 def test_long_times_cost_no_digits_away_from_separatrices(name: str, regime: str) -> None:

@@ -50,6 +50,7 @@ RIGHT = [
 NAMES = [row[0].__name__ for row in RIGHT]
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(8)
 @pytest.mark.parametrize(("function", "how", "verdict", "order", "area"), RIGHT, ids=NAMES)
 def test_a_right_step_is_told_its_orders_and_its_claims_hold(
@@ -62,6 +63,7 @@ def test_a_right_step_is_told_its_orders_and_its_claims_hold(
     assert found.counterexample is None
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(4)
 @pytest.mark.parametrize(
     ("function", "order", "area"), [(r[0], r[3], r[4]) for r in RIGHT], ids=NAMES
@@ -81,6 +83,7 @@ def test_one_order_too_many_is_refuted_with_a_counterexample(
             assert "det J" in found.counterexample.quantity
 
 
+@pytest.mark.left_to_ci
 def test_an_iteration_that_stops_early_does_not_preserve_area_exactly() -> None:
     found = found_of(own_steps.midpoint_iterated, Claims(order=2, area_order=12))
     assert found.verdict == "PROVED"
@@ -102,6 +105,7 @@ def test_a_flipped_sign_is_no_scheme() -> None:
     assert found.counterexample is not None
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize(
     ("function", "order"), [(own_steps.nearly_verlet, 2), (own_steps.nearly_yoshida, 4)]
 )
@@ -254,6 +258,7 @@ def test_exchanged_arguments_are_told() -> None:
     assert not any("in the order" in note for note in found_of(own_steps.flipped).notes)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(5)
 @pytest.mark.parametrize("name", ["duffing", "pendulum", "morse", "toda", "lennard-jones", "twist"])
 @pytest.mark.parametrize("scheme", ["euler", "rk4", "explicit-midpoint"])

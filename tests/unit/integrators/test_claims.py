@@ -13,6 +13,7 @@ from verify.integrators.results import NOTHING, Claims
 Function = Callable[..., Any]
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("function", [remembering_steps.nearly_the_force, own_steps.flipped])
 def test_area_is_not_refuted_where_the_order_is(function: Function) -> None:
     """An error of 10⁻¹¹ in the force shows at steps of 10⁻¹¹."""

@@ -97,6 +97,7 @@ def test_a_traced_step_is_told_what_its_clock_does_and_what_it_is_without(name: 
     assert f"is of order {order} " in said
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(2)
 @pytest.mark.parametrize("name", [name for name in NAMED if NAMED[name][-1]])
 def test_a_measured_one_is_told_at_which_time_it_reads_in_the_mean(name: str) -> None:
@@ -111,6 +112,7 @@ def test_a_measured_one_is_told_at_which_time_it_reads_in_the_mean(name: str) ->
         assert f"H is read at {mean} in the mean" in said
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(2)
 @pytest.mark.parametrize("name", RIGHT)
 def test_of_a_right_clock_nothing_is_said(name: str) -> None:

@@ -96,6 +96,7 @@ def test_a_right_clock_is_proved_at_its_order(name: str) -> None:
     assert not any("stands still" in str(note) for note in found.notes)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(2)
 @pytest.mark.parametrize("name", WRONG)
 def test_a_wrong_clock_is_refuted_at_its_order_and_named(name: str) -> None:
@@ -178,6 +179,7 @@ def solved(middle: float) -> Callable[..., Any]:
     return step
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(3)
 @pytest.mark.parametrize("how", ["duals", "floats"])
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ from verify.integrators.results import Claims, Finding
 from verify.verdict import Verdict
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(3)
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-5, 1e-6, 1e-7, 1e-8])
 def test_what_a_loops_tolerance_leaves_is_no_truncation_error(tolerance: float) -> None:
@@ -22,6 +23,7 @@ def test_what_a_loops_tolerance_leaves_is_no_truncation_error(tolerance: float) 
         assert found_of(own_steps.midpoint_to(tolerance), Claims(order=3)).verdict == "REFUTED"
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(2)
 @pytest.mark.parametrize("change", [1e-2, 1e-3, 1e-4])
 def test_a_friction_beside_a_loop_with_a_tolerance_is_seen(change: float) -> None:

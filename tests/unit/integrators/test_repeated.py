@@ -31,6 +31,7 @@ def test_what_raises_at_times_is_not_decided() -> None:
     assert "OSError: busy at one call and not at another" in found.reason
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize(
     ("step", "name"),
     [
@@ -61,6 +62,7 @@ COARSE = [
 ]
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(3)
 @pytest.mark.parametrize("step", COARSE)
 def test_coarse_numbers_are_no_order(step: Any) -> None:
@@ -78,6 +80,7 @@ def test_the_same_shape_without_the_fault_is_proved(step: Any) -> None:
     assert (found.verdict, found.faults) == ("PROVED", ())
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(4)
 @pytest.mark.parametrize("digits", [4, 6, 8, 10, 12, 14])
 def test_a_loop_with_a_tolerance_is_not_coarse(digits: int) -> None:

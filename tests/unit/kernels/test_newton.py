@@ -50,6 +50,7 @@ def apart(x: tuple[Fraction, ...], y: tuple[Fraction, ...]) -> Fraction:
 # -- the equations hold ---------------------------------------------------------------------------
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(14)
 @each_arithmetic
 @each_h
@@ -198,6 +199,7 @@ def test_few_updates_are_needed(
         assert needed >= 2, "they were counted"
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(3)
 @pytest.mark.parametrize("arithmetic", ["float64", "mpfr", "mpmath"])
 @pytest.mark.parametrize("name", [*TABLEAUS, "implicit-symplectic-euler"])

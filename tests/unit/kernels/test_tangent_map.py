@@ -66,6 +66,7 @@ def squares(x: Matrix) -> Fraction:
     return sum((entry * entry for entry in x), Fraction(0))
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(3)
 @pytest.mark.parametrize("arithmetic", [fixed.at_bits(112), mpfr.at_bits(70), mpmath.at_bits(30)],
                          ids=lambda a: a.name)  # fmt: skip

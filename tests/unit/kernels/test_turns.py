@@ -40,6 +40,7 @@ def same(fixed: RunResult, other: RunResult) -> bool:
     )
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(3)
 @pytest.mark.parametrize("t0", [Fraction(10**6), HUGE, Fraction(1, 3)])
 @pytest.mark.parametrize("hamiltonian", [DRIVEN, TWO, TURNED])

@@ -71,6 +71,7 @@ CUBIC = plain("p**3*q/3 + p*q**2 - 2*q**4 + p**2*q**2/5")
 SEPARABLE = plain("p**3/3 + p**2/2 - 2*q**4 + q")
 
 
+@pytest.mark.left_to_ci
 def test_derivatives_along_the_flow_are_those_of_any_hamiltonian() -> None:
     jets = Jets(5)
     for name, y in (("p", P), ("q", Q)):

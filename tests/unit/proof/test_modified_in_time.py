@@ -62,6 +62,7 @@ CASES = [
 ]
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(2)
 @pytest.mark.parametrize(("text", "name", "order"), CASES)
 @pytest.mark.parametrize("planted", [False, True])

@@ -153,6 +153,7 @@ DAMAGES: dict[str, Callable[[Any], Any]] = {
 }
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("damage", DAMAGES)
 def test_what_is_damaged_is_found(damage: str, folder: Path, tmp_path: Path) -> None:
     """Also where all files are made from the damaged numbers again, so that they fit together."""

@@ -161,6 +161,7 @@ LONG = {
 }  # fmt: skip
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(2)
 @pytest.mark.parametrize("name", LONG)
 def test_a_long_run_contains_what_64_more_bits_give_and_keeps_its_digits(name: str) -> None:
@@ -206,6 +207,7 @@ EXPONENTIAL = {
 }  # fmt: skip
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(5)
 @pytest.mark.parametrize("arithmetic", [fixed.at_bits(112), mpfr.at_bits(60), mpmath.at_bits(60)],
                          ids=lambda a: a.name)  # fmt: skip

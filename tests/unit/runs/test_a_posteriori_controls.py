@@ -100,6 +100,7 @@ STALLED = Orbit(case(FREE, shift("q/1024"), 0, 0, 1, 10_000), mpfr.at_bits(8))
 ORBITS = {name: orbit for name, orbit in globals().items() if isinstance(orbit, Orbit)}
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("name", ORBITS)
 def test_without_a_lie_the_values_are_within_what_is_certified(name: str) -> None:
     orbit = ORBITS[name]

@@ -143,6 +143,7 @@ def test_a_bound_that_forgets_the_clock_would_be_too_small(
     assert all(worse[key] > right[key] for key in ("p", "q", "lambda"))
 
 
+@pytest.mark.left_to_ci
 def test_what_the_format_cuts_off_from_h_does_not_add_up() -> None:
     """h = 1/3 and a million steps: t is right to the last place at the end, too."""
     for formula in ("p**2/2 + q*t/1000000", "p**2/2 - (1 + cos(t)/2)*q"):

@@ -160,6 +160,7 @@ def chaotic(q: Fraction, p: Fraction) -> RunResult:
     return run(PENDULUM, "symplectic-euler", q=q, p=p, **KICKS, arithmetic="mpmath", digits=500)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("arithmetic", ["float64", "mpmath"])
 def test_a_chaotic_orbit_is_not_given_digits_that_are_not_known(arithmetic: str) -> None:
     """Symplectic Euler at h = 2 is the standard map with K = 4: a digit is lost a step or two."""

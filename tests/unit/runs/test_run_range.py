@@ -206,6 +206,7 @@ def test_the_extremes_of_a_series_are_those_of_a_plain_loop(
     assert float(found.values["lambda"].value) == pytest.approx(lam, rel=1e-9)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(2)
 @pytest.mark.parametrize("name", arithmetic.names())
 def test_points_do_not_change_the_values(name: str) -> None:
@@ -270,6 +271,7 @@ print(*peak(500_000), *peak(2_000_000))
 """
 
 
+@pytest.mark.left_to_ci
 def test_memory_does_not_grow_with_the_number_of_steps() -> None:
     done = subprocess.run(
         [sys.executable, "-c", MEMORY], capture_output=True, text=True, check=True

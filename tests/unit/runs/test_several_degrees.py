@@ -106,6 +106,7 @@ def done(formula: str, scheme: str, name: str, digits: int = 25, **more: Any) ->
                observables=SEVERAL, **given)  # fmt: skip
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(4)
 @every_case
 @pytest.mark.parametrize("name", ["float64", "mpfr", "mpmath", "ball", "fixed"])

@@ -49,6 +49,7 @@ def outside(name: str, digits: int, steps: int = FAR) -> set[str]:
 both = pytest.mark.parametrize(("name", "digits"), [("fixed", 33), ("mpfr", 25)])
 
 
+@pytest.mark.left_to_ci
 @both
 def test_nothing_is_outside(name: str, digits: int) -> None:
     assert not outside(name, digits)

@@ -404,6 +404,7 @@ def models(value: object) -> set[type]:
     return found
 
 
+@pytest.mark.left_to_ci
 def test_every_result_is_the_same_after_a_round_trip_through_json(full_report: Report) -> None:
     report = full_report
     named = [m for file in RESULTS for m in vars(file).values()]

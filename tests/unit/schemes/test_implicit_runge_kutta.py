@@ -131,6 +131,7 @@ def test_order_and_area_are_proved_for_one_h(name: str, text: str) -> None:
         assert "exactly" in proof.reason
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(3)
 @pytest.mark.parametrize("error", [sympy.Rational(1, 10**11), -sympy.Rational(1, 10**6)])
 @pytest.mark.parametrize("name", TABLEAUS)

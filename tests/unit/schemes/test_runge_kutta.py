@@ -120,6 +120,7 @@ def test_the_map_and_delta_j_are_those_of_the_stages_by_hand(text: str, name: st
             assert abs(ball - theirs) < mpmath.mpf(10) ** -60
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(10)
 @every_scheme
 @every_system

@@ -219,6 +219,7 @@ def test_other_compositions_of_three_verlet_steps_have_order_2(steps) -> None:
 # -- planted errors -------------------------------------------------------------------------------
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(8)
 @pytest.mark.parametrize("error", [TINY, SMALL, -TINY], ids=["1e-11", "1e-6", "-1e-11"])
 @pytest.mark.parametrize("name", SPLITTINGS)

@@ -28,6 +28,7 @@ def true_values(step_map: StepMap) -> tuple[Fraction, Fraction]:
     return stepper.arithmetic.exact(p), stepper.arithmetic.exact(q)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(10)
 @pytest.mark.parametrize("text", SYSTEMS)
 @pytest.mark.parametrize("name", SPLITTINGS)
@@ -47,6 +48,7 @@ def test_runs_in_every_arithmetic_hold_the_true_values(name: str, text: str) -> 
         assert made.values["lambda"].value == "0"
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("name", ["yoshida4", "blanes-moan4", "triple-jump6"])
 def test_fixed_point_numbers_have_the_irrational_coefficients(name: str) -> None:
     hamiltonian = Hamiltonian.parse(SYSTEMS[0])

@@ -57,6 +57,7 @@ POLYNOMIAL = [
 ]
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("eta", [1, 2, 3, 4])
 @pytest.mark.parametrize("text", POLYNOMIAL)
 def test_delta_j_is_exactly_the_determinant_minus_one(text: str, eta: int) -> None:
@@ -81,6 +82,7 @@ SMOOTH = [
 ]
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(18)
 @pytest.mark.parametrize("eta", [1, 2, 3])
 @pytest.mark.parametrize("text", SMOOTH)

@@ -160,6 +160,7 @@ def test_gauss_methods_are_proved_for_every_h(name: str) -> None:
     assert all(c.holds and c.residue == "0" for c in proof.conditions)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(17)
 @pytest.mark.parametrize("text", [*NONLINEAR.values(), "p**2*q**3", "cos(p + q)", "exp(p*q)"])
 @pytest.mark.parametrize("name", ["euler", "rk4", "radau IIA", "lobatto IIIA", "gauss4", "gauss6"])
@@ -186,6 +187,7 @@ def test_an_involved_h_takes_no_time() -> None:
 # -- planted errors -------------------------------------------------------------------------------
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(4)
 @pytest.mark.parametrize(
     "error", [R(1, 10**6), R(1, 10**11), -R(1, 10**40), sympy.sqrt(2) / 10**11]

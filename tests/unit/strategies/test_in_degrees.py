@@ -65,6 +65,7 @@ def test_time_and_parameters_are_drawn_too(degrees: int) -> None:
         assert not h.symbols
 
 
+@pytest.mark.left_to_ci
 def test_the_simplest_are_oscillators() -> None:
     two = "p1**2/2 + p2**2/2 + q1**2/2 + q2**2/2"
     assert shrunk(s.hamiltonians(degrees=2)).formula == two

@@ -355,6 +355,7 @@ def uses(function: Any) -> Callable[[Hamiltonian], bool]:
     return lambda h: bool(h.exact.has(function))
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize(
     ("strategy", "holds", "simplest"),
     [

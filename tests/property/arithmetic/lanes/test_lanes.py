@@ -108,6 +108,7 @@ def operands(width: int, seed: int, count: int) -> list[Any]:
     ]
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(3)
 @pytest.mark.parametrize("way", IN_LANES)
 @pytest.mark.parametrize("width", WIDTHS)
@@ -138,6 +139,7 @@ WAYS = [(width, way) for width in WIDTHS[:4] for way in IN_LANES]
 WAYS = [x for x in WAYS if x[1] == IN_LANES[0] or x[0] in (WIDTHS[0], WIDTHS[3])]
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(5)
 @pytest.mark.parametrize(("width", "way"), WAYS)
 @pytest.mark.parametrize("name", FUNCTIONS)
@@ -148,6 +150,7 @@ def test_functions_have_the_bits_of_one_orbit(name: str, width: int, way: str) -
 # -- controls -------------------------------------------------------------------------------------
 
 
+@pytest.mark.left_to_ci
 def test_lanes_that_never_ask_for_the_last_bit_are_caught(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where all are taken to be sure, one in a thousand arguments or so is rounded otherwise."""
     monkeypatch.setattr(circle, "lost_by_one", lambda width: 0)
@@ -196,6 +199,7 @@ def test_exp_that_never_asks_for_the_last_bit_is_caught(monkeypatch: pytest.Monk
     assert first_differing(pair, [(number(draws.bits(116), 128),) for _ in range(20_000)])
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(3)
 @pytest.mark.parametrize("name", ["circle", "exp", "sinh", "sqrt", "inverse"])
 def test_most_lanes_do_not_ask_one_orbit(name: str, monkeypatch: pytest.MonkeyPatch) -> None:

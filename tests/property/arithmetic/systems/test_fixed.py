@@ -49,6 +49,7 @@ powers = near("octave", 256 * 70) | near("octave", 3 * 256) | shapes
 POINTS = {"sin": angles, "cos": angles, "exp": powers, "sinh": powers, "cosh": powers}
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(3)
 @pytest.mark.parametrize("form", ALL_FORMATS, ids=lambda form: form.width)
 def test_operations_are_right_where_carries_run_through_all_limbs(
@@ -114,6 +115,7 @@ def test_every_function_that_is_compiled_is_checked() -> None:
     assert all(f"{name}(" in sources for name in translate.FUNCTIONS if name != "cos_sin")
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(3)
 @pytest.mark.parametrize("kind", KINDS)
 @drawn(150)
@@ -124,6 +126,7 @@ def test_functions_are_within_what_is_stated_or_refused(kind: str, data: st.Data
         fixed_checks.check_function(form, kind, x.raw(form.width))
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("kind", KINDS)
 def test_functions_are_right_at_the_ends_of_the_format_and_around_0(kind: str) -> None:
     for form in FORMATS:
@@ -150,6 +153,7 @@ def test_functions_are_given_up_to_their_borders_and_refused_beyond(
                     fixed_checks.check_function(form, kind, raw)
 
 
+@pytest.mark.left_to_ci
 def test_every_entry_of_the_tables_is_right() -> None:
     """Those of sines are of a turn and a quarter; the last of them are for cosines alone."""
     for form in FORMATS:
@@ -171,6 +175,7 @@ def test_the_logarithm_is_right_just_beside_every_power_of_two() -> None:
                     fixed_checks.check_function(form, "log", round(x * 2**form.bits))
 
 
+@pytest.mark.left_to_ci
 def test_cos_sin_is_cos_and_sin() -> None:
     for form in FORMATS:
         for shape in HARD:

@@ -74,6 +74,7 @@ def test_without_a_loss_every_check_passes(check: Callable[[Format], None]) -> N
     check(fresh())
 
 
+@pytest.mark.left_to_ci
 def test_products_that_are_called_are_those_that_are_inline(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -252,6 +253,7 @@ def test_an_iteration_that_ends_too_early_is_caught(
 # -- bounds ---------------------------------------------------------------------------------------
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("kind", ["mul", *fixed_checks.CALLS])
 def test_a_bound_that_is_half_of_what_it_should_be_is_caught(
     monkeypatch: pytest.MonkeyPatch, kind: str

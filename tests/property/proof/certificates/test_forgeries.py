@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from fractions import Fraction
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -26,6 +27,7 @@ def test_a_certificate_is_accepted_and_says_the_truth(data: Data) -> None:
     assert true(data)
 
 
+@pytest.mark.left_to_ci
 def test_of_a_sample_of_the_campaigns_mutants_none_is_accepted_that_is_false() -> None:
     answers, slowest, wrong = campaign(60, seed=20)
     assert not wrong

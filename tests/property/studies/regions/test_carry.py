@@ -2,6 +2,7 @@
 
 from fractions import Fraction
 
+import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
@@ -31,6 +32,7 @@ def outlines(draw: st.DrawFn) -> tuple[Outline, tuple[float, float]]:
     return polygon(corners).outlines[0], (float(q), float(p))
 
 
+@pytest.mark.left_to_ci
 @drawn(16)
 @given(polynomials(degree=4, most_terms=3), schemes, outlines(), st.integers(1, 6))
 def test_the_change_of_area_is_the_mean_of_lambda(

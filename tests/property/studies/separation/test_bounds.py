@@ -6,6 +6,7 @@ The oracle is in rationals (`tests.helpers.exact_separation`), or has more digit
 from fractions import Fraction
 from typing import Any
 
+import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
@@ -171,6 +172,7 @@ def test_a_counted_bound_is_that_of_n_roundings_and_none_beyond_what_it_speaks_o
     assert found == (most if 100 * most <= 1 else None)
 
 
+@pytest.mark.left_to_ci
 @few
 @given(deltas, st.sampled_from(["1", "7", "200", "40000"]), st.integers(2, 30))
 def test_what_fixed_point_cannot_follow_is_followed_by_mpfr(

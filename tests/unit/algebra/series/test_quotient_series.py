@@ -45,6 +45,7 @@ def test_what_is_no_such_quotient_has_none(formula: str) -> None:
     assert series(formula, 4) is None
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(3)
 @pytest.mark.parametrize("n", range(6))
 def test_a_gauss_step_of_a_quadratic_h_has_the_coefficients_that_derivatives_give(n: int) -> None:

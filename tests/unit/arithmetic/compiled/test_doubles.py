@@ -25,6 +25,7 @@ def chain(scheme: str, n: int) -> tuple[Kernel, list[Any]]:
     return kernel, [float(x) for x in (*run.inputs(kernel, 0).values(), *point.values())]
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(2)
 @pytest.mark.parametrize("scheme", ["stormer-verlet", "lie2", "rk4"])
 def test_a_long_kernel_has_the_bits_of_numba(scheme: str) -> None:
@@ -45,6 +46,7 @@ PLANE = {
 }
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(4)
 @pytest.mark.parametrize("text", PLANE.values(), ids=PLANE)
 @pytest.mark.parametrize("scheme", ["lie2", "implicit-midpoint", "gauss4"])

@@ -34,6 +34,7 @@ SMOOTH = {
 }
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("ripple", SMOOTH.values(), ids=SMOOTH)
 def test_a_scheme_that_satisfies_criterion_2_or_is_not_consistent_is_no_counterexample(
     ripple: str,
@@ -120,6 +121,7 @@ def test_the_terms_of_the_step_in_h_are_not_the_identity() -> None:
     assert refused(matrix_vector.near_identity(start=1))
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("formula", ["p**2/2 + q**2/2", "p**2/2 + q**4/4"])
 def test_a_step_that_changes_areas_is_no_example_of_criterion_1(formula: str) -> None:
     assert refused(area_criteria.definition(formula))

@@ -126,6 +126,7 @@ def test_every_property_of_time_has_a_planted_error() -> None:
     assert {name for name, _, _ in IN_TIME} >= set(OF_TIME_ALONE)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(118)
 @pytest.mark.parametrize("name", properties.names())
 @pytest.mark.parametrize("scheme", ["lie3", "rk4", "ruth3", "gauss4", "implicit-symplectic-euler"])

@@ -277,6 +277,7 @@ def test_a_property_holds_or_does_not_speak(name: str, scheme: str) -> None:
     properties.get(name).holds(example_of(scheme))
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("name", properties.names())
 @pytest.mark.parametrize(
     "hamiltonian", ["p", "q**2", "p*q", "-p**2 - cos(q)", "exp(p + q)", "p**2 + 1/(1 + q**2)"]

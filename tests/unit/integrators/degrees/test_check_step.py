@@ -190,6 +190,7 @@ def test_rounded_coefficients_keep_the_order_that_they_are_meant_for() -> None:
     assert (wrong.verdict, wrong.convergence_order) == ("REFUTED", 0)
 
 
+@pytest.mark.left_to_ci
 def test_what_compares_numbers_is_measured() -> None:
     right, wrong = checked(midpoint, order=2, symplectic=True), checked(trapezoid)
     assert (right.verdict, right.how, right.symplectic) == ("MEASURED", "duals", True)

@@ -56,6 +56,7 @@ def found(step: Step, formula: str = known.HENON, **claims: Any) -> StepFinding:
     return check_step(made, Hamiltonian.parse(formula), Claims(**claims))
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize(
     ("step", "order", "symplectic"),
     [(known.euler, 1, False), (known.verlet, 2, True), (known.rk4, 4, False),

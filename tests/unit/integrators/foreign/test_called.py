@@ -70,6 +70,7 @@ def checked(path: str, name: str, claims: Claims, formula: str = "p**2/2 - cos(q
     return check_integrator(step, Hamiltonian.parse(formula), claims)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("name", OF_C)
 def test_a_step_in_c_is_measured_to_the_digits_of_its_type(name: str, tmp_path: Path) -> None:
@@ -84,6 +85,7 @@ def test_a_step_in_c_is_measured_to_the_digits_of_its_type(name: str, tmp_path: 
     assert checked(path, name, Claims(order=3)).verdict is Verdict.REFUTED
 
 
+@pytest.mark.left_to_ci
 def test_a_step_of_double_doubles_is_measured_to_their_digits(tmp_path: Path) -> None:
     path = library(tmp_path, "step.c", OF_TWO, "-ffp-contract=off", "-lm")
     found = checked(path, "double-double", Claims(order=2, symplectic=True), "p**2/2 + q**4/4")
@@ -92,6 +94,7 @@ def test_a_step_of_double_doubles_is_measured_to_their_digits(tmp_path: Path) ->
     assert found.probe_error < NOISE["double-double"]
 
 
+@pytest.mark.left_to_ci
 def test_what_a_double_does_not_show_a_longer_number_does(tmp_path: Path) -> None:
     """An area defect of 10⁻¹⁵ of each step."""
     spoilt = "\n    p[0] *= 1 + 1e-15 * {h};\n}}\n".format
@@ -148,12 +151,14 @@ def program(mode: str, claims: Claims = Claims(order=2)) -> Finding:  # noqa: B0
     return check_integrator(of_command(command, DOUBLE, 60), PENDULUM, claims)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("mode", ["right", "hexadecimal"])
 def test_a_program_that_answers_lines_is_measured(mode: str) -> None:
     found = program(mode)
     assert (found.verdict, found.convergence_order) == (Verdict.MEASURED, 2), found.reason
 
 
+@pytest.mark.left_to_ci
 def test_a_program_of_order_1_is_refuted_with_a_counterexample() -> None:
     found = program("order-1")
     assert found.verdict is Verdict.REFUTED

@@ -44,6 +44,7 @@ def test_every_description_is_read_and_has_plain_words() -> None:
         assert found.language == "python" or found.ran, f"{name}: run by whom, or why not"
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize(
     ("name", "table"), TABLES, ids=[f"{n}-{k}" for k, (n, _) in enumerate(TABLES)]
 )

@@ -43,6 +43,7 @@ def test_every_file_is_read_and_names_its_version_and_where_it_was_read() -> Non
             assert entry.read, entry.name
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("path", files(), ids=lambda path: path.stem)
 def test_what_is_refuted_is_told_of_in_a_finding_or_is_digits(path: Path) -> None:
     claims = of_some(path)

@@ -43,6 +43,7 @@ def test_no_claim_of_a_right_table_is_refuted(name: str) -> None:
     assert all(claim.severity is claim.nearest is claim.cost is None for claim in found)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(11)
 @pytest.mark.parametrize("name", OF_FILE)
 def test_an_order_that_is_one_too_high_is_refuted(name: str) -> None:
@@ -267,6 +268,7 @@ def test_digits_below_a_double_are_told_apart_and_cost_nothing() -> None:
     assert found.cost.double is False
 
 
+@pytest.mark.left_to_ci
 def test_an_order_8_tableau_of_doubles_is_judged_and_its_wrong_digit_named() -> None:
     table = dict(ORDER_8)
     begun = time.process_time()

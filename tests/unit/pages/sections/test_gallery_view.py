@@ -260,6 +260,7 @@ def test_hostile_text_stays_text_in_a_repository(text: str) -> None:
     assert not list(strange(render_text(report(gallery=evil(text)))[0]))
 
 
+@pytest.mark.left_to_ci
 def test_the_text_shows_what_the_page_shows() -> None:
     made = report(gallery=gallery(shown(), shown(CROSSED, meaningless_after=100, value=1.0)))
     heads, labels = outline_of_the_page(made)

@@ -48,6 +48,7 @@ def rows_of(page: str) -> int:
     return len(re.findall(r'<tr><th scope="row">', page))
 
 
+@pytest.mark.left_to_ci
 def test_a_table_has_room_for_so_many_rows_and_the_page_says_of_how_many() -> None:
     page = text_of(page_with(400))
     assert "All 1,200 runs of lie2" in page

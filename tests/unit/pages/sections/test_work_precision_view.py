@@ -129,6 +129,7 @@ def test_peers_stand_beside_the_schemes_or_are_named_as_left_out() -> None:
     assert "Not drawn: DOP853 (scipy is not installed)." in left
 
 
+@pytest.mark.left_to_ci
 def test_number_systems_have_a_table_and_a_panel_of_their_own() -> None:
     page = page_of(ladder(), systems=(system(), system(arithmetic="fixed", seconds_median=1e-4)))
     assert "Certified digits of the end state" in text_of(page)
@@ -169,6 +170,7 @@ def source(svg: Any) -> str:
     return ElementTree.tostring(svg, encoding="unicode")
 
 
+@pytest.mark.left_to_ci
 def test_more_schemes_than_colours_are_all_drawn() -> None:
     many = [ladder(f"scheme{k}") for k in range(11)]
     shown = "".join(figures(page_of(*many))[0].itertext())

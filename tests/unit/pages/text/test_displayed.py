@@ -111,6 +111,7 @@ def displays(texts: Iterable[Prose]) -> list[str]:
     return [str(p) for text in texts for p in text.parts if isinstance(p, Display)]
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(16)
 @pytest.mark.parametrize("name", names())
 def test_every_formula_of_an_argument_is_set_whole(name: str) -> None:
@@ -140,6 +141,7 @@ _SPELT = str.maketrans(
 )  # fmt: skip
 
 
+@pytest.mark.left_to_ci
 @given(st.text(max_size=40))
 def test_any_text_is_set_and_escaped(text: str) -> None:
     def tags(node: Node) -> set[str]:

@@ -27,6 +27,7 @@ def parts(text: str) -> tuple[str, str, str]:
     return before, rest[0], rest[1]
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(14)
 @pytest.mark.parametrize("name", ALL)
 def test_nothing_stands_between_what_is_claimed_and_what_is_assumed(name: str) -> None:

@@ -63,6 +63,7 @@ def test_a_partner_is_kept() -> None:
     assert "(Cosine 5, (Name 2)); (Sine 4, (Name 2))" in export("pendulum_lie2").text
 
 
+@pytest.mark.left_to_ci
 def test_functions_nested_too_deeply_are_refused_in_one_line() -> None:
     def nested(depth: int) -> str:
         return "q" if not depth else f"sin({nested(depth - 1)})"

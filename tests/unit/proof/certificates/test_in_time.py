@@ -96,6 +96,7 @@ def test_a_stage_in_time_has_a_time_and_no_other_has() -> None:
     refused(data | {"time_dependent": False}, "a row has 4 numbers")
 
 
+@pytest.mark.left_to_ci
 def test_what_is_printed_names_time_and_says_the_truth() -> None:
     said = established(check(of_every_in_time("stormer-verlet")))
     assert said.hamiltonian == "every smooth H = T(p, t) + V(q, t)"

@@ -110,6 +110,7 @@ def test_what_is_symplectic_is_so_in_steps_too(formula: str, scheme: str) -> Non
     assert max(abs(x) for x in own.values()) < mp.mpf(10) ** -25  # the midpoint's 40 iterations
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(2)
 @pytest.mark.parametrize("formula", ENERGIES)
 def test_every_scheme_has_the_order_that_it_claims(formula: str) -> None:

@@ -62,6 +62,7 @@ def found_in(folder: Path) -> bool:
         return True
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(3)
 @pytest.mark.parametrize("name", [
     "mine.json", "mine-runs.csv", "mine-flow.csv", "mine-proofs.csv", "leaves.json",
@@ -124,6 +125,7 @@ def test_a_number_changed_in_every_file_alike_is_found_by_computing_it(
 # -- what must be so without computing ------------------------------------------------------------
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(15)
 @pytest.mark.parametrize(
     ("place", "value", "says"),

@@ -59,6 +59,7 @@ def again(of: Data, kind: str, index: int) -> Findings:
     return recomputed(of, "file", kind, index)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(3)
 @pytest.mark.parametrize("name", ["mine", "leaves", "other", "not-separable", "driven"])
 def test_all_that_is_made_is_found_again(name: str) -> None:
@@ -83,6 +84,7 @@ def cells(of: Data, kind: str) -> Iterator[list[Any]]:
                     yield [KINDS[kind], k, "rows", j, name]
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("kind", ["run", "flow"])
 def test_any_other_digit_of_any_number_is_found(kind: str) -> None:
     draw, of = random.Random(5), data("mine")  # noqa: S311 - no secret

@@ -126,6 +126,7 @@ def soft(folder: Path, rows: str) -> Compared:
     return compare(ours, read(path, ours, given, {}))
 
 
+@pytest.mark.left_to_ci
 def test_where_a_run_is_lost_nothing_is_said(tmp_path: Path) -> None:
     """Neither of a number that is not finite nor of its digits."""
     found = soft(tmp_path, "0,0,1\n4000,nan,7")

@@ -149,6 +149,7 @@ def test_what_is_no_table_is_one_line_that_says_why(
     assert len(str(caught.value)) < 300
 
 
+@pytest.mark.left_to_ci
 def test_a_long_table_is_not_held_in_memory(table: Callable[..., Theirs]) -> None:
     lines = "".join(f"{n},0.123456789012345,1.23456789012345\n" for n in range(10_000, 40_000))
     content = (GOOD + lines).encode()

@@ -50,6 +50,7 @@ def of_schema(path: Path, name: str) -> bool:
     return name[0] == "m" or path.name.startswith("several-") == (name == OF_DEGREES)
 
 
+@pytest.mark.left_to_ci
 @every_schema
 def test_it_is_a_schema_and_the_committed_files_are_of_it(name: str) -> None:
     jsonschema = pytest.importorskip("jsonschema")

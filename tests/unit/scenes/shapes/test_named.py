@@ -124,6 +124,7 @@ def test_float64_agrees_with_thirty_digits(outline: Outline) -> None:
             assert abs(mp.mpf(float(y)) - exact[1]) < 1e-15, s
 
 
+@pytest.mark.left_to_ci
 @every_outline
 def test_the_outline_is_simple_and_counterclockwise(outline: Outline) -> None:
     points = polyline(outline, 600)

@@ -136,6 +136,7 @@ def test_the_code_is_the_map(
     check(language(system, name), system, name)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(5)
 @pytest.mark.parametrize(("system", "name"), CASES)
 def test_the_c_code_is_the_map(
@@ -198,6 +199,7 @@ def test_latex_has_the_parts_the_jacobian_and_delta_j() -> None:
     assert "in [6.7560359597982881" in text
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("name", "order"), [("lie2", 2), ("stormer-verlet", 2), ("forest-ruth", 4)]

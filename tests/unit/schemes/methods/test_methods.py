@@ -80,6 +80,7 @@ def test_every_order_from_1_to_100_is_a_scheme(eta: int) -> None:
 # -- claims -----------------------------------------------------------------------------------
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(90)
 @pytest.mark.parametrize("system", SYSTEMS)
 @pytest.mark.parametrize("name", NAMES)

@@ -52,6 +52,7 @@ def triple(root: int, steps: list[str]) -> list[str]:
     return [f"{size}*{step}" for size in (outer, inner, outer) for step in steps]
 
 
+@pytest.mark.left_to_ci
 def test_order_8_is_proved_though_no_condition_beyond_it_is_known() -> None:
     steps = triple(7, triple(5, triple(3, ["1"])))
     parts = "; ".join(f"kick {x}/2; drift {x}; kick {x}/2" for x in steps)

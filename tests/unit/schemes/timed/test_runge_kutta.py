@@ -58,6 +58,7 @@ def by_series(rows, weights, clock, kind: str, most: int) -> int:
     return min(agreement(runge_kutta_step(x, *exact, most), flow(x, most)) for x in points)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(6)
 @pytest.mark.parametrize("seed", range(20))
 def test_the_order_is_that_of_the_steps_series(seed: int) -> None:

@@ -76,6 +76,7 @@ def drawn(seed: int) -> list[tuple[str, Fraction, Fraction]]:
     return [(*part, s) for part, s in zip(parts, clock, strict=True)]
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(10)
 @pytest.mark.parametrize("seed", range(24))
 def test_the_order_is_that_of_the_steps_series(seed: int) -> None:
@@ -114,6 +115,7 @@ def test_a_kick_may_be_parted_into_neighbours_of_other_times(order: tuple[int, .
 # -- what is known --------------------------------------------------------------------------------
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("name", SPLITTINGS)
 def test_with_right_clocks_every_splitting_keeps_its_order(name: str) -> None:
     scheme = get(name)

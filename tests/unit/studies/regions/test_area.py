@@ -71,6 +71,7 @@ CURVES = [
 ]
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize(("outline", "times"), CURVES, ids=["circle", "ellipse", "cardioid"])
 def test_smooth_curves_have_their_areas_to_all_digits(outline: Outline, times: Fraction) -> None:
     true = pi(times)
@@ -81,6 +82,7 @@ def test_smooth_curves_have_their_areas_to_all_digits(outline: Outline, times: F
     assert abs(fine.area - true) <= fine.area * fine.error
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("corners", [TRIANGLE, ZIGZAG, ((-1, -1), (1, -1), (1, 1), (-1, 1))])
 def test_polygons_have_the_area_of_the_shoelace_formula(corners: Any) -> None:
     for some, sign in ((corners, 1), (corners[::-1], -1)):
@@ -191,6 +193,7 @@ CARRIED = [
 ]
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(2)
 @pytest.mark.parametrize(("place", "stepped"), CARRIED)
 def test_float64_lies_within_its_bound_of_33_digits(place: Any, stepped: Any) -> None:
@@ -207,6 +210,7 @@ def test_float64_lies_within_its_bound_of_33_digits(place: Any, stepped: Any) ->
     assert true.rounded < found.rounded / 10**9
 
 
+@pytest.mark.left_to_ci
 def test_what_rounding_leaves_is_within_its_bound_after_every_cut_too() -> None:
     """No cut makes a difference smaller that is rounding's: it is cut until the nodes are used."""
     outline, given = placed(CIRCLE, *TINY), ("lie3", Fraction(1, 10), 20, PENDULUM)
@@ -307,6 +311,7 @@ def test_steps_that_are_wrong_by_one_are_seen() -> None:
     assert abs(found.change - linear_determinant("lie3", Fraction(1, 20), 41)) <= found.error
 
 
+@pytest.mark.left_to_ci
 def test_a_wrong_number_of_the_rule_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     right = area_probe.rule
 

@@ -178,6 +178,7 @@ def test_a_clockwise_path_has_a_positive_area_and_the_same_change() -> None:
 # -- what is no result ----------------------------------------------------------------------------
 
 
+@pytest.mark.left_to_ci
 def test_where_float64_cannot_tell_the_change_33_digits_do() -> None:
     found = carried(scheme="lie6", h="0.001", steps=3, mean_lambda=False)
     assert (found.arithmetic, found.digits) == ("fixed", 33)

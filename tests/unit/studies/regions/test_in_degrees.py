@@ -78,6 +78,7 @@ def product(x: list[list[Fraction]], y: list[list[Fraction]]) -> list[list[Fract
     ]
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(3)
 @pytest.mark.parametrize("plane", [1, 2])
 @pytest.mark.parametrize("digits", [17, 40])
@@ -106,6 +107,7 @@ def test_a_symplectic_map_keeps_it_within_the_error(scheme: str) -> None:
     assert abs(shares[1]) > Fraction(1, 10**4)  # it is the sum that is kept
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(2)
 @pytest.mark.parametrize("scheme", ["lie2", "lie3", "rk4"])
 def test_the_change_is_the_mean_of_the_defect(scheme: str) -> None:

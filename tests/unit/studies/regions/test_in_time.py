@@ -47,6 +47,7 @@ def test_another_start_of_the_clock_is_another_map() -> None:
     assert np.abs(here["p"] - there["p"]).min() > 1e-3
 
 
+@pytest.mark.left_to_ci
 def test_the_exact_flow_of_many_points_is_that_of_each() -> None:
     times = [Fraction(-1), Fraction(0), Fraction(3, 2), Fraction(5)]
     found = exact_points(DRIVEN, P, Q, times, T0)

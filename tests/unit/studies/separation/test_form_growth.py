@@ -71,6 +71,7 @@ def tangent(
     return found.tangent
 
 
+@pytest.mark.left_to_ci
 def test_in_chaos_the_growth_is_the_motion_s() -> None:
     found = tangent(HENON, "rk4", "0.2", 600, q=["0", "-0.15"], p=["0.5277", "0"])
     assert (found.motion, found.cause, found.law.name) == ("exponential", "motion", "exponential")
@@ -85,6 +86,7 @@ def test_a_scheme_that_amplifies_is_told_from_it() -> None:
     assert "the scheme's at this step size" in found.meaning
 
 
+@pytest.mark.left_to_ci
 def test_on_a_quasi_periodic_orbit_a_power_is_measured_and_said_to_be() -> None:
     found = tangent(HENON, "lie2", "0.05", 2000, q=["0.3", "-0.1"], p=["0.1", "0.2"])
     assert (found.motion, found.cause) == ("polynomial", None)

@@ -96,6 +96,7 @@ def wrong_parts(
     return found
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("name", CASES)
 def test_every_part_of_every_entry_agrees_with_the_oracle_to_30_digits(name: str) -> None:
     found, links = made(name)
@@ -154,6 +155,7 @@ def test_an_orbit_that_escapes_says_at_which_step() -> None:
     assert before.status == "finished"
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("system", "parameters", "scheme", "q", "p"),
@@ -226,6 +228,7 @@ def test_few_digits_give_wide_bounds_that_hold_all_the_same() -> None:
         assert bound < 10**8 * max(apart), "not so wide that it says nothing"
 
 
+@pytest.mark.left_to_ci
 def test_where_w_is_large_nothing_is_counted_and_a_rerun_estimates() -> None:
     start = {"p1": "0.5277", "p2": "0", "q1": "0", "q2": "-0.15", "h": "0.2"}
     found = form_chains(HENON, "rk4", {n: Fraction(x) for n, x in start.items()}, 700, 8)
@@ -250,6 +253,7 @@ class KeepsAll(Keeper):
         return self.kept.get(label)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("name", ["henon-heiles", "driven-henon-heiles"])
 def test_an_interrupted_run_goes_on_with_the_same_bits(name: str) -> None:

@@ -86,6 +86,7 @@ def test_the_number_of_steps_is_exact_where_h_divides_the_time() -> None:
     assert [count for _, count in grid(sizes, None, "0.7")] == [7, 700, 2]
 
 
+@pytest.mark.left_to_ci
 def test_the_crossover_of_lie4_on_duffing_lies_where_its_parts_are_equal() -> None:
     found = separate_grid(DUFFING, "lie4", q="1.5", p=0, step_sizes=SIZES, time=10)
     assert found.plain.bracket == ("0.0005", "0.001")

@@ -49,6 +49,7 @@ def test_the_working_value_is_what_run_reports_for_float64() -> None:
     assert abs(error) <= Fraction(reported.values["lambda_plain"].bound)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("hamiltonian", [DUFFING, PENDULUM], ids=["duffing", "pendulum"])
 def test_fixed_and_mpfr_find_the_same_parts(hamiltonian: Hamiltonian) -> None:
     start = {"p": Fraction(1, 3), "q": Fraction(3, 2), "h": Fraction(1, 1000)}
@@ -196,6 +197,7 @@ def test_where_rounding_cannot_be_counted_a_rerun_estimates_it() -> None:
         assert abs(x - y) <= dx + dy, name
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("text", "at"),

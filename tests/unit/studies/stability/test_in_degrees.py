@@ -38,6 +38,7 @@ def test_a_step_that_is_too_large_is_the_schemes_fault() -> None:
     assert found.kind == "unstable: scheme"
 
 
+@pytest.mark.left_to_ci
 def test_chaos_of_the_exact_motion_is_no_schemes_fault() -> None:
     """float64 parts from high precision: so do exact neighbours, without any rounding."""
     found = judged("henon-heiles", "stormer-verlet", "0.1", 320, **CHAOTIC)

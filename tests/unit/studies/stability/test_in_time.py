@@ -83,6 +83,7 @@ def test_a_shift_of_t0_and_of_h_together_changes_no_verdict(scheme: str) -> None
     assert (one.kind, one.step) == (other.kind, other.step)
 
 
+@pytest.mark.left_to_ci
 def test_a_chaotic_run_parts_by_rounding_and_its_neighbour_does_too() -> None:
     found = judged(PENDULUM, "stormer-verlet", "0.05", 3_300, q="3", p="0.2")
     assert found.kind == "unstable: arithmetic"
@@ -126,6 +127,7 @@ def test_what_is_not_followed_to_its_end_accuses_nobody(monkeypatch: pytest.Monk
     assert "was followed to t = " in str(leaves.detail)
 
 
+@pytest.mark.left_to_ci
 def test_the_largest_step_of_a_forced_oscillator_is_that_without_the_force() -> None:
     exact = Hamiltonian.parse("p**2/2 + q**2/2 - q*cos(t/5)")
     found = largest_step(

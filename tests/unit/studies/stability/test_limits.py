@@ -14,6 +14,7 @@ HARMONIC = Hamiltonian.parse("p**2/2 + w**2*q**2/2", {"w": "3"})
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + d*q**4/4", {"d": "1"})
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(3)
 @pytest.mark.parametrize("scheme", ["lie3", "lie4", "symplectic-euler", "stormer-verlet", "rk4"])
 def test_on_a_linear_problem_the_largest_step_is_that_of_linear_theory(scheme: str) -> None:

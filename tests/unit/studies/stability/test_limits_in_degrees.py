@@ -21,6 +21,7 @@ REGULAR: dict[str, Any] = {
 }
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize(("scheme", "limit"), [("stormer-verlet", 2), ("rk4", 8**0.5)])
 def test_on_a_quadratic_h_the_largest_step_is_that_of_its_fastest_normal_mode(
     scheme: str, limit: float
@@ -41,6 +42,7 @@ def test_a_scheme_that_linear_theory_allows_no_step_is_stopped_by_the_time_alone
     assert Fraction(long.bounded) < Fraction(short.bounded)
 
 
+@pytest.mark.left_to_ci
 def test_criteria_beside_the_bounds_make_the_step_smaller_where_they_are_not_kept() -> None:
     """A symplectic scheme keeps the form at every step size; its energy error is of order 2."""
     most, finer = Fraction(1, 100), Fraction(1, 400)
@@ -70,6 +72,7 @@ def test_an_exact_motion_that_leaves_has_no_largest_step() -> None:
     assert "times as far out" in found.detail
 
 
+@pytest.mark.left_to_ci
 def test_the_map_turns_at_the_line_of_linear_theory() -> None:
     values = [Fraction(0), Fraction(4)]  # frequencies 1 and 1, 1 and √17
     sizes = [Fraction(n, 100) for n in (47, 50, 195, 205)]

@@ -45,6 +45,7 @@ def found(
     return result
 
 
+@pytest.mark.left_to_ci
 def test_a_point_is_where_a_run_of_so_many_periods_ends(tmp_path: Path) -> None:
     result = found(tmp_path)
     for each in result.sections:
@@ -64,6 +65,7 @@ def test_a_point_is_where_a_run_of_so_many_periods_ends(tmp_path: Path) -> None:
                     assert abs(Fraction(shown) - true) <= Fraction(1, 10**6) * (1 + abs(true))
 
 
+@pytest.mark.left_to_ci
 def test_what_more_digits_do_not_confirm_is_not_called_known(tmp_path: Path) -> None:
     """Near the saddle an orbit loses its digits; in the middle of the island it keeps them."""
     few, many = (found(tmp_path, periods=LONG, digits=digits) for digits in (17, 80))
@@ -82,6 +84,7 @@ def test_what_more_digits_do_not_confirm_is_not_called_known(tmp_path: Path) -> 
         assert wild.points[LONG] != clear.points[LONG]
 
 
+@pytest.mark.left_to_ci
 def test_an_orbit_that_leaves_ends_there(tmp_path: Path) -> None:
     result = found(tmp_path, hamiltonian="p**2/2 - q**4*(2 + cos(2*pi*t))", periods=40)
     for each in result.sections:
@@ -89,6 +92,7 @@ def test_an_orbit_that_leaves_ends_there(tmp_path: Path) -> None:
         assert len(each.orbits[1].points) < 41
 
 
+@pytest.mark.left_to_ci
 def test_q_is_drawn_within_a_turn_where_it_is_an_angle(tmp_path: Path) -> None:
     assert found(tmp_path).q_is_angle
     assert not found(tmp_path, hamiltonian="p**2/2 + q**2 + q*cos(2*pi*t)").q_is_angle

@@ -43,6 +43,7 @@ CASES = [("duffing", x) for x in (*SLOPES, *WRONG)]
 CASES += [("mathieu", x) for x in ("stormer-verlet", "rk4", WRONG[0])]
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(2)
 @pytest.mark.parametrize(("name", "scheme"), CASES)
 def test_right_clocks_keep_the_order_and_wrong_ones_leave_1(name: str, scheme: str) -> None:

@@ -113,6 +113,7 @@ def test_area_is_preserved_exactly_by_proof_and_what_floats_show_is_called_round
 EXPLICIT = [name for name in schemes.names() if schemes.get(name).explicit]
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("hamiltonian", [DUFFING, PENDULUM], ids=["duffing", "pendulum"])
 def test_every_scheme_has_the_order_that_it_claims(hamiltonian: Hamiltonian) -> None:
     of = problem(hamiltonian)

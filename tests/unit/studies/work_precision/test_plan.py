@@ -114,6 +114,7 @@ def test_peers_that_must_be_there_and_are_not_are_bad_input(
         plan_scenes([load(tmp_path, GOOD + "peers = true")])
 
 
+@pytest.mark.left_to_ci
 def test_without_peers_their_libraries_are_not_imported(tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
     path.write_text(GOOD + "peers = false\nrepeats = 1")
@@ -207,6 +208,7 @@ def test_the_table_shows_failed_runs_and_what_follows(scene_file: Path) -> None:
     assert "not drawn: DOP853 (the scene says `peers = false`)" in text
 
 
+@pytest.mark.left_to_ci
 def test_the_plot_is_written_as_one_svg(scene_file: Path, tmp_path: Path) -> None:
     from xml.etree import ElementTree
 

@@ -57,6 +57,7 @@ def test_each_planet_has_its_semi_major_axis(planet: int) -> None:
     assert 1 / (2 / distance - speed**2 / pull) == pytest.approx(PLANETS[planet], rel=0.02)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("scheme", ["stormer-verlet", "lie2"])
 def test_a_run_keeps_momentum_and_nearly_the_energy(scheme: str) -> None:
     found = verify.run(SUN.hamiltonian, scheme, q=list(SUN.q), p=list(SUN.p), step_size=10,

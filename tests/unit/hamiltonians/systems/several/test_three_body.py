@@ -41,6 +41,7 @@ def test_the_figure_eight_starts_as_it_is_published() -> None:
     assert EIGHT.p[:2] == EIGHT.p[2:4] == [-x / 2 for x in EIGHT.p[4:]]
 
 
+@pytest.mark.left_to_ci
 def test_after_a_period_the_figure_eight_is_where_it_began() -> None:
     start = [float(x) for x in (*EIGHT.q, *EIGHT.p)]
     end = after(EIGHT, PERIOD)
