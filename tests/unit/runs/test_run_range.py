@@ -267,7 +267,7 @@ def peak(steps):
     return own, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 series(500_000)  # compiles, which takes four times as long where it is traced
 peak(500_000)
-print(*peak(500_000), *peak(2_000_000))
+print(*peak(500_000), *peak(5_000_000))
 """
 
 

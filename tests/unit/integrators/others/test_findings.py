@@ -2,8 +2,6 @@
 
 import importlib.util
 import shutil
-from contextlib import redirect_stdout
-from multiprocessing import get_context
 from pathlib import Path
 
 import pytest
@@ -11,12 +9,11 @@ import pytest
 from tests.paths import ROOT
 from verify.errors import InputError
 from verify.integrators.others import libraries as others
-from verify.integrators.others.findings import confirmed, programs
 from verify.integrators.others.findings.changes import changed, entry_of
 from verify.integrators.others.findings.confirmed import NotConfirmedError, _shown, confirm
 from verify.integrators.others.findings.described import Changed, Description, descriptions, read
 from verify.integrators.others.findings.markdown import note
-from verify.integrators.others.findings.programs import Ran, run
+from verify.integrators.others.findings.programs import run
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
@@ -44,7 +41,6 @@ def test_every_description_is_read_and_has_plain_words() -> None:
         assert found.language == "python" or found.ran, f"{name}: run by whom, or why not"
 
 
-@pytest.mark.left_to_ci
 @pytest.mark.parametrize(
     ("name", "table"), TABLES, ids=[f"{n}-{k}" for k, (n, _) in enumerate(TABLES)]
 )
@@ -54,27 +50,8 @@ def test_each_table_shows_the_mistake_and_the_mend(name: str, table: Changed) ->
     assert bool(shown.mended) is bool(table.changes)
 
 
-def _print(program: str, path: Path) -> None:
-    with path.open("w", encoding="utf-8") as file, redirect_stdout(file):
-        exec(program, {"__name__": "__main__"})  # noqa: S102 - as `run` does
-
-
-def forked(program: str, path: Path) -> Ran:
-    """As `run`, by a fork of this process, which has imported the library: that takes longer than
-    the program."""
-    process = get_context("fork").Process(target=_print, args=(program, path))
-    process.start()
-    process.join()
-    printed = path.read_text(encoding="utf-8")
-    found = {name: float(order) for name, order in programs._ORDER.findall(printed)}
-    return Ran(printed.strip(), found, "failed" if process.exitcode else "")
-
-
 @pytest.mark.parametrize("name", OF_LIBRARIES)
-def test_each_program_of_a_library_that_is_installed_shows_it(
-    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(confirmed, "run", lambda program: forked(program, tmp_path / "printed"))
+def test_each_program_of_a_library_that_is_installed_shows_it(name: str) -> None:
     described = OF_LIBRARIES[name]
     (module,) = (
         others.get(x) for x in others.names() if described.library.split()[0] == others.get(x).TITLE
@@ -176,6 +153,8 @@ def test_changes_are_made_in_a_copy() -> None:
 
 
 def test_a_program_that_does_not_end_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
+    from verify.integrators.others.findings import programs
+
     monkeypatch.setattr(programs, "_SECONDS", 0.5)
     assert "does not end" in run("while True:\n    pass\n").failed
 
