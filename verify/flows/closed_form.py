@@ -70,7 +70,6 @@ def until(found: Callable[[], T | None], digits: int) -> T:
 
 def blow_up(motion: Motion, sign: int, digits: int) -> Fraction | None:
     """|t| at which the solution ends, forwards (1) or backwards (−1); None where it does not."""
-
     end_of = motion.blow_up
     if end_of is None:
         return None

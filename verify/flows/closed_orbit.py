@@ -24,7 +24,8 @@ from verify.algebra.formula import symbol
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.substitution import substitute
 from verify.errors import InputError
-from verify.flows.extrapolation import LOST, Flow, NoFlowError, Number, State, functions_at
+from verify.flows.extrapolation import LOST, Flow, NoFlowError, Number, State
+from verify.flows.functions import functions_at
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.periods import period_in
 from verify.hamiltonians.vector_field import VectorField

@@ -9,16 +9,13 @@ Where H depends on time a state is (p, q, t): with t' = 1 the system is autonomo
 takes its midpoints at t, t + h, t + 2h, …
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any
 
-from verify.algebra.ring import Poly, Ring
-from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import mpfr
+from verify.flows.functions import functions_at, gragg_rule
 from verify.hamiltonians.vector_field import VectorField
-from verify.kernels.step.lowering import Lowering
-from verify.kernels.step.program import Evaluator, Program
 from verify.prose import read_prose
 
 Number = Any  # gmpy2.mpfr, which has no type stubs
@@ -50,27 +47,6 @@ def columns_for(digits: int) -> int:
     return 6 + digits // 3
 
 
-def functions_at(
-    arithmetic: Arithmetic,
-    elements: Sequence[tuple[Ring, Poly]],
-    names: Sequence[str] = ("p", "q"),
-) -> Callable[..., tuple[Number, ...]]:
-    """(p, q) ↦ the values of ring elements in these names alone; call it inside the context."""
-    program = Program()
-    inputs = {name: program.input(name, static=False) for name in names}
-    roots = [Evaluator(program, ring, inputs, False).evaluate(x) for ring, x in elements]
-    lowering = Lowering(program, arithmetic.functions)
-    static, dynamic = lowering.lines(roots)
-    values = ", ".join(lowering.name(root) for root in roots)
-    lines = [f"def at({', '.join(names)}):", *(f"    {line}" for line in [*static, *dynamic])]
-    source = "\n".join([*lines, f"    return ({values},)", ""])
-    constants = lowering.named_constants(arithmetic.number)
-    at: Callable[..., tuple[Number, ...]] = arithmetic.compile(
-        source, "at", {**arithmetic.functions, **constants}
-    )
-    return at
-
-
 class Flow:
     """The exact flow of a vector field without symbols, to `digits` digits."""
 
@@ -80,7 +56,7 @@ class Flow:
         self.names: tuple[str, ...] = ("p", "q", "t") if self.timed else ("p", "q")
         elements = [(ring, -field.h_q), (ring, field.h_p)]
         self._slopes = functions_at(self.arithmetic, elements, self.names)
-        self._midpoint = self._midpoint_in_time if self.timed else self._midpoint_still
+        self._rule = gragg_rule(self.arithmetic, elements, self.names)
         self._tolerance = self.arithmetic.number(Fraction(1, 10 ** (digits + GUARD - LOST_DIGITS)))
         self._columns = columns_for(digits)
 
@@ -162,7 +138,7 @@ class Flow:
         """By Aitken and Neville's scheme in the steps' squares; None where it does not end."""
         above: list[State] = []
         for j in range(1, self._columns + 1):
-            row = [self._midpoint(z, time, 2 * j)]
+            row = [self._rule(*z, time, 2 * j)]
             for k, (p, q) in enumerate(above, start=1):
                 # (n_j / n_{j−k})² − 1 with n_j = 2 j, as a quotient of whole numbers
                 up, down = (j - k) ** 2, j**2 - (j - k) ** 2
@@ -176,34 +152,3 @@ class Flow:
                     return (p, q, z[2] + time) if self.timed else (p, q)
             above = row
         return None
-
-    def _midpoint_still(self, z: State, time: Number, count: int) -> State:
-        """Gragg's rule with so many steps, smoothed at its end."""
-        h = time / count
-        slopes = self._slopes
-        p0, q0 = z
-        dp, dq = slopes(p0, q0)
-        p1, q1 = p0 + h * dp, q0 + h * dq
-        twice = 2 * h
-        for _ in range(count - 1):
-            dp, dq = slopes(p1, q1)
-            p0, q0, p1, q1 = p1, q1, p0 + twice * dp, q0 + twice * dq
-        dp, dq = slopes(p1, q1)
-        return (p1 + p0 + h * dp) / 2, (q1 + q0 + h * dq) / 2
-
-    def _midpoint_in_time(self, z: State, time: Number, count: int) -> State:
-        """The same, each slope at its own time.
-
-        One loop for both, which hands on a time or none, takes an H without t 11 to 19 % longer.
-        """
-        h = time / count
-        slopes = self._slopes
-        p0, q0, t = z
-        dp, dq = slopes(p0, q0, t)
-        p1, q1 = p0 + h * dp, q0 + h * dq
-        twice = 2 * h
-        for k in range(1, count):
-            dp, dq = slopes(p1, q1, t + k * h)
-            p0, q0, p1, q1 = p1, q1, p0 + twice * dp, q0 + twice * dq
-        dp, dq = slopes(p1, q1, t + time)
-        return (p1 + p0 + h * dp) / 2, (q1 + q0 + h * dq) / 2

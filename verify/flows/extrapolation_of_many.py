@@ -15,7 +15,8 @@ from typing import Any
 from verify.arithmetic.float_context import WIDE
 from verify.arithmetic.number_system import Arithmetic, interpreted
 from verify.arithmetic.systems import float64
-from verify.flows.extrapolation import LOST, NoFlowError, functions_at
+from verify.flows.extrapolation import LOST, NoFlowError
+from verify.flows.functions import functions_at
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 

@@ -1,53 +1,82 @@
-"""Gragg's modified midpoint rule as one function, written for a field and an arithmetic.
+"""What a flow evaluates, written as functions for a field and an arithmetic.
 
-The slopes stand in its loop and each coordinate is a variable, which halves the time of a step of
-several coordinates; in the plane `verify.flows.extrapolation` calls them and loses little.
+Gragg's modified midpoint rule is one of them: the slopes stand in its loop and each coordinate is a
+variable, which halves the time of a step of several coordinates.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
 
 from verify.algebra.ring import Poly, Ring
-from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic
 from verify.kernels.step.lowering import Lowering
 from verify.kernels.step.program import Evaluator, Program
 
-Rule = Callable[..., tuple[Number, ...]]
+Elements = Sequence[tuple[Ring, Poly]]
+Function = Callable[..., tuple[Any, ...]]  # numbers of the arithmetic
 
 
-def gragg_rule(
-    arithmetic: Arithmetic, slopes: Sequence[tuple[Ring, Poly]], names: Sequence[str]
-) -> Rule:
-    """(z, h, count) ↦ where `count` steps of h lead, smoothed at the end.
+def functions_at(
+    arithmetic: Arithmetic, elements: Elements, names: Sequence[str] = ("p", "q")
+) -> Function:
+    """(p, q) ↦ the values of ring elements in these names alone; call it inside the context."""
+    own = _Written.of(arithmetic, elements, names)
+    lines = [f"def at({', '.join(names)}):", *_in(1, [*own.static, *own.dynamic])]
+    lines += _in(1, [f"return ({', '.join(own.values)},)", ""])
+    at: Function = arithmetic.compile("\n".join(lines), "at", own.given)
+    return at
 
-    `slopes`: those of the coordinates, in these names, which end with t where H depends on it.
-    Call it inside the context.
+
+def gragg_rule(arithmetic: Arithmetic, slopes: Elements, names: Sequence[str]) -> Function:
+    """(z, time, count) ↦ where `count` steps lead in that time, smoothed at the end.
+
+    `slopes`: those of the coordinates, in these names, which end with t where H depends on it: then
+    each slope is taken at its own time. Call it inside the context.
     """
-    program = Program()
-    inputs = {name: program.input(name, static=False) for name in names}
-    roots = [Evaluator(program, ring, inputs, False).evaluate(x) for ring, x in slopes]
-    lowering = Lowering(program, arithmetic.functions)
-    static, dynamic = lowering.lines(roots)
-    moves = [(name, lowering.name(root)) for name, root in zip(names, roots, strict=False)]
+    own = _Written.of(arithmetic, slopes, names)
+    moves = list(zip(names, own.values, strict=False))
     timed = len(names) > len(moves)
 
-    def at(k: str) -> list[str]:
-        return [f"t = t_0 + {k} * h", *dynamic] if timed else dynamic
+    def at(t: str) -> list[str]:
+        return [f"t = {t}", *own.dynamic] if timed else list(own.dynamic)
 
     start = [f"{x}_0, {x} = {x}, {x} + h * {dx}" for x, dx in moves]
     onwards = [f"{x}_0, {x} = {x}, {x}_0 + twice * {dx}" for x, dx in moves]
-    values = ", ".join(f"({x} + {x}_0 + h * {dx}) / 2" for x, dx in moves)
+    ends = ", ".join(f"({x} + {x}_0 + h * {dx}) / 2" for x, dx in moves)
+    begun = ["h = time / count", "twice = 2 * h", *(["t_0 = t"] if timed else [])]
     lines = [
-        f"def rule({', '.join(names)}, h, count):",
-        *_in(1, [*static, "twice = 2 * h", *(["t_0 = t"] if timed else []), *dynamic, *start]),
+        f"def rule({', '.join(names)}, time, count):",
+        *_in(1, [*own.static, *begun, *own.dynamic, *start]),
         "    for k in range(1, count):",
-        *_in(2, [*at("k"), *onwards]),
-        *_in(1, [*at("count"), f"return ({values},)", ""]),
+        *_in(2, [*at("t_0 + k * h"), *onwards]),
+        *_in(1, [*at("t_0 + time"), f"return ({ends},)", ""]),
     ]
-    constants = lowering.named_constants(arithmetic.number)
-    given = {**arithmetic.functions, **constants, "range": range}
-    rule: Rule = arithmetic.compile("\n".join(lines), "rule", given)
+    given = {**own.given, "range": range}
+    rule: Function = arithmetic.compile("\n".join(lines), "rule", given)
     return rule
+
+
+@dataclass(frozen=True)
+class _Written:
+    """Ring elements as lines: those before a loop and in it, what they call the values, and what
+    the names in them stand for."""
+
+    static: Sequence[str]
+    dynamic: Sequence[str]
+    values: Sequence[str]
+    given: Mapping[str, Any]
+
+    @classmethod
+    def of(cls, arithmetic: Arithmetic, elements: Elements, names: Sequence[str]) -> "_Written":
+        program = Program()
+        inputs = {name: program.input(name, static=False) for name in names}
+        roots = [Evaluator(program, ring, inputs, False).evaluate(x) for ring, x in elements]
+        lowering = Lowering(program, arithmetic.functions)
+        static, dynamic = lowering.lines(roots)
+        constants = lowering.named_constants(arithmetic.number)
+        values = [lowering.name(root) for root in roots]
+        return cls(static, dynamic, values, {**arithmetic.functions, **constants})
 
 
 def _in(levels: int, lines: Sequence[str]) -> list[str]:

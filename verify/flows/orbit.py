@@ -16,7 +16,8 @@ from typing import Literal
 
 from verify.errors import InputError
 from verify.flows.closed_orbit import shifts
-from verify.flows.extrapolation import Flow, NoFlowError, Number, State, functions_at
+from verify.flows.extrapolation import Flow, NoFlowError, Number, State
+from verify.flows.functions import functions_at
 from verify.flows.solution import NOT_KNOWN, leaves_by_algebra
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.prose import Prose, prose, read_prose

@@ -17,9 +17,8 @@ class Motion:
     `state(t)`, t ≠ 0, and `blow_up(sign)` hold the true values, or are not finite, where flint's
     precision does not tell: who asks raises it. `blow_up`: |t| where the solution ends, forwards
     (1) or backwards (−1) in time, None where it does not; itself None where no such solution does.
-    `goes()`: how it goes to infinity as t
-    grows, where it does so without an end; None where it stays bounded or blows up. `rest`: it
-    stays where it is.
+    `goes()`: how it goes to infinity as t grows, where it does so without an end; None where it
+    stays bounded or blows up. `rest`: it stays where it is.
     """
 
     state: Callable[[arb], State]

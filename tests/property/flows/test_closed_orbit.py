@@ -15,7 +15,8 @@ from tests.examples import drawn
 from tests.helpers.oscillators import digits_of, element, mpf, numbers, oscillator, rates, turned
 from tests.helpers.sampled.formulas import polynomials
 from verify.flows.closed_orbit import Orbit
-from verify.flows.extrapolation import Flow, NoFlowError, functions_at
+from verify.flows.extrapolation import Flow, NoFlowError
+from verify.flows.functions import functions_at
 from verify.flows.orbit_average import average, bounded_part, phase
 from verify.hamiltonians.hamiltonian import Hamiltonian
 

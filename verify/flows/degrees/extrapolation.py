@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from verify.arithmetic.systems import mpfr
-from verify.flows.degrees.gragg import gragg_rule
 from verify.flows.extrapolation import (
     GUARD,
     LOST_DIGITS,
@@ -14,8 +13,8 @@ from verify.flows.extrapolation import (
     Number,
     State,
     columns_for,
-    functions_at,
 )
+from verify.flows.functions import functions_at, gragg_rule
 from verify.hamiltonians.canonical_field import CanonicalField
 
 
@@ -51,8 +50,7 @@ class FlowInDegrees(Flow):
     def _extrapolated(self, z: State, time: Number) -> State | None:
         above: list[Sequence[Number]] = []
         for j in range(1, self._columns + 1):
-            h = time / (2 * j)
-            row: list[Sequence[Number]] = [self._rule(*z, h, 2 * j)]
+            row: list[Sequence[Number]] = [self._rule(*z, time, 2 * j)]
             for k, before in enumerate(above, start=1):
                 up, down = (j - k) ** 2, j**2 - (j - k) ** 2
                 pairs = zip(row[-1], before, strict=True)

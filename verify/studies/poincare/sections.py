@@ -12,7 +12,7 @@ from fractions import Fraction
 from verify import lockstep
 from verify.arithmetic.exact import decimal, text, upper
 from verify.arithmetic.systems import mpfr
-from verify.flows.extrapolation import functions_at
+from verify.flows.functions import functions_at
 from verify.hamiltonians.energy import energy_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.results.poincare import MapSections, PoincareOrbit

@@ -8,7 +8,7 @@ motion was looked at.
 from fractions import Fraction
 
 from verify.arithmetic.systems import mpfr
-from verify.flows.extrapolation import functions_at
+from verify.flows.functions import functions_at
 from verify.flows.orbit import ExactOrbit
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian

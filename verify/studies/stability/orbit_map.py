@@ -17,7 +17,7 @@ import numpy as np
 from verify import arithmetic as number_systems
 from verify.arithmetic.exact import decimal, text
 from verify.arithmetic.systems import float64, mpfr
-from verify.flows.extrapolation import functions_at
+from verify.flows.functions import functions_at
 from verify.hamiltonians.energy import energy_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import Given, point_of, shown_of

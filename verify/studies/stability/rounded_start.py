@@ -3,7 +3,7 @@
 from fractions import Fraction
 
 from verify.arithmetic.systems import mpfr
-from verify.flows.extrapolation import functions_at
+from verify.flows.functions import functions_at
 from verify.prose import Number, Prose, prose, read_prose
 from verify.studies.stability.trail import Run
 

@@ -21,7 +21,7 @@ from functools import cached_property
 from typing import Any
 
 from verify.arithmetic.systems import mpfr
-from verify.flows.extrapolation import functions_at
+from verify.flows.functions import functions_at
 from verify.hamiltonians.energy import energy_of
 from verify.prose import prose, read_prose
 from verify.studies.stability.energy_drift import LONGER, SLOWER, rate_of

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from verify.arithmetic.systems import float64
-from verify.flows.extrapolation import functions_at
+from verify.flows.functions import functions_at
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.studies.work_precision.peer_interface import (
     Answer,
