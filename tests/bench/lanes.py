@@ -57,7 +57,7 @@ def loops(system: str, digits: int, orbits: int, certified: bool) -> tuple[Kerne
         more = {"tangent"} if certified else set()
         kernel = kernel_for(run.hamiltonian, "lie2", made, asked | more)
         shift, limits = next(run.formats(kernel, made))
-        found.append(ChunkedLoop(run, kernel, made, limits, shift))
+        found.append(ChunkedLoop(run, kernel, made, limits[: len(kernel.limits)], shift))
     return kernel, found
 
 
