@@ -22,6 +22,7 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.integrators.tables.asked import BITS, Asked, Equation
 from verify.integrators.tables.misprint import Misprint, exact_misprint, misprint
 from verify.integrators.tables.nearby import Nearby
+from verify.integrators.tables.nearest import far, nearest
 from verify.integrators.tables.printed_numbers import PrintedNumbers
 from verify.verdict import Verdict
 
@@ -94,14 +95,14 @@ def _of(near: Nearby, order: int, slack: int) -> Judged:
     if allowed < order and largest > OF_DIGITS:
         one = misprint(near, own) if near.asked.labels else None
         seen = replace(seen, verdict=Verdict.REFUTED, digits=False, misprint=one)
-        found = near.nearest(own) or (near.far(own) if one is None else None)
+        found = nearest(near, own) or (far(near, own) if one is None else None)
         return seen if found is None else replace(seen, off=found.off, nearest=found.numbers)
     return _with_nearest(seen, near, own, order, slack)
 
 
 def _with_nearest(seen: Judged, near: Nearby, own: Sequence[int], order: int, slack: int) -> Judged:
     allowed, largest = seen.order, seen.largest
-    found = near.nearest(own)
+    found = nearest(near, own)
     if found is None:  # some conditions alone may show wrong digits
         digits = False if near.excluded(own, slack) else None
         one = misprint(near, own) if allowed < order else None

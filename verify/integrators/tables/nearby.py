@@ -1,21 +1,15 @@
-"""The residues of a printed table near its numbers, and whether exact ones lie there.
+"""The residues of a printed table near its numbers, and whether none there can be 0.
 
 Coefficients that stand for algebraic numbers are printed as decimals: taken exactly they satisfy no
 condition at all. What can be asked is whether numbers near the printed ones do.
 
 With F the residues, J their derivative at the printed numbers x₀, and B a bound of the second
 derivatives (Cauchy's, by a majorant that has all signs plus), F(x) is F(x₀) + J (x − x₀) up to
-B |x − x₀|²/2, the norm being the sum. So
-
-- some combination of residues may be enclosed away from 0 over the whole box: then none exist;
-- else, with P = U Jᵀ(J U Jᵀ)⁻¹, U the squared units, t ↦ t − F(x₀ + P t) may map a ball around
-  −F(x₀) into itself: then, by Brouwer, a solution exists, and it is known where.
+B |x − x₀|²/2, the norm being the sum. Where some combination of residues is enclosed away from 0
+over the whole box, no numbers in it satisfy them. That some do is shown in
+`verify.integrators.tables.nearest`.
 
 J is a difference quotient with a step of 2⁻¹⁶⁰, whose error B bounds too. All is done in balls.
-
-Conditions may depend on one another, as those of trees do where simplifying assumptions hold. Then
-a solution of as many as are independent at x₀ is shown to exist, and the others are looked at
-there: where their residues are 0 to `HELD`, that is no proof, and much more than chance.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -31,25 +25,10 @@ from verify.integrators.tables.asked import Asked, ball_of, size_of
 from verify.integrators.tables.printed_numbers import entries_at
 
 _STEP = 160  # the difference quotient's, as a power of 1/2
-_RADIUS = Fraction(1, 8)  # of the polydisc of Cauchy's bound
-_TURNS = 40
-_CLOSE = flint.arb(2) ** -290  # of a chord's step, the last one
+RADIUS = Fraction(1, 8)  # of the polydisc of Cauchy's bound
 # Of a condition's derivative, what is left beside the others', where it is taken to depend on them.
 _DEPENDENT = 1e-10, 1e-5
-_FEW, _FAR = 12, 20  # numbers of which a solution is looked for far away, and how large they are
-HELD = Fraction(1, 2**200)
 Slopes = Mapping[int, Sequence[Ball]]  # of a condition's residue, by the numbers' places
-
-
-@dataclass(frozen=True)
-class Nearest:
-    """A solution: how far it is, in units of the last digit, and its numbers; how many conditions
-    are shown to hold there, and the largest residue of the others, as a bound."""
-
-    off: Fraction
-    numbers: Mapping[str, Fraction]
-    shown: int
-    rest: Fraction = Fraction(0)
 
 
 class Rounded(Protocol):
@@ -85,7 +64,7 @@ class Nearby:
         self.second = self._second()
         self.value = self.residues(self.start, range(len(asked.equations)))
         self.at_print = [middle_and_radius(x)[0] for x in self.value.values()]
-        self.slope: Slopes = self._slopes(self.start, self.value)
+        self.slope: Slopes = self.slopes(self.start, self.value)
 
     def residues(self, at: Sequence[Ball], rows: Sequence[int]) -> dict[int, Ball]:
         """Of these conditions, at those numbers."""
@@ -97,18 +76,18 @@ class Nearby:
         """The residues where number k is larger by the difference quotient's step."""
         return self.residues([x + small() if i == k else x for i, x in enumerate(at)], rows)
 
-    def _slopes(self, at: Sequence[Ball], value: Mapping[int, Ball]) -> dict[int, list[Ball]]:
+    def slopes(self, at: Sequence[Ball], value: Mapping[int, Ball]) -> dict[int, list[Ball]]:
         """The derivatives of the conditions whose values are given, by number."""
         found: dict[int, list[Ball]] = {i: [] for i in value}
         for k in range(len(at)):
             for i, y in self.moved(at, k, list(value)).items():
-                slope = (y - value[i]) / small() + _around(small() * self.second[i])
+                slope = (y - value[i]) / small() + around(small() * self.second[i])
                 found[i].append(slope)
         return found
 
     def _second(self) -> list[Ball]:
         """Bounds of each residue's second derivatives within half the polydisc's radius."""
-        radius = rational_ball(_RADIUS)
+        radius = rational_ball(RADIUS)
         reach = {n: abs(x) + radius for n, x in zip(self.names, self.start, strict=True)}
         entries = entries_at(self.asked.entries, reach, size_of)
         bounds = self.asked.residues(entries, flint.arb(1), bound=True)
@@ -154,10 +133,10 @@ class Nearby:
 
     def apart(self, rows: Sequence[int], units: Fraction | int) -> bool:
         """Whether no numbers within so many units satisfy all of these conditions."""
-        return any(self._apart(chosen, units) for chosen in self._choices(rows))
+        return any(self._apart(chosen, units) for chosen in self.choices(rows))
 
     def _apart(self, rows: Sequence[int], units: Fraction | int) -> bool:
-        inverse = self._inverse(rows, self.slope)
+        inverse = self.inverse(rows, self.slope)
         if inverse is None:
             return False
         count = len(rows)
@@ -171,9 +150,9 @@ class Nearby:
         return any(self._excludes(weights, units, slopes) for weights in combined)
 
     def _over_box(self, units: Fraction | int) -> Slopes:
-        """The derivatives over the box: slower than `_slopes`, and sharper than their bound."""
+        """The derivatives over the box: slower than `slopes`, and sharper than their bound."""
         wide = rational_ball(Fraction(units))
-        box = [x + _around(u * wide) for x, u in zip(self.start, self.unit, strict=True)]
+        box = [x + around(u * wide) for x, u in zip(self.start, self.unit, strict=True)]
         columns = []
         with _series_of_two_terms():
             for k in range(len(box)):
@@ -186,9 +165,9 @@ class Nearby:
                 columns.append([x[1] for x in residues])
         return dict(enumerate(zip(*columns, strict=True)))
 
-    # -- one exists -------------------------------------------------------------------------------
+    # -- conditions that are independent ----------------------------------------------------------
 
-    def _choices(self, rows: Sequence[int]) -> list[list[int]]:
+    def choices(self, rows: Sequence[int]) -> list[list[int]]:
         """All of them, where they can be independent; and those that seem to be."""
         all_of_them = [list(rows)] if len(rows) <= len(self.names) else []
         seeming = (self._independent(rows, least) for least in _DEPENDENT)
@@ -219,7 +198,7 @@ class Nearby:
             found.append(k)
         return sorted(rows[k] for k in found)
 
-    def _inverse(self, rows: Sequence[int], slope: Slopes) -> flint.arb_mat | None:
+    def inverse(self, rows: Sequence[int], slope: Slopes) -> flint.arb_mat | None:
         """U Jᵀ(J U Jᵀ)⁻¹, nearly."""
         if not rows or len(rows) > len(self.names):
             return None
@@ -234,107 +213,15 @@ class Nearby:
         middles = [[found[i, j].mid() for j in range(len(rows))] for i in range(count)]
         return flint.arb_mat(middles)
 
-    def nearest(self, rows: Sequence[int]) -> Nearest | None:
-        """A solution of these conditions; None where none is shown to exist, or where those that
-        depend on others do not hold there."""
-        if not rows:
-            return Nearest(Fraction(0), dict(self.numbers.values), 0)
-        found = (self._nearest(rows, chosen) for chosen in self._choices(rows))
-        return next((each for each in found if each is not None), None)
-
-    def _nearest(self, rows: Sequence[int], chosen: Sequence[int]) -> Nearest | None:
-        inverse = self._inverse(chosen, self.slope)
-        if inverse is None:
-            return None
-        at = list(self.start)
-        for _ in range(_TURNS):  # chords: far faster than they are needed
-            value = self.residues(at, chosen)
-            change = (inverse * flint.arb_mat([[value[k].mid()] for k in chosen])).tolist()
-            at = [(x - d).mid() for x, (d,) in zip(at, change, strict=True)]
-            if all(abs(d) < _CLOSE for (d,) in change):
-                break
-        if not all(
-            abs(x - y) < rational_ball(_RADIUS / 4) for x, y in zip(at, self.start, strict=True)
-        ):
-            return None
-        around = self._solution(chosen, at)
-        if around is None:
-            return None
-        triples = list(zip(self.names, self.start, around, strict=True))
-        off = max(_upper(y - x) / self.numbers.units[n] for n, x, y in triples)
-        others = sorted(set(rows) - set(chosen))
-        there = self.residues(around, others).values() if others else ()
-        rest = max(map(_upper, there), default=Fraction(0))
-        numbers = {n: middle_and_radius(y)[0] for n, _, y in triples}
-        return Nearest(off, numbers, len(chosen), rest) if rest < HELD else None
-
-    def far(self, rows: Sequence[int]) -> Nearest | None:
-        """A solution that may be far from the printed numbers, by Newton's method; None where it
-        finds none, or one of many. Of a few numbers alone."""
-        if len(self.names) > _FEW or not rows:
-            return None
-        at, slope = list(self.start), self.slope
-        for _ in range(_TURNS):
-            value = self.residues(at, rows)
-            chosen = self._choices(rows)[-1]
-            inverse = self._inverse(chosen, slope)
-            if inverse is None:
-                return None
-            change = (inverse * flint.arb_mat([[value[k].mid()] for k in chosen])).tolist()
-            at = [(x - d).mid() for x, (d,) in zip(at, change, strict=True)]
-            if all(abs(d) < _CLOSE for (d,) in change) or not all(abs(x) < _FAR for x in at):
-                break
-            found = self._slopes(at, self.residues(at, rows))
-            slope = {k: [x.mid() for x in row] for k, row in found.items()}
-        values = {n: middle_and_radius(x)[0] for n, x in zip(self.names, at, strict=True)}
-        if not all(abs(x) < _FAR for x in at):
-            return None
-        own = AnyNumbers(self.numbers.numbers, values, self.numbers.units)
-        near = Nearby(own, self.asked).nearest(rows)
-        if near is None or near.shown < len(self.names):
-            return None
-        gaps = (abs(near.numbers[n] - x) / self.numbers.units[n] for n, x in
-                self.numbers.values.items())  # fmt: skip
-        return Nearest(max(gaps), near.numbers, near.shown, near.rest)
-
-    def _solution(self, rows: Sequence[int], at: Sequence[Ball]) -> list[Ball] | None:
-        """Balls around `at` in which a solution lies; None where that is not shown."""
-        value = self.residues(at, rows)
-        slope = self._slopes(at, value)
-        inverse = self._inverse(rows, slope)
-        if inverse is None:
-            return None
-        target = [-value[k] for k in rows]
-        slack = 2 * max((x.abs_upper() for x in target), key=float) + flint.arb(2) ** -240
-        ball = flint.arb_mat([[x + _around(slack)] for x in target])
-        moved = [x for (x,) in (inverse * ball).tolist()]
-        far = sum((abs(x) for x in moved), flint.arb(0))
-        if not far < rational_ball(_RADIUS / 4):
-            return None
-        size = len(rows)
-        identity = flint.arb_mat([[int(i == j) for j in range(size)] for i in range(size)])
-        rest = identity - flint.arb_mat([slope[k] for k in rows]) * inverse
-        image = (rest * ball).tolist()
-        for i, k in enumerate(rows):
-            curved = _around(self.second[k] * far * far / 2)
-            if not ball[i, 0].contains_interior(target[i] + image[i][0] + curved):
-                return None
-        return [x + d for x, d in zip(at, moved, strict=True)]
-
 
 def small() -> Ball:
     """The difference quotient's step."""
     return flint.arb(2) ** -_STEP
 
 
-def _around(radius: Ball) -> Ball:
+def around(radius: Ball) -> Ball:
     """[−radius, radius]."""
     return radius.abs_upper() * flint.arb(0, 1)  # a tiny radius given as such may become infinite
-
-
-def _upper(x: Ball) -> Fraction:
-    middle, radius = middle_and_radius(x)
-    return abs(middle) + radius
 
 
 def _constant(x: "flint.arb") -> flint.arb_series:
