@@ -13,8 +13,8 @@ from fractions import Fraction
 from pathlib import Path
 
 import fixed_against_mpfr
-from fixed_against_mpfr import BITS, COMPARED_STEPS, NAMES, in_c
-from tight_mpmath import STEP_SIZE, P, Q, Result
+from fixed_against_mpfr import BITS, COMPARED_STEPS, in_c
+from tight_mpmath import NAMES, STEP_SIZE, P, Q, Result
 
 from verify import arithmetic
 from verify.hamiltonians.hamiltonian import Hamiltonian

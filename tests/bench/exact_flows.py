@@ -8,6 +8,7 @@ formulas in p and q do not end. Its step is as long as its last terms allow.
 import time
 from collections.abc import Callable
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 import flint
@@ -88,9 +89,9 @@ def main() -> None:
     for name, (formula, slopes) in SYSTEMS.items():
         for digits in DIGITS:
             times = (
-                seconds(lambda f=formula, d=digits: gragg(f, d)),
-                seconds(lambda s=slopes, d=digits: lie_series(s, d), 1),
-                seconds(lambda f=formula, d=digits: whole(f, d)),
+                seconds(partial(gragg, formula, digits)),
+                seconds(partial(lie_series, slopes, digits), 1),
+                seconds(partial(whole, formula, digits)),
             )
             print(
                 f"{name:>14} {digits:6} {times[0]:9.3f} {times[1]:9.3f} {times[2]:17.4f}",

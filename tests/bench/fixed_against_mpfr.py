@@ -29,7 +29,8 @@ from verify.kernels.stepping import KernelRun
 
 HERE = Path(__file__).parent
 BITS = {33: 113, 53: 170, 72: 240}  # digits asked of us → bits of the competitors
-TARGETS = {  # at least so many times faster than C, and than mpmath, at these digits
+# At least so many times faster than C, and than mpmath, at these digits.
+TARGETS: dict[str, dict[int, tuple[float, float]]] = {
     "duffing": {33: (8, 250), 53: (5, 130), 72: (4.5, 80)},
     "pendulum": {33: (5, 100), 53: (4, 100), 72: (4, 100)},
 }
@@ -61,8 +62,8 @@ def compiled(folder: Path, systems_asked: list[str]) -> dict[str, Path]:
     programs = {}
     for system in systems_asked:
         program, source = folder / system, HERE / f"{system}_lie2_mpfr.c"
-        flags = ["-O3", "-march=native", "-o", program, "-lmpfr", "-lgmp"]
-        made = subprocess.run([compiler, source, *flags], capture_output=True, text=True)
+        flags = ["-O3", "-march=native", "-o", str(program), "-lmpfr", "-lgmp"]
+        made = subprocess.run([compiler, str(source), *flags], capture_output=True, text=True)
         if made.returncode:
             print(f"{source.name} does not compile (is libmpfr-dev there?): C is left out\n")
             return {}

@@ -78,10 +78,11 @@ def in_mpfr(kernel: Kernel) -> str:
 
     first = [text for s in before for text in line(s)]
     body = [text for s in loop.body if not isinstance(s, ast.If) for text in line(s)]
-    constants = kernel.lowering.named_constants(lambda x: x)
+    constants = kernel.lowering.named_constants(str)
     lines = [f"mpfr_t {name}; mpfr_init({name});" for name in (*given, *made, *constants)]
     lines += [f"mpfr_set_str({n}, argv[{k}], 10, MPFR_RNDN);" for k, n in enumerate(given, start=3)]
-    for name, x in constants.items():
+    for name, number in constants.items():
+        x = Fraction(str(number))
         lines.append(f"mpfr_set_si({name}, {x.numerator}, MPFR_RNDN);")
         lines.append(f"mpfr_div_si({name}, {name}, {x.denominator}, MPFR_RNDN);")
     return MAIN + "\n".join([

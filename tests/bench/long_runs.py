@@ -105,6 +105,8 @@ def both_tables(name: str, shrink: int) -> tuple[float, int, int, dict[str, int]
     asked = {"arithmetic": name, "digits": TABLE_DIGITS, "observables": OBSERVABLES}
     chosen = []
     for scene in scenes:
+        assert scene.grid is not None
+        assert scene.grid.time is not None
         shorter = {"time": scene.grid.time / shrink, "separate": False}
         grid = scene.grid.model_copy(update=asked | shorter)
         chosen.append(scene.with_only(schemes=("lie2",), grid=grid))
@@ -113,7 +115,7 @@ def both_tables(name: str, shrink: int) -> tuple[float, int, int, dict[str, int]
     seconds = time.perf_counter() - begun
     runs = [r for r in results if isinstance(r, RunResult)]
     digits = min((known_digits(r.values[x].value) for r in runs for x in r.values), default=0)
-    kinds = Counter(r.error_kind if r.values else r.status for r in runs)
+    kinds: Counter[str] = Counter(r.error_kind if r.values else r.status for r in runs)
     return seconds, sum(r.steps for r in runs), digits, dict(kinds)
 
 

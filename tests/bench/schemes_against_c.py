@@ -71,8 +71,8 @@ def in_c(node: ast.expr) -> str:
         case ast.Compare():
             sign = {ast.Lt: "<", ast.Gt: ">", ast.Eq: "=="}[type(node.ops[0])]
             return f"({in_c(node.left)} {sign} {in_c(node.comparators[0])})"
-        case ast.Call():
-            name = {"abs": "fabs"}.get(node.func.id, node.func.id)
+        case ast.Call(func=ast.Name(id=called)):
+            name = {"abs": "fabs"}.get(called, called)
             return f"{name}({', '.join(map(in_c, node.args))})"
     raise ValueError(ast.dump(node))
 
@@ -80,16 +80,19 @@ def in_c(node: ast.expr) -> str:
 def translated(kernel: Kernel) -> str:
     """The kernel's source as a program in C: `steps h parameters… carried…` are its arguments."""
     (function,) = ast.parse(kernel.source).body
+    assert isinstance(function, ast.FunctionDef)
     names = [a.arg for a in function.args.args][1:]
     state = names[-len(kernel.state_names) :]
     fixed = names[: len(names) - len(state)]
     *before, loop, _ = function.body
+    assert isinstance(loop, ast.For)
     seen = {*state, *fixed}
 
     def line(statement: ast.stmt) -> str:
         if isinstance(statement, ast.If):
             return f"if ({in_c(statement.test)}) {line(statement.body[0])}"
-        target = statement.targets[0].id
+        assert isinstance(statement, ast.Assign)
+        target = ast.unparse(statement.targets[0])
         kind = "" if target in seen else "double "
         seen.add(target)
         return f"{kind}{target} = {in_c(statement.value)};"
@@ -140,7 +143,8 @@ def compare(compiler: str, name: str, system: str, folder: Path) -> str:
     programs = {}
     for kind, flags in FLAGS.items():
         programs[kind] = folder / kind
-        command = [compiler, "-O3", "-march=native", *flags, source, "-o", programs[kind], "-lm"]
+        files = [str(source), "-o", str(programs[kind])]
+        command = [compiler, "-O3", "-march=native", *flags, *files, "-lm"]
         subprocess.run(command, check=True)
     kernel.function(1_000_000, *arguments)  # compiles
     begun = time.perf_counter()

@@ -37,7 +37,7 @@ def measure(command: Sequence[str], rounds: int = ROUNDS) -> tuple[float, int]:
     seconds, peaks = [], []
     for _ in range(rounds):
         begun = time.perf_counter()
-        pid = os.posix_spawn(command[0], command, os.environ, file_actions=_QUIET)
+        pid = os.posix_spawn(command[0], list(command), os.environ, file_actions=_QUIET)
         _, status, usage = os.wait4(pid, 0)
         seconds.append(time.perf_counter() - begun)
         peaks.append(usage.ru_maxrss)

@@ -14,9 +14,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from fractions import Fraction
 
-from verify.execution import keeping
 from verify.execution.execute import compute_task
 from verify.execution.executors import FunctionCall, Place, Placement, open_place, results_of
+from verify.execution.machine import machine
 from verify.studies.separation.task import SeparationTask
 
 FEW, MANY = 400_000, 4_000_000  # steps; fewer are stepped in another way
@@ -80,7 +80,7 @@ def measure(name: str, place: Place, count: int, steps: int, one: float | None) 
 def dask_of_two() -> Iterator[Placement]:
     from distributed import LocalCluster
 
-    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster:
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster:  # type: ignore[no-untyped-call]
         yield Placement(cluster=cluster.scheduler_address)
 
 
@@ -91,7 +91,7 @@ def main() -> None:
     given = parser.parse_args()
     steps = steps_of(given.each)
     count = max(4, round(given.seconds / given.each))
-    print(f"{count} separations of {steps} steps each, on {keeping.machine()}")
+    print(f"{count} separations of {steps} steps each, on {machine()}")
     with open_place(Placement(1)) as place:
         one = measure("1 worker", place, count, steps, None)
     with open_place(Placement(2)) as place:

@@ -1,6 +1,6 @@
 """The task of a region carried by a map."""
 
-from typing import Annotated, Literal
+from typing import Literal
 
 from pydantic import Field
 
@@ -27,7 +27,7 @@ class FlowTask(HamiltonianTask):
     digits: int
     mean_lambda: bool
     distance: bool
-    point: Annotated[dict[str, Number], Field(default_factory=dict)]
+    point: dict[str, Number] = Field(default_factory=dict)
     """In n degrees of freedom the centre's coordinates by their names; `plane`, where it lies."""
     plane: int = 1
 
