@@ -20,10 +20,13 @@ def as_expression(ring: DifferentialRing, x: Poly) -> sympy.Expr:
 
 
 def as_expression_at_0(ring: DifferentialRing, x: Poly, symbol: sympy.Symbol) -> sympy.Expr:
-    """The same where the symbol is 0."""
-    generators = {k: g.subs(symbol, 0) for k, g in _occurring(ring, x).items()}
-    if any(g.has(*_NO_NUMBERS) for g in generators.values()):
-        return as_expression(ring, x).subs(symbol, 0)
+    """The same where the symbol is 0; nan where it is no expression there."""
+    try:
+        generators = {k: g.subs(symbol, 0) for k, g in _occurring(ring, x).items()}
+        if any(g.has(*_NO_NUMBERS) for g in generators.values()):
+            return as_expression(ring, x).subs(symbol, 0)
+    except TypeError:  # sympy has compared a nan within with a number
+        return sympy.nan
     return _with(x, generators)
 
 

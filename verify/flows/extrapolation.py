@@ -14,7 +14,7 @@ from fractions import Fraction
 from typing import Any
 
 from verify.arithmetic.systems import mpfr
-from verify.flows.functions import functions_at, gragg_rule
+from verify.flows.functions import Written
 from verify.hamiltonians.vector_field import VectorField
 from verify.prose import read_prose
 
@@ -55,8 +55,8 @@ class Flow:
         ring, self.timed = field.ring, field.timed
         self.names: tuple[str, ...] = ("p", "q", "t") if self.timed else ("p", "q")
         elements = [(ring, -field.h_q), (ring, field.h_p)]
-        self._slopes = functions_at(self.arithmetic, elements, self.names)
-        self._rule = gragg_rule(self.arithmetic, elements, self.names)
+        written = Written.of(self.arithmetic, elements, self.names)
+        self._slopes, self._rule = written.at(), written.gragg_rule()
         self._tolerance = self.arithmetic.number(Fraction(1, 10 ** (digits + GUARD - LOST_DIGITS)))
         self._columns = columns_for(digits)
 

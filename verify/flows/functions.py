@@ -1,7 +1,7 @@
 """What a flow evaluates, written as functions for a field and an arithmetic.
 
 Gragg's modified midpoint rule is one of them: the slopes stand in its loop and each coordinate is a
-variable, which halves the time of a step of several coordinates.
+variable, which takes a tenth to a third off a step of several coordinates.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -21,54 +21,23 @@ def functions_at(
     arithmetic: Arithmetic, elements: Elements, names: Sequence[str] = ("p", "q")
 ) -> Function:
     """(p, q) ↦ the values of ring elements in these names alone; call it inside the context."""
-    own = _Written.of(arithmetic, elements, names)
-    lines = [f"def at({', '.join(names)}):", *_in(1, [*own.static, *own.dynamic])]
-    lines += _in(1, [f"return ({', '.join(own.values)},)", ""])
-    at: Function = arithmetic.compile("\n".join(lines), "at", own.given)
-    return at
-
-
-def gragg_rule(arithmetic: Arithmetic, slopes: Elements, names: Sequence[str]) -> Function:
-    """(z, time, count) ↦ where `count` steps lead in that time, smoothed at the end.
-
-    `slopes`: those of the coordinates, in these names, which end with t where H depends on it: then
-    each slope is taken at its own time. Call it inside the context.
-    """
-    own = _Written.of(arithmetic, slopes, names)
-    moves = list(zip(names, own.values, strict=False))
-    timed = len(names) > len(moves)
-
-    def at(t: str) -> list[str]:
-        return [f"t = {t}", *own.dynamic] if timed else list(own.dynamic)
-
-    start = [f"{x}_0, {x} = {x}, {x} + h * {dx}" for x, dx in moves]
-    onwards = [f"{x}_0, {x} = {x}, {x}_0 + twice * {dx}" for x, dx in moves]
-    ends = ", ".join(f"({x} + {x}_0 + h * {dx}) / 2" for x, dx in moves)
-    begun = ["h = time / count", "twice = 2 * h", *(["t_0 = t"] if timed else [])]
-    lines = [
-        f"def rule({', '.join(names)}, time, count):",
-        *_in(1, [*own.static, *begun, *own.dynamic, *start]),
-        "    for k in range(1, count):",
-        *_in(2, [*at("t_0 + k * h"), *onwards]),
-        *_in(1, [*at("t_0 + time"), f"return ({ends},)", ""]),
-    ]
-    given = {**own.given, "range": range}
-    rule: Function = arithmetic.compile("\n".join(lines), "rule", given)
-    return rule
+    return Written.of(arithmetic, elements, names).at()
 
 
 @dataclass(frozen=True)
-class _Written:
-    """Ring elements as lines: those before a loop and in it, what they call the values, and what
-    the names in them stand for."""
+class Written:
+    """Ring elements in these names alone as lines: those before a loop and in it, what they call
+    the values, and what the names in them stand for."""
 
+    arithmetic: Arithmetic
+    names: Sequence[str]
     static: Sequence[str]
     dynamic: Sequence[str]
     values: Sequence[str]
     given: Mapping[str, Any]
 
     @classmethod
-    def of(cls, arithmetic: Arithmetic, elements: Elements, names: Sequence[str]) -> "_Written":
+    def of(cls, arithmetic: Arithmetic, elements: Elements, names: Sequence[str]) -> "Written":
         program = Program()
         inputs = {name: program.input(name, static=False) for name in names}
         roots = [Evaluator(program, ring, inputs, False).evaluate(x) for ring, x in elements]
@@ -76,7 +45,45 @@ class _Written:
         static, dynamic = lowering.lines(roots)
         constants = lowering.named_constants(arithmetic.number)
         values = [lowering.name(root) for root in roots]
-        return cls(static, dynamic, values, {**arithmetic.functions, **constants})
+        return cls(
+            arithmetic, names, static, dynamic, values, {**arithmetic.functions, **constants}
+        )
+
+    def at(self) -> Function:
+        """z ↦ the values; call it inside the context."""
+        lines = [
+            f"def at({', '.join(self.names)}):",
+            *_in(1, [*self.static, *self.dynamic, f"return ({', '.join(self.values)},)", ""]),
+        ]
+        at: Function = self.arithmetic.compile("\n".join(lines), "at", self.given)
+        return at
+
+    def gragg_rule(self) -> Function:
+        """(z, time, count) ↦ where `count` steps lead in that time, smoothed at the end.
+
+        The values are the coordinates' slopes; the names end with t where H depends on it: then
+        each slope is taken at its own time. Call it inside the context.
+        """
+        moves = list(zip(self.names, self.values, strict=False))
+        timed = len(self.names) > len(moves)
+
+        def at(t: str) -> list[str]:
+            return [f"t = {t}", *self.dynamic] if timed else list(self.dynamic)
+
+        start = [f"{x}_0, {x} = {x}, {x} + h * {dx}" for x, dx in moves]
+        onwards = [f"{x}_0, {x} = {x}, {x}_0 + twice * {dx}" for x, dx in moves]
+        ends = ", ".join(f"({x} + {x}_0 + h * {dx}) / 2" for x, dx in moves)
+        begun = ["h = time / count", "twice = 2 * h", *(["t_0 = t"] if timed else [])]
+        lines = [
+            f"def rule({', '.join(self.names)}, time, count):",
+            *_in(1, [*self.static, *begun, *self.dynamic, *start]),
+            "    for k in range(1, count):",
+            *_in(2, [*at("t_0 + k * h"), *onwards]),
+            *_in(1, [*at("t_0 + time"), f"return ({ends},)", ""]),
+        ]
+        given = {**self.given, "range": range}
+        rule: Function = self.arithmetic.compile("\n".join(lines), "rule", given)
+        return rule
 
 
 def _in(levels: int, lines: Sequence[str]) -> list[str]:

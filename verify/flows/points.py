@@ -41,8 +41,8 @@ from verify.prose import read_prose
 Array = Any  # numpy.ndarray, which is imported where it is used
 _ZERO = Fraction(0)
 _UPWARDS = 1 + 2.0**-50  # for a bound that is itself rounded
-_REMEMBERED = 1 << 16  # points in closed form, of which one takes a tenth of a millisecond
-_FLOWS = 3  # for which so many points are
+_REMEMBERED = 1 << 16  # points in closed form, of which one takes a fifth of a millisecond
+_FLOWS = 3  # for which so many points are, in some 30 MB each
 _Told = tuple[str, tuple[tuple[float, float, float], ...]]
 _FINE = 1e-18  # of an orbit's scale: a ball's radius, far below float64's rounding
 
@@ -134,9 +134,9 @@ class _Work:
     q: Array
     times: tuple[Fraction, ...]
     t0: Fraction
-    found: Array  # (2, times, points)
-    error: Array  # (times, points)
     alone: set[int] = field(default_factory=set)
+    found: Array = field(init=False)  # (2, times, points), of a numerical flow
+    error: Array = field(init=False)  # (times, points)
 
     @classmethod
     def of(
@@ -151,8 +151,7 @@ class _Work:
             raise InputError("points", f"{p.shape}, {q.shape}", "must be two arrays of one length")
         if not (np.isfinite(p).all() and np.isfinite(q).all()):
             raise InputError("points", "nan", "must be finite")
-        shape = len(times), len(p)
-        return cls(hamiltonian, p, q, tuple(times), t0, np.zeros((2, *shape)), np.zeros(shape))
+        return cls(hamiltonian, p, q, tuple(times), t0)
 
     # -- in closed form -----------------------------------------------------------------------
 
@@ -168,9 +167,10 @@ class _Work:
         told = [self._told(i, farthest, follow_one, *start) for i, start in starts]
         methods = [method for method, _ in told]
         shape = len(told), len(self.times), 3
-        p, q, error = np.array([states for _, states in told], dtype=np.float64).reshape(shape).T
+        states = np.array([states for _, states in told], dtype=np.float64).reshape(shape)
+        p, q, error = np.ascontiguousarray(states.T)
         bound = float(error.max(initial=0.0))
-        method = f"{max(set(methods), key=methods.count)}, in balls"
+        method = f"{max(dict.fromkeys(methods), key=methods.count)}, in balls"
         return Points(p, q, bound, method)
 
     @property
@@ -198,7 +198,7 @@ class _Work:
 
         given = self.hamiltonian, (self.p, self.q), self.times
         fine, rough = (follow(*given, columns, self.t0) for columns in COLUMNS)
-        self.found[:] = fine
+        self.found, self.error = fine.astype(np.float64), np.zeros((len(self.times), len(self.p)))
         every = np.arange(len(self.p))
         for k in range(len(self.times)):
             apart = np.max(abs(fine[:, k] - rough[:, k]), axis=0)

@@ -4,6 +4,7 @@ import re
 from typing import Any
 
 import mpmath
+import pytest
 import sympy
 
 from verify.algebra.embedding import embed
@@ -71,3 +72,12 @@ def test_where_h_is_0_terms_with_it_are_gone_and_so_it_is_in_arguments() -> None
         assert there == as_expression(ring, element).subs(h, 0)
         assert not there.has(h)
     assert there.has(sympy.zoo)
+
+
+@pytest.mark.parametrize("formula", ["tanh(q/h)", "1/sinh(1/(h*q))", "1/cosh(1/(h*q))"])
+def test_where_it_is_no_expression_it_is_no_number(formula: str) -> None:
+    """sympy compares what becomes nan within with a number, or not, as its sets are ordered."""
+    names = {name: symbol(name) for name in "qh"}
+    ring, (element,) = embed([sympy.sympify(formula, names)], ("q", "h"))
+    there = as_expression_at_0(ring, element, symbol("h"))
+    assert there.has(sympy.nan, sympy.zoo, sympy.oo)

@@ -14,7 +14,7 @@ from verify.flows.extrapolation import (
     State,
     columns_for,
 )
-from verify.flows.functions import functions_at, gragg_rule
+from verify.flows.functions import Written
 from verify.hamiltonians.canonical_field import CanonicalField
 
 
@@ -27,8 +27,8 @@ class FlowInDegrees(Flow):
         self.timed = field.timed
         self.names = (*field.names, "t") if self.timed else field.names
         elements = [(field.ring, x) for x in field.slopes]
-        self._slopes = functions_at(self.arithmetic, elements, self.names)
-        self._rule = gragg_rule(self.arithmetic, elements, self.names)
+        written = Written.of(self.arithmetic, elements, self.names)
+        self._slopes, self._rule = written.at(), written.gragg_rule()
         self._tolerance = self.arithmetic.number(Fraction(1, 10 ** (digits + GUARD - LOST_DIGITS)))
         self._columns = columns_for(digits)
 

@@ -76,13 +76,16 @@ def slow_clock(sample: Sample, patch: Patch) -> Sample:
     """The flow's own clock runs by half: by it the slopes are twice as large for half the time."""
     from verify.flows import extrapolation
 
-    true = extrapolation.gragg_rule
+    class Slow(extrapolation.Written):
+        @classmethod
+        def of(cls, arithmetic: Any, slopes: Any, names: Any) -> Any:
+            return super().of(arithmetic, [(ring, 2 * x) for ring, x in slopes], names)
 
-    def made(arithmetic: Any, slopes: Any, names: Any) -> Any:
-        rule = true(arithmetic, [(ring, 2 * x) for ring, x in slopes], names)
-        return lambda p, q, t, time, count: rule(p, q, t / 2, time / 2, count)
+        def gragg_rule(self) -> Any:
+            rule = super().gragg_rule()
+            return lambda p, q, t, time, count: rule(p, q, t / 2, time / 2, count)
 
-    patch.setattr(extrapolation, "gragg_rule", made)
+    patch.setattr(extrapolation, "Written", Slow)
     return sample
 
 

@@ -167,13 +167,13 @@ def half_a_flow(sample: Sample, patch: Patch) -> Sample:
     """q moves with the flow of H, and p by half of it."""
     from verify.flows import extrapolation
 
-    true = extrapolation.gragg_rule
+    class Halved(extrapolation.Written):
+        @classmethod
+        def of(cls, arithmetic: Any, slopes: Any, names: Any) -> Any:
+            (ring, dp), of_q = slopes
+            return super().of(arithmetic, [(ring, dp / 2), of_q], names)
 
-    def made(arithmetic: Any, slopes: Any, names: Any) -> Any:
-        (ring, dp), of_q = slopes
-        return true(arithmetic, [(ring, dp / 2), of_q], names)
-
-    patch.setattr(extrapolation, "gragg_rule", made)
+    patch.setattr(extrapolation, "Written", Halved)
     return sample
 
 

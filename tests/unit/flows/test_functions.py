@@ -1,0 +1,90 @@
+"""Gragg's rule as one function, held against the rule in Fractions, of a field whose are exact."""
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+
+import pytest
+
+from verify.algebra.embedding import embed
+from verify.algebra.formula import parse
+from verify.arithmetic.systems import mpfr
+from verify.flows.functions import Written, functions_at
+
+BITS_LOST = Fraction(1, 10**37)  # of 40 digits
+Slopes = Callable[..., tuple[Fraction, ...]]
+CASES: dict[str, tuple[tuple[str, ...], tuple[str, ...], Slopes]] = {
+    "plane": (("p", "q"), ("-q - q**3", "p"), lambda p, q: (-q - q**3, p)),
+    "plane in time": (("p", "q", "t"), ("-q*t", "p + t**2"), lambda p, q, t: (-q * t, p + t**2)),
+    "two degrees": (
+        ("p1", "p2", "q1", "q2"),
+        ("-q2", "-q1*q2", "p1", "2*p2"),
+        lambda p1, p2, q1, q2: (-q2, -q1 * q2, p1, 2 * p2),
+    ),
+    "constant": (("p", "q", "t"), ("1/3", "t"), lambda _p, _q, t: (Fraction(1, 3), t)),
+}
+
+
+def by_hand(slopes: Slopes, z: Sequence[Fraction], time: Fraction, count: int) -> list[Fraction]:
+    """The rule as W. B. Gragg has it; the last of z is t where there is one more than slopes."""
+    h, first = time / count, list(z)
+    own = len(slopes(*z))
+
+    def at(x: Sequence[Fraction], k: int) -> tuple[Fraction, ...]:
+        return slopes(*x, *(t + k * h for t in first[own:]))
+
+    before = first[:own]
+    x = [a + h * b for a, b in zip(before, at(before, 0), strict=True)]
+    for k in range(1, count):
+        after = [a + 2 * h * b for a, b in zip(before, at(x, k), strict=True)]
+        before, x = x, after
+    return [(a + b + h * c) / 2 for a, b, c in zip(x, before, at(x, count), strict=True)]
+
+
+def written(name: str) -> Written:
+    names, formulas, _ = CASES[name]
+    ring, elements = embed([parse(x) for x in formulas], names)
+    return Written.of(mpfr.make(40), [(ring, x) for x in elements], names)
+
+
+def apart(name: str, slopes: Slopes, time: Fraction, count: int) -> Fraction:
+    """How far the function is from the rule by hand with these slopes."""
+    arithmetic, names = mpfr.make(40), CASES[name][0]
+    z = [Fraction(k + 2, 7) for k in range(len(names))]
+    with arithmetic.context():
+        given = [arithmetic.number(x) for x in (*z, time)]
+        found = written(name).gragg_rule()(*given, count)
+    true = by_hand(slopes, z, time, count)
+    return max(abs(arithmetic.exact(a) - b) for a, b in zip(found, true, strict=True))
+
+
+@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize(("time", "count"), [("1/3", 1), ("1/3", 2), ("-3/5", 6), ("0", 4)])
+def test_it_is_the_rule(name: str, time: str, count: int) -> None:
+    assert apart(name, CASES[name][2], Fraction(time), count) < BITS_LOST
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_of_another_field_it_is_not(name: str) -> None:
+    _, _, slopes = CASES[name]
+
+    def others(*z: Fraction) -> tuple[Fraction, ...]:
+        first, *rest = slopes(*z)
+        return (first + Fraction(1, 10**30), *rest)
+
+    assert apart(name, others, Fraction(1, 3), 2) > BITS_LOST
+
+
+def test_a_clock_that_stands_still_is_another_rule() -> None:
+    slopes, at_first = CASES["plane in time"][2], Fraction(4, 7)
+    assert apart("plane in time", lambda p, q, _: slopes(p, q, at_first), Fraction(1, 3), 2) > 0.01
+
+
+def test_slopes_are_those_of_the_functions_beside_it() -> None:
+    arithmetic, (names, formulas, slopes) = mpfr.make(40), CASES["two degrees"]
+    ring, elements = embed([parse(x) for x in formulas], names)
+    z = [Fraction(k + 2, 7) for k in range(4)]
+    with arithmetic.context():
+        at = functions_at(arithmetic, [(ring, x) for x in elements], names)
+        found = at(*(arithmetic.number(x) for x in z))
+    for x, y in zip(found, slopes(*z), strict=True):
+        assert abs(arithmetic.exact(x) - y) < BITS_LOST
