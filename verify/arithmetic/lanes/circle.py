@@ -18,6 +18,7 @@ that lose 2 m + 3 each: less than 4 m + 16 units of 2^(2 − W).
 
 from collections.abc import Sequence
 from fractions import Fraction
+from functools import cache
 from math import factorial
 
 import flint
@@ -35,7 +36,7 @@ from verify.arithmetic.lanes.fractions import (
 )
 from verify.arithmetic.lanes.numbers import Number, Numbers
 from verify.arithmetic.lanes.reduction import Reduction
-from verify.arithmetic.lanes.table import Table
+from verify.arithmetic.lanes.table import Table, rows_of
 from verify.arithmetic.lanes.vectors import DIGIT, WORDS, splat
 from verify.arithmetic.wide.functions import arb_integer
 from verify.arithmetic.wide.limbs import Value
@@ -52,6 +53,15 @@ def lost_by_one(width: int) -> int:
 
 def _lost(count: int) -> int:
     return 4 * count + 40
+
+
+@cache
+def _sines_of(width: int, count: int) -> ir.Constant:
+    """sin of all table steps of a quarter, the same in all modules."""
+    with working_precision(width + 256):
+        step = 2 * flint.arb.pi() / _ANGLES
+        values = [arb_integer((step * k).sin(), DIGIT * count) for k in range(_QUARTER + 1)]
+    return rows_of(values, count)
 
 
 class Circle:
@@ -103,13 +113,9 @@ class Circle:
         return sine, versine
 
     def _sines(self) -> Table:
-        """sin of all table steps of a quarter."""
         if self._table is None:
-            with working_precision(self.width + 256):
-                step = 2 * flint.arb.pi() / _ANGLES
-                places = DIGIT * self.count
-                values = [arb_integer((step * k).sin(), places) for k in range(_QUARTER + 1)]
-            self._table = Table(self.module, "lanes_sines", values, self.count)
+            rows = _sines_of(self.width, self.count)
+            self._table = Table(self.module, "lanes_sines", rows, self.count)
         return self._table
 
     def _rounded(self, b: ir.IRBuilder, value: Sequence[Value]) -> tuple[Value, Number]:

@@ -21,6 +21,7 @@ than `lost_by_one`.
 """
 
 from fractions import Fraction
+from functools import cache
 from math import factorial
 
 import flint
@@ -32,7 +33,7 @@ from verify.arithmetic.lanes.circle import lost_by_one
 from verify.arithmetic.lanes.fractions import Fractions, added, constant, negated, settled, taken
 from verify.arithmetic.lanes.numbers import Number, Numbers
 from verify.arithmetic.lanes.reduction import Reduction
-from verify.arithmetic.lanes.table import Table
+from verify.arithmetic.lanes.table import Table, rows_of
 from verify.arithmetic.lanes.vectors import CONDITIONS, DIGIT, LANES, WORDS, splat, splat_double
 from verify.arithmetic.wide.functions import arb_integer
 from verify.arithmetic.wide.limbs import Value
@@ -45,6 +46,15 @@ _MOST, _LEAST = 12, -47  # of a, beyond which one orbit's function is asked
 
 def _lost(count: int) -> int:
     return 2 * count + 16
+
+
+@cache
+def _powers_of(width: int, count: int) -> ir.Constant:
+    """Half of 2^(i/256), the same in all modules."""
+    with working_precision(width + 256):
+        step = flint.arb(2).log() / _OCTAVE
+        values = [arb_integer((step * i).exp(), DIGIT * count - 1) for i in range(_OCTAVE)]
+    return rows_of(values, count)
 
 
 class Exponential:
@@ -113,11 +123,7 @@ class Exponential:
         return self.numbers.shifted(b, self.numbers.known(limbs, self.width), by)
 
     def _powers(self) -> Table:
-        """Half of 2^(i/256)."""
         if self._table is None:
-            places = DIGIT * self.count - 1
-            with working_precision(self.width + 256):
-                step = flint.arb(2).log() / _OCTAVE
-                values = [arb_integer((step * i).exp(), places) for i in range(_OCTAVE)]
-            self._table = Table(self.module, "lanes_powers", values, self.count)
+            rows = _powers_of(self.width, self.count)
+            self._table = Table(self.module, "lanes_powers", rows, self.count)
         return self._table

@@ -5,23 +5,25 @@ from collections.abc import Sequence
 from llvmlite import ir
 
 from verify.arithmetic.lanes.vectors import DIGIT, LANES, WORDS
-from verify.arithmetic.wide.limbs import I64, Value
+from verify.arithmetic.wide.limbs import I64, Value, words
+
+
+def rows_of(values: Sequence[int], count: int) -> ir.Constant:
+    """Fractions of `count` limbs, one after the other; 1 is the fraction next to it."""
+    largest = 2 ** (DIGIT * count) - 1
+    return words(
+        [(min(v, largest) >> DIGIT * i) % (1 << DIGIT) for v in values for i in range(count)]
+    )
 
 
 class Table:
-    """Fractions of `count` limbs, one after the other; 1 is the fraction next to it."""
+    """Fractions of `count` limbs, one after the other, as `rows_of` writes them."""
 
-    def __init__(self, module: ir.Module, name: str, values: Sequence[int], count: int) -> None:
-        self.count, largest = count, 2 ** (DIGIT * count) - 1
-        rows = [
-            (min(value, largest) >> DIGIT * i) % (1 << DIGIT)
-            for value in values
-            for i in range(count)
-        ]
-        kind = ir.ArrayType(I64, len(rows))
-        self.rows = ir.GlobalVariable(module, kind, name)
+    def __init__(self, module: ir.Module, name: str, rows: ir.Constant, count: int) -> None:
+        self.count = count
+        self.rows = ir.GlobalVariable(module, rows.type, name)
         self.rows.linkage, self.rows.global_constant = "internal", True
-        self.rows.initializer = ir.Constant(kind, rows)
+        self.rows.initializer = rows
 
     def entries(self, b: ir.IRBuilder, index: Value) -> list[Value]:
         """Those of the lanes' indices."""

@@ -13,6 +13,7 @@ leading limbs are zero, and they are not computed. log: from float64's logarithm
 
 from collections.abc import Sequence
 from fractions import Fraction
+from functools import cache
 from math import factorial
 
 import flint
@@ -32,8 +33,35 @@ _DOUBLE = ir.DoubleType()
 
 def arb_integer(value: flint.arb, shift: int) -> int:
     """An arb's middle times 2^shift, to the nearest integer."""
-    mantissa, exponent = value.mid().man_exp()
-    return round(Fraction(int(mantissa)) * Fraction(2) ** (int(exponent) + shift))
+    mantissa, exponent = map(int, value.mid().man_exp())
+    by = exponent + shift
+    return mantissa << by if by >= 0 else round(Fraction(mantissa, 1 << -by))
+
+
+def _table_of(values: Sequence[int], width: int) -> ir.Constant:
+    """Integers of so many bits, each its limbs from the lowest."""
+    return limbs.words([(v >> 64 * i) & (2**64 - 1) for v in values for i in range(width // 64)])
+
+
+# The tables of a width are the same in all modules, and take longer to make than to compile.
+
+
+@cache
+def _sines(width: int) -> ir.Constant:
+    """sin of all table steps of five quarters, with W − 2 fraction bits."""
+    with working_precision(width + 128):
+        unit = 2 * flint.arb.pi() / _ANGLES
+        values = [arb_integer((unit * k).sin(), width - 2) for k in range(_ANGLES * 5 // 4)]
+    return _table_of(values, width)
+
+
+@cache
+def _powers(width: int) -> ir.Constant:
+    """2^x of all table steps below 1, with W − 2 fraction bits."""
+    with working_precision(width + 128):
+        unit = flint.arb(2).log() / _EXPONENTIALS
+        values = [arb_integer((unit * k).exp(), width - 2) for k in range(_EXPONENTIALS)]
+    return _table_of(values, width)
 
 
 class Functions:
@@ -69,13 +97,10 @@ class Functions:
         b.ret(packed)
         return b.function
 
-    def _table(self, name: str, values: Sequence[int]) -> ir.GlobalVariable:
-        """Constant integers, each its limbs from the lowest."""
-        rows = [(v >> 64 * i) & (2**64 - 1) for v in values for i in range(self.count)]
-        kind = ir.ArrayType(I64, len(rows))
-        table = ir.GlobalVariable(self.module, kind, f"fixed_{name}")
+    def _table(self, name: str, values: ir.Constant) -> ir.GlobalVariable:
+        table = ir.GlobalVariable(self.module, values.type, f"fixed_{name}")
         table.linkage, table.global_constant = "internal", True
-        table.initializer = ir.Constant(kind, rows)
+        table.initializer = values
         return table
 
     def _entry(self, b: ir.IRBuilder, table: ir.GlobalVariable, index: Value) -> Value:
@@ -155,10 +180,8 @@ class Functions:
     def _cos_sin(self) -> ir.Function:
         b, x = self._define("cos_sin", 2)
         with working_precision(self.width + 128):
-            unit = 2 * flint.arb.pi() / _ANGLES
-            sines = [arb_integer((unit * k).sin(), self.width - 2) for k in range(_ANGLES * 5 // 4)]
-            k, r = self._multiple(b, x, unit, Fraction(1, 2))
-        table = self._table("sines", sines)
+            k, r = self._multiple(b, x, 2 * flint.arb.pi() / _ANGLES, Fraction(1, 2))
+        table = self._table("sines", _sines(self.width))
         index = b.and_(k, constant(_ANGLES - 1, 64))
         sine = self._entry(b, table, index)
         cosine = self._entry(b, table, b.add(index, constant(_ANGLES // 4, 64)))
@@ -202,11 +225,10 @@ class Functions:
         """
         with working_precision(self.width + 128):
             unit = flint.arb(2).log() / _EXPONENTIALS
-            powers = [arb_integer((unit * k).exp(), self.width - 2) for k in range(_EXPONENTIALS)]
             # A little less than the floor, so that r is surely not negative.
             k, r = self._multiple(b, x, unit, Fraction(-1, 2**20))
         if "powers" not in self._tables:
-            self._tables["powers"] = self._table("powers", powers)
+            self._tables["powers"] = self._table("powers", _powers(self.width))
         base = self._entry(b, self._tables["powers"], b.and_(k, constant(_EXPONENTIALS - 1, 64)))
         high = self.products.high
         u = limbs.shifted_up(b, r, 8)  # r < 2^−8

@@ -28,6 +28,13 @@ def constant(value: int, width: int) -> Value:
     return ir.Constant(bits(width), value % (1 << width))
 
 
+def words(values: Sequence[int]) -> ir.Constant:
+    """A table of 64-bit words, written once: of an `ir.Constant` each module makes and writes every
+    word again."""
+    text = ", ".join(f"i64 {value}" for value in values)
+    return ir.FormattedConstant(ir.ArrayType(I64, len(values)), f"[{text}]")
+
+
 def limb(b: ir.IRBuilder, x: Value, index: int) -> Value:
     """The limb of that index; limb 0 is the lowest."""
     if x.type.width == 64:
