@@ -131,15 +131,28 @@ def test_an_orbit_that_leaves_the_range_does_not_end_the_report(
     assert "left range" in {run.status for run in runs}
 
 
+def test_a_map_with_a_pole_at_h_0_is_bad_input(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    assert_pole_is_told(*here(capsys, *report_with_pole(tmp_path), "--workers", "1"))
+
+
 @pytest.mark.left_to_ci
-@pytest.mark.parametrize("workers", ["1", "2"])
-def test_a_map_with_a_pole_at_h_0_is_bad_input(tmp_path: Path, workers: str) -> None:
-    path = tmp_path / "pole.toml"
+def test_nor_does_a_pole_end_workers_otherwise(tmp_path: Path) -> None:
+    done = apart(*report_with_pole(tmp_path), "--workers", "2")
+    assert_pole_is_told(done.returncode, done.stdout, done.stderr)
+
+
+def report_with_pole(folder: Path) -> tuple[str, ...]:
+    path = folder / "pole.toml"
     path.write_text(SCENE.replace('"symplectic-euler"', '"p_next = p + q*sqrt(h); q_next = q"'))
-    done = apart("report", str(path), "-o", str(tmp_path / "out"), "--workers", workers)
-    assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr.count("\n") == 1
-    assert "not smooth in h" in done.stderr
+    return "report", str(path), "-o", str(folder / "out")
+
+
+def assert_pole_is_told(status: int, out: str, err: str) -> None:
+    assert (status, out) == (2, "")
+    assert err.count("\n") == 1
+    assert "not smooth in h" in err
 
 
 # -- interruption ---------------------------------------------------------------------------------

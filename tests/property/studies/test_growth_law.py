@@ -8,6 +8,7 @@ it changed does not do that.
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
+from functools import cache
 from typing import Any
 
 import mpmath
@@ -55,6 +56,18 @@ def cases(hamiltonians: st.SearchStrategy[str], most: int) -> st.SearchStrategy[
     return st.tuples(hamiltonians, st.sampled_from(LIE), at, at)
 
 
+@cache
+def runs_of(case: Case) -> list[RunResult]:
+    """One for each step size: the same whatever law they are held against."""
+    formula, scheme, q, p = case
+    hamiltonian = Hamiltonian.parse(formula)
+    return [
+        run(hamiltonian, scheme, q=q, p=p, step_size=h, steps=int(TIME / h), arithmetic="mpfr",
+            digits=30, observables=("lambda",))
+        for h in STEP_SIZES
+    ]  # fmt: skip
+
+
 def remainders(case: Case) -> list[float] | None:
     """(measured − predicted log(1 + Λ)) / h^order for each step size; None: no closed orbit."""
     formula, scheme, q, p = case
@@ -62,11 +75,7 @@ def remainders(case: Case) -> list[float] | None:
     mean = average_of(hamiltonian, scheme, q=q, p=p, digits=15)
     if mean.average is None:
         return None
-    runs = [
-        run(hamiltonian, scheme, q=q, p=p, step_size=h, steps=int(TIME / h), arithmetic="mpfr",
-            digits=30, observables=("lambda",))
-        for h in STEP_SIZES
-    ]  # fmt: skip
+    runs = runs_of(case)
     if any(each.status != "finished" for each in runs):
         return None
     found = predictions(hamiltonian, mean, runs)

@@ -124,6 +124,7 @@ def test_ball_arithmetic_and_every_checkpoint_of_a_certified_run_overlap(name: s
 # -- values from elsewhere ------------------------------------------------------------------------
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("given", VECTORS, ids=["duffing-lie2", "pendulum", "duffing-lie3"])
 @pytest.mark.parametrize("arithmetic", [fixed.at_bits(240), mpfr.at_bits(200), mpmath.at_bits(90)],
                          ids=lambda a: a.name)  # fmt: skip

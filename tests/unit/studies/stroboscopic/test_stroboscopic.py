@@ -68,7 +68,7 @@ def test_a_point_is_where_a_run_of_so_many_periods_ends(tmp_path: Path) -> None:
 @pytest.mark.left_to_ci
 def test_what_more_digits_do_not_confirm_is_not_called_known(tmp_path: Path) -> None:
     """Near the saddle an orbit loses its digits; in the middle of the island it keeps them."""
-    few, many = (found(tmp_path, periods=LONG, digits=digits) for digits in (17, 80))
+    few, many = (found(tmp_path, periods=LONG, digits=digits) for digits in (17, 60))
     for coarse, fine in zip(few.sections, many.sections, strict=True):
         (calm, wild), (also_calm, clear) = coarse.orbits, fine.orbits
         assert calm.known == also_calm.known == LONG
