@@ -50,7 +50,7 @@ def error_of(found: RunResult, name: str, true: Fraction) -> Fraction:
 # -- enclosures -----------------------------------------------------------------------------------
 
 
-@pytest.mark.sample(4)
+@pytest.mark.sample(6)
 @pytest.mark.parametrize("digits", [5, 17, 50, 120])
 @pytest.mark.parametrize("case", VECTORS, ids=["duffing-lie2", "pendulum", "duffing-lie3"])
 def test_the_vectors_are_enclosed_with_the_digits_asked_for(
