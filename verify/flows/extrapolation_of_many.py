@@ -166,30 +166,39 @@ class CommonSteps:
         """How far the points move by Aitken and Neville's scheme, and its estimated error."""
         import numpy as np
 
+        t = self._t0 + self._sign * self._done
+        first = np.empty_like(z)  # of all these rules
+        _fill(first, self.slopes(*z, t))
         above: list[Array] = []
         for j in range(1, self._columns + 1):
-            row = [self._midpoint(z, time, 2 * j)]
+            row = [self._midpoint(z, first, t, time, 2 * j)]
             for k, before in enumerate(above, start=1):
                 row.append(row[-1] + (row[-1] - before) * (j - k) ** 2 / (j**2 - (j - k) ** 2))
             above = row
         return above[-1], np.max(np.abs(above[-1] - above[-2]), axis=0)
 
-    def _midpoint(self, z: Array, time: Any, count: int) -> Array:
-        """Gragg's rule with so many steps, smoothed at its end: what is added to z."""
+    def _midpoint(self, z: Array, first: Array, t: Any, time: Any, count: int) -> Array:
+        """Gragg's rule with so many steps, smoothed at its end: what is added to z.
+
+        `first`: the slopes at z and t.
+        """
         import numpy as np
 
         h = WIDE.mpf(time) / count
-        slopes, t = self.slopes, self._t0 + self._sign * self._done
-        before = np.zeros_like(z)
-        at = np.empty_like(z)
-        _fill(at, slopes(*z, t))
-        at *= h
-        change = np.empty_like(z)
+        twice = 2 * h
+        before, at = np.zeros_like(z), first * h
+        place, change = np.empty_like(z), np.empty_like(z)  # one array each for all steps
         for k in range(1, count):
-            _fill(change, slopes(*(z + at), t + k * h))
-            before, at = at, before + 2 * h * change
-        _fill(change, slopes(*(z + at), t + time))
-        return (at + before + h * change) / 2
+            _fill(change, self.slopes(*np.add(z, at, out=place), t + k * h))
+            change *= twice
+            change += before
+            before, at, change = at, change, before
+        _fill(change, self.slopes(*np.add(z, at, out=place), t + time))
+        change *= h
+        at += before
+        at += change
+        at /= 2
+        return at
 
 
 def _fill(rows: Array, values: Sequence[Array]) -> None:

@@ -98,7 +98,9 @@ class _Watch:
         for _ in range(_TRIES):
             z = before + self.walk.moved(before, time)
             height, speed = self.heights(z)
-            time = time - height / speed
+            last, time = time, time - height / speed
+            if np.array_equal(time, last):  # the other tries would give the same
+                break
         size = np.maximum(np.abs(z).max(axis=0), WIDE.mpf(1))
         room = step / _PARTS
         good = (np.abs(height) <= _CLOSE * size) & (time >= -room) & (time <= step + room)
