@@ -224,8 +224,11 @@ def test_an_interrupted_check_ends_with_130_and_says_what_is_kept(
 ) -> None:
     path, kept = claims(LONG), tmp_path / "kept"
     with started("check", path, "--keep", str(kept), "--workers", "1") as process:
-        time.sleep(3)
-        assert process.poll() is None
+        until = time.monotonic() + 60
+        while not kept.exists():
+            assert time.monotonic() < until
+            assert process.poll() is None, "it is done before it is interrupted"
+            time.sleep(0.02)
         status, out, err = interrupt(process)
     assert (status, out) == (130, "")
     assert re.fullmatch(r"interrupted: \d of 3 tasks are kept in \S+; the same command goes on "

@@ -20,7 +20,7 @@ pytestmark = pytest.mark.left_to_ci
 distributed = pytest.importorskip("distributed")
 ASKED = ("explore", "--property", "quadratic-hamiltonians", "--property", "time-scaling",
          "--scheme", "lie2", "--degree", "3", "--seed", "5", "--json")  # fmt: skip
-HUNT = ("explore", "--maximise", "growth", "--examples", "12", "--steps", "10", "--degree", "2",
+HUNT = ("explore", "--maximise", "growth", "--examples", "6", "--steps", "10", "--degree", "2",
         "--kind", "polynomial", "--seed", "5", "--json")  # fmt: skip
 
 
@@ -50,8 +50,8 @@ def test_a_worker_killed_in_the_middle_of_a_sweep_changes_nothing(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(explore, "_STRETCH", 15)  # four stretches
-    asked = (*ASKED, "--examples", "60")
+    monkeypatch.setattr(explore, "_STRETCH", 7)  # four stretches
+    asked = (*ASKED, "--examples", "28")
     alone = here(capsys, *asked, "--workers", "1")
     folder = tmp_path / "kept"
     with distributed.Client(cluster, set_as_default=False) as client:
@@ -62,7 +62,7 @@ def test_a_worker_killed_in_the_middle_of_a_sweep_changes_nothing(
     found = here(capsys, *asked, "--cluster", address, "--keep", str(folder))
     killer.join()
     assert found == alone
-    assert json_of(found[1])["examples"] == 60
+    assert json_of(found[1])["examples"] == 28
     assert len(list(folder.glob("*.json"))) == 4, "each stretch once"
 
 
@@ -73,7 +73,7 @@ def test_a_hunt_finds_the_same_on_a_cluster(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(hunting, "_ISLAND", 4)  # three islands, two of them at a time
+    monkeypatch.setattr(hunting, "_ISLAND", 2)  # three islands, two of them at a time
     monkeypatch.setattr(gallery, "_LONGER", 10)
     monkeypatch.setattr(page, "write", lambda *_: Path("index.html"))  # of what is found here
     with distributed.Client(cluster, set_as_default=False) as client:

@@ -81,11 +81,11 @@ def test_near_a_saddle_the_digits_of_the_initial_value_count() -> None:
     # Libration from π − ε has a quarter period near log(8/ε); at the saddle itself nothing moves.
     pi = Fraction("3.14159265358979323846264338327950288419716939937510582097494459")
     found = exact_orbit(
-        Hamiltonian.parse(PENDULUM), Fraction(0), pi - Fraction(1, 10**30), Fraction(400)
+        Hamiltonian.parse(PENDULUM), Fraction(0), pi - Fraction(1, 10**20), Fraction(300)
     )
     assert found.kind == "closed"
     assert found.period is not None
-    assert abs(found.period - 4 * Fraction("71.16")) < 2
+    assert abs(found.period - 4 * Fraction("48.13")) < 2
 
 
 @pytest.mark.parametrize("q", ["1/10", "1", "2", "3"])

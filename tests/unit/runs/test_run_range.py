@@ -266,7 +266,6 @@ def peak(steps):
     tracemalloc.stop()
     return own, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 series(500_000)  # compiles, which takes four times as long where it is traced
-peak(500_000)
 print(*peak(500_000), *peak(5_000_000))
 """
 

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.examples import drawn
 from verify.claims.theorems import check_theorem, names
 from verify.pages.markdown.markup import Node, tree
 from verify.pages.markdown.mathml_to_tex import tex
@@ -142,6 +143,7 @@ _SPELT = str.maketrans(
 
 
 @pytest.mark.left_to_ci
+@drawn(200)
 @given(st.text(max_size=40))
 def test_any_text_is_set_and_escaped(text: str) -> None:
     def tags(node: Node) -> set[str]:

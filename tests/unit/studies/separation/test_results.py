@@ -88,11 +88,11 @@ def test_the_number_of_steps_is_exact_where_h_divides_the_time() -> None:
 
 @pytest.mark.left_to_ci
 def test_the_crossover_of_lie4_on_duffing_lies_where_its_parts_are_equal() -> None:
-    found = separate_grid(DUFFING, "lie4", q="1.5", p=0, step_sizes=SIZES, time=10)
+    found = separate_grid(DUFFING, "lie4", q="1.5", p=0, step_sizes=SIZES, time=6)
     assert found.plain.bracket == ("0.0005", "0.001")
     assert found.plain.step_size is not None
     at = separate(DUFFING, "lie4", q="1.5", p=0, step_size=found.plain.step_size,
-                  steps=int(10 / float(found.plain.step_size)))  # fmt: skip
+                  steps=int(6 / float(found.plain.step_size)))  # fmt: skip
     assert at.plain is not None
     ratio = float(at.plain.largest["truncation"]) / float(at.plain.largest["total"])
     assert 0.5 < ratio < 2
