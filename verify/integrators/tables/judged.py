@@ -74,10 +74,10 @@ def judge(numbers: PrintedNumbers, asked: Asked, order: int) -> Judged:
     if not numbers.units:
         return replace(_exactly(asked, order), read=numbers)
     with working_precision(BITS):
-        return replace(_of(Nearby(numbers, asked), order, numbers.slack), read=numbers)
+        return replace(_of(Nearby(numbers, asked), order, numbers), read=numbers)
 
 
-def _of(near: Nearby, order: int, slack: int) -> Judged:
+def _of(near: Nearby, order: int, numbers: PrintedNumbers) -> Judged:
     equations, own = near.asked.equations, near.asked.up_to(order)
     every = range(len(equations))
     checked = len(own) + near.asked.by_form
@@ -93,11 +93,14 @@ def _of(near: Nearby, order: int, slack: int) -> Judged:
     residues = tuple(zip(equations, near.at_print, strict=True))
     seen = Judged(Verdict.MEASURED, allowed, checked, condition, size, largest, residues=residues)
     if allowed < order and largest > OF_DIGITS:
+        seen = replace(seen, verdict=Verdict.REFUTED, digits=False)
+        if numbers.tentative:
+            return seen
         one = misprint(near, own) if near.asked.labels else None
-        seen = replace(seen, verdict=Verdict.REFUTED, digits=False, misprint=one)
+        seen = replace(seen, misprint=one)
         found = nearest(near, own) or (far(near, own) if one is None else None)
         return seen if found is None else replace(seen, off=found.off, nearest=found.numbers)
-    return _with_nearest(seen, near, own, order, slack)
+    return _with_nearest(seen, near, own, order, numbers.slack)
 
 
 def _with_nearest(seen: Judged, near: Nearby, own: Sequence[int], order: int, slack: int) -> Judged:

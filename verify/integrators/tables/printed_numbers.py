@@ -38,13 +38,15 @@ class PrintedNumbers:
     """`numbers`: by name, decimals as printed, or exact formulas of numbers.
 
     `exact_up_to`: a decimal with so many places, or fewer, is exact; and so is one with so many
-    digits as `exact_digits`, or fewer. `exact_quotients`: whether long quotients are.
+    digits as `exact_digits`, or fewer. `exact_quotients`: whether long quotients are. `tentative`:
+    whether nobody asks which numbers would be right where these are refuted.
     """
 
     numbers: Mapping[str, str]
     exact_up_to: int = 0
     exact_digits: int = 0
     exact_quotients: bool = True
+    tentative: bool = False
 
     @cached_property
     def units(self) -> dict[str, Fraction]:
@@ -107,14 +109,16 @@ class PrintedNumbers:
     @property
     def closely(self) -> "PrintedNumbers":
         """With almost all of them rounded: then they must be so to half a unit."""
-        return replace(self, exact_up_to=_SHORTEST, exact_digits=0, exact_quotients=False)
+        return replace(
+            self, exact_up_to=_SHORTEST, exact_digits=0, exact_quotients=False, tentative=True
+        )
 
     def readings(self) -> list["PrintedNumbers"]:
         """The same as they may be read: with more of the decimals exact first."""
         longest = max((_digits(x) for x in self.numbers.values() if unit_of(x)), default=0)
         first = replace(self, exact_up_to=FIRST, exact_digits=longest - _FEWER)
         last = replace(self, exact_up_to=LAST, exact_quotients=False)
-        return [first] if first.units == last.units else [first, last]
+        return [first] if first.units == last.units else [replace(first, tentative=True), last]
 
 
 def _check_size(x: Fraction, name: str, text: str) -> None:

@@ -34,6 +34,7 @@ class TreeWeights(Generic[E]):
     def __init__(self, blocks: Sequence[Block[E]], one: E, nystrom: bool = False) -> None:
         self.blocks, self.one, self.nystrom = tuple(blocks), one, nystrom
         self.stages = len(blocks[0].weights)
+        self._vectors: dict[Tree, Vector[E]] = {}
         self._summed: dict[tuple[int, Tree], Vector[E]] = {}
 
     def weight(self, tree: Tree) -> E:
@@ -59,12 +60,17 @@ class TreeWeights(Generic[E]):
 
     def vector(self, tree: Tree) -> Vector[E]:
         """Φ_i."""
+        if tree not in self._vectors:
+            self._vectors[tree] = self._product(tree)
+        return self._vectors[tree]
+
+    def _product(self, tree: Tree) -> Vector[E]:
+        """Over the branches; all but the last are those of a smaller tree."""
         root, branches = tree
-        product: Vector[E] = (self.one,) * self.stages
-        for k, branch in enumerate(branches):
-            sums = self._sums(root, branch)
-            product = sums if k == 0 else times(product, sums)
-        return product
+        if not branches:
+            return (self.one,) * self.stages
+        sums = self._sums(root, branches[-1])
+        return sums if len(branches) == 1 else times(self.vector((root, branches[:-1])), sums)
 
     def _sums(self, root: int, tree: Tree) -> Vector[E]:
         """A branch's factor."""
