@@ -108,17 +108,21 @@ def mutated_source(source: str, index: int) -> ast.Module:
 
 def _changes(tree: ast.Module) -> Iterator[tuple[Change, int]]:
     """Every change that is made, once, with the first line of the function that it stands in."""
-    seen: set[tuple[int, str]] = set()
+    seen: dict[int, list[ast.AST]] = {}  # of each node itself, and what took its place
     efforts = {id(n) for n in _bounds_of_effort(tree)}
     for node, function in _reached(tree, 0):
         for word, old, new in changes_of(node):
-            written = ast.dump(new)
-            if id(old) in efforts or (id(old), written) in seen or written == ast.dump(old):
+            others = seen.setdefault(id(old), [old])
+            if id(old) in efforts or any(_alike(new, each) for each in others):
                 continue
             if _made_again(node, old, new):
                 continue
-            seen.add((id(old), written))
+            others.append(new)
             yield (word, old, new), function
+
+
+def _alike(one: ast.AST, other: ast.AST) -> bool:
+    return type(one) is type(other) and ast.dump(one) == ast.dump(other)
 
 
 def _bounds_of_effort(tree: ast.Module) -> Iterator[ast.AST]:

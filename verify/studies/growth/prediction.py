@@ -9,6 +9,7 @@ is O(h^η T), and the prediction by less than the remainder.
 import time
 from collections.abc import Sequence
 from fractions import Fraction
+from functools import lru_cache
 
 from verify.algebra.enclosure import enclose_over
 from verify.algebra.formula import to_text
@@ -23,6 +24,7 @@ from verify.arithmetic.arb import (
     rational_ball,
 )
 from verify.arithmetic.exact import Exact, rational, text, whole
+from verify.flows.closed_orbit import Start
 from verify.flows.extrapolation import NoFlowError
 from verify.flows.orbit_average import MOST_DIGITS, Average, average, bounded_part
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -91,7 +93,7 @@ def predictions(
     if of.average is None or not finished:
         return ()
     law = growth_law(hamiltonian, of.scheme)
-    placed = average(hamiltonian, law.g, (Fraction(of.p), Fraction(of.q)), _PHASE_DIGITS)
+    placed = _placing(hamiltonian, of.scheme, (Fraction(of.p), Fraction(of.q)))
     oscillation, number = bounded_part(placed), placed.orbit.flow.number
     found = []
     for run in finished:
@@ -99,6 +101,12 @@ def predictions(
         with precision():
             found.append(_prediction(law, of.average, run, Fraction(oscillation(end))))
     return tuple(each for each in found if each)
+
+
+@lru_cache(maxsize=16)
+def _placing(hamiltonian: Hamiltonian, scheme: str, start: Start) -> Average:
+    # The orbit of a scene is asked for by its page, and by each claim that is made of it.
+    return average(hamiltonian, growth_law(hamiltonian, scheme).g, start, _PHASE_DIGITS)
 
 
 def _prediction(

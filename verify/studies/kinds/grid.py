@@ -15,26 +15,38 @@ from verify.scenes.values import CLOSED_FORM
 
 def grid_task(scene: Scene, scheme: str, h: Fraction, start: int) -> RunTask:
     """The grid's run for a step size and the index of an initial value."""
-    assert scene.grid is not None  # noqa: S101 - asked for by grids only
-    grid, at = scene.grid, scene.grid.initial_values[start]
-    observables = observed(scene.exact_hamiltonian(), grid.observables)
-    return RunTask(
-        **scene.hamiltonian_fields(), scheme=scheme,
-        step_size=h, steps=grid.steps_for(h), q=at.q, p=at.p, t0=scene.t0,
-        arithmetic=grid.arithmetic, digits=grid.digits, observables=observables, points=0,
-        shares_kernel=grid.runs > 1 and grid.steps_in_all >= WORTH_COMPILING,
-    )  # fmt: skip
+    return _grid_task(scene, scheme, h, start, _fields_of_all(scene))
 
 
 def grid_tasks(scene: Scene, scheme: str) -> list[RunTask]:
     """The grid's runs by initial value, then step size; none where there is no grid."""
     if scene.grid is None:
         return []
+    of_all = _fields_of_all(scene)
     return [
-        grid_task(scene, scheme, h, start)
+        _grid_task(scene, scheme, h, start, of_all)
         for start in range(len(scene.grid.initial_values))
         for h in scene.grid.step_sizes
     ]
+
+
+def _grid_task(
+    scene: Scene, scheme: str, h: Fraction, start: int, of_all: dict[str, Any]
+) -> RunTask:
+    assert scene.grid is not None  # noqa: S101 - asked for by grids only
+    at, steps = scene.grid.initial_values[start], scene.grid.steps_for(h)
+    return RunTask(**of_all, scheme=scheme, step_size=h, steps=steps, q=at.q, p=at.p)
+
+
+def _fields_of_all(scene: Scene) -> dict[str, Any]:
+    """What all runs of the grid have in common; for it H is read, which takes long."""
+    assert scene.grid is not None  # noqa: S101 - asked for by grids only
+    grid = scene.grid
+    return scene.hamiltonian_fields() | {
+        "t0": scene.t0, "arithmetic": grid.arithmetic, "digits": grid.digits, "points": 0,
+        "observables": observed(scene.exact_hamiltonian(), grid.observables),
+        "shares_kernel": grid.runs > 1 and grid.steps_in_all >= WORTH_COMPILING,
+    }  # fmt: skip
 
 
 def grid_runs(scene: Scene, scheme: str, results: Results) -> list[RunResult]:
