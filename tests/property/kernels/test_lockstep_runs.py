@@ -15,7 +15,7 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun, Outcome
 
-OBSERVABLES = frozenset({"lambda", "mse", "delta_j_max"})
+OBSERVABLES = frozenset({"lambda", "mse", "delta_j_max", "extremes"})
 H = {
     "duffing": ("p**2/2 + q**2/2 + delta*q**4/4", {"delta": Fraction(1)}),
     "pendulum": ("p**2/2 - cos(q)", {}),
@@ -34,8 +34,7 @@ def runs(name: str, points: int = 0, scheme: str = "lie2") -> list[KernelRun]:
         start = {"q": Fraction(k - 4, 7), "p": Fraction(3 - k, 11), "h": Fraction(1, 50 + k // 6)}
         start |= {"t": Fraction(k, 3)} if name == "driven" else {}
         steps = 300 + k // 4
-        observables = OBSERVABLES | ({"extremes"} if points else set())
-        found.append(KernelRun(hamiltonian, scheme, start, steps, observables, points))
+        found.append(KernelRun(hamiltonian, scheme, start, steps, OBSERVABLES, points))
     return found
 
 

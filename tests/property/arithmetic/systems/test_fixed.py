@@ -56,7 +56,7 @@ def test_operations_are_right_where_carries_run_through_all_limbs(
     form: fixed_checks.Format,
 ) -> None:
     raws = sorted({shape.raw(form.width) for shape in HARD})
-    for x, y in product(raws[::3], raws):
+    for x, y in product(raws[::6], raws):
         fixed_checks.check_operations(form, x, y)
 
 
@@ -129,8 +129,9 @@ def test_functions_are_within_what_is_stated_or_refused(kind: str, data: st.Data
 @pytest.mark.left_to_ci
 @pytest.mark.parametrize("kind", KINDS)
 def test_functions_are_right_at_the_ends_of_the_format_and_around_0(kind: str) -> None:
-    for form in FORMATS:
-        for raw in sorted({shape.raw(form.width) for shape in HARD}):
+    """Each place at every second width."""
+    for k, form in enumerate(FORMATS):
+        for raw in sorted({shape.raw(form.width) for shape in HARD[k % 2 :: 2]}):
             fixed_checks.check_function(form, kind, raw)
 
 
@@ -177,7 +178,7 @@ def test_the_logarithm_is_right_just_beside_every_power_of_two() -> None:
 
 @pytest.mark.left_to_ci
 def test_cos_sin_is_cos_and_sin() -> None:
-    for form in FORMATS:
+    for form in (FORMATS[0], FORMATS[-1]):
         for shape in HARD:
             x = form.number(shape.raw(form.width))
             both = form.call("def f(x): return cos_sin(x)\n", x)
