@@ -25,10 +25,10 @@ def test_what_a_loops_tolerance_leaves_is_no_truncation_error(tolerance: float) 
 
 @pytest.mark.left_to_ci
 @pytest.mark.sample(2)
+@pytest.mark.parametrize("claims", [Claims(order=1), Claims(area_preserving=True)])
 @pytest.mark.parametrize("change", [1e-2, 1e-3, 1e-4])
-def test_a_friction_beside_a_loop_with_a_tolerance_is_seen(change: float) -> None:
-    for claims in (Claims(order=1), Claims(area_preserving=True)):
-        assert found_of(own_steps.midpoint_to(1e-9, change), claims).verdict == "REFUTED"
+def test_a_friction_beside_a_loop_with_a_tolerance_is_seen(change: float, claims: Claims) -> None:
+    assert found_of(own_steps.midpoint_to(1e-9, change), claims).verdict == "REFUTED"
 
 
 def test_a_small_friction_in_a_black_box_is_not_taken_for_an_order() -> None:

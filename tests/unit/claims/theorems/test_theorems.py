@@ -8,6 +8,8 @@ import sympy
 
 from tests.helpers.theorem_controls import refused
 from tests.paths import ROOT
+from verify.claims.file import load_claims
+from verify.claims.findings import Findings
 from verify.claims.theorems import (
     check_theorem,
     consistency,
@@ -91,6 +93,12 @@ VERDICTS = {
 
 def test_every_theorem_is_found_and_has_its_verdict() -> None:
     assert {name: check_theorem(name).verdict for name in names()} == VERDICTS
+    for claim in (c for c in load_claims(TOML).claims if c.kind == "theorem"):
+        found = claim.judge(Findings({}))  # here, where all theorems are checked
+        assert (found.verdict, found.source) == (VERDICTS[found.id], claim.source)
+        assert found.scene == claim.scene
+        assert found.evidence
+        assert "\n" not in found.evidence
 
 
 @pytest.mark.parametrize("name", VERDICTS)
