@@ -45,7 +45,7 @@ def at(jets: Jets, x: object, hamiltonian: sympy.Expr, point: dict[str, Fraction
 @pytest.mark.left_to_ci
 @drawn(40)
 @given(
-    text=polynomials(degree=3, most_terms=2) | trigonometric(),
+    text=polynomials(degree=4, most_terms=3) | trigonometric(),
     eta=st.integers(1, 4),
     point=points("p", "q"),
 )

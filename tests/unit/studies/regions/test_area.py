@@ -213,7 +213,7 @@ def test_float64_lies_within_its_bound_of_33_digits(place: Any, stepped: Any) ->
 @pytest.mark.left_to_ci
 def test_what_rounding_leaves_is_within_its_bound_after_every_cut_too() -> None:
     """No cut makes a difference smaller that is rounding's: it is cut until the nodes are used."""
-    outline, given = placed(CIRCLE, *TINY), ("lie3", Fraction(1, 10), 5, PENDULUM)
+    outline, given = placed(CIRCLE, *TINY), ("lie3", Fraction(1, 10), 20, PENDULUM)
     found, true = (measured(outline, plane(*given), CHANGED) for plane in (floats, wide))
     assert found.nodes > 100 * true.nodes
     assert abs(found.change - true.change) <= found.error + true.error
