@@ -133,7 +133,7 @@ def test_a_true_claim_of_every_h_holds_of_each_and_a_false_one_fails(tmp_path: P
     asked = exploration(
         properties=(),
         claims=claims_of(tmp_path, OF_EVERY),
-        examples=5,
+        examples=9,
         drawn=SampleSpace(degree=3),
     )
     report = explore(asked, Store(None), where=THIS_PROCESS)

@@ -53,7 +53,7 @@ def test_the_working_value_is_what_run_reports_for_float64() -> None:
 @pytest.mark.parametrize("hamiltonian", [DUFFING, PENDULUM], ids=["duffing", "pendulum"])
 def test_fixed_and_mpfr_find_the_same_parts(hamiltonian: Hamiltonian) -> None:
     start = {"p": Fraction(1, 3), "q": Fraction(3, 2), "h": Fraction(1, 1000)}
-    run = hamiltonian, "lie2", start, 300
+    run = hamiltonian, "lie2", start, 1000
     found = [separated_chains(*run, 17, name) for name in ("fixed", "mpfr")]
     for way in ("plain", "closed_form"):
         one, other = (getattr(each, way) for each in found)
