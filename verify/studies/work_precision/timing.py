@@ -44,15 +44,15 @@ def _resolution(name: Literal["thread_time"]) -> float:
 
 def interleaved(calls: Sequence[Call], rounds: int) -> list[Timed]:
     """Each call timed once in each round; every call is made once before, as a warm-up."""
-    counts = [_count(call) for call in calls]
-    found: list[list[float]] = [[] for _ in calls]
     collecting = gc.isenabled()
     gc.disable()
     try:
-        for k in range(rounds):
+        counted = [_count(call) for call in calls]  # the first round
+        found = [[taken] for _, taken in counted]
+        for k in range(1, rounds):
             order = range(len(calls)) if k % 2 == 0 else reversed(range(len(calls)))
             for i in order:
-                found[i].append(_seconds(calls[i], counts[i]))
+                found[i].append(_seconds(calls[i], counted[i][0]))
     finally:
         if collecting:
             gc.enable()
@@ -74,17 +74,17 @@ def nothing() -> None:
     """A call that does nothing: what timing itself takes."""
 
 
-def _count(call: Call) -> int:
-    """So many calls that one timing of them is long enough."""
+def _count(call: Call) -> tuple[int, float]:
+    """So many calls that one timing of them is long enough, and the seconds of one of them."""
     call()
     count = 1
-    while count < _MOST_CALLS:
-        taken = _seconds(call, count) * count
-        if taken >= _LEAST:
-            return count
+    while True:
+        each = _seconds(call, count)
+        if each * count >= _LEAST or count == _MOST_CALLS:
+            return count, each
         # Not all at once: a first timing may be slow by chance.
-        count = min(_MOST_CALLS, max(2 * count, int(count * _LEAST / max(taken, 1e-7) / 2)))
-    return count
+        room = int(_LEAST / max(each, 1e-7 / count) / 2)
+        count = min(_MOST_CALLS, max(2 * count, room))
 
 
 def _seconds(call: Call, count: int) -> float:
