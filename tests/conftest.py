@@ -51,3 +51,9 @@ def pytest_collection_finish() -> None:
     """
     gc.collect()
     gc.freeze()
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_sessionfinish() -> None:
+    """pytest looks for cycles five times when all is done, which takes seconds in each process."""
+    gc.freeze()
