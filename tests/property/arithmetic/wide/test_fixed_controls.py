@@ -186,14 +186,13 @@ def test_numbers_with_bits_less_than_promised_are_caught(
 def test_a_table_with_one_entry_a_little_off_is_caught(
     monkeypatch: pytest.MonkeyPatch, table: str, entry: int, kind: str
 ) -> None:
-    true = Functions._table
+    true, made = functions._table_of, getattr(functions, f"_{table}").__wrapped__
 
-    def wrong(self: Functions, name: str, values: list[int]) -> Any:
-        if name == table:
-            values = [v + (k == entry) * 2**20 for k, v in enumerate(values)]
-        return true(self, name, values)
+    def wrong(values: list[int], width: int) -> Any:
+        return true([v + (k == entry) * 2**20 for k, v in enumerate(values)], width)
 
-    monkeypatch.setattr(Functions, "_table", wrong)
+    monkeypatch.setattr(functions, "_table_of", wrong)
+    monkeypatch.setattr(functions, f"_{table}", made)  # which is kept for other tests
     assert_caught(function(kind))
 
 
