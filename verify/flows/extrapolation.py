@@ -9,12 +9,12 @@ Where H depends on time a state is (p, q, t): with t' = 1 the system is autonomo
 takes its midpoints at t, t + h, t + 2h, …
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
 from verify.arithmetic.systems import mpfr
-from verify.flows.functions import Written
+from verify.flows.functions import Elements, Written
 from verify.hamiltonians.vector_field import VectorField
 from verify.prose import read_prose
 
@@ -51,11 +51,16 @@ class Flow:
     """The exact flow of a vector field without symbols, to `digits` digits."""
 
     def __init__(self, field: VectorField, digits: int) -> None:
-        self.arithmetic = mpfr.make(digits + GUARD)
-        ring, self.timed = field.ring, field.timed
-        self.names: tuple[str, ...] = ("p", "q", "t") if self.timed else ("p", "q")
-        elements = [(ring, -field.h_q), (ring, field.h_p)]
-        written = Written.of(self.arithmetic, elements, self.names)
+        slopes = [(field.ring, -field.h_q), (field.ring, field.h_p)]
+        self._write(slopes, ("p", "q"), field.timed, digits)
+
+    def _write(
+        self, slopes: Elements, coordinates: Sequence[str], timed: bool, digits: int
+    ) -> None:
+        """The slopes and Gragg's rule as functions, and what so many digits ask for."""
+        self.arithmetic, self.timed = mpfr.make(digits + GUARD), timed
+        self.names = (*coordinates, "t") if timed else tuple(coordinates)
+        written = Written.of(self.arithmetic, slopes, self.names)
         self._slopes, self._rule = written.at(), written.gragg_rule()
         self._tolerance = self.arithmetic.number(Fraction(1, 10 ** (digits + GUARD - LOST_DIGITS)))
         self._columns = columns_for(digits)

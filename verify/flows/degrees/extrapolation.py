@@ -1,20 +1,8 @@
 """Gragg's method, extrapolated, for any number of coordinates; see `verify.flows.extrapolation`."""
 
 from collections.abc import Sequence
-from fractions import Fraction
 
-from verify.arithmetic.systems import mpfr
-from verify.flows.extrapolation import (
-    GUARD,
-    LOST_DIGITS,
-    STILL,
-    Flow,
-    NoFlowError,
-    Number,
-    State,
-    columns_for,
-)
-from verify.flows.functions import Written
+from verify.flows.extrapolation import STILL, Flow, NoFlowError, Number, State
 from verify.hamiltonians.canonical_field import CanonicalField
 
 
@@ -23,14 +11,7 @@ class FlowInDegrees(Flow):
     depends on it."""
 
     def __init__(self, field: CanonicalField, digits: int) -> None:
-        self.arithmetic = mpfr.make(digits + GUARD)
-        self.timed = field.timed
-        self.names = (*field.names, "t") if self.timed else field.names
-        elements = [(field.ring, x) for x in field.slopes]
-        written = Written.of(self.arithmetic, elements, self.names)
-        self._slopes, self._rule = written.at(), written.gragg_rule()
-        self._tolerance = self.arithmetic.number(Fraction(1, 10 ** (digits + GUARD - LOST_DIGITS)))
-        self._columns = columns_for(digits)
+        self._write([(field.ring, x) for x in field.slopes], field.names, field.timed, digits)
 
     def slope(self, z: State) -> State:
         """f(z). Raises NoFlowError where it is not defined."""
