@@ -22,8 +22,8 @@ import numpy as np
 from tight_mpmath import DELTA
 
 from verify import arithmetic
-from verify.arithmetic.compiled import paths
 from verify.arithmetic.compiled.translation import Layout
+from verify.arithmetic.processor import LANES
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.chunked_loop import ChunkedLoop
@@ -84,7 +84,7 @@ def measure(system: str, digits: int, orbits: int, certified: bool, rounds: int)
     alone = np.concatenate([function.one(part) for part in parts], axis=1)
     if function.lanes is None:
         raise SystemExit("no lanes here; VERIFY_LANES=portable forces slow ones")
-    sets = [np.ascontiguousarray(words[:, k : k + paths.LANES]) for k in range(0, orbits, 8)]
+    sets = [np.ascontiguousarray(words[:, k : k + LANES]) for k in range(0, orbits, LANES)]
     together = np.concatenate([function.lanes(part) for part in sets], axis=1)
     if not np.array_equal(alone, together):
         raise SystemExit(f"{system}, {digits} digits: an orbit in lanes is another one")
@@ -101,8 +101,8 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=7)
     parser.add_argument("--systems", nargs="+", default=[*TARGETS, "morse", SOFTENED])
     asked = parser.parse_args()
-    if asked.orbits % paths.LANES:
-        raise SystemExit(f"--orbits {asked.orbits}: give a multiple of {paths.LANES}")
+    if asked.orbits % LANES:
+        raise SystemExit(f"--orbits {asked.orbits}: give a multiple of {LANES}")
     print(
         f"{'':9}{'digits':>7}{'certified':>11}{'alone':>9}{'lanes':>8}{'ratio':>7}{'C':>9}{'C/lanes':>9}"
     )

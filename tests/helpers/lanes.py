@@ -11,11 +11,12 @@ import numpy as np
 
 from verify.arithmetic.compiled import engine, paths
 from verify.arithmetic.compiled.translation import Fixed, Source
+from verify.arithmetic.processor import LANES
 from verify.arithmetic.systems import fixed
 from verify.kernels.kernel import kernel_for
 from verify.studies.separation.kernel import mixed_kernel
 
-NATIVE = ["avx512"] if paths._has_instructions() else []
+NATIVE = [name for name, path in paths.PATHS.items() if path.needed and path.there]
 IN_LANES = [*NATIVE, "portable"]
 PATHS = [*IN_LANES, paths.OFF]
 
@@ -42,7 +43,7 @@ class Both:
         made = fixed.at_bits(width - fixed.INTEGER_BITS)
         known = tuple(sorted({**made.functions, **(names or {})}.items()))
         own = Source(text, width, made.bits, known)
-        target = paths.Path(way).target
+        target = paths.PATHS[way].target
         self._source = Source(text, width, made.bits, known, f"lanes, {way}", target)
         self.one = engine.NativeFunction(own, anew=True)
 
@@ -63,7 +64,7 @@ class Both:
         """The same of each of up to eight rows of arguments."""
         layout, function = self._lanes
         given = [layout.packed(row) for row in rows]
-        given += [given[0]] * (paths.LANES - len(rows))
+        given += [given[0]] * (LANES - len(rows))
         words = [np.frombuffer(row, dtype=np.uint64) for row in given]
         size = sum(layout.result_sizes) // 8 + 1
         found = engine._called(function, size, np.ascontiguousarray(np.stack(words, axis=1)))

@@ -4,13 +4,16 @@ from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from tests.helpers.lanes import IN_LANES, PATHS, path
-from verify import arithmetic, lockstep
+from verify import arithmetic, code_cache, lockstep
+from verify.arithmetic import processor
 from verify.arithmetic.compiled import engine, paths, walking
+from verify.arithmetic.processor import LANES
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun, Outcome
@@ -92,8 +95,9 @@ def test_a_series_is_the_same() -> None:
     assert all(len(x[0].series) == 7 for x in alone)
 
 
-@pytest.mark.left_to_ci
-def test_lanes_are_used_where_there_is_more_than_one_orbit(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture
+def seen(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """How many lanes were used, call by call."""
     seen: list[int] = []
     true = walking.step_together
 
@@ -102,9 +106,14 @@ def test_lanes_are_used_where_there_is_more_than_one_orbit(monkeypatch: pytest.M
         true(orbits, kernel, lanes, in_parts)
 
     monkeypatch.setattr(engine, "step_together", noting)
+    return seen
+
+
+@pytest.mark.left_to_ci
+def test_lanes_are_used_where_there_is_more_than_one_orbit(seen: list[int]) -> None:
     with path(IN_LANES[0]):
         done(runs("duffing"), 33, in_lockstep=True)
-        assert paths.LANES in seen
+        assert LANES in seen
         seen.clear()
         done(runs("duffing")[:1], 33, in_lockstep=True)
         assert set(seen) == {1}
@@ -112,6 +121,27 @@ def test_lanes_are_used_where_there_is_more_than_one_orbit(monkeypatch: pytest.M
     with path(paths.OFF):
         done(runs("duffing"), 33, in_lockstep=True)
     assert set(seen) == {1}
+
+
+def test_lanes_are_compiled_for_long_work_only(
+    seen: list[int], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Or where that was done before: what is kept is used at once."""
+    monkeypatch.setenv(code_cache.VARIABLE, str(tmp_path / "kernels"))
+    monkeypatch.setattr(paths, "forced", lambda: False)
+    few = runs("duffing")
+    steps = sum(run.steps for run in few)
+    monkeypatch.setattr(engine, "_WORTH_COMPILING", 3 * steps // 2)
+    with path(IN_LANES[0]):
+        done(few, 33, in_lockstep=True)
+        assert set(seen) == {1}
+        for _ in range(2):
+            done(few, 33, in_lockstep=True)
+        assert LANES in seen
+    seen.clear()
+    with path(IN_LANES[0]):
+        done(few, 33, in_lockstep=True)
+    assert seen[0] == LANES
 
 
 def test_a_lane_that_takes_its_neighbours_place_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -130,9 +160,9 @@ def test_a_lane_that_takes_its_neighbours_place_is_caught(monkeypatch: pytest.Mo
 
 def test_an_unknown_way_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(paths.VARIABLE, "avx1024")
-    with pytest.raises(InputError, match=r"VERIFY_LANES.*avx512, portable, off"):
+    with pytest.raises(InputError, match=r"VERIFY_LANES.*avx512, avx2, portable, off"):
         paths.chosen()
-    monkeypatch.setattr(paths, "_has_instructions", lambda: False)
+    monkeypatch.setattr(processor, "features", dict)
     monkeypatch.setenv(paths.VARIABLE, "avx512")
     with pytest.raises(InputError, match="no such instructions"):
         paths.chosen()

@@ -15,20 +15,21 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from verify.arithmetic.compiled.paths import LANES
 from verify.arithmetic.compiled.translation import Source
+from verify.arithmetic.processor import LANES
 from verify.arithmetic.wide.translate import Target
 
-SETS = 4
-POINTS = SETS * LANES  # a call's
+POINTS = 32  # a call's
+SETS = POINTS // LANES
 _WIDTH, _FRACTION = 128, 112  # of wide numbers, of which there are none
 Points = npt.NDArray[np.float64]
 
 
 def _target(width: int, fraction: int) -> Target:
     from verify.arithmetic.lanes.ensemble import Ensemble
+    from verify.arithmetic.lanes.multiply_add import Portable
 
-    return Ensemble(width, fraction, native=False, sets=SETS)
+    return Ensemble(width, fraction, Portable, sets=SETS)
 
 
 def on_points(source: str, names: Mapping[str, Any], carried: int) -> Callable[..., None]:

@@ -14,11 +14,13 @@ from verify.arithmetic.compiled import native, paths
 from verify.arithmetic.compiled.translation import Fixed as Fixed
 from verify.arithmetic.compiled.translation import Source, Word
 from verify.arithmetic.compiled.walking import Orbit, Words, step_together
+from verify.arithmetic.processor import LANES
 from verify.lockstep import Pending
 
 Names = tuple[tuple[str, Any], ...]
 _LEAST_IN_LANES = 3  # fewer take longer together than one after the other
 _WIDEST_IN_LANES = 512  # bits; beyond that LLVM takes seconds
+_WORTH_COMPILING = 5_000_000  # steps of all orbits: what lanes save then is what LLVM takes
 
 
 def compiled(source: str, width: int, fraction: int, names: Mapping[str, Any]) -> "NativeFunction":
@@ -48,6 +50,7 @@ class NativeFunction:
         """`anew`: not from what is kept on disk."""
         self.source = source
         self.layout, self._one = source.compiled(anew=anew)
+        self._steps_alone = 0  # that lanes could have done
 
     def __call__(self, *arguments: Word) -> object:
         return self.layout.unpacked(self._run_one(self.layout.packed(arguments)))
@@ -62,12 +65,27 @@ class NativeFunction:
     @cached_property
     def lanes(self) -> "Callable[[Words], Words] | None":
         """As `one`, of so many orbits as there are lanes; None where one by one is better."""
+        if self._in_lanes is None:
+            return None
+        _, linked = self._in_lanes.compiled()
+        return partial(_called, linked(), sum(self.layout.result_sizes) // 8 + 1)
+
+    @cached_property
+    def _in_lanes(self) -> Source | None:
         path = paths.chosen()
         if path is None or self.source.width > _WIDEST_IN_LANES:
             return None
-        target = f"lanes, {path.name}"
-        _, linked = replace(self.source, target=target, make=path.target).compiled()
-        return partial(_called, linked(), sum(self.layout.result_sizes) // 8 + 1)
+        return replace(self.source, target=f"lanes, {path.name}", make=path.target)
+
+    @cached_property
+    def _lanes_at_once(self) -> bool:
+        """Whether lanes are kept from earlier, or asked for; else they are compiled for long work,
+        as soon as there is enough of it."""
+        return paths.forced() or (self._in_lanes is not None and self._in_lanes.kept)
+
+    def _worth_lanes(self, pending: Sequence[Pending]) -> bool:
+        ahead = sum(each.state.steps_left for each in pending)
+        return self._lanes_at_once or self._steps_alone + ahead >= _WORTH_COMPILING
 
     @cached_property
     def one(self) -> "Callable[[Words], Words]":
@@ -83,13 +101,15 @@ class NativeFunction:
                 except OverflowError as error:
                     each.end(None, error)
                     return
-        chosen = sorted(pending, key=lambda each: -each.state.steps_left)[: paths.LANES]
-        lanes = self.lanes if len(chosen) >= _LEAST_IN_LANES else None
+        chosen = sorted(pending, key=lambda each: -each.state.steps_left)[:LANES]
+        several = len(chosen) >= _LEAST_IN_LANES and self._worth_lanes(pending)
+        lanes = self.lanes if several else None
         if lanes is None:
+            self._steps_alone += chosen[0].state.steps_left if len(chosen) > 1 else 0
             chosen = chosen[:1]
         kernel, orbits = lanes or self.one, [each.state for each in chosen]
         begun = time.perf_counter()  # it is compiled now
-        step_together(orbits, kernel, paths.LANES if lanes else 1, self.in_parts)
+        step_together(orbits, kernel, LANES if lanes else 1, self.in_parts)
         share = (time.perf_counter() - begun) / len(chosen)
         for each in chosen:
             each.seconds += share

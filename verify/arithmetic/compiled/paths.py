@@ -1,38 +1,57 @@
 """By what way several orbits are stepped on this machine.
 
-`VERIFY_LANES` forces one: `avx512` (its 52-bit multiply-add), `portable` (the same code without
-that instruction, slower than one orbit after the other, for tests), or `off` (one after the other).
+`VERIFY_LANES` forces one: `avx512` (its 52-bit multiply-add), `avx2` (the fused multiply-add of
+float64), `portable` (the same code by products of 128 bits, slower than one orbit after the other,
+for tests), or `off` (one after the other).
 """
 
 import os
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
 from typing import TYPE_CHECKING
 
+from verify.arithmetic import processor
 from verify.errors import InputError
 
 if TYPE_CHECKING:
     from verify.arithmetic.wide.translate import Target
 
-LANES = 8
 VARIABLE, OFF = "VERIFY_LANES", "off"
-_NATIVE, _PORTABLE = "avx512", "portable"
-_NEEDED = ("avx512f", "avx512dq", "avx512vl", "avx512ifma")
 
 
 @dataclass(frozen=True)
 class Path:
-    """A way; `target` writes code for numbers of a width and fraction."""
+    """A way: the class that multiplies by it, and what the processor must have."""
 
     name: str
+    multiply_add: str
+    needed: tuple[str, ...] = ()
 
     @property
     def target(self) -> "Callable[[int, int], Target]":
+        """Writes code for numbers of a width and fraction."""
+        from verify.arithmetic.lanes import multiply_add
         from verify.arithmetic.lanes.ensemble import Ensemble
 
-        native = self.name == _NATIVE
-        return lambda width, fraction: Ensemble(width, fraction, native=native)
+        own = getattr(multiply_add, self.multiply_add)
+        return lambda width, fraction: Ensemble(width, fraction, own)
+
+    @property
+    def there(self) -> bool:
+        """Whether this processor has what it needs."""
+        return all(processor.features().get(name, False) for name in self.needed)
+
+
+_FASTEST_FIRST = (
+    Path("avx512", "Avx512", ("avx512f", "avx512dq", "avx512vl", "avx512ifma")),
+    Path("avx2", "Fused", ("avx2", "fma")),
+)
+PATHS = {path.name: path for path in (*_FASTEST_FIRST, Path("portable", "Portable"))}
+
+
+def forced() -> bool:
+    """Whether VERIFY_LANES asks for a way."""
+    return bool(os.environ.get(VARIABLE))
 
 
 def chosen() -> Path | None:
@@ -41,18 +60,12 @@ def chosen() -> Path | None:
     Raises InputError where VERIFY_LANES asks for what is unknown, or not there.
     """
     asked = os.environ.get(VARIABLE, "")
-    if asked == OFF or (not asked and not _has_instructions()):
+    if asked == OFF:
         return None
-    if asked == _NATIVE and not _has_instructions():
+    if not asked:
+        return next((path for path in _FASTEST_FIRST if path.there), None)
+    if asked not in PATHS:
+        raise InputError(VARIABLE, asked, f"allowed: {', '.join([*PATHS, OFF])}")
+    if not PATHS[asked].there:
         raise InputError(VARIABLE, asked, "this processor has no such instructions")
-    if asked not in ("", _NATIVE, _PORTABLE):
-        raise InputError(VARIABLE, asked, f"allowed: {_NATIVE}, {_PORTABLE}, {OFF}")
-    return Path(asked or _NATIVE)
-
-
-@cache
-def _has_instructions() -> bool:
-    from llvmlite import binding as llvm
-
-    features = llvm.get_host_cpu_features()
-    return all(features.get(name, False) for name in _NEEDED)
+    return PATHS[asked]

@@ -149,6 +149,11 @@ class Source:
         form = f"{self.width} {self.fraction} {self.target}"
         return code_cache.key_of(native.versions(), self.text, form, repr(self.names))
 
+    @property
+    def kept(self) -> bool:
+        """Whether it need not be compiled."""
+        return code_cache.load(self.key) is not None
+
     def translation(self) -> Translation:
         """Made now, from nothing that is kept."""
         if self.make is None:

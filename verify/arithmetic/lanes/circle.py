@@ -26,6 +26,7 @@ from llvmlite import ir
 
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.lanes import vectors
+from verify.arithmetic.lanes.carries import Number
 from verify.arithmetic.lanes.fractions import (
     Fractions,
     added,
@@ -34,7 +35,7 @@ from verify.arithmetic.lanes.fractions import (
     settled,
     taken,
 )
-from verify.arithmetic.lanes.numbers import Number, Numbers
+from verify.arithmetic.lanes.numbers import Numbers
 from verify.arithmetic.lanes.reduction import Reduction
 from verify.arithmetic.lanes.table import Table, rows_of
 from verify.arithmetic.lanes.vectors import DIGIT, WORDS, splat
@@ -106,8 +107,8 @@ class Circle:
         u = settled(b, [vectors.up(b, limb, _SHIFT) for limb in size])
         t = settled(b, fractions.product(b, u, u))
         many = range(8 * self.count)
-        by_u = fractions.series(b, t, [Fraction(1, factorial(2 * j + 1)) for j in many], 2 * _SHIFT)
-        by_t = fractions.series(b, t, [Fraction(1, factorial(2 * j + 2)) for j in many], 2 * _SHIFT)
+        both = ([Fraction(1, factorial(2 * j + k)) for j in many] for k in (1, 2))
+        by_u, by_t = fractions.series(b, t, *both, shift=2 * _SHIFT)
         sine = fractions.shifted(b, settled(b, fractions.product(b, u, by_u)), _SHIFT)
         versine = fractions.shifted(b, settled(b, fractions.product(b, t, by_t)), 2 * _SHIFT)
         return sine, versine

@@ -1,4 +1,4 @@
-"""Eight orbits in lockstep as LLVM IR: each of a kernel's numbers is one in each lane.
+"""Orbits in lockstep as LLVM IR: each of a kernel's numbers is one in each lane.
 
 Nothing branches but the loop. Under an `if` a variable keeps its value in the lanes where the
 condition is false. Lanes that return within the loop retire: what they do further on is not looked
@@ -13,10 +13,13 @@ from typing import Any
 from llvmlite import ir
 
 from verify.arithmetic.lanes import vectors
+from verify.arithmetic.lanes.carries import Number
 from verify.arithmetic.lanes.functions import LaneFunctions
-from verify.arithmetic.lanes.numbers import Number, Numbers
+from verify.arithmetic.lanes.multiply_add import MultiplyAdd
+from verify.arithmetic.lanes.numbers import Numbers
 from verify.arithmetic.lanes.schedule import reordered
-from verify.arithmetic.lanes.vectors import CONDITIONS, DOUBLES, LANES, WORDS
+from verify.arithmetic.lanes.vectors import CONDITIONS, DOUBLES, WORDS
+from verify.arithmetic.processor import LANES
 from verify.arithmetic.wide.limbs import I64, Value, constant
 
 BOOL = ir.IntType(1)
@@ -33,10 +36,12 @@ class Ensemble:
     another has time for. What a loop does not change is then the same for all of them.
     """
 
-    def __init__(self, width: int, fraction: int, *, native: bool, sets: int = 1) -> None:
+    def __init__(
+        self, width: int, fraction: int, multiply_add: type[MultiplyAdd], *, sets: int = 1
+    ) -> None:
         self.module, self.sets = ir.Module(), sets
         self.widths = {"wide": width, "sum": width + 64}
-        self.numbers = Numbers(self.module, fraction, native=native)
+        self.numbers = Numbers(self.module, fraction, multiply_add(self.module))
         self.functions = LaneFunctions(self.module, width, self.numbers)
         self._known: dict[str, Any] = {}
         self._arguments: dict[str, tuple[int, int, str]] = {}  # where each lies, and its kind

@@ -29,12 +29,14 @@ from llvmlite import ir
 
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.lanes import vectors
+from verify.arithmetic.lanes.carries import Number
 from verify.arithmetic.lanes.circle import lost_by_one
 from verify.arithmetic.lanes.fractions import Fractions, added, constant, negated, settled, taken
-from verify.arithmetic.lanes.numbers import Number, Numbers
+from verify.arithmetic.lanes.numbers import Numbers
 from verify.arithmetic.lanes.reduction import Reduction
 from verify.arithmetic.lanes.table import Table, rows_of
-from verify.arithmetic.lanes.vectors import CONDITIONS, DIGIT, LANES, WORDS, splat, splat_double
+from verify.arithmetic.lanes.vectors import CONDITIONS, DIGIT, WORDS, splat, splat_double
+from verify.arithmetic.processor import LANES
 from verify.arithmetic.wide.functions import arb_integer
 from verify.arithmetic.wide.limbs import Value
 
@@ -114,7 +116,7 @@ class Exponential:
         fractions = self.fractions
         u = settled(b, [vectors.up(b, limb, _SHIFT) for limb in rho])
         coefficients = [Fraction(1, factorial(j + 1)) for j in range(8 * self.count)]
-        series = fractions.series(b, u, coefficients, _SHIFT)
+        (series,) = fractions.series(b, u, coefficients, shift=_SHIFT)
         return fractions.shifted(b, settled(b, fractions.product(b, u, series)), _SHIFT)
 
     def _cut(self, b: ir.IRBuilder, mantissa: list[Value], by: Value) -> Number:

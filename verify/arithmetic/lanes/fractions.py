@@ -11,7 +11,9 @@ from itertools import pairwise
 from llvmlite import ir
 
 from verify.arithmetic.lanes import vectors
-from verify.arithmetic.lanes.vectors import DIGIT, MultiplyAdd, splat
+from verify.arithmetic.lanes.columns import Columns
+from verify.arithmetic.lanes.multiply_add import MultiplyAdd
+from verify.arithmetic.lanes.vectors import DIGIT, splat
 from verify.arithmetic.wide.limbs import Value
 
 _NEGLIGIBLE = 16  # units of the last place
@@ -25,10 +27,8 @@ def constant(value: int, count: int) -> list[Value]:
 
 def settled(b: ir.IRBuilder, limbs: Sequence[Value]) -> list[Value]:
     """The same number with its carries moved; the highest limb has the sign."""
-    found: list[Value] = []
-    for limb in limbs:
-        found.append(b.add(limb, vectors.down(b, found[-1], DIGIT)) if found else limb)
-    return [*(vectors.masked(b, limb) for limb in found[:-1]), found[-1]]
+    *low, high = vectors.carried(b, limbs)
+    return [*(vectors.masked(b, limb) for limb in low), high]
 
 
 def added(b: ir.IRBuilder, x: Sequence[Value], y: Sequence[Value]) -> list[Value]:
@@ -55,40 +55,44 @@ class Fractions:
     def product(self, b: ir.IRBuilder, t: Sequence[Value], x: Sequence[Value]) -> list[Value]:
         """t x in as many limbs as x, t of `count` limbs; carries have not moved.
 
-        Too small by less than 2 m units for m limbs of x: of the column below the lowest that is
+        Within 2 m units for m limbs of x, and not negative: of the column below the lowest that is
         kept the high halves alone are added.
         """
-        columns = [splat(0)] * len(x)
-        for i, limb in enumerate(x):
+        columns = Columns(self.multiply_add, 0, len(x) - 1)
+        u, v = ([self.multiply_add.factor(b, limb) for limb in limbs] for limbs in (t, x))
+        for i in range(len(x)):
             for j in range(self.count - 1 - i, self.count):
-                c = i + j - self.count
-                if c >= 0:
-                    columns[c] = self.multiply_add.low(b, columns[c], t[j], limb)
-                columns[c + 1] = self.multiply_add.high(b, columns[c + 1], t[j], limb)
-        return columns
+                columns.add(b, u[j], v[i], i + j - self.count)
+        return list(columns.total(b).values())
 
     def series(
-        self, b: ir.IRBuilder, t: Sequence[Value], coefficients: Sequence[Fraction], shift: int
-    ) -> list[Value]:
-        """c₀ − c₁ τ + c₂ τ² − …, where t = τ·2^shift; the c are positive and fall fast.
+        self, b: ir.IRBuilder, t: Sequence[Value], *series: Sequence[Fraction], shift: int
+    ) -> list[list[Value]]:
+        """c₀ − c₁ τ + c₂ τ² − … of each, where t = τ·2^shift; the c are positive and fall fast.
 
         Terms below 16 units are left out; what the others lose is below 2 m + 2 units each, and is
-        multiplied by t < 1 further on.
+        multiplied by t < 1 further on. All go on together, since each waits for its products.
         """
-        total: list[Value] = []
-        for j in reversed(range(len(coefficients))):
-            scaled = round(coefficients[j] * Fraction(2) ** (DIGIT * self.count - j * shift))
-            scaled = min(scaled, 2 ** (DIGIT * self.count) - 1)
-            if scaled < _NEGLIGIBLE:
-                continue
-            value = constant(scaled, -(-scaled.bit_length() // DIGIT))
-            if total:
-                value = taken(b, value, self.product(b, t, settled(b, total)))
-            total = value
-        return settled(b, total)
+        totals: list[list[Value]] = [[] for _ in series]
+        for j in reversed(range(max(map(len, series)))):
+            for total, coefficients in zip(totals, series, strict=True):
+                if j < len(coefficients):
+                    self._next_term(b, t, total, coefficients[j] / Fraction(2) ** (j * shift))
+        return [settled(b, total) for total in totals]
+
+    def _next_term(
+        self, b: ir.IRBuilder, t: Sequence[Value], total: list[Value], coefficient: Fraction
+    ) -> None:
+        """total ← the coefficient − t·total, or nothing where both are."""
+        scaled = round(coefficient * 2 ** (DIGIT * self.count))
+        scaled = min(scaled, 2 ** (DIGIT * self.count) - 1)
+        if scaled < _NEGLIGIBLE:
+            return
+        value = constant(scaled, -(-scaled.bit_length() // DIGIT))
+        total[:] = taken(b, value, self.product(b, t, settled(b, total))) if total else value
 
     def shifted(self, b: ir.IRBuilder, x: Sequence[Value], by: int) -> list[Value]:
         """x / 2^by rounded down, 0 < by < 52; all limbs of x but the highest are settled."""
-        factor = splat(1 << (DIGIT - by))
-        low = [self.multiply_add.low(b, vectors.down(b, u, by), v, factor) for u, v in pairwise(x)]
+        raised = self.multiply_add.raised
+        low = [raised(b, vectors.down(b, u, by), v, DIGIT - by) for u, v in pairwise(x)]
         return [*low, vectors.down(b, x[-1], by)]

@@ -9,11 +9,13 @@ from collections.abc import Callable, Sequence
 from llvmlite import ir
 
 from verify.arithmetic.lanes import vectors
+from verify.arithmetic.lanes.carries import Number
 from verify.arithmetic.lanes.circle import Circle
 from verify.arithmetic.lanes.exponential import Exponential
 from verify.arithmetic.lanes.newton import Newton
-from verify.arithmetic.lanes.numbers import Number, Numbers
-from verify.arithmetic.lanes.vectors import CONDITIONS, DIGIT, DOUBLES, LANES, WORDS, splat
+from verify.arithmetic.lanes.numbers import Numbers
+from verify.arithmetic.lanes.vectors import CONDITIONS, DIGIT, DOUBLES, WORDS, splat
+from verify.arithmetic.processor import LANES
 from verify.arithmetic.wide import limbs
 from verify.arithmetic.wide.limbs import I64, Value, constant, resized
 from verify.arithmetic.wide.newton import MoreFunctions

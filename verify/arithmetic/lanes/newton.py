@@ -7,7 +7,8 @@ float64. Each of these operations has the same bits in lanes, so that what is ma
 from llvmlite import ir
 
 from verify.arithmetic.lanes import vectors
-from verify.arithmetic.lanes.numbers import Number, Numbers
+from verify.arithmetic.lanes.carries import Number
+from verify.arithmetic.lanes.numbers import Numbers
 from verify.arithmetic.lanes.vectors import splat_double
 from verify.arithmetic.wide.limbs import Value
 from verify.arithmetic.wide.newton import LEAST_DIVISOR, LEAST_ROOT, iterations

@@ -7,8 +7,10 @@ from llvmlite import ir
 
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.lanes import vectors
+from verify.arithmetic.lanes.carries import Number
+from verify.arithmetic.lanes.columns import Columns
 from verify.arithmetic.lanes.fractions import constant, negated, settled, taken
-from verify.arithmetic.lanes.numbers import Number, Numbers
+from verify.arithmetic.lanes.numbers import Numbers
 from verify.arithmetic.lanes.vectors import DIGIT, splat
 from verify.arithmetic.wide.functions import arb_integer
 from verify.arithmetic.wide.limbs import Value
@@ -50,9 +52,9 @@ class Reduction:
 
     def _times(self, b: ir.IRBuilder, limbs: Sequence[Value], factor: Value) -> list[Value]:
         """The limbs of the product with one limb, but for what goes beyond the highest."""
-        multiply_add, columns = self.numbers.multiply_add, [splat(0)] * len(limbs)
+        multiply_add = self.numbers.multiply_add
+        columns = Columns(multiply_add, 0, len(limbs) - 1)
+        by = multiply_add.factor(b, factor)
         for i, limb in enumerate(limbs):
-            columns[i] = multiply_add.low(b, columns[i], limb, factor)
-            if i + 1 < len(limbs):
-                columns[i + 1] = multiply_add.high(b, columns[i + 1], limb, factor)
-        return columns
+            columns.add(b, multiply_add.factor(b, limb), by, i)
+        return list(columns.total(b).values())

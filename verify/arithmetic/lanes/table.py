@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 from llvmlite import ir
 
-from verify.arithmetic.lanes.vectors import DIGIT, LANES, WORDS
+from verify.arithmetic.lanes.vectors import DIGIT, WORDS
+from verify.arithmetic.processor import LANES
 from verify.arithmetic.wide.limbs import I64, Value, words
 
 

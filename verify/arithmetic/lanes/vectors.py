@@ -1,20 +1,20 @@
-"""Eight 64-bit words side by side, as LLVM IR, and the multiply-add of their low 52 bits.
+"""64-bit words side by side, as many as a register of this processor holds, as LLVM IR."""
 
-AVX-512 IFMA has it as an instruction. Elsewhere it is written with products of 128 bits, which
-gives the same bits, and is slow: it is for tests on processors without that instruction.
-"""
+from collections.abc import Sequence
 
 from llvmlite import ir
 
+from verify.arithmetic.processor import LANES
 from verify.arithmetic.wide.limbs import I64, Value
 
-LANES = 8
 DIGIT = 52  # bits of a limb
 WORDS = ir.VectorType(I64, LANES)
 DOUBLES = ir.VectorType(ir.DoubleType(), LANES)
 CONDITIONS = ir.VectorType(ir.IntType(1), LANES)
-_LONG = ir.VectorType(ir.IntType(128), LANES)
 _MASK = (1 << DIGIT) - 1
+# AVX2 shifts words down only without their signs: what may be negative is made larger before.
+SHIFTS_SIGNS = LANES == 8
+_ABOVE = 1 << 62
 
 
 def splat(value: int) -> Value:
@@ -47,40 +47,40 @@ def up(b: ir.IRBuilder, x: Value, by: int) -> Value:
     return b.shl(x, splat(by)) if by else x
 
 
+def down_positive(b: ir.IRBuilder, x: Value, by: int) -> Value:
+    """x / 2^by rounded down, x not negative where `SHIFTS_SIGNS` is not true."""
+    return down(b, x, by) if SHIFTS_SIGNS else b.lshr(x, splat(by))
+
+
+def carried(b: ir.IRBuilder, limbs: Sequence[Value]) -> list[Value]:
+    """The limbs, each below 2^62 in size, after their carries have moved.
+
+    The highest has the sign, of all others the low 52 bits count.
+    """
+    found: list[Value] = []
+    above = 0 if SHIFTS_SIGNS else _ABOVE
+    for i, limb in enumerate(limbs):
+        start = (above if i + 1 < len(limbs) else 0) - (above >> DIGIT if i else 0)
+        moved = b.add(limb, splat(start)) if start else limb
+        found.append(b.add(moved, down_positive(b, found[-1], DIGIT)) if found else moved)
+    return found
+
+
 def any_of(b: ir.IRBuilder, condition: Value) -> Value:
     """Whether it is true in some lane."""
     bits = b.bitcast(condition, ir.IntType(LANES))
     return b.icmp_unsigned("!=", bits, ir.Constant(ir.IntType(LANES), 0))
 
 
-def intrinsic(module: ir.Module, name: str) -> ir.Function:
-    """LLVM's function of that name, of one vector of doubles."""
-    name = f"llvm.{name}.v{LANES}f64"
+def declared(
+    module: ir.Module, name: str, result: ir.Type, arguments: Sequence[ir.Type]
+) -> ir.Function:
+    """LLVM's function of that name."""
     if name not in module.globals:
-        ir.Function(module, ir.FunctionType(DOUBLES, [DOUBLES]), name)
+        ir.Function(module, ir.FunctionType(result, arguments), name)
     return module.globals[name]
 
 
-class MultiplyAdd:
-    """a + the low or the high 52 bits of the product of x's and y's low 52 bits."""
-
-    def __init__(self, module: ir.Module, *, native: bool) -> None:
-        self.module, self.native = module, native
-
-    def low(self, b: ir.IRBuilder, a: Value, x: Value, y: Value) -> Value:
-        if self.native:
-            return self._instruction(b, "l", a, x, y)
-        return b.add(a, masked(b, b.mul(masked(b, x), masked(b, y))))
-
-    def high(self, b: ir.IRBuilder, a: Value, x: Value, y: Value) -> Value:
-        if self.native:
-            return self._instruction(b, "h", a, x, y)
-        long = [b.zext(masked(b, v), _LONG) for v in (x, y)]
-        shift = ir.Constant(_LONG, [DIGIT] * LANES)
-        return b.add(a, b.trunc(b.lshr(b.mul(*long), shift), WORDS))
-
-    def _instruction(self, b: ir.IRBuilder, half: str, a: Value, x: Value, y: Value) -> Value:
-        name = f"llvm.x86.avx512.vpmadd52{half}.uq.512"
-        if name not in self.module.globals:
-            ir.Function(self.module, ir.FunctionType(WORDS, [WORDS] * 3), name)
-        return b.call(self.module.globals[name], [a, x, y])
+def intrinsic(module: ir.Module, name: str) -> ir.Function:
+    """LLVM's function of that name, of one vector of doubles."""
+    return declared(module, f"llvm.{name}.v{LANES}f64", DOUBLES, [DOUBLES])

@@ -12,11 +12,11 @@ from llvmlite import ir
 
 from tests.helpers.fixed_checks import HARD, Near
 from tests.helpers.lanes import IN_LANES, Both, number, same
-from verify.arithmetic.compiled.paths import LANES
-from verify.arithmetic.lanes import circle, exponential
+from verify.arithmetic.lanes import circle, exponential, multiply_add
 from verify.arithmetic.lanes.functions import LaneFunctions
 from verify.arithmetic.lanes.numbers import Numbers
 from verify.arithmetic.lanes.vectors import CONDITIONS
+from verify.arithmetic.processor import LANES
 
 WIDTHS = (128, 192, 256, 320, 384)
 OPERATIONS = """\
@@ -115,6 +115,31 @@ def operands(width: int, seed: int, count: int) -> list[Any]:
 def test_operations_have_the_bits_of_one_orbit(width: int, way: str) -> None:
     rows = operands(width, seed=width, count=400)
     assert not first_differing(both(OPERATIONS, width, way), rows)
+
+
+def at_a_half(width: int, seed: int) -> list[Any]:
+    """Rows for OPERATIONS whose products lie next to where rounding changes, on both sides and
+    there: what is left out of them at first matters."""
+    draws, bits, rows = Draws(seed), width - 16, []
+    for _ in range(200):
+        x = (draws.bits(bits + 5) | 1) * draws.either()
+        rest = (1 << bits - 1) + draws.below(7) - 3
+        y = rest * pow(x, -1, 1 << bits) % (1 << bits)
+        rows.append((number(x, width), number(y, width), number(0, width), 1, 0.5))
+    return rows
+
+
+@pytest.mark.parametrize("way", IN_LANES)
+def test_products_are_rounded_rightly_at_a_half(way: str) -> None:
+    assert not first_differing(both(OPERATIONS, 192, way), at_a_half(192, seed=1))
+
+
+@pytest.mark.left_to_ci
+@pytest.mark.sample(3)
+@pytest.mark.parametrize("way", IN_LANES)
+@pytest.mark.parametrize("width", WIDTHS)
+def test_products_of_all_widths_are_rounded_rightly_at_a_half(width: int, way: str) -> None:
+    assert not first_differing(both(OPERATIONS, width, way), at_a_half(width, seed=width))
 
 
 def arguments(name: str, width: int) -> list[Any]:
@@ -217,15 +242,40 @@ def test_most_lanes_do_not_ask_one_orbit(name: str, monkeypatch: pytest.MonkeyPa
     assert wrong <= (0 if name in ("sqrt", "inverse") else 100)
 
 
-@pytest.mark.parametrize("planted", ["_signs", "carry", "from_words"])
+@pytest.mark.parametrize("planted", ["_take_signs", "carry", "from_words"])
 def test_a_step_left_out_of_a_product_is_caught(
     monkeypatch: pytest.MonkeyPatch, planted: str
 ) -> None:
     wrong: dict[str, Any] = {
-        "_signs": lambda self, b, columns, x, y, count: columns,
+        "_take_signs": lambda self, b, columns, x, y: None,
         "carry": lambda self, b, x: x.limbs,
         "from_words": lambda self, b, words: self.known([words[0], *words], 64 * len(words)),
     }
     monkeypatch.setattr(Numbers, planted, wrong[planted])
-    pair = Both(OPERATIONS, 128, IN_LANES[0], {"limit": number(3 << 109, 128)})
+    way = "portable" if planted == "_take_signs" else IN_LANES[0]
+    pair = Both(OPERATIONS, 128, way, {"limit": number(3 << 109, 128)})
+    assert first_differing(pair, operands(128, seed=1, count=40))
+
+
+AVX2 = pytest.mark.skipif("avx2" not in IN_LANES, reason="this processor has no AVX2")
+
+
+@AVX2
+def test_a_product_that_never_asks_for_all_columns_is_caught(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(Numbers, "_lost", staticmethod(lambda first: 0))
+    pair = Both(OPERATIONS, 192, "avx2", {"limit": number(3 << 173, 192)})
+    assert first_differing(pair, at_a_half(192, seed=1))
+
+
+@AVX2
+@pytest.mark.parametrize("planted", ["_ABOUT_0", "_HIGH", "_HIGH_ABOUT_0"])
+def test_a_product_that_is_split_elsewhere_is_caught(
+    planted: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A constant next to the right one splits it into other parts than are added up."""
+    right = getattr(multiply_add, planted)
+    monkeypatch.setattr(multiply_add, planted, right * 2)
+    pair = Both(OPERATIONS, 128, "avx2", {"limit": number(3 << 109, 128)})
     assert first_differing(pair, operands(128, seed=1, count=40))

@@ -1,0 +1,182 @@
+"""Sums of the low and the high 52 bits of products, by what a processor has for it.
+
+AVX-512 IFMA adds either half of a product of 52-bit words in an instruction. AVX2 has the fused
+multiply-add of float64, whose rounding splits a product of two whole numbers exactly:
+
+    k = x y + 2^104 rounded to its 53 bits, which is 2^104 + 2^52 times a whole number;
+    r = x y + (2^104 − k), which is whole, and at most 2^51 in size.
+
+So both halves come without a rounding mode's being changed, and a low half may be negative. Where
+neither is there, products of 128 bits give the same sums, slowly, which is for tests.
+"""
+
+from abc import abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+from llvmlite import ir
+
+from verify.arithmetic.lanes import vectors
+from verify.arithmetic.lanes.vectors import DIGIT, DOUBLES, WORDS, splat, splat_double
+from verify.arithmetic.processor import LANES
+from verify.arithmetic.wide.limbs import Value
+
+
+@dataclass
+class Sum:
+    """What is added up in each lane: a vector, and a number that is known now, the same in all."""
+
+    vector: Value | None = None
+    constant: int = 0
+
+    def add(self, b: ir.IRBuilder, part: Value, less: int = 0) -> None:
+        """A part, which is too large by a known number."""
+        self.vector = part if self.vector is None else b.add(self.vector, part)
+        self.constant -= less
+
+    def total(self, b: ir.IRBuilder) -> Value:
+        if self.vector is None:
+            return splat(self.constant)
+        return b.add(self.vector, splat(self.constant)) if self.constant else self.vector
+
+
+class MultiplyAdd:
+    """Products of factors, which are limbs of 52 bits, or the highest limb of a signed number."""
+
+    signed = False  # whether a factor may have its sign; else the low 52 bits of a word count
+    leaves_out = False  # whether a long product is formed sooner without its lowest columns
+
+    def __init__(self, module: ir.Module) -> None:
+        self.module = module
+
+    def factor(self, b: ir.IRBuilder, limb: Value, *, highest: bool = False) -> Value:
+        """A limb, of which the low 52 bits count, as it is multiplied; the `highest` may be
+        negative, and is below 2^51 in size."""
+        return limb
+
+    def sum(self, start: int = 0) -> Sum:
+        """A sum to begin with."""
+        return Sum(splat(start))
+
+    @abstractmethod
+    def low(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
+        """Adds the low 52 bits of the product of two factors, neither negative."""
+
+    @abstractmethod
+    def high(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
+        """Adds the product of two factors, neither negative, divided by 2^52 and rounded down."""
+
+    def near(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
+        """Adds the product divided by 2^52, rounded down or to the nearest; neither is negative."""
+        self.high(b, total, x, y)
+
+    def both(
+        self, b: ir.IRBuilder, low: Sum, high: Sum | None, x: Value, y: Value, *, signed: bool
+    ) -> None:
+        """Adds the product in two parts, the second divided by 2^52: exact only together.
+
+        `signed`: a factor may be negative. Without `high` a multiple of 2^52 is left out.
+        """
+        self.low(b, low, x, y)
+        if high is not None:
+            self.high(b, high, x, y)
+
+    def raised(self, b: ir.IRBuilder, low: Value, x: Value, by: int) -> Value:
+        """low + the low 52 bits of x·2^by."""
+        return b.add(low, vectors.masked(b, vectors.up(b, x, by)))
+
+
+class Avx512(MultiplyAdd):
+    """By the instructions of AVX-512 IFMA."""
+
+    def low(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
+        total.vector = self._instruction(b, "l", total.vector, x, y)
+
+    def high(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
+        total.vector = self._instruction(b, "h", total.vector, x, y)
+
+    def raised(self, b: ir.IRBuilder, low: Value, x: Value, by: int) -> Value:
+        return self._instruction(b, "l", low, x, splat(1 << by))
+
+    def _instruction(
+        self, b: ir.IRBuilder, half: str, a: Value | None, x: Value, y: Value
+    ) -> Value:
+        function = vectors.declared(
+            self.module, f"llvm.x86.avx512.vpmadd52{half}.uq.512", WORDS, [WORDS] * 3
+        )
+        return b.call(function, [splat(0) if a is None else a, x, y])
+
+
+class Portable(MultiplyAdd):
+    """By products of 128 bits."""
+
+    def low(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
+        total.add(b, vectors.masked(b, b.mul(vectors.masked(b, x), vectors.masked(b, y))))
+
+    def high(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
+        long = ir.VectorType(ir.IntType(128), LANES)
+        product = b.mul(*(b.zext(vectors.masked(b, v), long) for v in (x, y)))
+        total.add(b, b.trunc(b.lshr(product, ir.Constant(long, [DIGIT] * LANES)), WORDS))
+
+
+class Fused(MultiplyAdd):
+    """By fused multiply-adds of float64, to which factors are converted."""
+
+    signed, leaves_out = True, True
+
+    def factor(self, b: ir.IRBuilder, limb: Value, *, highest: bool = False) -> Value:
+        if highest:
+            moved = b.add(limb, splat(_bits(_ABOUT_0)))
+            return b.fsub(b.bitcast(moved, DOUBLES), splat_double(_ABOUT_0))
+        moved = b.or_(vectors.masked(b, limb), splat(_bits(_UNIT)))
+        return b.fsub(b.bitcast(moved, DOUBLES), splat_double(_UNIT))
+
+    def sum(self, start: int = 0) -> Sum:
+        return Sum(None, start)
+
+    def low(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
+        _, rest = self._split(b, x, y, _HIGH)
+        whole = b.sub(self._whole(b, rest), splat(_bits(_ABOUT_0) % (1 << DIGIT)))
+        total.add(b, vectors.masked(b, whole))
+
+    def high(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
+        high, rest = self._split(b, x, y, _HIGH)
+        total.add(b, b.sext(b.fcmp_ordered("<", rest, splat_double(0.0)), WORDS))
+        total.add(b, b.bitcast(high, WORDS), _bits(_HIGH))
+
+    def near(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
+        above = self._fused(b, x, y, splat_double(_HIGH))
+        total.add(b, b.bitcast(above, WORDS), _bits(_HIGH))
+
+    def both(
+        self, b: ir.IRBuilder, low: Sum, high: Sum | None, x: Value, y: Value, *, signed: bool
+    ) -> None:
+        about = _HIGH_ABOUT_0 if signed else _HIGH
+        above, rest = self._split(b, x, y, about)
+        low.add(b, self._whole(b, rest), _bits(_ABOUT_0))
+        if high is not None:
+            high.add(b, b.bitcast(above, WORDS), _bits(about))
+
+    def _split(self, b: ir.IRBuilder, x: Value, y: Value, about: float) -> tuple[Value, Value]:
+        """(`about` + the higher part of the product, the rest)."""
+        start = splat_double(about)
+        above = self._fused(b, x, y, start)
+        return above, self._fused(b, x, y, b.fsub(start, above))
+
+    def _whole(self, b: ir.IRBuilder, x: Value) -> Value:
+        """The bits of 1.5·2^52 + x, |x| ≤ 2^51 whole: those of 1.5·2^52, and x added."""
+        return b.bitcast(b.fadd(x, splat_double(_ABOUT_0)), WORDS)
+
+    def _fused(self, b: ir.IRBuilder, x: Value, y: Value, z: Value) -> Value:
+        function = vectors.declared(self.module, f"llvm.fma.v{LANES}f64", DOUBLES, [DOUBLES] * 3)
+        factors = [v if v.type == DOUBLES else self.factor(b, v) for v in (x, y)]
+        return b.call(function, [*factors, z])
+
+
+# x ≥ 0 is in the low bits of 2^52 + x, and x with a sign, up to 2^51 in size, of 1.5·2^52 + x.
+_UNIT, _ABOUT_0 = 2.0**52, 1.5 * 2.0**52
+_HIGH, _HIGH_ABOUT_0 = 2.0**104, 1.5 * 2.0**104
+
+
+def _bits(x: float) -> int:
+    return int(np.float64(x).view(np.int64))

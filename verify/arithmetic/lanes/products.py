@@ -1,0 +1,160 @@
+"""Products in lanes, to the bits of `verify.arithmetic.wide.limbs.product`.
+
+A product is rounded once. Where that saves time its lowest columns are left out, and where they
+matter in some lane, it is formed anew from all of them. Where factors are words without a sign, the
+product of x − X 2^52n and y − Y 2^52n, X and Y 1 where the number is negative, else 0, is formed
+from x y by taking X y and Y x away n limbs higher.
+"""
+
+from collections.abc import Mapping
+from itertools import pairwise
+
+from llvmlite import ir
+
+from verify.arithmetic.lanes import vectors
+from verify.arithmetic.lanes.carries import Carries, Number, count_of
+from verify.arithmetic.lanes.columns import Columns
+from verify.arithmetic.lanes.multiply_add import MultiplyAdd
+from verify.arithmetic.lanes.vectors import DIGIT, WORDS, splat
+from verify.arithmetic.wide.limbs import Value
+
+_WEIGHT = 16  # columns of up to 10 limbs, 4 bits shifted out of them at least
+_LEAST_BELOW = 16  # bits that are kept below a product's last, so that they seldom leave it unsure
+_EXACT = 1  # below that column less than a unit is left out, and what is kept is rounded down
+_ABOVE = 1 << 58  # added to columns where words are shifted down without their signs
+
+
+class Products(Carries):
+    """Products of numbers with so many fraction bits."""
+
+    def __init__(self, module: ir.Module, fraction: int, multiply_add: MultiplyAdd) -> None:
+        super().__init__(module, fraction, multiply_add)
+        self._lowest, self._drop = divmod(fraction, DIGIT)  # the result's column, bits below it
+        first = self._lowest if self._drop >= _LEAST_BELOW else self._lowest - 1
+        self._first = first if multiply_add.leaves_out else _EXACT
+        self._whole: dict[int, ir.Function] = {}
+
+    def product(self, b: ir.IRBuilder, x: Number, y: Number) -> Number:
+        """x y / 2^fraction, rounded to the nearest, halves upwards."""
+        columns = self._columns(b, x, y, self._first)
+        near = self._rounded(b, columns, x.width)
+        if self._first == _EXACT:
+            return Number(near, x.width, _WEIGHT)
+        unsure = vectors.any_of(b, self._unsure(b, columns[self._first]))
+        before, cold = b.block, b.append_basic_block("unsure")
+        after = b.append_basic_block("sure")
+        b.cbranch(unsure, cold, after).set_weights([1, 1 << 20])
+        b.position_at_end(cold)
+        whole = b.call(self._whole_product(x.width), [*self.carry(b, x), *self.carry(b, y)])
+        exact = [b.extract_value(whole, i) for i in range(len(near))]
+        b.branch(after)
+        b.position_at_end(after)
+        limbs = [b.phi(WORDS) for _ in near]
+        for limb, *either in zip(limbs, near, exact, strict=True):
+            for value, block in zip(either, (before, cold), strict=True):
+                limb.add_incoming(value, block)
+        return Number(limbs, x.width, _WEIGHT)
+
+    def _unsure(self, b: ir.IRBuilder, column: Value) -> Value:
+        """Where what is left out below the first column might carry into the result."""
+        lost = self._lost(self._first)
+        below = self._drop if self._first == self._lowest else DIGIT
+        rest = b.and_(b.add(column, splat(lost)), splat((1 << below) - 1))
+        return b.icmp_signed("<", rest, splat(2 * lost))
+
+    @staticmethod
+    def _lost(first: int) -> int:
+        """Units of the first column that may be missing: less than one for each product in the two
+        columns beneath it, 2·first − 1 of them, and less than one for all further below."""
+        return 2 * first
+
+    def _whole_product(self, width: int) -> ir.Function:
+        """The limbs of a product from all columns: a function apart, since it is hardly ever
+        called."""
+        if width in self._whole:
+            return self._whole[width]
+        count = count_of(width)
+        result = ir.LiteralStructType([WORDS] * count)
+        kind = ir.FunctionType(result, [WORDS] * (2 * count))
+        function = ir.Function(self.module, kind, f"lanes_whole_product_{width}")
+        self._whole[width] = function
+        function.linkage = "internal"
+        function.attributes.add("noinline")
+        b = ir.IRBuilder(function.append_basic_block("entry"))
+        x, y = (
+            self.known([*(vectors.masked(b, limb) for limb in low), high], width)
+            for *low, high in (function.args[:count], function.args[count:])
+        )
+        found = ir.Constant(result, ir.Undefined)
+        for i, limb in enumerate(self._rounded(b, self._columns(b, x, y, _EXACT), width)):
+            found = b.insert_value(found, limb, i)
+        b.ret(found)
+        return function
+
+    def _columns(self, b: ir.IRBuilder, x: Number, y: Number, first: int) -> dict[int, Value]:
+        """Σ xᵢ yⱼ and half a unit of the result's last place by columns, from the first on.
+
+        Of the column above the result's highest limb the low bits are needed, or none.
+        """
+        top, count = (self.fraction + x.width - 1) // DIGIT, len(x.limbs)
+        start = self._start(first, top)
+        start[self._lowest] += 1 << (self._drop - 1)
+        columns = Columns(self.multiply_add, first, top, start)
+        u, v = self.factors(b, x), self.factors(b, y)
+        if x is not y:
+            self._take_signs(b, columns, x, y)
+            self._take_signs(b, columns, y, x)
+            for i in range(count):
+                for j in range(count):
+                    columns.add(b, u[i], v[j], i + j, signed=count - 1 in (i, j))
+            return columns.total(b)
+        mixed = Columns(self.multiply_add, first, top)
+        self._take_signs(b, mixed, x, x)
+        for i in range(count):
+            for j in range(i + 1, count):
+                mixed.add(b, u[i], u[j], i + j, signed=j == count - 1)
+        for c, value in mixed.total(b).items():
+            columns.sums[c].add(b, b.add(value, value))
+        for i in range(count):
+            columns.add(b, u[i], u[i], 2 * i, signed=i == count - 1)
+        return columns.total(b)
+
+    def _start(self, first: int, top: int) -> dict[int, int]:
+        """What is added to columns so that all but the highest are not negative; it comes to
+        nothing in all."""
+        above = 0 if vectors.SHIFTS_SIGNS else _ABOVE
+        start = dict.fromkeys(range(first, top + 1), 0)
+        for c in range(first, top):
+            start[c] += above
+            start[c + 1] -= above >> DIGIT
+        return start
+
+    def _take_signs(self, b: ir.IRBuilder, columns: Columns, x: Number, y: Number) -> None:
+        """y away, as many columns higher as x has limbs, where x is negative and its factors do
+        not say so."""
+        if self.multiply_add.signed:
+            return
+        for j, limb in enumerate(self.settle(b, y)):
+            total = columns.sums.get(len(x.limbs) + j)
+            if total is not None:
+                less = b.sub(total.vector, limb)
+                total.vector = b.select(self.negative(b, x), less, total.vector)
+
+    def _rounded(self, b: ir.IRBuilder, columns: Mapping[int, Value], width: int) -> list[Value]:
+        """The result's limbs, of the columns from the first that is known."""
+        down, drop = vectors.down_positive, self._drop
+        carried, count = dict(columns), count_of(width)
+        for c in range(min(columns), self._lowest):
+            carried[c + 1] = b.add(carried[c + 1], down(b, carried[c], DIGIT))
+        kept = [carried[c] for c in range(self._lowest, max(columns) + 1)]
+        limbs = [
+            self.multiply_add.raised(b, down(b, low, drop), above, DIGIT - drop)
+            for low, above in pairwise(kept)
+        ][: count - 1]
+        if len(kept) > count:  # what lies above is multiples of 2^64 of the highest limb
+            high = down(b, kept[count - 1], drop)
+            limbs.append(b.add(high, vectors.up(b, kept[count], DIGIT - drop)))
+        else:  # of the highest column 52 bits count, the highest of them the sign
+            high = vectors.up(b, kept[-1], 64 - DIGIT)
+            limbs.append(vectors.down(b, high, 64 - DIGIT + drop))
+        return limbs

@@ -1,0 +1,14 @@
+"""What this machine's processor has, and how many 64-bit words one of its registers holds."""
+
+from functools import cache
+
+from llvmlite import binding as llvm
+
+
+@cache
+def features() -> dict[str, bool]:
+    """By LLVM's names, whether it is there."""
+    return dict(llvm.get_host_cpu_features())
+
+
+LANES = 8 if features().get("avx512f") else 4
