@@ -53,6 +53,11 @@ class Arithmetic:
     rounding: Rounding | None = field(default=None, compare=False)
     walk: "Walk | None" = field(default=None, compare=False)
 
+    def expect(self, kernel: Callable[..., Any], steps: int) -> None:
+        """Said before: so many steps of the kernel will be asked for, of one orbit or of many."""
+        if self.walk is not None:
+            kernel.expect(steps)  # type: ignore[attr-defined]
+
     def states(
         self, kernel: Callable[..., Any], every: int, stops: int, fixed: State, state: State
     ) -> list[State]:

@@ -149,6 +149,7 @@ class ChunkedLoop:
         """Steps to the end, and tells the steps done after every chunk; ends early where a number
         left the arithmetic's range, with `done` the steps that stayed in it."""
         run = self.run
+        self.arithmetic.expect(self.kernel.function, run.steps - self.done)
         self._advance(0)  # compiles: `seconds` is the stepping alone
         while self.done < run.steps:
             every, stops = self._ahead()

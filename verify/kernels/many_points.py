@@ -26,7 +26,7 @@ from verify.kernels.reach import limits
 from verify.kernels.stepping import KernelRun
 
 _ZERO = Fraction(0)
-_LEAST_SHARE = 32  # points that a thread takes at a time: some milliseconds and more
+_SHARE = 32  # points that a thread takes at a time: some milliseconds and more
 # Sequences of numbers, arrays or lists, by name: the coordinates and what else is carried.
 Values = Mapping[str, Any]
 
@@ -146,17 +146,16 @@ class PointMap:
             yield from (call() for call in calls)
             return
 
-        cores = os.cpu_count() or 1
-        share = max(_LEAST_SHARE, -(-len(calls) // (4 * cores)))
+        self.arithmetic.expect(kernel, self.steps * len(points))
 
         def advance(first: int) -> list[list[Sequence[Number]]]:
-            part = calls[first : first + share]
-            ended = dict(lockstep.together(iter(part), len(part)))
-            return [ended[k].result() for k in range(len(part))]
+            share = calls[first : first + _SHARE]
+            ended = dict(lockstep.together(iter(share), len(share)))
+            return [ended[k].result() for k in range(len(share))]
 
-        with ThreadPoolExecutor(cores) as threads:  # native code runs beside Python
-            for found in threads.map(advance, range(0, len(calls), share)):
-                yield from found
+        with ThreadPoolExecutor(os.cpu_count()) as threads:  # native code runs beside Python
+            for part in threads.map(advance, range(0, len(calls), _SHARE)):
+                yield from part
 
     def _limits(self, given: Sequence[Sequence[Number]]) -> tuple[Fraction, ...]:
         """Those of a fixed-point kernel, for all points together."""
@@ -185,4 +184,4 @@ def _stepper(kernel: Kernel) -> tuple[Callable[[int, np.ndarray, np.ndarray], No
         for at, point in enumerate(points.T.tolist()):
             points[:, at] = one(steps, *inputs, *point)[1:]
 
-    return run, _LEAST_SHARE
+    return run, _SHARE

@@ -18,9 +18,9 @@ from verify.arithmetic.processor import LANES
 from verify.lockstep import Pending
 
 Names = tuple[tuple[str, Any], ...]
-_LEAST_IN_LANES = 3  # fewer take longer together than one after the other
+_LEAST_IN_LANES = 3 if LANES > 4 else 4  # fewer take longer together than one after the other
 _WIDEST_IN_LANES = 512  # bits; beyond that LLVM takes seconds
-_WORTH_COMPILING = 5_000_000  # steps of all orbits: what lanes save then is what LLVM takes
+_WORTH_COMPILING = 5_000_000  # steps in all: what lanes save then is about what LLVM takes
 
 
 def compiled(source: str, width: int, fraction: int, names: Mapping[str, Any]) -> "NativeFunction":
@@ -50,7 +50,7 @@ class NativeFunction:
         """`anew`: not from what is kept on disk."""
         self.source = source
         self.layout, self._one = source.compiled(anew=anew)
-        self._steps_alone = 0  # that lanes could have done
+        self._expected = 0  # steps
 
     def __call__(self, *arguments: Word) -> object:
         return self.layout.unpacked(self._run_one(self.layout.packed(arguments)))
@@ -77,15 +77,14 @@ class NativeFunction:
             return None
         return replace(self.source, target=f"lanes, {path.name}", make=path.target)
 
-    @cached_property
-    def _lanes_at_once(self) -> bool:
-        """Whether lanes are kept from earlier, or asked for; else they are compiled for long work,
-        as soon as there is enough of it."""
-        return paths.forced() or (self._in_lanes is not None and self._in_lanes.kept)
+    def expect(self, steps: int) -> None:
+        """Said before: so many steps will be asked for, of one orbit or of many."""
+        self._expected += steps
 
-    def _worth_lanes(self, pending: Sequence[Pending]) -> bool:
-        ahead = sum(each.state.steps_left for each in pending)
-        return self._lanes_at_once or self._steps_alone + ahead >= _WORTH_COMPILING
+    @cached_property
+    def _no_need_to_compile(self) -> bool:
+        """Lanes that are kept from earlier, or asked for, are used for short work too."""
+        return paths.forced() or (self._in_lanes is not None and self._in_lanes.kept)
 
     @cached_property
     def one(self) -> "Callable[[Words], Words]":
@@ -102,10 +101,9 @@ class NativeFunction:
                     each.end(None, error)
                     return
         chosen = sorted(pending, key=lambda each: -each.state.steps_left)[:LANES]
-        several = len(chosen) >= _LEAST_IN_LANES and self._worth_lanes(pending)
-        lanes = self.lanes if several else None
+        worth = self._expected >= _WORTH_COMPILING or self._no_need_to_compile
+        lanes = self.lanes if worth and len(chosen) >= _LEAST_IN_LANES else None
         if lanes is None:
-            self._steps_alone += chosen[0].state.steps_left if len(chosen) > 1 else 0
             chosen = chosen[:1]
         kernel, orbits = lanes or self.one, [each.state for each in chosen]
         begun = time.perf_counter()  # it is compiled now

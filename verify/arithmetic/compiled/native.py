@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 import llvmlite
 from llvmlite import binding as llvm
 
+from verify.arithmetic.processor import LANES
+
 if TYPE_CHECKING:
     from llvmlite import ir
 
@@ -31,7 +33,7 @@ _COMPILER = sha256(b"\n".join(path.read_bytes() for path in _OURS))
 def versions() -> str:
     """All that machine code depends on besides its source: compilers, this one too, processor."""
     python = ".".join(map(str, sys.version_info[:3]))
-    ours = f"Python {python}, {_COMPILER.hexdigest()}"
+    ours = f"Python {python}, {_COMPILER.hexdigest()}, {LANES} lanes"
     libraries = f"llvmlite {llvmlite.__version__}, LLVM {llvm.llvm_version_info}"
     return f"{ours}, {libraries}, {llvm.get_process_triple()}, {' '.join(_processor())}"
 

@@ -72,6 +72,12 @@ class Carries:
             x.negative = b.icmp_signed("<", self.carry(b, x)[-1], splat(0))
         return x.negative
 
+    def prepare(self, b: ir.IRBuilder, x: Number) -> None:
+        """Writes here what may be asked for later, of which the rest comes to nothing."""
+        self.settle(b, x)
+        self.factors(b, x)
+        self.negative(b, x)
+
     def known(self, limbs: Sequence[Value], width: int) -> Number:
         """A number whose carries have moved."""
         limbs = list(limbs)

@@ -1,5 +1,8 @@
 """Products of limbs, added up by columns: xᵢ yⱼ stands in column i + j and the one above it."""
 
+from collections.abc import Mapping
+from types import MappingProxyType
+
 from llvmlite import ir
 
 from verify.arithmetic.lanes.multiply_add import MultiplyAdd
@@ -10,23 +13,28 @@ class Columns:
     """Columns from `low` to `top`; their carries have not moved.
 
     What lies above `top` is left out, and so is what lies below `low`: of a product in the column
-    beneath it the higher half is added, rounded down or to the nearest, of others nothing. What is
-    left out beneath column 1 is not negative, and less than a unit of that.
+    beneath it the higher half is added, rounded down or to the nearest, of others nothing.
     """
 
     def __init__(
-        self, multiply_add: MultiplyAdd, low: int, top: int, start: dict[int, int] | None = None
+        self,
+        multiply_add: MultiplyAdd,
+        low: int,
+        top: int,
+        start: Mapping[int, int] = MappingProxyType({}),
+        *,
+        exact: bool = False,
     ) -> None:
-        """`start`: what is added to a column besides."""
+        """`start`: what is added to a column besides; `exact`: halves are rounded down, so that of
+        a single product less than a unit is left out."""
         self.multiply_add, self.low, self.top = multiply_add, low, top
-        starts = start or {}
-        self.sums = {c: multiply_add.sum(starts.get(c, 0)) for c in range(low, top + 1)}
+        self.sums = {c: multiply_add.sum(start.get(c, 0)) for c in range(low, top + 1)}
+        self._add_half = multiply_add.high if exact else multiply_add.near
 
     def add(self, b: ir.IRBuilder, x: Value, y: Value, c: int, *, signed: bool = False) -> None:
         """The product of two factors, standing in a column; `signed`: one may be negative."""
         if c == self.low - 1:
-            add = self.multiply_add.near if c else self.multiply_add.high
-            add(b, self.sums[self.low], x, y)
+            self._add_half(b, self.sums[self.low], x, y)
         elif self.low <= c <= self.top:
             above = self.sums[c + 1] if c < self.top else None
             self.multiply_add.both(b, self.sums[c], above, x, y, signed=signed)

@@ -152,6 +152,9 @@ class Ensemble:
         b.store(ir.Constant(CONDITIONS, [1] * LANES), self._kept["going"][0])
         counter = self.allocations.alloca(I64)
         b.store(constant(0, 64), counter)
+        for value in (value for n, value in before.items() if n not in carried):
+            if isinstance(value, Number):  # it stays as it is: its factors are made once
+                self.numbers.prepare(b, value)
         head, inside, self._finish = (b.append_basic_block(n) for n in ("head", "loop", "done"))
         b.branch(head)
         b.position_at_end(head)

@@ -10,7 +10,7 @@ So both halves come without a rounding mode's being changed, and a low half may 
 neither is there, products of 128 bits give the same sums, slowly, which is for tests.
 """
 
-from abc import abstractmethod
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
 import numpy as np
@@ -40,7 +40,7 @@ class Sum:
         return b.add(self.vector, splat(self.constant)) if self.constant else self.vector
 
 
-class MultiplyAdd:
+class MultiplyAdd(ABC):
     """Products of factors, which are limbs of 52 bits, or the highest limb of a signed number."""
 
     signed = False  # whether a factor may have its sign; else the low 52 bits of a word count
@@ -49,18 +49,14 @@ class MultiplyAdd:
     def __init__(self, module: ir.Module) -> None:
         self.module = module
 
+    @abstractmethod
     def factor(self, b: ir.IRBuilder, limb: Value, *, highest: bool = False) -> Value:
         """A limb, of which the low 52 bits count, as it is multiplied; the `highest` may be
         negative, and is below 2^51 in size."""
-        return limb
-
-    def sum(self, start: int = 0) -> Sum:
-        """A sum to begin with."""
-        return Sum(splat(start))
 
     @abstractmethod
-    def low(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
-        """Adds the low 52 bits of the product of two factors, neither negative."""
+    def sum(self, start: int = 0) -> Sum:
+        """A sum to begin with."""
 
     @abstractmethod
     def high(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
@@ -70,6 +66,7 @@ class MultiplyAdd:
         """Adds the product divided by 2^52, rounded down or to the nearest; neither is negative."""
         self.high(b, total, x, y)
 
+    @abstractmethod
     def both(
         self, b: ir.IRBuilder, low: Sum, high: Sum | None, x: Value, y: Value, *, signed: bool
     ) -> None:
@@ -77,16 +74,34 @@ class MultiplyAdd:
 
         `signed`: a factor may be negative. Without `high` a multiple of 2^52 is left out.
         """
-        self.low(b, low, x, y)
-        if high is not None:
-            self.high(b, high, x, y)
 
     def raised(self, b: ir.IRBuilder, low: Value, x: Value, by: int) -> Value:
         """low + the low 52 bits of x·2^by."""
         return b.add(low, vectors.masked(b, vectors.up(b, x, by)))
 
 
-class Avx512(MultiplyAdd):
+class _OfWords(MultiplyAdd):
+    """Factors are words, of which the low 52 bits count."""
+
+    def factor(self, b: ir.IRBuilder, limb: Value, *, highest: bool = False) -> Value:
+        return limb
+
+    def sum(self, start: int = 0) -> Sum:
+        return Sum(splat(start))
+
+    @abstractmethod
+    def low(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
+        """Adds the low 52 bits of the product."""
+
+    def both(
+        self, b: ir.IRBuilder, low: Sum, high: Sum | None, x: Value, y: Value, *, signed: bool
+    ) -> None:
+        self.low(b, low, x, y)
+        if high is not None:
+            self.high(b, high, x, y)
+
+
+class Avx512(_OfWords):
     """By the instructions of AVX-512 IFMA."""
 
     def low(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
@@ -107,7 +122,7 @@ class Avx512(MultiplyAdd):
         return b.call(function, [splat(0) if a is None else a, x, y])
 
 
-class Portable(MultiplyAdd):
+class Portable(_OfWords):
     """By products of 128 bits."""
 
     def low(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
@@ -133,11 +148,6 @@ class Fused(MultiplyAdd):
 
     def sum(self, start: int = 0) -> Sum:
         return Sum(None, start)
-
-    def low(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
-        _, rest = self._split(b, x, y, _HIGH)
-        whole = b.sub(self._whole(b, rest), splat(_bits(_ABOUT_0) % (1 << DIGIT)))
-        total.add(b, vectors.masked(b, whole))
 
     def high(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
         high, rest = self._split(b, x, y, _HIGH)
@@ -169,8 +179,7 @@ class Fused(MultiplyAdd):
 
     def _fused(self, b: ir.IRBuilder, x: Value, y: Value, z: Value) -> Value:
         function = vectors.declared(self.module, f"llvm.fma.v{LANES}f64", DOUBLES, [DOUBLES] * 3)
-        factors = [v if v.type == DOUBLES else self.factor(b, v) for v in (x, y)]
-        return b.call(function, [*factors, z])
+        return b.call(function, [x, y, z])
 
 
 # x ≥ 0 is in the low bits of 2^52 + x, and x with a sign, up to 2^51 in size, of 1.5·2^52 + x.

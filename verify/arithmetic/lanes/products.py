@@ -18,7 +18,7 @@ from verify.arithmetic.lanes.multiply_add import MultiplyAdd
 from verify.arithmetic.lanes.vectors import DIGIT, WORDS, splat
 from verify.arithmetic.wide.limbs import Value
 
-_WEIGHT = 16  # columns of up to 10 limbs, 4 bits shifted out of them at least
+_WEIGHT = 8  # columns are below 1.5·2^58, and at least 4 bits are shifted out of them
 _LEAST_BELOW = 16  # bits that are kept below a product's last, so that they seldom leave it unsure
 _EXACT = 1  # below that column less than a unit is left out, and what is kept is rounded down
 _ABOVE = 1 << 58  # added to columns where words are shifted down without their signs
@@ -94,12 +94,13 @@ class Products(Carries):
     def _columns(self, b: ir.IRBuilder, x: Number, y: Number, first: int) -> dict[int, Value]:
         """Σ xᵢ yⱼ and half a unit of the result's last place by columns, from the first on.
 
-        Of the column above the result's highest limb the low bits are needed, or none.
+        Of the column above the result's highest limb the low bits are needed, or none: not where
+        the highest column has room for the sign, and for carries that are still to come.
         """
-        top, count = (self.fraction + x.width - 1) // DIGIT, len(x.limbs)
+        top, count = (self.fraction + x.width) // DIGIT, len(x.limbs)
         start = self._start(first, top)
         start[self._lowest] += 1 << (self._drop - 1)
-        columns = Columns(self.multiply_add, first, top, start)
+        columns = Columns(self.multiply_add, first, top, start, exact=first == _EXACT)
         u, v = self.factors(b, x), self.factors(b, y)
         if x is not y:
             self._take_signs(b, columns, x, y)
@@ -108,7 +109,7 @@ class Products(Carries):
                 for j in range(count):
                     columns.add(b, u[i], v[j], i + j, signed=count - 1 in (i, j))
             return columns.total(b)
-        mixed = Columns(self.multiply_add, first, top)
+        mixed = Columns(self.multiply_add, first, top, exact=first == _EXACT)
         self._take_signs(b, mixed, x, x)
         for i in range(count):
             for j in range(i + 1, count):

@@ -157,6 +157,7 @@ class FormRun:
         stepper = Stepper(kernel, arithmetic, fixed, self._in_range)
         state = found[-1] if found else self._first_state(kernel, arithmetic)
         done = self.marks[len(found) - 1] if found else 0
+        arithmetic.expect(kernel.function, self.run.steps - done)
         while done < self.run.steps:
             every = min(arithmetic.chunk, self.marks[len(found)] - done)
             states = stepper.states(state, every, 1)

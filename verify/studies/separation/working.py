@@ -146,6 +146,7 @@ class WorkingRun:
         stepper = Stepper(kernel, arithmetic, fixed)
         state = found[-1] if found else self._first_state(kernel, arithmetic)
         done = self.marks[len(found) - 1] if found else 0
+        arithmetic.expect(kernel.function, self.run.steps - done)
         while done < self.run.steps:
             every, stops = self._ahead(done, len(found), arithmetic.chunk)
             states = stepper.states(state, every, stops)

@@ -1,5 +1,8 @@
 """Numbers in lanes have the bits of one orbit's, whatever stands in the other lanes."""
 
+import os
+import subprocess
+import sys
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from functools import cache
@@ -18,7 +21,7 @@ from verify.arithmetic.lanes.numbers import Numbers
 from verify.arithmetic.lanes.vectors import CONDITIONS
 from verify.arithmetic.processor import LANES
 
-WIDTHS = (128, 192, 256, 320, 384)
+WIDTHS = (128, 192, 256, 320, 384, 448, 512)
 OPERATIONS = """\
 def f(x, y, s: 'sum', by: 'int', g: 'float'):
     n = 0
@@ -36,6 +39,10 @@ def f(x, y, s: 'sum', by: 'int', g: 'float'):
     return r, x * x, (r + r) * x, -x, abs(x), x - y, z, total, abs(total), shifted(x, by), \
 shifted(y, by), approx(x), approx(total), wide(g), g * g - g, n, m, e, i
 """
+# A sum that only holds its carries where they are moved on the way, from a product that is small.
+LONG_SUM = "\n    ".join(
+    ("def f(x, c):", "z = x * x", *["z = z + z"] * 18, "return c - z, z - c, c - z - z")
+)
 FUNCTIONS = {
     "circle": "def f(x):\n    c, s = cos_sin(x)\n    return c, s\n",
     **{f: f"def f(x): return {f}(x)\n" for f in ("sin", "cos", "exp", "log", "sqrt", "sinh")},
@@ -120,13 +127,27 @@ def test_operations_have_the_bits_of_one_orbit(width: int, way: str) -> None:
 def at_a_half(width: int, seed: int) -> list[Any]:
     """Rows for OPERATIONS whose products lie next to where rounding changes, on both sides and
     there: what is left out of them at first matters."""
-    draws, bits, rows = Draws(seed), width - 16, []
-    for _ in range(200):
+    draws, bits = Draws(seed), width - 16
+    half, pairs = 1 << bits - 1, []
+    for k in range(100):
         x = (draws.bits(bits + 5) | 1) * draws.either()
-        rest = (1 << bits - 1) + draws.below(7) - 3
-        y = rest * pow(x, -1, 1 << bits) % (1 << bits)
-        rows.append((number(x, width), number(y, width), number(0, width), 1, 0.5))
-    return rows
+        rest = half + draws.below(7) - 3
+        pairs.append((x, rest * pow(x, -1, 1 << bits) % (1 << bits)))
+        pairs.append((odd_root(half + 8 * k - 399, bits) * draws.either(), x))
+    return [row_of(x, y, width) for x, y in pairs]
+
+
+def odd_root(square: int, bits: int) -> int:
+    """x with x² ≡ square modulo 2^bits, the square 1 modulo 8."""
+    x = 1
+    for k in range(3, bits):
+        x += ((x * x - square) >> k & 1) << k - 1
+    return x
+
+
+def row_of(x: int, y: int, width: int) -> Any:
+    """For OPERATIONS."""
+    return number(x, width), number(y, width), number(0, width), 1, 0.5
 
 
 @pytest.mark.parametrize("way", IN_LANES)
@@ -135,11 +156,36 @@ def test_products_are_rounded_rightly_at_a_half(way: str) -> None:
 
 
 @pytest.mark.left_to_ci
-@pytest.mark.sample(3)
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("way", IN_LANES)
 @pytest.mark.parametrize("width", WIDTHS)
 def test_products_of_all_widths_are_rounded_rightly_at_a_half(width: int, way: str) -> None:
     assert not first_differing(both(OPERATIONS, width, way), at_a_half(width, seed=width))
+
+
+@pytest.mark.left_to_ci
+@pytest.mark.sample(2)
+@pytest.mark.parametrize("way", IN_LANES)
+@pytest.mark.parametrize("width", WIDTHS)
+def test_products_next_to_the_end_of_the_range_too(width: int, way: str) -> None:
+    top = 1 << (width - 1)
+    pairs = [(-top + k, 1 << width - 16) for k in range(6)] + [(-top // 2, 1 << width - 15)]
+    pairs += [(top - 1 - k, 1 << width - 16) for k in range(6)]
+    pairs += [(y, x) for x, y in pairs]
+    product = "def f(x, y):\n    r = x * y\n    return r, -r, shifted(r, 1), abs(r)\n"
+    rows = [tuple(number(v, width) for v in pair) for pair in pairs]
+    assert not first_differing(both(product, width, way), rows)
+
+
+def small_squares(width: int) -> list[Any]:
+    draws = Draws(width)
+    x = (draws.bits(width // 2 - 30) for _ in range(40))
+    return [(number(v, width), number(draws.bits(width - 12), width)) for v in x]
+
+
+@pytest.mark.parametrize("way", IN_LANES)
+def test_carries_of_long_sums_are_moved_in_time(way: str) -> None:
+    assert not first_differing(both(LONG_SUM, 192, way), small_squares(192))
 
 
 def arguments(name: str, width: int) -> list[Any]:
@@ -255,6 +301,31 @@ def test_a_step_left_out_of_a_product_is_caught(
     way = "portable" if planted == "_take_signs" else IN_LANES[0]
     pair = Both(OPERATIONS, 128, way, {"limit": number(3 << 109, 128)})
     assert first_differing(pair, operands(128, seed=1, count=40))
+
+
+def test_sums_whose_carries_are_never_moved_are_caught(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Numbers, "light", lambda self, b, x: x)
+    assert first_differing(Both(LONG_SUM, 192, IN_LANES[0]), small_squares(192))
+
+
+OTHER_COUNT = """\
+import sys
+import pytest
+from verify.arithmetic import processor
+
+processor.LANES = 12 - processor.LANES
+sys.exit(pytest.main(sys.argv[1:]))
+"""
+
+
+@pytest.mark.left_to_ci
+def test_four_lanes_and_eight_have_the_same_bits() -> None:
+    """Those that this processor's registers do not have, LLVM makes of others."""
+    chosen = "at_a_half and not widths or never_asks or long_sums"
+    command = [sys.executable, "-c", OTHER_COUNT, "-q", "-n", "0", "-k", chosen, __file__]
+    environment = os.environ | {"VERIFY_CACHE": "off"}
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stdout
 
 
 AVX2 = pytest.mark.skipif("avx2" not in IN_LANES, reason="this processor has no AVX2")
