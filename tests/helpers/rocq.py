@@ -1,4 +1,4 @@
-"""Rocq in tests: what `coqc` takes, what it refuses and where it stops, and the theory it compiled.
+"""Rocq in tests: what `coqc` takes, and the theory it compiled.
 
 Where `coqc` is missing a test is skipped by name, and fails in CI.
 """
@@ -22,13 +22,7 @@ PROCESSES = 2
 LONGEST = 300  # seconds for a file on a machine that does much else
 # By itself coqc has 256 MB for young objects, which takes longer to fill than most files to check,
 # and looks through what it loaded for what may go, of which there is nothing.
-_MEMORY = {"OCAMLRUNPARAM": "s=1M,o=1000"}
-_STOPPED = re.compile(r'^File "[^"]*", line (\d+), characters', re.MULTILINE)
-_NAMED = re.compile(
-    r"^\s*(?:Local |Global )?(?:Theorem|Corollary|Lemma|Definition|Fixpoint|Record|Instance) (\w+)"
-)
-# What coqc says of a text that has no meaning: no proof of ours that it looked at.
-_MEANINGLESS = ("Syntax error", "Lexer", "was not found in", "Cannot find a", "Unable to locate")
+ENVIRONMENT = {"OCAMLRUNPARAM": "s=1M,o=1000", **os.environ}
 
 
 @dataclass(frozen=True)
@@ -42,17 +36,24 @@ class Answer:
 
 def coqc(path: Path, folders: Mapping[str, Path] | None = None) -> Answer:
     """What coqc says of this file, where these names stand for folders of compiled ones."""
-    places = [part for name, place in (folders or {}).items() for part in ("-Q", str(place), name)]
-    command = [needed("coqc"), "-q", *places, path.name]
+    return _coqc(path.parent, *options(folders or {}), path.name)
+
+
+def _coqc(folder: Path, *arguments: str) -> Answer:
     found = subprocess.run(
-        command,
-        cwd=path.parent,
-        env={**_MEMORY, **os.environ},
+        [needed("coqc"), "-q", *arguments],
+        cwd=folder,
+        env=ENVIRONMENT,
         capture_output=True,
         text=True,
         timeout=LONGEST,
     )
     return Answer(found.returncode, found.stdout, found.stderr)
+
+
+def options(folders: Mapping[str, Path]) -> list[str]:
+    """By which coqc knows where these names are."""
+    return [part for name, place in folders.items() for part in ("-Q", str(place), name)]
 
 
 def beside(compiled: Path) -> dict[str, Path]:
@@ -66,17 +67,6 @@ def accepted(path: Path, text: str, folders: Mapping[str, Path] | None = None) -
     found = coqc(path, folders)
     assert (found.status, found.complaints) == (0, ""), found.complaints
     return found.said
-
-
-def stops_at(path: Path, text: str, folders: Mapping[str, Path] | None = None) -> str:
-    """The theorem or definition of the text at which coqc stops, having understood it so far."""
-    path.write_text(text, encoding="utf-8")
-    found = coqc(path, folders)
-    assert found.status != 0, f"coqc takes {path.name}"
-    *_, last = _STOPPED.finditer(found.complaints)
-    assert not any(words in found.complaints for words in _MEANINGLESS), found.complaints
-    lines = text.split("\n")[: int(last[1])]
-    return next(named[1] for line in reversed(lines) if (named := _NAMED.match(line)))
 
 
 def changed(text: str, old: str, new: str, times: int = 1) -> str:
@@ -102,16 +92,22 @@ def each_after(needs: Mapping[str, Iterable[str]], work: Callable[[str], object]
                 sorter.done(running.pop(future))
 
 
+def in_module(name: str, text: str) -> str:
+    """The text as a module, by which others name what is in it as if it were a file."""
+    return f"Module {name}.\n{text}\nEnd {name}.\n"
+
+
 def compile_theory(folder: Path) -> None:
-    """Installs the theory there, and has coqc compile all of it."""
+    """Installs the theory there, and has coqc compile all of it, by its project file."""
     theory.install(folder)
+    given, *listed = (folder / "_CoqProject").read_text(encoding="utf-8").splitlines()
+    lines = {Path(line).stem: line for line in listed}
 
     def compile_one(name: str) -> None:
-        path = folder / theory.files()[name].relative_to(theory.FOLDER)
-        found = coqc(path, beside(folder))
-        assert (found.status, found.complaints) == (0, ""), f"{name}.v: {found.complaints}"
+        found = _coqc(folder, *given.split(), lines[name])
+        assert (found.status, found.complaints) == (0, ""), f"{lines[name]}: {found.complaints}"
 
-    each_after({name: theory.imports_of(name) for name in theory.files()}, compile_one)
+    each_after({name: theory.imports_of(name) for name in lines}, compile_one)
 
 
 def made_once(paths: pytest.TempPathFactory, name: str, make: Callable[[Path], None]) -> Path:

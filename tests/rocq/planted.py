@@ -1,12 +1,12 @@
-"""One thing changed in an exported text, and where `coqc` has to stop for it."""
+"""One thing changed in an exported text, and where Rocq has to stop for it."""
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import pytest
 
 from tests.helpers.exports import export
-from tests.helpers.rocq import beside, changed, stops_at
+from tests.helpers.rocq import changed
+from tests.helpers.rocq_session import Session
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ def planted(
     return pytest.param(Planted(what, name, place, edits), id=f"{name}-{place}-{what}")
 
 
-def check_refused(it: Planted, theory: Path, folder: Path) -> None:
-    """That coqc stops at the place, and refuses no more than it has to."""
-    place = stops_at(folder / f"{it.export}.v", it.text(), beside(theory))
-    assert place == it.place, f"coqc stops at {place}"
+def check_refused(it: Planted, rocq: Session) -> None:
+    """That Rocq stops at the place, and refuses no more than it has to."""
+    place = rocq.stops_at(it.text())
+    assert place == it.place, f"Rocq stops at {place}"

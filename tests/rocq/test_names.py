@@ -2,13 +2,13 @@
 
 import re
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import pytest
 
 from tests.helpers.exports import certificate, export, export_of, proved
-from tests.helpers.rocq import accepted, beside
+from tests.helpers.rocq_assumptions import ASKED
+from tests.helpers.rocq_session import Session
 from verify.proof.assistant.formulas import KEYWORDS, safe
 from verify.proof.assistant.text import template_words
 
@@ -25,27 +25,27 @@ PARAMETERS = [
 NUMBERS = ("fun", "scheme", "x", "is_x", "w", "is_w", "there_is_w", "is_is_w")
 
 
-def test_no_word_of_the_grammar_stands_for_a_parameter(theory: Path, tmp_path: Path) -> None:
+def test_no_word_of_the_grammar_stands_for_a_parameter(rocq: Session) -> None:
     """As it is written, which is another way where coqc takes the word for one of its own."""
     loaded = "".join(re.findall(r"^From [^.]*\.\n", export("pendulum_lie2").text, re.MULTILINE))
     asked = "".join(f"Print Grammar {name}.\n" for name in _GRAMMARS)
-    said = accepted(tmp_path / "grammar.v", loaded + asked, beside(theory))
+    said = rocq.accepted(loaded + asked)
     words = sorted(set(re.findall(r"\w+", said)) | KEYWORDS)
     assert {"forall", "exists2", "Fixpoint", "symmetry", "match"} <= set(words)
     spelled = safe(filter(_NAME.fullmatch, words), ()).values()
     text = "".join(f"Check (fun {name} : R => {name} + 1)%R.\n" for name in spelled)
-    accepted(tmp_path / "words.v", loaded + text, beside(theory))
+    rocq.accepted(loaded + text)
 
 
 def test_parameters_may_be_called_by_words_of_rocq_and_of_the_export(
-    theory: Path, tmp_path: Path
+    rocq: Session,
 ) -> None:
     assert {"fun", "exists2", "match"} <= set(PARAMETERS) & KEYWORDS
     assert {"H", "in_powers", "names"} <= set(PARAMETERS) & template_words("one")
     data = proved(["--hamiltonian", "p**2/2 + mass*q**4/4", "--scheme", "lie2"])
     of_sum = with_sum_of(PARAMETERS, data)
     of_sum["witness"] = {"p": "1", "q": "1", **dict.fromkeys(PARAMETERS, "1")}
-    accepted(tmp_path / "words.v", export_of(of_sum).text, beside(theory))
+    rocq.accepted(ASKED.sub("", export_of(of_sum).text))
 
 
 def with_sum_of(names: Sequence[str], entry: Any) -> Any:
@@ -69,9 +69,9 @@ def _each(names: Sequence[str], term: Any) -> list[Any]:
 
 
 def test_numbers_may_be_called_by_words_of_rocq_and_of_the_export(
-    theory: Path, tmp_path: Path
+    rocq: Session,
 ) -> None:
     data: dict[str, Any] = certificate("two_roots")
     data["numbers"] = [[name, *data["numbers"][0][1:]] for name in NUMBERS]
     data["stages"] = [[[["1", name]], [["1", name]], "1/3", "2/3"] for name in NUMBERS]
-    accepted(tmp_path / "words.v", export_of(data).text, beside(theory))
+    rocq.accepted(ASKED.sub("", export_of(data).text))

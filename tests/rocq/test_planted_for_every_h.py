@@ -1,9 +1,8 @@
 """What is wrong in an export for every H is refused where it is said, or where it is calculated."""
 
-from pathlib import Path
-
 import pytest
 
+from tests.helpers.rocq_session import Session
 from tests.rocq.planted import Planted, check_refused, planted
 
 pytestmark = pytest.mark.left_to_ci
@@ -118,5 +117,5 @@ ERRORS = [
 
 @pytest.mark.sample(14)
 @pytest.mark.parametrize("error", ERRORS)
-def test_a_planted_error_is_refused(error: Planted, theory: Path, tmp_path: Path) -> None:
-    check_refused(error, theory, tmp_path)
+def test_a_planted_error_is_refused(error: Planted, rocq: Session) -> None:
+    check_refused(error, rocq)

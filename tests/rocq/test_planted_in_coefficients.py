@@ -3,10 +3,9 @@
 Of kicks and drifts the weights are free: with any of them the step is symplectic.
 """
 
-from pathlib import Path
-
 import pytest
 
+from tests.helpers.rocq_session import Session
 from tests.rocq.planted import Planted, check_refused, planted
 
 pytestmark = pytest.mark.left_to_ci
@@ -81,5 +80,5 @@ ERRORS = [
 
 @pytest.mark.sample(9)
 @pytest.mark.parametrize("error", ERRORS)
-def test_a_planted_error_is_refused(error: Planted, theory: Path, tmp_path: Path) -> None:
-    check_refused(error, theory, tmp_path)
+def test_a_planted_error_is_refused(error: Planted, rocq: Session) -> None:
+    check_refused(error, rocq)

@@ -1,20 +1,18 @@
 """The theory compiles as it stands; its theorems assume what the library's reals do, or nothing."""
 
 import re
-import subprocess
 from pathlib import Path
 
 import pytest
 
-from tests.helpers.compilers import needed
-from tests.helpers.rocq import LONGEST, accepted, beside
 from tests.helpers.rocq_assumptions import (
     OF_THE_REALS,
     asked_together,
     assuming_words,
     printed_assumptions,
 )
-from verify.proof.assistant.shipped import FOLDER, files, in_order, install, text_of
+from tests.helpers.rocq_session import Session
+from verify.proof.assistant.shipped import FOLDER, files, in_order, text_of
 
 pytestmark = pytest.mark.left_to_ci
 
@@ -42,23 +40,13 @@ def without_reals(name: str) -> bool:
     return not _WITH_REALS & {word for line in found for word in line.split()}
 
 
-def test_all_files_of_the_theory_compile(theory: Path) -> None:
+def test_all_files_of_an_installed_theory_compile_by_its_project_file(theory: Path) -> None:
+    """A test without coqc holds that they stand in the right order there."""
     compiled = {path.relative_to(theory).with_suffix(".v") for path in theory.rglob("*.vo")}
     assert compiled == {path.relative_to(FOLDER) for path in files().values()}
 
 
-def test_an_installed_theory_compiles_in_the_order_of_its_project_file(tmp_path: Path) -> None:
-    """The first files of it; a test without coqc holds that the order is right for all."""
-    install(tmp_path / "theory")
-    options, *listed = (tmp_path / "theory" / "_CoqProject").read_text().splitlines()
-    for line in listed[:2]:
-        command = [needed("coqc"), *options.split(), line]
-        subprocess.run(command, cwd=tmp_path / "theory", check=True, timeout=LONGEST)
-
-
-def test_theorems_of_the_theory_assume_what_the_reals_do_or_nothing(
-    theory: Path, tmp_path: Path
-) -> None:
+def test_theorems_of_the_theory_assume_what_the_reals_do_or_nothing(rocq: Session) -> None:
     of_rings = {name for name in files() if without_reals(name)}
     assert ALGEBRAIC <= of_rings < set(files())
     groups = {"of_rings": of_rings, "of_reals": set(files()) - of_rings}
@@ -66,13 +54,13 @@ def test_theorems_of_the_theory_assume_what_the_reals_do_or_nothing(
         asked_together(group, [x for name in sorted(names) for x in theorems_of(name)])
         for group, names in groups.items()
     )
-    algebraic, real = printed_assumptions(accepted(tmp_path / "asked.v", asked, beside(theory)))
+    algebraic, real = printed_assumptions(rocq.accepted(asked))
     assert algebraic == frozenset()
     assert frozenset() < real <= OF_THE_REALS
 
 
 def test_what_is_planted_in_a_file_of_the_theory_is_seen_in_its_words_and_told_by_rocq(
-    theory: Path, tmp_path: Path
+    rocq: Session,
 ) -> None:
     text = text_of("Totals")
     for name, sentence in PLANTED.items():
@@ -81,5 +69,5 @@ def test_what_is_planted_in_a_file_of_the_theory_is_seen_in_its_words_and_told_b
         text += f"{sentence}\nTheorem used_{name} : 2 = 1. Proof. symmetry. exact {name}. Qed.\n"
     text += "".join(asked_together(f"asked_{name}", [f"used_{name}"]) for name in PLANTED)
     # Of axioms in no section coqc warns, which is no refusal.
-    said = accepted(tmp_path / "Totals.v", f'Set Warnings "-all".\n{text}', beside(theory))
+    said = rocq.accepted(f'Set Warnings "-all".\n{text}')
     assert printed_assumptions(said) == [frozenset({name}) for name in PLANTED]

@@ -1,14 +1,14 @@
 """A statement of the theory, or a check that it trusts, with one thing changed has no proof.
 
-A file is compiled by itself, with what it stands on taken from the compiled theory.
+A file is read by itself, with what it stands on taken from the compiled theory.
 """
 
 import re
-from pathlib import Path
 
 import pytest
 
-from tests.helpers.rocq import accepted, beside, changed, stops_at
+from tests.helpers.rocq import changed, in_module
+from tests.helpers.rocq_session import Session
 from verify.proof.assistant.shipped import text_of
 
 pytestmark = pytest.mark.left_to_ci
@@ -108,17 +108,16 @@ IDENTITIES = [
     [pytest.param(*each, id=f"{each[0]}: {each[-1]}") for each in [*MUTANTS, *CHECKS]],
 )
 def test_a_changed_statement_has_no_proof(
-    theory: Path, tmp_path: Path, name: str, old: str, new: str, place: str
+    rocq: Session, name: str, old: str, new: str, place: str
 ) -> None:
-    text = changed(text_of(name), old, new)
-    assert stops_at(tmp_path / f"{name}.v", text, beside(theory)) == place
+    assert rocq.stops_at(changed(text_of(name), old, new)) == place
 
 
 def certified(identities: str) -> str:
     """The file Certified with these identities before it, in one."""
     loaded = re.findall(r"^From .*\n", identities, re.MULTILINE)
     inside = identities.replace("".join(loaded), "")
-    module = f"Module Identities.\n{inside}\nEnd Identities.\nImport Identities.\n"
+    module = f"{in_module('Identities', inside)}Import Identities.\n"
     rest = changed(text_of("Certified"), "Taylor Formulas Identities.", "Taylor Formulas.")
     return f"{''.join(loaded)}{module}{rest}"
 
@@ -126,12 +125,11 @@ def certified(identities: str) -> str:
 @pytest.mark.sample(2)
 @pytest.mark.parametrize(("old", "new", "place"), IDENTITIES, ids=lambda x: x.split()[0])
 def test_what_follows_from_identities_has_no_proof_from_others(
-    theory: Path, tmp_path: Path, old: str, new: str, place: str
+    rocq: Session, old: str, new: str, place: str
 ) -> None:
-    text = certified(changed(text_of("Identities"), old, new))
-    assert stops_at(tmp_path / "Certified.v", text, beside(theory)) == place
+    assert rocq.stops_at(certified(changed(text_of("Identities"), old, new))) == place
 
 
-def test_the_files_are_taken_as_they_are(theory: Path, tmp_path: Path) -> None:
-    accepted(tmp_path / "Product.v", text_of("Product"), beside(theory))
-    accepted(tmp_path / "Certified.v", certified(text_of("Identities")), beside(theory))
+def test_the_files_are_taken_as_they_are(rocq: Session) -> None:
+    rocq.accepted(text_of("Product"))
+    rocq.accepted(certified(text_of("Identities")))
