@@ -20,12 +20,13 @@ _TAKEN = "The command has succeeded and its effects have been reverted.\n"
 _REFUSED = "The command has indeed failed with message:\n"
 _PROMPT = re.compile(r"\n?Coq < ")
 _NAMED = re.compile(
-    r"^\s*(?:Local |Global )?(?:Theorem|Corollary|Lemma|Definition|Fixpoint|Record|Instance) (\w+)",
+    r"^\s*(?:Local |Global )?"
+    r"(?:Theorem|Corollary|Lemma|Definition|Fixpoint|Record|Instance) ([\w']+)",
     re.MULTILINE,
 )
 # What Rocq says of a text that has no meaning: no proof of ours that it looked at.
 _MEANINGLESS = ("Syntax error", "Lexer", "was not found in", "Cannot find a", "Unable to locate")
-_DEFINED = re.compile(r"^(\w+) is defined$", re.MULTILINE)
+_DEFINED = re.compile(r"^([\w']+) is defined$", re.MULTILINE)
 
 
 class Session:
@@ -33,7 +34,8 @@ class Session:
 
     def __init__(self, theory: Path, folder: Path) -> None:
         self._text = folder / "text.v"
-        self._complaints = (folder / "complaints").open("w+", encoding="utf-8")
+        # Where Rocq writes at the end wherever we read.
+        self._complaints = (folder / "complaints").open("a+", encoding="utf-8")
         self._process = subprocess.Popen(
             [needed("coqtop"), "-q", *options(beside(theory))],
             env=ENVIRONMENT,
@@ -85,9 +87,8 @@ class Session:
             if line == f"No object of basename {mark}\n":
                 break
             said.append(line)
-        else:
-            raise AssertionError("coqtop has ended")
         late.cancel()
+        assert self._process.poll() is None, "".join(said)
         self._complaints.seek(before)
         return "".join(said), _PROMPT.sub("", self._complaints.read()).strip()
 

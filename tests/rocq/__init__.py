@@ -1,1 +1,1 @@
-"""What Rocq's `coqc` says of the theory and of exported certificates."""
+"""What Rocq says of the theory and of exported certificates."""

@@ -19,11 +19,12 @@ pytestmark = pytest.mark.left_to_ci
 
 _LIBRARY = re.compile(r"^From Coq Require Import ([^.]*)\.\n", re.MULTILINE)
 _IMPORTED = re.compile(r"^From \w+ Require Import [^.]*\.$", re.MULTILINE)
-# One of each that import the same; and the shortest of those for every H, for one, by coefficients.
+# One of each that import the same.
 BY_THEMSELVES = (
     "every_lie2", "every_kick", "pendulum_lie2", "pendulum_lie3", "kick_of_two",
     "stormer_verlet", "two_roots", "gauss4",
 )  # fmt: skip
+# The shortest of those for every H, for one, and by coefficients.
 ALONE = ("every_kick_of_two", "kick_of_two", "stormer_verlet")
 
 
@@ -37,9 +38,12 @@ def test_coqc_takes_all_exports_which_assume_what_the_reals_do_or_nothing(
 ) -> None:
     """Each a module of one file, which imports the library once: that takes as long as an export.
 
-    What they assume is asked of all together, as to print it takes longer still.
+    What they assume is asked of all together, as to print it takes longer still. What one imports
+    the next has, too: of those that import the same, one is taken by itself in the next test.
     """
     texts = {name: export(name).text for name in ALL}
+    imported = {name: tuple(_IMPORTED.findall(text)) for name, text in texts.items()}
+    assert sorted(imported[name] for name in BY_THEMSELVES) == sorted(set(imported.values()))
     asked = {name: ASKED.findall(text) for name, text in texts.items()}
     rings = [f"{name}.{asked[name].pop(0)}" for name in ALL if of_rings_in(name)]
     reals = [f"{name}.{of_all}" for name in ALL for of_all in asked[name]]
@@ -65,11 +69,6 @@ def imported_of_library(text: str) -> list[str]:
 @pytest.mark.parametrize("name", BY_THEMSELVES)
 def test_an_export_is_taken_by_itself_with_what_it_imports(rocq: Session, name: str) -> None:
     rocq.accepted(ASKED.sub("", export(name).text))
-
-
-def test_others_import_the_same() -> None:
-    imported = {name: tuple(_IMPORTED.findall(export(name).text)) for name in ALL}
-    assert sorted(imported[name] for name in BY_THEMSELVES) == sorted(set(imported.values()))
 
 
 @pytest.mark.parametrize(
