@@ -18,6 +18,7 @@ from tests.helpers.rocq_assumptions import without_comments
 _LIBRARY = "From Coq Require Reals ZArith QArith Qreals List Bool Lia Lra."
 _TAKEN = "The command has succeeded and its effects have been reverted.\n"
 _REFUSED = "The command has indeed failed with message:\n"
+_ERROR = "Toplevel input, "
 _PROMPT = re.compile(r"\n?Coq < ")
 _NAMED = re.compile(
     r"^\s*(?:Local |Global )?"
@@ -80,17 +81,23 @@ class Session:
         assert self._process.stdout is not None
         mark, said = f"answer_{next(self._numbers)}", list[str]()
         before = self._complaints.seek(0, 2)
-        print(f"{sentence}\nLocate {mark}.", file=self._process.stdin, flush=True)
+        # Each is answered on a stream of its own, and neither stream waits for the other.
+        marks = f"Check {mark}.\nLocate {mark}."
+        print(f"{sentence}\n{marks}", file=self._process.stdin, flush=True)
         late = Timer(LONGEST, self._process.kill)
         late.start()
         for line in self._process.stdout:
             if line == f"No object of basename {mark}\n":
                 break
             said.append(line)
+        complaints = ""
+        while f"> Check {mark}." not in complaints and self._process.poll() is None:
+            self._complaints.seek(before)
+            complaints = self._complaints.read()
         late.cancel()
         assert self._process.poll() is None, "".join(said)
-        self._complaints.seek(before)
-        return "".join(said), _PROMPT.sub("", self._complaints.read()).strip()
+        complaints = complaints.partition(f"> Check {mark}.")[0].rpartition(_ERROR)[0]
+        return "".join(said), _PROMPT.sub("", complaints).strip()
 
 
 def first_missing(text: str, said: str) -> str:
