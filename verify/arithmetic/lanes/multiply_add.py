@@ -10,10 +10,10 @@ So both halves come without a rounding mode's being changed, and a low half may 
 neither is there, products of 128 bits give the same sums, slowly, which is for tests.
 """
 
+import struct
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
-import numpy as np
 from llvmlite import ir
 
 from verify.arithmetic.lanes import vectors
@@ -188,4 +188,4 @@ _HIGH, _HIGH_ABOUT_0 = 2.0**104, 1.5 * 2.0**104
 
 
 def _bits(x: float) -> int:
-    return int(np.float64(x).view(np.int64))
+    return int(struct.unpack("<q", struct.pack("<d", x))[0])
