@@ -43,8 +43,8 @@ class Number:
 class Carries:
     """What is known of numbers with so many fraction bits, each written once."""
 
-    def __init__(self, module: ir.Module, fraction: int, multiply_add: MultiplyAdd) -> None:
-        self.module, self.fraction, self.multiply_add = module, fraction, multiply_add
+    def __init__(self, fraction: int, multiply_add: MultiplyAdd) -> None:
+        self.fraction, self.multiply_add = fraction, multiply_add
 
     def carry(self, b: ir.IRBuilder, x: Number) -> list[Value]:
         """The limbs after the carries have moved; of all but the highest 52 bits count."""
@@ -63,8 +63,7 @@ class Carries:
     def settle(self, b: ir.IRBuilder, x: Number) -> list[Value]:
         """The limbs, all but the highest in [0, 2^52), the highest with the sign."""
         if x.settled is None:
-            *low, high = self.carry(b, x)
-            x.settled = [*(vectors.masked(b, limb) for limb in low), high]
+            x.settled = vectors.settled(b, self.carry(b, x))
         return x.settled
 
     def negative(self, b: ir.IRBuilder, x: Number) -> Value:

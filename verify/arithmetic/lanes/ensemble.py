@@ -41,7 +41,7 @@ class Ensemble:
     ) -> None:
         self.module, self.sets = ir.Module(), sets
         self.widths = {"wide": width, "sum": width + 64}
-        self.numbers = Numbers(self.module, fraction, multiply_add(self.module))
+        self.numbers = Numbers(fraction, multiply_add())
         self.functions = LaneFunctions(self.module, width, self.numbers)
         self._known: dict[str, Any] = {}
         self._arguments: dict[str, tuple[int, int, str]] = {}  # where each lies, and its kind

@@ -27,8 +27,7 @@ def constant(value: int, count: int) -> list[Value]:
 
 def settled(b: ir.IRBuilder, limbs: Sequence[Value]) -> list[Value]:
     """The same number with its carries moved; the highest limb has the sign."""
-    *low, high = vectors.carried(b, limbs)
-    return [*(vectors.masked(b, limb) for limb in low), high]
+    return vectors.settled(b, vectors.carried(b, limbs))
 
 
 def added(b: ir.IRBuilder, x: Sequence[Value], y: Sequence[Value]) -> list[Value]:

@@ -46,9 +46,6 @@ class MultiplyAdd(ABC):
     signed = False  # whether a factor may have its sign; else the low 52 bits of a word count
     leaves_out = False  # whether a long product is formed sooner without its lowest columns
 
-    def __init__(self, module: ir.Module) -> None:
-        self.module = module
-
     @abstractmethod
     def factor(self, b: ir.IRBuilder, limb: Value, *, highest: bool = False) -> Value:
         """A limb, of which the low 52 bits count, as it is multiplied; the `highest` may be
@@ -117,7 +114,7 @@ class Avx512(_OfWords):
         self, b: ir.IRBuilder, half: str, a: Value | None, x: Value, y: Value
     ) -> Value:
         function = vectors.declared(
-            self.module, f"llvm.x86.avx512.vpmadd52{half}.uq.512", WORDS, [WORDS] * 3
+            b.module, f"llvm.x86.avx512.vpmadd52{half}.uq.512", WORDS, [WORDS] * 3
         )
         return b.call(function, [splat(0) if a is None else a, x, y])
 
@@ -178,7 +175,7 @@ class Fused(MultiplyAdd):
         return b.bitcast(b.fadd(x, splat_double(_ABOUT_0)), WORDS)
 
     def _fused(self, b: ir.IRBuilder, x: Value, y: Value, z: Value) -> Value:
-        function = vectors.declared(self.module, f"llvm.fma.v{LANES}f64", DOUBLES, [DOUBLES] * 3)
+        function = vectors.declared(b.module, f"llvm.fma.v{LANES}f64", DOUBLES, [DOUBLES] * 3)
         return b.call(function, [x, y, z])
 
 

@@ -27,8 +27,8 @@ _ABOVE = 1 << 58  # added to columns where words are shifted down without their 
 class Products(Carries):
     """Products of numbers with so many fraction bits."""
 
-    def __init__(self, module: ir.Module, fraction: int, multiply_add: MultiplyAdd) -> None:
-        super().__init__(module, fraction, multiply_add)
+    def __init__(self, fraction: int, multiply_add: MultiplyAdd) -> None:
+        super().__init__(fraction, multiply_add)
         self._lowest, self._drop = divmod(fraction, DIGIT)  # the result's column, bits below it
         first = self._lowest if self._drop >= _LEAST_BELOW else self._lowest - 1
         self._first = first if multiply_add.leaves_out else _EXACT
@@ -45,7 +45,9 @@ class Products(Carries):
         after = b.append_basic_block("sure")
         b.cbranch(unsure, cold, after).set_weights([1, 1 << 20])
         b.position_at_end(cold)
-        whole = b.call(self._whole_product(x.width), [*self.carry(b, x), *self.carry(b, y)])
+        whole = b.call(
+            self._whole_product(b.module, x.width), [*self.carry(b, x), *self.carry(b, y)]
+        )
         exact = [b.extract_value(whole, i) for i in range(len(near))]
         b.branch(after)
         b.position_at_end(after)
@@ -68,7 +70,7 @@ class Products(Carries):
         columns beneath it, 2·first − 1 of them, and less than one for all further below."""
         return 2 * first
 
-    def _whole_product(self, width: int) -> ir.Function:
+    def _whole_product(self, module: ir.Module, width: int) -> ir.Function:
         """The limbs of a product from all columns: a function apart, since it is hardly ever
         called."""
         if width in self._whole:
@@ -76,14 +78,14 @@ class Products(Carries):
         count = count_of(width)
         result = ir.LiteralStructType([WORDS] * count)
         kind = ir.FunctionType(result, [WORDS] * (2 * count))
-        function = ir.Function(self.module, kind, f"lanes_whole_product_{width}")
+        function = ir.Function(module, kind, f"lanes_whole_product_{width}")
         self._whole[width] = function
         function.linkage = "internal"
         function.attributes.add("noinline")
         b = ir.IRBuilder(function.append_basic_block("entry"))
         x, y = (
-            self.known([*(vectors.masked(b, limb) for limb in low), high], width)
-            for *low, high in (function.args[:count], function.args[count:])
+            self.known(vectors.settled(b, limbs), width)
+            for limbs in (function.args[:count], function.args[count:])
         )
         found = ir.Constant(result, ir.Undefined)
         for i, limb in enumerate(self._rounded(b, self._columns(b, x, y, _EXACT), width)):

@@ -38,6 +38,12 @@ def masked(b: ir.IRBuilder, x: Value) -> Value:
     return b.and_(x, splat(_MASK))
 
 
+def settled(b: ir.IRBuilder, carried: Sequence[Value]) -> list[Value]:
+    """Limbs whose carries have moved, cut to the 52 bits that count, but for the highest."""
+    *low, high = carried
+    return [*(masked(b, limb) for limb in low), high]
+
+
 def down(b: ir.IRBuilder, x: Value, by: int) -> Value:
     """x / 2^by rounded down, x with its sign."""
     return b.ashr(x, splat(by)) if by else x
