@@ -4,7 +4,7 @@ import os
 import signal
 import socket
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,16 @@ import pytest
 from tests.end_to_end.test_command_line import SCENE, here
 from tests.end_to_end.test_report_command import findings, interrupt, kept, provenance, started
 from tests.helpers.local_cluster import local_cluster
-from tests.helpers.worker_functions import killed, killed_once, process, square, wrong
+from tests.helpers.worker_functions import (
+    collect,
+    killed,
+    killed_once,
+    process,
+    right,
+    square,
+    squares,
+    wrong,
+)
 from tests.unit.execution.test_execute import CONTENT, kept_in, plain
 from tests.unit.scenes.test_scene import DUFFING, load
 from verify.errors import InputError, PlaceError
@@ -45,20 +54,6 @@ def address(cluster: Any) -> str:
     with distributed.Client(cluster, set_as_default=False) as client:
         client.wait_for_workers(2, timeout=30)
     return str(cluster.scheduler_address)
-
-
-def squares(count: int, seconds: float = 0.0, log: str = "") -> list[FunctionCall]:
-    return [FunctionCall(str(k), square, (k, seconds, log)) for k in range(count)]
-
-
-def right(found: list[tuple[str, int]], count: int) -> bool:
-    return sorted(found) == sorted((str(k), k * k) for k in range(count))
-
-
-def collect(found: list[tuple[str, int]], address: str, calls: Iterable[FunctionCall]) -> None:
-    with open_place(Placement(cluster=address)) as place:
-        for each in results_of(place, calls):
-            found.append(each)
 
 
 # -- what is found --------------------------------------------------------------------------------
@@ -120,10 +115,12 @@ def test_one_by_one_no_two_are_under_way(address: str, tmp_path: Path) -> None:
             assert len(log.read_text().splitlines()) == count
 
 
-def test_what_a_task_raises_there_is_raised_here(address: str) -> None:
+def test_what_a_task_raises_there_is_raised_here(address: str, tmp_path: Path) -> None:
     found: list[tuple[str, int]] = []
+    flag = tmp_path / "flag"
+    calls = [*squares(1), FunctionCall("wrong", wrong, (str(flag),))]
     with pytest.raises(ValueError, match="wrong input"):
-        collect(found, address, [*squares(1), FunctionCall("wrong", wrong, (0.5,))])
+        collect(found, Placement(cluster=address), calls, flag, after=1)
     assert right(found, 1)
 
 
@@ -161,9 +158,8 @@ def test_a_plan_whose_worker_is_killed_finds_the_same(address: str, tmp_path: Pa
 
 def test_a_task_that_loses_its_worker_once_is_done_by_another(address: str, tmp_path: Path) -> None:
     found: list[tuple[str, Any]] = []
-    collect(
-        found, address, [FunctionCall("twice", killed_once, (str(tmp_path / "flag"),)), *squares(4)]
-    )
+    calls = [FunctionCall("twice", killed_once, (str(tmp_path / "flag"),)), *squares(4)]
+    collect(found, Placement(cluster=address), calls)
     assert dict(found).pop("twice") == "well"
     assert right([each for each in found if each[0] != "twice"], 4)
 
@@ -171,10 +167,9 @@ def test_a_task_that_loses_its_worker_once_is_done_by_another(address: str, tmp_
 def test_a_task_that_always_loses_its_worker_is_named_and_no_other(address: str) -> None:
     """Dask also gives up those that waited at its workers; they are not what is blamed."""
     found: list[tuple[str, int]] = []
+    calls = [*squares(3, 0.1), FunctionCall("x", killed, description="run of lie2")]
     with pytest.raises(PlaceError, match=r"^run of lie2: its worker was lost again") as caught:
-        collect(
-            found, address, [*squares(3, 0.1), FunctionCall("x", killed, description="run of lie2")]
-        )
+        collect(found, Placement(cluster=address), calls)
     assert "\n" not in str(caught.value)
     assert all(value == int(name) ** 2 for name, value in found)
     assert len(dict(found)) == len(found)
@@ -228,7 +223,7 @@ def test_a_cluster_that_ends_is_told_and_not_waited_for(
             FunctionCall(name, square, (3, seconds)) for name, seconds in _ending(made, gone, found)
         )
         with pytest.raises(PlaceError, match=said):
-            collect(found, made.scheduler_address, calls)
+            collect(found, Placement(cluster=made.scheduler_address), calls)
     assert found[0] == ("0", 9), "what was finished is not lost"
 
 

@@ -1,18 +1,31 @@
 """Calls in this process and in others: each result once, as it comes; lost workers are replaced."""
 
+import concurrent.futures
 import multiprocessing
 import os
 import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
 from multiprocessing import forkserver
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from tests.helpers.worker_functions import killed, killed_once, loaded, process, square, wrong
+from tests.helpers.worker_functions import (
+    collect,
+    killed,
+    killed_once,
+    loaded,
+    process,
+    right,
+    square,
+    squares,
+    wrong,
+)
 from tests.paths import ROOT
 from verify.errors import InputError, PlaceError
 from verify.execution.executors import (
@@ -27,20 +40,29 @@ from verify.execution.executors import (
 from verify.execution.keeping import fingerprint
 
 
-def squares(count: int, seconds: float = 0.0, log: str = "") -> list[FunctionCall]:
-    return [FunctionCall(str(k), square, (k, seconds, log)) for k in range(count)]
+class Finished:
+    """A place where each call is finished as soon as it is sent; `lose` loses its worker."""
+
+    local, attempts, names_lost_call, room = True, 1, True, 9
+
+    def submit(self, function: Callable[..., Any], *arguments: Any) -> "Future[Any]":
+        future: Future[Any] = Future()
+        try:
+            future.set_result(function(*arguments))
+        except (ValueError, ConnectionError) as error:
+            future.set_exception(error)
+        return future
+
+    def release(self, future: "Future[Any]") -> None: ...
+
+    def lost(self, error: BaseException) -> bool:
+        return isinstance(error, ConnectionError)
+
+    def check(self) -> None: ...
 
 
-def right(found: list[tuple[str, int]], count: int) -> bool:
-    """All results are there, each once, and each is that of its own call."""
-    return sorted(found) == sorted((str(k), k * k) for k in range(count))
-
-
-def collect(found: list[tuple[str, int]], workers: int, calls: list[FunctionCall]) -> None:
-    """Puts the results into `found` as they come."""
-    with open_place(Placement(workers)) as place:
-        for each in results_of(place, calls):
-            found.append(each)
+def lose() -> None:
+    raise ConnectionError
 
 
 # -- where ----------------------------------------------------------------------------------------
@@ -133,11 +155,24 @@ def test_one_by_one_no_two_are_under_way(tmp_path: Path) -> None:
             assert len(log.read_text().splitlines()) == count
 
 
-def test_what_a_call_raises_is_raised_and_what_is_finished_is_not_lost() -> None:
+def test_what_a_call_raises_is_raised_and_what_was_found_is_not_lost(tmp_path: Path) -> None:
     found: list[tuple[str, int]] = []
-    calls = [FunctionCall("wrong", wrong, (0.5,)), *squares(3)]
+    flag = tmp_path / "flag"
+    calls = [FunctionCall("wrong", wrong, (str(flag),)), *squares(3)]
     with pytest.raises(ValueError, match="wrong input"):
-        collect(found, 2, calls)
+        collect(found, Placement(2), calls, flag, after=3)
+    assert right(found, 3)
+
+
+@pytest.mark.parametrize("at", range(4))
+@pytest.mark.parametrize(("function", "error"), [(wrong, ValueError), (lose, PlaceError)])
+def test_what_is_finished_beside_a_call_that_fails_is_yielded(
+    at: int, function: Callable[[], None], error: type[Exception]
+) -> None:
+    calls, found = squares(3), list[tuple[str, int]]()
+    calls.insert(at, FunctionCall("bad", function))
+    with pytest.raises(error):
+        found.extend(results_of(Finished(), calls))
     assert right(found, 3)
 
 
@@ -146,13 +181,13 @@ def test_after_an_interruption_what_is_finished_is_yielded(
 ) -> None:
     found: list[tuple[str, int]] = []
 
-    def interrupted(*_: object, **__: object) -> None:
-        time.sleep(2)  # both of the calls are finished by then
+    def interrupted(futures: dict[Future[Any], FunctionCall], **_: object) -> None:
+        concurrent.futures.wait(futures)
         raise KeyboardInterrupt
 
     monkeypatch.setattr("verify.execution.executors.wait", interrupted)
     with pytest.raises(KeyboardInterrupt):
-        collect(found, 2, squares(9))
+        collect(found, Placement(2), squares(9))
     assert right(found, 2)
 
 
@@ -199,12 +234,12 @@ def test_a_call_that_loses_its_worker_once_is_done_by_another(tmp_path: Path) ->
     assert right(list(found.items()), 4)
 
 
-def test_a_call_that_always_loses_its_worker_is_named_and_no_other_is_lost() -> None:
+def test_a_call_that_always_loses_its_worker_is_named_and_no_other_is_lost(tmp_path: Path) -> None:
     found: list[tuple[str, int]] = []
-    # The others first: what is still under way when a call is given up is not waited for.
-    calls = [*squares(2, 0.1), FunctionCall("x", killed, description="run of lie2")]
+    flag = tmp_path / "flag"  # what is still under way when a call is given up is not waited for
+    calls = [*squares(2), FunctionCall("x", killed, (str(flag),), "run of lie2")]
     with pytest.raises(PlaceError, match=r"^run of lie2: its worker was lost again"):
-        collect(found, 2, calls)
+        collect(found, Placement(2), calls, flag, after=2)
     assert right(found, 2)
 
 
