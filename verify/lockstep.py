@@ -111,10 +111,12 @@ def together(functions: Iterator[Callable[[], T]], most: int) -> "Iterator[tuple
                 return
             _advance(waiting)
             for member in [member for member in waiting if member.ready]:
+                waiting.remove(member)  # who has had a turn waits behind the others
                 member.go_on()
                 if member.ended is not None:
-                    waiting.remove(member)
                     yield member.number, member.ended
+                else:
+                    waiting.append(member)
     except KeyboardInterrupt as error:
         reason = error
         raise
@@ -124,14 +126,13 @@ def together(functions: Iterator[Callable[[], T]], most: int) -> "Iterator[tuple
 
 
 def _advance(waiting: Sequence["_Member"]) -> None:
-    """One work is done, that for which the most are waiting."""
-    asked: dict[int, list[_Member]] = {}
-    for member in waiting:
-        asked.setdefault(id(member.work), []).append(member)
-    chosen = max(asked.values(), key=len)
-    work = chosen[0].work
+    """One work is done, for all who wait for it: the one that is waited for longest.
+
+    So whoever is behind the others comes to where they are, and is not left to go on alone.
+    """
+    work = waiting[0].work
     assert work is not None  # noqa: S101 - it waits for it
-    work.advance([member.pending for member in chosen if member.pending is not None])
+    work.advance([each.pending for each in waiting if each.work is work and each.pending])
 
 
 class _Member(greenlet.greenlet):

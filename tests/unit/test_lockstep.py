@@ -53,14 +53,36 @@ def test_what_is_asked_at_once_is_done_together() -> None:
     assert work.sizes == [7]
 
 
-def test_the_work_for_which_most_wait_is_done_first() -> None:
+class Four(Doubling):
+    """Takes four at most, and notes how many."""
+
+    def advance(self, pending: Sequence[Pending]) -> None:
+        super().advance(pending[:4])
+
+
+def test_the_work_that_is_waited_for_longest_is_done_first() -> None:
     one, other = Doubling(), Doubling()
     order: list[str] = []
     for name, work in (("one", one), ("other", other)):
         advance = work.advance
         work.advance = lambda p, n=name, f=advance: (order.append(n), f(p))[1]  # type: ignore
     results([partial(chain, one, 2, 1), *[partial(chain, other, 2, 1)] * 2], 50)
-    assert order == ["other", "one"]
+    assert order == ["one", "other"]
+
+
+@pytest.mark.parametrize("count", [5, 6, 7, 15])
+def test_nobody_is_left_to_go_on_alone(count: int) -> None:
+    """Each needs one work, then another; both are done for four at once nearly all the time."""
+    first, second = Four(), Four()
+
+    def both() -> None:
+        for work in [first] * 20 + [second] * 20:
+            meet(work, 2)
+
+    results([both] * count, 50)
+    for work in (first, second):
+        assert sum(work.sizes) == 20 * count
+        assert len(work.sizes) <= 20 * count / 4 + 3
 
 
 def test_an_error_is_that_of_its_own_function_alone() -> None:

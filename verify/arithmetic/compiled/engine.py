@@ -100,14 +100,16 @@ class NativeFunction:
                 except OverflowError as error:
                     each.end(None, error)
                     return
-        chosen = sorted(pending, key=lambda each: -each.state.steps_left)[:LANES]
+        # Those that wait longest: so all go on alike, and at the end none is left to go alone.
+        chosen = pending if self.in_parts else _alike(pending)
+        chosen = chosen[:LANES]
         worth = self._expected >= _WORTH_COMPILING or self._no_need_to_compile
         lanes = self.lanes if worth and len(chosen) >= _LEAST_IN_LANES else None
         if lanes is None:
             chosen = chosen[:1]
         kernel, orbits = lanes or self.one, [each.state for each in chosen]
         begun = time.perf_counter()  # it is compiled now
-        step_together(orbits, kernel, LANES if lanes else 1, self.in_parts)
+        step_together(orbits, kernel, LANES if lanes else 1)
         share = (time.perf_counter() - begun) / len(chosen)
         for each in chosen:
             each.seconds += share
@@ -118,6 +120,12 @@ class NativeFunction:
     def in_parts(self) -> bool:
         """Whether m steps and then n are m + n, which a first step of its own makes untrue."""
         return "k == 0" not in self.source.text
+
+
+def _alike(pending: Sequence[Pending]) -> list[Pending]:
+    """Those as far from their next stop as the first."""
+    left = pending[0].state.left
+    return [each for each in pending if each.state.left == left]
 
 
 def _called(linked: native.Native, size: int, given: Words) -> Words:

@@ -69,11 +69,6 @@ class Orbit:
         return cls(layout, walk, np.frombuffer(head + tail, dtype=np.uint64).copy(), walk.every, [])
 
     @property
-    def steps_left(self) -> int:
-        """Steps to its last stop."""
-        return self.left + (self.walk.stops - len(self.states) - 1) * self.walk.every
-
-    @property
     def ended(self) -> bool:
         """Whether it is at its last stop, or has left its range before that: then there are
         fewer states."""
@@ -90,16 +85,8 @@ class Orbit:
             self.left = self.walk.every if len(self.states) < self.walk.stops else 0
 
 
-def step_together(
-    orbits: Sequence[Orbit], kernel: Callable[[Words], Words], lanes: int, in_parts: bool
-) -> None:
-    """Steps orbits, as many as there are lanes or fewer, until one of them has ended.
-
-    `in_parts`: a kernel may be called for a part of an orbit's steps to its next stop.
-    """
-    if not in_parts:  # then those that have the longest way go together, if they have the same
-        longest = max(orbit.left for orbit in orbits)
-        orbits = [orbit for orbit in orbits if orbit.left == longest]
+def step_together(orbits: Sequence[Orbit], kernel: Callable[[Words], Words], lanes: int) -> None:
+    """Steps orbits, as many as there are lanes or fewer, until one of them has ended."""
     spare = [orbits[0].words] * (lanes - len(orbits))
     words = np.stack([*(orbit.words for orbit in orbits), *spare], axis=1)
     carried = slice(len(words) - sum(orbits[0].layout.result_sizes[1:]) // 8, None)
