@@ -11,6 +11,7 @@ from typing import Any, Literal
 
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
+from matplotlib.patches import StepPatch
 
 from verify.pages.figures.axes import grid_lines, scaled_ticks, time_axis
 from verify.pages.figures.notebook_figure import NARROW, WIDE, sheet
@@ -85,10 +86,12 @@ def _band(ends: tuple[str, str]) -> Band:
 
 
 def _draw_band(axes: Any, edges: Sequence[float], band: Sequence[Band], colour: str) -> None:
-    low, high = [b[0] for b in band], [b[1] for b in band]
+    low: Any = [b[0] for b in band]  # matplotlib's types know one number alone
+    high = [b[1] for b in band]
     fill = to_rgba(colour, 0.3)
-    axes.stairs(
-        high, edges, baseline=low, fill=True, facecolor=fill, edgecolor=colour, linewidth=0.9
+    # `Axes.stairs` looks at every vertex for limits, which are set here.
+    axes.add_artist(
+        StepPatch(high, edges, baseline=low, facecolor=fill, edgecolor=colour, linewidth=0.9)
     )
     bottom, top = min(0.0, *low), max(0.0, *high)
     room = 0.08 * (top - bottom) or 1.0

@@ -100,7 +100,7 @@ def draw_panels(shown: Sequence[Panel], quantity: str = "") -> Figure:
         handlelength=3.0, columnspacing=1.2, fontsize=10,
     )  # fmt: skip
     # The layout is made once, so that names can be placed where nothing else is.
-    figure.canvas.draw()
+    engine.execute(figure)
     figure.set_layout_engine("none")
     for axes, panel in zip(all_axes, shown, strict=False):
         _place_names(axes, panel)
