@@ -67,7 +67,10 @@ class Work(Protocol):
     """What can be done for several together."""
 
     def advance(self, pending: Sequence[Pending]) -> None:
-        """Does some of what is asked; at least one of them is finished then."""
+        """Does some of what is asked; at least one of them is finished then.
+
+        They come in the order in which they wait, and the first is among those that go on.
+        """
 
 
 def meet(work: Work, asked: Any) -> Pending:
@@ -102,21 +105,21 @@ def together(functions: Iterator[Callable[[], T]], most: int) -> "Iterator[tuple
         while True:
             while len(waiting) < most and (following := next(numbered, None)) is not None:
                 member = _Member(*following)
+                waiting.append(member)
                 member.go_on()
                 if member.ended is not None:
+                    waiting.remove(member)
                     yield member.number, member.ended
-                else:
-                    waiting.append(member)
             if not waiting:
                 return
             _advance(waiting)
             for member in [member for member in waiting if member.ready]:
-                waiting.remove(member)  # who has had a turn waits behind the others
                 member.go_on()
+                others = [other for other in waiting if other is not member]
+                # In one assignment: an interruption may come at any time, and is everybody's.
+                waiting = others if member.ended else [*others, member]
                 if member.ended is not None:
                     yield member.number, member.ended
-                else:
-                    waiting.append(member)
     except KeyboardInterrupt as error:
         reason = error
         raise
@@ -126,13 +129,13 @@ def together(functions: Iterator[Callable[[], T]], most: int) -> "Iterator[tuple
 
 
 def _advance(waiting: Sequence["_Member"]) -> None:
-    """One work is done, for all who wait for it: the one that is waited for longest.
+    """The work that is waited for longest is done, for all who wait for it.
 
-    So whoever is behind the others comes to where they are, and is not left to go on alone.
+    So nobody waits for ever, and who is behind the others is not left behind.
     """
     work = waiting[0].work
     assert work is not None  # noqa: S101 - it waits for it
-    work.advance([each.pending for each in waiting if each.work is work and each.pending])
+    work.advance([e.pending for e in waiting if e.work is work and e.pending is not None])
 
 
 class _Member(greenlet.greenlet):
@@ -158,9 +161,10 @@ class _Member(greenlet.greenlet):
             raise self.ended.interruption
 
     def end(self, reason: BaseException) -> None:
-        """Ends it where it waits."""
-        self.parent = greenlet.getcurrent()
-        self.throw(type(reason), reason)
+        """Ends it where it waits, if it does."""
+        if self:  # it has begun, and has not ended
+            self.parent = greenlet.getcurrent()
+            self.throw(type(reason), reason)
 
     def wait(self, work: Work, pending: Pending) -> None:
         """Called by the function itself: until what is pending is done."""

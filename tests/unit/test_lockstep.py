@@ -1,5 +1,6 @@
 """Functions in lockstep give what each gives by itself, and end where nobody waits for them."""
 
+import sys
 from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
@@ -28,6 +29,13 @@ class Doubling:
                 each.end(2 * each.asked)
 
 
+class Four(Doubling):
+    """Takes four at most, and notes how many."""
+
+    def advance(self, pending: Sequence[Pending]) -> None:
+        super().advance(pending[:4])
+
+
 def chain(work: Doubling, start: int, times: int) -> int:
     for _ in range(times):
         start = meet(work, start).result + 1
@@ -51,13 +59,6 @@ def test_what_is_asked_at_once_is_done_together() -> None:
     work = Doubling()
     results([partial(chain, work, 2 * k, 1) for k in range(7)], 50)
     assert work.sizes == [7]
-
-
-class Four(Doubling):
-    """Takes four at most, and notes how many."""
-
-    def advance(self, pending: Sequence[Pending]) -> None:
-        super().advance(pending[:4])
 
 
 def test_the_work_that_is_waited_for_longest_is_done_first() -> None:
@@ -127,7 +128,8 @@ def test_those_that_wait_are_ended_where_nobody_waits_for_them() -> None:
     assert seen[-2:] == ["GreenletExit"] * 2
 
 
-def test_an_interruption_is_everybodys() -> None:
+@pytest.mark.parametrize("at", range(3))
+def test_an_interruption_is_everybodys(at: int) -> None:
     """Ctrl-C comes while one of them runs; the others write what they have."""
     seen: list[str] = []
 
@@ -142,10 +144,54 @@ def test_an_interruption_is_everybodys() -> None:
             raise
 
     work = Doubling()
-    functions = [partial(kept, work, False), partial(kept, work, False), partial(kept, work, True)]
+    functions = [partial(kept, work, k == at) for k in range(3)]
     with pytest.raises(KeyboardInterrupt):
         results(functions, 50)
     assert seen == ["kept"] * 3
+
+
+class Interrupted:
+    """A trace function that raises KeyboardInterrupt at the n-th line of `lockstep` itself."""
+
+    def __init__(self, at: int) -> None:
+        self.left = at
+
+    def __call__(self, frame: Any, event: str, _: Any) -> Any:
+        if frame.f_code.co_filename != lockstep.__file__:
+            return None
+        if event == "line" and frame.f_code.co_name in ("together", "go_on", "_advance"):
+            self.left -= 1
+            if self.left == 0:
+                raise KeyboardInterrupt
+        return self
+
+
+def test_nobody_is_forgotten_whenever_an_interruption_comes() -> None:
+    begun: list[int] = []
+    ended: list[int] = []
+
+    def counted(work: Doubling, k: int) -> None:
+        begun.append(k)
+        try:
+            chain(work, 2, 2)
+        finally:
+            ended.append(k)
+
+    interruptions = 0
+    for at in range(1, 400):
+        begun.clear()
+        ended.clear()
+        work = Doubling()
+        before = sys.gettrace()
+        sys.settrace(Interrupted(at))
+        try:
+            results([partial(counted, work, k) for k in range(4)], 3)
+        except KeyboardInterrupt:
+            interruptions += 1
+        finally:
+            sys.settrace(before)
+        assert sorted(ended) == sorted(begun), f"line {at}"
+    assert interruptions > 50
 
 
 def test_a_clock_counts_ones_own_time_and_ones_share_of_the_work() -> None:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 Rounding = Callable[[str, int, "Ball"], "Ball"]
 State = Sequence[Any]  # the numbers that a kernel carries
-Walk = Callable[[Callable[..., Any], int, int, State, State], list[State]]
+Walk = Callable[[Callable[..., Any], int, int, State, State, int], list[State]]
 
 
 @dataclass(frozen=True)
@@ -59,15 +59,22 @@ class Arithmetic:
             kernel.expect(steps)  # type: ignore[attr-defined]
 
     def states(
-        self, kernel: Callable[..., Any], every: int, stops: int, fixed: State, state: State
+        self,
+        kernel: Callable[..., Any],
+        every: int,
+        stops: int,
+        fixed: State,
+        state: State,
+        beyond: int = 0,
     ) -> list[State]:
         """What a kernel carries after `every` steps, twice as many, … from a state, `stops` times;
         fewer where a number left the arithmetic's range on the way.
 
-        `fixed`: its arguments between the number of steps and what it carries.
+        `fixed`: its arguments between the number of steps and what it carries. `beyond`: so many
+        steps of this orbit will be asked for after these.
         """
         if self.walk is not None:
-            return self.walk(kernel, every, stops, fixed, state)
+            return self.walk(kernel, every, stops, fixed, state, beyond)
         found: list[State] = []
         for _ in range(stops):
             try:

@@ -109,26 +109,42 @@ def seen(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     return seen
 
 
-def test_orbits_that_wait_longest_are_stepped_first(monkeypatch: pytest.MonkeyPatch) -> None:
-    """However far the others have to go."""
-    stepped: list[int] = []
+LOOPS = {
+    "any part": "        x = x\n",
+    "none": "        if k == 0: x = x + x\n",
+}
+
+
+@pytest.mark.parametrize("called_for", LOOPS)
+def test_who_waits_longest_goes_on_with_those_that_have_the_longest_way(
+    monkeypatch: pytest.MonkeyPatch, called_for: str
+) -> None:
+    """Where a kernel is called for no part of the way, with those that have the same."""
+    stepped: list[list[int]] = []
+    true = walking.step_together
 
     def noting(orbits: Any, kernel: Any, lanes: int) -> None:
-        stepped.extend(orbit.walk.every for orbit in orbits)
-        walking_true(orbits, kernel, lanes)
+        stepped.append([orbit.walk.every for orbit in orbits])
+        true(orbits, kernel, lanes)
 
-    walking_true = walking.step_together
     monkeypatch.setattr(engine, "step_together", noting)
-    loop = "    for k in range(steps):\n        x = x\n    return steps, x\n"
-    kernel = engine.compiled("def same(steps: 'int', x):\n" + loop, 128, 112, {})
-    ways = [walking.Walk(9 + k, 2, (), (engine.Fixed(1, 112),)) for k in range(LANES + 2)]
-    waiting = pending = [lockstep.Pending(way) for way in ways]
+    loop = f"    for k in range(steps):\n{LOOPS[called_for]}    return steps, x\n"
+    kernel = engine.compiled("def f(steps: 'int', x: 'wide'):\n" + loop, 128, 112, {})
+    state = (engine.Fixed(1, 112),)
+    ways = [walking.Walk(5 + k % 2, 3, (), state, beyond=10 * k) for k in range(2 * LANES + 2)]
+    pending = [lockstep.Pending(way) for way in ways]
+    waiting = pending
     with path(IN_LANES[0]):
         while waiting:
             kernel.advance(waiting)
             waiting = [each for each in waiting if not each.finished]
-    assert stepped[:LANES] == [9 + k for k in range(LANES)]
-    assert all(len(each.result) == 2 for each in pending)
+    first = [0, *range(2 * LANES + 1, LANES + 2, -1)]
+    if called_for == "none":
+        first = [0, *range(2 * LANES, 2, -2)]
+        assert all(len(set(each)) == 1 for each in stepped)
+    assert stepped[0] == [5 + k % 2 for k in first]
+    found = [each.result[-1][0].raw for each in pending]
+    assert found == [1 if called_for == "any part" else 2**3] * len(ways)
 
 
 @pytest.mark.left_to_ci

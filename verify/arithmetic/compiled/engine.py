@@ -100,9 +100,11 @@ class NativeFunction:
                 except OverflowError as error:
                     each.end(None, error)
                     return
-        # Those that wait longest: so all go on alike, and at the end none is left to go alone.
-        chosen = pending if self.in_parts else _alike(pending)
-        chosen = chosen[:LANES]
+        # Who waits longest, so that nobody is left behind, and of the others those with the
+        # longest way to go: then few are left to go alone at the end.
+        longest = sorted(pending[1:], key=lambda each: -each.state.steps_left)
+        chosen = [pending[0], *longest]
+        chosen = (chosen if self.in_parts else _as_far_as_the_first(chosen))[:LANES]
         worth = self._expected >= _WORTH_COMPILING or self._no_need_to_compile
         lanes = self.lanes if worth and len(chosen) >= _LEAST_IN_LANES else None
         if lanes is None:
@@ -122,8 +124,8 @@ class NativeFunction:
         return "k == 0" not in self.source.text
 
 
-def _alike(pending: Sequence[Pending]) -> list[Pending]:
-    """Those as far from their next stop as the first."""
+def _as_far_as_the_first(pending: Sequence[Pending]) -> list[Pending]:
+    """Those as far from their next stop; all stand at a stop, and so they stay alike."""
     left = pending[0].state.left
     return [each for each in pending if each.state.left == left]
 

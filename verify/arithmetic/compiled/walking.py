@@ -15,13 +15,15 @@ Words: TypeAlias = npt.NDArray[np.uint64]
 class Walk(NamedTuple):
     """What is asked of a kernel: `stops` states, `every` steps apart, from a state.
 
-    `fixed`: the kernel's arguments between the number of steps and the state.
+    `fixed`: the kernel's arguments between the number of steps and the state. `beyond`: so many
+    steps will be asked for after these.
     """
 
     every: int
     stops: int
     fixed: Sequence[Word]
     state: Sequence[Word]
+    beyond: int = 0
 
 
 class State(Sequence[Word]):
@@ -69,6 +71,12 @@ class Orbit:
         return cls(layout, walk, np.frombuffer(head + tail, dtype=np.uint64).copy(), walk.every, [])
 
     @property
+    def steps_left(self) -> int:
+        """Steps to the end of its run."""
+        walk = self.walk
+        return self.left + (walk.stops - len(self.states) - 1) * walk.every + walk.beyond
+
+    @property
     def ended(self) -> bool:
         """Whether it is at its last stop, or has left its range before that: then there are
         fewer states."""
@@ -86,7 +94,10 @@ class Orbit:
 
 
 def step_together(orbits: Sequence[Orbit], kernel: Callable[[Words], Words], lanes: int) -> None:
-    """Steps orbits, as many as there are lanes or fewer, until one of them has ended."""
+    """Steps orbits, as many as there are lanes or fewer, until one of them has ended.
+
+    Where the kernel is not called for a part of the way to a stop, all have the same way to each.
+    """
     spare = [orbits[0].words] * (lanes - len(orbits))
     words = np.stack([*(orbit.words for orbit in orbits), *spare], axis=1)
     carried = slice(len(words) - sum(orbits[0].layout.result_sizes[1:]) // 8, None)

@@ -100,12 +100,14 @@ def _units() -> dict[str, Callable[["Ball"], "Ball"]]:
     }  # fmt: skip
 
 
-def _walk(kernel: Any, every: int, stops: int, fixed: Sequence[Any], state: Sequence[Any]) -> Any:
+def _walk(
+    kernel: Any, every: int, stops: int, fixed: Sequence[Any], state: Sequence[Any], beyond: int
+) -> Any:
     """In one call, and in lanes where others walk in the same kernel."""
     from verify.arithmetic.compiled.walking import Walk
 
     try:
-        return lockstep.meet(kernel, Walk(every, stops, fixed, state)).result
+        return lockstep.meet(kernel, Walk(every, stops, fixed, state, beyond)).result
     except OverflowError:  # a number is outside the format from the start
         return []
 

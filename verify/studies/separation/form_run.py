@@ -160,7 +160,7 @@ class FormRun:
         arithmetic.expect(kernel.function, self.run.steps - done)
         while done < self.run.steps:
             every = min(arithmetic.chunk, self.marks[len(found)] - done)
-            states = stepper.states(state, every, 1)
+            states = stepper.states(state, every, 1, self.run.steps - done - every)
             if not states:
                 done += stepper.last_good(state, every)
                 raise Stopped("left range", done + 1, "float64 leaves its range")

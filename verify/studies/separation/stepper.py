@@ -56,11 +56,14 @@ class Stepper:
         # The sums of logarithms may be undefined while the orbit and the plain way go on.
         self._vital = [n for n in self._at if n[0] == "f" and n not in ("f_sum", "f_rest")]
 
-    def states(self, state: State, every: int, stops: int) -> list[State]:
-        """Those at the next stops; fewer where float64 leaves its range on the way."""
+    def states(self, state: State, every: int, stops: int, beyond: int = 0) -> list[State]:
+        """Those at the next stops; fewer where float64 leaves its range on the way.
+
+        `beyond`: so many steps will be asked for after these.
+        """
         begun = state.numbers if isinstance(state, Carried) else [state[n] for n in self._at]
         kernel = self.kernel.function
-        found = self.arithmetic.states(kernel, every, stops, self.fixed, begun)
+        found = self.arithmetic.states(kernel, every, stops, self.fixed, begun, beyond)
         return list(takewhile(self._finite, (Carried(self._at, x) for x in found)))
 
     def _finite(self, state: State) -> bool:

@@ -149,7 +149,8 @@ class WorkingRun:
         arithmetic.expect(kernel.function, self.run.steps - done)
         while done < self.run.steps:
             every, stops = self._ahead(done, len(found), arithmetic.chunk)
-            states = stepper.states(state, every, stops)
+            beyond = self.run.steps - done - every * stops
+            states = stepper.states(state, every, stops, beyond)
             for state in states:
                 done += every
                 advance(every)
