@@ -159,7 +159,8 @@ def print_run(result: "RunResult") -> None:
     for name, label in {**_IN_DEGREES, **_LABELS, **coordinates}.items():
         if name in result.values:
             value = result.values[name]
-            click.echo(f"{label:10} {value.value}  ± {value.bound}")
+            shown = str(value) if value.unknown else f"{value.value}  ± {value.bound}"
+            click.echo(f"{label:10} {shown}")
     click.echo(
         f"{result.steps} steps in {result.arithmetic}, {result.seconds:.3g} s; bounds "
         f"{result.error_kind} ({result.error_method})"

@@ -99,7 +99,7 @@ def value(found: Value) -> Markup:
     """The known digits and, below them, the error bound; a bound alone where no digit is known."""
     if found.bound == "0":
         return grouped(found.value)
-    if Decimal(found.value) == 0:
+    if found.unknown:
         return Markup("|·|{0}≤{0}{1}").format(NBSP, number(found.bound))
     return Markup('{} <span class="bound">±{}{}</span>').format(
         grouped(found.value), NBSP, number(found.bound)

@@ -72,7 +72,14 @@ class Value(Frozen):
         parts = exact.numerator, exact.denominator, precision, rounding
         return mpmath.mp.make_mpf(mpmath.libmp.from_rational(*parts))
 
+    @property
+    def unknown(self) -> bool:
+        """Whether no digit of it is known: all that is known is that |x| is within the bound."""
+        return self.bound != "0" and self.exact == 0
+
     def __str__(self) -> str:
+        if self.unknown:
+            return f"|·| ≤ {self.bound}"
         return self.value if self.bound == "0" else f"{self.value} ± {self.bound}"
 
     def __repr__(self) -> str:

@@ -129,15 +129,20 @@ class RunResult(OfScheme):
         if self.status != "finished":
             at = f" at step {self.failed_step}" if self.failed_step is not None else ""
             return html_table(caption, (), [("outcome", self.status + at)], foot)
-        rows = [(label, value.value, f"± {value.bound}") for label, _, value in self._shown()]
+        rows = [
+            (label, "|·|", f"≤ {value.bound}") if value.unknown else
+            (label, value.value, f"± {value.bound}")
+            for label, _, value in self._shown()
+        ]  # fmt: skip
         return html_table(caption, ("", "value", "error bound"), rows, foot)
 
     def _repr_latex_(self) -> str:
         """The values with their error bounds."""
         lines = [
-            f"{symbol} &= {number_latex(value.value)} \\pm {number_latex(value.bound)}"
+            rf"{symbol} &: |\cdot| \le {number_latex(value.bound)}" if value.unknown else
+            rf"{symbol} &= {number_latex(value.value)} \pm {number_latex(value.bound)}"
             for _, symbol, value in self._shown()
-        ]
+        ]  # fmt: skip
         return aligned_latex(lines or [rf"\Lambda &: \text{{{self.status}}}"])
 
     def _shown(self) -> list[tuple[str, str, Value]]:

@@ -129,7 +129,7 @@ class SeparationResult(OfScheme):
         ways = {way: label for way, label in WAYS.items() if getattr(self, way)}
         parts = SHOWN | {name: f"– {name}" for name in self.plain.parts.of_rounding}
         rows = [
-            (label, *(_bounded(getattr(getattr(self, way).parts, name)) for way in ways))
+            (label, *(str(getattr(getattr(self, way).parts, name)) for way in ways))
             for name, label in parts.items()
         ]
         rows.append(("rounding with N", *(getattr(self, way).growth["total"].name for way in ways)))
@@ -200,17 +200,13 @@ def _sizes(point: SeparationResult) -> Iterator[str]:
     if point.plain is None:
         yield f"{point.status}: {point.reason}"
         return
-    yield _bounded(point.plain.parts.truncation)
+    yield str(point.plain.parts.truncation)
     for way in (point.plain, point.closed_form):
         yield _rounding(way)
 
 
 def _rounding(way: EvaluationResult | None) -> str:
-    return _bounded(way.parts.total) if way else "–"
-
-
-def _bounded(value: Value) -> str:
-    return value.value if value.bound == "0" else f"{value.value} ± {value.bound}"
+    return str(way.parts.total) if way else "–"
 
 
 def _crossing(way: CrossoverResult) -> str:

@@ -81,3 +81,20 @@ def test_mpmath_takes_it_whole() -> None:
         assert found == mpmath.mpf(BIG)
         assert mpmath.log10(Value(value="1e-400", bound="0")) == -400
     assert mpmath.mp.dps == 15
+
+
+@pytest.mark.parametrize(
+    ("value", "bound", "shown"),
+    [
+        ("1.50e-03", "2.00e-05", "1.50e-03 ± 2.00e-05"),
+        ("0", "0", "0"),
+        ("7", "0", "7"),
+        ("0", "2.63e+343", "|·| ≤ 2.63e+343"),
+    ],
+)
+def test_what_no_digit_is_known_of_is_not_shown_as_a_number(
+    value: str, bound: str, shown: str
+) -> None:
+    found = Value(value=value, bound=bound)
+    assert str(found) == shown
+    assert found.unknown == shown.startswith("|")
