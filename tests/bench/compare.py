@@ -11,7 +11,14 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from tests.helpers.submitted_programs import Program, kick_drift_kick, kick_first, lie1, lie2, lie3
+from tests.helpers.programs.submitted_programs import (
+    Program,
+    kick_drift_kick,
+    kick_first,
+    lie1,
+    lie2,
+    lie3,
+)
 
 ROOT = Path(__file__).parents[2]
 SECONDS, MEGABYTES = 20.0, 500.0

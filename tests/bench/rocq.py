@@ -15,8 +15,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from tests.helpers.exports import ALL, EVERY, ONE, export
-from tests.helpers.rocq import accepted, beside, compile_theory, each_after
+from tests.helpers.rocq.coqc import accepted, beside, compile_theory, each_after
+from tests.helpers.rocq.exports import ALL, EVERY, ONE, export
 
 
 @contextmanager

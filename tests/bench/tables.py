@@ -14,10 +14,11 @@ import time
 import tomllib
 from pathlib import Path
 
-from tests.helpers.compilers import library
+from tests.helpers.programs.compilers import library
 from tests.paths import ROOT
 
 HELPERS = ROOT / "tests" / "helpers"
+PROGRAM = HELPERS / "programs" / "bad_program.py"
 STEP = """#include <math.h>
 void step(int n, double t, double h, double *p, double *q)
 { *p -= h / 2 * sin(*q); *q += h * *p; *p -= h / 2 * sin(*q); }
@@ -63,7 +64,7 @@ def main() -> None:
         more = ("--system", "pendulum", "--order", "2", "--symplectic")
         taken = seconds("check-integrator", f"{made}:step", *more)
         print(f"a step in C                           {taken:5.2f} s")
-        program = shlex.join([sys.executable, str(HELPERS / "bad_program.py"), "right"])
+        program = shlex.join([sys.executable, str(PROGRAM), "right"])
         taken = seconds("check-integrator", "--command", program, *more)
         print(f"a program                             {taken:5.2f} s")
 

@@ -19,8 +19,8 @@ from collections.abc import Iterator
 from datetime import date
 from pathlib import Path
 
-from tests.helpers.page_session import PageError, Session, folder_of_a_user
-from tests.helpers.pages import BY_HAND, PAGES, Block, blocks
+from tests.helpers.pages.blocks import BY_HAND, PAGES, Block, blocks
+from tests.helpers.pages.session import PageError, Session, folder_of_a_user
 from tests.paths import ROOT
 
 _SHORT = 100  # seconds that are told as such

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from tests.campaigns.certificates import mutant, seeds
-from tests.helpers.rocq import beside, compile_theory, coqc
+from tests.helpers.rocq.coqc import beside, compile_theory, coqc
 from verify.errors import InputError
 from verify.proof.assistant.export import exported
 from verify.proof.certificates.checker import check

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.end_to_end.test_command_line import here, json_of
-from tests.helpers.rocq_assumptions import without_comments
+from tests.helpers.rocq.assumptions import without_comments
 
 ONE = ["prove", "--system", "duffing", "--scheme", "lie2"]
 EVERY = ["prove", "--every-hamiltonian", "--scheme", "stormer-verlet"]

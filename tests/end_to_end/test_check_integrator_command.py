@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from tests.end_to_end.test_command_line import apart, here, json_of
-from tests.helpers.pages import PAGES, blocks
-from tests.helpers.processor_time import of_children_below
+from tests.helpers.pages.blocks import PAGES, blocks
+from tests.helpers.processes.processor_time import of_children_below
 from tests.paths import ROOT
 
 FILES = {block.file: block.text for block in blocks(PAGES["docs/how-to/check-integrator.md"])}

@@ -12,8 +12,8 @@ import pytest
 
 from tests.end_to_end.test_command_line import SCENE, here
 from tests.end_to_end.test_report_command import findings, interrupt, kept, provenance, started
-from tests.helpers.local_cluster import local_cluster
-from tests.helpers.worker_functions import (
+from tests.helpers.processes.local_cluster import local_cluster
+from tests.helpers.processes.worker_functions import (
     collect,
     killed,
     killed_once,

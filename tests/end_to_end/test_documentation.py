@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.helpers.page_session import PageError, read_through
-from tests.helpers.pages import PAGES
+from tests.helpers.pages.blocks import PAGES
+from tests.helpers.pages.session import PageError, read_through
 
 # What these define is looked at further, by a test that reads them through itself.
 ELSEWHERE = {

@@ -5,8 +5,8 @@ from typing import Any
 import pytest
 from matplotlib.figure import Figure
 
-from tests.helpers.page_session import read_through
-from tests.helpers.pages import PAGES
+from tests.helpers.pages.blocks import PAGES
+from tests.helpers.pages.session import read_through
 
 
 @pytest.fixture(scope="module")

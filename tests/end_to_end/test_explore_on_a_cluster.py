@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from tests.end_to_end.test_command_line import here, json_of
-from tests.helpers.local_cluster import local_cluster
+from tests.helpers.processes.local_cluster import local_cluster
 from verify.exploration import explore, gallery, hunting
 from verify.pages import page
 

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from tests.helpers.pages import PAGES, blocks
+from tests.helpers.pages.blocks import PAGES, blocks
 from tests.paths import ROOT
 
 BLOCKS = blocks(PAGES["docs/how-to/tests-of-your-own.md"])

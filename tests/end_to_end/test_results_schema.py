@@ -8,8 +8,8 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from docs._generate.parts.results_json import schema
-from tests.helpers.page_session import read_through
-from tests.helpers.pages import PAGES
+from tests.helpers.pages.blocks import PAGES
+from tests.helpers.pages.session import read_through
 
 Report = dict[str, Any]
 

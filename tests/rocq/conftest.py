@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.helpers.compilers import needed
-from tests.helpers.rocq import compile_theory, made_once
-from tests.helpers.rocq_session import Session
+from tests.helpers.programs.compilers import needed
+from tests.helpers.rocq.coqc import compile_theory, made_once
+from tests.helpers.rocq.session import Session
 
 
 @pytest.fixture(scope="session")

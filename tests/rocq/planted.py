@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import pytest
 
-from tests.helpers.exports import export
-from tests.helpers.rocq import changed
-from tests.helpers.rocq_session import Session
+from tests.helpers.rocq.coqc import changed
+from tests.helpers.rocq.exports import export
+from tests.helpers.rocq.session import Session
 
 
 @dataclass(frozen=True)

@@ -5,15 +5,15 @@ from pathlib import Path
 
 import pytest
 
-from tests.helpers.exports import ALL, export
-from tests.helpers.rocq import accepted, beside, changed, in_module
-from tests.helpers.rocq_assumptions import (
+from tests.helpers.rocq.assumptions import (
     ASKED,
     OF_THE_REALS,
     asked_together,
     printed_assumptions,
 )
-from tests.helpers.rocq_session import Session
+from tests.helpers.rocq.coqc import accepted, beside, changed, in_module
+from tests.helpers.rocq.exports import ALL, export
+from tests.helpers.rocq.session import Session
 
 pytestmark = pytest.mark.left_to_ci
 

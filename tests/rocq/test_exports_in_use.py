@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.helpers.exports import export
-from tests.helpers.rocq import accepted, beside, changed, in_module
-from tests.helpers.rocq_assumptions import ASKED
-from tests.helpers.rocq_session import Session
+from tests.helpers.rocq.assumptions import ASKED
+from tests.helpers.rocq.coqc import accepted, beside, changed, in_module
+from tests.helpers.rocq.exports import export
+from tests.helpers.rocq.session import Session
 
 pytestmark = pytest.mark.left_to_ci
 

@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.exports import certificate, export, export_of, proved
-from tests.helpers.rocq_assumptions import ASKED
-from tests.helpers.rocq_session import Session
+from tests.helpers.rocq.assumptions import ASKED
+from tests.helpers.rocq.exports import certificate, export, export_of, proved
+from tests.helpers.rocq.session import Session
 from verify.proof.assistant.formulas import KEYWORDS, safe
 from verify.proof.assistant.text import template_words
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.helpers.rocq_session import Session
+from tests.helpers.rocq.session import Session
 from tests.rocq.planted import Planted, check_refused, planted
 
 pytestmark = pytest.mark.left_to_ci

@@ -5,7 +5,7 @@ Of kicks and drifts the weights are free: with any of them the step is symplecti
 
 import pytest
 
-from tests.helpers.rocq_session import Session
+from tests.helpers.rocq.session import Session
 from tests.rocq.planted import Planted, check_refused, planted
 
 pytestmark = pytest.mark.left_to_ci

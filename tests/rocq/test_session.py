@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.helpers.rocq_session import Session, first_missing
+from tests.helpers.rocq.session import Session, first_missing
 
 pytestmark = pytest.mark.left_to_ci
 

@@ -5,13 +5,13 @@ from pathlib import Path
 
 import pytest
 
-from tests.helpers.rocq_assumptions import (
+from tests.helpers.rocq.assumptions import (
     OF_THE_REALS,
     asked_together,
     assuming_words,
     printed_assumptions,
 )
-from tests.helpers.rocq_session import Session
+from tests.helpers.rocq.session import Session
 from verify.proof.assistant.shipped import FOLDER, files, in_order, text_of
 
 pytestmark = pytest.mark.left_to_ci

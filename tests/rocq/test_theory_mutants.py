@@ -7,8 +7,8 @@ import re
 
 import pytest
 
-from tests.helpers.rocq import changed, in_module
-from tests.helpers.rocq_session import Session
+from tests.helpers.rocq.coqc import changed, in_module
+from tests.helpers.rocq.session import Session
 from verify.proof.assistant.shipped import text_of
 
 pytestmark = pytest.mark.left_to_ci

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 import pytest
 
-from tests.helpers.pages import PAGES, agrees, blocks, broken, code_in_text, commands, links
+from tests.helpers.pages.blocks import PAGES, agrees, blocks, broken, code_in_text, commands, links
 from tests.paths import ROOT
 from verify.commands.main import cli
 

@@ -16,7 +16,7 @@ from docs._generate.links import within_manual
 from docs._generate.markdown import table
 from docs._generate.parts import PARTS, asked_for, filled
 from docs._generate.toctrees import chapters, with_toctrees
-from tests.helpers.pages import DOCS, PAGES
+from tests.helpers.pages.blocks import DOCS, PAGES
 from verify import arithmetic, schemes
 from verify.claims.kinds import models
 from verify.hamiltonians import systems

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.parts_of_prose import UNMARKED, proses, unmarked
+from tests.helpers.pages.parts_of_prose import UNMARKED, proses, unmarked
 from verify.claims.theorems import check_theorem
 from verify.claims.theorems import names as theorems
 from verify.execution.keeping import NOTHING

@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from tests.helpers import user_steps as own_steps
+from tests.helpers.programs import user_steps as own_steps
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.testing import assert_area_order, assert_area_preserving, assert_convergence_order

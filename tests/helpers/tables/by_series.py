@@ -1,7 +1,7 @@
 """By how much one step of a table differs from the exact flow: of power series, without conditions.
 
 Numbers are fractions, of irrational ones the first 60 digits; the series are those of
-`tests.helpers.steps_in_time`.
+`tests.helpers.stepping.steps_in_time`.
 """
 
 import re
@@ -12,7 +12,7 @@ from typing import Any
 
 import sympy
 
-from tests.helpers.steps_in_time import (
+from tests.helpers.stepping.steps_in_time import (
     Problem,
     Series,
     clock,

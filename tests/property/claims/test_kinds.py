@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from tests.helpers.exact_orbits import Case, exact
-from tests.helpers.mutation import mutants
+from tests.helpers.planted.mutation import mutants
 from tests.helpers.sampled.formulas import (
     H,
     P,

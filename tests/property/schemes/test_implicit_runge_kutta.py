@@ -8,7 +8,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from tests.helpers.implicit_steps import (
+from tests.helpers.sampled.formulas import P, Q, plain, polynomials, trigonometric
+from tests.helpers.stepping.implicit_steps import (
     RADAU,
     TABLEAUS,
     by_hand,
@@ -17,7 +18,6 @@ from tests.helpers.implicit_steps import (
     planted,
     steps,
 )
-from tests.helpers.sampled.formulas import P, Q, plain, polynomials, trigonometric
 from verify import schemes
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove

@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 import sympy
 
-from tests.helpers.mutation import mutants
+from tests.helpers.planted.mutation import mutants
 from tests.helpers.sampled.formulas import H, P, Q, evaluate, lie_step, plain, plain_delta_j
 from tests.helpers.sampled.identities import HIDDEN
 from tests.paths import ROOT

@@ -15,7 +15,7 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.worker_functions import (
+from tests.helpers.processes.worker_functions import (
     collect,
     killed,
     killed_once,
@@ -110,7 +110,7 @@ def test_distributed_is_imported_for_a_cluster_only() -> None:
     code = (
         "import sys; from verify.execution.executors import *; from verify.commands import main\n"
         "from verify.execution import cluster, execute\n"
-        "from tests.helpers.worker_functions import square\n"
+        "from tests.helpers.processes.worker_functions import square\n"
         "if __name__ == '__main__':\n"
         "    for n in (1, 2):\n"
         "        with open_place(Placement(n)) as place:\n"
@@ -276,7 +276,7 @@ def test_workers_end_when_their_parent_is_killed() -> None:
 
 _HAS_WORKERS = """
 import time
-from tests.helpers.worker_functions import process
+from tests.helpers.processes.worker_functions import process
 from verify.execution.executors import FunctionCall, Placement, open_place, results_of
 
 if __name__ == "__main__":

@@ -30,7 +30,7 @@ ENTRY = """
 import contextlib, multiprocessing
 from verify.execution import processes
 from verify.execution.executors import FunctionCall, Placement, open_place, results_of
-from tests.helpers.worker_functions import square
+from tests.helpers.processes.worker_functions import square
 if {method!r} == "spawn":
     assert processes._fork_server
     processes._fork_server = lambda _: multiprocessing.get_context("spawn")

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.helpers import user_steps as own_steps
+from tests.helpers.programs import user_steps as own_steps
 from verify.algebra.formula import parse
 from verify.errors import InputError
 from verify.hamiltonians import systems

@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
-from tests.helpers import remembering_steps
-from tests.helpers import user_steps as own_steps
+from tests.helpers.programs import remembering_steps
+from tests.helpers.programs import user_steps as own_steps
 from tests.unit.integrators.test_check import found_of
 from verify.integrators.results import NOTHING, Claims
 

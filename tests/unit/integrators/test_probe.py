@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from tests.helpers import user_steps as own_steps
+from tests.helpers.programs import user_steps as own_steps
 from tests.unit.integrators.test_check import found_of
 from verify.integrators.results import Claims, Finding
 from verify.verdict import Verdict

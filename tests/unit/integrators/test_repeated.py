@@ -4,8 +4,8 @@ from typing import Any
 
 import pytest
 
-from tests.helpers import remembering_steps as steps
-from tests.helpers import user_steps as own_steps
+from tests.helpers.programs import remembering_steps as steps
+from tests.helpers.programs import user_steps as own_steps
 from tests.unit.integrators.test_check import found_of
 from verify.integrators.kept_state import changed, kept_by
 from verify.integrators.results import Claims

@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 import sympy
 
-from tests.helpers.implicit_steps import (
+from tests.helpers.sampled.formulas import P, Q, plain
+from tests.helpers.stepping.implicit_steps import (
     NONLINEAR,
     RADAU,
     TABLEAUS,
@@ -21,7 +22,6 @@ from tests.helpers.implicit_steps import (
     step_map,
     steps,
 )
-from tests.helpers.sampled.formulas import P, Q, plain
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.step import newton
 from verify.runs.run import run

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.imported_modules import imported_by
+from tests.helpers.pages.imported_modules import imported_by
 from verify.claims.claim import Claim
 from verify.claims.kinds.monotone import MonotoneClaim
 from verify.claims.kinds.table import TableClaim

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.steps_in_degrees import (
+from tests.helpers.stepping.steps_in_degrees import (
     Step,
     field,
     implicit_midpoint,

@@ -6,8 +6,8 @@ import mpmath
 import pytest
 import sympy
 
-from tests.helpers.implicit_steps import NONLINEAR, RADAU, TABLEAUS, places, planted
 from tests.helpers.sampled.formulas import P, Q, plain
+from tests.helpers.stepping.implicit_steps import NONLINEAR, RADAU, TABLEAUS, places, planted
 from verify import schemes
 from verify.algebra.conditions import Condition
 from verify.errors import InputError

@@ -11,8 +11,8 @@ from fractions import Fraction
 import pytest
 import sympy
 
-from tests.helpers.planted_errors import with_error, with_hidden_error
-from tests.helpers.stepper import Stepper
+from tests.helpers.planted.splittings import with_error, with_hidden_error
+from tests.helpers.stepping.stepper import Stepper
 from verify import schemes
 from verify.arithmetic.arb import slope
 from verify.errors import InputError

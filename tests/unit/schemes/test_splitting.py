@@ -5,9 +5,9 @@ from fractions import Fraction
 import pytest
 import sympy
 
-from tests.helpers.planted_errors import SPLITTINGS
+from tests.helpers.planted.splittings import SPLITTINGS
 from tests.helpers.sampled.formulas import P, Q, plain
-from tests.helpers.stepper import Stepper
+from tests.helpers.stepping.stepper import Stepper
 from verify import schemes
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian

@@ -12,7 +12,7 @@ import flint
 import pytest
 import sympy
 
-from tests.helpers.planted_errors import (
+from tests.helpers.planted.splittings import (
     SPLITTINGS,
     made,
     parts_of,

@@ -5,8 +5,8 @@ from fractions import Fraction
 import flint
 import pytest
 
-from tests.helpers.planted_errors import SPLITTINGS
-from tests.helpers.stepper import Stepper
+from tests.helpers.planted.splittings import SPLITTINGS
+from tests.helpers.stepping.stepper import Stepper
 from verify import arithmetic, schemes
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision

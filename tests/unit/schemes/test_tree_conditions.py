@@ -9,7 +9,7 @@ import flint
 import pytest
 import sympy
 
-from tests.helpers.implicit_steps import NONLINEAR, RADAU, TABLEAUS, places, planted
+from tests.helpers.stepping.implicit_steps import NONLINEAR, RADAU, TABLEAUS, places, planted
 from verify import schemes
 from verify.algebra.conditions import ByConditions, Condition
 from verify.algebra.series.jets import Jets

@@ -1,6 +1,6 @@
 """Separations of drawn runs: the digits asked for, and bounds that hold.
 
-The oracle is in rationals (`tests.helpers.exact_separation`), or has more digits.
+The oracle is in rationals (`tests.helpers.stepping.exact_separation`), or has more digits.
 """
 
 from fractions import Fraction
@@ -11,7 +11,6 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from tests.helpers.exact_separation import links
 from tests.helpers.sampled.separations import (
     DUFFING,
     FIXED,
@@ -23,6 +22,7 @@ from tests.helpers.sampled.separations import (
     starts,
     step_sizes,
 )
+from tests.helpers.stepping.exact_separation import links
 from verify import arithmetic as number_systems
 from verify.arithmetic.number_system import Arithmetic
 from verify.hamiltonians.hamiltonian import Hamiltonian

@@ -6,8 +6,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from tests.helpers.exact_separation import links
 from tests.helpers.sampled.separations import KNOWN, SHORT, bent, separated, starts, step_sizes
+from tests.helpers.stepping.exact_separation import links
 from verify import arithmetic as number_systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun

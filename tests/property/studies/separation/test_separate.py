@@ -8,8 +8,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from tests.helpers.exact_separation import links
 from tests.helpers.sampled.formulas import monomial, polynomials, rationals
+from tests.helpers.stepping.exact_separation import links
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.studies.separation.chain import PARTS, QUANTITIES, Chain, Chains, separated_chains
 from verify.studies.separation.working import Stopped

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.theorem_controls import refused
+from tests.helpers.planted.theorem_controls import refused
 from verify.claims.theorems import area_criteria, criteria, determinant, lipschitz, two_norm
 from verify.claims.theorems.checks import developables, families, linear, matrices, sums, triangle
 from verify.claims.theorems.checks.check import Check

@@ -3,7 +3,7 @@
 import pytest
 import sympy
 
-from tests.helpers.theorem_controls import refused
+from tests.helpers.planted.theorem_controls import refused
 from verify.claims.theorems import classification, determinant
 from verify.claims.theorems.checks import developables, families
 from verify.hamiltonians.hamiltonian import Hamiltonian

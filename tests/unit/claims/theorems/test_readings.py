@@ -6,7 +6,7 @@ from typing import Any
 import mpmath
 import pytest
 
-from tests.helpers.theorem_controls import refused
+from tests.helpers.planted.theorem_controls import refused
 from verify.claims.theorems import (
     area_criteria,
     check_theorem,

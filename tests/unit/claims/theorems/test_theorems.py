@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 import sympy
 
-from tests.helpers.theorem_controls import refused
+from tests.helpers.planted.theorem_controls import refused
 from tests.paths import ROOT
 from verify.claims.file import load_claims
 from verify.claims.findings import Findings

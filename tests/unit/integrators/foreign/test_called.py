@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.helpers.compilers import library
+from tests.helpers.programs.compilers import library
 from tests.paths import ROOT
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -20,7 +20,7 @@ from verify.integrators.results import Claims, Finding
 from verify.verdict import Verdict
 
 PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
-BAD = str(ROOT / "tests" / "helpers" / "bad_program.py")
+BAD = str(ROOT / "tests" / "helpers" / "programs" / "bad_program.py")
 STEP = """
 #include <math.h>
 void step(int n, {t}, {h}, {type} *p, {type} *q)

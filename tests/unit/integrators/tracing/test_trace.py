@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import sympy
 
-from tests.helpers import user_steps as own_steps
+from tests.helpers.programs import user_steps as own_steps
 from verify.algebra.formula import symbol
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.tracing.functions import copied

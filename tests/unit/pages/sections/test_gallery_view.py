@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from tests.helpers.constructed.galleries import CROSSED, KEPT, NOTHING, at, gallery, shown, split
-from tests.helpers.imported_modules import imported_by
+from tests.helpers.pages.imported_modules import imported_by
 from tests.unit.pages.figures.test_figures import figures
 from tests.unit.pages.test_page import EVIL, Reader, claim, report, scene
 from tests.unit.pages.text.test_markdown import (

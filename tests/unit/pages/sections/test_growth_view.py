@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from tests.helpers.constructed.growth import LOST, TWO, of, prediction
-from tests.helpers.imported_modules import imported_by
+from tests.helpers.pages.imported_modules import imported_by
 from tests.unit.pages.figures.test_figures import figures
 from tests.unit.pages.test_page import EVIL, Reader, proof, report, run, scene
 from verify.pages.page import render

@@ -14,7 +14,7 @@ from tests.helpers.constructed.separations import (
     grid,
     point,
 )
-from tests.helpers.imported_modules import imported_by
+from tests.helpers.pages.imported_modules import imported_by
 from tests.unit.pages.figures.test_figures import figures
 from tests.unit.pages.test_page import EVIL, SCRIPT, Reader, proof, report, run, scene
 from verify.pages.page import render

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from tests.helpers.constructed.stability import LARGEST, LEFT, MAP, NEVER, case
-from tests.helpers.imported_modules import imported_by
+from tests.helpers.pages.imported_modules import imported_by
 from tests.unit.pages.sections.test_growth_view import text_of
 from tests.unit.pages.test_page import report, run, scene
 from verify.pages.page import render

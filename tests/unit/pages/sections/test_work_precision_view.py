@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 import pytest
 
 from tests.helpers.constructed.work import ladder, line, point, result, system
-from tests.helpers.imported_modules import imported_by
+from tests.helpers.pages.imported_modules import imported_by
 from tests.unit.pages.figures.test_figures import figures
 from tests.unit.pages.sections.test_growth_view import text_of
 from tests.unit.pages.test_page import EVIL, report, run, scene

@@ -19,7 +19,7 @@ from tests.helpers.constructed.growth import TWO
 from tests.helpers.constructed.separations import CROSSING
 from tests.helpers.constructed.stability import MAP, case
 from tests.helpers.constructed.work import ladder, result
-from tests.helpers.imported_modules import imported_by
+from tests.helpers.pages.imported_modules import imported_by
 from tests.unit.pages.test_page import EVIL, REPORTS, Reader, claim, proof, real, report, run, scene
 from verify.pages.markdown.from_markup import Markdown, escaped, markdown, table
 from verify.pages.markdown.page import render, write

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.helpers.exports import ALL, certificate, export, export_of, proved
-from tests.helpers.rocq_assumptions import assuming_words, without_comments
+from tests.helpers.rocq.assumptions import assuming_words, without_comments
+from tests.helpers.rocq.exports import ALL, certificate, export, export_of, proved
 from verify.errors import InputError
 from verify.proof.assistant.coefficients import of_stages
 from verify.proof.assistant.export import check_file_name

@@ -4,8 +4,8 @@ import re
 
 import pytest
 
-from tests.helpers.exports import ALL, export
-from tests.helpers.rocq_assumptions import without_comments
+from tests.helpers.rocq.assumptions import without_comments
+from tests.helpers.rocq.exports import ALL, export
 from verify.proof.assistant.shipped import files, text_of
 
 _STATED = re.compile(r"^(?:Theorem|Lemma) (\w+)", re.MULTILINE)

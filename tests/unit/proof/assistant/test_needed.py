@@ -5,7 +5,7 @@ from collections.abc import Iterable
 
 import pytest
 
-from tests.helpers.exports import ALL, export
+from tests.helpers.rocq.exports import ALL, export
 from verify.proof.assistant.needed import needed, parts_of, without_comments, words_of
 from verify.proof.assistant.shipped import as_modules, files, in_order, text_of
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.helpers.rocq_assumptions import assuming_words, without_comments
+from tests.helpers.rocq.assumptions import assuming_words, without_comments
 from verify.proof.assistant.shipped import (
     FOLDER,
     as_modules,

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.exports import certificate, export, export_of, proved
+from tests.helpers.rocq.exports import certificate, export, export_of, proved
 from verify.errors import InputError
 from verify.proof.assistant.nonzero import energy_that_shows
 from verify.proof.certificates.checker import check

@@ -9,7 +9,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from tests.helpers.submitted_programs import (
+from tests.helpers.programs.submitted_programs import (
     Areas,
     Program,
     drift_first,

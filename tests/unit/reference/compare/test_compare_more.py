@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.submitted_programs import (
+from tests.helpers.programs.submitted_programs import (
     Program,
     drift_first,
     kick_drift_kick,

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.helpers.submitted_programs import Program
+from tests.helpers.programs.submitted_programs import Program
 from verify.errors import InputError
 from verify.reference.compare.published import Published, load
 from verify.reference.compare.rows import Theirs

@@ -6,7 +6,7 @@ from fractions import Fraction
 import pytest
 import sympy
 
-from tests.helpers.steps_in_time import agreement, flow, problem, runge_kutta_step
+from tests.helpers.stepping.steps_in_time import agreement, flow, problem, runge_kutta_step
 from verify.errors import InputError
 from verify.proof.by_conditions import agreed_order
 from verify.schemes import get

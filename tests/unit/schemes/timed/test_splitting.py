@@ -7,8 +7,8 @@ import flint
 import pytest
 import sympy
 
-from tests.helpers.planted_errors import SPLITTINGS, parts_of
-from tests.helpers.steps_in_time import agreement, flow, problem, splitting_step
+from tests.helpers.planted.splittings import SPLITTINGS, parts_of
+from tests.helpers.stepping.steps_in_time import agreement, flow, problem, splitting_step
 from verify.errors import InputError
 from verify.proof.by_conditions import agreed_order
 from verify.schemes import get

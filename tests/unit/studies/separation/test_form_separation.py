@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from tests.helpers import form_separation as oracle
-from tests.helpers.form_separation import MP, Float64Step
+from tests.helpers.stepping import form_separation as oracle
+from tests.helpers.stepping.form_separation import MP, Float64Step
 from verify import arithmetic as number_systems
 from verify.errors import InputError
 from verify.execution.keeping import Keeper

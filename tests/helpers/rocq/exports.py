@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from tests.helpers.two_names import with_square
+from tests.helpers.rocq.two_names import with_square
 from verify.commands.main import cli
 from verify.proof.assistant.export import Exported, exported
 from verify.proof.certificates.file import FORMAT

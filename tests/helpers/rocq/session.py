@@ -11,9 +11,9 @@ from pathlib import Path
 from threading import Timer
 from typing import Self
 
-from tests.helpers.compilers import needed
-from tests.helpers.rocq import ENVIRONMENT, LONGEST, beside, options
-from tests.helpers.rocq_assumptions import without_comments
+from tests.helpers.programs.compilers import needed
+from tests.helpers.rocq.assumptions import without_comments
+from tests.helpers.rocq.coqc import ENVIRONMENT, LONGEST, beside, options
 
 _LIBRARY = "From Coq Require Reals ZArith QArith Qreals List Bool Lia Lra."
 _TAKEN = "The command has succeeded and its effects have been reverted.\n"

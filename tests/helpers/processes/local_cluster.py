@@ -9,7 +9,7 @@ from typing import Any
 # What each worker would import by itself, in two seconds.
 _NEEDED = ["distributed", "verify.studies.plan", "verify.exploration.explore",
            "verify.exploration.hunting", "verify.claims.report",
-           "tests.helpers.worker_functions"]  # fmt: skip
+           "tests.helpers.processes.worker_functions"]  # fmt: skip
 
 
 @contextmanager

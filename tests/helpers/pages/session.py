@@ -16,8 +16,8 @@ from unittest.mock import patch
 
 import click
 
-from tests.helpers.compilers import needed
-from tests.helpers.pages import Block, agrees, blocks, commands, difference
+from tests.helpers.pages.blocks import Block, agrees, blocks, commands, difference
+from tests.helpers.programs.compilers import needed
 from tests.paths import ROOT
 from verify.commands.main import cli, main
 

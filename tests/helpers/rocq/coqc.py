@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.helpers.compilers import needed
+from tests.helpers.programs.compilers import needed
 from verify.proof.assistant import shipped as theory
 
 PROCESSES = 2

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from tests.helpers.user_steps import euler_a, force, verlet
+from tests.helpers.programs.user_steps import euler_a, force, verlet
 
 CALLS = 0
 NEARBY: dict[float, float] = {}
