@@ -12,7 +12,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from tests.helpers.sampled.identities import SORTS, Identity, identities
+from tests.helpers.sampled.identities.drawn import SORTS, Identity, identities
 from verify.algebra.embedding import embed
 from verify.algebra.formula import parse
 from verify.errors import InputError

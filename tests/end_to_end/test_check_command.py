@@ -14,7 +14,7 @@ import pytest
 from tests.end_to_end.test_command_line import IMPORTED, here, json_of
 from tests.end_to_end.test_report_command import interrupt, started
 from tests.helpers.processes.processor_time import of_children_below
-from tests.helpers.sampled.identities import HIDDEN
+from tests.helpers.sampled.identities.drawn import HIDDEN
 from tests.paths import ROOT
 
 SYMBOLIC = """

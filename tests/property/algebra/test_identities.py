@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from tests.campaigns.identities import decided
 from tests.examples import drawn
-from tests.helpers.sampled.identities import SORTS, identities
+from tests.helpers.sampled.identities.drawn import SORTS, identities
 
 
 @pytest.mark.parametrize("sort", SORTS)

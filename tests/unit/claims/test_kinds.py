@@ -16,7 +16,7 @@ import sympy
 
 from tests.helpers.planted.mutation import mutants
 from tests.helpers.sampled.formulas import H, P, Q, evaluate, lie_step, plain, plain_delta_j
-from tests.helpers.sampled.identities import HIDDEN
+from tests.helpers.sampled.identities.drawn import HIDDEN
 from tests.paths import ROOT
 from verify.claims.claim import Claim
 from verify.claims.file import load_claims

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.sampled.identities import HIDDEN
+from tests.helpers.sampled.identities.drawn import HIDDEN
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.claims.findings import Findings
 from verify.claims.kinds.area_preserving import AreaClaim

@@ -17,7 +17,7 @@ from tests.helpers.sampled.formulas import (
     polynomials,
     trigonometric,
 )
-from tests.helpers.sampled.identities import HIDDEN
+from tests.helpers.sampled.identities.drawn import HIDDEN
 from verify.algebra.domain import EVERYWHERE
 from verify.algebra.formula import parse, symbol
 from verify.errors import InputError

@@ -19,7 +19,7 @@ from tests.helpers.sampled.formulas import (
     plain,
     plain_delta_j,
 )
-from tests.helpers.sampled.identities import HIDDEN
+from tests.helpers.sampled.identities.drawn import HIDDEN
 from verify import schemes
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
