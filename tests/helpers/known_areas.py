@@ -5,17 +5,22 @@ from fractions import Fraction
 from math import comb
 from typing import Any
 
+import mpmath
 import numpy as np
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.scenes.shapes import named as shapes
 from verify.scenes.shapes.outline import Outline, Point, bezier
 from verify.studies.regions.area import Goal, Measured, Probe
 from verify.studies.regions.point_carriers import FloatCarrier, WideCarrier
 
 FINE = Goal(change=Fraction(0), area=Fraction(1, 10**13))
+WIDE_GOAL = Goal(change=Fraction(0), area=Fraction(1, 10**27))
+CHANGED = Goal(change=Fraction(1, 10**4), area=Fraction(1, 10**14))
 OSCILLATOR = Hamiltonian.parse("p**2/2 + q**2/2")
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + q**4/4")
 PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
+CIRCLE, SQUARE, CAT = (shapes.get(name).outlines[0] for name in ("circle", "square", "cat"))
 
 
 class MadePlane(FloatCarrier):
@@ -87,3 +92,17 @@ def linear_determinant(scheme: str, h: Fraction, steps: int) -> Fraction:
             even += sign * term
         term *= h / (n + 1)
     return (even**2 + odd**2) ** steps - 1
+
+
+def pi(times: Fraction) -> Fraction:
+    with mpmath.workdps(60):
+        return Fraction(mpmath.nstr(mpmath.pi, 55)) * times
+
+
+def placed(outline: Outline, q: Any, p: Any, scale: Any) -> Outline:
+    return outline.placed(Fraction(q), Fraction(p), Fraction(scale))
+
+
+def bent(x: Any, y: Any) -> tuple[Any, Any]:
+    """(x, y + x²y), whose determinant is 1 + x²: the square's area grows by a third of itself."""
+    return x, y + x * x * y

@@ -12,6 +12,8 @@ import pytest
 
 from tests.end_to_end.test_command_line import SCENE, here
 from tests.end_to_end.test_report_command import findings, interrupt, kept, provenance, started
+from tests.helpers.constructed.plans import CONTENT, kept_in, plain
+from tests.helpers.constructed.scenes import DUFFING, load
 from tests.helpers.processes.local_cluster import local_cluster
 from tests.helpers.processes.worker_functions import (
     collect,
@@ -23,8 +25,6 @@ from tests.helpers.processes.worker_functions import (
     squares,
     wrong,
 )
-from tests.unit.execution.test_execute import CONTENT, kept_in, plain
-from tests.unit.scenes.test_scene import DUFFING, load
 from verify.errors import InputError, PlaceError
 from verify.execution import cluster as clusters
 from verify.execution import executors

@@ -102,3 +102,9 @@ def one_changed(at: tuple[Fraction, int], name: str, given: Given, base: Values)
         return {**base(h, k), name: given} if (h, k) == at else base(h, k)
 
     return values
+
+
+def growing(h: Fraction, k: int) -> dict[str, Given]:
+    """Like lie2's: MSE and Λ grow with h, and from start to start."""
+    size = k + 1
+    return {"mse": h**6 * size, "lambda": -(h**3) * size, "delta_j_max": h**3 * size}

@@ -1,55 +1,25 @@
-"""Tasks to results: what is kept is taken up, what is damaged is done again, nothing is half."""
+"""Tasks to results: what is kept is taken up, what is damaged is done again, by one or more."""
 
 import contextlib
-import errno
 import os
-import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from tests.end_to_end.test_report_command import ended
-from tests.paths import ROOT
-from tests.unit.scenes.test_scene import DUFFING, GRID, SERIES, load
-from verify import content as shipped
+from tests.helpers.constructed.plans import kept_in, plain
 from verify.errors import InputError
 from verify.execution import execute as execution
 from verify.execution.execute import Store, execute
 from verify.execution.executors import THIS_PROCESS, Placement
-from verify.execution.keeping import fingerprint
 from verify.execution.plan import Plan
-from verify.files import write_atomically
 from verify.scenes.frozen import Frozen
-from verify.studies.plan import plan_scenes
 from verify.studies.proofs.one import ProofTask
-
-CONTENT = (
-    DUFFING.replace('"lie2"', '"lie2", "lie3"')
-    + 'parameters = { delta = "7/3" }\n'
-    + GRID.replace("time = 1", "steps = 50").replace("[0.1]", "[0.1, 0.05]")
-    + SERIES
-)
-
-
-@pytest.fixture
-def plan(tmp_path: Path) -> Plan:
-    made = plan_scenes([load(tmp_path, CONTENT)])
-    assert len(made.tasks) == 8
-    return made
-
-
-def kept_in(folder: Path) -> Store:
-    return Store(folder / "kept")
-
-
-def plain(results: dict[str, Frozen]) -> dict[str, dict[str, Any]]:
-    """The results without their run times."""
-    return {name: r.model_dump(exclude={"seconds"}) for name, r in results.items()}
 
 
 def count_tasks(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
@@ -163,137 +133,6 @@ def test_an_interruption_keeps_what_was_finished(
     execute(plan, kept_in(tmp_path), where=THIS_PROCESS)
     assert len(seen) == len(plan.tasks) - 3
     assert not {str(plan.tasks[n]) for n in finished} & set(map(str, seen))
-
-
-# -- the source is part of a result's name --------------------------------------------------------
-
-
-@pytest.fixture
-def copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """A copy of the package and of its content, of which the fingerprint is then made."""
-    root = tmp_path / "copy"
-    for folder in ("verify", "reports", "reference"):
-        shutil.copytree(ROOT / folder, root / folder, ignore=shutil.ignore_patterns("__pycache__"))
-    shutil.copy(ROOT / "pyproject.toml", root)
-    monkeypatch.setattr(shipped, "_package", lambda: root / "verify")
-    fingerprint.cache_clear()
-    yield root
-    monkeypatch.undo()
-    fingerprint.cache_clear()
-
-
-def fresh() -> str:
-    fingerprint.cache_clear()
-    return fingerprint()
-
-
-def one_file_of_each_folder() -> list[str]:
-    """Of each folder of the package, whatever kind of file, and of each folder of the content."""
-    files: dict[Path, Path] = {}
-    for folder in ("verify", "reports", "reference"):
-        for path in sorted((ROOT / folder).rglob("*")):
-            if path.is_file() and "__pycache__" not in path.parts:
-                files.setdefault(path.parent, path)
-    return [str(path.relative_to(ROOT)) for path in files.values()]
-
-
-@pytest.mark.left_to_ci
-def test_the_fingerprint_covers_every_room_and_all_data(copy: Path) -> None:
-    first = fresh()
-    assert first == fresh(), "the same code has the same name"
-    names = one_file_of_each_folder()
-    assert set(names) <= set(shipped.shipped_files()), "of which it is the digest"
-    rooms = {Path(name).parts[:2]: name for name in names}
-    assert len([room for room in rooms if room[0] == "verify"]) >= 18
-    seen = {first}
-    for name in rooms.values():
-        raw = (copy / name).read_bytes()
-        (copy / name).write_bytes(raw + b" ")
-        seen.add(fresh())
-        (copy / name).write_bytes(raw)
-    assert len(seen) == len(rooms) + 1, "each change gives another name"
-    assert fresh() == first
-    (copy / "verify" / "algebra" / "new.py").touch()
-    assert fresh() not in seen, "and so does a file that is new"
-
-
-def test_a_wheel_and_its_checkout_have_one_fingerprint(copy: Path) -> None:
-    checkout = fresh()
-    for folder in ("reports", "reference"):
-        shutil.move(copy / folder, copy / "verify" / "data" / folder)
-    assert fresh() == checkout
-
-
-def test_what_python_writes_itself_does_not_count(copy: Path) -> None:
-    first = fresh()
-    (copy / "verify" / "algebra" / "__pycache__").mkdir()
-    (copy / "verify" / "algebra" / "__pycache__" / "ring.pyc").write_bytes(b"compiled")
-    assert fresh() == first
-
-
-def test_another_source_does_not_take_up_the_results_of_this_one(
-    tmp_path: Path, plan: Plan, copy: Path
-) -> None:
-    store = kept_in(tmp_path)
-    execute(plan, store, where=THIS_PROCESS)
-    assert all(store.get(name, task) is not None for name, task in plan.tasks.items())
-    path = copy / "verify" / "schemes" / "methods" / "taylor" / "lie.py"
-    path.write_text(path.read_text() + "\n")
-    fresh()
-    assert all(store.get(name, task) is None for name, task in plan.tasks.items())
-
-
-# -- atomic writes --------------------------------------------------------------------------------
-
-
-class FullDisk:
-    """An open file on which every write fails."""
-
-    def __init__(self, handle: int, *_: Any, **__: Any) -> None:
-        self.handle = handle
-
-    def __enter__(self) -> "FullDisk":
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        os.close(self.handle)
-
-    def write(self, _: str) -> None:
-        raise OSError(errno.ENOSPC, "No space left on device")
-
-
-def fail(error: BaseException) -> Callable[..., None]:
-    def failing(*_: Any, **__: Any) -> None:
-        raise error
-
-    return failing
-
-
-FAILURES: dict[str, tuple[str, Any]] = {
-    "disk-full-at-write": ("fdopen", FullDisk),
-    "disk-full-at-sync": ("fsync", fail(OSError(errno.ENOSPC, "No space left on device"))),
-    "replace-fails": ("replace", fail(OSError(errno.EACCES, "Permission denied"))),
-    "interrupted-at-sync": ("fsync", fail(KeyboardInterrupt())),
-    "interrupted-at-replace": ("replace", fail(KeyboardInterrupt())),
-}
-
-
-@pytest.mark.parametrize(("function", "failure"), FAILURES.values(), ids=FAILURES)
-@pytest.mark.parametrize("old", ["the old content", None], ids=["over-a-file", "a-new-file"])
-def test_a_failed_write_leaves_the_old_content_and_nothing_else(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, old: str | None, function: str, failure: Any
-) -> None:
-    path = tmp_path / "results.json"
-    if old is not None:
-        write_atomically(path, old)
-    with monkeypatch.context() as patch:
-        patch.setattr(os, function, failure)
-        with pytest.raises((OSError, KeyboardInterrupt)):
-            write_atomically(path, "the new content")
-    assert [f.name for f in tmp_path.iterdir()] == ([path.name] if old is not None else [])
-    assert old is None or path.read_text() == old
-    write_atomically(path, "δ the new content")
-    assert path.read_text(encoding="utf-8") == "δ the new content"
 
 
 # -- workers --------------------------------------------------------------------------------------

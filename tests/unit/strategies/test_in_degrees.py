@@ -5,7 +5,7 @@ import re
 import pytest
 from hypothesis import strategies as st
 
-from tests.unit.strategies.test_strategies import fuzzed, shrunk
+from tests.helpers.sampled.drawing import fuzzed, shrunk
 from verify import Hamiltonian, InputError
 from verify import strategies as s
 from verify.algebra.formula import symbol

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.unit.scenes.test_scene import DUFFING, GOOD, GRID, HEAD, PAPER, load
+from tests.helpers.constructed.scenes import DUFFING, GOOD, GRID, HEAD, PAPER, load
 from verify.errors import InputError
 from verify.execution.execute import compute_task
 from verify.execution.plan import Plan

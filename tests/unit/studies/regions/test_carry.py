@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
+from tests.helpers.constructed.scenes import load
 from tests.helpers.known_areas import linear_determinant
-from tests.unit.scenes.test_scene import load
 from verify.errors import InputError
 from verify.execution.keeping import NOTHING
 from verify.execution.study import plan_of

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.unit.scenes.test_scene import load
+from tests.helpers.constructed.scenes import load
 from verify.commands.shared.input import target
 from verify.errors import InputError
 from verify.execution.study import plan_of

@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 from click.testing import CliRunner
 
+from tests.helpers.constructed.scenes import DUFFING, GRID, HEAD, load
 from tests.paths import ROOT
-from tests.unit.scenes.test_scene import DUFFING, GRID, HEAD, load
 from verify.commands import main as cli
 from verify.errors import InputError
 from verify.execution import execute as execution

@@ -1,0 +1,81 @@
+"""Planted errors of the area's probe are seen, and rounding is measured."""
+
+from fractions import Fraction
+from typing import Any
+
+import pytest
+
+from tests.helpers.known_areas import (
+    CAT,
+    CHANGED,
+    CIRCLE,
+    DUFFING,
+    SQUARE,
+    MadePlane,
+    bent,
+    floats,
+    linear_determinant,
+    measured,
+    pi,
+    placed,
+    still,
+    wide,
+)
+from verify.studies.regions import area as area_probe
+from verify.studies.regions.area import Goal, Measured, Probe
+
+TRUE = linear_determinant("lie3", Fraction(1, 20), 40)
+
+
+def test_a_panel_that_is_dropped_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    right = Probe._measured
+
+    def planted(self: Probe, families: Any, *rest: Any) -> Measured:
+        return right(self, families[1:], *rest)
+
+    monkeypatch.setattr(Probe, "_measured", planted)
+    found = measured(SQUARE, MadePlane(bent))
+    assert abs(found.change - Fraction(1, 3)) > 100 * found.error
+
+
+def test_steps_that_are_wrong_by_one_are_seen() -> None:
+    found = measured(placed(CIRCLE, 1, 0, "1/2"), floats("lie3", Fraction(1, 20), 41))
+    assert abs(found.change - TRUE) > 100 * found.error
+    assert abs(found.change - linear_determinant("lie3", Fraction(1, 20), 41)) <= found.error
+
+
+@pytest.mark.left_to_ci
+def test_a_wrong_number_of_the_rule_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    right = area_probe.rule
+
+    def planted(bits: int) -> Any:
+        made = right(bits)
+        swept = made.swept.copy()
+        swept[2, 3] += swept[2, 3] // 10**6
+        return type(made)(made.bits, made.nodes, made.weights, made.derivative, swept)
+
+    monkeypatch.setattr(area_probe, "rule", planted)
+    area = measured(CIRCLE, still()).area
+    assert abs(area / pi(Fraction(1)) - 1) > 1e-9
+
+
+def test_rounding_is_measured_in_both_arithmetics() -> None:
+    """A map that loses digits in float64 says so."""
+
+    def lossy(x: Any, y: Any) -> tuple[Any, Any]:
+        return (x + 1000) - 1000, y + 0
+
+    found = measured(CIRCLE, MadePlane(lossy), Goal(Fraction(0), Fraction(1, 10**9)))
+    assert abs(found.change) <= found.error
+    assert found.rounded > 1e-13
+    assert measured(CIRCLE, still()).rounded < 1e-15
+
+
+def test_a_sample_of_panels_in_finer_arithmetic_is_enough(monkeypatch: pytest.MonkeyPatch) -> None:
+    outline = placed(CAT, 1, 0, "1/2")
+    plane = wide("lie2", Fraction(1, 20), 40, DUFFING)
+    few = measured(outline, plane, CHANGED)
+    monkeypatch.setattr(plane, "sampled", 1 << 30)
+    every = measured(outline, plane, CHANGED)
+    assert few.change == every.change
+    assert every.rounded / 8 <= few.rounded <= 8 * every.rounded
