@@ -48,7 +48,10 @@ def decades(axis: Any, *, most: int = 7) -> None:
 
 
 class _Decades(MaxNLocator):
-    """Whole exponents; 1, 2 and 5 times powers of ten, or 1 … 9, where fewer than two are seen."""
+    """Whole exponents; 1, 2 and 5 times powers of ten, or 1 … 9, where fewer than two are seen.
+
+    Where these are too few as well, the round numbers between.
+    """
 
     def tick_values(self, vmin: float, vmax: float) -> Any:
         low, high = min(vmin, vmax), max(vmin, vmax)
@@ -58,14 +61,16 @@ class _Decades(MaxNLocator):
             seen = [x for x in places if low <= x <= high]
             if len(seen) > 1:
                 return super().tick_values(vmin, vmax) if len(mantissas) == 1 else seen
-        return super().tick_values(vmin, vmax)
+        n = floor(low)
+        between = MaxNLocator(4, steps=[1, 2, 5, 10]).tick_values(10 ** (low - n), 10 ** (high - n))
+        return [n + log10(x) for x in between if x > 0]
 
 
 def _power_of_ten(exponent: float, _: object) -> str:
     """10ⁿ, or a mantissa with it."""
     n = floor(exponent + 1e-9)
     scale = f"10{superscript(n)}"
-    mantissa = f"{10 ** (exponent - n):.2g}"
+    mantissa = f"{10 ** (exponent - n):.9g}"
     return scale if mantissa == "1" else f"{mantissa}·{scale}"
 
 
