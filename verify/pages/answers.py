@@ -21,6 +21,7 @@ _QUESTIONS = {"ΔJ": "Is area preserved?", "S": "Is the symplectic form preserve
 _LEAST = 2  # answers; of one alone the tiles say as much, but for the formula of a few ΔJ
 _FEW = 3  # schemes, and systems
 _MOST_LINKS = 12
+_LONGEST = 100  # characters of a leading coefficient that is shown here; the proof shows any
 # Of one statement, and of several; those that are refuted stand last, before their links.
 _OUTCOMES = {
     Outcome.HOLDS: ("holds", "hold"),
@@ -88,20 +89,23 @@ def _line_of(scheme: str, found: Sequence[tuple[str, ProofResult]]) -> Prose:
             parts.append(prose(f"{kept}{of}"))
         elif proof.order is None:
             parts.append(prose(f"not decided{of}"))
-        elif proof.form is not None:
-            parts.append(prose("S = O(", Formula(f"h**{proof.order}"), f"), no smaller{of}"))
         else:
-            power = proof.order
-            leading = proof.shown.leading or proof.leading
-            parts.append(
-                prose("ΔJ = ", Formula(f"({leading})*h**{power}"), " + O(",
-                      Formula(f"h**{power + 1}"), f"){of}")
-            )  # fmt: skip
+            parts.append(prose(*_size(proof, proof.order), of))
     no = "no; " if any(proof.order is not None for _, proof in found) else ""
     shown: list[str | Prose] = [f"{scheme}: {no}"]
     for k, part in enumerate(parts):
         shown += ["; " if k else "", part]
     return prose(*shown)
+
+
+def _size(proof: ProofResult, power: int) -> list[str | Prose]:
+    """ΔJ with its leading term, where that is short; or that it is of this order."""
+    leading = proof.shown.leading or proof.leading
+    if proof.form is None and leading and len(leading) <= _LONGEST:
+        rest = Formula(f"h**{power + 1}")
+        return ["ΔJ = ", Formula(f"({leading})*h**{power}"), " + O(", rest, ")"]
+    what = "ΔJ" if proof.form is None else "S"
+    return [f"{what} = O(", Formula(f"h**{power}"), "), no smaller"]
 
 
 def _tables(claims: Sequence[ClaimView]) -> Iterator[Answer]:

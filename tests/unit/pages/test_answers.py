@@ -57,6 +57,13 @@ def test_a_scheme_preserves_area_only_where_every_proof_says_so() -> None:
     assert euler == "symplectic-euler: yes, det J ≡ 1 is proved"
 
 
+def test_of_a_long_leading_term_its_order_is_told() -> None:
+    """The page would be wider than any window; the proof itself shows it whole."""
+    long = " + ".join(f"{k}*a*p*q**{k}" for k in range(2, 30))
+    found = answered(report((scene(proofs=(proof(leading=long),)),)))
+    assert found["Is area preserved?"].lines == ("lie2: no; ΔJ = O(h**3), no smaller",)
+
+
 def test_what_is_not_decided_is_no_no() -> None:
     open_ = proof(order=None, area_preserving=None, verdict=Verdict.UNDECIDED)
     made = statements(("A", P, ""))
