@@ -24,5 +24,6 @@ def library(folder: Path, name: str, source: str, *options: str) -> str:
     path.write_text(source, encoding="utf-8")
     compiler = needed("gfortran" if path.suffix == ".f90" else "gcc")
     command = [compiler, "-O2", "-shared", "-fPIC", str(path), "-o", str(made), *options]
-    subprocess.run(command, check=True, capture_output=True)
+    # A Fortran compiler writes the modules of a source where it is started.
+    subprocess.run(command, check=True, capture_output=True, cwd=folder)
     return str(made)

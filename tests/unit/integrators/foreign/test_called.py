@@ -143,6 +143,18 @@ def test_a_step_in_fortran_is_judged_in_two_degrees_of_freedom(tmp_path: Path) -
     assert found.symplectic is False
 
 
+def test_a_compiled_module_of_fortran_stays_in_the_folder_of_its_source(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sources, elsewhere = tmp_path / "sources", tmp_path / "elsewhere"
+    sources.mkdir()
+    elsewhere.mkdir()
+    monkeypatch.chdir(elsewhere)
+    library(sources, "henon.f90", HENON)
+    assert (sources / "henon.mod").exists()
+    assert list(elsewhere.iterdir()) == []
+
+
 # -- programs -------------------------------------------------------------------------------------
 
 
