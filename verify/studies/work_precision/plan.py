@@ -7,6 +7,8 @@ from verify.scenes.scene import Scene
 from verify.scenes.sections import WorkPrecision
 from verify.studies.work_precision.task import WorkPrecisionTask
 
+_NOT_ASKED = "not asked for; `peers = true` in a scene asks, --peers in one line"
+
 
 def work_precision_task(scene: Scene, section: WorkPrecision) -> WorkPrecisionTask:
     """Error against run time. Raises InputError where peers are wanted and not installed."""
@@ -38,7 +40,7 @@ def _peers(asked: bool | None) -> tuple[tuple[str, ...], tuple[tuple[str, str], 
     left_out: list[tuple[str, str]] = []
     for name, library in peers.libraries().items():
         if asked is False:
-            left_out.append((name, "the scene says `peers = false`"))
+            left_out.append((name, _NOT_ASKED))
         elif not (problem := _problem(library)):
             drawn.append(name)
         elif asked:

@@ -102,7 +102,7 @@ def test_peers_that_are_not_installed_are_left_out_and_named(
 def test_peers_that_are_not_wanted_are_left_out_and_named(tmp_path: Path) -> None:
     plan = plan_scenes([load(tmp_path, GOOD + "peers = false")])
     assert task_of(plan).peers == ()
-    assert "peers = false" in dict(plan.left_out)["mine: DOP853 beside the schemes"]
+    assert "not asked for" in dict(plan.left_out)["mine: DOP853 beside the schemes"]
 
 
 def test_peers_that_must_be_there_and_are_not_are_bad_input(
@@ -205,7 +205,17 @@ def test_the_table_shows_failed_runs_and_what_follows(scene_file: Path) -> None:
     text = " ".join(done.stdout.split())
     assert "failed" in text
     assert "At equal run time" in text
-    assert "not drawn: DOP853 (the scene says `peers = false`)" in text
+    assert "not drawn: DOP853 (not asked for; `peers = true` in a scene asks, --peers" in text
+
+
+def test_what_is_measured_in_one_line_says_how_peers_are_asked_for() -> None:
+    line = "bench --system harmonic --param omega=1 --scheme lie1 --q 1 --p 0 --time 1 --repeats 1"
+    given = [*line.split(), "--step-size", "0.5", "--step-size", "0.25"]
+    done = CliRunner().invoke(cli.cli, given)
+    assert done.exit_code == 0, done.output
+    text = " ".join(done.stdout.split())
+    assert "not drawn: DOP853 (not asked for; " in text
+    assert "--peers in one line" in text
 
 
 @pytest.mark.left_to_ci
