@@ -83,8 +83,8 @@ def report(
 ) -> Answer:
     """Verify SCENE and write DIR/index.html and DIR/results.json.
 
-    SCENE is a TOML file, `paper`, `stiff`, `extreme` or `integrators`; or a scheme of one's own and
-    where it starts, in one line:
+    SCENE is a TOML file, `paper`, `stiff`, `extreme`, `several-degrees` or `integrators`; or a
+    scheme of one's own and where it starts, in one line:
 
     \b
     verify report --system duffing --param delta=1 --scheme lie2 --step-size 0.01 --time 100 \\
@@ -130,7 +130,7 @@ def _asked(scene: str | None, given: Mapping[str, Any]) -> _Asked:
         name = given["system"] or "hamiltonian"
         return _Asked(line_of(given), name, f"{', '.join(given['schemes'])} on {name}", scenes)
     goes_alone(given)
-    title, scenes, file = target(scene)
+    title, scenes, file = target(scene, _INTEGRATORS)
     return _Asked(scene, scenes[0].name if len(scenes) == 1 else scene, title, scenes, file)
 
 

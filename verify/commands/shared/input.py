@@ -178,8 +178,11 @@ def paper_folder() -> Path:
     return content("reports", "paper")
 
 
-def target(scene: str) -> "tuple[str, list[Scene], ClaimsFile | None]":
-    """Title, scenes and claims of `paper`, of a suite, or of a scene's file."""
+def target(scene: str, *others: str) -> "tuple[str, list[Scene], ClaimsFile | None]":
+    """Title, scenes and claims of `paper`, of a suite, or of a scene's file.
+
+    `others`: names that the command takes too, for those that are told where there is no such.
+    """
     from verify.scenes.scene import load_scene
 
     if scene in suites():
@@ -189,7 +192,7 @@ def target(scene: str) -> "tuple[str, list[Scene], ClaimsFile | None]":
             raise InputError("SCENE", scene, "is empty; give paper, a suite or a TOML file")
         if not Path(scene).suffix and not Path(scene).exists():
             here = {path.stem: path.name for path in sorted(Path.cwd().glob("*.toml"))}
-            named = ("paper", *suites())
+            named = ("paper", *suites(), *others)
             raise unknown("SCENE", scene, named, ", or a TOML file", here)
         loaded = load_scene(Path(scene))
         return loaded.title or loaded.name, [loaded], None
