@@ -58,8 +58,9 @@ def exact_solution(
 
     Where H depends on time the orbit begins at t0, and `time` is how long it lasts.
     The orbit's scale is the largest of |p| and |q| at its two ends. Time may be negative. Raises
-    InputError for a parameter without a value, and NoFlowError, saying why, where no solution
-    reaches that time or where it could not be followed so far.
+    InputError for a parameter without a value and for an H of p1 … pn, q1 … qn, which
+    `solution_in_degrees` takes, and NoFlowError, saying why, where no solution reaches that time or
+    where it could not be followed so far.
     """
     _check(hamiltonian, digits)
     if time == 0:
@@ -118,6 +119,7 @@ def leaves_by_algebra(
 
 
 def _check(hamiltonian: Hamiltonian, digits: int) -> None:
+    hamiltonian.check_planar()
     if hamiltonian.symbols:
         raise InputError("parameter", hamiltonian.symbols[0], "needs a value")
     if not 1 <= digits <= closed_form.MOST_DIGITS:

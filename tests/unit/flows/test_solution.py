@@ -269,6 +269,14 @@ def test_a_parameter_without_a_value_is_bad_input() -> None:
         where(DUFFING, 0, 1)
 
 
+def test_an_h_of_several_degrees_of_freedom_is_bad_input() -> None:
+    kepler = systems.get("kepler").hamiltonian({"mu": 1})
+    with pytest.raises(InputError, match=r"^hamiltonian=.* is of p1, p2, q1, q2; "):
+        exact_solution(kepler, p=Fraction(1), q=Fraction(1), time=Fraction(1), digits=20)
+    with pytest.raises(InputError, match=r"^hamiltonian=.* is of p1, p2, q1, q2; "):
+        leaves(kepler, p=Fraction(1), q=Fraction(1), time=Fraction(1))
+
+
 @pytest.mark.parametrize("digits", [0, -1, MOST_DIGITS + 1])
 def test_digits_beyond_the_limits_are_bad_input(digits: int) -> None:
     with pytest.raises(InputError, match=r"^digits="):
