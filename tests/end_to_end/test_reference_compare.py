@@ -131,7 +131,8 @@ def test_a_mistake_is_told_to_people_and_to_programs(
         ("step,p\n0,1\n", [*GIVEN[:3], "lie37", *GIVEN[4:]], "scheme = lie37, step_size = 0.001"),
         ("step,p\n0,1\n", [], "--scene"),
         ("step,p\n0,1\n", [*GIVEN, "--column", "p"], "OURS=THEIRS"),
-        ("step,p\n0,1\n", ["--scene", "nowhere"], "is not in the reference data; they have:"),
+        ("step,p\n0,1\n", ["--scene", "nowhere"], "scene=nowhere: unknown; allowed: driven-"),
+        ("step,p\n0,1\n", ["--scene", "dufing", *GIVEN[2:]], "is duffing meant? allowed: driven-"),
         ("step,p\n0,1\n", [*GIVEN, "--data", "nowhere"], "is no folder"),
     ],
 )

@@ -11,7 +11,7 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from verify.arithmetic.exact import rational
-from verify.errors import InputError
+from verify.errors import InputError, unknown
 from verify.files import read_bytes
 from verify.formats import check_format
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -81,8 +81,7 @@ class Published:
     def scene(self, name: str) -> list[PublishedRun]:
         """Its runs; InputError for a scene that is not there."""
         if name not in self.by_scene:
-            known = ", ".join(sorted(self.by_scene))
-            raise InputError("scene", name, f"is not in the reference data; they have: {known}")
+            raise unknown("scene", name, sorted(self.by_scene))
         return self.by_scene[name]
 
     def run(self, scene: str, inputs: Inputs, exact: tuple[Fraction, ...]) -> PublishedRun | None:

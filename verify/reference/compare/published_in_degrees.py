@@ -9,7 +9,7 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from verify.arithmetic.exact import rational
-from verify.errors import InputError
+from verify.errors import InputError, unknown
 from verify.files import opened, read_bytes
 from verify.formats import check_format
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -102,7 +102,7 @@ def load_in_degrees(folder: Path, scene: str | None) -> list[RunOfDegrees]:
         problem = "has no reference data of p1 … pn, q1 … qn, as the table's columns are"
         raise InputError("--data", str(folder), problem)
     if scene is not None and scene not in names:
-        raise InputError("scene", scene, f"is not in them; they have: {', '.join(names)}")
+        raise unknown("scene", scene, names)
     return [run for run in found if scene in (None, run.scene)]
 
 

@@ -70,6 +70,8 @@ class _Keys:
         for name in given:
             if name in places:
                 raise InputError(f"--{_option(name)}", given[name], "is a column of the table, too")
+        if "scene" in given:
+            ours.scene(given["scene"])  # a misspelt one has no rows, and is the reason for none
         self.named = tuple(n for n in ("scene", *KEYS, _BEGINS) if n in places)
         self.at = tuple(places[name] for name in self.named)
         self._known: dict[tuple[str, ...], PublishedRun | None] = {}
