@@ -117,7 +117,7 @@ def reserved_name(name: str, functions: Collection[str]) -> str:
 
 def unknown_name(name: str, names: Collection[str], functions: Collection[str]) -> str:
     """Of a name that may not stand there."""
-    listed = f"allowed: {', '.join(sorted(names))}"
+    listed = f"allowed: {', '.join(sorted(names)) or 'numbers alone'}"
     if name in functions:
         return f"unknown name {name!r}; it is a function: write {name}(q); {listed}"
     near = get_close_matches(name, sorted(names), n=1, cutoff=0.6)

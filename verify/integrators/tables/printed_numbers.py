@@ -50,7 +50,8 @@ class PrintedNumbers:
 
     @cached_property
     def units(self) -> dict[str, Fraction]:
-        """One unit of the last digit of each number that is rounded."""
+        """To what each number that is rounded is known: one unit of its last digit, or half an ulp
+        where that is more and a program has printed it of a double."""
         found = ((name, unit_known(text)) for name, text in self.numbers.items())
         most = Fraction(1, 10**self.exact_up_to) if self.exact_up_to else None
         decimals = {
@@ -74,9 +75,14 @@ class PrintedNumbers:
         return found
 
     @cached_property
+    def last_digits(self) -> dict[str, Fraction]:
+        """One unit of the last digit that each of them has; of a quotient to what it is known."""
+        return {name: unit_of(self.numbers[name]) or unit for name, unit in self.units.items()}
+
+    @cached_property
     def digits(self) -> int:
         """Decimals after the point of the number that has fewest."""
-        return min(places_of(unit) for unit in self.units.values())
+        return min(places_of(unit) for unit in self.last_digits.values())
 
     @cached_property
     def slack(self) -> int:

@@ -86,7 +86,7 @@ def _alone(found: Judged) -> str:
     m = found.misprint
     if m is None:
         return ""
-    unit = None if found.read is None else found.read.units.get(m.name)
+    unit = None if found.read is None else found.read.last_digits.get(m.name)
     would = str(m.value) if unit is None else rounded_to(m.value, unit)
     return (
         f". One number alone explains it: `{m.name}`, printed `{m.printed.strip()}`, would be "
@@ -115,16 +115,17 @@ def of_digits(found: Judged) -> Judgement:
 
 
 def _moved(found: Judged) -> Details:
-    """The numbers whose last digits are off by more than a unit."""
+    """The numbers whose last digits are off by more than a unit, and exact ones with two more."""
     if found.nearest is None or found.read is None or not found.read.units:
         return ()
     numbers: PrintedNumbers = found.read
-    rows = [("number", "printed", "nearest exact", "off, in units of the last digit")]
+    rows = [("number", "printed", "nearest exact", f"off, in {_units(numbers)}")]
     for name, exact in found.nearest.items():
         off = (numbers.values[name] - exact) / numbers.units[name]
         if abs(off) > 1:
             printed = numbers.numbers[name].strip()
-            rows.append((name, printed, rounded_to(exact, numbers.units[name]), decimal(off, 3)))
+            shown = rounded_to(exact, numbers.last_digits[name] / 100)
+            rows.append((name, printed, shown, decimal(off, 3)))
     return tuple(rows) if len(rows) > 1 else ()
 
 
@@ -134,10 +135,16 @@ def _far(found: Judged) -> str:
     assert found.nearest is not None  # noqa: S101 - and so its numbers
     assert found.read is not None  # noqa: S101 - which are rounded
     if found.off < 100:
-        return f"`{float(found.off):.2g}` units of the last digit"
+        return f"`{float(found.off):.2g}` {_units(found.read)}"
     values = found.read.values
     most = max(abs(values[n] - x) for n, x in found.nearest.items())
     return f"`{float(most):.1e}`"
+
+
+def _units(read: PrintedNumbers) -> str:
+    """In what it is told how far a number is off."""
+    of_doubles = read.units != read.last_digits
+    return f"units of the last digit{' (half an ulp where that is more)' if of_doubles else ''}"
 
 
 def _short(x: Fraction) -> str:

@@ -11,6 +11,7 @@ import pytest
 from tests.helpers.tables.by_series import gap
 from tests.helpers.tables.mistakes import judged, outcome, places, right_tables, with_mistake
 from tests.paths import ROOT
+from verify.errors import InputError
 from verify.integrators.tables import kinds
 from verify.integrators.tables.told import TableClaim
 from verify.verdict import Verdict
@@ -54,6 +55,40 @@ def test_an_order_that_is_one_too_high_is_refuted(name: str) -> None:
     assert found.cost.order == table["order"]
     assert found.severity == "wrong order"
     assert gap(table, table["order"] + 1, seeds=1) > 1, "a power series of the step agrees"
+
+
+def test_exact_numbers_are_shown_with_more_digits_than_the_printed_ones_have() -> None:
+    """1/(2 − 2^(1/3)) = 1.35120719195965763…, of whose double half an ulp is 1.11·10⁻¹⁶."""
+    w, middle = "1.3512071919596578", "-1.7024143839193153"
+    yoshida = {"name": "Y", "kind": "composition", "order": 4, "sizes": [w, middle, w]}
+    found = claims(yoshida)
+    assert "printed to 16 decimals" in str(found["order"].evidence)
+    unit = "units of the last digit (half an ulp where that is more)"
+    assert f"up to 1.5 {unit} away" in str(found["digits"].evidence)
+    (head, row) = found["digits"].details
+    assert head[-1] == f"off, in {unit}"
+    assert row == ("w1", w, "1.351207191959657634", "1.49e+00")
+    shorter = claims(
+        {**yoshida, "sizes": ["1.35120719195967", "-1.70241438391932", "1.35120719195967"]}
+    )
+    assert "up to 1.2 units of the last digit away" in str(shorter["digits"].evidence)
+    assert shorter["digits"].details[1][2:] == ("1.3512071919596576", "1.24e+00")
+
+
+def test_numbers_do_not_use_each_other() -> None:
+    numbers = {"g": "1-1/sqrt(2)", "d": "1-1/(2*g)"}
+    with pytest.raises(
+        InputError, match=r"d=1-1/\(2\*g\): .*unknown name 'g'; allowed: numbers alone$"
+    ):
+        claims(
+            {
+                "name": "N",
+                "kind": "composition",
+                "order": 2,
+                "sizes": ["g", "d"],
+                "numbers": numbers,
+            }
+        )
 
 
 def test_every_kind_has_a_right_table() -> None:
