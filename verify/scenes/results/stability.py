@@ -55,7 +55,7 @@ class StabilityResult(WithProse):
         if self.kind == "overflow":
             return f"overflow at step {self.step}"
         if self.kind == "drifts":
-            return f"drifts ({self.rate} per unit time)"
+            return f"drifts ({self.rate} of its energy scale per unit time)"
         return self.kind
 
 

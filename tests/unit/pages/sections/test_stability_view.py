@@ -35,7 +35,7 @@ def test_what_is_not_shown_is_not_imported(made: str, absent: set[str]) -> None:
 def test_the_verdicts_are_counted_and_what_occurs_is_explained() -> None:
     text = text_of(page_of(stability=(case(), case(), LEFT)))
     assert "Of 3 runs: 2 drifting and 1 unstable by the scheme." in text
-    assert "drifts (1.25e-04 per unit time)" in text
+    assert "drifts (1.25e-04 of its energy scale per unit time)" in text
     assert "leaves at step 7" in text
     assert "the scheme’s doing" in text
     assert "float64’s rounding" not in text
