@@ -17,7 +17,7 @@ from verify.algebra.series.power_series import delta_j
 from verify.hamiltonians.vector_field import VectorField
 from verify.proof.expansion import MOST_ORDERS, VANISHES, Expansion, Leading, first_nonzero
 from verify.proof.order_proof import Proof
-from verify.proof.parameters import not_zero_for
+from verify.proof.parameters import almost_all, not_zero_for
 from verify.prose import Formula, Prose, prose, read_prose
 from verify.schemes.scheme import Scheme
 from verify.schemes.step_map import Expanded, StepMap, Substep
@@ -162,9 +162,9 @@ def convergence_of(step_map: StepMap, series: _BySeries | None = None) -> Conver
     known = step_map.known_order()
     if known is not None:
         # Shown at a point, without its coefficient.
-        almost = f"what differs at h^{known + 1} does not vanish identically in p and q"
-        of_all = not step_map.hamiltonian.symbols
-        return Convergence(known, True, lambda: EVERYWHERE if of_all else Domain.of((), almost))
+        exact, what = step_map.hamiltonian, f"the difference at h^{known + 1}"
+        almost = almost_all(exact.symbols, what, exact.time_dependent) if exact.symbols else ""
+        return Convergence(known, True, lambda: Domain.of((), almost) if almost else EVERYWHERE)
     series = series or _BySeries(step_map)
     by_series: tuple[_Coefficient, int] = series.coefficient, MOST_ORDERS
     coefficient, most = by_series if series.usable else _by_expansions(step_map.flat)
@@ -173,7 +173,7 @@ def convergence_of(step_map: StepMap, series: _BySeries | None = None) -> Conver
             ring, gap = _gap(*coefficient(name, n), name, n)
             agrees = ring.vanishes(gap)
             if agrees is not True:
-                what = f"what differs at h^{n}"
+                what = f"the difference at h^{n}"
                 return Convergence(n - 1, agrees is False, partial(not_zero_for, ring, gap, what))
     return Convergence(None, True)
 

@@ -49,7 +49,16 @@ def not_zero_for(ring: Ring, x: Poly, what: str) -> Domain:
     written = ring.expression(x)
     if any(_is_product(ring, written, factors, point) for point in _points(ring, x, factors)):
         return Domain.of(needed)
-    return Domain.of(needed, f"{what} does not vanish identically in p and q")
+    on = [name for name in parameters if ring.depends(x, name)] or parameters
+    return Domain.of(needed, almost_all(on, what, "t" in ring.variables))
+
+
+def almost_all(parameters: Sequence[str], what: str, timed: bool) -> str:
+    """The condition that no value of the parameters is one of the few at which what is named is
+    the zero function, where nothing more is known of these."""
+    names = parameters[0] if len(parameters) == 1 else f"({', '.join(parameters)})"
+    everywhere = "at every point and time" if timed else "at every point"
+    return f"{names} is outside of a set of measure 0, not found, on which {what} is 0 {everywhere}"
 
 
 def _coordinates(ring: Ring) -> tuple[str, ...]:

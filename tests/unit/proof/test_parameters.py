@@ -15,7 +15,10 @@ MORSE = "p**2/2 + D*(1 - exp(-a*q))**2"
 PENDULUM = "p**2/2 - g*m*cos(q/l)"
 MIXED = "a*p**3 + b*q**3 + c*p*q"
 QUARTIC = "p**2/(2*m) + k*q**2/2 + b*q**4"
-NOT_KNOWN = "the coefficient of h^3 does not vanish identically in p and q"
+NOT_KNOWN = (
+    "(a, b) is outside of a set of measure 0, not found, on which the coefficient of h^3 is 0 at"
+    " every point"
+)
 
 
 def proof(formula: str, scheme: str, **values: str) -> Proof:
@@ -72,6 +75,17 @@ def test_the_order_is_this_one_in_the_domain_and_higher_outside(
 def test_the_reason_says_where() -> None:
     assert str(proof(DUFFING, "lie2").reason).endswith("that of h^3 does not, where delta ≠ 0")
     assert str(proof(DUFFING, "lie2", delta="1").reason).endswith("that of h^3 does not")
+
+
+def test_values_that_are_not_found_are_said_to_be_few() -> None:
+    """Here they are eps = −1 with omega = 0; the condition does not repeat what is proved."""
+    driven = proof("p**2/2 - (1 + eps*cos(omega*t))*cos(q)", "lie2")
+    said = (
+        "where (eps, omega) is outside of a set of measure 0, not found, on which the coefficient"
+        " of h^3 is 0 at every point and time"
+    )
+    assert str(driven.reason).endswith(f"that of h^3 does not, {said}")
+    assert proof("p**2/2 - (1 + eps*cos(omega*t))*cos(q)", "lie2", eps="-1", omega="0").order != 3
 
 
 @pytest.mark.parametrize(

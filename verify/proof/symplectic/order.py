@@ -100,7 +100,7 @@ def _convergence(
     for n in range(step.flow_up_to + 1, most + 1):
         agrees, gap = series.agrees(n)
         if agrees is not True:
-            exact_for = partial(not_zero_for, series.flow.ring, gap, f"what differs at h^{n}")
+            exact_for = partial(not_zero_for, series.flow.ring, gap, f"the difference at h^{n}")
             return Convergence(n - 1, agrees is False, exact_for)
     return Convergence(None, True)
 
