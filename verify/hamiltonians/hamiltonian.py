@@ -193,22 +193,25 @@ class Hamiltonian:
             "parameters": {name: text(value) for name, value in self.values},
         }
 
-    def gradient(self) -> Callable[..., tuple[float, float]]:
+    def gradient(self) -> Callable[..., tuple[Any, Any]]:  # Any: floats, or lists of them
         """(p, q) ↦ (H_p, H_q) in Python floats, for a step function of one's own; (p, q, t) ↦ where
         H depends on time.
+
+        In n degrees of freedom p, q, H_p and H_q are sequences of n floats; those that come back
+        are lists.
 
         Each is rounded at every operation, so its last digits are not known. It raises what `math`
         raises: OverflowError beyond float's range, ValueError or ZeroDivisionError where H is not
         defined. Raises InputError where a parameter has no value.
         """
-        self.check_planar()
         if self.symbols:
             raise InputError("parameter", self.symbols[0], "has no value; a gradient needs one")
-        names = ("p", "q", "t") if self.time_dependent else ("p", "q")
-        at = tuple(map(symbol, names))
-        slopes = self.exact.diff(at[0]), self.exact.diff(at[1])
-        made: Callable[..., tuple[float, float]]
-        made = sympy.lambdify(at, slopes, modules="math", cse=True)
+        at, n = [symbol(name) for name in self.coordinates], self.degrees
+        slopes = [self.exact.diff(x) for x in at]
+        given, wanted = ((x[0], x[1]) if self.planar else (x[:n], x[n:]) for x in (at, slopes))
+        time = (symbol("t"),) if self.time_dependent else ()
+        made: Callable[..., tuple[Any, Any]]
+        made = sympy.lambdify((*given, *time), wanted, modules="math", cse=True)
         return made
 
     def with_symbols(self) -> "Hamiltonian":

@@ -320,6 +320,20 @@ def test_the_gradient_in_floats_is_that_of_sympy(text: str) -> None:
         assert slope == pytest.approx(float(by_sympy.diff(name).subs(at)), rel=1e-13, abs=1e-14)
 
 
+def test_the_gradient_in_several_degrees_of_freedom_takes_lists() -> None:
+    heiles = Hamiltonian.parse("(p1**2 + p2**2 + q1**2 + q2**2)/2 + q1**2*q2 - q2**3/3")
+    h_p, h_q = heiles.gradient()([0.25, -0.5], [0.5, 0.75])
+    assert (h_p, h_q) == ([0.25, -0.5], [0.5 + 0.75, 0.75 + 0.25 - 0.5625])
+    driven = Hamiltonian.parse("p1**2/2 + p2*q1 + t*q1*q2")
+    assert driven.gradient()((1.0, 2.0), (3.0, 4.0), 0.5) == ([1.0, 3.0], [2.0 + 2.0, 1.5])
+    assert Hamiltonian.parse("p1**2/2 + q2").gradient()([2.0, 0.0], [0.0, 0.0]) == (
+        [2.0, 0],
+        [0, 1],
+    )
+
+
 def test_a_gradient_wants_values() -> None:
     with pytest.raises(InputError, match="parameter=delta: has no value"):
         Hamiltonian.parse(DUFFING).gradient()
+    with pytest.raises(InputError, match="parameter=mu: has no value"):
+        systems.get("kepler").hamiltonian().gradient()
