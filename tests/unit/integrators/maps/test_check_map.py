@@ -308,6 +308,10 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert float(found["counterexample"]["found"].strip("[]").split()[0]) == 0.5
     status, out, _ = here(capsys, "check-map", f"{file}:turn", "--arguments", "q,p")
     assert (status, out.startswith("PROVED")) == (0, True)
+    file.write_text("def raises(p, q):\n    raise ValueError('no')\n")
+    status, out, _ = here(capsys, "check-map", f"{file}:raises")
+    assert (status, out.startswith("UNDECIDED")) == (1, True)  # what is asked is not shown
+    file.write_text("def kick(p, q, k):\n    return [p[0] - k*q[1], p[1] - q[0]], q\n")
     for wrong in (("--q", "1"), ("--p", "1,2,3", "--q", "1,2"), ("--param", "k")):
         status, out, err = here(capsys, *typed, *wrong)
         assert (status, err.count("\n")) == (2, 1)
