@@ -129,9 +129,19 @@ def _exact(word: str) -> Fraction:
     return -size if sign == "-" else size
 
 
+def _own_names_first() -> int:
+    """How to load: so that a call in the library reaches its own `step`, not glibc's old one.
+
+    macOS and musl have no such mode. A sanitizer, loaded before us, ends what asks for it.
+    """
+    loaded = ctypes.CDLL(None)
+    sanitized = hasattr(loaded, "__sanitizer_print_stack_trace")
+    return ctypes.DEFAULT_MODE if sanitized else getattr(os, "RTLD_DEEPBIND", ctypes.DEFAULT_MODE)
+
+
 def stepper(library: str, symbol: str, name: str) -> Callable[[Buffers], None]:
     """Loads the library, and calls its step with buffers."""
-    function = ctypes.CDLL(library)[symbol]
+    function = ctypes.CDLL(library, _own_names_first())[symbol]
     function.restype = None
 
     by_value = {"double": ctypes.c_double, "long-double": ctypes.c_longdouble}.get(name)

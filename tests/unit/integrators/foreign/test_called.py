@@ -1,13 +1,14 @@
 """Steps in C and Fortran, and programs: right ones are measured, and each misdeed is named."""
 
 import shlex
+import subprocess
 import sys
 import time
 from pathlib import Path
 
 import pytest
 
-from tests.helpers.programs.compilers import library
+from tests.helpers.programs.compilers import library, needed
 from tests.paths import ROOT
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -105,6 +106,42 @@ def test_what_a_double_does_not_show_a_longer_number_does(tmp_path: Path) -> Non
         path = library(tmp_path, f"{name}.c", source, "-lm", "-lquadmath")
         found = checked(path, name, Claims(area_preserving=True))
         assert found.verdict is verdict, (name, found.reason)
+
+
+# glibc has a `step` too, an old one: the library's own is meant.
+CALLS_ITSELF = """
+void step(int n, double t, double h, double *p, double *q)
+{ p[0] -= h * q[0]; q[0] += h * p[0]; }
+void twice(int n, double t, double h, double *p, double *q)
+{ step(n, t, h / 2, p, q); step(n, t + h / 2, h / 2, p, q); }
+void first_half_only(int n, double t, double h, double *p, double *q)
+{ step(n, t, h / 2, p, q); }
+"""
+
+
+def test_a_library_calls_its_own_step_and_not_glibcs(tmp_path: Path) -> None:
+    path, harmonic = library(tmp_path, "own.c", CALLS_ITSELF), Hamiltonian.parse("(p**2 + q**2)/2")
+    claims = Claims(order=1, symplectic=True)
+    found = check_integrator(of_library(f"{path}:twice", 1, DOUBLE, 60), harmonic, claims)
+    assert (found.verdict, found.convergence_order) == (Verdict.MEASURED, 1), found.reason
+    half = of_library(f"{path}:first_half_only", 1, DOUBLE, 60)
+    assert check_integrator(half, harmonic, claims).verdict is Verdict.REFUTED
+
+
+def test_a_library_is_loaded_beside_a_sanitizer(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Which ends a program that loads with RTLD_DEEPBIND."""
+    command = [needed("gcc"), "-print-file-name=libasan.so"]
+    sanitizer = subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
+    if not Path(sanitizer).is_file():
+        pytest.skip("gcc has no sanitizer here")
+    path = library(tmp_path, "step.c", OF_C["double"], "-lm")
+    monkeypatch.setenv("LD_PRELOAD", sanitizer)
+    monkeypatch.setenv("ASAN_OPTIONS", "detect_leaks=0")
+    step = of_library(f"{path}:step", 1, DOUBLE, 60)
+    monkeypatch.delenv("LD_PRELOAD")
+    assert step.at(0.5, 0.25, 0.0) == (0.5, 0.25)
 
 
 HENON = """
