@@ -9,6 +9,7 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.agreement import by_duals, must_agree, must_agree_but_for_rounding
 from verify.integrators.claims import with_claims
+from verify.integrators.defined import UNDEFINED, first_defined
 from verify.integrators.faults import Fault, changed_since, examined
 from verify.integrators.measured import of_measured
 from verify.integrators.probe import Point, Trial, dual_step, measured
@@ -37,6 +38,7 @@ POINTS: tuple[Point, ...] = (
 _PROOF_SECONDS, _CLOCK_SECONDS = 30.0, 10.0
 _KEPT = 0.4  # of the time that is left, for floats after dual numbers, which are slow
 _FARTHEST = 10**9
+_FAILS = ("raises", "not a step", "fails")  # faults of a call that returns no state
 
 
 def check_integrator(
@@ -60,12 +62,12 @@ def check_integrator(
     if not any(fault.fatal for fault in faults):
         faults += repeated(step, trial.points)
     if any(fault.fatal for fault in faults):
-        return _no_step(faults)
+        return _no_step(trial, faults)
     provable = all(fault.allows is Verdict.PROVED for fault in faults)
     found = _examine(trial, provable)
     later = changed_since(step, first)
     if later:
-        return _no_step([*faults, *later])
+        return _no_step(trial, [*faults, *later])
     if found.verdict is Verdict.REFUTED:
         found = found.noting(*_exchanged(trial, provable))
     found = replace(found, faults=tuple(fault.name for fault in faults))
@@ -91,9 +93,17 @@ def _of_time(step: Step) -> list[str]:
     return [] if step.timed else ["it takes no t: it is judged for a force without time alone"]
 
 
-def _no_step(faults: Sequence[Fault]) -> Finding:
-    text = prose(next(fault.text for fault in faults if fault.fatal))
-    return Finding(Verdict.REFUTED, text, "calls", faults=tuple(fault.name for fault in faults))
+def _no_step(trial: Trial, faults: Sequence[Fault]) -> Finding:
+    """REFUTED, but where its calls lack time, or H is defined at none of the points either."""
+    fault = next(fault for fault in faults if fault.fatal)
+    verdict, text = Verdict.REFUTED, prose(fault.text)
+    if fault.name in _FAILS:
+        h, t = Fraction(1, 8), Fraction(1, 4)
+        if trial.step.left <= 0:
+            verdict = Verdict.UNDECIDED
+        elif first_defined(trial.hamiltonian, trial.points, h, t) is None:
+            verdict, text = Verdict.UNDECIDED, prose(text, UNDEFINED)
+    return Finding(verdict, text, "calls", faults=tuple(fault.name for fault in faults))
 
 
 def _examine(trial: Trial, provable: bool) -> Finding:

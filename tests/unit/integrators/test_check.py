@@ -23,9 +23,14 @@ PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
 Function = Callable[..., Any]
 
 
-def found_of(function: Function, claims: Claims = NOTHING, limit: float = 20) -> Finding:
+def found_of(
+    function: Function,
+    claims: Claims = NOTHING,
+    limit: float = 20,
+    hamiltonian: Hamiltonian = PENDULUM,
+) -> Finding:
     step, _ = step_from(function, time_limit=limit)
-    return check_integrator(step, PENDULUM, claims)
+    return check_integrator(step, hamiltonian, claims)
 
 
 RIGHT = [
@@ -162,7 +167,18 @@ def test_a_state_that_shows_after_many_calls_is_found_at_the_end() -> None:
 
 
 def test_an_endless_call_is_ended() -> None:
-    assert "does not end within" in found_of(own_steps.endless, limit=0.3).reason
+    found = found_of(own_steps.endless, limit=0.3)
+    assert (found.verdict, "does not end within" in found.reason) == ("UNDECIDED", True)
+
+
+def test_a_step_that_fails_where_h_is_not_defined_is_not_refuted() -> None:
+    def euler_b(p: Any, q: Any, h: Any) -> Any:
+        p = p - h / (2 * math.sqrt(q - 5))
+        return p, q + h * p
+
+    found = found_of(euler_b, hamiltonian=Hamiltonian.parse("p**2/2 + sqrt(q - 5)"))
+    assert (found.verdict, "H has no exact solution" in found.reason) == ("UNDECIDED", True)
+    assert found_of(euler_b).verdict == "REFUTED"
 
 
 def test_changed_arrays_are_named_and_nothing_is_refuted() -> None:

@@ -8,6 +8,8 @@ from verify.integrators.maps.user_map import arrays, flat
 from verify.integrators.number_type import NumberType
 from verify.integrators.step import Step, Theirs
 
+_WANTED = "wanted: p', q'"
+
 
 @dataclass
 class StepOfArrays:
@@ -31,7 +33,7 @@ class StepOfArrays:
         """z' in our order. Raises StepError, and what the user's code raises."""
         n = len(self.names) // 2
         with self.step.limited():
-            found = flat(self.step.raw(function, *arrays(z), h, t), 2 * n)
+            found = flat(self.step.raw(function, *arrays(z), h, t), 2 * n, _WANTED)
         exchanged = self.step.order.index("p") > self.step.order.index("q")
         return [*found[n:], *found[:n]] if exchanged else found
 

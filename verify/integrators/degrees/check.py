@@ -11,8 +11,9 @@ from fractions import Fraction
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.degrees.called import StepOfArrays
+from verify.integrators.degrees.called import StepAt, StepOfArrays
 from verify.integrators.degrees.distance import distance_of
+from verify.integrators.degrees.no_step import judged_without_call
 from verify.integrators.degrees.traced import traced_map
 from verify.integrators.maps.check import (
     Called,
@@ -91,7 +92,7 @@ def check_step(step: Step, hamiltonian: Hamiltonian, claims: Claims) -> StepFind
             found = _measured(own, hamiltonian, points, called).noting("no proof: ", why(error))
         return _held_to(claims, found)
 
-    return _tried(step, hamiltonian, examined)
+    return _tried(step, hamiltonian, examined, judged_without_call)
 
 
 def measure_step(
@@ -103,6 +104,8 @@ def measure_step(
         step,
         hamiltonian,
         lambda own, points, called: _measured(own, hamiltonian, points, called, ladder),
+        # How a library is driven says nothing of its method.
+        lambda here, hamiltonian, points, error: (Verdict.UNDECIDED, prose(why(error))),
     )
 
 
@@ -110,15 +113,16 @@ def _tried(
     step: Step,
     hamiltonian: Hamiltonian,
     examined: Callable[[StepOfArrays, Points, Called], StepFinding],
+    failed: Callable[[StepAt, Hamiltonian, Points, Exception], tuple[Verdict, Prose]],
 ) -> StepFinding:
-    """What is found of it where it can be called at the points."""
+    """What is found of it where it can be called at the points, and what is said where not."""
     step.moving = hamiltonian.time_dependent
     own, degrees = StepOfArrays(step, hamiltonian.coordinates), hamiltonian.degrees
     at, points = own.at(_SIZES[0], _TIME), points_of(2 * degrees)
     try:
         called = called_at(FloatProbe(at), points)
     except Exception as error:  # the user's code may raise anything
-        return StepFinding(Verdict.UNDECIDED, prose(why(error)), "calls", degrees)
+        return StepFinding(*failed(at, hamiltonian, points, error), "calls", degrees)
     return examined(own, points, called)
 
 

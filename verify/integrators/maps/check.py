@@ -34,6 +34,10 @@ _PARTS = ("1/3", "-1/2", "3/7", "2/5", "-3/8", "5/9", "-2/7", "4/11", "1/6", "-5
 _POINTS = 6
 
 
+class NotAFunctionError(StepError):
+    """It returned one thing and then another."""
+
+
 Called = dict[tuple[Fraction, ...], list[float]]  # what it returns at points
 
 
@@ -96,7 +100,7 @@ def called_at(floats: FloatProbe, points: Sequence[tuple[Fraction, ...]]) -> Cal
     if not found:
         raise lost[0]
     if any(floats.value(point) != first for point, first in found.items()):
-        raise StepError("it returns another result when it is called again")
+        raise NotAFunctionError("it returns another result when it is called again")
     return found
 
 

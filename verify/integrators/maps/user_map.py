@@ -98,24 +98,26 @@ def arrays(z: Sequence[Theirs]) -> tuple[Theirs, Theirs]:
     return array(z[:half]), array(z[half:])
 
 
-def flat(result: Theirs, count: int) -> list[Theirs]:
-    """So many numbers that were returned, in sequences or not. Raises StepError."""
-    found = list(_numbers(result, depth=3))
+def flat(result: Theirs, count: int, wanted: str = _WANTED) -> list[Theirs]:
+    """So many numbers that were returned, in sequences or not. Raises StepError, with what is
+    wanted."""
+    found = list(_numbers(result, wanted, depth=3))
     if len(found) != count:
         raise StepError(f"it returns {len(found)} numbers; wanted: {count}")
     return found
 
 
-def _numbers(result: Theirs, depth: int) -> list[Theirs]:
+def _numbers(result: Theirs, wanted: str, depth: int) -> list[Theirs]:
     if result is None or isinstance(result, str | bytes | dict | set):
-        raise StepError(f"it returns {type(result).__name__}; {_WANTED}")
+        kind = "None" if result is None else type(result).__name__
+        raise StepError(f"it returns {kind}; {wanted}")
     if getattr(result, "shape", ()):
         result = list(result.ravel())
     if not isinstance(result, list | tuple):
         return [single(result)]
     if depth == 0:
-        raise StepError(f"it returns lists of lists of lists; {_WANTED}")
-    return [x for part in result for x in _numbers(part, depth - 1)]
+        raise StepError(f"it returns lists of lists of lists; {wanted}")
+    return [x for part in result for x in _numbers(part, wanted, depth - 1)]
 
 
 def map_from(

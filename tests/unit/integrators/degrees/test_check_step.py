@@ -20,6 +20,7 @@ DRIVEN = f"{HENON} - q1*cos(t)"
 KEPLER = "(p1**2 + p2**2)/2 - 1/sqrt(q1**2 + q2**2)"
 ROTATING = "(p1**2 + p2**2)/2 + p1*q2 - p2*q1 + q1**2*q2"  # not separable
 W1 = 1 / (2 - 2 ** (1 / 3))
+ROOTS = "(p1**2 + p2**2)/2 + sqrt(q1 - 5) + q2"
 Step = Callable[..., Any]
 
 
@@ -78,6 +79,15 @@ def one_exchanged(p, q, h):
     p = p + h / 2 * force(q)
     q = q + h * p
     return p + h / 2 * force(q)[::-1], q
+
+
+def verlet_of_roots(p, q, h):
+    def pull(q):
+        return -np.array([1 / (2 * math.sqrt(q[0] - 5)), 1])
+
+    p = p + h / 2 * pull(q)
+    q = q + h * p
+    return p + h / 2 * pull(q), q
 
 
 def q_first(x, v, dt):
@@ -223,12 +233,44 @@ def test_claims(step: Step, claims: dict[str, Any], verdict: str, words: str) ->
     [
         (lambda p, q, h: p, "it returns 2 numbers; wanted: 4"),
         (lambda p, q, h: 1 / 0, "division by zero"),
+        (lambda p, q, h: 1 / 0, " at p = (0.333333, -0.25), q = (0.142857, 0.4), h = 0.125"),
+        (lambda p, q, h: None, "it returns None; wanted: p', q' at p = ("),
+        (lambda p, q, h: (p + np.nan, q), "it returns what is not finite at p = ("),
         (lambda p, q, h: (p + np.random.default_rng().normal(), q), "another result"),
     ],
 )
-def test_what_is_no_step_is_undecided(step: Step, words: str) -> None:
+def test_what_is_no_step_is_refuted_as_in_the_plane(step: Step, words: str) -> None:
     found = checked(step)
-    assert (found.verdict, words in str(found.reason)) == ("UNDECIDED", True)
+    assert (found.verdict, words in str(found.reason)) == ("REFUTED", True), found.reason
+
+
+def of_lists(p, q, h):
+    """Right, but that it asks of q what lists alone answer."""
+    if not q:
+        return p, q
+    p, q = verlet(np.array(p), np.array(q), h)
+    return list(p), list(q)
+
+
+def endless(p, q, h):
+    while True:
+        pass
+
+
+@pytest.mark.parametrize(
+    ("step", "formula", "words"),
+    [
+        (of_lists, HENON, "and takes lists"),
+        (verlet_of_roots, ROOTS, "H has no exact solution from any of the points"),
+        (endless, HENON, "does not end"),
+    ],
+)
+def test_what_fails_for_no_fault_of_its_own_is_undecided(
+    step: Step, formula: str, words: str
+) -> None:
+    exact = Hamiltonian.parse(formula)
+    found = check_step(step_from(step, time_limit=0.5)[0], exact, Claims(order=2))
+    assert (found.verdict, words in str(found.reason)) == ("UNDECIDED", True), found.reason
 
 
 def test_a_parameter_needs_its_value() -> None:

@@ -243,7 +243,7 @@ def test_coefficients_of_few_digits_accuse_nobody() -> None:
     [
         (lambda p, q: (p + np.random.default_rng().normal(), q), "another result when"),
         (lambda p, q: p, "it returns 1 numbers; wanted: 2"),
-        (lambda p, q: None, "it returns NoneType"),
+        (lambda p, q: None, "it returns None"),
         (lambda p, q: (p, "q"), "it returns str"),
         (lambda p, q: (p, math.nan), "not finite"),
         (lambda p, q: 1 / 0, "division by zero"),
