@@ -4,9 +4,11 @@ from dataclasses import replace
 from fractions import Fraction
 
 from verify.arithmetic.exact import plain
+from verify.hamiltonians.coordinates import PLANE
 from verify.integrators.fitted_order import Fitted
 from verify.integrators.probe import Measured, Trial, measured
 from verify.integrators.results import Finding
+from verify.integrators.wrapped import periods_told
 from verify.prose import Number, Prose, prose, read_prose
 from verify.verdict import Verdict
 
@@ -100,6 +102,7 @@ def _consistent(found: Finding) -> Finding:
 
 def _notes(found: Measured) -> list[Prose]:
     notes: list[str] = [prose("measured at ", _where(found), ", and nowhere else")]
+    notes += periods_told(PLANE, found.periods)
     if found.how == "floats":
         unseen = f"about `{found.unseen:.0e}`"
         notes.append(

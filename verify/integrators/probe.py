@@ -19,6 +19,7 @@ from verify.integrators.number_type import DOUBLE, NumberType
 from verify.integrators.step import Step, StepError, Theirs, lifted
 from verify.integrators.tracing.dual import BITS, Duals
 from verify.integrators.tracing.functions import copied
+from verify.integrators.wrapped import Periods, unwrapped, wrapped
 
 if TYPE_CHECKING:
     import gmpy2
@@ -84,7 +85,7 @@ class Measured:
     """`how`: "duals" or "floats". `rows` by falling h. `opaque`: whether it may solve equations up
     to a tolerance, since values were compared or floats hide what it does. `rounded`: whether its
     coefficients are. `points`: those that it was tried at, and `times`: t at each, where H depends
-    on it.
+    on it. `periods`: modulo which it was compared with the flow.
     """
 
     how: str
@@ -94,6 +95,7 @@ class Measured:
     points: tuple[Point, ...]
     times: tuple[Fraction, ...] = ()
     numbers: str = "floats"  # what the step's own are called
+    periods: Periods = ()
 
     @property
     def steady(self) -> tuple[Row, ...]:
@@ -148,6 +150,7 @@ def measured(trial: Trial, how: str, ladder: Sequence[Fraction] = ()) -> Measure
     ladder, step = ladder or LADDERS[how], trial.step
     flow, probe = flow_of(trial.hamiltonian, how, step.numbers), PROBES[how](step)
     rows, lost = [], ""
+    step.periods = wrapped(_ends(trial, probe, flow, ladder[-1]), trial.hamiltonian, ladder[-1])
 
     def at(point: Point, h: Fraction) -> Reading | None:
         nonlocal lost
@@ -170,7 +173,20 @@ def measured(trial: Trial, how: str, ladder: Sequence[Fraction] = ()) -> Measure
         raise StepError(lost or "it fails for most steps")
     times = tuple(step.clock(*point) for point in alive) if step.moving else ()
     numbers = "floats" if step.numbers is DOUBLE else step.numbers.declared_as
-    return Measured(how, tuple(rows), probe.opaque, probe.rounded, tuple(alive), times, numbers)
+    return Measured(
+        how, tuple(rows), probe.opaque, probe.rounded, tuple(alive), times, numbers, step.periods
+    )
+
+
+def _ends(trial: Trial, probe: "Probe", flow: Flow, h: Fraction) -> list[tuple[End, End]]:
+    """The step's and the flow's, from the points where there are both."""
+    found = []
+    for point in trial.points:
+        try:
+            found.append((probe.end(point, h)[0], _goal(probe, flow, point, h)[1]))
+        except Exception:  # noqa: S112 - the user's code may raise anything
+            continue
+    return found
 
 
 def flow_of(hamiltonian: Hamiltonian, how: str, numbers: NumberType) -> Flow:
@@ -210,17 +226,24 @@ def _from_flow(
     probe: "Probe", flow: Flow, point: Point, h: Fraction, state: End
 ) -> tuple[float, float]:
     """How far the state is from the flow's, and how far the flow goes."""
-    (p, q) = state
+    start, end = _goal(probe, flow, point, h)
+    with flow.arithmetic.context():
+        periods = probe.step.periods or (Fraction(0),) * 2
+        here = [unwrapped(x, y, each) for x, y, each in zip(state, end, periods, strict=True)]
+        away = max(abs(float(x - y)) for x, y in zip(here, end, strict=True))
+        increment = max(abs(float(end[0] - start[0])), abs(float(end[1] - start[1])))
+    return away, increment
+
+
+def _goal(probe: "Probe", flow: Flow, point: Point, h: Fraction) -> tuple[End, End]:
+    """Where the flow begins and ends."""
     clock = (probe.step.clock(*point),) if flow.timed else ()
     start = tuple(map(flow.number, (*point, *clock)))
     try:
         end = flow.advance(start, flow.number(h))
     except NoFlowError as error:
         raise StepError(error.said) from None
-    with flow.arithmetic.context():
-        away = max(abs(float(p - end[0])), abs(float(q - end[1])))
-        increment = max(abs(float(end[0] - start[0])), abs(float(end[1] - start[1])))
-    return away, increment
+    return (start[0], start[1]), (end[0], end[1])
 
 
 class _Duals:
@@ -318,10 +341,10 @@ class _Floats:
         for i, k, _ in moves:
             moved = self.step.rounded(z[i] + k * width)
             points.append((moved, z[1]) if i == 0 else (z[0], moved))
-        totals = [[mpq(0)] * 2, [mpq(0)] * 2]
-        for (i, _, weight), x, y in zip(
-            moves, points, self.step.exactly(points, *size), strict=True
-        ):
+        totals, ends = [[mpq(0)] * 2, [mpq(0)] * 2], self.step.exactly(points, *size)
+        for each in ends[1:] if self.step.periods else ():  # all on one side of where it wraps
+            each[:] = map(unwrapped, each, ends[0], self.step.periods)
+        for (i, _, weight), x, y in zip(moves, points, ends, strict=True):
             for j in (0, 1):
                 totals[i][j] += weight * (mpq(y[j]) - mpq(x[j]))
         (u_p, v_p), (u_q, v_q) = ([x / mpq(60 * width) for x in total] for total in totals)

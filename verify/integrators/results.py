@@ -99,6 +99,13 @@ class Finding:
 Judged = tuple[Prose, bool | None, Prose]  # a claim, whether it holds, and what was found
 
 
+def agreement_told(power: int | None) -> str:
+    """How far the map and the flow agree, where a higher order is claimed."""
+    if power is not None and power < 0:
+        return "the map's distance from the exact flow does not vanish as h → 0"
+    return f"the map agrees with the exact flow up to `h^{power}` only"
+
+
 def judged(claims: Claims, found: Finding) -> list[Judged]:
     """Each claim; None where it is not decided."""
     told: list[tuple[str, bool | None, str]] = []
@@ -106,7 +113,7 @@ def judged(claims: Claims, found: Finding) -> list[Judged]:
         holds = None
         if found.order_decided:
             holds = found.convergence_order is None or found.convergence_order >= claims.order
-        known = f"the map agrees with the exact flow up to `h^{found.convergence_order}` only"
+        known = agreement_told(found.convergence_order)
         told.append((f"order {claims.order}", holds, known))
     area = f"ΔJ has order {found.order}"
     if found.order is None:

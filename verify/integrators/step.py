@@ -58,6 +58,7 @@ class Step:
     takes one, is 0. `given`: parameters of H that it takes by name. `arrays`: it wants p and q as
     arrays, and gets them with one entry each. `left`: seconds left for its calls. `numbers`: the
     type that it computes in. `foreign`: it is of another language, so that numbers alone go in.
+    `periods`: of p and q, where it is seen to reduce them so (`verify.integrators.wrapped`).
     """
 
     function: Callable[..., Theirs]
@@ -68,6 +69,7 @@ class Step:
     moving: bool = False
     numbers: NumberType = DOUBLE
     foreign: bool = False
+    periods: tuple[Fraction, ...] = ()
 
     @property
     def ways(self) -> tuple[str, ...]:

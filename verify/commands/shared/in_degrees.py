@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands.shared.answer import picked
-from verify.commands.shared.output import cut, line
+from verify.commands.shared.output import cut, line, up_to
 
 if TYPE_CHECKING:
     from verify.integrators.degrees.check import StepFinding
@@ -130,7 +130,7 @@ def print_symplectic(texts: Mapping[str, Any], scheme: str, proof: "SymplecticPr
     if proof.domain:
         line("where", str(proof.domain.prose))
     order = proof.convergence_order
-    known = "in all powers of h that were looked at" if order is None else f"up to h^{order}"
+    known = "in all powers of h that were looked at" if order is None else up_to(order)
     line("the map", f"agrees with the exact flow {known}")
 
 

@@ -39,6 +39,11 @@ _LABELS = {
 _IN_DEGREES = {"symplectic_defect_max": "max |S|", "symplectic_defect": "max |W|"}
 
 
+def up_to(order: int) -> str:
+    """Of an agreement with the exact flow, which may be none."""
+    return f"up to h^{order}" if order >= 0 else "not even at h = 0"
+
+
 def cut(formula: str) -> str:
     """A formula as it is, or its beginning where it is long: the JSON has all of it."""
     if len(formula) <= _LONGEST:
@@ -107,7 +112,7 @@ def print_proof(exact: "Hamiltonian", scheme: str, proof: "Proof", potential: "P
     if proof.domain:
         click.echo(f"  where    {proof.domain.prose}")
     order = proof.convergence_order
-    agreement = "to every order looked at" if order is None else f"up to h^{order}"
+    agreement = "to every order looked at" if order is None else up_to(order)
     click.echo(f"  the map  agrees with the exact flow {agreement}")
 
 

@@ -25,11 +25,12 @@ from verify.integrators.maps.check import (
 )
 from verify.integrators.maps.probes import DualProbe, FloatProbe
 from verify.integrators.probe import LADDERS
-from verify.integrators.results import Claims
+from verify.integrators.results import Claims, agreement_told
 from verify.integrators.step import Step, StepError, why, within
 from verify.integrators.tracing.domain import domain_of
 from verify.integrators.tracing.readings_of_floats import readings
 from verify.integrators.tracing.rounded_order import Compared, agreement
+from verify.integrators.wrapped import periods_told
 from verify.proof.symplectic.defect import series_of
 from verify.proof.symplectic.order import Claimed, prove_map
 from verify.proof.symplectic.proof import SymplecticProof
@@ -242,6 +243,8 @@ def _with_order(
             seen = distance_of(own, hamiltonian, how, points, _TIME, ladder or LADDERS[how])
     except Exception as error:  # the user's code may raise anything
         return found.noting("its order is not measured: ", why(error))
+    for note in periods_told(own.names, seen.periods):
+        found = found.noting(note)
     if seen.exact:
         reason = prose("the map is the exact flow to its last digits; ", found.reason)
         return replace(found, reason=reason, order_known=True)
@@ -301,8 +304,7 @@ def _judged(claims: Claims, found: StepFinding) -> Iterator[tuple[bool | None, s
         if not found.order_known:
             yield None, claim
         elif agreed is not None and agreed < claims.order:
-            known = f"the map agrees with the exact flow up to `h^{agreed}` only"
-            yield False, f"{claim} is claimed; {known}"
+            yield False, f"{claim} is claimed; {agreement_told(agreed)}"
     if claims.symplectic and found.symplectic is not True:
         where = f"S has order {proof.order}" if proof and proof.order else "S is not 0"
         claim = "that it is symplectic"

@@ -12,6 +12,7 @@ from verify.integrators.degrees.called import StepOfArrays
 from verify.integrators.fitted_order import Fitted, fitted
 from verify.integrators.maps.probes import DualProbe, FloatProbe
 from verify.integrators.tracing.dual import BITS
+from verify.integrators.wrapped import Ends, Periods, unwrapped, wrapped
 
 _POINTS = 3  # at which it is looked
 _DIGITS, _MORE = 50, 3  # of the exact flow for dual numbers; and more than a step's own have
@@ -22,10 +23,12 @@ Point = tuple[Fraction, ...]
 
 @dataclass(frozen=True)
 class Distance:
-    """`fit`: of the power of h by which the distance falls. `exact`: none was seen beyond noise."""
+    """`fit`: of the power of h by which the distance falls. `exact`: none was seen beyond noise.
+    `periods`: modulo which the coordinates were compared."""
 
     fit: Fitted
     exact: bool
+    periods: Periods = ()
 
     @property
     def order(self) -> int | None:
@@ -49,14 +52,19 @@ def distance_of(
     own_noise = _DUAL_NOISE if duals else 4 * numbers.epsilon
     rows: list[tuple[float, float, float]] = []
     quiet, compared = 0, how == "floats"
-    for h in ladder:
+
+    def ended(h: Fraction) -> tuple[DualProbe | FloatProbe, list[Ends[Fraction]]]:
         here = own.at(h, t)
-        probe = DualProbe(here) if how == "duals" else FloatProbe(here)
-        each = [_at(flow, probe, own.names, point, h, t, own_noise) for point in points[:_POINTS]]
-        known = [x for x in each if x is not None]
+        probe = DualProbe(here) if duals else FloatProbe(here)
+        each = [_at(flow, probe, own.names, point, h, t) for point in points[:_POINTS]]
+        return probe, [x for x in each if x is not None]
+
+    periods = wrapped(ended(ladder[-1])[1], hamiltonian, ladder[-1])
+    for h in ladder:
+        probe, known = ended(h)
         if not known:
             continue
-        error, noise = max(known)
+        error, noise = max(_apart(ends, periods, own_noise) for ends in known)
         rows.append((float(h), error, noise))
         compared |= isinstance(probe, DualProbe) and bool(probe.kind.compared)
         quiet = quiet + 1 if error <= 10 * noise else 0
@@ -64,7 +72,8 @@ def distance_of(
             break
     if not rows:
         raise NoFlowError("no exact solution is found from any of the points")
-    return Distance(fitted(rows, compared), all(error <= 10 * noise for _, error, noise in rows))
+    exact = all(error <= 10 * noise for _, error, noise in rows)
+    return Distance(fitted(rows, compared), exact, periods)
 
 
 def _at(
@@ -74,16 +83,20 @@ def _at(
     point: Point,
     h: Fraction,
     t: Fraction,
-    noise: float,
-) -> tuple[float, float] | None:
-    """The distance after one step, and its noise; None where the flow does not reach so far."""
+) -> Ends[Fraction] | None:
+    """Where the step ends and where the flow does; None where the flow does not reach so far."""
     start, there = probe.exact(point)
     try:
         z = flow.state({**dict(zip(names, start, strict=True)), "t": t})
         after = flow.advance(z, flow.number(h))
     except NoFlowError:
         return None
-    exact = map(flow.arithmetic.exact, after[: len(names)])
-    apart = max(abs(x - y) for x, y in zip(there, exact, strict=True))
-    size = 1 + max(map(abs, there))
-    return float(apart), noise * float(size)
+    return there, [flow.arithmetic.exact(x) for x in after[: len(names)]]
+
+
+def _apart(ends: Ends[Fraction], periods: Periods, noise: float) -> tuple[float, float]:
+    """The distance after one step, and its noise."""
+    there, exact = ends
+    moved = map(unwrapped, there, exact, periods or (Fraction(0),) * len(exact))
+    apart = max(abs(x - y) for x, y in zip(moved, exact, strict=True))
+    return float(apart), noise * float(1 + max(map(abs, there)))

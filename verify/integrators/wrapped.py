@@ -1,0 +1,109 @@
+"""Coordinates that a step reduces by whole periods, such as an angle taken modulo 2π.
+
+The motion of a periodic H is the same there, so that its ends are compared modulo the period. It is
+looked for where a step of almost no length ends as far from the flow as a period, and nowhere else.
+"""
+
+from collections.abc import Iterable, Sequence
+from fractions import Fraction
+from math import gcd, lcm
+from typing import TYPE_CHECKING, TypeVar
+
+from verify.flows.degrees.extrapolation import FlowInDegrees
+from verify.flows.extrapolation import NoFlowError
+from verify.hamiltonians.canonical_field import canonical_field
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.prose import Number, Prose, prose
+
+if TYPE_CHECKING:
+    import gmpy2
+    import sympy
+
+_DIGITS, _OF_FIELD, _SAME = 60, 40, Fraction(1, 10**30)
+_FAR = 1e-2  # from the flow, where a period is looked for
+_NEAR, _BY_STEP = 1e-6, 8  # of a whole multiple of it; and times h², for an error of order 1
+_POINTS, _FEWEST = 4, 2  # at which the field is looked at, and has to repeat
+Real = TypeVar("Real", Fraction, "gmpy2.mpfr")
+Periods = tuple[Fraction, ...]  # of each coordinate, 0 for none; () where none is reduced
+Ends = tuple[Sequence[Real], Sequence[Real]]  # of the step, and of the flow
+
+
+def unwrapped(x: Real, near: Real, period: Fraction) -> Real:
+    """x, moved by whole periods to where it is nearest to `near`."""
+    turns = round((x - near) / period) if period else 0
+    return x - turns * period if turns else x
+
+
+def wrapped(ends: Iterable[Ends[Real]], hamiltonian: Hamiltonian, h: Fraction) -> Periods:
+    """By which periods steps of that small size end away from the flow."""
+    pairs = [list(zip(*each, strict=True)) for each in ends]
+    if not any(abs(x - y) > _FAR for each in pairs for x, y in each):
+        return ()
+    periods = periods_of(hamiltonian)
+    near = _NEAR + _BY_STEP * float(h) ** 2
+    for each in pairs:
+        for (x, y), period in zip(each, periods, strict=True):
+            if abs(unwrapped(x, y, period) - y) > near:
+                return ()
+    reduced = [
+        any(abs(each[k][0] - each[k][1]) > _FAR for each in pairs) for k in range(len(periods))
+    ]
+    return tuple(x if used else Fraction(0) for x, used in zip(periods, reduced, strict=True))
+
+
+def periods_told(names: Sequence[str], periods: Periods) -> list[Prose]:
+    """A sentence for each coordinate that is reduced."""
+    return [
+        prose(name, " is compared modulo ", Number(f"{float(x):.6g}"), ", a period of the motion")
+        for name, x in zip(names, periods, strict=False)
+        if x
+    ]
+
+
+def periods_of(hamiltonian: Hamiltonian) -> Periods:
+    """That of each coordinate, as the sines in H tell it, where H's field repeats with it."""
+    return tuple(_period(hamiltonian, k) for k in range(2 * hamiltonian.degrees))
+
+
+def _period(hamiltonian: Hamiltonian, place: int) -> Fraction:
+    import sympy
+
+    from verify.algebra.formula import symbol
+
+    own = symbol(hamiltonian.coordinates[place])
+    waves = hamiltonian.exact.atoms(sympy.sin, sympy.cos, sympy.tan)
+    rates = sorted({abs(x.args[0].diff(own)) for x in waves} - {0}, key=str)
+    ratios = [sympy.nsimplify(x / rates[0]) for x in rates]
+    if not rates or not all(x.is_Rational for x in ratios) or rates[0].free_symbols:
+        return Fraction(0)
+    below = lcm(*(int(x.q) for x in ratios))
+    slowest = rates[0] * sympy.Rational(gcd(*(int(x.p) * below // int(x.q) for x in ratios)), below)
+    whole = _fraction(2 * sympy.pi / slowest)
+    return next((x for x in (whole / 2, whole) if _repeats(hamiltonian, place, x)), Fraction(0))
+
+
+def _fraction(x: "sympy.Expr") -> Fraction:
+    import sympy
+
+    found = sympy.Rational(str(x.evalf(_DIGITS)))
+    return Fraction(int(found.p), int(found.q))
+
+
+def _repeats(hamiltonian: Hamiltonian, place: int, period: Fraction) -> bool:
+    """Whether the field is the same after that period, at points."""
+    flow, same = FlowInDegrees(canonical_field(hamiltonian)[0], _OF_FIELD), 0
+    names = hamiltonian.coordinates
+    for first in range(_POINTS):
+        point = [Fraction(2 * k + 3 * first + 1, 11) for k in range(len(names))]
+        moved = [x + period * (k == place) for k, x in enumerate(point)]
+        try:
+            one, two = (
+                flow.slope(flow.state({**dict(zip(names, z, strict=True)), "t": Fraction(1, 4)}))
+                for z in (point, moved)
+            )
+        except NoFlowError:
+            continue
+        if any(abs(x - y) > _SAME * (1 + abs(x)) for x, y in zip(one, two, strict=True)):
+            return False
+        same += 1
+    return same >= _FEWEST
