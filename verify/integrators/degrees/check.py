@@ -222,7 +222,7 @@ def _measured(
             area_preserving=worst.area_preserving,
             measured=worst,
             h=h,
-            notes=tuple(notes),
+            notes=(*notes, *worst.notes),
         )
         return _with_order(found, own, hamiltonian, how, points, ladder)
     neither = prose("it can be neither traced nor measured")
@@ -243,7 +243,7 @@ def _with_order(
             seen = distance_of(own, hamiltonian, how, points, _TIME, ladder or LADDERS[how])
     except Exception as error:  # the user's code may raise anything
         return found.noting("its order is not measured: ", why(error))
-    for note in periods_told(own.names, seen.periods):
+    for note in reversed(periods_told(own.names, seen.periods)):
         found = found.noting(note)
     if seen.exact:
         reason = prose("the map is the exact flow to its last digits; ", found.reason)

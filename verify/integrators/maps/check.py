@@ -28,6 +28,7 @@ _MOST_WRITTEN = 4000  # operations of the map, written out, of which a proof is 
 _MOST_TERMS = 2000
 _REFUTES = 1000.0  # times its noise that an entry of S is where a probe refutes
 _HOLDS = 10.0  # and at most where nothing is seen
+_BLIND = 1e-3  # noise beside entries of Ω, which are 1, with which a probe sees nothing
 _AGREES = 1e-9  # of what is traced with what the function returns, in parts of their size
 _OF_DIGITS = 1e-9  # what is smaller may come from coefficients that were written with few digits
 _PARTS = ("1/3", "-1/2", "3/7", "2/5", "-3/8", "5/9", "-2/7", "4/11", "1/6", "-5/12", "3/10")
@@ -223,7 +224,10 @@ _MEANS: dict[Callable[..., MapFinding], str] = {
 
 
 def measured(own: CallableMap, probe: Probe, points: Sequence[tuple[Fraction, ...]]) -> MapFinding:
-    """By the entries of S at the points, each against its noise."""
+    """By the entries of S at the points, each against its noise.
+
+    Points at which the probe sees nothing, as where the map wraps an angle, are left out and named.
+    """
     found = list[Reading]()
     lost = StepError("it fails at all points")
     for point in points:
@@ -233,6 +237,10 @@ def measured(own: CallableMap, probe: Probe, points: Sequence[tuple[Fraction, ..
             lost = StepError(str(why(error)))
     if len(found) < 2:
         raise lost
+    blind = [r for r in found if max(r.noise.values()) > _BLIND and r.beyond <= _REFUTES]
+    found = [r for r in found if r not in blind]
+    if len(found) < 2 and not any(r.beyond > _REFUTES for r in found):
+        return _unseen(own, probe, [*found, *blind])
     worst = max(found, key=lambda reading: reading.beyond)
     entry = f"d{own.names[worst.worst[0]]}∧d{own.names[worst.worst[1]]}"
     base = MapFinding(
@@ -240,6 +248,7 @@ def measured(own: CallableMap, probe: Probe, points: Sequence[tuple[Fraction, ..
         largest=max(abs(x) for r in found for x in r.entries.values()),
         probe_error=max(x for r in found for x in r.noise.values()),
         area_preserving=_of_volume(found), entry=entry,
+        notes=(_left_out(own.names, blind),) if blind else (),
     )  # fmt: skip
     what = f"at {len(found)} points"
     if worst.beyond > _REFUTES:
@@ -257,9 +266,31 @@ def measured(own: CallableMap, probe: Probe, points: Sequence[tuple[Fraction, ..
             base, verdict=Verdict.MEASURED, reason=read_prose(said), symplectic=True, entry=""
         )
     said = (
-        f"{what} S is {worst.beyond:.0f} times what the probe may be off: neither shown nor refuted"
+        f"{what} S is up to {worst.beyond:.0f} times what the probe may be off, where it is "
+        f"`{worst.entries[worst.worst]:.1e}` ± `{worst.noise[worst.worst]:.1e}`: neither shown nor "
+        "refuted"
     )
-    return replace(base, reason=prose(said))
+    return replace(base, reason=read_prose(said))
+
+
+def _unseen(own: CallableMap, probe: Probe, readings: Sequence[Reading]) -> MapFinding:
+    """UNDECIDED, as its own error is too large nearly everywhere."""
+    errors = [max(r.noise.values()) for r in readings]
+    least, most = min(errors), max(errors)
+    said = f"the probe sees nothing: its own error is `{least:.1e}` to `{most:.1e}` at the points"
+    degrees = len(own.names) // 2
+    return MapFinding(Verdict.UNDECIDED, read_prose(said), probe.how, degrees, probe_error=most)
+
+
+def _left_out(names: Sequence[str], blind: Sequence[Reading]) -> Prose:
+    """Which points, each with the probe's error there."""
+    each = [
+        ", ".join(f"{name} = `{x}`" for name, x in zip(names, r.point, strict=True))
+        + f" (`{max(r.noise.values()):.1e}`)"
+        for r in blind
+    ]
+    where = "; ".join(each)
+    return read_prose(f"left out, as the probe's own error is not small against 1: {where}")
 
 
 def _of_volume(found: Sequence[Reading]) -> bool | None:

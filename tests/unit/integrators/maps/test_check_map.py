@@ -229,6 +229,34 @@ def test_what_only_floats_go_through_is_measured() -> None:
     assert right.probe_error < 1e-8
 
 
+def on_the_torus(p, q, factor=1.0):
+    p, q = standard(p, q, 0.9)
+    return factor * p % (2 * math.pi), q % (2 * math.pi)
+
+
+def test_points_at_which_the_map_wraps_are_left_out_and_named() -> None:
+    found = verify.check_map(on_the_torus)
+    assert (found.verdict, found.area_preserving) == ("MEASURED", True), found.reason
+    assert found.probe_error is not None
+    assert found.probe_error < 1e-8
+    (note,) = [x for x in found.notes if "left out" in x]
+    assert "p = 1/3, q = -1/4 (5.1e+01)" in note
+
+
+@pytest.mark.parametrize(
+    ("factor", "verdict"), [(1 + 3e-5, "REFUTED"), (0.5, "REFUTED"), (1 + 3e-10, "UNDECIDED")]
+)
+def test_an_error_shows_at_the_other_points(factor: float, verdict: str) -> None:
+    found = verify.check_map(lambda p, q: on_the_torus(p, q, factor))
+    assert found.verdict == verdict, found.reason
+    assert found.largest == pytest.approx(abs(factor - 1), rel=1e-3)
+
+
+def test_a_map_that_wraps_at_every_point_is_undecided() -> None:
+    found = verify.check_map(lambda p, q: (p % 1e-3, q))
+    assert (found.verdict, "the probe sees nothing" in found.reason) == ("UNDECIDED", True)
+
+
 def test_coefficients_of_few_digits_accuse_nobody() -> None:
     def turned(p, q):
         return 0.955336489126 * p - 0.295520206661 * q, 0.295520206661 * p + 0.955336489126 * q
