@@ -55,6 +55,8 @@ BAD = [
     ("quits:step", [], "does not import: SystemExit: 3"),
     ("spelt:step", [], "does not import: SyntaxError"),
     ("mine:other", [], "mine has no other; it has: step"),
+    ("many:setp", [], "is step meant? it has: step, f0, f1, f10, f11, f2, f3, f4, and 5 more"),
+    ("many:nothing_like_it", [], "many has no nothing_like_it; it has: f0, f1, f10"),
     ("mine:math", [], "is no function but module"),
     ("mine", [], "MODULE:FUNCTION"),
     ("no.py:step", [], "there is no file no.py"),
@@ -73,13 +75,15 @@ def test_what_cannot_be_called_is_bad_input_in_one_line(
     (folder / "broken.py").write_text("print('about to')\n1 / 0\n")
     (folder / "quits.py").write_text("import sys\nsys.exit(3)\n")
     (folder / "spelt.py").write_text("def step(:\n")
+    many = [*(f"f{k}" for k in range(12)), "step"]
+    (folder / "many.py").write_text("".join(f"def {name}(p, q, h): ...\n" for name in many))
     (folder / "two.py").write_text("def step(p, q):\n    return p, q\n")
     system = [] if "--system" in more else ["--system", "pendulum"]
     status, out, err = here(capsys, "check-integrator", target, *system, *more)
     assert (status, out) == (2, "")
     assert said in err
     assert len([line for line in err.splitlines() if line != "about to"]) == 1
-    for name in ("broken", "quits", "spelt", "two"):
+    for name in ("broken", "quits", "spelt", "many", "two"):
         sys.modules.pop(name, None)
 
 

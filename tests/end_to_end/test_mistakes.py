@@ -186,7 +186,8 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "certificate check notes.txt": ("FILE=notes.txt: is not JSON",),
     "check-integrator mine.py --system pendulum": ("integrator=mine.py: write it as MODULE:",),
     "check-integrator mine.py::step --system pendulum": ("write one : in it, as mine.py:step",),
-    "check-integrator mine.py:stepp --system pendulum": ("has no stepp; it has: step, two",),
+    "check-integrator mine.py:stepp --system pendulum":
+        ("has no stepp; is step meant? it has: step, two",),
     "check-integrator nope:step --system pendulum": ("nope:step: does not import",
         "write the path of its file"),
     "check-integrator notes.txt:step --system pendulum": ("notes.txt is no Python file",),

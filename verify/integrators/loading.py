@@ -25,6 +25,7 @@ _USUAL = ("p", "q", "h")
 _COUNTS = {4: ["h", "p", "q", "t"], 3: ["h", "p", "q"]}  # arguments, sorted, t among them first
 _USUAL_IN_TIME = ("p", "q", "t", "h")
 _MOST_SECONDS = 86_400
+_LISTED = 8  # functions of a module, in an error
 _POSITIONAL = inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD
 
 
@@ -44,14 +45,26 @@ def load(target: str, called: str = "integrator") -> Callable[..., Theirs]:
         found: Theirs = module
         for part in name.split("."):
             if not hasattr(found, part):
-                known = sorted(n for n, x in vars(module).items() if inspect.isfunction(x))
-                has = f"it has: {', '.join(known[:8])}" if known else "it has no function"
-                raise InputError(called, target, f"{place} has no {name}; {has}")
+                raise InputError(called, target, f"{place} has no {name}; {_has(module, name)}")
             found = getattr(found, part)
     if not callable(found):
         raise InputError(called, target, f"{name} is no function but {type(found).__name__}")
     function: Callable[..., Theirs] = found
     return function
+
+
+def _has(module: ModuleType, wanted: str) -> str:
+    """Which functions it has, the nearest to what was wanted first."""
+    from difflib import get_close_matches
+
+    known = sorted(name for name, x in vars(module).items() if inspect.isfunction(x))
+    if not known:
+        return "it has no function"
+    near = get_close_matches(wanted, known, 1, 0.6)
+    meant = f"is {near[0]} meant? " if near else ""
+    listed = [*near, *(name for name in known if name not in near)]
+    more = f", and {len(listed) - _LISTED} more" if len(listed) > _LISTED else ""
+    return f"{meant}it has: {', '.join(listed[:_LISTED])}{more}"
 
 
 def _module(place: str, target: str, called: str) -> ModuleType:
