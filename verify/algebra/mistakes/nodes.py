@@ -119,7 +119,8 @@ def unknown_name(name: str, names: Collection[str], functions: Collection[str]) 
     """Of a name that may not stand there."""
     listed = f"allowed: {', '.join(sorted(names)) or 'numbers alone'}"
     if name in functions:
-        return f"unknown name {name!r}; it is a function: write {name}(q); {listed}"
+        of = "q" if names else "2"
+        return f"unknown name {name!r}; it is a function: write {name}({of}); {listed}"
     near = get_close_matches(name, sorted(names), n=1, cutoff=0.6)
     meant = f"is {near[0]} meant? " if near else ""
     return f"unknown name {name[:_LONGEST]!r}; {meant}{listed}"
