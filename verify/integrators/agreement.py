@@ -5,9 +5,10 @@ import random
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 
-from verify.integrators.probe import Point, Trial, dual_step
+from verify.integrators.probe import Trial
 from verify.integrators.rounding_noise import rounding_noise
 from verify.integrators.step import State, Step
+from verify.integrators.step_probes import Point, dual_step
 from verify.integrators.tracing.dual import Dual, Duals
 from verify.integrators.tracing.functions import copied
 from verify.integrators.tracing.number import UntraceableError

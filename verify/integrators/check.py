@@ -12,10 +12,11 @@ from verify.integrators.claims import with_claims
 from verify.integrators.defined import UNDEFINED, first_defined
 from verify.integrators.faults import Fault, changed_since, examined
 from verify.integrators.measured import of_measured
-from verify.integrators.probe import Point, Trial, dual_step, measured
+from verify.integrators.probe import Trial, measured
 from verify.integrators.repeated import repeated
 from verify.integrators.results import NOTHING, Claims, Finding
 from verify.integrators.step import Step, StepError, why, within
+from verify.integrators.step_probes import Point, dual_step
 from verify.integrators.still_clock import measured_mistakes
 from verify.integrators.tracing.clocks import clock_mistakes
 from verify.integrators.tracing.domain import domain_of

@@ -4,8 +4,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 
-from verify.integrators.probe import FINER, Measured, Point, Row, Trial, measured
+from verify.integrators.probe import FINER, Measured, Row, Trial, measured
 from verify.integrators.results import NOTHING, Claims, Counterexample, Finding, judged
+from verify.integrators.step_probes import Point
 from verify.prose import Prose, joined, prose
 from verify.verdict import Verdict
 

@@ -11,7 +11,8 @@ from fractions import Fraction
 import sympy
 
 from verify.algebra.formula import symbol
-from verify.integrators.probe import PROBES, Point, Trial, flow_of
+from verify.integrators.probe import Trial, flow_of
+from verify.integrators.step_probes import PROBES, Point
 from verify.integrators.tracing.misread import moment
 
 _SIZES = {"duals": Fraction(1, 2**20), "floats": Fraction(1, 2**9)}

@@ -10,7 +10,8 @@ from verify.algebra.formula import symbol
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.fitted_order import fitted
 from verify.integrators.mean_time import mean_time
-from verify.integrators.probe import LADDERS, PROBES, Point, Trial, distance, flow_of
+from verify.integrators.probe import LADDERS, Trial, distance, flow_of
+from verify.integrators.step_probes import PROBES, Point
 from verify.integrators.tracing.clocks import MOMENTS, stands_still
 
 _POINTS = 2
