@@ -53,6 +53,7 @@ BAD = [
     ("nowhere_at_all:step", [], "does not import: ModuleNotFoundError"),
     ("broken:step", [], "does not import: ZeroDivisionError: division by zero"),
     ("quits:step", [], "does not import: SystemExit: 3"),
+    ("leaves:step", [], "does not import: SystemExit: 0"),
     ("spelt:step", [], "does not import: SyntaxError"),
     ("mine:other", [], "mine has no other; it has: step"),
     ("many:setp", [], "is step meant? it has: step, f0, f1, f10, f11, f2, f3, f4, and 5 more"),
@@ -74,6 +75,7 @@ def test_what_cannot_be_called_is_bad_input_in_one_line(
 ) -> None:
     (folder / "broken.py").write_text("print('about to')\n1 / 0\n")
     (folder / "quits.py").write_text("import sys\nsys.exit(3)\n")
+    (folder / "leaves.py").write_text("import os\nos._exit(0)\n")
     (folder / "spelt.py").write_text("def step(:\n")
     many = [*(f"f{k}" for k in range(12)), "step"]
     (folder / "many.py").write_text("".join(f"def {name}(p, q, h): ...\n" for name in many))
@@ -83,7 +85,7 @@ def test_what_cannot_be_called_is_bad_input_in_one_line(
     assert (status, out) == (2, "")
     assert said in err
     assert len([line for line in err.splitlines() if line != "about to"]) == 1
-    for name in ("broken", "quits", "spelt", "many", "two"):
+    for name in ("broken", "quits", "leaves", "spelt", "many", "two"):
         sys.modules.pop(name, None)
 
 

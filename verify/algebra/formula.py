@@ -9,8 +9,10 @@ import ast
 import math
 import operator
 import re
+import sys
 import warnings
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from functools import lru_cache
 from types import ModuleType
 
@@ -67,7 +69,23 @@ class _Printer(StrPrinter):  # type: ignore[misc]
 @lru_cache(maxsize=512)
 def to_text(expression: sympy.Expr) -> str:
     """The expression as a formula that `parse` reads back, to an equal expression."""
-    return str(_Printer().doprint(expression))
+    with any_length():
+        return str(_Printer().doprint(expression))
+
+
+@contextmanager
+def any_length() -> Iterator[None]:
+    """Whole numbers are written in it however long they are; Python writes 4300 digits at most.
+
+    That is for numbers that come from outside. These do not: 10^1000, which a formula may hold,
+    has 7000 digits in its seventh power.
+    """
+    before = sys.get_int_max_str_digits()
+    sys.set_int_max_str_digits(0)
+    try:
+        yield
+    finally:
+        sys.set_int_max_str_digits(before)
 
 
 def parameter_name(name: str) -> str:

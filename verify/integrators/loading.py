@@ -13,7 +13,7 @@ from pathlib import Path
 from types import ModuleType
 
 from verify.errors import InputError
-from verify.integrators.step import TIME_LIMIT, Step, Theirs, last_line, quiet
+from verify.integrators.step import TIME_LIMIT, Step, Theirs, contained, last_line
 
 _NAMES = {
     **dict.fromkeys(("p", "v", "p0", "momentum", "velocity", "mom", "vel"), "p"),
@@ -40,7 +40,7 @@ def load(target: str, called: str = "integrator") -> Callable[..., Theirs]:
         raise InputError(called, target, "write it as MODULE:FUNCTION or file.py:FUNCTION")
     if place.endswith(":"):
         raise InputError(called, target, f"write one : in it, as {place[:-1]}:{name}")
-    with quiet():
+    with contained():
         module = _module(place, target, called)
         found: Theirs = module
         for part in name.split("."):

@@ -5,13 +5,14 @@ gets signals.
 """
 
 import contextlib
+import os
 import signal
 import sys
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any, Protocol, TypeAlias, TypeVar
+from typing import Any, NoReturn, Protocol, TypeAlias, TypeVar
 
 from verify.errors import InputError
 from verify.integrators.number_type import DOUBLE, NumberType
@@ -43,10 +44,23 @@ def last_line(error: BaseException) -> str:
 
 
 @contextlib.contextmanager
-def quiet() -> Iterator[None]:
-    """What is printed goes to standard error: JSON stands alone on standard output."""
-    with contextlib.redirect_stdout(sys.stderr):
-        yield
+def contained() -> Iterator[None]:
+    """Around code of a user's: what it prints goes to standard error, as JSON stands alone on
+    standard output, and `os._exit` is as `sys.exit`, as it would end this program without a word.
+    """
+    end, own = os._exit, os.getpid()
+
+    def stopped(status: int) -> NoReturn:
+        if os.getpid() != own:  # a process that it has forked
+            end(status)
+        raise SystemExit(status)
+
+    os._exit = stopped
+    try:
+        with contextlib.redirect_stdout(sys.stderr):
+            yield
+    finally:
+        os._exit = end
 
 
 @dataclass
@@ -159,10 +173,10 @@ def limited(owner: Limited, too_long: str = "a call of it does not end") -> Iter
         raise StepError("its calls took all the time that there is")
     begun = time.perf_counter()
     try:
-        with quiet(), within(owner.left, f"{too_long} within {owner.left:.3g} s"):
+        with contained(), within(owner.left, f"{too_long} within {owner.left:.3g} s"):
             yield
     except SystemExit:
-        raise StepError("it calls sys.exit") from None
+        raise StepError("it calls sys.exit, or os._exit") from None
     finally:
         owner.left -= time.perf_counter() - begun
 

@@ -25,8 +25,10 @@ def special_values(proof: Proof, scheme: Scheme) -> list[SpecialValue]:
     found, hamiltonian = [], proof.step_map.hamiltonian
     for requirement in proof.first.domain.requirements:
         names = requirement.expression.free_symbols
-        polynomial = sympy.Poly(requirement.expression, *names) if len(names) == 1 else None
-        if polynomial is None or polynomial.degree() != 1:
+        if len(names) != 1 or not requirement.expression.is_polynomial(*names):
+            continue
+        polynomial = sympy.Poly(requirement.expression, *names)
+        if polynomial.degree() != 1:
             continue
         slope, constant = polynomial.all_coeffs()
         if not (slope.is_Rational and constant.is_Rational):

@@ -1,5 +1,7 @@
 """Text to exact expression: what is read has the value that was written."""
 
+import sys
+
 import pytest
 import sympy
 from hypothesis import given
@@ -118,3 +120,10 @@ def test_a_product_with_several_numbers_is_their_product() -> None:
     nested = sympy.Add(p, sympy.Mul(6, -1, p, evaluate=False), evaluate=False)
     ring, (x,) = embed([nested], ["p"])
     assert ring.text(x) == "-5*p"
+
+
+def test_a_formula_is_written_however_long_its_numbers_are() -> None:
+    """And Python's own limit is as before afterwards."""
+    most = sys.get_int_max_str_digits()
+    assert len(to_text(sympy.Integer(10) ** 7000 * symbol("q"))) == 7001 + len("*q")
+    assert sys.get_int_max_str_digits() == most > 0

@@ -97,6 +97,9 @@ def test_values_that_are_not_found_are_said_to_be_few() -> None:
         ("(p**4 + q**4)*(a**2 - 2)", []),
         (PENDULUM, [("g", 0, None), ("m", 0, None)]),  # at l = 0 there is no H
         ("p**2/2 - cos(q)", []),
+        ("p**2/2 + sin(a)*q**3", []),
+        ("p**2/2 + (sqrt(a) - 1)*q**3", []),
+        ("p**2/2 + (a**(2/3) - 1)*q**3", []),
     ],
 )
 def test_what_holds_at_a_value_that_is_left_out(formula: str, found: list[Any]) -> None:

@@ -17,7 +17,7 @@ from verify.integrators.others import printed_libraries
 from verify.integrators.others.claims import claims_of
 from verify.integrators.others.methods.integrator import ReleasedIntegrator
 from verify.integrators.others.methods.measured import FAILURES
-from verify.integrators.step import last_line, quiet
+from verify.integrators.step import contained, last_line
 from verify.integrators.tables.check import read_tables
 from verify.prose import prose
 from verify.scenes.results.claim import ClaimResult
@@ -102,7 +102,7 @@ def _library(name: str) -> Found:
     if version is None:
         why = _LEAST.format(getattr(module, "EXTRA", "peers"))
         return Found(module.TITLE, None, (), ((module.TITLE, why),))
-    with quiet():
+    with contained():
         claims, failed = _claims(module, f"{module.TITLE} {version}".strip())
     left_out = (*failed, *((f"{module.TITLE}: {what}", why) for what, why in module.LEFT_OUT))
     return Found(module.TITLE, version, tuple(claims), left_out, bool(failed))
