@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tests.end_to_end.test_command_line import here
-from tests.helpers import user_steps
+from tests.helpers.programs import user_steps
 from tests.unit.integrators.test_check import found_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.degrees.check import check_step
