@@ -66,8 +66,20 @@ def unknown(
     given = plain_name(str(name))
     near = [x for x in plain if len(x) > 3 and re.match(rf"{re.escape(x)}\b", given)]
     near = sorted(near, key=len, reverse=True) or get_close_matches(given, plain, 1, 0.6)
-    meant = f"is {plain[near[0]]} meant? " if near else ""
+    meant = is_meant(plain[near[0]] if near else "")
     return InputError(source, name, f"unknown; {meant}allowed: {', '.join(names)}{more}")
+
+
+def nearest(name: str, names: Iterable[str]) -> str:
+    """Of those names the one that is meant, as far as its letters tell; empty where none is."""
+    from difflib import get_close_matches
+
+    return next(iter(get_close_matches(name, list(names), 1, 0.6)), "")
+
+
+def is_meant(name: str) -> str:
+    """The question whether that name is meant, and a blank; empty where there is none."""
+    return f"is {name} meant? " if name else ""
 
 
 def plain_name(name: str) -> str:

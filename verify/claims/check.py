@@ -10,7 +10,7 @@ from verify.claims.claim import Claim
 from verify.claims.file import ClaimsFile
 from verify.claims.judging import judged
 from verify.claims.plan import add_claims
-from verify.errors import InputError
+from verify.errors import InputError, is_meant, nearest
 from verify.execution.execute import OnResult, Store, execute
 from verify.execution.executors import ANYWHERE, Placement
 from verify.execution.plan import Plan
@@ -67,11 +67,8 @@ def prepare(file: ClaimsFile, only: Sequence[str] = ()) -> Check:
     """
     for wanted in only:
         if not any(_named(claim, wanted) for claim in file.claims):
-            from difflib import get_close_matches
-
             names = [claim.id for claim in file.claims]
-            near = get_close_matches(wanted.lower(), names, n=1, cutoff=0.6)
-            meant = f"is {near[0]} meant? " if near else ""
+            meant = is_meant(nearest(wanted.lower(), names))
             problem = f"no claim has this id; {meant}there are: {', '.join(names)}"
             raise InputError("--only", wanted, problem)
     chosen = [c for c in file.claims if not only or any(_named(c, name) for name in only)]

@@ -12,7 +12,7 @@ from fractions import Fraction
 from pathlib import Path
 from types import ModuleType
 
-from verify.errors import InputError
+from verify.errors import InputError, is_meant, nearest
 from verify.integrators.step import TIME_LIMIT, Step, Theirs, contained, last_line
 
 _NAMES = {
@@ -55,16 +55,13 @@ def load(target: str, called: str = "integrator") -> Callable[..., Theirs]:
 
 def _has(module: ModuleType, wanted: str) -> str:
     """Which functions it has, the nearest to what was wanted first."""
-    from difflib import get_close_matches
-
     known = sorted(name for name, x in vars(module).items() if inspect.isfunction(x))
     if not known:
         return "it has no function"
-    near = get_close_matches(wanted, known, 1, 0.6)
-    meant = f"is {near[0]} meant? " if near else ""
-    listed = [*near, *(name for name in known if name not in near)]
+    near = nearest(wanted, known)
+    listed = sorted(known, key=lambda name: name != near)
     more = f", and {len(listed) - _LISTED} more" if len(listed) > _LISTED else ""
-    return f"{meant}it has: {', '.join(listed[:_LISTED])}{more}"
+    return f"{is_meant(near)}it has: {', '.join(listed[:_LISTED])}{more}"
 
 
 def _module(place: str, target: str, called: str) -> ModuleType:

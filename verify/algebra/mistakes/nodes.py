@@ -3,7 +3,8 @@
 import ast
 import re
 from collections.abc import Collection
-from difflib import get_close_matches
+
+from verify.errors import is_meant, nearest
 
 _LONGEST = 40  # characters of what is quoted
 _CASES = "a formula has no cases, since H must be smooth"
@@ -78,7 +79,6 @@ def unknown_function(node: ast.Call, line: str, functions: Collection[str]) -> s
     if not isinstance(node.func, ast.Name | ast.Attribute) or called in _VARIABLES:
         first = called if called.isalnum() else f"({called})"
         return f"{first} is no function; write {first}*({inside}) for a product"
-    near = get_close_matches(name.lower(), sorted(functions), n=1, cutoff=0.6)
     known = name.lower().replace("arc", "a")
     if known in functions and known != called.lower():
         more = f"write {known}({inside})"
@@ -87,7 +87,7 @@ def unknown_function(node: ast.Call, line: str, functions: Collection[str]) -> s
     elif name.lower() in _WITH_CASES:
         more = f"{_CASES}; {listed}"
     else:
-        more = (f"is {near[0]} meant? " if near else "") + listed
+        more = is_meant(nearest(name.lower(), sorted(functions))) + listed
     return f"unknown function {called!r}; {more}"
 
 
@@ -121,8 +121,7 @@ def unknown_name(name: str, names: Collection[str], functions: Collection[str]) 
     if name in functions:
         of = "q" if names else "2"
         return f"unknown name {name!r}; it is a function: write {name}({of}); {listed}"
-    near = get_close_matches(name, sorted(names), n=1, cutoff=0.6)
-    meant = f"is {near[0]} meant? " if near else ""
+    meant = is_meant(nearest(name, sorted(names)))
     return f"unknown name {name[:_LONGEST]!r}; {meant}{listed}"
 
 

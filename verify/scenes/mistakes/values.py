@@ -5,7 +5,7 @@ from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
-from verify.errors import NOT_GIVEN, InputError, plain_name
+from verify.errors import NOT_GIVEN, InputError, is_meant, nearest, plain_name
 
 _LONGEST = 30  # characters of what is quoted
 # What others call a key, by what it is called here.
@@ -111,12 +111,9 @@ def _unknown_key(
     allowed = _keys_at(loc[:-1], model)
     if not allowed:
         return "unknown key"
-    from difflib import get_close_matches
-
     key = plain_name(str(loc[-1])).replace("-", "_")
     other = [ours for ours in (_KEYS.get(key), f"{_KEYS.get(key)}s") if ours in allowed]
-    near = other or get_close_matches(key, allowed, n=1, cutoff=0.6)
-    meant = f"is {near[0]} meant? " if near else ""
+    meant = is_meant(other[0] if other else nearest(key, allowed))
     return f"unknown key; {meant}allowed: {', '.join(allowed)}"
 
 
