@@ -181,7 +181,7 @@ class ChunkedLoop:
         """The states at the next stops; fewer where a number left the arithmetic's range."""
         kernel = self.kernel.function
         state = self._turned_back() if self.turns else self.state
-        beyond = max(0, self.run.steps - self.done - every * stops)
+        beyond = self.run.steps - self.done - every * stops
         found = self.arithmetic.states(kernel, every, stops, self.fixed, state, beyond)
         return list(takewhile(self._finite, found))
 

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
 
 from verify.flows.degrees.extrapolation import FlowInDegrees
 from verify.flows.extrapolation import NoFlowError
@@ -53,6 +54,7 @@ def distance_of(
     rows: list[tuple[float, float, float]] = []
     quiet, compared = 0, how == "floats"
 
+    @cache  # periods are looked for at the smallest step, which is one of the ladder's
     def ended(h: Fraction) -> tuple[DualProbe | FloatProbe, list[Ends[Fraction]]]:
         here = own.at(h, t)
         probe = DualProbe(here) if duals else FloatProbe(here)
