@@ -9,15 +9,16 @@ results are what each task gives by itself.
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from itertools import islice
+from typing import TypeVar
 
 from verify import lockstep
 from verify.execution.task import Task
-from verify.scenes.frozen import Frozen
 
 MOST_AT_ONCE = 16  # under way: two sets of lanes, so that one is full where a run in it has ended
 _MOST_IN_GROUP = 64  # so that results come in, and every worker has some
 
 Group = dict[str, Task]
+T = TypeVar("T")
 
 
 def groups(tasks: Mapping[str, Task], workers: int) -> list[Group]:
@@ -35,11 +36,8 @@ def groups(tasks: Mapping[str, Task], workers: int) -> list[Group]:
     return sorted(found, key=lambda part: -sum(task.cost for task in part.values()))
 
 
-def in_lockstep(
-    group: Group, compute: Callable[[str, Task], Frozen]
-) -> Iterator[tuple[str, Frozen]]:
-    """The result of each task as it is there. What a task raises is raised here."""
-    names = list(group)
+def in_lockstep(group: Group, compute: Callable[[str, Task], T]) -> Iterator[T]:
+    """What is computed of each task as it is there. What a task raises is raised here."""
     calls = (partial(compute, name, task) for name, task in group.items())
-    for number, ended in lockstep.together(calls, MOST_AT_ONCE):
-        yield names[number], ended.result()
+    for _, ended in lockstep.together(calls, MOST_AT_ONCE):
+        yield ended.result()

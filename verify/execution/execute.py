@@ -8,6 +8,7 @@ code is taken for one of this.
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
+from itertools import chain
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -106,8 +107,9 @@ def execute(
     results: dict[str, Frozen] = {}
 
     def finish(name: str, result: Frozen) -> None:
-        results[name] = result
-        if done:
+        known = name in results or name not in plan.tasks  # what is given may be kept already
+        results.setdefault(name, result)
+        if done and not known:
             done(name, result)
 
     waiting: dict[str, Task] = {}
@@ -117,6 +119,8 @@ def execute(
             waiting[name] = task
         else:
             finish(name, kept)
+    for given in [each.key for task in waiting.values() for each in task.gives]:
+        waiting.pop(given, None)
 
     def take(place: Place, tasks: Mapping[str, Task], one_by_one: bool = False) -> None:
         parts = groups(tasks, place.room)
@@ -151,6 +155,11 @@ def compute_task(task: Task, keeper: Keeper = NOTHING) -> Frozen:
     return task.compute(keeper)
 
 
+def compute_all(task: Task, keeper: Keeper) -> list[tuple[str, Frozen]]:
+    """What comes of one task: its result and those that it gives, by the keys of their tasks."""
+    return [(each.key, result) for each, result in task.computed(keeper)]
+
+
 def _modules(tasks: Mapping[str, Task]) -> list[str]:
     """What workers import before their first call, so that it is done once for all of them."""
     kinds = {type(task) for task in tasks.values()}
@@ -167,16 +176,17 @@ def _enough(tasks: Mapping[str, Task], where: Placement) -> Placement:
 
 
 def _computed(part: Group, store: Store) -> Iterator[tuple[str, Frozen]]:
-    """The results of tasks that are computed together, in this process."""
+    """The results of tasks that are computed together, and those that they give, in this
+    process."""
 
-    def compute(name: str, task: Task) -> Frozen:
-        return compute_task(task, store.keeper(name))
+    def compute(name: str, task: Task) -> list[tuple[str, Frozen]]:
+        return compute_all(task, store.keeper(name))
 
     if len(part) > 1:
-        yield from in_lockstep(part, compute)
+        yield from chain.from_iterable(in_lockstep(part, compute))
         return
     for name, task in part.items():
-        yield name, compute(name, task)
+        yield from compute(name, task)
 
 
 def compute_group(part: Group, store: Store) -> dict[str, Frozen]:

@@ -6,6 +6,7 @@ A kind of task is one class, in a file of the study whose it is.
 import hashlib
 import json
 from abc import abstractmethod
+from collections.abc import Iterator
 from typing import Any, ClassVar
 
 from verify.execution.keeping import Keeper
@@ -40,6 +41,15 @@ class Task(Frozen):
     @abstractmethod
     def compute(self, keeper: Keeper) -> Frozen:
         """Do it; a run goes on from the checkpoint that the keeper may have."""
+
+    @property
+    def gives(self) -> "tuple[Task, ...]":
+        """Tasks whose results come with its own, and need not be computed beside it."""
+        return ()
+
+    def computed(self, keeper: Keeper) -> "Iterator[tuple[Task, Frozen]]":
+        """Its result, and those that it gives, each with its task: what `compute` makes of each."""
+        yield self, self.compute(keeper)
 
     def proved(self) -> Frozen | None:
         """Its result where a proof gives it at once, and nothing is to be computed."""

@@ -5,7 +5,7 @@ plane, or what is divided, or what it is divided by, is 0 or of no known digit.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -16,6 +16,7 @@ from verify.exploration.sample import Sample
 from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.studies.separation.chain import separated_chains
+from verify.studies.separation.trail import Trail
 from verify.studies.separation.working import Stopped
 
 DIGITS = 40  # of what stands for exact arithmetic
@@ -62,9 +63,9 @@ def rounding_share(sample: Sample, digits: int = DIGITS) -> float | None:
     return None if not truncation or not rounding else _lg(rounding / truncation)
 
 
-def _greatest(trail: Sequence[Fraction], bound: Fraction) -> Fraction:
+def _greatest(trail: Trail, bound: Fraction) -> Fraction:
     """The greatest |value|; 0 where no digit of it is known, since noise is not what is hunted."""
-    top = max(map(abs, trail))
+    top = trail.largest
     return top if top > 10 * bound else Fraction(0)
 
 

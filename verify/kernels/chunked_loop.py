@@ -1,11 +1,12 @@
 """One kernel's loop in chunks, what is noted on the way, and its checkpoints."""
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache
 from itertools import takewhile
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
 from pydantic import PlainSerializer, PlainValidator, TypeAdapter
 
@@ -16,6 +17,7 @@ from verify.arithmetic.number_system import Arithmetic, State
 from verify.execution.keeping import fraction_of, fraction_text
 from verify.kernels.clock import clock_inputs, first_rest
 from verify.kernels.kernel import Kernel
+from verify.kernels.notes import LazyNote, Notes
 from verify.kernels.run_inputs import RunInputs
 from verify.kernels.step import tangent_map
 from verify.scenes.results.run import SeriesPoint
@@ -30,27 +32,6 @@ _SCALED = {"lam": 1, "lam_top": 1, "mse": 2, "top": 1, "dj": 1, "s_top": 1, "w":
 _EXTREMES = ("dj_low", "dj_high", "lam_low", "lam_high")
 Exact = Annotated[Fraction, PlainValidator(fraction_of), PlainSerializer(fraction_text)]
 Note = Mapping[str, Fraction]
-
-
-class LazyNote(Mapping[str, Fraction]):
-    """Numbers by their names, each made where it is first looked at: of most notes few are."""
-
-    def __init__(self, names: tuple[str, ...], make: Callable[[str], Fraction]) -> None:
-        self._names, self._make = names, make
-        self._made: dict[str, Fraction] = {}
-
-    def __getitem__(self, name: str) -> Fraction:
-        if name not in self._made:
-            if name not in self._names:
-                raise KeyError(name)
-            self._made[name] = self._make(name)
-        return self._made[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._names)
-
-    def __len__(self) -> int:
-        return len(self._names)
 
 
 @dataclass(frozen=True)
@@ -70,6 +51,18 @@ class Reached:
     trail: tuple[Mapping[str, Exact], ...] = ()
     tangents: tuple[Mapping[str, Exact], ...] = ()
     series: tuple[SeriesPoint, ...] = ()
+
+
+class _Now(NamedTuple):
+    """`Reached` while the loop goes on."""
+
+    done: int
+    seconds: float
+    state: State
+    seen: dict[str, Fraction]
+    trail: Notes[Mapping[str, Fraction]]
+    tangents: Notes[Mapping[str, Fraction]]
+    series: Notes[SeriesPoint]
 
 
 @cache
@@ -115,8 +108,10 @@ class ChunkedLoop:
         inputs = (run.start, run.parameters, run.scheme, run.steps, run.points)
         self._label = f"{kinds} {' '.join(map(str, limits))} {inputs}"
         kept = run.keeper.load(self._label)
-        self.reached = Reached() if kept is None else self._restored(kept)
-        self.done, self.seconds = self.reached.done, self.reached.seconds
+        begun = Reached() if kept is None else self._restored(kept)
+        self.done, self.seconds = begun.done, begun.seconds
+        notes = Notes(begun.trail), Notes(begun.tangents), Notes(begun.series)
+        self._now = _Now(begun.done, begun.seconds, begun.state, begun.seen, *notes)
 
     def _first_state(self) -> State:
         start, number = self.run.start, self.arithmetic.number
@@ -186,8 +181,7 @@ class ChunkedLoop:
         return list(takewhile(self._finite, found))
 
     def _finite(self, state: State) -> bool:
-        floats = (state[k] for k in self._doubles)
-        return all(x - x == 0 for x in floats)
+        return all(map(math.isfinite, map(state.__getitem__, self._doubles)))
 
     def _last_good(self, count: int) -> int:
         """The greatest number of steps below `count` that stays in range, by bisection."""
@@ -202,26 +196,31 @@ class ChunkedLoop:
 
     # -- what is noted ------------------------------------------------------------------------
 
+    @property
+    def reached(self) -> Reached:
+        """All that was taken up so far."""
+        now = self._now
+        noted = tuple(now.trail), tuple(now.tangents), tuple(now.series)
+        return Reached(now.done, now.seconds, now.state, now.seen, *noted)
+
     def _note(self) -> None:
         """Takes up the state. It is taken up whole: an interruption may come amid this."""
-        before, state, done = self.reached, self.state, self.done
+        before, state, done = self._now, self.state, self.done
         seen = self._extremes(state)
-        after = replace(before, done=done, seconds=self.seconds, state=state, seen=seen)
+        trail, tangents, series = before.trail, before.tangents, before.series
         if done % self.section == 0 or done == self.run.steps:
-            tangents, series = before.tangents, before.series
             if self._tangent:
-                carried = LazyNote(self._tangent, lambda name: self._of_tangent(name, state, done))
-                tangents += (carried,)
+                carried = LazyNote(self._tangent, self._of_tangent, state, done)
+                tangents = tangents.and_then(carried)
             if seen:
-                series += (self._point(len(before.trail) * self.section + 1, seen),)
-            final = LazyNote(self._observables, lambda name: self._final(name, state, done))
-            trail = (*before.trail, final)
-            after = replace(after, seen={}, trail=trail, tangents=tangents, series=series)
-        self.reached = after
+                series = series.and_then(self._point(len(trail) * self.section + 1, seen))
+                seen = {}
+            trail = trail.and_then(LazyNote(self._observables, self._final, state, done))
+        self._now = _Now(done, self.seconds, state, seen, trail, tangents, series)
 
     def _extremes(self, state: State) -> dict[str, Fraction]:
         """Those since the last note."""
-        radius, found = self.arithmetic.radius or (lambda _: Fraction(0)), dict(self.reached.seen)
+        radius, found = self.arithmetic.radius or (lambda _: Fraction(0)), dict(self._now.seen)
         for name in _EXTREMES:
             if name in self._at:
                 x, low = state[self._at[name]], name.endswith("low")
@@ -285,7 +284,7 @@ class ChunkedLoop:
     def keep(self) -> None:
         """Writes a checkpoint: all that is needed to go on with the same bits."""
         # A ball's radius is not kept; such runs are short.
-        if self.arithmetic.radius is None and self.reached.done:
+        if self.arithmetic.radius is None and self._now.done:
             self.run.keeper.save(self._label, _kept().dump_python(self._whole(), mode="json"))
 
     def _whole(self) -> Reached:

@@ -13,6 +13,8 @@ from verify.kernels.kernel import Kernel
 from verify.kernels.step.in_degrees import map_of
 from verify.kernels.turns import Times, Turns, turns_of
 
+SECTIONS = 16  # notes of a run, where nothing is said
+
 
 def _compilable(hamiltonian: Hamiltonian, scheme: str) -> Hamiltonian:
     """H with its parameters as the kernel's arguments, where the scheme takes it so.
@@ -51,7 +53,7 @@ class RunInputs:
         observables: frozenset[str],
         points: int,
         keeper: Keeper = NOTHING,
-        sections: int = 16,
+        sections: int = SECTIONS,
         shares_kernel: bool = False,
     ) -> None:
         self.hamiltonian, self.scheme = _compilable(hamiltonian, scheme), scheme
@@ -70,7 +72,7 @@ class RunInputs:
         """The same run with other observables, and without a series."""
         other = copy(self)
         other.observables, other.points = observables, 0
-        other.sections = 16
+        other.sections = SECTIONS
         return other
 
     def inputs(self, kernel: Kernel, shift: int) -> dict[str, Fraction]:

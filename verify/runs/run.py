@@ -9,6 +9,8 @@ depend on (p, q), Λ = (1 + ΔJ)^N − 1 is enclosed by ball arithmetic.
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from functools import cached_property
+from typing import Any
 
 from verify import arithmetic as number_systems
 from verify.algebra.enclosure import enclose
@@ -22,6 +24,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import Given, point_of
 from verify.hamiltonians.times_on_the_way import check_times
 from verify.kernels.chunked_loop import Progress
+from verify.kernels.run_inputs import SECTIONS
 from verify.kernels.step.in_degrees import map_of, preserves
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.digits_on_demand import Measured, choose, measure
@@ -37,22 +40,74 @@ from verify.schemes.degrees.canonical_map import CanonicalMap
 from verify.schemes.step_map import StepMap
 
 
+class AskedRun:
+    """A run as it is asked for: what a proof gives of it, and the steps that give the rest."""
+
+    def __init__(
+        self,
+        hamiltonian: Hamiltonian,
+        scheme: str,
+        *,
+        q: Given,
+        p: Given,
+        step_size: Exact,
+        steps: int,
+        t0: Exact = 0,
+        arithmetic: str = float64.NAME,
+        digits: int = 17,
+        observables: Sequence[str] | None = None,
+        points: int = 0,
+        sections: int = SECTIONS,
+        shares_kernel: bool = False,
+        keeper: Keeper = NOTHING,
+    ) -> None:
+        """See `run`, which takes the same arguments."""
+        scheme = canonical(scheme)
+        h = positive(step_size, "step_size")
+        self.begun = Start(hamiltonian, scheme, h, point_of(hamiltonian, q, p), rational(t0, "t0"))
+        self.steps, self.digits = steps, digits
+        self.wanted = observed(hamiltonian, observables)
+        check(hamiltonian, steps, digits, self.wanted)
+        check_times(hamiltonian, self.begun.t0, h, steps)
+        whole("points", points, 0)
+        step_map = map_of(hamiltonian, scheme)
+        self.known = proved(step_map, h, steps, digits) if self.wanted or points else {}
+        needed = frozenset(o for o in self.wanted if o not in self.known)
+        self.kernel_run = KernelRun(
+            hamiltonian,
+            scheme,
+            self.begun.inputs,
+            steps,
+            needed | _series_needs(self.known, points),
+            points,
+            keeper,
+            sections,
+            shares_kernel,
+        )
+        self._arithmetic = arithmetic
+        self._measured: Measured | None = None
+
+    @cached_property
+    def arithmetic(self) -> str:
+        """The one that it is done in."""
+        asked = self._arithmetic
+        return choose(self.kernel_run, self.digits) if asked == AUTO else asked
+
+    def measured(self, progress: Progress | None = None) -> Measured:
+        """All steps, done once; `progress` is called with the number of those done."""
+        if self._measured is None:
+            given = self.kernel_run, self.arithmetic, self.digits, self.known
+            self._measured = _run(*given, progress)
+        return self._measured
+
+    def result(self, progress: Progress | None = None) -> RunResult:
+        """What is told of it."""
+        done = self.measured(progress)
+        return _result(self.begun, self.steps, self.digits, self.wanted, self.known, done)
+
+
 def run(
-    hamiltonian: Hamiltonian,
-    scheme: str,
-    *,
-    q: Given,
-    p: Given,
-    step_size: Exact,
-    steps: int,
-    t0: Exact = 0,
-    arithmetic: str = float64.NAME,
-    digits: int = 17,
-    observables: Sequence[str] | None = None,
-    points: int = 0,
-    progress: Progress | None = None,
-    shares_kernel: bool = False,
-    keeper: Keeper = NOTHING,
+    hamiltonian: Hamiltonian, scheme: str, *, progress: Progress | None = None, **asked: Any
 ) -> RunResult:
     """Run `steps` steps of `step_size` from (q, p) and report p, q and the observables.
 
@@ -60,34 +115,13 @@ def run(
     depends on time. `arithmetic`: one of `verify.arithmetic.names()`, or `auto` for the fastest
     with rigorous bounds. `digits`: significant digits wanted (float64 gives what it knows).
     `observables`: where they are left out, those of `verify.scenes.observables` for so many
-    degrees. `points`: at most so many points of a thinned series are kept. `progress` is called
-    with the number of steps done. `keeper` keeps checkpoints, from which an interrupted run goes
-    on. `shares_kernel`: see `verify.kernels.run_inputs`. Raises InputError for h ≤ 0, N < 1, a
-    parameter without a value, unknown names, lists of another length.
+    degrees. `points`: at most so many points of a thinned series are kept. `sections`: else the
+    state is noted so often. `progress` is called with the number of steps done. `keeper` keeps
+    checkpoints, from which an interrupted run goes on. `shares_kernel`: see
+    `verify.kernels.run_inputs`. Raises InputError for h ≤ 0, N < 1, a parameter without a value,
+    unknown names, lists of another length.
     """
-    scheme = canonical(scheme)
-    h = positive(step_size, "step_size")
-    begun = Start(hamiltonian, scheme, h, point_of(hamiltonian, q, p), rational(t0, "t0"))
-    wanted = observed(hamiltonian, observables)
-    check(hamiltonian, steps, digits, wanted)
-    check_times(hamiltonian, begun.t0, h, steps)
-    whole("points", points, 0)
-    known = proved(map_of(hamiltonian, scheme), h, steps, digits) if wanted or points else {}
-    needed = frozenset(o for o in wanted if o not in known) | _series_needs(known, points)
-    kernel_run = KernelRun(
-        hamiltonian,
-        scheme,
-        begun.inputs,
-        steps,
-        needed,
-        points,
-        keeper,
-        shares_kernel=shares_kernel,
-    )
-    if arithmetic == AUTO:
-        arithmetic = choose(kernel_run, digits)
-    done = _run(kernel_run, arithmetic, digits, known, progress)
-    return _result(begun, steps, digits, wanted, known, done)
+    return AskedRun(hamiltonian, scheme, **asked).result(progress)
 
 
 def proved_run(

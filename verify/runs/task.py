@@ -7,8 +7,9 @@ from verify.arithmetic import AUTO, in_lanes, step_cost
 from verify.arithmetic.systems import float64, mpfr
 from verify.execution.keeping import Keeper
 from verify.execution.task import StartTask
+from verify.kernels.run_inputs import SECTIONS
 from verify.runs.float64 import DIRECT_STEPS
-from verify.runs.run import proved_run, run
+from verify.runs.run import AskedRun, proved_run
 from verify.scenes.results.run import RunResult
 from verify.scenes.values import Number, StepSize
 
@@ -28,6 +29,7 @@ class RunTask(StartTask):
     digits: int
     observables: tuple[str, ...] | None
     points: int
+    sections: int = SECTIONS
     shares_kernel: bool = False
 
     @property
@@ -53,9 +55,13 @@ class RunTask(StartTask):
 
     def proved(self) -> RunResult | None:
         """What a proof gives of the run without a step; None where it is not all that is asked."""
-        asked = self.asked("arithmetic", "points", "shares_kernel")
+        asked = self.asked("arithmetic", "points", "sections", "shares_kernel")
         return proved_run(self.exact_hamiltonian(), **asked)
+
+    def asked_run(self, keeper: Keeper) -> AskedRun:
+        """The run that `compute` does."""
+        return AskedRun(self.exact_hamiltonian(), **self.asked(), keeper=keeper)
 
     def compute(self, keeper: Keeper) -> RunResult:
         """The run, from its last checkpoint where there is one."""
-        return run(self.exact_hamiltonian(), **self.asked(), keeper=keeper)
+        return self.asked_run(keeper).result()

@@ -25,13 +25,13 @@ from verify.studies.proofs.one import ProofTask
 def count_tasks(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """The tasks that are performed in this process from now on."""
     seen: list[Any] = []
-    perform = execution.compute_task
+    perform = execution.compute_all
 
-    def counting(task: Any, *more: Any) -> Frozen:
+    def counting(task: Any, *more: Any) -> list[tuple[str, Frozen]]:
         seen.append(task)
         return perform(task, *more)
 
-    monkeypatch.setattr(execution, "compute_task", counting)
+    monkeypatch.setattr(execution, "compute_all", counting)
     return seen
 
 

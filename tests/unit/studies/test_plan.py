@@ -50,7 +50,7 @@ def test_tasks_that_differ_in_anything_have_different_keys(tmp_path: Path) -> No
         "step_size": Fraction(1, 11), "steps": 11,
         "q": Fraction(1), "p": Fraction(1), "t0": Fraction(1),
         "arithmetic": "mpmath", "digits": 18, "observables": ("mse",), "points": 3,
-        "shares_kernel": True,
+        "shares_kernel": True, "sections": 17,
     }  # fmt: skip
     assert set(changes) | {"kind"} == set(RunTask.model_fields)
     keys = [base.model_copy(update={n: v}).key for n, v in changes.items()]

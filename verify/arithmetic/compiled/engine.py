@@ -132,5 +132,5 @@ def _as_far_as_the_first(pending: Sequence[Pending]) -> list[Pending]:
 
 def _called(linked: native.Native, size: int, given: Words) -> Words:
     found = np.empty((size, given.shape[1]), dtype=np.uint64)
-    linked(given.ctypes.data_as(ctypes.c_char_p), found.ctypes.data_as(ctypes.c_char_p))
+    linked(given.ctypes.data, found.ctypes.data)
     return found

@@ -57,7 +57,7 @@ def linked(code: bytes, name: str = "main") -> Native:
         engine.finalize_object()
         _ENGINES.append(engine)
         address = engine.get_function_address(name)
-    return ctypes.CFUNCTYPE(None, ctypes.c_char_p, ctypes.c_char_p)(address)
+    return ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)(address)
 
 
 @cache

@@ -5,7 +5,7 @@ import struct
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
-from itertools import accumulate
+from itertools import accumulate, count
 from typing import Any
 
 from verify import code_cache
@@ -73,6 +73,12 @@ class Layout:
         """Where each result begins, and where the last one ends."""
         return (0, *accumulate(self.result_sizes))
 
+    @cached_property
+    def pieces(self) -> struct.Struct:
+        """Takes the results apart: doubles as they are, and the bytes of what is longer."""
+        kinds = zip(self.results, self.result_sizes, strict=True)
+        return struct.Struct("<" + "".join("d" if k == "float" else f"{n}s" for k, n in kinds))
+
     def packed(self, arguments: Sequence[Word]) -> bytes:
         """The first arguments, or all; OverflowError where one is outside the format."""
         return b"".join(map(_packed, arguments, self.arguments, self.argument_sizes))
@@ -87,16 +93,15 @@ class Layout:
         """The results; ValueError where a function had no value outside a loop."""
         if not raw[self.result_at[-1]]:
             raise ValueError("a function has no value there")
-        values = tuple(self.result(raw, k) for k in range(len(self.results)))
+        values = tuple(map(self.result, self.pieces.unpack_from(raw), count()))
         return values if self.returns_tuple else values[0]
 
-    def result(self, raw: bytes, index: int) -> Word:
-        """One of the results."""
-        kind, at = self.results[index], self.result_at
-        if kind == "float":
-            return float(_DOUBLE.unpack_from(raw, at[index])[0])
-        number = int.from_bytes(raw[at[index] : at[index + 1]], "little", signed=True)
-        return number if kind == "int" else Fixed(number, self.fraction)
+    def result(self, piece: float | bytes, index: int) -> Word:
+        """One of the results, from its piece."""
+        if isinstance(piece, float):
+            return piece
+        number = int.from_bytes(piece, "little", signed=True)
+        return number if self.results[index] == "int" else Fixed(number, self.fraction)
 
 
 def _packed(value: Any, kind: str, size: int) -> bytes:

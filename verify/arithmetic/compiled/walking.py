@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import count
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -29,23 +30,24 @@ class Walk(NamedTuple):
 class State(Sequence[Word]):
     """What a kernel carries, at one stop; each number is read where it is looked at."""
 
-    __slots__ = ("_layout", "_raw")
+    __slots__ = ("_layout", "_pieces", "_raw")
 
     def __init__(self, layout: Layout, raw: bytes) -> None:
         self._layout, self._raw = layout, raw
+        self._pieces = layout.pieces.unpack_from(raw)  # the number of steps is the first
 
     def __len__(self) -> int:
-        return len(self._layout.results) - 1
+        return len(self._pieces) - 1
 
     def __getitem__(self, index: Any) -> Any:
         if isinstance(index, slice):
             return tuple(self[k] for k in range(*index.indices(len(self))))
-        if index < 0:
-            index += len(self)
-        return self._layout.result(self._raw, index + 1)
+        at = index + 1 if index >= 0 else index + len(self._pieces)
+        piece = self._pieces[at]
+        return piece if piece.__class__ is float else self._layout.result(piece, at)
 
     def __iter__(self) -> Iterator[Word]:
-        return (self._layout.result(self._raw, k) for k in range(1, len(self._layout.results)))
+        return map(self._layout.result, self._pieces[1:], count(1))
 
     def words(self) -> bytes:
         """All that is carried, as it lies in memory."""

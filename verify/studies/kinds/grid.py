@@ -5,12 +5,15 @@ from typing import Any
 
 from verify.execution.plan import Plan
 from verify.execution.study import Results, Study, called, known_results, toml_section
+from verify.kernels.run_inputs import SECTIONS
 from verify.runs.digits_on_demand import WORTH_COMPILING
 from verify.runs.task import RunTask
 from verify.scenes.observables import OF_FORM, observed
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene
 from verify.scenes.values import CLOSED_FORM
+from verify.studies.separation.task import does_for_first_link
+from verify.studies.separation.working import POINTS
 
 
 def grid_task(scene: Scene, scheme: str, h: Fraction, start: int) -> RunTask:
@@ -45,8 +48,17 @@ def _fields_of_all(scene: Scene) -> dict[str, Any]:
     return scene.hamiltonian_fields() | {
         "t0": scene.t0, "arithmetic": grid.arithmetic, "digits": grid.digits, "points": 0,
         "observables": observed(scene.exact_hamiltonian(), grid.observables),
+        "sections": POINTS if shares_runs(scene) else SECTIONS,
         "shares_kernel": grid.runs > 1 and grid.steps_in_all >= WORTH_COMPILING,
     }  # fmt: skip
+
+
+def shares_runs(scene: Scene) -> bool:
+    """Whether the grid's runs are its separations' first links too."""
+    grid = scene.grid
+    if grid is None or not grid.separate or not scene.exact_hamiltonian().planar:
+        return False
+    return does_for_first_link(grid.arithmetic, grid.digits)
 
 
 def grid_runs(scene: Scene, scheme: str, results: Results) -> list[RunResult]:

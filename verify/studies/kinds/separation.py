@@ -3,7 +3,8 @@
 In n degrees of freedom it is W that is split.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from itertools import repeat
 from typing import Any, TypeVar
 
 from verify.execution.plan import Plan
@@ -13,13 +14,13 @@ from verify.scenes.results.separation import SeparationResult
 from verify.scenes.results.separation_in_degrees import SeparationInDegrees
 from verify.scenes.run_sections import Grid
 from verify.scenes.scene import Scene
+from verify.studies.kinds.grid import grid_tasks, shares_runs
 from verify.studies.separation.form_separate import grid_in_degrees
 from verify.studies.separation.form_task import FormSeparationTask
 from verify.studies.separation.separate import as_grid
-from verify.studies.separation.task import SeparationTask
+from verify.studies.separation.task import DIGITS, SeparationTask
 
 Made = TypeVar("Made")
-_DIGITS = 6  # of each part
 
 
 def _rows(
@@ -32,11 +33,15 @@ def _rows(
         if scene.exact_hamiltonian().planar
         else (FormSeparationTask, grid.initial_values)
     )
+    shared = grid is scene.grid and shares_runs(scene)
+    runs: Iterator[dict[str, Any]] = repeat({})
+    if shared:  # they are in the same order
+        runs = ({"run": run} for run in grid_tasks(scene, scheme))
     return [
         [
             task(
                 **given, scheme=scheme, step_size=h, steps=grid.steps_for(h),
-                **dict(at), t0=scene.t0, digits=_DIGITS,
+                **dict(at), t0=scene.t0, digits=DIGITS, **next(runs),
             )
             for h in grid.step_sizes
         ]

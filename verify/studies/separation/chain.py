@@ -21,9 +21,10 @@ from verify.kernels.step.computation import step_map_of
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.digits_on_demand import choose
 from verify.runs.estimated import working_digits
-from verify.runs.run import proved
+from verify.runs.run import AskedRun, proved
 from verify.schemes.step_map import StepMap
 from verify.studies.separation.links import AsLink, LinksOnDemand, last_system
+from verify.studies.separation.trail import Trail
 from verify.studies.separation.working import (
     POINTS,
     Advance,
@@ -39,7 +40,7 @@ PARTS = ("input", "trajectory", "determinant", "product")  # of rounding, in the
 PARTS_IN_TIME = ("input", "clock", "trajectory", "determinant", "product")
 _WHOLES = ("lambda_working", "truncation", "total")
 QUANTITIES = (*_WHOLES, *PARTS)
-_CANCELLED = 20  # digits that the differences between links cancel, float64's and a few more
+CANCELLED = 20  # digits that the differences between links cancel, float64's and a few more
 _ATTEMPTS = 4
 
 
@@ -59,7 +60,7 @@ class Chain:
         """Λ, truncation, rounding, and its parts."""
         return *_WHOLES, *self.parts
 
-    def trail(self, name: str) -> tuple[tuple[Fraction, ...], Fraction]:
+    def trail(self, name: str) -> tuple[Trail, Fraction]:
         """A quantity of `quantities` at every checkpoint, and a bound of its error at all of them.
 
         truncation + all parts = lambda_working, exactly.
@@ -68,9 +69,8 @@ class Chain:
         if first is None:
             return last.trail, last.bound
         if first is last:
-            return (Fraction(0),) * len(self.marks), Fraction(0)
-        differences = tuple(b - a for a, b in zip(first.trail, last.trail, strict=True))
-        return differences, first.bound + last.bound
+            return Trail((0,) * len(self.marks), 1), Fraction(0)
+        return last.trail - first.trail, first.bound + last.bound
 
     def final(self, name: str) -> tuple[Fraction, Fraction]:
         """A quantity after the last step, and the bound of its error."""
@@ -143,18 +143,24 @@ def separated_chains(
     arithmetic: str = AUTO,
     advance: Advance = lambda _: None,
     keeper: Keeper = NOTHING,
+    run: AskedRun | None = None,
 ) -> Chains:
     """Of a scheme's run from exact inputs, every part to so many digits where that can be had.
 
     `arithmetic` stands for exact arithmetic; `auto` takes the fastest that can. `advance` is called
-    with the steps just done, of three runs of N steps. Raises Stopped where Λ has no value.
+    with the steps just done, of three runs of N steps. `run`, whose checkpoints are these, is taken
+    for the first link, and its arithmetic for all. Raises Stopped where Λ has no value.
     """
     kernel_run = KernelRun(hamiltonian, scheme, start, steps, frozenset({"lambda"}), POINTS, keeper)
     step_map = step_map_of(hamiltonian, scheme)
     begun = lockstep.clock()
-    if arithmetic == AUTO:
-        arithmetic = choose(kernel_run, digits + _CANCELLED)
-    links = _AreaLinks(kernel_run, step_map, arithmetic, digits + _CANCELLED, advance)
+    if run is not None:
+        arithmetic = run.arithmetic
+    elif arithmetic == AUTO:
+        arithmetic = choose(kernel_run, digits + CANCELLED)
+    links = _AreaLinks(kernel_run, step_map, arithmetic, digits + CANCELLED, advance)
+    if run is not None:
+        links.take(run)
     # How many digits the differences cancel is known once they are made: then what lacks some is
     # made again with more.
     for _ in range(_ATTEMPTS):
@@ -223,7 +229,7 @@ def _proved(step_map: StepMap | None, kernel_run: KernelRun, digits: int) -> Lin
         return exact_link([Fraction(0)] * len(marks), "ΔJ ≡ 0")
     found = [proved(step_map, h, n, digits)["lambda"] for n in marks]
     worst = max(bound for _, bound in found)
-    return Link(tuple(x for x, _ in found), worst, "enclosed", "ΔJ is constant")
+    return Link(Trail.of(x for x, _ in found), worst, "enclosed", "ΔJ is constant")
 
 
 def _rounded_map(exact: StepMap, rounded: KernelRun) -> StepMap | None:

@@ -19,7 +19,8 @@ from typing import Literal
 from verify.arithmetic.arb import slope
 from verify.prose import Number, Prose, prose
 from verify.runs.tangent_growth import is_exponential
-from verify.studies.separation.growth import envelope, log, log_spaced
+from verify.studies.separation.growth import log, log_spaced
+from verify.studies.separation.trail import Trail
 
 Law = Literal["bounded", "N", "N²", "exponential", "undecided"]
 Kind = Literal["exponential", "polynomial", "undecided"]
@@ -55,7 +56,7 @@ def power_law(
     marks: Sequence[int], values: Sequence[Fraction], noise: Fraction, motion: Kind
 ) -> PowerLaw:
     """The law of sizes at equidistant numbers of steps, each known to within `noise`."""
-    tops = envelope(values)
+    tops = Trail.of(values).envelope()
     if not tops[-1]:
         return PowerLaw(None, None, "bounded", prose("exactly 0 at every checkpoint"))
     if motion == "exponential":

@@ -26,6 +26,7 @@ from verify.studies.separation.form_count import counted
 from verify.studies.separation.form_kernel import FormKernel, form_kernel
 from verify.studies.separation.kernel import AT
 from verify.studies.separation.stepper import State, Stepper
+from verify.studies.separation.trail import Trail
 from verify.studies.separation.working import Advance, Link, Stopped, exact_link, marks_of
 
 POINTS = 512  # checkpoints of a run; each has a matrix for each link
@@ -96,10 +97,12 @@ class FormRun:
                 return None
             bound, trail = known.get(name), self._trail(states, name, arithmetic)
             if bound is not None:
-                return links_of(trail, lambda each: Link(each, bound, "enclosed", COUNTED))
+                return links_of(
+                    trail, lambda each: Link(Trail.of(each), bound, "enclosed", COUNTED)
+                )
             fine = self._trail(again, name, finer)
             apart = self._apart(trail, fine, arithmetic, again, name)
-            return links_of(fine, lambda each: Link(each, apart, "estimated", METHOD))
+            return links_of(fine, lambda each: Link(Trail.of(each), apart, "estimated", METHOD))
 
         derivatives = links("w_n")
         assert derivatives is not None  # noqa: S101 - every kernel has it

@@ -25,11 +25,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import accumulate
 from typing import Literal
 
 from verify.arithmetic.arb import slope
 from verify.prose import Number, Prose, prose
+from verify.studies.separation.trail import Trail
 
 Name = Literal["random walk", "drift", "undecided"]
 _FIRST = 8  # values that a maximum is taken of, at least
@@ -68,15 +68,10 @@ class Crossover:
     reason: str
 
 
-def envelope(values: Sequence[Fraction]) -> list[Fraction]:
-    """The greatest absolute value so far."""
-    return list(accumulate(map(abs, values), max))
-
-
 def growth(marks: Sequence[int], values: Sequence[Fraction], noise: Fraction) -> Growth:
     """The fit for values at equidistant numbers of steps, each known to within `noise`."""
-    tops, least = envelope(values), _ABOVE * noise
-    usable = [k for k, top in enumerate(tops) if k + 1 >= _FIRST and top > least]
+    tops = Trail.of(values).envelope()
+    usable = [k for k in tops.above(_ABOVE * noise) if k + 1 >= _FIRST]
     chosen = log_spaced(usable, [marks[k] for k in usable], _MOST)
     first, last = (marks[chosen[0]], marks[chosen[-1]]) if chosen else (0, 0)
     reach = math.log(last / first) if chosen else 0.0

@@ -10,13 +10,16 @@ import copy
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from fractions import Fraction
+from functools import partial
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 from verify import arithmetic as number_systems
 from verify.arithmetic.number_system import NumberSystem
 from verify.kernels.stepping import KernelRun, Outcome
-from verify.runs.digits_on_demand import measure
+from verify.runs.digits_on_demand import Measured, measure
 from verify.runs.estimated import working_digits
+from verify.runs.run import AskedRun
+from verify.studies.separation.trail import Trail
 from verify.studies.separation.working import (
     Advance,
     Kind,
@@ -66,6 +69,7 @@ class LinksOnDemand(ABC, Generic[L, W]):
         )
         self.proved: L | None = None
         self.constant: L | None = None
+        self._asked: AskedRun | None = None
         self._working: W | None = None
         self._made: dict[str, L] = {}
 
@@ -76,6 +80,11 @@ class LinksOnDemand(ABC, Generic[L, W]):
     @abstractmethod
     def read(self, run: Outcome, last: Fraction, as_link: AsLink) -> L:
         """The link of a run in exact arithmetic's stead, of whose last value `last` is known."""
+
+    def take(self, run: AskedRun) -> None:
+        """The first link is what comes of this run, as long as its digits do."""
+        self._asked = run
+        self.digits["first"] = run.digits
 
     @property
     def working(self) -> W:
@@ -122,10 +131,17 @@ class LinksOnDemand(ABC, Generic[L, W]):
 
     def _reference(self, kernel_run: KernelRun, name: str) -> L:
         if name not in self._made:
-            self._made[name] = self._in_exact_stead(kernel_run, self.digits[name])
+            digits, asked = self.digits[name], self._asked
+            if name == "first" and asked and digits <= asked.digits:
+                self._made[name] = self._in_exact_stead(asked.kernel_run, digits, asked.measured)
+            else:
+                how = partial(measure, kernel_run, self.system(digits), digits)
+                self._made[name] = self._in_exact_stead(kernel_run, digits, how)
         return self._made[name]
 
-    def _in_exact_stead(self, kernel_run: KernelRun, digits: int) -> L:
+    def _in_exact_stead(
+        self, kernel_run: KernelRun, digits: int, measured_with: Callable[[Advance], Measured]
+    ) -> L:
         """A run to so many digits; Stopped where a run cannot give them."""
         last = 0
 
@@ -134,7 +150,7 @@ class LinksOnDemand(ABC, Generic[L, W]):
             self.advance(max(done - last, 0))
             last = max(done, last)
 
-        measured = measure(kernel_run, self.system(digits), digits, progress)
+        measured = measured_with(progress)
         found, run = measured.bounds, measured.outcome
         if found.status != "finished":
             reason = f"in exact arithmetic: {found.method}"
@@ -148,7 +164,7 @@ class LinksOnDemand(ABC, Generic[L, W]):
         for _ in range(_DOUBLINGS):
             done = run.done == kernel_run.steps
             if done and abs(run.values[self.observable] - value) <= bound:
-                return self.read(run, value, lambda x: Link(tuple(x), bound, kind, found.method))
+                return self.read(run, value, lambda x: Link(Trail.of(x), bound, kind, found.method))
             more *= 2
             run = kernel_run.run(last_system().make(more))
         raise Stopped("unresolved", None, f"in exact arithmetic: {found.method}")

@@ -47,7 +47,7 @@ from verify.errors import NOT_GIVEN, InputError
 from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.times_on_the_way import check_times
-from verify.runs.run import check
+from verify.runs.run import AskedRun, check
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.separation import (
     CrossoverResult,
@@ -62,7 +62,8 @@ from verify.scenes.results.separation import (
 )
 from verify.schemes import canonical
 from verify.studies.separation.chain import Chain, Chains, separated_chains
-from verify.studies.separation.growth import Growth, crossover, envelope, growth, log_spaced
+from verify.studies.separation.growth import Growth, crossover, growth, log_spaced
+from verify.studies.separation.trail import Trail
 from verify.studies.separation.working import Stopped
 
 Progress = Callable[[int], None]  # called with a number of steps just done, of 3 N in all
@@ -84,13 +85,14 @@ def separate(
     arithmetic: str = AUTO,
     progress: Progress | None = None,
     keeper: Keeper = NOTHING,
+    run: AskedRun | None = None,
 ) -> SeparationResult:
     """Λ of a float64 run of `steps` steps from (q, p), split into truncation and rounding.
 
     `t0`: when it starts, of an H that depends on time. `digits`: significant digits wanted of every
-    part. `arithmetic` stands for exact arithmetic;
-    `auto` takes the fastest that can. Raises InputError for h ≤ 0, N < 1, a parameter without a
-    value, unknown names, and for float64, which is what is examined.
+    part. `arithmetic` stands for exact arithmetic; `auto` takes the fastest that can. `run`: the
+    same steps, asked for by somebody else, whose arithmetic is taken. Raises InputError for h ≤ 0,
+    N < 1, a parameter without a value, unknown names, and for float64, which is what is examined.
     """
     scheme = canonical(scheme)
     start = {"p": rational(p, "p"), "q": rational(q, "q"), "h": positive(step_size, "step_size")}
@@ -104,7 +106,7 @@ def separate(
     try:
         advance = progress or (lambda _: None)
         found = separated_chains(
-            hamiltonian, scheme, start, steps, digits, arithmetic, advance, keeper
+            hamiltonian, scheme, start, steps, digits, arithmetic, advance, keeper, run
         )
     except Stopped as answer:
         stopped = answer
@@ -232,7 +234,7 @@ def check_reference(arithmetic: str) -> None:
 def _evaluation(chain: Chain, digits: int) -> EvaluationResult:
     trails = {name: chain.trail(name) for name in chain.quantities}
     parts = {name: Value.of(*chain.final(name), digits) for name in chain.quantities}
-    tops = {n: envelope(trails[n][0])[-1] for n in ("truncation", "total")}
+    tops = {n: trails[n][0].largest for n in ("truncation", "total")}
     shown = log_spaced(range(len(chain.marks)), chain.marks, _CHECKPOINTS)
     return EvaluationResult(
         parts=PartsInTime(**parts) if "clock" in parts else Parts(**parts),
@@ -243,7 +245,7 @@ def _evaluation(chain: Chain, digits: int) -> EvaluationResult:
     )
 
 
-def _at(chain: Chain, trails: dict[str, tuple[tuple[Fraction, ...], Fraction]], k: int) -> PartsAt:
+def _at(chain: Chain, trails: dict[str, tuple[Trail, Fraction]], k: int) -> PartsAt:
     names = (n for n in chain.quantities if n != "lambda_working")
     shown = {n: known_text(trails[n][0][k], trails[n][1], _SHOWN) for n in names}
     model = PartsInTimeAt if "clock" in shown else PartsAt

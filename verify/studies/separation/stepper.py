@@ -67,7 +67,7 @@ class Stepper:
         return list(takewhile(self._finite, (Carried(self._at, x) for x in found)))
 
     def _finite(self, state: State) -> bool:
-        return all(math.isfinite(state[name]) for name in self._vital) and self.also(state)
+        return all(map(math.isfinite, map(state.__getitem__, self._vital))) and self.also(state)
 
     def last_good(self, state: State, count: int) -> int:
         """The greatest number of steps below `count` that stays in range, by bisection."""

@@ -1,18 +1,30 @@
 """The task of splitting Λ of one run into truncation and rounding."""
 
+from collections.abc import Iterator
 from fractions import Fraction
 from typing import Literal
 
 from verify.arithmetic import AUTO, step_cost
+from verify.arithmetic.systems import ball, float64
 from verify.execution.keeping import Keeper
-from verify.execution.task import InitialValueTask
+from verify.execution.task import InitialValueTask, Task
+from verify.runs.run import AskedRun
+from verify.runs.task import RunTask
+from verify.scenes.frozen import Frozen
 from verify.scenes.results.separation import SeparationResult
 from verify.scenes.values import Number, StepSize
+from verify.studies.separation.chain import CANCELLED
 from verify.studies.separation.separate import separate
 from verify.studies.separation.working import POINTS
 
+DIGITS = 6  # of each part, in a scene
 _RUNS = 3  # of the chain, in wide numbers
 _CHECKPOINT_COST = 80_000  # of Λ and its parts at one of them, about
+
+
+def does_for_first_link(arithmetic: str, digits: int) -> bool:
+    """Whether a run in that arithmetic is certified, and has digits enough for the first link."""
+    return arithmetic not in (float64.NAME, ball.NAME) and digits >= DIGITS + CANCELLED
 
 
 class SeparationTask(InitialValueTask):
@@ -24,6 +36,8 @@ class SeparationTask(InitialValueTask):
     steps: int
     t0: Number = Fraction(0)
     digits: int
+    run: RunTask | None = None
+    """One that is wanted too, of the same steps: its exact run is the separation's first link."""
 
     @property
     def cost(self) -> int:
@@ -36,6 +50,21 @@ class SeparationTask(InitialValueTask):
         """Separations of one scheme's map, whatever the step size and the initial value."""
         return f"{self.kind} {self.scheme} {self.hamiltonian}"
 
+    @property
+    def gives(self) -> tuple[Task, ...]:
+        """The run."""
+        return () if self.run is None else (self.run,)
+
     def compute(self, keeper: Keeper) -> SeparationResult:
         """The separation, as a result."""
-        return separate(self.exact_hamiltonian(), **self.asked(), keeper=keeper)
+        return self._separated(keeper, self.run.asked_run(keeper) if self.run else None)
+
+    def computed(self, keeper: Keeper) -> Iterator[tuple[Task, Frozen]]:
+        """The separation, and the run; by itself where the separation ended before it."""
+        own = self.run.asked_run(keeper) if self.run else None
+        yield self, self._separated(keeper, own)
+        if self.run and own:
+            yield self.run, own.result()
+
+    def _separated(self, keeper: Keeper, own: AskedRun | None) -> SeparationResult:
+        return separate(self.exact_hamiltonian(), **self.asked("run"), run=own, keeper=keeper)

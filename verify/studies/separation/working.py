@@ -35,6 +35,7 @@ from verify.kernels.stepping import KernelRun
 from verify.runs.estimated import digits_of
 from verify.studies.separation.kernel import AT, MixedKernel, mixed_kernel
 from verify.studies.separation.stepper import State, Stepper
+from verify.studies.separation.trail import Trail
 
 Kind = Literal["enclosed", "estimated"]
 Advance = Callable[[int], None]  # called with the number of steps just done
@@ -60,7 +61,7 @@ class Link:
     Two links that a proof shows to be equal are the same object.
     """
 
-    trail: tuple[Fraction, ...]
+    trail: Trail
     bound: Fraction
     kind: Kind
     method: str
@@ -79,7 +80,7 @@ class Working:
 
 
 def exact_link(trail: Sequence[Fraction], method: str) -> Link:
-    return Link(tuple(trail), Fraction(0), "enclosed", method)
+    return Link(Trail.of(trail), Fraction(0), "enclosed", method)
 
 
 def marks_of(steps: int, points: int = POINTS) -> tuple[int, ...]:
@@ -114,7 +115,7 @@ class WorkingRun:
             bound = bound_of.get(name)
             if bound is None:
                 return None
-            trail = tuple(arithmetic.exact(state[f"w_{name}"]) for state in states)
+            trail = Trail.of(arithmetic.exact(state[f"w_{name}"]) for state in states)
             if name in unknown:
                 return Link(trail, bound, "estimated", f"rerun with {_MORE_DIGITS} more digits")
             return Link(trail, bound, "enclosed", "rounding counted")

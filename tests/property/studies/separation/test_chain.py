@@ -16,6 +16,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.studies.separation.chain import PARTS, QUANTITIES, Chain, Kind
 from verify.studies.separation.growth import crossover, log_spaced
 from verify.studies.separation.separate import as_grid, grid, separate, separate_grid
+from verify.studies.separation.trail import Trail
 from verify.studies.separation.working import Link, marks_of
 
 quick = drawn(40)
@@ -32,7 +33,7 @@ def chains(draw: st.DrawFn) -> Chain:
     count = draw(st.integers(1, 4))
     made = [
         Link(
-            tuple(draw(st.lists(values, min_size=count, max_size=count))),
+            Trail.of(draw(st.lists(values, min_size=count, max_size=count))),
             draw(st.one_of(st.just(Fraction(0)), sizes.map(lambda x: x / 10**6))),
             draw(kinds),
             draw(st.sampled_from(["a", "b", "c"])),
@@ -89,9 +90,9 @@ def test_a_chains_quantities_are_differences_of_its_links_and_lack_digits_where_
 @quick
 @given(sizes, st.integers(1, 20), st.booleans())
 def test_a_bound_that_just_suffices_lacks_nothing(size: Fraction, digits: int, more: bool) -> None:
-    none = Link((Fraction(0),), Fraction(0), "enclosed", "")
+    none = Link(Trail((0,), 1), Fraction(0), "enclosed", "")
     bound = size / (4 * 10**digits) * (1 + more * Fraction(1, 10**6))
-    last = Link((size,), bound, "enclosed", "")
+    last = Link(Trail.of([size]), bound, "enclosed", "")
     found = Chain((1,), (none, none, none, none, last)).lacking(digits)
     assert found == [0, 0, 0, 0, 1 if more else 0] or (more and found[4] in (1, 2))
     assert found[:4] == [0] * 4

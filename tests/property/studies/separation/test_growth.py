@@ -2,23 +2,16 @@
 
 import math
 from fractions import Fraction
-from itertools import accumulate
 
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from verify.studies.separation.growth import crossover, envelope, growth, log, log_spaced
+from verify.studies.separation.growth import crossover, growth, log, log_spaced
 
 quick = drawn(40)
 values = st.builds(Fraction, st.integers(-50, 50), st.integers(1, 10**6))
 sizes = st.builds(lambda n, k: Fraction(n) / 10**k, st.integers(1, 99), st.integers(0, 30))
-
-
-@quick
-@given(st.lists(values, max_size=12))
-def test_an_envelope_is_the_greatest_size_so_far(given_: list[Fraction]) -> None:
-    assert envelope(given_) == list(accumulate(map(abs, given_), max))
 
 
 @quick

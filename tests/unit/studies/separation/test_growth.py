@@ -8,7 +8,7 @@ from statistics import mean, stdev
 
 import pytest
 
-from verify.studies.separation.growth import crossover, envelope, growth, log_spaced
+from verify.studies.separation.growth import crossover, growth, log_spaced
 
 POINTS = 2048
 MARKS = [10 * k for k in range(1, POINTS + 1)]
@@ -78,11 +78,6 @@ def test_nothing_is_fitted_within_the_noise_or_over_too_few_decades() -> None:
         assert "decades" in found.reason
     assert growth(MARKS[:100], values[:100], Fraction(0)).exponent is None
     assert growth(MARKS, [Fraction(0)] * POINTS, Fraction(0)).points == 0
-
-
-def test_the_envelope_is_the_greatest_size_so_far() -> None:
-    assert envelope([Fraction(x) for x in (1, -3, 2, 3, -4)]) == [1, 3, 3, 3, 4]
-    assert envelope([]) == []
 
 
 def test_log_spaced_indices_are_spread_and_hold_both_ends() -> None:

@@ -143,13 +143,13 @@ def test_what_is_timed_runs_when_all_else_is_done(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     seen: list[Any] = []
-    perform = execution.compute_task
+    perform = execution.compute_all
 
-    def noting(task: Any, *more: Any) -> Frozen:
+    def noting(task: Any, *more: Any) -> list[tuple[str, Frozen]]:
         seen.append(task)
         return perform(task, *more)
 
-    monkeypatch.setattr(execution, "compute_task", noting)
+    monkeypatch.setattr(execution, "compute_all", noting)
     both = [load(tmp_path, GOOD + "peers = false\nrepeats = 1\n"), load(tmp_path, HEAD + GRID)]
     plan = plan_scenes(both)
     assert not isinstance(list(plan.tasks.values())[-1], WorkPrecisionTask)

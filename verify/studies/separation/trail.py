@@ -1,0 +1,81 @@
+"""What a run has at its checkpoints, as exact rationals over one denominator.
+
+A separation subtracts, compares and takes maxima of tens of thousands of them, and nearly all are
+whole multiples of one power of 2: so each of these is an operation of integers.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from fractions import Fraction
+from itertools import accumulate
+from math import lcm
+from typing import Any
+
+
+class Trail(Sequence[Fraction]):
+    """Rationals, each one of `numerators` over `denominator`; a Fraction is made where one is
+    looked at."""
+
+    __slots__ = ("denominator", "numerators")
+
+    def __init__(self, numerators: Iterable[int], denominator: int) -> None:
+        self.numerators, self.denominator = tuple(numerators), denominator
+
+    @classmethod
+    def of(cls, values: Iterable[Fraction]) -> "Trail":
+        """These values."""
+        if isinstance(values, Trail):
+            return values
+        known = tuple(values)
+        common = lcm(*{x.denominator for x in known})
+        return cls((x.numerator * (common // x.denominator) for x in known), common)
+
+    def __len__(self) -> int:
+        return len(self.numerators)
+
+    def __getitem__(self, index: Any) -> Any:
+        if isinstance(index, slice):
+            return Trail(self.numerators[index], self.denominator)
+        return Fraction(self.numerators[index], self.denominator)
+
+    def __iter__(self) -> Iterator[Fraction]:
+        return (Fraction(n, self.denominator) for n in self.numerators)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Trail):
+            return NotImplemented
+        mine, theirs = self._over(self._common(other)), other._over(self._common(other))
+        return mine.numerators == theirs.numerators
+
+    def __hash__(self) -> int:
+        return hash(tuple(self))
+
+    def __sub__(self, other: "Trail") -> "Trail":
+        """Value by value."""
+        common = self._common(other)
+        pairs = zip(self._over(common).numerators, other._over(common).numerators, strict=True)
+        return Trail((a - b for a, b in pairs), common)
+
+    def __repr__(self) -> str:
+        return f"Trail({self.numerators}, {self.denominator})"
+
+    @property
+    def largest(self) -> Fraction:
+        """The greatest absolute value."""
+        return Fraction(max(map(abs, self.numerators)), self.denominator)
+
+    def envelope(self) -> "Trail":
+        """The greatest absolute value so far, at every checkpoint."""
+        return Trail(accumulate(map(abs, self.numerators), max), self.denominator)
+
+    def above(self, least: Fraction) -> list[int]:
+        """The places of the values that are greater than this one."""
+        # A whole number is greater than a number where it is greater than what that is rounded to.
+        bound = least.numerator * self.denominator // least.denominator
+        return [k for k, n in enumerate(self.numerators) if n > bound]
+
+    def _common(self, other: "Trail") -> int:
+        return lcm(self.denominator, other.denominator)
+
+    def _over(self, denominator: int) -> "Trail":
+        factor = denominator // self.denominator
+        return self if factor == 1 else Trail((n * factor for n in self.numerators), denominator)
