@@ -58,7 +58,7 @@ def enclosed(state: Callable[[], State], start: Start, digits: int) -> Evaluatio
 
 def until(found: Callable[[], T | None], digits: int) -> T:
     """What is found at the first precision that gives it. Raises NoFlowError."""
-    bits = bits_for(digits) + _GUARD
+    bits = first_precision(digits)
     while bits <= _MOST_PRECISION:
         with working_precision(bits):
             value = found()
@@ -66,6 +66,11 @@ def until(found: Callable[[], T | None], digits: int) -> T:
             return value
         bits *= 2
     raise NoFlowError(f"the closed form loses more than {MOST_DIGITS} digits there")
+
+
+def first_precision(digits: int) -> int:
+    """Bits that are likely to give so many digits."""
+    return bits_for(digits) + _GUARD
 
 
 def blow_up(motion: Motion, sign: int, digits: int) -> Fraction | None:

@@ -14,11 +14,13 @@ are held against.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from functools import lru_cache
+from functools import lru_cache, partial
+from math import isfinite
 from typing import Any
 
-from flint import arb
+from flint import arb, fmpq
 
+from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
 from verify.flows import closed_form
 from verify.flows.extrapolation import NoFlowError
@@ -43,7 +45,9 @@ _ZERO = Fraction(0)
 _UPWARDS = 1 + 2.0**-50  # for a bound that is itself rounded
 _REMEMBERED = 1 << 16  # points in closed form, of which one takes a fifth of a millisecond
 _FLOWS = 3  # for which so many points are, in some 30 MB each
-_Told = tuple[str, tuple[tuple[float, float, float], ...]]
+_Rounded = tuple[float, float, float]
+_Told = tuple[str, tuple[_Rounded, ...]]
+_DIGITS = 16
 _FINE = 1e-18  # of an orbit's scale: a ball's radius, far below float64's rounding
 
 
@@ -86,7 +90,7 @@ def _along_flow(hamiltonian: Hamiltonian, times: tuple[Fraction, ...]) -> Callab
     """(p, q) ↦ by what motion a point goes, and at each time p, q and a bound of the error of each.
 
     Several maps carry the same points of a region, and are held against the same exact ones. It
-    raises NoFlowError, and OverflowError beyond float64.
+    tries flint's present precision first, and raises NoFlowError, and OverflowError beyond float64.
     """
     zero = Fraction(0)
     ends = {max((zero, *times)), min((zero, *times))} - {zero}
@@ -103,26 +107,26 @@ def _along_flow(hamiltonian: Hamiltonian, times: tuple[Fraction, ...]) -> Callab
     return told
 
 
-def _rounded(motion: Motion, p: float, q: float, time: Fraction) -> tuple[float, float, float]:
+def _rounded(motion: Motion, p: float, q: float, time: Fraction) -> _Rounded:
     """p, q and a bound of the error of each as they stand in float64."""
     if time == 0 or motion.rest:
         return p, q, 0.0
-    at, least = exactly(time), arb(max(abs(p), abs(q)))
+    found = partial(_in_float64, motion, max(abs(p), abs(q)), exactly(time))
+    return found() or closed_form.until(found, _DIGITS)
 
-    def found() -> tuple[float, float, float] | None:
-        state = motion.state(arb(at))
-        if not all(x.is_finite() for x in state):
-            return None
-        size = least.max(state[0].abs_lower()).max(state[1].abs_lower())
-        if not all(x.rad() < size * _FINE for x in state):
-            return None
-        p, q = (float(x.mid()) for x in state)
-        error = (state[0] - p).abs_upper().max((state[1] - q).abs_upper())
-        if not error.is_finite():
-            raise OverflowError
-        return p, q, float(error) * _UPWARDS
 
-    return closed_form.until(found, 16)
+def _in_float64(motion: Motion, least: float, at: fmpq) -> _Rounded | None:
+    """The same; None where flint's precision does not tell. `least`: of the size of an orbit."""
+    state = motion.state(arb(at))
+    if not (state[0].is_finite() and state[1].is_finite()):
+        return None
+    p, q = float(state[0].mid()), float(state[1].mid())
+    if not (isfinite(p) and isfinite(q)):
+        raise OverflowError
+    if not float(max(x.rad() for x in state)) < _FINE * max(least, abs(p), abs(q)):
+        return None
+    error = max(float((x - middle).abs_upper()) for x, middle in zip(state, (p, q), strict=True))
+    return p, q, error * _UPWARDS
 
 
 @dataclass
@@ -164,7 +168,8 @@ class _Work:
 
         follow_one, farthest = _along_flow(self.hamiltonian, self.times), self._farthest
         starts = enumerate(zip(self.p.tolist(), self.q.tolist(), strict=True))
-        told = [self._told(i, farthest, follow_one, *start) for i, start in starts]
+        with working_precision(closed_form.first_precision(_DIGITS)):
+            told = [self._told(i, farthest, follow_one, *start) for i, start in starts]
         methods = [method for method, _ in told]
         shape = len(told), len(self.times), 3
         states = np.array([states for _, states in told], dtype=np.float64).reshape(shape)

@@ -9,6 +9,7 @@ from verify.exploration.measures import MEASURES, _greatest, digits_lost, growth
 from verify.exploration.sample import Sample
 from verify.scenes.scene import scene_from
 from verify.studies.separation.separate import separate
+from verify.studies.separation.trail import Trail
 
 
 def sample(formula: str, q: str, p: str, h: str, steps: int, scheme: str = "lie2") -> Sample:
@@ -37,8 +38,8 @@ def test_rounding_share_is_that_of_a_separation() -> None:
 
 def test_what_is_below_its_own_error_bound_is_not_hunted() -> None:
     trail = (Fraction(1, 10**30), Fraction(0))
-    assert _greatest(trail, Fraction(1, 10**29)) == 0
-    assert _greatest(trail, Fraction(1, 10**32)) == Fraction(1, 10**30)
+    assert _greatest(Trail.of(trail), Fraction(1, 10**29)) == 0
+    assert _greatest(Trail.of(trail), Fraction(1, 10**32)) == Fraction(1, 10**30)
 
 
 def test_digits_lost_is_the_error_of_a_float64_loop() -> None:
