@@ -35,6 +35,7 @@ POINTS: tuple[Point, ...] = (
     (Fraction(-1, 2), Fraction(7, 8)),
     (Fraction(1, 7), Fraction(6, 5)),
     (Fraction(3, 4), Fraction(-2, 5)),
+    (Fraction(-1, 5), Fraction(-2, 5)),
 )
 _PROOF_SECONDS, _CLOCK_SECONDS = 30.0, 10.0
 _KEPT = 0.4  # of the time that is left, for floats after dual numbers, which are slow

@@ -225,6 +225,18 @@ def test_a_branch_that_hides_from_symbols_is_seen() -> None:
     assert "catches the error of a symbol" in found.notes[0]
 
 
+@pytest.mark.parametrize("signs", [(1, 1), (1, -1), (-1, 1), (-1, -1)])
+def test_a_mistake_in_any_quadrant_is_seen(signs: tuple[int, int]) -> None:
+    """Code that compares numbers is measured where it is tried, which is in all four."""
+
+    def step(p: Any, q: Any, h: Any) -> Any:
+        wrong = p * signs[0] > 0 and q * signs[1] > 0
+        return own_steps.euler_a(p * (1 + h / 1000 if wrong else 1), q, h)
+
+    found = found_of(step, Claims(order=1, area_preserving=True))
+    assert (found.verdict, found.how) == ("REFUTED", "duals")
+
+
 def test_a_caught_error_hides_no_branch_that_no_point_reaches() -> None:
     """Floats at the points that are tried agree with such a trace, and it is no proof."""
 
