@@ -5,6 +5,7 @@ workers in a thread of its own: neither signals can be held meanwhile nor the pa
 its workers go on after a parent that is killed (both tried with pebble 5.2.3).
 """
 
+import gc
 import multiprocessing
 import os
 import signal
@@ -97,7 +98,9 @@ class Processes:
 
 
 def _process(context: Any) -> ProcessPoolExecutor:
-    return ProcessPoolExecutor(1, mp_context=context, initializer=_begin)
+    return ProcessPoolExecutor(
+        1, mp_context=context, initializer=_begin, initargs=gc.get_threshold()
+    )
 
 
 def _fork_server(modules: Sequence[str]) -> Any:
@@ -164,7 +167,10 @@ def _held(*signals: signal.Signals) -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _begin() -> None:
+def _begin(*between_collections: int) -> None:
+    """In a new process, where cycles are looked for as seldom as in this one."""
+    gc.set_threshold(*between_collections)
+    gc.freeze()  # what was imported stays
     # Ctrl-C reaches the whole process group; the parent alone answers it.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGTERM})  # held where it was spawned
