@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from verify.errors import InputError
 from verify.flows.closed_orbit import shifts
@@ -27,6 +27,8 @@ _MOST_STEPS, _MOST_IN_TIME = 3000, 20_000
 _PART = Fraction(2, 5)  # of 1/ω, the time of a step at most: 16 points on a circle
 _FAR = 10**6  # an orbit that goes so many times farther than it has before is leaving
 _NEAR = Fraction(1, 5)  # of the reach: what crosses the line through z₀ so near to it is back
+# Of a time, the part that a first step is at most, with room for rounding.
+_FIRST, _ROUNDED = 9, 1 + Fraction(1, 2**20)
 _HALVINGS = 1100  # from any step size of float64's range to any other
 _FASTER = 10**9  # a step that has to be so many times shorter than before: the orbit blows up
 _STILL = 10**12
@@ -63,7 +65,13 @@ def exact_orbit(
     hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fraction, t0: Fraction = Fraction(0)
 ) -> ExactOrbit:
     """The orbit through (p, q), at t0 where H depends on it, for the length `time`."""
-    orbit = _OrbitSearch(hamiltonian, (p, q), time, t0).orbit()
+    known = _closed_orbit(hamiltonian, p, q)
+    if known and time >= known[0].least_time:
+        return known[0].orbit
+    search = _OrbitSearch(hamiltonian, (p, q), time, t0)
+    orbit = search.orbit()
+    if search.least_time is not None:
+        known[:] = [_ClosedOrbit(orbit, search.least_time)]
     if hamiltonian.time_dependent or orbit.kind not in ("escapes", "open"):
         return orbit
     exactly = _by_algebra(hamiltonian, p, q, time)
@@ -73,6 +81,20 @@ def exact_orbit(
         orbit,
         summary=prose(exactly) if orbit.kind == "escapes" else prose(orbit.summary, "; ", exactly),
     )
+
+
+class _ClosedOrbit(NamedTuple):
+    """An orbit that a search has followed until it closed, as one over any time from `least_time`
+    on does, by the same steps."""
+
+    orbit: ExactOrbit
+    least_time: Fraction
+
+
+@lru_cache(maxsize=4096)
+def _closed_orbit(hamiltonian: Hamiltonian, p: Fraction, q: Fraction) -> list[_ClosedOrbit]:
+    """That through a point, once one is known."""
+    return []
 
 
 def _by_algebra(hamiltonian: Hamiltonian, p: Fraction, q: Fraction, time: Fraction) -> str | None:
@@ -108,6 +130,8 @@ class _OrbitSearch:
         )  # whether q, p stay as they are
         self.points: list[State] = [self.z0]
         self.rates: list[tuple[Number, Number, Number]] = []  # f and ω² at the points
+        # From which on any time gives the same, where it closes by steps that its end never cuts.
+        self.least_time: Fraction | None = None
 
     def turned(self, shift: tuple[Fraction, Fraction]) -> State:
         """A shift that is given in units of 2π."""
@@ -148,11 +172,14 @@ class _OrbitSearch:
     def integrated(self) -> ExactOrbit:
         with self.arithmetic.context():
             z, time, step = self.z0, self.time - self.time, self.time / 16
-        outwards, longest = 0, None
-        for _ in range(_MOST_IN_TIME if self.timed else _MOST_STEPS):
+        outwards, longest, cut, least = 0, None, False, time
+        for k in range(_MOST_IN_TIME if self.timed else _MOST_STEPS):
             with self.arithmetic.context():
-                left = self.time - time
-                step = min(2 * step, self.allowed(), left)
+                left, allowed = self.time - time, self.allowed()
+                tried = min(2 * step, allowed)
+                cut = cut or tried >= left or (k == 0 and tried < allowed)
+                least = max(least, time + tried, _FIRST * tried if k == 0 else least)
+                step = min(tried, left)
             step, after = self.stepped(z, step)
             if after is None or (longest and step < left and step * _FASTER < longest):
                 summary = f"becomes ever faster at t = `{self.clock(time):.6g}`"
@@ -175,6 +202,8 @@ class _OrbitSearch:
                 shift, part = back
                 with self.arithmetic.context():
                     period = time - (1 - part) * step
+                if not cut:
+                    self.least_time = self.arithmetic.exact(least) * _ROUNDED
                 kind: Kind = "rotates" if any(shift) else "closed"
                 summary = f"{kind}, with a period of about `{float(period):.3g}`"
                 return self.found(kind, summary, shift, period=self.arithmetic.exact(period))

@@ -100,11 +100,18 @@ class RunMotion:
         errors = self.energy_errors(trail)
         return max((abs(x) for x in errors if x is not None), default=None)
 
+    @cached_property
+    def _bounds(self) -> list[tuple[int, Fraction, Fraction]]:
+        """Which coordinates have some, 0 for p and 1 for q, with the least and the greatest."""
+        orbit = self.orbit
+        of_each = enumerate(zip(orbit.centre, orbit.reach, orbit.turns, strict=True))
+        wide = [(k, c, _BEYOND * (r or 1)) for k, (c, r, turns) in of_each if not turns]
+        return [(k, centre - half, centre + half) for k, centre, half in wide]
+
     def outside(self, point: Point) -> bool:
         """Whether p or q is out of the exact orbit's bounds."""
-        orbit = self.orbit
-        found = zip((point.p, point.q), orbit.centre, orbit.reach, orbit.turns, strict=True)
-        return any(abs(x - c) > _BEYOND * (r or 1) for x, c, r, turns in found if not turns)
+        state = point.state
+        return not all(low <= state[k] <= high for k, low, high in self._bounds)
 
     def beyond(self, point: Point) -> bool:
         """Whether a point is out of the exact orbit's bounds, its energy included."""
@@ -117,9 +124,14 @@ class RunMotion:
             return False
         return not any(map(_too_much, self.energy_errors(trail)))
 
+    @cached_property
+    def _near(self) -> list[Fraction]:
+        """How far p and q of two runs may be from each other."""
+        return [_APART * (r or 1) for r in self.orbit.reach]
+
     def apart(self, one: Point, other: Point) -> bool:
-        pairs = zip((one.p, one.q), (other.p, other.q), self.orbit.reach, strict=True)
-        return any(abs(x - y) > _APART * (r or 1) for x, y, r in pairs)
+        pairs = zip(one.state, other.state, self._near, strict=True)
+        return any(abs(x - y) > near for x, y, near in pairs)
 
     def together(self, one: Trail, other: Trail) -> bool:
         """Whether two runs of as many steps both end, and are together all the way."""
