@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from tests.examples import drawn
 from verify.flows import orbit as module
 from verify.flows.orbit import ExactOrbit, exact_orbit
+from verify.flows.orbit_search import OrbitSearch
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
 FORMULAS = [
@@ -71,13 +72,13 @@ def test_a_closed_one_is_searched_once_and_others_each_time(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     seen: list[Fraction] = []
-    search = module._OrbitSearch.integrated
+    search = OrbitSearch.integrated
 
-    def noting(self: module._OrbitSearch) -> ExactOrbit:
+    def noting(self: OrbitSearch) -> ExactOrbit:
         seen.append(self.arithmetic.exact(self.time))
         return search(self)
 
-    monkeypatch.setattr(module._OrbitSearch, "integrated", noting)
+    monkeypatch.setattr(OrbitSearch, "integrated", noting)
     pendulum, zero = Hamiltonian.parse("p**2/2 - cos(q)"), Fraction(0)
     forget()
     for time in (3, 100, 50, 200, 4, 7):  # a period is 6.7: some are too short for it

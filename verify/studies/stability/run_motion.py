@@ -15,7 +15,8 @@ from verify import arithmetic as number_systems
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import mpfr
 from verify.flows.functions import functions_at
-from verify.flows.orbit import exact_orbit, initial_value_digits
+from verify.flows.orbit import exact_orbit
+from verify.flows.orbit_search import initial_value_digits
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.studies.stability.trail import Point, Run, Trail, follow, follow_precisely
 

@@ -7,7 +7,7 @@ import pytest
 
 import verify
 from verify.arithmetic.exact import rational
-from verify.flows import orbit as orbits
+from verify.flows import orbit_search as orbits
 from verify.flows.orbit import exact_orbit
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.studies.stability.limits import largest_step, stability_map

@@ -1,0 +1,277 @@
+"""The exact orbit followed by the flow with few digits: see `verify.flows.orbit`."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Literal
+
+from verify.flows.closed_orbit import shifts
+from verify.flows.extrapolation import Flow, NoFlowError, Number, State
+from verify.flows.functions import functions_at
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.prose import Prose, read_prose
+
+_DIGITS, _MOST_DIGITS = 20, 40
+_MOST_STEPS, _MOST_IN_TIME = 3000, 20_000
+_PART = Fraction(2, 5)  # of 1/ω, the time of a step at most: 16 points on a circle
+_FAR = 10**6  # an orbit that goes so many times farther than it has before is leaving
+_NEAR = Fraction(1, 5)  # of the reach: what crosses the line through z₀ so near to it is back
+# Of a time, the part that a first step is at most, with room for rounding.
+_FIRST, _ROUNDED = 9, 1 + Fraction(1, 2**20)
+_HALVINGS = 1100  # from any step size of float64's range to any other
+_FASTER = 10**9  # a step that has to be so many times shorter than before: the orbit blows up
+_STILL = 10**12
+_OUTWARDS = 30  # steps in a row of an orbit that is leaving, at least
+
+Kind = Literal["closed", "rotates", "at rest", "open", "driven", "escapes", "unknown"]
+
+
+@dataclass(frozen=True)
+class ExactOrbit:
+    """What is known of the orbit through z₀ over a time T.
+
+    `kind`: closed, closed up to a period of H (rotates), at rest, still under way at T (open), or
+    at its end where H depends on time (driven), leaves every bound (escapes), or not followed to
+    its end (unknown); `summary` says more.
+    `centre` and `reach` of p and q; `turns`: the coordinates that H is periodic in and the orbit
+    runs through, in which there is no bound. `scale`: of the energy. `stiffness`: the greatest ω² =
+    det Hess H on the orbit; `period`: that of a closed one, about.
+    """
+
+    kind: Kind
+    summary: Prose
+    centre: tuple[Fraction, Fraction]
+    reach: tuple[Fraction, Fraction]
+    turns: tuple[bool, bool]
+    scale: Fraction
+    stiffness: Fraction
+    period: Fraction | None = None
+
+
+class OrbitSearch:
+    def __init__(
+        self,
+        hamiltonian: Hamiltonian,
+        start: tuple[Fraction, Fraction],
+        time: Fraction,
+        t0: Fraction,
+    ) -> None:
+        field, _ = hamiltonian.field()
+        ring = field.ring
+        h_pp, h_pq = (ring.diff(field.h_p, n) for n in ("p", "q"))
+        stiffness = ring.reduce(h_pp * ring.diff(field.h_q, "q") - h_pq * h_pq)
+        self.flow = Flow(field, _DIGITS + initial_value_digits(start))
+        self.arithmetic = self.flow.arithmetic
+        elements = [(ring, x) for x in (-field.h_q, field.h_p, stiffness, field.energy)]
+        self.at = functions_at(self.arithmetic, elements, self.flow.names)
+        self.start, self.time, self.timed = start, self.number(time), field.timed
+        self.z0: State = tuple(map(self.number, (*start, t0)[: len(self.flow.names)]))
+        self.shifts = [self.turned(s) for s in shifts(hamiltonian)]
+        self.free = tuple(
+            x.is_zero() for x in (field.h_p, field.h_q)
+        )  # whether q, p stay as they are
+        self.points: list[State] = [self.z0]
+        self.rates: list[tuple[Number, Number, Number]] = []  # f and ω² at the points
+        # From which on any time gives the same, where it closes by steps that its end never cuts.
+        self.least_time: Fraction | None = None
+
+    def turned(self, shift: tuple[Fraction, Fraction]) -> State:
+        """A shift that is given in units of 2π."""
+        with self.arithmetic.context():
+            turn = 2 * self.arithmetic.functions["pi"]
+            return turn * self.number(shift[0]), turn * self.number(shift[1])
+
+    def number(self, x: Fraction) -> Number:
+        return self.arithmetic.number(x)
+
+    def orbit(self) -> ExactOrbit:
+        try:
+            self.note(self.z0)
+        except NoFlowError as error:
+            return self.found("unknown", error.said)
+        if not self.timed and not any(self.rates[0][:2]):
+            return self.found("at rest", "stays where it is, an equilibrium")
+        if not self.timed and any(self.free):
+            names = ("p", "q") if self.free[0] else ("q", "p")
+            summary = (
+                f"H does not depend on {names[0]}: {names[1]} stays and {names[0]} moves evenly"
+            )
+            return self.found("rotates", summary, self.free)
+        try:
+            return self.integrated()
+        except NoFlowError as error:
+            return self.found("unknown", error.said)
+
+    def note(self, z: State) -> None:
+        """Keeps what is to be known at a point of the orbit."""
+        try:
+            with self.arithmetic.context():
+                dp, dq, stiffness, _ = self.at(*z)  # H too has to be defined there
+        except (ArithmeticError, ValueError):
+            raise NoFlowError("H or its derivatives are not defined there") from None
+        self.rates.append((dp, dq, stiffness))
+
+    def integrated(self) -> ExactOrbit:
+        with self.arithmetic.context():
+            z, time, step = self.z0, self.time - self.time, self.time / 16
+        outwards, longest, cut, least = 0, None, False, time
+        for k in range(_MOST_IN_TIME if self.timed else _MOST_STEPS):
+            with self.arithmetic.context():
+                left, allowed = self.time - time, self.allowed()
+                tried = min(2 * step, allowed)
+                cut = cut or tried >= left or (k == 0 and tried < allowed)
+                least = max(least, time + tried, _FIRST * tried if k == 0 else least)
+                step = min(tried, left)
+            step, after = self.stepped(z, step)
+            if after is None or (longest and step < left and step * _FASTER < longest):
+                summary = f"becomes ever faster at t = `{self.clock(time):.6g}`"
+                return self.found("escapes", summary)
+            with self.arithmetic.context():
+                time = time + step
+                longest = max(longest or step, step)
+                grown = self.size(after)
+                outwards = outwards + 1 if grown > self.size(z) else 0
+            self.points.append(after)
+            self.note(after)
+            if grown > _FAR and outwards >= _OUTWARDS:
+                summary = (
+                    f"is `{_FAR:.0e}` times as far out as z0 at t = `{self.clock(time):.6g}`, "
+                    "and goes on"
+                )
+                return self.found("escapes", summary)
+            back = None if self.timed else self.returned(z, after)
+            if back is not None:
+                shift, part = back
+                with self.arithmetic.context():
+                    period = time - (1 - part) * step
+                if not cut:
+                    self.least_time = self.arithmetic.exact(least) * _ROUNDED
+                kind: Kind = "rotates" if any(shift) else "closed"
+                summary = f"{kind}, with a period of about `{float(period):.3g}`"
+                return self.found(kind, summary, shift, period=self.arithmetic.exact(period))
+            z = after
+            if time >= self.time and self.timed:
+                return self.found(
+                    "driven", f"is driven; followed to its end, t = `{self.clock(time):.6g}`"
+                )
+            if time >= self.time:
+                return self.found("open", f"is still under way at t = `{self.clock(time):.6g}`")
+        return self.found("unknown", f"was followed to t = `{self.clock(time):.6g}` only")
+
+    def clock(self, time: Number) -> float:
+        """t after so long."""
+        return float(time) + (float(self.z0[2]) if self.timed else 0)
+
+    def allowed(self) -> Number:
+        """The step that the local frequency allows; call it inside the context."""
+        stiffness = abs(self.rates[-1][2])
+        if stiffness == 0:
+            return self.time
+        return self.number(_PART) / self.arithmetic.functions["sqrt"](stiffness)
+
+    def stepped(self, z: State, step: Number) -> tuple[Number, State | None]:
+        """The longest of step, step/2, … that is accurate, and where it leads."""
+        for _ in range(_HALVINGS):
+            after = self.flow.step(z, step)
+            if after is not None:
+                return step, after
+            with self.arithmetic.context():
+                step = step / 2
+        return step, None
+
+    def size(self, z: State) -> Number:
+        """|z| in parts of |z₀|, by the greater coordinate; call it inside the context."""
+        near = (self.z0, self.points[min(1, len(self.points) - 1)])
+        first, second = (max(map(abs, x[:2])) for x in near)
+        return max(map(abs, z[:2])) / (first or second) if first or second else first
+
+    def returned(self, z: State, after: State) -> tuple[State, Number] | None:
+        """The shift with which the last step crossed the line through z₀, if it did so near z₀.
+
+        And after which part of that step.
+        """
+        with self.arithmetic.context():
+            reach = self._ends()[1]
+            if len(self.points) < 4 or not all(reach):
+                return None
+            for shift in self.shifts:
+                target = (self.z0[0] + shift[0], self.z0[1] + shift[1])
+                part = self._crossed(z, after, target, reach)
+                if part is not None:
+                    return shift, part
+        return None
+
+    def _crossed(self, z: State, after: State, target: State, reach: State) -> Number | None:
+        """Where from z to after the line through the target, normal to f(z₀), is crossed."""
+        slope = [r / x for r, x in zip(self.rates[0][:2], reach, strict=True)]
+
+        def height(point: State) -> Number:
+            return sum(
+                s * (x - t) / r for s, x, t, r in zip(slope, point, target, reach, strict=True)
+            )
+
+        low, high = height(z), height(after)
+        if not low < 0 <= high:
+            return None
+        part = -low / (high - low)
+        at = [x + part * (y - x) for x, y in zip(z, after, strict=True)]
+        near = all(
+            abs(x - t) < self.number(_NEAR) * r for x, t, r in zip(at, target, reach, strict=True)
+        )
+        return part if near else None
+
+    def _ends(self) -> tuple[State, State]:
+        """The middle of the points seen, and how far they reach from it."""
+        middle, reach = [], []
+        for x in list(zip(*self.points, strict=True))[:2]:
+            low, high = min(x), max(x)
+            middle.append((low + high) / 2)
+            reach.append((high - low) / 2)
+        return (middle[0], middle[1]), (reach[0], reach[1])
+
+    def found(
+        self,
+        kind: Kind,
+        summary: str,
+        shift: Sequence[Number] = (0, 0),
+        period: Fraction | None = None,
+    ) -> ExactOrbit:
+        exact, zero = self.arithmetic.exact, self.number(Fraction(0))
+        with self.arithmetic.context():
+            centre, reached = self._ends()
+            fastest = [max((abs(r[k]) for r in self.rates), default=zero) for k in (0, 1)]
+            stiffest = max((r[2] for r in self.rates), default=zero)
+        # An orbit that has hardly moved in that time is measured by where it is.
+        reach = [
+            exact(r) if exact(r) > abs(x) / _STILL else abs(x)
+            for r, x in zip(reached, self.start, strict=True)
+        ]
+        # H_p = q' and H_q = −p': H changes by about so much across the orbit.
+        scale = (exact(fastest[1]) * reach[0] + exact(fastest[0]) * reach[1]) / 2
+        return ExactOrbit(
+            kind=kind,
+            summary=read_prose(summary),
+            centre=(exact(centre[0]), exact(centre[1])),
+            reach=(reach[0], reach[1]),
+            turns=self.turns(reached, shift),
+            scale=scale,
+            stiffness=exact(stiffest),
+            period=period,
+        )
+
+    def turns(self, reached: State, shift: Sequence[Number]) -> tuple[bool, bool]:
+        """In which coordinates it goes round: that of its own shift; in time, where it has gone
+        further than a period of H."""
+        p, q = (
+            any(2 * reached[k] > abs(s[k]) > 0 for s in self.shifts)
+            if self.timed
+            else bool(shift[k])
+            for k in (0, 1)
+        )
+        return p, q
+
+
+def initial_value_digits(start: tuple[Fraction, Fraction]) -> int:
+    """How many digits an initial value is given with, beyond those of ordinary numbers."""
+    written = max(len(str(x.numerator).rstrip("0")) for x in start)
+    return min(written, _MOST_DIGITS) if written > _DIGITS else 0
