@@ -53,7 +53,7 @@ class Notes(Sequence[T]):
         return self._count
 
     def __getitem__(self, index: Any) -> Any:
-        return self._items[: self._count][index] if index != -1 else self._items[self._count - 1]
+        return self._items[: self._count][index]
 
     def __iter__(self) -> Iterator[T]:
         return iter(self._items[: self._count])
