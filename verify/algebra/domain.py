@@ -98,6 +98,20 @@ class Domain:
         ]
         return False if False in answers else None if None in answers else True
 
+    def signs(self, point: Mapping[str, Fraction]) -> list[int | None]:
+        """Of each requirement's expression at the point, 1, 0 or −1; None where it is not known."""
+        ring, elements = self._elements
+        return [_sign(enclose(ring, x, point, _PRECISION)) for x in elements]
+
+    def left_since(self, before: Sequence[int | None], point: Mapping[str, Fraction]) -> list[str]:
+        """The conditions that do not hold all the way to the point from where the signs were those
+        `before`: they fail there, or what is not to be 0 has the other sign."""
+        return [
+            str(_shown(r))
+            for r, one, other in zip(self.requirements, before, self.signs(point), strict=True)
+            if (other == -1 and r.relation != "!=") or (one and other == -one)
+        ]
+
     def decide(self, ring: Ring, x: Poly) -> Decision:
         """Whether x is zero in this domain, shown by a point of it; None where none is found.
 
@@ -144,6 +158,12 @@ def holds(value: Ball | None, relation: Relation) -> bool | None:
     if value > 0 or (relation == ">=" and value >= 0):
         return True
     return False if value < 0 or (relation == ">" and value <= 0) else None
+
+
+def _sign(value: Ball | None) -> int | None:
+    if value is None or not value.is_finite():
+        return None
+    return 1 if value > 0 else -1 if value < 0 else 0 if value.is_zero() else None
 
 
 def _holds_of_number(r: Requirement) -> bool | None:

@@ -30,6 +30,7 @@ from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.digits_on_demand import Measured, choose, measure
 from verify.runs.estimated import Bounded, Bounds
 from verify.runs.float64 import bounded
+from verify.runs.left_domain import left_domain
 from verify.runs.start import Start
 from verify.scenes.observables import SEVERAL, check_observables, observed
 from verify.scenes.results.bounded_value import Value
@@ -103,7 +104,9 @@ class AskedRun:
     def result(self, progress: Progress | None = None) -> RunResult:
         """What is told of it."""
         done = self.measured(progress)
-        return _result(self.begun, self.steps, self.digits, self.wanted, self.known, done)
+        found = _result(self.begun, self.steps, self.digits, self.wanted, self.known, done)
+        left = left_domain(self.begun.hamiltonian, self.kernel_run, done.outcome)
+        return found.model_copy(update={"left_domain": left}) if left else found
 
 
 def run(

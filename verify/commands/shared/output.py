@@ -121,7 +121,7 @@ def run_json(result: "RunResult") -> dict[str, Any]:
     values = {name: _told(result, name) for name in labels}
     return {
         **{name: value for name, (value, _) in values.items()},
-        **picked(result, "steps", "digits", "arithmetic", "fallback"),
+        **picked(result, "steps", "digits", "arithmetic", "fallback", "left_domain"),
         "error_bound": {name: bound for name, (_, bound) in values.items() if bound},
         # `exact`: what a proof gave, and no run.
         **picked(result, "error_kind", "error_method", "exact", "status", "failed_step"),
@@ -172,6 +172,8 @@ def print_run(result: "RunResult") -> None:
     )
     if result.fallback:
         click.echo(f"taken instead of what was asked for: {result.fallback}")
+    if result.left_domain:
+        click.echo(result.left_domain)
 
 
 def plain_json(model: "Frozen") -> dict[str, Any]:

@@ -43,7 +43,9 @@ class RunResult(OfScheme):
     arithmetic's range (`status` "left range"; `failed_step` is the first step that was out of it),
     and where no digit could be confirmed ("unresolved"). `error_kind`
     is "enclosed" where every bound is rigorous, else "estimated", by `error_method`. `fallback`
-    says why another arithmetic was taken than the one that was asked for. `exact` names the
+    says why another arithmetic was taken than the one that was asked for; `left_domain` by which
+    step the orbit has left where H is defined, if it is seen to have: the scheme goes on there, and
+    no solution does. `exact` names the
     observables that a proof gave and no run was needed for. `t0` is when it started, of an H that
     depends on time. `source` is what of a paper the scene
     says that the run repeats.
@@ -51,6 +53,7 @@ class RunResult(OfScheme):
 
     arithmetic: str
     fallback: str = ""
+    left_domain: str = ""
     digits: int
     step_size: str
     steps: int
@@ -126,6 +129,8 @@ class RunResult(OfScheme):
         foot = f"{self.arithmetic}, {self.digits} digits; {bounds}"
         if self.fallback:
             foot += f"; taken instead of what was asked for: {self.fallback}"
+        if self.left_domain:
+            foot += f"; {self.left_domain}"
         if self.status != "finished":
             at = f" at step {self.failed_step}" if self.failed_step is not None else ""
             return html_table(caption, (), [("outcome", self.status + at)], foot)

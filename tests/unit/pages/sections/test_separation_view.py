@@ -187,6 +187,13 @@ def test_a_fallback_says_why_and_for_which_runs() -> None:
     assert "One run (h = 0.01) went to mpfr instead: the orbit is too wide." in text_of(page)
 
 
+def test_a_run_that_leaves_where_h_is_defined_says_so() -> None:
+    left = "by step 14 the orbit has left where H is defined: q > 0"
+    page = text_of(render(report((certified(left_domain=left),))))
+    assert f"h = 0.01: {left}." in page
+    assert "has left" not in text_of(render(report((certified(),))))
+
+
 def test_a_run_of_which_no_digit_is_known_says_so() -> None:
     page = render(report((certified(status="unresolved", values={}, error_method="too few"),)))
     assert "no digit could be confirmed: too few" in page

@@ -129,7 +129,7 @@ def evil(text: str) -> Report:
                 name=text, title=text, hamiltonian=text, parameters={text: text}, source=text,
                 proofs=(proof(scheme=text, reason=text, leading=text, delta_j=text, p_next=text,
                               jacobian=((text, text), (text, text)), witness={text: text}),),
-                runs=(run(scheme=text, error_method=text, fallback=text),),
+                runs=(run(scheme=text, error_method=text, fallback=text, left_domain=text),),
             ),
         ),
         title=text,

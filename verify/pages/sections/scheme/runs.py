@@ -35,7 +35,7 @@ class RunTable:
     told: str  # which of them are shown, where not all are
     computed: str
     certainty: str  # which of the bounds are rigorous
-    fallbacks: tuple[str, ...]  # where another arithmetic was taken than the one asked for
+    notes: tuple[str, ...]  # where another arithmetic was taken, and which left H's domain
     proved: tuple[str, ...]  # the columns that a proof gave, for all runs
 
 
@@ -53,7 +53,7 @@ def _view(scene: SceneResult, proof: ProofResult, _: str) -> RunTable | None:
         told=told(len(runs), len(held), len(failed)),
         computed=computed(runs),
         certainty=_certainty(runs),
-        fallbacks=tuple(_fallbacks(runs)),
+        notes=(*_fallbacks(runs), *_beyond(runs)),
         proved=tuple(_COLUMNS[n] for n in names if all(n in run.exact for run in runs)),
     )
 
@@ -90,6 +90,12 @@ def _fallbacks(runs: Sequence[RunResult]) -> Iterator[str]:
         sizes = ", ".join(dict.fromkeys(number(run.step_size) for run in held))
         count = "One run" if len(held) == 1 else f"{whole(len(held))} runs"
         yield f"{count} (h = {sizes}) went to {arithmetic} instead: {reason}"
+
+
+def _beyond(runs: Sequence[RunResult]) -> Iterator[str]:
+    """Which of them are seen to leave where H is defined, though the scheme goes on."""
+    for run in (run for run in runs if run.left_domain):
+        yield f"From {start(run)}, h = {number(run.step_size)}: {run.left_domain}"
 
 
 def _groups(runs: Sequence[RunResult], names: Sequence[str]) -> Iterator[Group]:
