@@ -10,7 +10,7 @@ import click
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering, picked
 from verify.commands.shared.input import PATH, hamiltonian_of, hamiltonian_options, scheme_option
-from verify.commands.shared.output import cut, line
+from verify.commands.shared.output import agreement, agreement_json, cut, line
 from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
@@ -253,7 +253,9 @@ def _every_json(proof: "EveryProof", seconds: str) -> dict[str, Any]:
         **picked(proof, "scheme", "order", "leading"),
         "formula": proof.formula or None,
         "delta_j": "0" if proof.area_preserving else None,  # there is no closed form in the jets
-        **picked(proof, "area_preserving", "convergence_order", "telescopes", "potential"),
+        "area_preserving": proof.area_preserving,
+        **agreement_json(proof),
+        **picked(proof, "telescopes", "potential"),
         "symplectic": proof.area_preserving,  # in the plane that is the same
         **picked(proof, "why", "checked"),
         "conditions": [asdict(condition) for condition in proof.conditions],
@@ -278,7 +280,7 @@ def _print_every(proof: "EveryProof") -> None:
         line("telescopes", ("yes: " if proof.telescopes else "no: ") + cut(proof.why))
     if proof.domain:
         line("where", proof.domain.prose)
-    line("the map", f"agrees with the exact flow up to h^{proof.convergence_order}")
+    line("the map", f"agrees with the exact flow {agreement(proof)}")
     for identity in proof.checked:
         line("checked", identity)
     for condition in proof.conditions:

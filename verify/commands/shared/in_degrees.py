@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands.shared.answer import picked
-from verify.commands.shared.output import cut, line, up_to
+from verify.commands.shared.output import agreement, agreement_json, cut, line
 
 if TYPE_CHECKING:
     from verify.integrators.degrees.check import StepFinding
@@ -36,7 +36,8 @@ def symplectic_json(
         "formula": proof.formula or None,
         "delta_j": "0" if proof.area_preserving else None,
         **picked(proof, "symplectic", "area_preserving", "volume_order", "volume_leading"),
-        **picked(proof, "convergence_order", "entry"),
+        **agreement_json(proof),
+        "entry": proof.entry,
         "witness": {name: text(value) for name, value in proof.witness.items()},
         "telescopes": proof.telescopes,
         "potential": proof.potential or None,
@@ -129,9 +130,7 @@ def print_symplectic(texts: Mapping[str, Any], scheme: str, proof: "SymplecticPr
         line("condition", f"{condition.name}: {found}")
     if proof.domain:
         line("where", str(proof.domain.prose))
-    order = proof.convergence_order
-    known = "in all powers of h that were looked at" if order is None else up_to(order)
-    line("the map", f"agrees with the exact flow {known}")
+    line("the map", f"agrees with the exact flow {agreement(proof)}")
 
 
 def _witness(proof: "SymplecticProof") -> str:

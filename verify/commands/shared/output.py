@@ -2,7 +2,7 @@
 
 import textwrap
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import click
 
@@ -39,9 +39,33 @@ _LABELS = {
 _IN_DEGREES = {"symplectic_defect_max": "max |S|", "symplectic_defect": "max |W|"}
 
 
+class Agreeing(Protocol):
+    """A proof that says how far the map agrees with the exact flow."""
+
+    @property
+    def convergence_order(self) -> int | None: ...
+    @property
+    def convergence_decided(self) -> bool: ...
+
+
 def up_to(order: int) -> str:
     """Of an agreement with the exact flow, which may be none."""
     return f"up to h^{order}" if order >= 0 else "not even at h = 0"
+
+
+def agreement(proof: Agreeing) -> str:
+    """How far a map agrees with the exact flow, and whether it may agree further."""
+    if proof.convergence_order is None:
+        return "in all powers of h that were looked at"
+    more = "" if proof.convergence_decided else "; whether further is not decided"
+    return up_to(proof.convergence_order) + more
+
+
+def agreement_json(proof: Agreeing) -> dict[str, Any]:
+    """The same; it is known where it is shown to agree no further."""
+    order = proof.convergence_order
+    known = order is not None and proof.convergence_decided
+    return {"convergence_order": order, "convergence_order_known": known}
 
 
 def cut(formula: str) -> str:
@@ -64,7 +88,8 @@ def proof_json(
         "order": proof.order,
         "leading": proof.first.text,
         "delta_j": proof.step_map.delta_j_text,
-        **picked(proof, "area_preserving", "convergence_order"),
+        "area_preserving": proof.area_preserving,
+        **agreement_json(proof),
         "symplectic": proof.area_preserving,  # in the plane that is the same
         "witness": {name: text(value) for name, value in proof.witness.items()},
         "telescopes": potential.holds,
@@ -111,9 +136,7 @@ def print_proof(exact: "Hamiltonian", scheme: str, proof: "Proof", potential: "P
         click.echo(f"  along an orbit the leading term does not telescope: {potential.reason}")
     if proof.domain:
         click.echo(f"  where    {proof.domain.prose}")
-    order = proof.convergence_order
-    agreement = "to every order looked at" if order is None else up_to(order)
-    click.echo(f"  the map  agrees with the exact flow {agreement}")
+    click.echo(f"  the map  agrees with the exact flow {agreement(proof)}")
 
 
 def run_json(result: "RunResult") -> dict[str, Any]:

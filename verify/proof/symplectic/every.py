@@ -127,6 +127,7 @@ def _by_conditions(
         checked=planar.checked,
         telescopes=True if symplectic else None,
         potential="0" if symplectic else "",
+        convergence_decided=planar.convergence_decided,
     )
 
 
@@ -151,10 +152,12 @@ def _by_series(
     agreed = next((n - 1 for n in range(most + 1) if series.agrees(n)[0] is not True), most)
     own = kind.conditions(every_h)
     if own and first_wrong(own) is None:
-        return _symplectic(scheme, degrees, agreed, own)
+        found = _symplectic(scheme, degrees, agreed, own)
+        return replace(found, convergence_decided=agreed < most)
     order = next((m for m in range(most + 1) if series.form(m).entries), None)
     if order is None:
-        return _undecided(scheme, degrees, agreed, most)
+        found = _undecided(scheme, degrees, agreed, most)
+        return replace(found, convergence_decided=agreed < most)
     leading = series.form(order)
     volume = series.delta_j(order)[order]
     found = SymplecticProof(
@@ -171,6 +174,7 @@ def _by_series(
         volume_order=order if not volume.is_zero() else None,
         volume_leading=flow.ring.text(volume),
         convergence_order=agreed,
+        convergence_decided=agreed < most,
         domain=_domain(scheme),
         entry=leading.called(next(iter(leading.entries))),
         checked=(read_prose(f"the entries of S up to `h^{order - 1}` are zero polynomials"),),

@@ -83,6 +83,7 @@ def prove_map(step: CanonicalMap, claimed: Claimed) -> SymplecticProof:
         leading=defect.form,
         symplectic=defect.decision.zero,
         convergence_order=convergence.order,
+        convergence_decided=convergence.decided,
         domain=step.domain & _parameters(defect),
         entry=defect.form.called(defect.place) if defect.form and defect.place else "",
         witness=defect.decision.witness,

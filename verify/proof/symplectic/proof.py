@@ -22,7 +22,8 @@ class SymplecticProof:
     `witness`, where it has the value `enclosure`. `area_preserving`: whether det J ≡ 1, which every
     symplectic map fulfils and some others do; `volume_order` and `volume_leading` are those of
     det J − 1. `convergence_order`: z' agrees with the exact flow up to h to this power; None: in
-    all that was looked at. `telescopes`: whether `leading` is the Lie derivative of a 2-form,
+    all that was looked at; `convergence_decided`: whether it is shown to agree no further.
+    `telescopes`: whether `leading` is the Lie derivative of a 2-form,
     `potential`; None where that is not known; `why` says how it is.
     `formula`: what `leading` is of lieη, for any η. `checked` names the identities
     that were checked, of a proof for every H.
@@ -48,6 +49,7 @@ class SymplecticProof:
     why: str = ""
     conditions: tuple[Condition, ...] = ()
     checked: tuple[Prose, ...] = ()
+    convergence_decided: bool = True
 
     def __repr__(self) -> str:
         return f"SymplecticProof({self.verdict}: {cut(str(self.reason))})"

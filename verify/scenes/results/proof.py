@@ -50,6 +50,7 @@ class ProofResult(OfScheme, WithProse):
     delta_j: str | None
     area_preserving: bool | None
     convergence_order: int | None
+    convergence_decided: bool = True
     witness: dict[str, str]
     enclosure: str
     domain: tuple[str, ...] = ()
@@ -100,6 +101,7 @@ class EveryResult(WithProse):
     order: int | None
     area_preserving: bool | None
     convergence_order: int | None
+    convergence_decided: bool = True
     formula: str
     leading: str
     telescopes: bool | None

@@ -78,6 +78,7 @@ def _in_degrees(name: str, degrees: int, timed: bool) -> EveryResult:
         order=proof.order,
         area_preserving=proof.area_preserving,
         convergence_order=proof.convergence_order,
+        convergence_decided=proof.convergence_decided,
         formula="",
         leading=proof.formula or proof.leading_text,
         telescopes=proof.telescopes,

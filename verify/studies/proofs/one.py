@@ -59,6 +59,7 @@ class ProofTask(SchemeTask):
             leading=proof.first.text,
             area_preserving=proof.area_preserving,
             convergence_order=proof.convergence_order,
+            convergence_decided=proof.convergence_decided,
             witness={name: text(value) for name, value in proof.witness.items()},
             enclosure=proof.enclosure,
             domain=proof.domain.texts,

@@ -40,6 +40,7 @@ def in_degrees(hamiltonian: Hamiltonian, scheme: Scheme, *, marked: bool = True)
         delta_j="0" if proof.symplectic else None,
         area_preserving=proof.area_preserving,
         convergence_order=proof.convergence_order,
+        convergence_decided=proof.convergence_decided,
         witness={name: text(value) for name, value in proof.witness.items()},
         enclosure=proof.enclosure,
         domain=proof.domain.texts,
