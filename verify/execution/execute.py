@@ -119,8 +119,8 @@ def execute(
             waiting[name] = task
         else:
             finish(name, kept)
-    for given in [each.key for task in waiting.values() for each in task.gives]:
-        waiting.pop(given, None)
+    given = {each.key: each for task in waiting.values() for each in task.gives}
+    given = {name: waiting.pop(name) for name in given if name in waiting}
 
     def take(place: Place, tasks: Mapping[str, Task], one_by_one: bool = False) -> None:
         parts = groups(tasks, place.room)
@@ -142,6 +142,7 @@ def execute(
     alone = {name: task for name, task in waiting.items() if task.alone}
     with open_place(_enough(together, where), _modules(together), store.tidy) as place:
         take(place, together)
+        take(place, {name: task for name, task in given.items() if name not in results})
         if not place.local:
             take(place, alone, one_by_one=True)
     if place.local:

@@ -44,11 +44,13 @@ class Task(Frozen):
 
     @property
     def gives(self) -> "tuple[Task, ...]":
-        """Tasks whose results come with its own, and need not be computed beside it."""
+        """Tasks whose results come with its own, if what it computes has got so far: they need not
+        be computed beside it."""
         return ()
 
     def computed(self, keeper: Keeper) -> "Iterator[tuple[Task, Frozen]]":
-        """Its result, and those that it gives, each with its task: what `compute` makes of each."""
+        """Its result, and those that have come with it, each with its task: what `compute` makes
+        of each."""
         yield self, self.compute(keeper)
 
     def proved(self) -> Frozen | None:

@@ -121,10 +121,10 @@ def _in_float64(motion: Motion, least: float, at: fmpq) -> _Rounded | None:
     if not (state[0].is_finite() and state[1].is_finite()):
         return None
     p, q = float(state[0].mid()), float(state[1].mid())
-    if not (isfinite(p) and isfinite(q)):
-        raise OverflowError
     if not float(max(x.rad() for x in state)) < _FINE * max(least, abs(p), abs(q)):
         return None
+    if not (isfinite(p) and isfinite(q)):
+        raise OverflowError
     error = max(float((x - middle).abs_upper()) for x, middle in zip(state, (p, q), strict=True))
     return p, q, error * _UPWARDS
 

@@ -40,7 +40,6 @@ POINTS: tuple[Point, ...] = (
 _PROOF_SECONDS, _CLOCK_SECONDS = 30.0, 10.0
 _KEPT = 0.4  # of the time that is left, for floats after dual numbers, which are slow
 _FARTHEST = 10**9
-_FAILS = ("raises", "not a step", "fails")  # faults of a call that returns no state
 
 
 def check_integrator(
@@ -99,7 +98,7 @@ def _no_step(trial: Trial, faults: Sequence[Fault]) -> Finding:
     """REFUTED, but where its calls lack time, or H is defined at none of the points either."""
     fault = next(fault for fault in faults if fault.fatal)
     verdict, text = Verdict.REFUTED, prose(fault.text)
-    if fault.name in _FAILS:
+    if fault.fails:
         h, t = Fraction(1, 8), Fraction(1, 4)
         if trial.step.left <= 0:
             verdict = Verdict.UNDECIDED

@@ -13,12 +13,14 @@ from verify.verdict import Verdict
 @dataclass(frozen=True)
 class Fault:
     """`name`: such as "frozen"; `text`: the sentence. `allows`: the best verdict that it lets
-    stand. REFUTED: it is no step of a scheme. PROVED: it is only told.
+    stand. REFUTED: it is no step of a scheme. PROVED: it is only told. `fails`: a call returned no
+    state, as it may where H is not defined.
     """
 
     name: str
     text: str
     allows: Verdict = Verdict.REFUTED
+    fails: bool = False
 
     @property
     def fatal(self) -> bool:
@@ -90,8 +92,8 @@ def _first(step: Step, p: float, q: float, h: float, try_arrays: bool) -> State:
 def _failure(state: State, error: Exception) -> Fault:
     place = line_of_error(*state, _STEPS[0])
     if isinstance(error, StepError):
-        return Fault("not a step", error.said)
-    return Fault("raises", prose(f"it raises {last_line(error)}", place))
+        return Fault("not a step", error.said, fails=True)
+    return Fault("raises", prose(f"it raises {last_line(error)}", place), fails=True)
 
 
 def _as_a_map(step: Step, first: Mapping[State, State]) -> list[Fault]:
@@ -104,7 +106,7 @@ def _as_a_map(step: Step, first: Mapping[State, State]) -> list[Fault]:
         except Exception as error:  # the user's code may raise anything
             said = error.said if isinstance(error, StepError) else f"it raises {last_line(error)}"
             allows = Verdict.REFUTED if step.left <= 0 else Verdict.PROVED
-            return [Fault("fails", prose(said, ", at a later call"), allows)]
+            return [Fault("fails", prose(said, ", at a later call"), allows, fails=True)]
         if after != before:
             return [not_a_function(state, _STEPS[0], before, after)]
     if all(state == after for state, after in first.items()):

@@ -91,7 +91,7 @@ def _parted(state: State, before: Outcome, after: Outcome) -> Fault | None:
         said = prose(
             "it raises ", last_line(raised[0]), " at one call and not at another, the same"
         )
-        return Fault("fails", said, Verdict.UNDECIDED)
+        return Fault("fails", said, Verdict.UNDECIDED, fails=True)
     if isinstance(before, tuple) and isinstance(after, tuple) and before != after:
         return not_a_function(state, _SIZE, before, after)
     return None

@@ -101,6 +101,11 @@ class AskedRun:
             self._measured = _run(*given, progress)
         return self._measured
 
+    @property
+    def done(self) -> bool:
+        """Whether its steps were done."""
+        return self._measured is not None
+
     def result(self, progress: Progress | None = None) -> RunResult:
         """What is told of it."""
         done = self.measured(progress)

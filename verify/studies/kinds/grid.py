@@ -58,7 +58,8 @@ def shares_runs(scene: Scene) -> bool:
     grid = scene.grid
     if grid is None or not grid.separate or not scene.exact_hamiltonian().planar:
         return False
-    return does_for_first_link(grid.arithmetic, grid.digits)
+    asked = observed(scene.exact_hamiltonian(), grid.observables)
+    return "lambda" in asked and does_for_first_link(grid.arithmetic, grid.digits)
 
 
 def grid_runs(scene: Scene, scheme: str, results: Results) -> list[RunResult]:

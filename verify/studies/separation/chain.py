@@ -148,15 +148,13 @@ def separated_chains(
     """Of a scheme's run from exact inputs, every part to so many digits where that can be had.
 
     `arithmetic` stands for exact arithmetic; `auto` takes the fastest that can. `advance` is called
-    with the steps just done, of three runs of N steps. `run`, whose checkpoints are these, is taken
-    for the first link, and its arithmetic for all. Raises Stopped where Λ has no value.
+    with the steps just done, of three runs of N steps. `run`, of these steps and checkpoints, is
+    taken for the first link. Raises Stopped where Λ has no value.
     """
     kernel_run = KernelRun(hamiltonian, scheme, start, steps, frozenset({"lambda"}), POINTS, keeper)
     step_map = step_map_of(hamiltonian, scheme)
     begun = lockstep.clock()
-    if run is not None:
-        arithmetic = run.arithmetic
-    elif arithmetic == AUTO:
+    if arithmetic == AUTO:
         arithmetic = choose(kernel_run, digits + CANCELLED)
     links = _AreaLinks(kernel_run, step_map, arithmetic, digits + CANCELLED, advance)
     if run is not None:

@@ -10,7 +10,6 @@ import copy
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from functools import partial
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 from verify import arithmetic as number_systems
@@ -133,16 +132,16 @@ class LinksOnDemand(ABC, Generic[L, W]):
         if name not in self._made:
             digits, asked = self.digits[name], self._asked
             if name == "first" and asked and digits <= asked.digits:
-                self._made[name] = self._in_exact_stead(asked.kernel_run, digits, asked.measured)
-            else:
-                how = partial(measure, kernel_run, self.system(digits), digits)
-                self._made[name] = self._in_exact_stead(kernel_run, digits, how)
+                measured = asked.measured(self._progress())
+                if measured.bounds.status == "finished":
+                    self._made[name] = self._in_exact_stead(asked.kernel_run, digits, measured)
+                    return self._made[name]
+            measured = measure(kernel_run, self.system(digits), digits, self._progress())
+            self._made[name] = self._in_exact_stead(kernel_run, digits, measured)
         return self._made[name]
 
-    def _in_exact_stead(
-        self, kernel_run: KernelRun, digits: int, measured_with: Callable[[Advance], Measured]
-    ) -> L:
-        """A run to so many digits; Stopped where a run cannot give them."""
+    def _progress(self) -> Advance:
+        """Tells of one run, which may begin again, the steps that were not done before."""
         last = 0
 
         def progress(done: int) -> None:
@@ -150,7 +149,10 @@ class LinksOnDemand(ABC, Generic[L, W]):
             self.advance(max(done - last, 0))
             last = max(done, last)
 
-        measured = measured_with(progress)
+        return progress
+
+    def _in_exact_stead(self, kernel_run: KernelRun, digits: int, measured: Measured) -> L:
+        """A run to so many digits; Stopped where a run cannot give them."""
         found, run = measured.bounds, measured.outcome
         if found.status != "finished":
             reason = f"in exact arithmetic: {found.method}"

@@ -90,8 +90,8 @@ def separate(
     """Λ of a float64 run of `steps` steps from (q, p), split into truncation and rounding.
 
     `t0`: when it starts, of an H that depends on time. `digits`: significant digits wanted of every
-    part. `arithmetic` stands for exact arithmetic; `auto` takes the fastest that can. `run`: the
-    same steps, asked for by somebody else, whose arithmetic is taken. Raises InputError for h ≤ 0,
+    part. `arithmetic` stands for exact arithmetic; `auto` takes the fastest that can. `run`: one of
+    the same steps that is asked for too, and done once for both. Raises InputError for h ≤ 0,
     N < 1, a parameter without a value, unknown names, and for float64, which is what is examined.
     """
     scheme = canonical(scheme)

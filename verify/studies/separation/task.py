@@ -42,8 +42,10 @@ class SeparationTask(InitialValueTask):
     @property
     def cost(self) -> int:
         """About how many float64 steps its runs and their checkpoints are worth."""
-        checkpoints = min(self.steps, POINTS)
-        return _CHECKPOINT_COST * checkpoints + _RUNS * self.steps * step_cost(AUTO)
+        own = _CHECKPOINT_COST * min(self.steps, POINTS)
+        if self.run is None:
+            return own + _RUNS * self.steps * step_cost(AUTO)
+        return own + self.run.cost + (_RUNS - 1) * self.steps * step_cost(AUTO)
 
     @property
     def ensemble(self) -> str | None:
@@ -60,10 +62,10 @@ class SeparationTask(InitialValueTask):
         return self._separated(keeper, self.run.asked_run(keeper) if self.run else None)
 
     def computed(self, keeper: Keeper) -> Iterator[tuple[Task, Frozen]]:
-        """The separation, and the run; by itself where the separation ended before it."""
+        """The separation, and the run where that was done for it."""
         own = self.run.asked_run(keeper) if self.run else None
         yield self, self._separated(keeper, own)
-        if self.run and own:
+        if self.run and own and own.done:
             yield self.run, own.result()
 
     def _separated(self, keeper: Keeper, own: AskedRun | None) -> SeparationResult:

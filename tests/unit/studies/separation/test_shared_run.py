@@ -1,5 +1,6 @@
 """A grid's run that is its separation's first link too is done once, and is what it is alone."""
 
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,8 @@ from verify.execution.executors import THIS_PROCESS, Placement
 from verify.execution.keeping import NOTHING
 from verify.execution.plan import Plan
 from verify.kernels.stepping import KernelRun
+from verify.runs.digits_on_demand import Measured
+from verify.runs.run import AskedRun
 from verify.runs.task import RunTask
 from verify.scenes.frozen import Frozen
 from verify.scenes.results.run import RunResult
@@ -23,11 +26,13 @@ from verify.studies.separation.task import SeparationTask, does_for_first_link
 STEPS = 300
 
 
-def planned(folder: Path, digits: int = 30, arithmetic: str = "auto", q: str = "1.5") -> Plan:
+def planned(
+    folder: Path, digits: int = 30, arithmetic: str = "auto", q: str = "1.5", more: str = ""
+) -> Plan:
     scene = HEAD + (
         f"[grid]\nsteps = {STEPS}\nstep_sizes = [0.1, 0.05]\n"
         f"initial_values = [{{ q = {q}, p = 0 }}]\n"
-        f'arithmetic = "{arithmetic}"\ndigits = {digits}\nseparate = true\n'
+        f'arithmetic = "{arithmetic}"\ndigits = {digits}\nseparate = true\n{more}'
     )
     return plan_scenes([load(folder, scene)])
 
@@ -123,6 +128,79 @@ def test_runs_that_do_not_do_for_a_first_link_are_done_by_themselves(
     plan = planned(tmp_path, digits, arithmetic)
     assert bool(plan.given) is shared is does_for_first_link(arithmetic, digits)
     assert all((task.run is not None) is shared for task in of_kind(plan, SeparationTask).values())
+
+
+@pytest.mark.parametrize("observables", [[], ["mse"], ["lambda_max", "lambda_plain"]])
+def test_a_run_without_lambda_is_no_first_link(tmp_path: Path, observables: list[str]) -> None:
+    plan = planned(tmp_path, more=f"observables = {observables}\n")
+    assert not plan.given
+    found = execute(plan, Store(None), where=THIS_PROCESS)
+    assert set(found) == set(plan.tasks)
+
+
+def test_what_else_a_separation_runs_is_in_the_arithmetic_that_it_takes_alone(
+    tmp_path: Path,
+) -> None:
+    plan = planned(tmp_path, arithmetic="mpmath")
+    found = execute(plan, Store(None), where=THIS_PROCESS)
+    for name, task in of_kind(plan, SeparationTask).items():
+        alone = task.model_copy(update={"run": None}).compute(NOTHING)
+        own, run = found[name], found[task.run.key]
+        assert isinstance(own, SeparationResult)
+        assert isinstance(run, RunResult)
+        assert (own.arithmetic, run.arithmetic) == (alone.arithmetic, "mpmath")
+        assert own.arithmetic != "mpmath"
+        assert own.plain is not None
+        assert alone.plain is not None
+        pairs = zip(dict(own.plain.parts).values(), dict(alone.plain.parts).values(), strict=True)
+        for one, other in pairs:
+            apart = abs(Fraction(one.value) - Fraction(other.value))
+            assert apart <= Fraction(one.bound) + Fraction(other.bound)
+
+
+def test_a_shared_run_that_finds_no_digit_leaves_the_separation_its_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plan = planned(tmp_path)
+    expected = plain(execute(plan, Store(None), where=THIS_PROCESS))
+    whole = AskedRun.measured
+
+    def unknown(self: AskedRun, *given: Any) -> Measured:
+        found = whole(self, *given)
+        return replace(found, bounds=replace(found.bounds, values={}, status="unresolved"))
+
+    monkeypatch.setattr(AskedRun, "measured", unknown)
+    found = execute(plan, Store(None), where=THIS_PROCESS)
+    separations = of_kind(plan, SeparationTask)
+    assert {n: x for n, x in plain(found).items() if n in separations} == {
+        n: expected[n] for n in separations
+    }
+    for task in separations.values():
+        assert found[task.run.key].status == "unresolved"  # type: ignore[attr-defined]
+
+
+def test_a_separation_that_ends_before_the_run_is_kept_where_that_is_interrupted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plan, store = planned(tmp_path, q="1e30", digits=40), kept_in(tmp_path)
+
+    def interrupted(*_: Any) -> RunResult:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(RunTask, "compute", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        execute(plan, store, where=THIS_PROCESS)
+    kept = {name for name, task in plan.tasks.items() if store.get(name, task)}
+    assert kept >= set(of_kind(plan, SeparationTask))
+    assert not kept & set(of_kind(plan, RunTask))
+
+
+def test_a_cost_is_that_of_the_runs_arithmetic(tmp_path: Path) -> None:
+    dear, cheap = (
+        next(iter(of_kind(planned(tmp_path, arithmetic=name), SeparationTask).values())).cost
+        for name in ("mpmath", "fixed")
+    )
+    assert dear > cheap
 
 
 def test_the_time_of_a_plan_counts_a_shared_run_once(tmp_path: Path) -> None:
