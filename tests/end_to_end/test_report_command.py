@@ -195,6 +195,14 @@ def interrupt(process: "subprocess.Popen[str]") -> tuple[int, str, str]:
     return process.returncode, out, err.removesuffix("\n")
 
 
+def wait_for_one_kept(process: "subprocess.Popen[str]", folder: Path) -> None:
+    """Until the first of a report's results is kept."""
+    until = time.monotonic() + 60
+    while not kept(folder) and time.monotonic() < until:
+        assert process.poll() is None
+        time.sleep(0.02)
+
+
 @pytest.fixture(scope="module")
 def uninterrupted(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of the long scene's report, made in one go by one process."""
@@ -214,10 +222,7 @@ def test_an_interrupted_report_goes_on_from_what_it_kept(
     path.write_text(LONG)
     call = ["report", str(path), "-o", str(folder), "--workers", workers]
     with started(*call) as process:
-        until = time.monotonic() + 60
-        while not kept(folder) and time.monotonic() < until:
-            assert process.poll() is None
-            time.sleep(0.02)
+        wait_for_one_kept(process, folder)
         status, out, err = interrupt(process)
     assert (status, out) == (130, "")
     finished = len(kept(folder))

@@ -32,7 +32,7 @@ from verify.execution.keeping import (
     sealed,
     tasks_with_checkpoints,
 )
-from verify.execution.plan import Plan
+from verify.execution.plan import Plan, given_by
 from verify.execution.task import Task
 from verify.files import clear_unfinished, write_atomically
 from verify.scenes.frozen import Frozen
@@ -119,8 +119,7 @@ def execute(
             waiting[name] = task
         else:
             finish(name, kept)
-    given = {each.key: each for task in waiting.values() for each in task.gives}
-    given = {name: waiting.pop(name) for name in given if name in waiting}
+    given = {name: waiting.pop(name) for name in given_by(waiting.values()) if name in waiting}
 
     def take(place: Place, tasks: Mapping[str, Task], one_by_one: bool = False) -> None:
         parts = groups(tasks, place.room)

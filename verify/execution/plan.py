@@ -1,11 +1,17 @@
 """A plan: tasks, each once with its reasons, and what is left out and why."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
 from verify.execution.task import Task
 
 _STEP_SECONDS = 4e-9
+
+
+def given_by(tasks: Iterable[Task]) -> set[str]:
+    """The keys of those whose results come with these."""
+    return {each.key for task in tasks for each in task.gives}
 
 
 @dataclass
@@ -27,7 +33,7 @@ class Plan:
     @property
     def given(self) -> set[str]:
         """The keys of the tasks whose results come with another's."""
-        return {each.key for task in self.tasks.values() for each in task.gives}
+        return given_by(self.tasks.values())
 
     def leave_out(self, what: str, why: str) -> None:
         """Says what is not computed, and why."""

@@ -58,7 +58,11 @@ def enclosed(state: Callable[[], State], start: Start, digits: int) -> Evaluatio
 
 def until(found: Callable[[], T | None], digits: int) -> T:
     """What is found at the first precision that gives it. Raises NoFlowError."""
-    bits = first_precision(digits)
+    return from_precision(found, first_precision(digits))
+
+
+def from_precision(found: Callable[[], T | None], bits: int) -> T:
+    """The same, with so many bits at first."""
     while bits <= _MOST_PRECISION:
         with working_precision(bits):
             value = found()

@@ -47,7 +47,7 @@ _REMEMBERED = 1 << 16  # points in closed form, of which one takes a fifth of a 
 _FLOWS = 3  # for which so many points are, in some 30 MB each
 _Rounded = tuple[float, float, float]
 _Told = tuple[str, tuple[_Rounded, ...]]
-_DIGITS = 16
+_BITS = closed_form.first_precision(16)
 _FINE = 1e-18  # of an orbit's scale: a ball's radius, far below float64's rounding
 
 
@@ -90,7 +90,8 @@ def _along_flow(hamiltonian: Hamiltonian, times: tuple[Fraction, ...]) -> Callab
     """(p, q) ↦ by what motion a point goes, and at each time p, q and a bound of the error of each.
 
     Several maps carry the same points of a region, and are held against the same exact ones. It
-    tries flint's present precision first, and raises NoFlowError, and OverflowError beyond float64.
+    is called with flint's precision at `_BITS`, and raises NoFlowError, and OverflowError beyond
+    float64.
     """
     zero = Fraction(0)
     ends = {max((zero, *times)), min((zero, *times))} - {zero}
@@ -112,7 +113,7 @@ def _rounded(motion: Motion, p: float, q: float, time: Fraction) -> _Rounded:
     if time == 0 or motion.rest:
         return p, q, 0.0
     found = partial(_in_float64, motion, max(abs(p), abs(q)), exactly(time))
-    return found() or closed_form.until(found, _DIGITS)
+    return found() or closed_form.from_precision(found, 2 * _BITS)
 
 
 def _in_float64(motion: Motion, least: float, at: fmpq) -> _Rounded | None:
@@ -168,7 +169,7 @@ class _Work:
 
         follow_one, farthest = _along_flow(self.hamiltonian, self.times), self._farthest
         starts = enumerate(zip(self.p.tolist(), self.q.tolist(), strict=True))
-        with working_precision(closed_form.first_precision(_DIGITS)):
+        with working_precision(_BITS):
             told = [self._told(i, farthest, follow_one, *start) for i, start in starts]
         methods = [method for method, _ in told]
         shape = len(told), len(self.times), 3

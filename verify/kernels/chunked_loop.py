@@ -103,7 +103,7 @@ class ChunkedLoop:
         self._tangent = known if "growth" in self._at else ()
         self._tangent += tuple(self._form) if ENTRIES in run.observables else ()
         self._doubles = [k for k, x in enumerate(self.state) if isinstance(x, float)]
-        self.section = -(-run.steps // run.sections)  # steps between two notes
+        self.section = run.section
         kinds = f"{arithmetic.name} {arithmetic.bits} {shift} {' '.join(kernel.state_names)}"
         inputs = (run.start, run.parameters, run.scheme, run.steps, run.points)
         self._label = f"{kinds} {' '.join(map(str, limits))} {inputs}"

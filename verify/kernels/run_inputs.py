@@ -64,6 +64,11 @@ class RunInputs:
         self.keeper, self.shares_kernel = keeper, shares_kernel
 
     @property
+    def section(self) -> int:
+        """Steps between two notes."""
+        return -(-self.steps // self.sections)
+
+    @property
     def implicit(self) -> bool:
         """Whether a step solves equations; there is no certificate of such runs."""
         return map_of(self.hamiltonian, self.scheme).implicit

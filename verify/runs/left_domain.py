@@ -16,10 +16,9 @@ def left_domain(hamiltonian: Hamiltonian, run: KernelRun, outcome: Outcome) -> s
     domain, start, count = hamiltonian.domain, run.start, len(outcome.trail)
     if not domain.requirements or not count:
         return ""
-    section = -(-run.steps // run.sections)  # steps between two notes
     signs = domain.signs(start)
     for k in _looked_at(count):
-        done = min(k * section, run.steps)
+        done = min(k * run.section, run.steps)
         note = outcome.trail[k - 1]
         state = {name: note[name] for name in hamiltonian.coordinates}
         left = domain.left_since(signs, {**state, "t": start["t"] + done * start["h"]})

@@ -11,7 +11,14 @@ from typing import Any
 import pytest
 
 from tests.end_to_end.test_command_line import SCENE, here
-from tests.end_to_end.test_report_command import findings, interrupt, kept, provenance, started
+from tests.end_to_end.test_report_command import (
+    findings,
+    interrupt,
+    kept,
+    provenance,
+    started,
+    wait_for_one_kept,
+)
 from tests.helpers.constructed.plans import CONTENT, kept_in, plain
 from tests.helpers.constructed.scenes import DUFFING, load
 from tests.helpers.processes.local_cluster import local_cluster
@@ -184,10 +191,7 @@ def test_an_interrupted_report_goes_on_and_its_results_are_not_touched(
     assert here(capsys, "report", str(path), "-o", str(whole), "--workers", "1")[0] == 0
     call = ("report", str(path), "-o", str(folder), "--cluster", address)
     with started(*call) as begun:
-        until = time.monotonic() + 60
-        while not kept(folder) and time.monotonic() < until:
-            assert begun.poll() is None
-            time.sleep(0.02)
+        wait_for_one_kept(begun, folder)
         status, out, err = interrupt(begun)
     assert (status, out) == (130, ""), err
     before = {file: file.read_bytes() for file in kept(folder)}

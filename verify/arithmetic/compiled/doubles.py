@@ -51,7 +51,7 @@ def on_points(source: str, names: Mapping[str, Any], carried: int) -> Callable[.
         given[1 : rows - carried] = np.reshape(inputs, (-1, 1))
         given[rows - carried :] = points
         found = np.empty((carried + 2, POINTS))
-        function(*(x.ctypes.data_as(ctypes.c_char_p) for x in (given, found)))
+        function(given.ctypes.data, found.ctypes.data)
         points[:] = found[1:-1]
 
     return run

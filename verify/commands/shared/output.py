@@ -48,17 +48,13 @@ class Agreeing(Protocol):
     def convergence_decided(self) -> bool: ...
 
 
-def up_to(order: int) -> str:
-    """Of an agreement with the exact flow, which may be none."""
-    return f"up to h^{order}" if order >= 0 else "not even at h = 0"
-
-
 def agreement(proof: Agreeing) -> str:
     """How far a map agrees with the exact flow, and whether it may agree further."""
-    if proof.convergence_order is None:
+    order = proof.convergence_order
+    if order is None:
         return "in all powers of h that were looked at"
     more = "" if proof.convergence_decided else "; whether further is not decided"
-    return up_to(proof.convergence_order) + more
+    return (f"up to h^{order}" if order >= 0 else "not even at h = 0") + more
 
 
 def agreement_json(proof: Agreeing) -> dict[str, Any]:

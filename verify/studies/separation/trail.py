@@ -43,17 +43,16 @@ class Trail(Sequence[Fraction]):
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Trail):
             return NotImplemented
-        mine, theirs = self._over(self._common(other)), other._over(self._common(other))
-        return mine.numerators == theirs.numerators
+        mine, theirs, _ = self._beside(other)
+        return mine == theirs
 
     def __hash__(self) -> int:
         return hash(tuple(self))
 
     def __sub__(self, other: "Trail") -> "Trail":
         """Value by value."""
-        common = self._common(other)
-        pairs = zip(self._over(common).numerators, other._over(common).numerators, strict=True)
-        return Trail((a - b for a, b in pairs), common)
+        mine, theirs, common = self._beside(other)
+        return Trail((a - b for a, b in zip(mine, theirs, strict=True)), common)
 
     def __repr__(self) -> str:
         return f"Trail({self.numerators}, {self.denominator})"
@@ -73,9 +72,11 @@ class Trail(Sequence[Fraction]):
         bound = least.numerator * self.denominator // least.denominator
         return [k for k, n in enumerate(self.numerators) if n > bound]
 
-    def _common(self, other: "Trail") -> int:
-        return lcm(self.denominator, other.denominator)
+    def _beside(self, other: "Trail") -> tuple[tuple[int, ...], tuple[int, ...], int]:
+        """Both numerators over one denominator, and this."""
+        common = lcm(self.denominator, other.denominator)
+        return self._over(common), other._over(common), common
 
-    def _over(self, denominator: int) -> "Trail":
+    def _over(self, denominator: int) -> tuple[int, ...]:
         factor = denominator // self.denominator
-        return self if factor == 1 else Trail((n * factor for n in self.numerators), denominator)
+        return self.numerators if factor == 1 else tuple(n * factor for n in self.numerators)

@@ -84,7 +84,7 @@ def exact_link(trail: Sequence[Fraction], method: str) -> Link:
 
 
 def marks_of(steps: int, points: int = POINTS) -> tuple[int, ...]:
-    """The numbers of steps at the checkpoints, as `Job.go` makes them for so many points."""
+    """The numbers of steps at the checkpoints, as a run of so many sections notes them."""
     section = -(-steps // points)
     return tuple(min(k, steps) for k in range(section, steps + section, section))
 

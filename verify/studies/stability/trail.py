@@ -117,14 +117,13 @@ class Trail:
 
 def follow(run: Followed, arithmetic: Arithmetic) -> Trail:
     """The run in this arithmetic. Raises UnsupportedError where that lacks a function."""
-    sections = _sections(run.steps)
     names = run.hamiltonian.coordinates
     asked = run.hamiltonian, run.scheme, {**run.start}, run.steps, frozenset[str](), 0
-    outcome = KernelRun(*asked, sections=sections).run(arithmetic)
-    section = -(-run.steps // sections)
+    own = KernelRun(*asked, sections=_sections(run.steps))
+    outcome = own.run(arithmetic)
     points = [Point(0, run.state)]
     for k, state in enumerate(outcome.trail, start=1):
-        points.append(Point(min(k * section, run.steps), tuple(state[name] for name in names)))
+        points.append(Point(min(k * own.section, run.steps), tuple(state[name] for name in names)))
     return Trail(run, arithmetic, tuple(points), outcome.done)
 
 
