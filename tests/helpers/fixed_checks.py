@@ -22,7 +22,7 @@ from verify.arithmetic.systems import fixed
 from verify.kernels.rounding import rounding_of
 from verify.kernels.step.program import Op
 
-WIDTHS = (128, 192, 256, 320, 512)
+WIDTHS = (128, 156, 192, 256, 320, 512)
 WIDEST = 1024
 FRACTION_OF = 16  # bits less than the width are after the point
 RANGE = 2**15
@@ -50,7 +50,7 @@ class Format:
         """What a source's function f gives."""
         if source not in self._functions:
             names = self.made.functions
-            self._functions[source] = self._compiled(source, self.width, self.bits, names)
+            self._functions[source] = self._compiled(source, self.bits, names)
         return self._functions[source](*arguments)
 
     def number(self, raw: int) -> Fixed:
@@ -91,8 +91,9 @@ class Shape:
     add: int = 0
 
     def raw(self, width: int) -> int:
-        words = (*self.limbs, *[self.fill] * 16)[: width // 64]
+        words = (*self.limbs, *[self.fill] * 16)[: -(-width // 64)]
         number = int.from_bytes(b"".join(w.to_bytes(8, "big") for w in words), "big", signed=True)
+        number >>= -width % 64
         top = 1 << (width - 1)
         return max(-top, min(top - 1, (number >> self.shift % width) + self.add))
 

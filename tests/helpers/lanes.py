@@ -13,6 +13,7 @@ from verify.arithmetic.compiled import engine, paths
 from verify.arithmetic.compiled.translation import Fixed, Source
 from verify.arithmetic.processor import LANES
 from verify.arithmetic.systems import fixed
+from verify.arithmetic.wide.size import INTEGER_BITS
 from verify.kernels.kernel import kernel_for
 from verify.studies.separation.kernel import mixed_kernel
 
@@ -40,11 +41,11 @@ class Both:
     """A function of one orbit and the same in lanes, of one width, which takes long to compile."""
 
     def __init__(self, text: str, width: int, way: str, names: Mapping[str, Any] | None = None):
-        made = fixed.at_bits(width - fixed.INTEGER_BITS)
+        made = fixed.at_bits(width - INTEGER_BITS)
         known = tuple(sorted({**made.functions, **(names or {})}.items()))
-        own = Source(text, width, made.bits, known)
+        own = Source(text, made.bits, known)
         target = paths.PATHS[way].target
-        self._source = Source(text, width, made.bits, known, f"lanes, {way}", target)
+        self._source = Source(text, made.bits, known, f"lanes, {way}", target)
         self.one = engine.NativeFunction(own, anew=True)
 
     @cached_property
@@ -85,4 +86,4 @@ def same(x: Any, y: Any) -> bool:
 
 
 def number(raw: int, width: int) -> Fixed:
-    return Fixed(raw, width - fixed.INTEGER_BITS)
+    return Fixed(raw, width - INTEGER_BITS)

@@ -129,7 +129,7 @@ def test_who_waits_longest_goes_on_with_those_that_have_the_longest_way(
 
     monkeypatch.setattr(engine, "step_together", noting)
     loop = f"    for k in range(steps):\n{LOOPS[called_for]}    return steps, x\n"
-    kernel = engine.compiled("def f(steps: 'int', x: 'wide'):\n" + loop, 128, 112, {})
+    kernel = engine.compiled("def f(steps: 'int', x: 'wide'):\n" + loop, 112, {})
     state = (engine.Fixed(1, 112),)
     ways = [walking.Walk(5 + k % 2, 3, (), state, beyond=10 * k) for k in range(2 * LANES + 2)]
     pending = [lockstep.Pending(way) for way in ways]

@@ -21,15 +21,15 @@ from verify.arithmetic.wide.translate import Target
 
 POINTS = 32  # a call's
 SETS = POINTS // LANES
-_WIDTH, _FRACTION = 128, 112  # of wide numbers, of which there are none
+_FRACTION = 112  # bits of wide numbers, of which there are none
 Points = npt.NDArray[np.float64]
 
 
-def _target(width: int, fraction: int) -> Target:
+def _target(fraction: int) -> Target:
     from verify.arithmetic.lanes.ensemble import Ensemble
     from verify.arithmetic.lanes.multiply_add import Portable
 
-    return Ensemble(width, fraction, Portable, sets=SETS)
+    return Ensemble(fraction, Portable, sets=SETS)
 
 
 def on_points(source: str, names: Mapping[str, Any], carried: int) -> Callable[..., None]:
@@ -40,7 +40,7 @@ def on_points(source: str, names: Mapping[str, Any], carried: int) -> Callable[.
     not in the language.
     """
     constants = tuple(sorted((n, x) for n, x in names.items() if isinstance(x, float)))
-    own = Source(_annotated(source), _WIDTH, _FRACTION, constants, f"{SETS} sets", _target)
+    own = Source(_annotated(source), _FRACTION, constants, f"{SETS} sets", _target)
     layout, linked = own.compiled()
     function = linked()
     rows = len(layout.arguments)
@@ -63,7 +63,7 @@ def one_point(source: str, names: Mapping[str, Any]) -> Callable[..., Any]:
     Raises NotImplementedError as `on_points` does.
     """
     constants = tuple(sorted((n, x) for n, x in names.items() if isinstance(x, float)))
-    layout, linked = Source(_annotated(source), _WIDTH, _FRACTION, constants, "doubles").compiled()
+    layout, linked = Source(_annotated(source), _FRACTION, constants, "doubles").compiled()
     given, found = (_record(kinds) for kinds in (layout.arguments, layout.results))
     size = layout.result_at[-1] + 8
 

@@ -19,23 +19,23 @@ from verify.lockstep import Pending
 
 Names = tuple[tuple[str, Any], ...]
 _LEAST_IN_LANES = 3 if LANES > 4 else 4  # fewer take longer together than one after the other
-_WIDEST_IN_LANES = 512  # bits; beyond that LLVM takes seconds
+_MOST_IN_LANES = 496  # fraction bits; beyond that LLVM takes seconds
 _WORTH_COMPILING = 5_000_000  # steps in all: what lanes save then is about what LLVM takes
 
 
-def compiled(source: str, width: int, fraction: int, names: Mapping[str, Any]) -> "NativeFunction":
+def compiled(source: str, fraction: int, names: Mapping[str, Any]) -> "NativeFunction":
     """The function that the source defines (see `verify.arithmetic.wide.translate`).
 
     It is compiled once, and linked when it is first called, since not every kernel that is made is
     run. It takes and gives `Fixed`, int and float. Raises OverflowError where an argument is
     outside the format, and ValueError where a function had no value outside a loop.
     """
-    return _compiled(source, width, fraction, tuple(sorted(names.items(), key=itemgetter(0))))
+    return _compiled(source, fraction, tuple(sorted(names.items(), key=itemgetter(0))))
 
 
 @lru_cache(maxsize=256)
-def _compiled(source: str, width: int, fraction: int, names: Names) -> "NativeFunction":
-    return NativeFunction(Source(source, width, fraction, names))
+def _compiled(source: str, fraction: int, names: Names) -> "NativeFunction":
+    return NativeFunction(Source(source, fraction, names))
 
 
 class NativeFunction:
@@ -73,7 +73,7 @@ class NativeFunction:
     @cached_property
     def _in_lanes(self) -> Source | None:
         path = paths.chosen()
-        if path is None or self.source.width > _WIDEST_IN_LANES:
+        if path is None or self.source.fraction > _MOST_IN_LANES:
             return None
         return replace(self.source, target=f"lanes, {path.name}", make=path.target)
 

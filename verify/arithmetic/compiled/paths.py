@@ -28,13 +28,13 @@ class Path:
     needed: tuple[str, ...] = ()
 
     @property
-    def target(self) -> "Callable[[int, int], Target]":
-        """Writes code for numbers of a width and fraction."""
+    def target(self) -> "Callable[[int], Target]":
+        """Writes code for numbers with so many fraction bits."""
         from verify.arithmetic.lanes import multiply_add
         from verify.arithmetic.lanes.ensemble import Ensemble
 
         own = getattr(multiply_add, self.multiply_add)
-        return lambda width, fraction: Ensemble(width, fraction, own)
+        return lambda fraction: Ensemble(fraction, own)
 
     @property
     def there(self) -> bool:

@@ -10,6 +10,7 @@ from typing import Any
 
 from verify import code_cache
 from verify.arithmetic.compiled import native
+from verify.arithmetic.wide.size import MORE_OF_SUMS, WORD, size_of, words_of
 from verify.arithmetic.wide.translate import Target, Translator
 
 
@@ -50,23 +51,26 @@ class Layout:
     """How the arguments and results of a function lie in memory: 64-bit words, one after another,
     and behind the results one that says whether all functions had a value."""
 
-    width: int
     fraction: int
     arguments: tuple[str, ...]
     results: tuple[str, ...]
     returns_tuple: bool
 
-    def bytes_of(self, kind: str) -> int:
-        """How many a number of that kind takes."""
-        return 8 * {"wide": self.width // 64, "sum": self.width // 64 + 1}.get(kind, 1)
+    def bits_of(self, kind: str) -> int:
+        """How many a number of that kind has."""
+        wide = size_of(self.fraction)
+        return {"wide": wide, "sum": wide + MORE_OF_SUMS}.get(kind, WORD)
+
+    def _bytes_of(self, kind: str) -> int:
+        return 8 * words_of(self.bits_of(kind))
 
     @cached_property
     def argument_sizes(self) -> tuple[int, ...]:
-        return tuple(map(self.bytes_of, self.arguments))
+        return tuple(map(self._bytes_of, self.arguments))
 
     @cached_property
     def result_sizes(self) -> tuple[int, ...]:
-        return tuple(map(self.bytes_of, self.results))
+        return tuple(map(self._bytes_of, self.results))
 
     @cached_property
     def result_at(self) -> tuple[int, ...]:
@@ -81,13 +85,19 @@ class Layout:
 
     def packed(self, arguments: Sequence[Word]) -> bytes:
         """The first arguments, or all; OverflowError where one is outside the format."""
-        return b"".join(map(_packed, arguments, self.arguments, self.argument_sizes))
+        return b"".join(map(self._packed, arguments, self.arguments))
 
     def packed_state(self, state: Sequence[Word]) -> bytes:
         """What a kernel carries, its last arguments."""
-        count = len(state)
-        kinds, sizes = self.arguments[-count:], self.argument_sizes[-count:]
-        return b"".join(map(_packed, state, kinds, sizes))
+        return b"".join(map(self._packed, state, self.arguments[-len(state) :]))
+
+    def _packed(self, value: Any, kind: str) -> bytes:
+        if kind == "float":
+            return _DOUBLE.pack(value)
+        raw, bits = int(value if kind == "int" else value.raw), self.bits_of(kind)
+        if not -1 << bits - 1 <= raw < 1 << bits - 1:
+            raise OverflowError(f"{raw} has more than {bits} bits")
+        return raw.to_bytes(8 * words_of(bits), "little", signed=True)
 
     def unpacked(self, raw: bytes) -> object:
         """The results; ValueError where a function had no value outside a loop."""
@@ -104,13 +114,6 @@ class Layout:
         return number if self.results[index] == "int" else Fixed(number, self.fraction)
 
 
-def _packed(value: Any, kind: str, size: int) -> bytes:
-    if kind == "float":
-        return _DOUBLE.pack(value)
-    raw = value if kind == "int" else value.raw
-    return int(raw).to_bytes(size, "little", signed=True)  # OverflowError beyond the format
-
-
 @dataclass(frozen=True)
 class Translation:
     """A function's layout and its machine code.
@@ -124,15 +127,15 @@ class Translation:
     def written(self) -> bytes:
         """As it is kept: a line of JSON, then the object file."""
         own = self.layout
-        kinds = [own.width, own.fraction, own.arguments, own.results, own.returns_tuple]
+        kinds = [own.fraction, own.arguments, own.results, own.returns_tuple]
         return json.dumps(kinds).encode() + b"\n" + self.code()
 
     @classmethod
     def read(cls, raw: bytes) -> "Translation":
         """What `written` wrote."""
         head, _, code = raw.partition(b"\n")
-        width, fraction, arguments, results, returns_tuple = json.loads(head)
-        layout = Layout(width, fraction, tuple(arguments), tuple(results), returns_tuple)
+        fraction, arguments, results, returns_tuple = json.loads(head)
+        layout = Layout(fraction, tuple(arguments), tuple(results), returns_tuple)
         return cls(layout, lambda: code)
 
 
@@ -142,16 +145,15 @@ class Source:
     it is compiled."""
 
     text: str
-    width: int
     fraction: int
     names: tuple[tuple[str, Any], ...]
     target: str = "one orbit"
-    make: Callable[[int, int], Target] | None = None  # its target, of width and fraction
+    make: Callable[[int], Target] | None = None  # its target, of so many fraction bits
 
     @property
     def key(self) -> str:
         """The name under which it is kept."""
-        form = f"{self.width} {self.fraction} {self.target}"
+        form = f"{self.fraction} {self.target}"
         return code_cache.key_of(native.versions(), self.text, form, repr(self.names))
 
     @property
@@ -164,14 +166,14 @@ class Source:
         if self.make is None:
             from verify.arithmetic.wide.one_orbit import OneOrbit
 
-            target: Target = OneOrbit(self.width, self.fraction)
+            target: Target = OneOrbit(self.fraction)
         else:
-            target = self.make(self.width, self.fraction)
+            target = self.make(self.fraction)
         translator = Translator(self.text, dict(self.names), target)
         module = translator.translate()
         kinds = tuple(kind for _, kind in translator.arguments)
         results = tuple(translator.results)
-        layout = Layout(self.width, self.fraction, kinds, results, translator.returns_tuple)
+        layout = Layout(self.fraction, kinds, results, translator.returns_tuple)
         return Translation(layout, cache(lambda: native.machine_code(module)))
 
     def compiled(self, *, anew: bool = False) -> tuple[Layout, Callable[[], native.Native]]:

@@ -1,10 +1,11 @@
 """sin and cos of numbers in lanes, to the bits that `verify.arithmetic.wide.functions` gives.
 
 x = k·2π/4096 + r; sin and cos of the first from a table of a quarter turn, of |r| ≤ π/4096 by
-Taylor polynomials, in fractions of n limbs. The function of one orbit loses at most `lost_by_one`
-units of 2^(2 − W) before it rounds, this one at most `_lost` units of 2^−52n. So where the value is
-farther than both together from where rounding changes, both round alike. Where it is not, in one of
-a hundred lanes, the function of one orbit is asked.
+Taylor polynomials, in fractions of n limbs. The function of one orbit, whose numbers take W bits in
+words of 64, loses at most `lost_by_one` units of 2^(2 − W) before it rounds, this one at most
+`_lost` units of 2^−52n. So where the value is farther than both together from where rounding
+changes, both round alike. Where it is not, in one of a hundred lanes, the function of one orbit is
+asked.
 
 What is lost here, in units of 2^−52n, with n ≤ 20 limbs: r is within 2; t = u² with u = 2^10 |r|
 within 2^11·2 + 2n; the series' terms lose 2n + 2 each, twenty of them at most beside what is left
@@ -41,15 +42,21 @@ from verify.arithmetic.lanes.table import Table, rows_of
 from verify.arithmetic.lanes.vectors import DIGIT, WORDS, splat
 from verify.arithmetic.wide.functions import arb_integer
 from verify.arithmetic.wide.limbs import Value
+from verify.arithmetic.wide.size import size_of, width_of
 
 _ANGLES = 4096  # table steps of a full turn
 _QUARTER = _ANGLES // 4
 _SHIFT = 10  # |r| < 2^−10
 
 
-def lost_by_one(width: int) -> int:
-    """Units of 2^(2 − width) that one orbit's function loses at most before it rounds."""
-    return 4 * (width // 64) + 16
+def lost_by_one(fraction: int) -> int:
+    """Units of 2^(2 − W) that one orbit's function loses at most before it rounds."""
+    return 4 * (width_of(fraction) // 64) + 16
+
+
+def in_units(lost: int, shift: int) -> int:
+    """lost·2^shift in whole units, or a little more."""
+    return lost << shift if shift >= 0 else -(-lost >> -shift)
 
 
 def _lost(count: int) -> int:
@@ -57,20 +64,20 @@ def _lost(count: int) -> int:
 
 
 @cache
-def _sines_of(width: int, count: int) -> ir.Constant:
+def _sines_of(count: int) -> ir.Constant:
     """sin of all table steps of a quarter, the same in all modules."""
-    with working_precision(width + 256):
+    with working_precision(DIGIT * count + 256):
         step = 2 * flint.arb.pi() / _ANGLES
         values = [arb_integer((step * k).sin(), DIGIT * count) for k in range(_QUARTER + 1)]
     return rows_of(values, count)
 
 
 class Circle:
-    """sin and cos for numbers of one width."""
+    """sin and cos for numbers of one format."""
 
-    def __init__(self, module: ir.Module, width: int, numbers: Numbers) -> None:
-        self.module, self.width, self.numbers = module, width, numbers
-        self.reduction = Reduction(width, numbers, lambda: 2 * flint.arb.pi() / _ANGLES)
+    def __init__(self, module: ir.Module, numbers: Numbers) -> None:
+        self.module, self.numbers = module, numbers
+        self.reduction = Reduction(numbers, lambda: 2 * flint.arb.pi() / _ANGLES)
         self.count, self.spare = self.reduction.count, self.reduction.spare
         self._table: Table | None = None
         self.fractions = Fractions(numbers.multiply_add, self.count)
@@ -115,16 +122,17 @@ class Circle:
 
     def _sines(self) -> Table:
         if self._table is None:
-            rows = _sines_of(self.width, self.count)
+            rows = _sines_of(self.count)
             self._table = Table(self.module, "lanes_sines", rows, self.count)
         return self._table
 
     def _rounded(self, b: ir.IRBuilder, value: Sequence[Value]) -> tuple[Value, Number]:
         """(where it may round otherwise, the number) of a fraction with its sign."""
         total = settled(b, added(b, value, constant(1 << (self.spare - 1), self.count)))
-        # 2^(2 − W) is 2^(spare − 14) units.
-        lost = _lost(self.count) + (lost_by_one(self.width) << (self.spare - 14))
+        fraction = self.numbers.fraction
+        by_one = in_units(lost_by_one(fraction), DIGIT * self.count + 2 - width_of(fraction))
+        lost = _lost(self.count) + by_one
         rest = b.and_(b.add(total[0], splat(lost)), splat((1 << self.spare) - 1))
         unsure = b.icmp_unsigned("<", rest, splat(2 * lost))
         limbs = self.fractions.shifted(b, total, self.spare)
-        return unsure, self.numbers.known(limbs, self.width)
+        return unsure, self.numbers.known(limbs, size_of(fraction))

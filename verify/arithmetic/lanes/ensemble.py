@@ -21,6 +21,7 @@ from verify.arithmetic.lanes.schedule import reordered
 from verify.arithmetic.lanes.vectors import CONDITIONS, DOUBLES, WORDS
 from verify.arithmetic.processor import LANES
 from verify.arithmetic.wide.limbs import I64, Value, constant
+from verify.arithmetic.wide.size import INTEGER_BITS, MORE_OF_SUMS, size_of, words_of
 
 BOOL = ir.IntType(1)
 _ALIGNED = 8  # bytes; numbers come from Python's memory
@@ -36,13 +37,11 @@ class Ensemble:
     another has time for. What a loop does not change is then the same for all of them.
     """
 
-    def __init__(
-        self, width: int, fraction: int, multiply_add: type[MultiplyAdd], *, sets: int = 1
-    ) -> None:
+    def __init__(self, fraction: int, multiply_add: type[MultiplyAdd], *, sets: int = 1) -> None:
         self.module, self.sets = ir.Module(), sets
-        self.widths = {"wide": width, "sum": width + 64}
+        self.widths = {"wide": size_of(fraction), "sum": size_of(fraction) + MORE_OF_SUMS}
         self.numbers = Numbers(fraction, multiply_add())
-        self.functions = LaneFunctions(self.module, width, self.numbers)
+        self.functions = LaneFunctions(self.module, self.numbers)
         self._known: dict[str, Any] = {}
         self._arguments: dict[str, tuple[int, int, str]] = {}  # where each lies, and its kind
         self._of_sets: list[dict[str, Any]] = []  # after the loop, the variables of each set
@@ -59,7 +58,7 @@ class Ensemble:
         self._known["valid"] = ir.Constant(CONDITIONS, [1] * LANES)
         at = 0
         for name, kind in arguments:
-            size = self.widths[kind] // 64 if kind in self.widths else 1
+            size = words_of(self.widths[kind]) if kind in self.widths else 1
             self._arguments[name] = at, size, kind
             self._known[name] = self._argument(name, 0)
             at += size
@@ -76,7 +75,7 @@ class Ensemble:
 
     def _of_words(self, words: list[Value], kind: str) -> Any:
         if kind in self.widths:
-            return self.numbers.from_words(self.b, words)
+            return self.numbers.from_words(self.b, words, self.widths[kind])
         return self.b.bitcast(words[0], DOUBLES) if kind == "float" else words[0]
 
     def _place(self, pointer: Value, at: int, own: int = 0) -> Value:
@@ -109,7 +108,7 @@ class Ensemble:
 
     def _words(self, value: Any) -> list[Value]:
         if isinstance(value, Number):
-            return [self.numbers.word(self.b, value, i) for i in range(value.width // 64)]
+            return self.numbers.words(self.b, value)
         if value.type == DOUBLES:
             return [self.b.bitcast(value, WORDS)]
         return [value if value.type == WORDS else vectors.same(self.b, value, WORDS)]
@@ -326,13 +325,12 @@ class Ensemble:
         return list(found)
 
     def _wide(self, x: Value) -> Number:
-        width = self.widths["wide"]
-        top = vectors.splat_double(2.0 ** (width - 1 - self.numbers.fraction))
+        top = vectors.splat_double(2.0 ** (INTEGER_BITS - 1))
         size = self.b.call(vectors.intrinsic(self.module, "fabs"), [x])
         fits = self.b.fcmp_ordered("<", size, top)
         self._require(fits)
         x = self.b.select(fits, x, vectors.splat_double(0.0))  # what fits not has no words
-        return self.numbers.from_double(self.b, x, width)
+        return self.numbers.from_double(self.b, x, self.widths["wide"])
 
     def _require(self, condition: Value) -> None:
         """`valid` only where this is true."""

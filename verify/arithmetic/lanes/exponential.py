@@ -30,7 +30,7 @@ from llvmlite import ir
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.lanes import vectors
 from verify.arithmetic.lanes.carries import Number
-from verify.arithmetic.lanes.circle import lost_by_one
+from verify.arithmetic.lanes.circle import in_units, lost_by_one
 from verify.arithmetic.lanes.fractions import Fractions, added, constant, negated, settled, taken
 from verify.arithmetic.lanes.numbers import Numbers
 from verify.arithmetic.lanes.reduction import Reduction
@@ -39,6 +39,7 @@ from verify.arithmetic.lanes.vectors import CONDITIONS, DIGIT, WORDS, splat, spl
 from verify.arithmetic.processor import LANES
 from verify.arithmetic.wide.functions import arb_integer
 from verify.arithmetic.wide.limbs import Value
+from verify.arithmetic.wide.size import size_of, width_of
 
 _OCTAVE = 256  # table steps of a factor 2
 _SHIFT = 8  # ρ < 2^−8
@@ -51,21 +52,21 @@ def _lost(count: int) -> int:
 
 
 @cache
-def _powers_of(width: int, count: int) -> ir.Constant:
+def _powers_of(count: int) -> ir.Constant:
     """Half of 2^(i/256), the same in all modules."""
-    with working_precision(width + 256):
+    with working_precision(DIGIT * count + 256):
         step = flint.arb(2).log() / _OCTAVE
         values = [arb_integer((step * i).exp(), DIGIT * count - 1) for i in range(_OCTAVE)]
     return rows_of(values, count)
 
 
 class Exponential:
-    """exp, sinh and cosh for numbers of one width: (where they are not known, [the number])."""
+    """exp, sinh and cosh for numbers of one format: (where they are not known, [the number])."""
 
-    def __init__(self, module: ir.Module, width: int, numbers: Numbers) -> None:
-        self.module, self.width, self.numbers = module, width, numbers
-        self.reduction = Reduction(width, numbers, lambda: flint.arb(2).log() / _OCTAVE)
-        self.count, self.below = self.reduction.count, DIGIT * self.reduction.count - width
+    def __init__(self, module: ir.Module, numbers: Numbers) -> None:
+        self.module, self.numbers, self.size = module, numbers, size_of(numbers.fraction)
+        self.reduction = Reduction(numbers, lambda: flint.arb(2).log() / _OCTAVE)
+        self.count, self.below = self.reduction.count, DIGIT * self.reduction.count - self.size
         self.fractions = Fractions(numbers.multiply_add, self.count)
         self._table: Table | None = None
 
@@ -75,8 +76,11 @@ class Exponential:
         half = self._powers().entries(b, b.and_(k, splat(_OCTAVE - 1)))
         mantissa = taken(b, half, self.fractions.product(b, half, self._small(b, rho)))
         a = vectors.down(b, k, _OCTAVE.bit_length() - 1)
-        lost = _lost(self.count) + (lost_by_one(self.width) << self.below + 1)
-        # The number is 2^W m / 2^(15 − a); where that is no shift from 1 to 63, one orbit is asked.
+        fraction = self.numbers.fraction
+        by_one = in_units(lost_by_one(fraction), DIGIT * self.count + 1 - width_of(fraction))
+        lost = _lost(self.count) + by_one
+        # The number is 2^(F + 16) m / 2^(15 − a); where that is no shift from 1 to 63, one orbit is
+        # asked.
         seen = b.and_(b.icmp_signed("<=", a, splat(_MOST)), b.icmp_signed(">=", a, splat(_LEAST)))
         by = b.select(seen, b.sub(splat(15), a), splat(1))
         margin = constant(lost, self.count)
@@ -120,12 +124,13 @@ class Exponential:
         return fractions.shifted(b, settled(b, fractions.product(b, u, series)), _SHIFT)
 
     def _cut(self, b: ir.IRBuilder, mantissa: list[Value], by: Value) -> Number:
-        """2^W m / 2^by, rounded down."""
-        limbs = self.fractions.shifted(b, mantissa, self.below)
-        return self.numbers.shifted(b, self.numbers.known(limbs, self.width), by)
+        """2^(F + 16) m / 2^by, rounded down."""
+        if self.below:
+            mantissa = self.fractions.shifted(b, mantissa, self.below)
+        return self.numbers.shifted(b, self.numbers.known(mantissa, self.size), by)
 
     def _powers(self) -> Table:
         if self._table is None:
-            rows = _powers_of(self.width, self.count)
+            rows = _powers_of(self.count)
             self._table = Table(self.module, "lanes_powers", rows, self.count)
         return self._table

@@ -20,22 +20,23 @@ from verify.arithmetic.wide import limbs
 from verify.arithmetic.wide.limbs import I64, Value, constant, resized
 from verify.arithmetic.wide.newton import MoreFunctions
 from verify.arithmetic.wide.one_orbit import float_function
+from verify.arithmetic.wide.size import size_of, words_of
 
 
 class LaneFunctions:
-    """Defines functions of one width in a module, each when it is first asked for."""
+    """Defines functions of one format in a module, each when it is first asked for."""
 
-    def __init__(self, module: ir.Module, width: int, numbers: Numbers) -> None:
-        self.module, self.width, self.numbers = module, width, numbers
-        self.one = MoreFunctions(module, width)
+    def __init__(self, module: ir.Module, numbers: Numbers) -> None:
+        self.module, self.numbers, self.size = module, numbers, size_of(numbers.fraction)
+        self.one = MoreFunctions(module, numbers.fraction)
         self._made: dict[str, ir.Function] = {}
         # What is written in lanes: where it is unsure, and its values.
         self._written: dict[str, Callable[[ir.IRBuilder, Number], tuple[Value, list[Number]]]] = {}
-        newton = Newton(module, width, numbers)
+        newton = Newton(module, numbers)
         # What has the bits of one orbit at once: where it has a value, and that.
         self._exact = {"inverse": newton.inverse, "sqrt": newton.sqrt}
-        circle = Circle(module, width, numbers)
-        exponential = Exponential(module, width, numbers)
+        circle = Circle(module, numbers)
+        exponential = Exponential(module, numbers)
         if circle.spare < DIGIT:
             self._written = {
                 "cos_sin": circle.cos_sin,
@@ -73,7 +74,7 @@ class LaneFunctions:
         valid = b.phi(CONDITIONS)
         valid.add_incoming(everywhere, before)
         valid.add_incoming(has_value, end)
-        found = [self.numbers.known([b.load(p) for p in own], self.width) for own in places]
+        found = [self.numbers.known([b.load(p) for p in own], self.size) for own in places]
         return valid, found
 
     def of_doubles(self, b: ir.IRBuilder, name: str, x: Value) -> Value:
@@ -93,17 +94,18 @@ class LaneFunctions:
         self, b: ir.IRBuilder, name: str, x: Number, where: Value, allocations: ir.IRBuilder
     ) -> tuple[Value, list[Number]]:
         """By the function of one orbit, in the lanes where the condition holds."""
-        count = self.width // 64
+        count = words_of(self.size)
         function, results = self._loop_of(name)
         room = allocations.alloca(WORDS, size=count)
         found = allocations.alloca(WORDS, size=results * count + 1)
-        for i in range(count):
-            b.store(self.numbers.word(b, x, i), b.gep(room, [constant(i, 64)]))
+        for i, word in enumerate(self.numbers.words(b, x)):
+            b.store(word, b.gep(room, [constant(i, 64)]))
         pointer, which = I64.as_pointer(), b.bitcast(where, ir.IntType(LANES))
         b.call(function, [b.bitcast(room, pointer), b.bitcast(found, pointer), which])
         words = [b.load(b.gep(found, [constant(i, 64)])) for i in range(results * count + 1)]
         values = [
-            self.numbers.from_words(b, words[i * count : (i + 1) * count]) for i in range(results)
+            self.numbers.from_words(b, words[i * count : (i + 1) * count], self.size)
+            for i in range(results)
         ]
         return b.icmp_unsigned("!=", words[-1], splat(0)), values
 
@@ -143,7 +145,7 @@ class LaneFunctions:
         return function, results
 
     def _gathered(self, b: ir.IRBuilder, pointer: Value) -> Value:
-        places = (b.gep(pointer, [constant(LANES * i, 64)]) for i in range(self.width // 64))
+        places = (b.gep(pointer, [constant(LANES * i, 64)]) for i in range(words_of(self.size)))
         return limbs.joined(b, [b.load(place) for place in places])
 
     def _scattered(self, b: ir.IRBuilder, pointer: Value, at: int, value: Value) -> int:

@@ -12,24 +12,25 @@ from verify.arithmetic.lanes.numbers import Numbers
 from verify.arithmetic.lanes.vectors import splat_double
 from verify.arithmetic.wide.limbs import Value
 from verify.arithmetic.wide.newton import LEAST_DIVISOR, LEAST_ROOT, iterations
+from verify.arithmetic.wide.size import size_of
 
 
 class Newton:
-    """1/x and √x for numbers of one width: (where there is a value, the number)."""
+    """1/x and √x for numbers of one format: (where there is a value, the number)."""
 
-    def __init__(self, module: ir.Module, width: int, numbers: Numbers) -> None:
-        self.module, self.width, self.numbers = module, width, numbers
-        self.fraction = numbers.fraction
+    def __init__(self, module: ir.Module, numbers: Numbers) -> None:
+        self.module, self.numbers, self.fraction = module, numbers, numbers.fraction
+        self.size = size_of(numbers.fraction)
 
     def inverse(self, b: ir.IRBuilder, x: Number) -> tuple[Value, Number]:
         """y ← y + y (1 − x y)."""
         numbers, one = self.numbers, splat_double(1.0)
-        size = numbers.known(numbers.settle(b, numbers.absolute(b, x)), self.width)
+        size = numbers.known(numbers.settle(b, numbers.absolute(b, x)), self.size)
         valid = self._at_least(b, size, LEAST_DIVISOR)
         guess = b.fdiv(one, b.select(valid, numbers.to_double(b, x), one))
-        y = numbers.from_double(b, guess, self.width)
-        unit = numbers.constant(1 << self.fraction, self.width)
-        for _ in range(iterations(self.width, quadratic=True)):
+        y = numbers.from_double(b, guess, self.size)
+        unit = numbers.constant(1 << self.fraction, self.size)
+        for _ in range(iterations(self.fraction, quadratic=True)):
             error = numbers.sub(b, unit, numbers.product(b, x, y))
             y = numbers.add(b, y, numbers.product(b, y, error))
         return valid, y
@@ -40,14 +41,14 @@ class Newton:
         valid = self._at_least(b, x, LEAST_ROOT)
         inside = b.select(valid, numbers.to_double(b, x), splat_double(1.0))
         guess = b.call(vectors.intrinsic(self.module, "sqrt"), [inside])
-        s = numbers.from_double(b, guess, self.width)
-        slope = numbers.from_double(b, b.fdiv(splat_double(0.5), guess), self.width)
-        for _ in range(iterations(self.width, quadratic=False)):
+        s = numbers.from_double(b, guess, self.size)
+        slope = numbers.from_double(b, b.fdiv(splat_double(0.5), guess), self.size)
+        for _ in range(iterations(self.fraction, quadratic=False)):
             rest = numbers.sub(b, x, numbers.product(b, s, s))
             s = numbers.add(b, s, numbers.product(b, rest, slope))
         return valid, s
 
     def _at_least(self, b: ir.IRBuilder, x: Number, places: int) -> Value:
         """Where x ≥ 2^−places."""
-        least = self.numbers.constant(1 << self.fraction - places, self.width)
+        least = self.numbers.constant(1 << self.fraction - places, self.size)
         return b.not_(self.numbers.less(b, x, least))

@@ -9,8 +9,10 @@ from llvmlite import ir
 from verify.arithmetic.lanes import vectors
 from verify.arithmetic.lanes.carries import Number, count_of
 from verify.arithmetic.lanes.products import Products
-from verify.arithmetic.lanes.vectors import DIGIT, DOUBLES, WORDS, splat
+from verify.arithmetic.lanes.vectors import DIGIT, DOUBLES, WORDS, splat, splat_double
 from verify.arithmetic.wide.limbs import Value
+from verify.arithmetic.wide.newton import units_of_words
+from verify.arithmetic.wide.size import WORD, size_of, words_of
 
 
 class Numbers(Products):
@@ -63,9 +65,17 @@ class Numbers(Products):
 
     # -- 64-bit words and doubles -------------------------------------------------------------
 
-    def word(self, b: ir.IRBuilder, x: Number, index: int) -> Value:
-        """The word of that index of the number in two's complement; 0 is the lowest."""
-        first, total = 64 * index, None
+    def words(self, b: ir.IRBuilder, x: Number) -> list[Value]:
+        """Those of the number in two's complement, the lowest first."""
+        return [self._word(b, x, WORD * index) for index in range(words_of(x.width))]
+
+    def _leading(self, b: ir.IRBuilder, x: Number, beneath: int = 0) -> Value:
+        """As `verify.arithmetic.wide.limbs.leading`."""
+        return self._word(b, x, x.width - WORD * (beneath + 1))
+
+    def _word(self, b: ir.IRBuilder, x: Number, first: int) -> Value:
+        """The 64 bits of the number in two's complement that begin with that one."""
+        total = None
         limbs = self.settle(b, x)
         for i, limb in enumerate(limbs):
             at, end = DIGIT * i - first, DIGIT * (i + 1) - first
@@ -78,49 +88,47 @@ class Numbers(Products):
         assert total is not None  # noqa: S101
         return total
 
-    def from_words(self, b: ir.IRBuilder, words: Sequence[Value]) -> Number:
-        """A number of 64-bit words, the lowest first."""
-        width = 64 * len(words)
+    def from_words(self, b: ir.IRBuilder, words: Sequence[Value], width: int) -> Number:
+        """The number of so many bits in 64-bit words, the lowest first."""
         count = count_of(width)
         limbs = []
         for i in range(count):
             index, by = divmod(DIGIT * i, 64)
-            last = i == count - 1  # it begins in the highest word, as that has more bits
-            limb = (b.ashr if last else b.lshr)(words[index], splat(by))
-            if index + 1 < len(words) and by > 64 - DIGIT:
+            last = i == count - 1  # it has the sign, which may be in the word above
+            highest = index == len(words) - 1
+            limb = (b.ashr if last and highest else b.lshr)(words[index], splat(by))
+            if not highest and (last or by > 64 - DIGIT):
                 limb = b.or_(limb, vectors.up(b, words[index + 1], 64 - by))
             limbs.append(limb if last else vectors.masked(b, limb))
         return self.known(limbs, width)
 
     def to_double(self, b: ir.IRBuilder, x: Number) -> Value:
         """As `verify.arithmetic.wide.newton.to_double`, operation by operation."""
-        count = x.width // 64
-        high = b.sitofp(self.word(b, x, count - 1), DOUBLES)
-        low = b.uitofp(self.word(b, x, count - 2), DOUBLES)
-        unit = vectors.splat_double(2.0 ** (x.width - 64 - self.fraction))
-        below = vectors.splat_double(2.0 ** (x.width - 128 - self.fraction))
+        high = b.sitofp(self._leading(b, x), DOUBLES)
+        low = b.uitofp(self._leading(b, x, 1), DOUBLES)
+        unit, below = map(splat_double, units_of_words(x.width - size_of(self.fraction)))
         return b.fadd(b.fmul(high, unit), b.fmul(low, below))
 
     def from_double(self, b: ir.IRBuilder, value: Value, width: int) -> Number:
-        """As `verify.arithmetic.wide.newton.from_double`; |value| < 2^(width − 1 − fraction)."""
+        """As `verify.arithmetic.wide.newton.from_double`; |value| < 2^15."""
         floor, absolute = (vectors.intrinsic(b.module, name) for name in ("floor", "fabs"))
         count = count_of(width)
-        scale = vectors.splat_double(2.0 ** (self.fraction - DIGIT * (count - 1)))
+        scale = splat_double(2.0 ** (self.fraction - DIGIT * (count - 1)))
         rest = b.fmul(b.call(absolute, [value]), scale)
         limbs: list[Value] = []
         for _ in range(count):
             whole = b.call(floor, [rest])
             limbs.insert(0, b.fptoui(whole, WORDS))
-            rest = b.fmul(b.fsub(rest, whole), vectors.splat_double(2.0**DIGIT))
-        negative = b.fcmp_ordered("<", value, vectors.splat_double(0.0))
+            rest = b.fmul(b.fsub(rest, whole), splat_double(2.0**DIGIT))
+        negative = b.fcmp_ordered("<", value, splat_double(0.0))
         signed = [b.select(negative, b.sub(splat(0), limb), limb) for limb in limbs]
         return Number(signed, width)
 
     # -- what the language has ----------------------------------------------------------------
 
     def inside(self, b: ir.IRBuilder, x: Number, limit: Number) -> Value:
-        """|x| < limit, by the highest words alone; see the translator of one orbit."""
-        high, most = (self.word(b, v, v.width // 64 - 1) for v in (x, limit))
+        """|x| < limit, by the leading bits alone; see the translator of one orbit."""
+        high, most = (self._leading(b, v) for v in (x, limit))
         moved = b.sub(b.add(high, most), splat(1))
         return b.icmp_unsigned("<", moved, b.sub(b.add(most, most), splat(1)))
 

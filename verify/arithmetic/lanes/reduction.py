@@ -7,28 +7,29 @@ from llvmlite import ir
 
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.lanes import vectors
-from verify.arithmetic.lanes.carries import Number
+from verify.arithmetic.lanes.carries import Number, count_of
 from verify.arithmetic.lanes.columns import Columns
 from verify.arithmetic.lanes.fractions import constant, negated, settled, taken
 from verify.arithmetic.lanes.numbers import Numbers
 from verify.arithmetic.lanes.vectors import DIGIT, splat
 from verify.arithmetic.wide.functions import arb_integer
 from verify.arithmetic.wide.limbs import Value
+from verify.arithmetic.wide.size import size_of
 
 
 class Reduction:
-    """x = k·step + rest for numbers of one width, the step below 1.
+    """x = k·step + rest for numbers of one format, the step below 1.
 
     The rest is a fraction of `count` limbs with a sign, and within 2 units of 2^−52 count: the step
     has 52 bits more than a fraction, and is multiplied by |k| < 2^26. `spare`: how many of a
     fraction's bits lie below a number's.
     """
 
-    def __init__(self, width: int, numbers: Numbers, step: Callable[[], flint.arb]) -> None:
-        self.width, self.numbers = width, numbers
-        self.count = -(-width // DIGIT)
+    def __init__(self, numbers: Numbers, step: Callable[[], flint.arb]) -> None:
+        self.numbers, size = numbers, size_of(numbers.fraction)
+        self.count = count_of(size)
         self.spare = DIGIT * self.count - numbers.fraction
-        with working_precision(width + 256):
+        with working_precision(size + 256):
             exact = step()
             self.unit = arb_integer(exact, DIGIT * (self.count + 1))
             self.inverse = float((1 / exact).mid())

@@ -1,4 +1,4 @@
-"""Fixed-point numbers of 128, 192, 256, … bits, compiled by LLVM: for bounded orbits, and fast.
+"""Fixed-point numbers of 128, 156, 192, … bits, compiled by LLVM: for bounded orbits, and fast.
 
 A number has 16 integer bits, the sign among them, and all others after the point: its precision is
 absolute. Nothing overflows unseen: before a run, interval arithmetic finds limits of p and q within
@@ -15,25 +15,26 @@ from typing import TYPE_CHECKING, Any
 
 from verify import lockstep
 from verify.arithmetic.number_system import Arithmetic, NumberSystem
+from verify.arithmetic.wide.size import INTEGER_BITS, WORD, size_of, words_of
 
 if TYPE_CHECKING:
     from verify.arithmetic.arb import Ball
 
 NAME = "fixed"
-INTEGER_BITS = 16
+_THREE_LIMBS = 3 * 52  # bits; in lanes as fast as 128, for one orbit as 192
 FUNCTIONS = ("sin", "cos", "cos_sin", "exp", "log", "sqrt", "sinh", "cosh")
 
 
 def make(digits: int) -> Arithmetic:
-    """The narrowest format that rounds within 10^−digits: to 34, 53, 72, 92, … digits."""
+    """The narrowest format that rounds within 10^−digits: to 34, 42, 53, 72, 92, … digits."""
     # Half a unit, 2^(−bits − 1), is at most 10^−digits.
-    least = math.ceil(digits * math.log2(10)) - 1 + INTEGER_BITS
-    return at_bits(max(128, 64 * -(-least // 64)) - INTEGER_BITS)
+    least = size_of(math.ceil(digits * math.log2(10)) - 1)
+    width = max(128, WORD * words_of(least))
+    return at_bits((_THREE_LIMBS if 128 < least <= _THREE_LIMBS else width) - INTEGER_BITS)
 
 
 def at_bits(bits: int) -> Arithmetic:
-    """The format with so many bits after the point; with 16 more they must fill whole limbs."""
-    width = bits + INTEGER_BITS
+    """The format with so many bits after the point, 112 or more."""
 
     def number(value: Fraction) -> Any:
         from verify.arithmetic.compiled.engine import Fixed
@@ -43,7 +44,7 @@ def at_bits(bits: int) -> Arithmetic:
     def compiled_source(source: str, name: str, names: Mapping[str, Any]) -> Callable[..., Any]:
         from verify.arithmetic.compiled.engine import compiled
 
-        return compiled(source, width, bits, names)
+        return compiled(source, bits, names)
 
     def rounding(kind: str, degree: int, size: "Ball") -> "Ball":
         given = kind == "root" and degree != 2  # a number; there is no function for it

@@ -1,9 +1,8 @@
 """sin, cos, exp, log, sqrt and 1/x of fixed-point numbers, as LLVM functions.
 
-A number of width W = 64 n has 16 integer bits, the sign among them, and W − 16 fraction bits; one
-unit is 2^(16 − W). Inside, values are fractions of W bits, or mantissas with W − 2 fraction bits,
-so that what products leave out stays far below one unit. `error_units` bounds each function's
-error.
+A number has F fraction bits and 16 integer bits, the sign among them, in W = 64 n bits; one unit is
+2^−F. Inside, values are fractions of W bits, or mantissas with W − 2 fraction bits, so that what
+products leave out stays far below one unit. `error_units` bounds each function's error.
 
 sin and cos: x = k·2π/4096 + r; sin and cos of the first from a table, of |r| ≤ π/4096 by Taylor
 polynomials. exp: x = k·ln 2/256 + r likewise. In the polynomials a high term is small, so that its
@@ -23,8 +22,8 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.wide import limbs
 from verify.arithmetic.wide.limbs import I64, Value, bits, constant, resized
 from verify.arithmetic.wide.products import Products
+from verify.arithmetic.wide.size import INTEGER_BITS, width_of
 
-INTEGER_BITS = 16
 _ANGLES = 4096  # table steps of a full turn
 _EXPONENTIALS = 256  # table steps of a factor 2
 _NEGLIGIBLE = 32  # units of a fraction's last place, 2^−W
@@ -65,13 +64,16 @@ def _powers(width: int) -> ir.Constant:
 
 
 class Functions:
-    """Defines functions of one width in a module, each when it is first asked for."""
+    """Defines functions of one format in a module, each when it is first asked for.
 
-    def __init__(self, module: ir.Module, width: int) -> None:
-        self.module, self.width = module, width
-        self.count, self.fraction = width // 64, width - INTEGER_BITS
-        self.type = bits(width)
-        self.products = Products(module, width, self.fraction)
+    `spare`: the bits in front of a number's fraction.
+    """
+
+    def __init__(self, module: ir.Module, fraction: int) -> None:
+        self.module, self.fraction, self.width = module, fraction, width_of(fraction)
+        self.count, self.spare = self.width // 64, self.width - fraction
+        self.type = bits(self.width)
+        self.products = Products(module, self.width, fraction)
         self._made: dict[str, ir.Function] = {}
         self._tables: dict[str, ir.GlobalVariable] = {}
 
@@ -118,17 +120,17 @@ class Functions:
         """(k, r): x = k·unit + r with k the floor of x/unit + offset, as i64, r with W fraction
         bits.
 
-        k is found from the highest limb alone, so that it is the floor within 2^−18, or within
+        k is found from the leading bits alone, so that it is the floor within 2^−18, or within
         2^−28 where |x| < 16; unit (an arb) is taken with 32 bits beyond the fraction, and k·unit is
         right to a unit of r.
         """
-        high = resized(b, limbs.limb(b, x, self.count - 1), 128, signed=True)  # 48 fraction bits
+        high = resized(b, limbs.leading(b, x, self.fraction), 128, signed=True)
         k = b.mul(high, constant(arb_integer(1 / unit, 32), 128))
         k = b.ashr(b.add(k, constant(int(offset * 2**80), 128)), constant(80, 128))
         wide = self.width + 64
         stretched = constant(arb_integer(unit, self.width + 32), wide)
         multiple = b.ashr(b.mul(resized(b, k, wide, signed=True), stretched), constant(32, wide))
-        scaled = limbs.shifted_up(b, x, INTEGER_BITS)
+        scaled = limbs.shifted_up(b, x, self.spare)
         return b.trunc(k, I64), b.sub(scaled, resized(b, multiple, self.width))
 
     def _series(
@@ -163,6 +165,10 @@ class Functions:
                 totals[i] = value
         return totals
 
+    def _power(self, exponent: int) -> Value:
+        """2^exponent as a number."""
+        return constant(1 << self.fraction + exponent, self.width)
+
     def _signed(self, b: ir.IRBuilder, magnitude: Value, like: Value) -> Value:
         """The magnitude with the sign of `like`."""
         negative = b.icmp_signed("<", like, constant(0, like.type.width))
@@ -170,7 +176,7 @@ class Functions:
 
     def _rounded(self, b: ir.IRBuilder, mantissa: Value) -> Value:
         """From W − 2 fraction bits to a number."""
-        by = INTEGER_BITS - 2
+        by = self.spare - 2
         return b.ashr(
             b.add(mantissa, constant(1 << (by - 1), self.width)), constant(by, self.width)
         )
@@ -241,11 +247,11 @@ class Functions:
     def _exp(self) -> ir.Function:
         b, x = self._define("exp", 1)
         mantissa, a = self._exponential(b, x)
-        shift = b.sub(constant(INTEGER_BITS - 2, 64), a)
+        shift = b.sub(constant(self.spare - 2, 64), a)
         most = constant(self.width - 1, 64)
         bounded = b.select(b.icmp_unsigned("<", shift, most), shift, most)
         value = b.lshr(mantissa, resized(b, bounded, self.width))
-        fits = b.icmp_signed(">=", value, constant(0, self.width))
+        fits = b.icmp_unsigned("<", value, self._power(INTEGER_BITS - 1))
         return self._result(b, b.and_(fits, b.icmp_signed(">=", shift, constant(0, 64))), value)
 
     def _cosh(self) -> ir.Function:
@@ -265,6 +271,6 @@ class Functions:
         # Below 2^14 each, so that their sum stays in range; and not both 0, as they are where −x
         # is not in range.
         either = b.or_(one, two)
-        fits = b.icmp_unsigned("<", either, constant(1 << self.width - 2, self.width))
+        fits = b.icmp_unsigned("<", either, self._power(INTEGER_BITS - 2))
         some = b.icmp_unsigned("!=", either, constant(0, self.width))
         return self._result(b, b.and_(valid, b.and_(fits, some)), half)

@@ -14,6 +14,8 @@ from typing import TypeAlias
 
 from llvmlite import ir
 
+from verify.arithmetic.wide.size import MORE_OF_SUMS, WORD, size_of, width_of
+
 I64 = ir.IntType(64)
 I128 = ir.IntType(128)
 
@@ -57,6 +59,17 @@ def resized(b: ir.IRBuilder, x: Value, width: int, *, signed: bool = False) -> V
     if x.type.width > width:
         return b.trunc(x, bits(width))
     return (b.sext if signed else b.zext)(x, bits(width))
+
+
+def leading(b: ir.IRBuilder, x: Value, fraction: int, beneath: int = 0) -> Value:
+    """The leading 64 bits of a number with so many fraction bits, the sign among them, 48 of them
+    fraction bits; or so many words beneath these.
+
+    Of a sum, whose bits before the point are 64 more, the leading 64 bits are whole.
+    """
+    more = MORE_OF_SUMS if x.type.width > width_of(fraction) else 0
+    first = size_of(fraction) + more - WORD * (beneath + 1)
+    return b.trunc(b.ashr(x, ir.Constant(x.type, first)) if first else x, I64)
 
 
 def top(b: ir.IRBuilder, x: Value, count: int) -> Value:

@@ -5,8 +5,9 @@ from llvmlite import ir
 
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.wide import limbs
-from verify.arithmetic.wide.functions import INTEGER_BITS, Functions, arb_integer
+from verify.arithmetic.wide.functions import Functions, arb_integer
 from verify.arithmetic.wide.limbs import I64, Value, constant, resized
+from verify.arithmetic.wide.size import INTEGER_BITS, MORE_OF_SUMS, size_of, width_of
 
 DOUBLE = ir.DoubleType()
 LEAST_ROOT = 26  # sqrt takes x ≥ 2^−26, and 1/x takes |x| ≥ 2^−14: their slopes stay in range
@@ -14,25 +15,30 @@ LEAST_DIVISOR = 14
 
 
 def to_double(b: ir.IRBuilder, x: Value, fraction: int) -> Value:
-    """x / 2^fraction as float64, from its two highest limbs: within 2^−52 |x| + 2^−100.
+    """x / 2^fraction as float64, from its leading 128 bits: within 2^−52 |x| + 2^−100.
 
-    The second part is 2^−36 for a sum, whose limbs stand for 2^64 times as much.
+    The second part is 2^−36 for a sum, whose bits stand for 2^64 times as much.
     """
-    width = x.type.width
-    high = b.sitofp(limbs.limb(b, x, width // 64 - 1), DOUBLE)
-    low = b.uitofp(limbs.limb(b, x, width // 64 - 2), DOUBLE)
-    unit = ir.Constant(DOUBLE, 2.0 ** (width - 64 - fraction))
-    below = ir.Constant(DOUBLE, 2.0 ** (width - 128 - fraction))
+    more = MORE_OF_SUMS if x.type.width > width_of(fraction) else 0
+    high = b.sitofp(limbs.leading(b, x, fraction), DOUBLE)
+    low = b.uitofp(limbs.leading(b, x, fraction, 1), DOUBLE)
+    unit, below = (ir.Constant(DOUBLE, x) for x in units_of_words(more))
     return b.fadd(b.fmul(high, unit), b.fmul(low, below))
 
 
-def from_double(b: ir.IRBuilder, value: Value, width: int, fraction: int) -> Value:
-    """The float64 as a number of that width; exact but for bits below 2^−fraction, which are cut.
+def units_of_words(more: int) -> tuple[float, float]:
+    """What the leading two words of a number count, with so many more bits before the point."""
+    return 2.0 ** (INTEGER_BITS + more - 64), 2.0 ** (INTEGER_BITS + more - 128)
 
-    |value| must be below 2^(width − 1 − fraction).
+
+def from_double(b: ir.IRBuilder, value: Value, fraction: int) -> Value:
+    """The float64 as a number; exact but for bits below 2^−fraction, which are cut.
+
+    |value| must be below 2^15.
     """
     floor = b.module.declare_intrinsic("llvm.floor", [DOUBLE])
     absolute = b.module.declare_intrinsic("llvm.fabs", [DOUBLE])
+    width = width_of(fraction)
     # The size first: what a small negative number is above −1 would be no float64.
     rest = b.fmul(b.call(absolute, [value]), ir.Constant(DOUBLE, 2.0 ** (fraction - width + 64)))
     total = constant(0, width)
@@ -45,10 +51,10 @@ def from_double(b: ir.IRBuilder, value: Value, width: int, fraction: int) -> Val
     return b.select(negative, b.neg(total), total)
 
 
-def iterations(width: int, *, quadratic: bool) -> int:
-    """Steps from 2^−48 to below 2^−width; each doubles the bits, or adds 48."""
+def iterations(fraction: int, *, quadratic: bool) -> int:
+    """Steps from 2^−48 to 16 bits below the last; each doubles the bits, or adds 48."""
     done, steps = 48, 0
-    while done < width:
+    while done < size_of(fraction):
         done = 2 * done if quadratic else done + 48
         steps += 1
     return steps
@@ -60,32 +66,30 @@ class MoreFunctions(Functions):
     def _inverse(self) -> ir.Function:
         b, x = self._define("inverse", 1)
         size = self._signed(b, x, x)
-        valid = b.icmp_unsigned(
-            ">=", size, constant(1 << self.fraction - LEAST_DIVISOR, self.width)
-        )
+        valid = b.icmp_unsigned(">=", size, self._power(-LEAST_DIVISOR))
         one = ir.Constant(DOUBLE, 1.0)
         # Where x is out of range 1 is divided by, so that no infinity is turned into an integer.
         guess = b.fdiv(one, b.select(valid, to_double(b, x, self.fraction), one))
-        y = from_double(b, guess, self.width, self.fraction)
+        y = from_double(b, guess, self.fraction)
         product = self.products.product
         # y ← y + y (1 − x y): the relative error is squared each time.
-        for _ in range(iterations(self.width, quadratic=True)):
-            error = b.sub(constant(1 << self.fraction, self.width), product(b, x, y))
+        for _ in range(iterations(self.fraction, quadratic=True)):
+            error = b.sub(self._power(0), product(b, x, y))
             y = b.add(y, product(b, y, error))
         return self._result(b, valid, y)
 
     def _sqrt(self) -> ir.Function:
         b, x = self._define("sqrt", 1)
-        valid = b.icmp_signed(">=", x, constant(1 << self.fraction - LEAST_ROOT, self.width))
+        valid = b.icmp_signed(">=", x, self._power(-LEAST_ROOT))
         root = self.module.declare_intrinsic("llvm.sqrt", [DOUBLE])
         one = ir.Constant(DOUBLE, 1.0)
         guess = b.call(root, [b.select(valid, to_double(b, x, self.fraction), one)])
         half = b.fdiv(ir.Constant(DOUBLE, 0.5), guess)
-        s = from_double(b, guess, self.width, self.fraction)
-        slope = from_double(b, half, self.width, self.fraction)
+        s = from_double(b, guess, self.fraction)
+        slope = from_double(b, half, self.fraction)
         product = self.products.product
         # s ← s + (x − s²)/(2 s₀): the slope stays that of the guess, which saves a division.
-        for _ in range(iterations(self.width, quadratic=False)):
+        for _ in range(iterations(self.fraction, quadratic=False)):
             s = b.add(s, product(b, b.sub(x, product(b, s, s)), slope))
         return self._result(b, valid, s)
 
@@ -101,7 +105,7 @@ class MoreFunctions(Functions):
         near = b.uitofp(limbs.limb(b, m, self.count - 1), DOUBLE)
         logarithm = self.module.declare_intrinsic("llvm.log", [DOUBLE])
         guess = b.call(logarithm, [b.fmul(near, ir.Constant(DOUBLE, 2.0**-64))])
-        minus = from_double(b, b.fneg(guess), width, self.fraction)
+        minus = from_double(b, b.fneg(guess), self.fraction)
         mantissa, a = self._exponential(b, minus)
         # e^−guess is m·2^a, with a = 1 near guess = −ln 2, and a = −1 near guess = 0.
         below = b.icmp_signed("<", a, constant(0, 64))
@@ -109,15 +113,15 @@ class MoreFunctions(Functions):
         power = b.select(below, limbs.shifted_down(b, mantissa, 1), doubled)
         # δ = m e^−guess − 1 is small: log m = guess + log(1 + δ).
         delta = b.sub(self.products.high(b, m, power), constant(1 << places, width))
-        total = b.add(b.neg(b.shl(minus, constant(INTEGER_BITS - 2, width))), self._log1p(b, delta))
+        total = b.add(b.neg(b.shl(minus, constant(self.spare - 2, width))), self._log1p(b, delta))
         # The guess may lie on either side of −½; the sum may be large: one limb more.
         wide = width + 64
         with working_precision(width + 128):
             two = constant(arb_integer(flint.arb(2).log(), places + 32), wide)
-        exponent = b.sub(constant(INTEGER_BITS, wide), resized(b, lead, wide))
+        exponent = b.sub(constant(self.spare, wide), resized(b, lead, wide))
         octaves = b.ashr(b.mul(exponent, two), constant(32, wide))
         total = b.add(resized(b, total, wide, signed=True), octaves)
-        by = INTEGER_BITS - 2
+        by = self.spare - 2
         total = b.ashr(b.add(total, constant(1 << (by - 1), wide)), constant(by, wide))
         return self._result(b, valid, resized(b, total, width))
 

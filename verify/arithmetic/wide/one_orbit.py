@@ -10,6 +10,7 @@ from llvmlite import ir
 from verify.arithmetic.wide import limbs, memory
 from verify.arithmetic.wide.limbs import I64, Value, constant, resized
 from verify.arithmetic.wide.newton import DOUBLE, MoreFunctions, from_double, to_double
+from verify.arithmetic.wide.size import INTEGER_BITS, MORE_OF_SUMS, width_of
 from verify.arithmetic.wide.translate import FLOAT_FUNCTIONS, LIBM_FUNCTIONS
 
 BOOL = ir.IntType(1)
@@ -18,10 +19,10 @@ BOOL = ir.IntType(1)
 class OneOrbit:
     """See `verify.arithmetic.wide.translate.Target`; a value is LLVM's, its type tells its kind."""
 
-    def __init__(self, width: int, fraction: int) -> None:
-        self.fraction, self.module = fraction, ir.Module()
-        self.functions = MoreFunctions(self.module, width)
-        self.types = {"wide": limbs.bits(width), "sum": limbs.bits(width + 64),
+    def __init__(self, fraction: int) -> None:
+        self.fraction, self.module, width = fraction, ir.Module(), width_of(fraction)
+        self.functions = MoreFunctions(self.module, fraction)
+        self.types = {"wide": limbs.bits(width), "sum": limbs.bits(width + MORE_OF_SUMS),
                       "float": DOUBLE, "int": I64}  # fmt: skip
         self._kinds = {str(kind_type): kind for kind, kind_type in self.types.items()}
         self._variables: dict[str, Value] = {}
@@ -156,9 +157,9 @@ class OneOrbit:
         return compare(order, x, y)
 
     def inside(self, x: Value, limit: Value) -> Value:
-        """|x| < limit, by the highest limbs alone: where it says so it is so; limit > 0."""
-        b, last = self.b, x.type.width // 64 - 1
-        x, limit = limbs.limb(b, x, last), limbs.limb(b, limit, last)
+        """|x| < limit, by the leading 64 bits alone: where it says so it is so; limit > 0."""
+        b = self.b
+        x, limit = (limbs.leading(b, v, self.fraction) for v in (x, limit))
         # −limit < x < limit for integers is 0 < x + limit < 2·limit.
         moved = b.sub(b.add(x, limit), constant(1, 64))
         return b.icmp_unsigned("<", moved, b.sub(b.add(limit, limit), constant(1, 64)))
@@ -177,10 +178,9 @@ class OneOrbit:
         if name == "shifted":
             return [self._shifted(x, values[1])]
         if name == "wide":
-            width = self.types["wide"].width
-            top = ir.Constant(DOUBLE, 2.0 ** (width - 1 - self.fraction))
+            top = ir.Constant(DOUBLE, 2.0 ** (INTEGER_BITS - 1))
             self._require(b.fcmp_ordered("<", self._absolute(x), top))
-            return [from_double(b, x, width, self.fraction)]
+            return [from_double(b, x, self.fraction)]
         if name == "root" and x.type == DOUBLE:
             return [self._float_root(x, values[1])]
         if x.type == DOUBLE:

@@ -12,7 +12,7 @@ from tests.helpers.fixed_checks import HARD, Near
 from tests.helpers.lanes import Both, number, same
 from verify.arithmetic.processor import LANES
 
-WIDTHS = (128, 192, 256, 320, 384, 448, 512)
+WIDTHS = (128, 156, 192, 256, 320, 384, 448, 512)
 OPERATIONS = """\
 def f(x, y, s: 'sum', by: 'int', g: 'float'):
     n = 0

@@ -27,9 +27,9 @@ WIDTH = 256
 def fresh() -> Format:
     """A format whose functions are compiled anew, with what is planted."""
 
-    def compiled(source: str, width: int, fraction: int, names: dict[str, Any]) -> Any:
+    def compiled(source: str, fraction: int, names: dict[str, Any]) -> Any:
         found = tuple(sorted(names.items(), key=itemgetter(0)))
-        return engine.NativeFunction(Source(source, width, fraction, found), anew=True)
+        return engine.NativeFunction(Source(source, fraction, found), anew=True)
 
     return Format(WIDTH, compiled)
 

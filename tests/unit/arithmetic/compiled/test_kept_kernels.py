@@ -13,7 +13,7 @@ from verify.arithmetic.systems import fixed
 from verify.arithmetic.wide.translate import Translator
 from verify.code_cache import OFF, VARIABLE
 
-WIDTH, BITS = 192, 176
+BITS = 176
 SOURCE = """\
 def kernel(steps: 'int', x, s: 'sum', f: 'float'):
     for k in range(steps):
@@ -49,11 +49,11 @@ def compilations(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 def call(source: str = SOURCE, fraction: int = BITS, **names: object) -> object:
     """What the kernel gives in a process that has not compiled anything yet."""
     engine._compiled.cache_clear()
-    return engine.compiled(source, WIDTH, fraction, NAMES | names)(*GIVEN)
+    return engine.compiled(source, fraction, NAMES | names)(*GIVEN)
 
 
 def expected() -> object:
-    source = Source(SOURCE, WIDTH, BITS, tuple(sorted(NAMES.items())))
+    source = Source(SOURCE, BITS, tuple(sorted(NAMES.items())))
     return engine.NativeFunction(source, anew=True)(*GIVEN)
 
 
@@ -80,7 +80,7 @@ def test_the_second_process_needs_no_ir(kernels: Path, monkeypatch: pytest.Monke
 
 def test_what_is_not_called_is_not_compiled_and_not_kept(kernels: Path) -> None:
     engine._compiled.cache_clear()
-    engine.compiled(SOURCE, WIDTH, BITS, NAMES)
+    engine.compiled(SOURCE, BITS, NAMES)
     assert not kernels.exists()
 
 
