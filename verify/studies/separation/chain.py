@@ -17,7 +17,7 @@ from verify.arithmetic.number_system import UnsupportedError
 from verify.errors import InputError
 from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.step.computation import step_map_of
+from verify.kernels.step.computation import common_power, step_map_of
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.digits_on_demand import choose
 from verify.runs.estimated import working_digits
@@ -40,7 +40,9 @@ PARTS = ("input", "trajectory", "determinant", "product")  # of rounding, in the
 PARTS_IN_TIME = ("input", "clock", "trajectory", "determinant", "product")
 _WHOLES = ("lambda_working", "truncation", "total")
 QUANTITIES = (*_WHOLES, *PARTS)
-CANCELLED = 20  # digits that the differences between links cancel, float64's and a few more
+# Digits that the differences between links cancel: float64's 16, less those by which a long run
+# magnifies what is rounded. Where more cancel the link is made again.
+CANCELLED = 14
 _ATTEMPTS = 4
 
 
@@ -183,6 +185,7 @@ class _AreaLinks(LinksOnDemand[Link, Working]):
         advance: Advance,
     ) -> None:
         super().__init__(kernel_run, arithmetic, digits, POINTS, advance)
+        self._step_map = step_map
         self.proved = _proved(step_map, kernel_run, digits)
         self.constant = _proved(_rounded_map(step_map, self.rounded), self.rounded, digits)
 
@@ -202,12 +205,23 @@ class _AreaLinks(LinksOnDemand[Link, Working]):
         run = WorkingRun(
             self.kernel_run, self.inputs, self.constant is None and self.kernel_run.steps > 1
         )
-        digits = working_digits(self.digits["beside"], self.kernel_run.steps)
-        asked, last = number_systems.get(self.system(digits), digits), last_system().make(digits)
+        asked = number_systems.get(self.system(self._digits_beside), self._digits_beside)
+        last = last_system().make(working_digits(self.digits["beside"], self.kernel_run.steps))
         try:
             return run.step_through(asked if asked.rounding else last, self.advance)
         except UnsupportedError:
             return run.step_through(last, self.advance)
+
+    @property
+    def _digits_beside(self) -> int:
+        """After the point: a compiled kernel takes the longer the more there are."""
+        wanted, steps = self.digits["beside"], self.kernel_run.steps
+        if not number_systems.about(self.arithmetic).compiles:
+            return working_digits(wanted, steps)
+        # Along given states only the number of roundings grows; a step's are below 10^6 units.
+        # Where ΔJ has h^r, Λ is as h^(r − 1).
+        size = self.kernel_run.start["h"] ** max(0, common_power(self._step_map) - 1)
+        return wanted + max(0, -magnitude(size)) + len(str(steps)) + 6
 
     def read(self, run: Outcome, last: Fraction, as_link: AsLink) -> Link:
         """Λ at every checkpoint, and `last` at the end."""

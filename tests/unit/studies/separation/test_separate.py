@@ -17,6 +17,7 @@ from verify.runs.run import run
 from verify.studies.separation import kernel as separation_kernel
 from verify.studies.separation.chain import PARTS, QUANTITIES, Chain, separated_chains
 from verify.studies.separation.kernel import WORKING, mixed_kernel
+from verify.studies.separation.links import LinksOnDemand
 from verify.studies.separation.separate import separate
 from verify.studies.separation.working import WorkingRun, rounded_inputs
 
@@ -37,6 +38,31 @@ def chain_of(
 
 def finals(chain: Chain) -> dict[str, Fraction]:
     return {name: chain.final(name)[0] for name in QUANTITIES}
+
+
+@pytest.mark.parametrize("hamiltonian", [DUFFING, PENDULUM], ids=["duffing", "pendulum"])
+@pytest.mark.parametrize("h", ["1/100", "1/100000"])
+def test_a_long_run_is_asked_for_enough_digits_at_once(
+    hamiltonian: Hamiltonian, h: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """However small the step, and so Λ; one format for all links, which lanes take as it is."""
+    refined, formats = [], []
+    refine, step_through = LinksOnDemand.refine, WorkingRun.step_through
+
+    def noted_refine(self: Any, lacking: Any) -> bool:
+        refined.append(refine(self, lacking))
+        return refined[-1]
+
+    def noted_steps(self: Any, arithmetic: Arithmetic, advance: Any) -> Any:
+        formats.append((arithmetic.name, arithmetic.bits))
+        return step_through(self, arithmetic, advance)
+
+    monkeypatch.setattr(LinksOnDemand, "refine", noted_refine)
+    monkeypatch.setattr(WorkingRun, "step_through", noted_steps)
+    at = {**AT, "q": "0.3", "step_size": h}
+    assert separate(hamiltonian, "lie2", **at, steps=70_000, digits=6).status == "finished"
+    assert refined == [False]
+    assert formats == [("fixed", 140)]
 
 
 def test_the_working_value_is_what_run_reports_for_float64() -> None:

@@ -118,8 +118,8 @@ def test_where_float64_leaves_its_range_the_run_is_done_all_the_same(tmp_path: P
 @pytest.mark.parametrize(
     ("arithmetic", "digits", "shared"),
     [
-        ("auto", 26, True), ("fixed", 30, True), ("mpfr", 30, True),
-        ("auto", 25, False), ("ball", 30, False), ("float64", 17, False),
+        ("auto", 20, True), ("fixed", 30, True), ("mpfr", 30, True),
+        ("auto", 19, False), ("ball", 30, False), ("float64", 17, False),
     ],
 )  # fmt: skip
 def test_runs_that_do_not_do_for_a_first_link_are_done_by_themselves(
