@@ -91,6 +91,10 @@ class Claim(Frozen):
         """What is to be computed before the claim can be judged."""
         return ()
 
+    def tasks_without_scene(self) -> Iterable[Task]:
+        """The same of a claim that speaks of no scene."""
+        return ()
+
     def closer(self, scene: Scene) -> Scene | None:
         """The scene with runs that may decide what those of this one leave open; None: there are
         none."""

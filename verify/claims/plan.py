@@ -17,11 +17,12 @@ def add_claims(
 ) -> dict[str, Frozen]:
     """Adds to the plan what the claims need; returns what needs no run, by the task's key.
 
-    A claim whose scene is not among them needs nothing.
+    A claim whose scene is not among them needs what it does without one.
     """
     known: dict[str, Frozen] = {}
     for claim in claims:
-        for task in claim.tasks(scenes[claim.scene]) if claim.scene in scenes else ():
+        own = scenes.get(claim.scene)
+        for task in claim.tasks_without_scene() if own is None else claim.tasks(own):
             name = task.key
             found = known.get(name) or task.proved()
             if found is None:

@@ -1,5 +1,6 @@
 """What a paper says in words, judged by the function of that `name` in `verify.claims.theorems`."""
 
+from collections.abc import Iterable
 from typing import Literal, Self
 
 from pydantic import model_validator
@@ -7,7 +8,10 @@ from pydantic import model_validator
 from verify.claims import theorems
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
+from verify.claims.theorems.argument import Argument
+from verify.claims.theorems.task import TheoremTask
 from verify.errors import unknown
+from verify.execution.task import Task
 from verify.scenes.results.claim import ClaimResult
 
 
@@ -28,8 +32,16 @@ class TheoremClaim(Claim):
             raise unknown("name", self.name, theorems.names())
         return self
 
+    def tasks_without_scene(self) -> Iterable[Task]:
+        yield self._task
+
+    @property
+    def _task(self) -> TheoremTask:
+        return TheoremTask(name=self.name)
+
     def judge(self, findings: Findings) -> ClaimResult:
-        found = theorems.check_theorem(self.name)
+        known = findings.results.get(self._task.key)
+        found = known if isinstance(known, Argument) else theorems.check_theorem(self.name)
         result = self.result(found.verdict, found.evidence, found.details, found.proof)
         own = {name: getattr(found, name) for name in ("checked_by", "given", "steps", "remark")}
         return result.model_copy(update=own)

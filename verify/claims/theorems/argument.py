@@ -12,6 +12,7 @@ from itertools import groupby
 from verify.claims.theorems.checks.check import Check
 from verify.proof.assistant.stated import Shipped
 from verify.prose import Formula, Prose, count, joined, prose, read_prose
+from verify.scenes.frozen import Said, WithProse
 from verify.scenes.results.step import StepResult
 from verify.verdict import Verdict
 
@@ -31,8 +32,7 @@ def step(text: str, *by: Check | Shipped, tried: Sequence[Check] = ()) -> Step:
     return Step(text, by, tuple(tried))
 
 
-@dataclass(frozen=True)
-class Argument:
+class Argument(WithProse):
     """A verdict on what the claim of that name states, and the argument for it.
 
     `evidence` is one line; `given` what the steps speak of, `remark` what follows the proof and
@@ -43,12 +43,12 @@ class Argument:
 
     id: str
     verdict: Verdict
-    evidence: Prose
-    given: Prose
+    evidence: Said
+    given: Said
     steps: tuple[StepResult, ...]
-    remark: Prose
-    details: tuple[tuple[Prose, ...], ...]
-    checked_by: tuple[Prose, ...]
+    remark: Said
+    details: tuple[tuple[Said, ...], ...]
+    checked_by: tuple[Said, ...]
 
     @property
     def proof(self) -> Prose:
