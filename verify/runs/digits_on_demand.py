@@ -140,7 +140,7 @@ def _first_digits(name: str, digits: int, kernel_run: KernelRun) -> int:
         return working_digits(digits, kernel_run.steps) + (
             _MORE if kernel_run.steps <= _SHORT else 0
         )
-    # Formats come in steps of 19 digits, and foresight costs a sixteenth of the run.
+    # Formats come in steps of 8 to 20 digits, and foresight costs a sixteenth of the run.
     time = kernel_run.steps * kernel_run.start["h"]
     return digits + 3 + len(str(kernel_run.steps)) + len(str(int(time)))
 

@@ -158,7 +158,8 @@ def product(b: ir.IRBuilder, x: Value, y: Value, fraction: int) -> tuple[Value, 
 
     Signed, `fraction` in the second highest limb's column or above. The columns below it are left
     out, which is less than 2·count units of the lowest that is kept: it matters where these units
-    carry into the result, as in one of 2^44 products. None: nothing is left out.
+    carry into the result, in one of 2^44 products, or of 700 where few bits lie below. None:
+    nothing is left out.
     """
     width = x.type.width
     count, lowest = width // 64, fraction // 64

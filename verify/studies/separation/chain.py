@@ -22,6 +22,7 @@ from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.digits_on_demand import choose
 from verify.runs.estimated import working_digits
 from verify.runs.run import AskedRun, proved
+from verify.schemes import get
 from verify.schemes.step_map import StepMap
 from verify.studies.separation.links import AsLink, LinksOnDemand, last_system
 from verify.studies.separation.trail import Trail
@@ -163,10 +164,10 @@ def separated_chains(
         links.take(run)
     # How many digits the differences cancel is known once they are made: then what lacks some is
     # made again with more.
-    for _ in range(_ATTEMPTS):
+    for attempt in range(_ATTEMPTS):
         plain, closed = links.chains()
         lacking = [chain.lacking(digits) for chain in (plain, closed) if chain]
-        if not links.refine([max(each) for each in zip(*lacking, strict=True)]):
+        if not links.refine([max(each) for each in zip(*lacking, strict=True)], attempt):
             break
     return Chains(plain, closed, arithmetic, lockstep.clock() - begun)
 
@@ -186,8 +187,13 @@ class _AreaLinks(LinksOnDemand[Link, Working]):
     ) -> None:
         super().__init__(kernel_run, arithmetic, digits, POINTS, advance)
         self._step_map = step_map
-        self.proved = _proved(step_map, kernel_run, digits)
-        self.constant = _proved(_rounded_map(step_map, self.rounded), self.rounded, digits)
+
+    def of_proof(self, name: str) -> Link | None:
+        """Λ where ΔJ is a constant."""
+        run, step_map = self.kernel_run, self._step_map
+        if name == "first":
+            return _proved(step_map, run, self.digits[name])
+        return _proved(_rounded_map(step_map, self.rounded), self.rounded, self.digits[name])
 
     def chains(self) -> tuple[Chain, Chain | None]:
         """The chain of the plain way and that of the closed form."""
@@ -203,7 +209,9 @@ class _AreaLinks(LinksOnDemand[Link, Working]):
         """In what can follow float64 everywhere where another cannot, or has no bound of its
         rounding."""
         run = WorkingRun(
-            self.kernel_run, self.inputs, self.constant is None and self.kernel_run.steps > 1
+            self.kernel_run,
+            self.inputs,
+            self.proved("second") is None and self.kernel_run.steps > 1,
         )
         asked = number_systems.get(self.system(self._digits_beside), self._digits_beside)
         last = last_system().make(working_digits(self.digits["beside"], self.kernel_run.steps))
@@ -219,13 +227,20 @@ class _AreaLinks(LinksOnDemand[Link, Working]):
         if not number_systems.about(self.arithmetic).compiles:
             return working_digits(wanted, steps)
         # Along given states only the number of roundings grows; a step's are below 10^6 units.
-        # Where ΔJ has h^r, Λ is as h^(r − 1).
-        size = self.kernel_run.start["h"] ** max(0, common_power(self._step_map) - 1)
+        size = self.kernel_run.start["h"] ** _power_of_area(self._step_map, self.kernel_run.scheme)
         return wanted + max(0, -magnitude(size)) + len(str(steps)) + 6
 
     def read(self, run: Outcome, last: Fraction, as_link: AsLink) -> Link:
         """Λ at every checkpoint, and `last` at the end."""
         return as_link((*(x["lambda"] for x in run.trail[:-1]), last))
+
+
+def _power_of_area(step_map: StepMap, scheme: str) -> int:
+    """By about which power of h Λ is small: r − 1 where ΔJ has h^r, as far as that is seen."""
+    if step_map.preserves_area:
+        return 0
+    seen = common_power(step_map)
+    return seen - 1 if seen else 1 + (get(scheme).order or 0)
 
 
 def _proved(step_map: StepMap | None, kernel_run: KernelRun, digits: int) -> Link | None:

@@ -89,9 +89,9 @@ def form_chains(
     if arithmetic == AUTO:
         arithmetic = choose(kernel_run, digits + _CANCELLED)
     links = _FormLinks(kernel_run, arithmetic, digits + _CANCELLED, advance)
-    for _ in range(_ATTEMPTS):
+    for attempt in range(_ATTEMPTS):
         plain, closed = links.chains()
-        if not links.refine(_lacking((*plain, *closed), digits)):
+        if not links.refine(_lacking((*plain, *closed), digits), attempt):
             break
     return FormChains(plain, closed, links.working.sizes, arithmetic, lockstep.clock() - begun)
 
@@ -113,10 +113,14 @@ class _FormLinks(LinksOnDemand[Links, FormWorking]):
     ) -> None:
         super().__init__(kernel_run, arithmetic, digits, POINTS, advance)
         self.digits["beside"] += _PRODUCTS
-        if preserves(map_of(kernel_run.hamiltonian, kernel_run.scheme)):
-            nothing = exact_link([Fraction(0)] * len(self.marks), "S ≡ 0")
-            size = len(kernel_run.hamiltonian.coordinates)
-            self.proved = self.constant = (nothing,) * (size * (size - 1) // 2)
+
+    def of_proof(self, name: str) -> Links | None:
+        """0, where S ≡ 0."""
+        exact = self.kernel_run.hamiltonian
+        if not preserves(map_of(exact, self.kernel_run.scheme)):
+            return None
+        nothing, size = exact_link([Fraction(0)] * len(self.marks), "S ≡ 0"), len(exact.coordinates)
+        return (nothing,) * (size * (size - 1) // 2)
 
     def chains(self) -> tuple[tuple[Chain, ...], tuple[Chain, ...]]:
         """Those of the plain way and of the closed form."""
@@ -133,7 +137,7 @@ class _FormLinks(LinksOnDemand[Links, FormWorking]):
 
     def beside(self) -> FormWorking:
         """In what has every range and function."""
-        follow = self.proved is None and self.kernel_run.steps > 1
+        follow = self.proved("first") is None and self.kernel_run.steps > 1
         digits = working_digits(self.digits["beside"], self.kernel_run.steps)
         asked = number_systems.get(self.arithmetic, digits)
         own = last_system().make(digits) if asked.absolute or asked.radius else asked

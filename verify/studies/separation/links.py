@@ -47,10 +47,7 @@ W = TypeVar("W", bound=Followed)
 
 
 class LinksOnDemand(ABC, Generic[L, W]):
-    """The links that all ways to evaluate share, and how many digits each is asked for.
-
-    `proved`, `constant`: the first link and the second where a proof gives them.
-    """
+    """The links that all ways to evaluate share, and how many digits each is asked for."""
 
     observable: ClassVar[str]  # of a run in exact arithmetic's stead
 
@@ -66,8 +63,7 @@ class LinksOnDemand(ABC, Generic[L, W]):
             self.rounded.start == kernel_run.start
             and self.rounded.parameters == kernel_run.parameters
         )
-        self.proved: L | None = None
-        self.constant: L | None = None
+        self._known: dict[str, L | None] = {}
         self._asked: AskedRun | None = None
         self._working: W | None = None
         self._made: dict[str, L] = {}
@@ -77,6 +73,10 @@ class LinksOnDemand(ABC, Generic[L, W]):
         """The run in float64, exact arithmetic beside it; Stopped where it leaves its range."""
 
     @abstractmethod
+    def of_proof(self, name: str) -> L | None:
+        """The `first` link or the `second` to its digits, where a proof gives it."""
+
+    @abstractmethod
     def read(self, run: Outcome, last: Fraction, as_link: AsLink) -> L:
         """The link of a run in exact arithmetic's stead, of whose last value `last` is known."""
 
@@ -84,6 +84,12 @@ class LinksOnDemand(ABC, Generic[L, W]):
         """The first link is what comes of this run, as long as its digits do."""
         self._asked = run
         self.digits["first"] = run.digits
+
+    def proved(self, name: str) -> L | None:
+        """The same, made once."""
+        if name not in self._known:
+            self._known[name] = self.of_proof(name)
+        return self._known[name]
 
     @property
     def working(self) -> W:
@@ -95,30 +101,32 @@ class LinksOnDemand(ABC, Generic[L, W]):
         """The links before those in which ways to evaluate differ."""
         # Before the longer runs: where float64 leaves its range there is nothing to separate.
         working = self.working
-        first = self.proved or self._reference(self.kernel_run, "first")
-        second = first if self.same else self.constant or self._reference(self.rounded, "second")
+        first = self.proved("first") or self._reference(self.kernel_run, "first")
+        second = first
+        if not self.same:
+            second = self.proved("second") or self._reference(self.rounded, "second")
         links = [first, second]
         if self.kernel_run.hamiltonian.time_dependent:
             known = _clock_is_exact(self.rounded)
             links.append(second if known or working.clock is None else working.clock)
         return [*links, working.trajectory or second]
 
-    def refine(self, lacking: Sequence[int]) -> bool:
-        """Asks for so many more digits of the links; False where no run lacks any."""
+    def refine(self, lacking: Sequence[int], attempt: int = 0) -> bool:
+        """Asks for so many more digits of the links; False where none lacks any.
+
+        What is still noise lacks the same again and again: each attempt asks for twice as many.
+        """
         first, second, *beside = lacking
         # One run that serves as two links is made once, with the digits of the one that lacks more.
         if self.same:
             first, second = max(first, second), 0
-        wanted = {
-            "first": 0 if self.proved else first,
-            "second": 0 if self.constant else second,
-            "beside": max(beside),
-        }
+        wanted = {"first": first, "second": second, "beside": max(beside)}
         self.advance = lambda _: None  # what was foreseen is done
         for name, more in wanted.items():
             if more:
-                self.digits[name] += more + 2
+                self.digits[name] += more + 2 << attempt
                 self._made.pop(name, None)
+                self._known.pop(name, None)
         if wanted["beside"]:
             self._working = None
         return any(wanted.values())

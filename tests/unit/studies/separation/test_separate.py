@@ -41,16 +41,17 @@ def finals(chain: Chain) -> dict[str, Fraction]:
 
 
 @pytest.mark.parametrize("hamiltonian", [DUFFING, PENDULUM], ids=["duffing", "pendulum"])
+@pytest.mark.parametrize("scheme", ["lie2", "rk4", "explicit-midpoint"])
 @pytest.mark.parametrize("h", ["1/100", "1/100000"])
 def test_a_long_run_is_asked_for_enough_digits_at_once(
-    hamiltonian: Hamiltonian, h: str, monkeypatch: pytest.MonkeyPatch
+    hamiltonian: Hamiltonian, scheme: str, h: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """However small the step, and so Λ; one format for all links, which lanes take as it is."""
+    """However small the step, and so Λ; of lie2 beside float64 in numbers of three limbs."""
     refined, formats = [], []
     refine, step_through = LinksOnDemand.refine, WorkingRun.step_through
 
-    def noted_refine(self: Any, lacking: Any) -> bool:
-        refined.append(refine(self, lacking))
+    def noted_refine(self: Any, *lacking: Any) -> bool:
+        refined.append(refine(self, *lacking))
         return refined[-1]
 
     def noted_steps(self: Any, arithmetic: Arithmetic, advance: Any) -> Any:
@@ -60,9 +61,9 @@ def test_a_long_run_is_asked_for_enough_digits_at_once(
     monkeypatch.setattr(LinksOnDemand, "refine", noted_refine)
     monkeypatch.setattr(WorkingRun, "step_through", noted_steps)
     at = {**AT, "q": "0.3", "step_size": h}
-    assert separate(hamiltonian, "lie2", **at, steps=70_000, digits=6).status == "finished"
+    assert separate(hamiltonian, scheme, **at, steps=70_000, digits=6).status == "finished"
     assert refined == [False]
-    assert formats == [("fixed", 140)]
+    assert scheme != "lie2" or formats == [("fixed", 140)]
 
 
 def test_the_working_value_is_what_run_reports_for_float64() -> None:
@@ -279,3 +280,29 @@ def test_at_an_equilibrium_the_noise_in_p_is_not_waited_for() -> None:
     assert one.plain is not None
     assert other.plain is not None
     assert one.plain.parts.truncation == other.plain.parts.truncation
+
+
+@pytest.mark.parametrize(
+    ("formula", "scheme", "h", "steps", "digits"),
+    [
+        ("p**2/2 + q**2/2", "rk4", "1e-6", 1000, 17),  # ΔJ is a constant, and known by a proof
+        ("p**2/2 + q**2/2", "rk4", "1e-7", 1000, 17),
+        ("p**2/2 + q**2/2", "explicit-midpoint", "1e-12", 1, 20),
+        ("p**2/2 + q**2/2", "lie2", "1e-12", 1000, 20),
+        ("p**2/2 + 3*(1 - exp(-q))**2", "rk4", "1e-20", 1000, 10),  # Λ is near 10^−120
+    ],
+)
+def test_all_parts_have_the_digits_that_are_asked_for(
+    formula: str, scheme: str, h: str, steps: int, digits: int
+) -> None:
+    """However small they are beside the product."""
+    at = {"q": "0.5", "p": "0.25", "step_size": h}
+    found = separate(Hamiltonian.parse(formula), scheme, **at, steps=steps, digits=digits)
+    for way in (found.plain, found.closed_form):
+        assert way is not None
+        largest = max(abs(Fraction(value.value)) for _, value in way.parts)
+        for name, value in way.parts:
+            size, bound = abs(Fraction(value.value)), Fraction(value.bound)
+            nothing = size == 0 and bound * 10 ** (4 * digits) <= largest
+            known = bound * 10 ** (digits - 1) <= size
+            assert nothing or known, f"{name}: {value.value} ± {value.bound}"
