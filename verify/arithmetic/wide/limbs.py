@@ -61,14 +61,19 @@ def resized(b: ir.IRBuilder, x: Value, width: int, *, signed: bool = False) -> V
     return (b.sext if signed else b.zext)(x, bits(width))
 
 
+def more_before_point(x: Value, fraction: int) -> int:
+    """The bits that x has before the point beyond a number's: those of a sum, or none."""
+    return MORE_OF_SUMS if x.type.width > width_of(fraction) else 0
+
+
 def leading(b: ir.IRBuilder, x: Value, fraction: int, beneath: int = 0) -> Value:
     """The leading 64 bits of a number with so many fraction bits, the sign among them, 48 of them
     fraction bits; or so many words beneath these.
 
-    Of a sum, whose bits before the point are 64 more, the leading 64 bits are whole.
+    Of a sum the leading 64 bits are whole.
     """
-    more = MORE_OF_SUMS if x.type.width > width_of(fraction) else 0
-    first = size_of(fraction) + more - WORD * (beneath + 1)
+    size = size_of(fraction) + more_before_point(x, fraction)
+    first = size - WORD * (beneath + 1)
     return b.trunc(b.ashr(x, ir.Constant(x.type, first)) if first else x, I64)
 
 

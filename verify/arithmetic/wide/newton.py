@@ -7,7 +7,7 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.wide import limbs
 from verify.arithmetic.wide.functions import Functions, arb_integer
 from verify.arithmetic.wide.limbs import I64, Value, constant, resized
-from verify.arithmetic.wide.size import INTEGER_BITS, MORE_OF_SUMS, size_of, width_of
+from verify.arithmetic.wide.size import INTEGER_BITS, size_of, width_of
 
 DOUBLE = ir.DoubleType()
 LEAST_ROOT = 26  # sqrt takes x ≥ 2^−26, and 1/x takes |x| ≥ 2^−14: their slopes stay in range
@@ -19,7 +19,7 @@ def to_double(b: ir.IRBuilder, x: Value, fraction: int) -> Value:
 
     The second part is 2^−36 for a sum, whose bits stand for 2^64 times as much.
     """
-    more = MORE_OF_SUMS if x.type.width > width_of(fraction) else 0
+    more = limbs.more_before_point(x, fraction)
     high = b.sitofp(limbs.leading(b, x, fraction), DOUBLE)
     low = b.uitofp(limbs.leading(b, x, fraction, 1), DOUBLE)
     unit, below = (ir.Constant(DOUBLE, x) for x in units_of_words(more))
