@@ -10,7 +10,7 @@ from typing import Any
 
 from verify import code_cache
 from verify.arithmetic.compiled import native
-from verify.arithmetic.wide.size import MORE_OF_SUMS, WORD, size_of, words_of
+from verify.arithmetic.wide.size import WORD, sizes_of, words_of
 from verify.arithmetic.wide.translate import Target, Translator
 
 
@@ -56,21 +56,16 @@ class Layout:
     results: tuple[str, ...]
     returns_tuple: bool
 
-    def bits_of(self, kind: str) -> int:
-        """How many a number of that kind has."""
-        wide = size_of(self.fraction)
-        return {"wide": wide, "sum": wide + MORE_OF_SUMS}.get(kind, WORD)
-
-    def _bytes_of(self, kind: str) -> int:
-        return 8 * words_of(self.bits_of(kind))
-
     @cached_property
-    def argument_sizes(self) -> tuple[int, ...]:
-        return tuple(map(self._bytes_of, self.arguments))
+    def _sizes(self) -> dict[str, int]:
+        return sizes_of(self.fraction)
+
+    def _bits_of(self, kind: str) -> int:
+        return self._sizes.get(kind, WORD)
 
     @cached_property
     def result_sizes(self) -> tuple[int, ...]:
-        return tuple(map(self._bytes_of, self.results))
+        return tuple(8 * words_of(self._bits_of(kind)) for kind in self.results)
 
     @cached_property
     def result_at(self) -> tuple[int, ...]:
@@ -94,7 +89,7 @@ class Layout:
     def _packed(self, value: Any, kind: str) -> bytes:
         if kind == "float":
             return _DOUBLE.pack(value)
-        raw, bits = int(value if kind == "int" else value.raw), self.bits_of(kind)
+        raw, bits = int(value if kind == "int" else value.raw), self._bits_of(kind)
         if not -1 << bits - 1 <= raw < 1 << bits - 1:
             raise OverflowError(f"{raw} has more than {bits} bits")
         return raw.to_bytes(8 * words_of(bits), "little", signed=True)

@@ -14,6 +14,7 @@ from verify.arithmetic.lanes import vectors
 from verify.arithmetic.lanes.multiply_add import MultiplyAdd
 from verify.arithmetic.lanes.vectors import DIGIT, splat
 from verify.arithmetic.wide.limbs import Value
+from verify.arithmetic.wide.size import size_of
 
 _MOST_WEIGHT = 1 << 9  # of sums whose carries have not moved: limbs stay below 2^62
 
@@ -44,7 +45,7 @@ class Carries:
     """What is known of numbers with so many fraction bits, each written once."""
 
     def __init__(self, fraction: int, multiply_add: MultiplyAdd) -> None:
-        self.fraction, self.multiply_add = fraction, multiply_add
+        self.fraction, self.size, self.multiply_add = fraction, size_of(fraction), multiply_add
 
     def carry(self, b: ir.IRBuilder, x: Number) -> list[Value]:
         """The limbs after the carries have moved; of all but the highest 52 bits count."""

@@ -42,7 +42,7 @@ from verify.arithmetic.lanes.table import Table, rows_of
 from verify.arithmetic.lanes.vectors import DIGIT, WORDS, splat
 from verify.arithmetic.wide.functions import arb_integer
 from verify.arithmetic.wide.limbs import Value
-from verify.arithmetic.wide.size import size_of, width_of
+from verify.arithmetic.wide.size import width_of
 
 _ANGLES = 4096  # table steps of a full turn
 _QUARTER = _ANGLES // 4
@@ -54,8 +54,9 @@ def lost_by_one(fraction: int) -> int:
     return 4 * (width_of(fraction) // 64) + 16
 
 
-def in_units(lost: int, shift: int) -> int:
-    """lost·2^shift in whole units, or a little more."""
+def lost_in_units(fraction: int, count: int, place: int) -> int:
+    """`lost_by_one` units of 2^(place − W) in those of 2^−52·count, or a little more."""
+    lost, shift = lost_by_one(fraction), place + DIGIT * count - width_of(fraction)
     return lost << shift if shift >= 0 else -(-lost >> -shift)
 
 
@@ -129,10 +130,8 @@ class Circle:
     def _rounded(self, b: ir.IRBuilder, value: Sequence[Value]) -> tuple[Value, Number]:
         """(where it may round otherwise, the number) of a fraction with its sign."""
         total = settled(b, added(b, value, constant(1 << (self.spare - 1), self.count)))
-        fraction = self.numbers.fraction
-        by_one = in_units(lost_by_one(fraction), DIGIT * self.count + 2 - width_of(fraction))
-        lost = _lost(self.count) + by_one
+        lost = _lost(self.count) + lost_in_units(self.numbers.fraction, self.count, 2)
         rest = b.and_(b.add(total[0], splat(lost)), splat((1 << self.spare) - 1))
         unsure = b.icmp_unsigned("<", rest, splat(2 * lost))
         limbs = self.fractions.shifted(b, total, self.spare)
-        return unsure, self.numbers.known(limbs, size_of(fraction))
+        return unsure, self.numbers.known(limbs, self.numbers.size)

@@ -21,7 +21,7 @@ from verify.arithmetic.lanes.schedule import reordered
 from verify.arithmetic.lanes.vectors import CONDITIONS, DOUBLES, WORDS
 from verify.arithmetic.processor import LANES
 from verify.arithmetic.wide.limbs import I64, Value, constant
-from verify.arithmetic.wide.size import INTEGER_BITS, MORE_OF_SUMS, size_of, words_of
+from verify.arithmetic.wide.size import INTEGER_BITS, sizes_of, words_of
 
 BOOL = ir.IntType(1)
 _ALIGNED = 8  # bytes; numbers come from Python's memory
@@ -39,7 +39,7 @@ class Ensemble:
 
     def __init__(self, fraction: int, multiply_add: type[MultiplyAdd], *, sets: int = 1) -> None:
         self.module, self.sets = ir.Module(), sets
-        self.widths = {"wide": size_of(fraction), "sum": size_of(fraction) + MORE_OF_SUMS}
+        self.widths = sizes_of(fraction)
         self.numbers = Numbers(fraction, multiply_add())
         self.functions = LaneFunctions(self.module, self.numbers)
         self._known: dict[str, Any] = {}
@@ -330,7 +330,7 @@ class Ensemble:
         fits = self.b.fcmp_ordered("<", size, top)
         self._require(fits)
         x = self.b.select(fits, x, vectors.splat_double(0.0))  # what fits not has no words
-        return self.numbers.from_double(self.b, x, self.widths["wide"])
+        return self.numbers.from_double(self.b, x)
 
     def _require(self, condition: Value) -> None:
         """`valid` only where this is true."""

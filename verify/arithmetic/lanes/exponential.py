@@ -30,7 +30,7 @@ from llvmlite import ir
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.lanes import vectors
 from verify.arithmetic.lanes.carries import Number
-from verify.arithmetic.lanes.circle import in_units, lost_by_one
+from verify.arithmetic.lanes.circle import lost_in_units
 from verify.arithmetic.lanes.fractions import Fractions, added, constant, negated, settled, taken
 from verify.arithmetic.lanes.numbers import Numbers
 from verify.arithmetic.lanes.reduction import Reduction
@@ -39,7 +39,6 @@ from verify.arithmetic.lanes.vectors import CONDITIONS, DIGIT, WORDS, splat, spl
 from verify.arithmetic.processor import LANES
 from verify.arithmetic.wide.functions import arb_integer
 from verify.arithmetic.wide.limbs import Value
-from verify.arithmetic.wide.size import size_of, width_of
 
 _OCTAVE = 256  # table steps of a factor 2
 _SHIFT = 8  # ρ < 2^−8
@@ -64,9 +63,9 @@ class Exponential:
     """exp, sinh and cosh for numbers of one format: (where they are not known, [the number])."""
 
     def __init__(self, module: ir.Module, numbers: Numbers) -> None:
-        self.module, self.numbers, self.size = module, numbers, size_of(numbers.fraction)
+        self.module, self.numbers = module, numbers
         self.reduction = Reduction(numbers, lambda: flint.arb(2).log() / _OCTAVE)
-        self.count, self.below = self.reduction.count, DIGIT * self.reduction.count - self.size
+        self.count, self.below = self.reduction.count, DIGIT * self.reduction.count - numbers.size
         self.fractions = Fractions(numbers.multiply_add, self.count)
         self._table: Table | None = None
 
@@ -76,9 +75,8 @@ class Exponential:
         half = self._powers().entries(b, b.and_(k, splat(_OCTAVE - 1)))
         mantissa = taken(b, half, self.fractions.product(b, half, self._small(b, rho)))
         a = vectors.down(b, k, _OCTAVE.bit_length() - 1)
-        fraction = self.numbers.fraction
-        by_one = in_units(lost_by_one(fraction), DIGIT * self.count + 1 - width_of(fraction))
-        lost = _lost(self.count) + by_one
+        # Of m, which is half of one orbit's mantissa.
+        lost = _lost(self.count) + lost_in_units(self.numbers.fraction, self.count, 1)
         # The number is 2^(F + 16) m / 2^(15 − a); where that is no shift from 1 to 63, one orbit is
         # asked.
         seen = b.and_(b.icmp_signed("<=", a, splat(_MOST)), b.icmp_signed(">=", a, splat(_LEAST)))
@@ -127,7 +125,7 @@ class Exponential:
         """2^(F + 16) m / 2^by, rounded down."""
         if self.below:
             mantissa = self.fractions.shifted(b, mantissa, self.below)
-        return self.numbers.shifted(b, self.numbers.known(mantissa, self.size), by)
+        return self.numbers.shifted(b, self.numbers.known(mantissa, self.numbers.size), by)
 
     def _powers(self) -> Table:
         if self._table is None:

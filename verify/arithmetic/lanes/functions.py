@@ -20,14 +20,14 @@ from verify.arithmetic.wide import limbs
 from verify.arithmetic.wide.limbs import I64, Value, constant, resized
 from verify.arithmetic.wide.newton import MoreFunctions
 from verify.arithmetic.wide.one_orbit import float_function
-from verify.arithmetic.wide.size import size_of, words_of
+from verify.arithmetic.wide.size import words_of
 
 
 class LaneFunctions:
     """Defines functions of one format in a module, each when it is first asked for."""
 
     def __init__(self, module: ir.Module, numbers: Numbers) -> None:
-        self.module, self.numbers, self.size = module, numbers, size_of(numbers.fraction)
+        self.module, self.numbers, self._words = module, numbers, words_of(numbers.size)
         self.one = MoreFunctions(module, numbers.fraction)
         self._made: dict[str, ir.Function] = {}
         # What is written in lanes: where it is unsure, and its values.
@@ -74,7 +74,7 @@ class LaneFunctions:
         valid = b.phi(CONDITIONS)
         valid.add_incoming(everywhere, before)
         valid.add_incoming(has_value, end)
-        found = [self.numbers.known([b.load(p) for p in own], self.size) for own in places]
+        found = [self.numbers.known([b.load(p) for p in own], self.numbers.size) for own in places]
         return valid, found
 
     def of_doubles(self, b: ir.IRBuilder, name: str, x: Value) -> Value:
@@ -94,7 +94,7 @@ class LaneFunctions:
         self, b: ir.IRBuilder, name: str, x: Number, where: Value, allocations: ir.IRBuilder
     ) -> tuple[Value, list[Number]]:
         """By the function of one orbit, in the lanes where the condition holds."""
-        count = words_of(self.size)
+        count = self._words
         function, results = self._loop_of(name)
         room = allocations.alloca(WORDS, size=count)
         found = allocations.alloca(WORDS, size=results * count + 1)
@@ -104,7 +104,7 @@ class LaneFunctions:
         b.call(function, [b.bitcast(room, pointer), b.bitcast(found, pointer), which])
         words = [b.load(b.gep(found, [constant(i, 64)])) for i in range(results * count + 1)]
         values = [
-            self.numbers.from_words(b, words[i * count : (i + 1) * count], self.size)
+            self.numbers.from_words(b, words[i * count : (i + 1) * count], self.numbers.size)
             for i in range(results)
         ]
         return b.icmp_unsigned("!=", words[-1], splat(0)), values
@@ -145,7 +145,7 @@ class LaneFunctions:
         return function, results
 
     def _gathered(self, b: ir.IRBuilder, pointer: Value) -> Value:
-        places = (b.gep(pointer, [constant(LANES * i, 64)]) for i in range(words_of(self.size)))
+        places = (b.gep(pointer, [constant(LANES * i, 64)]) for i in range(self._words))
         return limbs.joined(b, [b.load(place) for place in places])
 
     def _scattered(self, b: ir.IRBuilder, pointer: Value, at: int, value: Value) -> int:

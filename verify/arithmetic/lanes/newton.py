@@ -12,7 +12,6 @@ from verify.arithmetic.lanes.numbers import Numbers
 from verify.arithmetic.lanes.vectors import splat_double
 from verify.arithmetic.wide.limbs import Value
 from verify.arithmetic.wide.newton import LEAST_DIVISOR, LEAST_ROOT, iterations
-from verify.arithmetic.wide.size import size_of
 
 
 class Newton:
@@ -20,16 +19,15 @@ class Newton:
 
     def __init__(self, module: ir.Module, numbers: Numbers) -> None:
         self.module, self.numbers, self.fraction = module, numbers, numbers.fraction
-        self.size = size_of(numbers.fraction)
 
     def inverse(self, b: ir.IRBuilder, x: Number) -> tuple[Value, Number]:
         """y ← y + y (1 − x y)."""
         numbers, one = self.numbers, splat_double(1.0)
-        size = numbers.known(numbers.settle(b, numbers.absolute(b, x)), self.size)
+        size = numbers.known(numbers.settle(b, numbers.absolute(b, x)), numbers.size)
         valid = self._at_least(b, size, LEAST_DIVISOR)
         guess = b.fdiv(one, b.select(valid, numbers.to_double(b, x), one))
-        y = numbers.from_double(b, guess, self.size)
-        unit = numbers.constant(1 << self.fraction, self.size)
+        y = numbers.from_double(b, guess)
+        unit = numbers.constant(1 << self.fraction, numbers.size)
         for _ in range(iterations(self.fraction, quadratic=True)):
             error = numbers.sub(b, unit, numbers.product(b, x, y))
             y = numbers.add(b, y, numbers.product(b, y, error))
@@ -41,8 +39,8 @@ class Newton:
         valid = self._at_least(b, x, LEAST_ROOT)
         inside = b.select(valid, numbers.to_double(b, x), splat_double(1.0))
         guess = b.call(vectors.intrinsic(self.module, "sqrt"), [inside])
-        s = numbers.from_double(b, guess, self.size)
-        slope = numbers.from_double(b, b.fdiv(splat_double(0.5), guess), self.size)
+        s = numbers.from_double(b, guess)
+        slope = numbers.from_double(b, b.fdiv(splat_double(0.5), guess))
         for _ in range(iterations(self.fraction, quadratic=False)):
             rest = numbers.sub(b, x, numbers.product(b, s, s))
             s = numbers.add(b, s, numbers.product(b, rest, slope))
@@ -50,5 +48,5 @@ class Newton:
 
     def _at_least(self, b: ir.IRBuilder, x: Number, places: int) -> Value:
         """Where x ≥ 2^−places."""
-        least = self.numbers.constant(1 << self.fraction - places, self.size)
+        least = self.numbers.constant(1 << self.fraction - places, self.numbers.size)
         return b.not_(self.numbers.less(b, x, least))

@@ -12,7 +12,7 @@ from verify.arithmetic.lanes.products import Products
 from verify.arithmetic.lanes.vectors import DIGIT, DOUBLES, WORDS, splat, splat_double
 from verify.arithmetic.wide.limbs import Value
 from verify.arithmetic.wide.newton import units_of_words
-from verify.arithmetic.wide.size import WORD, size_of, words_of
+from verify.arithmetic.wide.size import WORD, words_of
 
 
 class Numbers(Products):
@@ -106,13 +106,13 @@ class Numbers(Products):
         """As `verify.arithmetic.wide.newton.to_double`, operation by operation."""
         high = b.sitofp(self._leading(b, x), DOUBLES)
         low = b.uitofp(self._leading(b, x, 1), DOUBLES)
-        unit, below = map(splat_double, units_of_words(x.width - size_of(self.fraction)))
+        unit, below = map(splat_double, units_of_words(x.width - self.size))
         return b.fadd(b.fmul(high, unit), b.fmul(low, below))
 
-    def from_double(self, b: ir.IRBuilder, value: Value, width: int) -> Number:
+    def from_double(self, b: ir.IRBuilder, value: Value) -> Number:
         """As `verify.arithmetic.wide.newton.from_double`; |value| < 2^15."""
         floor, absolute = (vectors.intrinsic(b.module, name) for name in ("floor", "fabs"))
-        count = count_of(width)
+        count = count_of(self.size)
         scale = splat_double(2.0 ** (self.fraction - DIGIT * (count - 1)))
         rest = b.fmul(b.call(absolute, [value]), scale)
         limbs: list[Value] = []
@@ -122,7 +122,7 @@ class Numbers(Products):
             rest = b.fmul(b.fsub(rest, whole), splat_double(2.0**DIGIT))
         negative = b.fcmp_ordered("<", value, splat_double(0.0))
         signed = [b.select(negative, b.sub(splat(0), limb), limb) for limb in limbs]
-        return Number(signed, width)
+        return Number(signed, self.size)
 
     # -- what the language has ----------------------------------------------------------------
 

@@ -14,7 +14,6 @@ from verify.arithmetic.lanes.numbers import Numbers
 from verify.arithmetic.lanes.vectors import DIGIT, splat
 from verify.arithmetic.wide.functions import arb_integer
 from verify.arithmetic.wide.limbs import Value
-from verify.arithmetic.wide.size import size_of
 
 
 class Reduction:
@@ -26,10 +25,9 @@ class Reduction:
     """
 
     def __init__(self, numbers: Numbers, step: Callable[[], flint.arb]) -> None:
-        self.numbers, size = numbers, size_of(numbers.fraction)
-        self.count = count_of(size)
+        self.numbers, self.count = numbers, count_of(numbers.size)
         self.spare = DIGIT * self.count - numbers.fraction
-        with working_precision(size + 256):
+        with working_precision(numbers.size + 256):
             exact = step()
             self.unit = arb_integer(exact, DIGIT * (self.count + 1))
             self.inverse = float((1 / exact).mid())

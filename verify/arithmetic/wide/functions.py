@@ -73,7 +73,7 @@ class Functions:
         self.module, self.fraction, self.width = module, fraction, width_of(fraction)
         self.count, self.spare = self.width // 64, self.width - fraction
         self.type = bits(self.width)
-        self.products = Products(module, self.width, fraction)
+        self.products = Products(module, fraction)
         self._made: dict[str, ir.Function] = {}
         self._tables: dict[str, ir.GlobalVariable] = {}
 

@@ -13,6 +13,7 @@ from llvmlite import ir
 
 from verify.arithmetic.wide import limbs
 from verify.arithmetic.wide.limbs import Value
+from verify.arithmetic.wide.size import width_of
 
 # What products may add to a kernel that has them written out, in some three instructions; functions
 # have theirs called from so many limbs on.
@@ -23,8 +24,8 @@ _LEAST_CALLED = 8
 class Products:
     """`limbs.product` and `limbs.high_product` for the numbers of one format."""
 
-    def __init__(self, module: ir.Module, width: int, fraction: int) -> None:
-        self.module, self.width, self.fraction = module, width, fraction
+    def __init__(self, module: ir.Module, fraction: int) -> None:
+        self.module, self.width, self.fraction = module, width_of(fraction), fraction
         self._made: dict[str, ir.Function] = {}
 
     def too_many(self, count: int) -> bool:

@@ -14,6 +14,12 @@ def size_of(fraction: int) -> int:
     return fraction + INTEGER_BITS
 
 
+def sizes_of(fraction: int) -> dict[str, int]:
+    """Bits of a number and of a sum, by the names that the language has for them."""
+    size = size_of(fraction)
+    return {"wide": size, "sum": size + MORE_OF_SUMS}
+
+
 def words_of(size: int) -> int:
     """The words for so many bits."""
     return -(-size // WORD)

@@ -73,7 +73,7 @@ def test_what_one_orbits_exp_loses_is_less_than_lanes_allow_for() -> None:
 
 
 def test_exp_that_never_asks_for_the_last_bit_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(exponential, "lost_by_one", lambda fraction: 0)
+    monkeypatch.setattr(circle, "lost_by_one", lambda fraction: 0)
     monkeypatch.setattr(exponential, "_lost", lambda count: 0)
     pair = Both(FUNCTIONS["exp"], 128, IN_LANES[0])
     draws = Draws(7)
@@ -87,7 +87,7 @@ def test_most_lanes_do_not_ask_one_orbit(name: str, monkeypatch: pytest.MonkeyPa
     """Where what one orbit's function gives is thrown away, few values are wrong, or none."""
 
     def zeros(self: LaneFunctions, b: ir.IRBuilder, *_: Any) -> tuple[Any, list[Any]]:
-        nothing = self.numbers.constant(0, self.size)
+        nothing = self.numbers.constant(0, self.numbers.size)
         return ir.Constant(CONDITIONS, [1] * LANES), [nothing] * (2 if name == "circle" else 1)
 
     monkeypatch.setattr(LaneFunctions, "_one_by_one", zeros)
