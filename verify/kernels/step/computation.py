@@ -93,14 +93,14 @@ def _first_part(
     first = step_map.substeps[0]
     evaluator = Evaluator(program, first.ring, named, pipelined)
     if delta_j and not first.preserves_area:
-        found = _delta_j(evaluator, first, scaled, common_power(step_map) if scaled else 0)
+        found = _delta_j(evaluator, first, scaled, common_power(step_map, scaled))
     return evaluator, named, found
 
 
 @lru_cache(maxsize=64)
 def computed(step_map: StepMap, asked: Observed) -> Computation:
     """What is asked of a map, made once as long as it is among the last ones."""
-    power = common_power(step_map) if asked.scaled else 0
+    power = common_power(step_map, asked.scaled)
     begun, named, delta_j = _first_part(step_map, asked.pipelined, asked.scaled, asked.delta_j)
     evaluator = begun.copy()
     program = evaluator.program
@@ -141,9 +141,9 @@ def _delta_j(evaluator: Evaluator, step: Substep, scaled: bool, power: int) -> i
     return evaluator.evaluate(divided(step, power), scale)
 
 
-def common_power(step_map: StepMap) -> int:
-    """The greatest r for which h^r divides ΔJ of every substep that has any; 0 where none has."""
-    changing = [step for step in step_map.substeps if not step.preserves_area]
+def common_power(step_map: StepMap, scaled: bool = True) -> int:
+    """The greatest r for which h^r divides ΔJ of every substep; 0 where it is not divided."""
+    changing = [step for step in step_map.substeps if scaled and not step.preserves_area]
     return min(map(lowest_power, changing), default=0)
 
 

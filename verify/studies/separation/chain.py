@@ -6,6 +6,7 @@ not depend on (p, q), Λ₀ is a closed form and Λ₂ = Λ₁. Where every inpu
 after one step Λ₂ = Λ₁, for the first ΔJ is taken at the initial value.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -44,7 +45,6 @@ QUANTITIES = (*_WHOLES, *PARTS)
 # Digits that the differences between links cancel: float64's 16, less those by which a long run
 # magnifies what is rounded. Where more cancel the link is made again.
 CANCELLED = 14
-_ATTEMPTS = 4
 
 
 @dataclass(frozen=True)
@@ -162,14 +162,13 @@ def separated_chains(
     links = _AreaLinks(kernel_run, step_map, arithmetic, digits + CANCELLED, advance)
     if run is not None:
         links.take(run)
-    # How many digits the differences cancel is known once they are made: then what lacks some is
-    # made again with more.
-    for attempt in range(_ATTEMPTS):
-        plain, closed = links.chains()
-        lacking = [chain.lacking(digits) for chain in (plain, closed) if chain]
-        if not links.refine([max(each) for each in zip(*lacking, strict=True)], attempt):
-            break
+    plain, closed = links.to_digits(links.chains, lambda found: _lacking(found, digits))
     return Chains(plain, closed, arithmetic, lockstep.clock() - begun)
+
+
+def _lacking(chains: Iterable[Chain | None], digits: int) -> list[int]:
+    """How many digits each link lacks, for the chain in which it lacks most."""
+    return [max(each) for each in zip(*(x.lacking(digits) for x in chains if x), strict=True)]
 
 
 class _AreaLinks(LinksOnDemand[Link, Working]):
@@ -213,14 +212,14 @@ class _AreaLinks(LinksOnDemand[Link, Working]):
             self.inputs,
             self.proved("second") is None and self.kernel_run.steps > 1,
         )
-        asked = number_systems.get(self.system(self._digits_beside), self._digits_beside)
+        digits = self._digits_beside()
+        asked = number_systems.get(self.system(digits), digits)
         last = last_system().make(working_digits(self.digits["beside"], self.kernel_run.steps))
         try:
             return run.step_through(asked if asked.rounding else last, self.advance)
         except UnsupportedError:
             return run.step_through(last, self.advance)
 
-    @property
     def _digits_beside(self) -> int:
         """After the point: a compiled kernel takes the longer the more there are."""
         wanted, steps = self.digits["beside"], self.kernel_run.steps

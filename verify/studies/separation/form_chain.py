@@ -43,7 +43,6 @@ PARTS_IN_TIME = ("input", "clock", "trajectory", "derivatives", "product")
 _CANCELLED = 20  # digits that the differences between links cancel
 _PRODUCTS = 20  # and those that MᵀΩM − Ω does
 _HIDDEN = 25  # digits further below the greatest entry a part is taken for noise
-_ATTEMPTS = 4
 
 
 @dataclass(frozen=True)
@@ -89,10 +88,9 @@ def form_chains(
     if arithmetic == AUTO:
         arithmetic = choose(kernel_run, digits + _CANCELLED)
     links = _FormLinks(kernel_run, arithmetic, digits + _CANCELLED, advance)
-    for attempt in range(_ATTEMPTS):
-        plain, closed = links.chains()
-        if not links.refine(_lacking((*plain, *closed), digits), attempt):
-            break
+    plain, closed = links.to_digits(
+        links.chains, lambda found: _lacking((*found[0], *found[1]), digits)
+    )
     return FormChains(plain, closed, links.working.sizes, arithmetic, lockstep.clock() - begun)
 
 

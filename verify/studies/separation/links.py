@@ -30,6 +30,7 @@ from verify.studies.separation.working import (
 
 _MANTISSAS = 2**53  # whole numbers up to here are float64s
 _DOUBLINGS = 6
+_ATTEMPTS = 4
 AsLink = Callable[[Sequence[Fraction]], Link]  # of values at the checkpoints
 
 
@@ -44,6 +45,7 @@ class Followed(Protocol):
 
 L = TypeVar("L")  # Link, or one for each entry
 W = TypeVar("W", bound=Followed)
+C = TypeVar("C")  # chains
 
 
 class LinksOnDemand(ABC, Generic[L, W]):
@@ -110,6 +112,15 @@ class LinksOnDemand(ABC, Generic[L, W]):
             known = _clock_is_exact(self.rounded)
             links.append(second if known or working.clock is None else working.clock)
         return [*links, working.trajectory or second]
+
+    def to_digits(self, make: Callable[[], C], lacking: Callable[[C], Sequence[int]]) -> C:
+        """What is made of the links, which are made again as long as some lack digits of it: how
+        many the differences cancel is known once they are there."""
+        for attempt in range(_ATTEMPTS):
+            found = make()
+            if not self.refine(lacking(found), attempt):
+                break
+        return found
 
     def refine(self, lacking: Sequence[int], attempt: int = 0) -> bool:
         """Asks for so many more digits of the links; False where none lacks any.
