@@ -1,9 +1,9 @@
 """Tasks whose runs are stepped together: which they are, and how they are computed.
 
 Tasks that name the same `ensemble` take the same steps from other initial values, or with other
-step sizes and parameters. They go to a worker in groups, longest first, and are computed in
-lockstep: where their runs meet in a kernel, the lanes of the vector unit have one run each. The
-results are what each task gives by itself.
+step sizes and parameters. They go to a worker in groups, longest first, and in a group each has its
+`turn`. They are computed in lockstep: where their runs meet in a kernel, the lanes of the vector
+unit have one run each. The results are what each task gives by itself.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -31,8 +31,8 @@ def groups(tasks: Mapping[str, Task], workers: int) -> list[Group]:
         share = -(-len(group) // max(workers, 1))
         size = min(max(share, MOST_AT_ONCE), _MOST_IN_GROUP)
         names = iter(group)
-        while part := {name: group[name] for name in islice(names, size)}:
-            found.append(part)
+        while part := sorted(islice(names, size), key=lambda name: tasks[name].turn):
+            found.append({name: tasks[name] for name in part})
     return sorted(found, key=lambda part: -sum(task.cost for task in part.values()))
 
 

@@ -38,6 +38,11 @@ class Task(Frozen):
         """A name that it has in common with those whose runs its own are stepped together with."""
         return None
 
+    @property
+    def turn(self) -> float:
+        """When it has its turn among those of its ensemble: what costs most is first."""
+        return -self.cost
+
     @abstractmethod
     def compute(self, keeper: Keeper) -> Frozen:
         """Do it; a run goes on from the checkpoint that the keeper may have."""

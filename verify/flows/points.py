@@ -44,6 +44,7 @@ Array = Any  # numpy.ndarray, which is imported where it is used
 _ZERO = Fraction(0)
 _UPWARDS = 1 + 2.0**-50  # for a bound that is itself rounded
 _REMEMBERED = 1 << 16  # points in closed form, of which one takes a fifth of a millisecond
+_MOTIONS = 1 << 14  # some 4 kB each
 _FLOWS = 3  # for which so many points are, in some 30 MB each
 _Rounded = tuple[float, float, float]
 _Told = tuple[str, tuple[_Rounded, ...]]
@@ -78,7 +79,7 @@ def exact_points(
     followed so far, and where a numerical flow fails the check at the sample.
     """
     work = _Work.of(hamiltonian, p, q, times, t0)
-    if len(work.p) and work.motion(0) is not None:
+    if work.known:
         return work.in_closed_form()
     work.numerically()
     work.one_by_one()
@@ -95,17 +96,24 @@ def _along_flow(hamiltonian: Hamiltonian, times: tuple[Fraction, ...]) -> Callab
     """
     zero = Fraction(0)
     ends = {max((zero, *times)), min((zero, *times))} - {zero}
-    motion_from = known_flows.motions(hamiltonian)
+    motion_from = _motions(hamiltonian)
 
     @lru_cache(maxsize=_REMEMBERED)
     def told(p: float, q: float) -> _Told:
-        motion = motion_from(Fraction(p), Fraction(q))
+        motion = motion_from(p, q)
         assert motion is not None  # noqa: S101 - as another point has one
         for time in ends:
             closed_form.ends_after(motion, time)
         return motion.method, tuple(_rounded(motion, p, q, time) for time in times)
 
     return told
+
+
+@lru_cache(maxsize=_FLOWS)
+def _motions(hamiltonian: Hamiltonian) -> Callable[[float, float], Motion | None]:
+    """(p, q) ↦ the motion from there: what is exact of it serves for all times."""
+    motion_from = known_flows.motions(hamiltonian)
+    return lru_cache(maxsize=_MOTIONS)(lambda p, q: motion_from(Fraction(p), Fraction(q)))
 
 
 def _rounded(motion: Motion, p: float, q: float, time: Fraction) -> _Rounded:
@@ -160,8 +168,11 @@ class _Work:
 
     # -- in closed form -----------------------------------------------------------------------
 
-    def motion(self, i: int) -> Motion | None:
-        return known_flows.closed_form(self.hamiltonian, *self._start(i))
+    @property
+    def known(self) -> bool:
+        """Whether there is a closed form: of one point's motion, and so of all."""
+        starts = zip(self.p[:1].tolist(), self.q[:1].tolist(), strict=True)
+        return any(_motions(self.hamiltonian)(p, q) is not None for p, q in starts)
 
     def in_closed_form(self) -> Points:
         """Each point by its own motion. Raises NoFlowError."""

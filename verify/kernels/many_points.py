@@ -24,6 +24,7 @@ from verify.kernels.clock import clock_inputs, first_rest
 from verify.kernels.kernel import Kernel, kernel_for
 from verify.kernels.reach import limits
 from verify.kernels.stepping import KernelRun
+from verify.kernels.waypoints import waypoints
 
 _ZERO = Fraction(0)
 _SHARE = 32  # points that a thread takes at a time: some milliseconds and more
@@ -75,7 +76,7 @@ class PointMap:
         given = [points[name] for name in self.kernel.coordinates]
         if self.arithmetic.name == float64.NAME:
             z = np.array(given, dtype=np.float64)
-            found = self.followed(z)
+            found = self._remembered(z)
             lost = np.flatnonzero(~np.all(np.isfinite(found), axis=0))
             if lost.size:
                 raise self._out_of_range(z[:, lost[0]].tolist())
@@ -101,19 +102,31 @@ class PointMap:
     def followed(self, given: np.ndarray) -> np.ndarray:
         """All that is carried, in float64, of points (coordinates, points): a row each, and no
         finite number where a point has left the range."""
+        return self._advanced(self.steps, self._carried(given))
+
+    def _remembered(self, given: np.ndarray) -> np.ndarray:
+        """The same; points that were followed for fewer steps go on from there."""
+        known = waypoints(self.kernel, tuple(self._inputs()))
+        return known.followed(self._carried(given), self.steps, self._advanced)
+
+    def _carried(self, given: np.ndarray) -> np.ndarray:
+        """What is carried at the start."""
+        rest = [np.full(given.shape[1], x, dtype=np.float64) for x in self._rest]
+        return np.array([*given, *rest])
+
+    def _advanced(self, steps: int, carried: np.ndarray) -> np.ndarray:
         run, share = _stepper(self.kernel)
         inputs = np.array(self._inputs(), dtype=np.float64)
-        count = given.shape[1]
-        spare = -count % share  # a point more than once, where a call takes so many
-        rest = [np.full(count + spare, x, dtype=np.float64) for x in self._rest]
-        carried = np.array([*(np.pad(z, (0, spare), "edge") for z in given), *rest])
+        count = carried.shape[1]
+        # A point more than once, where a call takes so many.
+        every = np.pad(carried, ((0, 0), (0, -count % share)), "edge")
 
         def advance(first: int) -> None:
-            run(self.steps, inputs, carried[:, first : first + share])
+            run(steps, inputs, every[:, first : first + share])
 
         with ThreadPoolExecutor(os.cpu_count()) as threads:
             list(threads.map(advance, range(0, count, share)))
-        return carried[:, :count]
+        return every[:, :count]
 
     def _one_by_one(self, given: Sequence[Sequence[Number]]) -> list[list[Number]]:
         made = self.arithmetic

@@ -204,7 +204,12 @@ def bent(motion: Motion) -> Any:
 @pytest.fixture(autouse=True)
 def nothing_remembered() -> None:
     """Points that a planted error has moved are not those of another test."""
+    forget()
+
+
+def forget() -> None:
     module._along_flow.cache_clear()
+    module._motions.cache_clear()
 
 
 @pytest.mark.parametrize("wrong", [late, bent])
@@ -225,8 +230,25 @@ def test_a_closed_form_that_is_slightly_wrong_is_beyond_the_bound(
         return motion
 
     monkeypatch.setattr(known_flows, "motions", planted)
-    module._along_flow.cache_clear()
+    forget()
     assert not by_numerical_flow(h, p, q, times[0], exact_points(h, p, q, times))
+
+
+def test_a_motion_is_made_once_for_all_times(monkeypatch: pytest.MonkeyPatch) -> None:
+    h, (p, q), right = Hamiltonian.parse(HARD), cloud(0.3, 1.0, 5), known_flows.motions
+    alone = exact_points(h, p, q, LONG)
+    forget()
+    made = []
+
+    def counted(hamiltonian: Hamiltonian) -> Any:
+        return lambda *start: made.append(start) or right(hamiltonian)(*start)
+
+    monkeypatch.setattr(known_flows, "motions", counted)
+    for k, time in enumerate(LONG):
+        found = exact_points(h, p, q, [time])
+        assert np.array_equal(found.p[0], alone.p[k])
+        assert np.array_equal(found.q[0], alone.q[k])
+    assert made == [(Fraction(x), Fraction(y)) for x, y in zip(p, q, strict=True)]
 
 
 def by_numerical_flow(h: Hamiltonian, p: Any, q: Any, time: Fraction, found: Points) -> bool:

@@ -32,7 +32,7 @@ from verify.scenes.results.regions import EXACT_FLOW, CarriedOutline, FlowImage,
 from verify.scenes.shapes.outline import Outline, Shape
 from verify.studies.regions.area import Goal, Measured, NoAreaError, Probe
 from verify.studies.regions.distance import distance_from_exact
-from verify.studies.regions.mean_lambda import mean_over
+from verify.studies.regions.mean_lambda import mean_over, middle_of
 from verify.studies.regions.place import ITSELF, Place
 from verify.studies.regions.point_carriers import (
     ExactFlowCarrier,
@@ -274,12 +274,9 @@ def _shown(value: Fraction, error: Fraction) -> tuple[str, str]:
 def _mean(by: _Carrying, region: _OutlineImage) -> dict[str, Any]:
     """The mean of Λ, or of W, over the region; nothing where the map is not defined on all rays to
     it."""
-    # Amid the points of the outline: rays from elsewhere may leave the region, and there the map.
-    middle = np.mean(np.concatenate(region.before, axis=1), axis=1)
-    x, y = middle[by.place.index], middle[by.place.degrees + by.place.index]
     given = by.hamiltonian, by.map, by.step_size, by.steps, by.t0, by.place
     try:
-        found = mean_over(region.outline, (float(x), float(y)), *given)
+        found = mean_over(region.outline, middle_of(region.outline), *given)
     except LeftRangeError:
         return {}
     if not (isfinite(found.value) and isfinite(found.error)):  # areas below float64's range

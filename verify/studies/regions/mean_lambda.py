@@ -29,6 +29,7 @@ from verify.studies.regions.place import ITSELF, Place
 
 _FROM_START = Fraction(0)
 _FIRST = 8  # cells along the curve, at least
+_AMID = 16  # points of an arc that tell where the middle is
 _MOST_POINTS = 60_000
 _AGREED = 3e-3  # of the mean: an error of the cells that is good enough; the quarters' is far less
 _ROUNDING = 1e-12  # of |Λ|, in float64 and ΔJ's closed form, whose errors mostly cancel in a mean
@@ -76,6 +77,15 @@ def mean_over(
     found = _mean_of(density, outline, centre)
     written = hamiltonian.planar or is_written_out(hamiltonian, scheme)
     return found if written else Mean(found.value, found.error + steps * _DEFECT)
+
+
+def middle_of(outline: Outline) -> tuple[float, float]:
+    """Amid its points, whatever is made of them: rays from elsewhere may leave the region, and
+    there the map."""
+    s = (np.arange(_AMID) + 0.5) / _AMID
+    points = [np.broadcast_arrays(s, *arc(FLOAT, s))[1:] for arc in outline.arcs]
+    x, y = np.mean(points, axis=(0, 2))
+    return float(x), float(y)
 
 
 def _mean_of(density: _Density, outline: Outline, centre: tuple[float, float]) -> Mean:

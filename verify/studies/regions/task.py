@@ -38,9 +38,14 @@ class FlowTask(HamiltonianTask):
 
     @property
     def ensemble(self) -> str | None:
-        """Maps of one region until one time, which are held against the same exact points."""
-        until = f"{self.step_size * self.steps} from {self.t0 or 0}"
-        return f"{self.kind} {self.hamiltonian} {self.shape} {until}"
+        """Maps of one region, which carry mostly the same points of it, and are held against the
+        same exact ones."""
+        return f"{self.kind} {self.hamiltonian} {self.parameters} {self.shape} {self.t0 or 0}"
+
+    @property
+    def turn(self) -> float:
+        """What is carried for longest is last: its points go on from where they are."""
+        return float(self.step_size * self.steps)
 
     def compute(self, keeper: Keeper) -> FlowImage:
         """The images of the outline, as a result."""

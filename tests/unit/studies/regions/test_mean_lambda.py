@@ -19,7 +19,7 @@ from verify.scenes.shapes import named as shapes
 from verify.scenes.shapes.outline import Outline
 from verify.studies.regions import mean_lambda as region_mean
 from verify.studies.regions.area import Goal
-from verify.studies.regions.mean_lambda import _cone, mean_over
+from verify.studies.regions.mean_lambda import _cone, mean_over, middle_of
 
 CIRCLE, SQUARE, CAT = (shapes.get(name).outlines[0] for name in ("circle", "square", "cat"))
 CHANGED = Goal(change=Fraction(1, 10**4), area=Fraction(1, 10**14))
@@ -50,6 +50,19 @@ def test_the_mean_for_a_linear_map_is_the_determinant() -> None:
     found = mean_over(CAT, (0.0, 0.0), OSCILLATOR, "lie3", H, N)
     true = float(linear_determinant("lie3", H, N))
     assert abs(found.value - true) <= found.error < 1e-10 * abs(true)
+
+
+@pytest.mark.parametrize("outline", [CIRCLE, SQUARE], ids=["circle", "square"])
+def test_the_middle_of_what_is_the_same_on_all_sides_is_its_centre(outline: Outline) -> None:
+    assert middle_of(placed(outline, 3, "-1/2", "1/4")) == pytest.approx((3, -0.5), abs=1e-15)
+
+
+def test_rays_from_the_middle_of_a_cat_do_not_leave_it() -> None:
+    """What is swept has one sign: no ray meets the outline twice."""
+    cells = [(arc, k / 8, (k + 1) / 8, 0.0, 1.0) for arc in range(len(CAT.arcs)) for k in range(8)]
+    signs = np.sign(_cone(CAT, middle_of(CAT), cells)[2])
+    outside = np.sign(_cone(CAT, (5.0, 1.0), cells)[2])
+    assert len(set(signs)) == 1 < len(set(outside))
 
 
 @pytest.mark.parametrize("outline", [CIRCLE, SQUARE, CAT], ids=["circle", "square", "cat"])
