@@ -11,7 +11,7 @@ import numpy as np
 
 from verify.kernels.kernel import Kernel
 
-_MOST = 1 << 15  # points of one kernel with its inputs: some 10 MB
+_MOST = 1 << 16  # numbers that are kept of one kernel with its inputs: some 10 MB
 _WORTH = 500  # steps: fewer are taken again as soon as looked up
 Advance = Callable[[int, np.ndarray], np.ndarray]  # so many steps of what is carried, a column each
 
@@ -50,8 +50,9 @@ class Waypoints:
 
     def _keep(self, starts: list[bytes], steps: int, found: np.ndarray) -> None:
         """The farthest of each point, of as many points as there is room for."""
+        room = _MOST // len(found)
         ends = (column.tobytes() for column in np.ascontiguousarray(found.T))
         for start, end in zip(starts, ends, strict=True):
             known = self._reached.get(start)
-            if (known is None and len(self._reached) < _MOST) or (known and known[0] < steps):
+            if (known is None and len(self._reached) < room) or (known and known[0] < steps):
                 self._reached[start] = steps, end

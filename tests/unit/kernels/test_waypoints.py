@@ -64,7 +64,7 @@ def test_a_short_way_is_not_noted() -> None:
 
 
 def test_no_more_points_are_kept_than_there_is_room_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(waypoints, "_MOST", 2)
+    monkeypatch.setattr(waypoints, "_MOST", 2 * 2)  # numbers, of which a point has two
     known, points = Waypoints(True), cloud(3)
     asked(known, points, SHORT)
     assert asked(known, points, LONG) == [(LONG - SHORT, 2), (LONG, 1)]
