@@ -273,6 +273,7 @@ SCENES = {
     HEAD + f"[[grid]]\n{GRID}": "must be one table; write [grid] for [[grid]]",
     HEAD + "[series]\nsteps = 3": "must be a list of tables; write [[series]] for [series]",
     f"{RUNS}{GRID.replace('[0.1]', '0.1')}": "step_sizes=0.1: must be a list; write step_sizes",
+    f"{RUNS}{GRID.replace('[0.1]', '{ h = 0.1 }')}": "must be a list; write step_sizes = […]",
     f"{RUNS}{GRID.replace('[0.1]', '[-0.1]')}": "step_size=-0.1: must be greater than 0",
     f"{RUNS}{GRID.replace('= 3', '= 1e3')}": "grid.steps=1e3: must be a whole number; write steps",
     f"{RUNS}{GRID.replace('= 3', '= -3')}": "grid.steps=-3: must be 1 or more",

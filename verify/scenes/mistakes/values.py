@@ -42,7 +42,7 @@ def one_line(
         return InputError(
             f"{source}: {where}", NOT_GIVEN, f"is missing; write {first['loc'][-1]} = …"
         )
-    return InputError(f"{source}: {where}", first.get("input"), _value_mistake(first))
+    return InputError(f"{source}: {where}", first.get("input"), _value_mistake(first, model))
 
 
 def _of_keys(loc: Sequence[str | int]) -> tuple[str | int, ...]:
@@ -50,14 +50,15 @@ def _of_keys(loc: Sequence[str | int]) -> tuple[str | int, ...]:
     return tuple(part for part in loc if not str(part).startswith("«"))
 
 
-def _value_mistake(error: Error) -> str:
+def _value_mistake(error: Error, model: type[BaseModel] | None) -> str:
     """What the value under a key must be, in place of pydantic's words."""
     given, context = error.get("input"), error.get("ctx", {})
     name = next((str(part) for part in reversed(error["loc"]) if isinstance(part, str)), "")
+    tables = bool(_keys_at(error["loc"], model))  # or lists of them
     most, least = context.get("max_length"), context.get("min_length")
     known: dict[str, Callable[[], str]] = {
-        "tuple_type": lambda: _list(name, given),
-        "list_type": lambda: _list(name, given),
+        "tuple_type": lambda: _list(name, given, tables),
+        "list_type": lambda: _list(name, given, tables),
         "model_type": lambda: _table(name, given),
         "dict_type": lambda: f"must be a table; write {name} = {{ NAME = VALUE }}",
         "too_short": lambda: f"must be a list of {least} or more",
@@ -76,9 +77,10 @@ def _value_mistake(error: Error) -> str:
     return says() if says else str(error["msg"])
 
 
-def _list(name: str, given: object) -> str:
+def _list(name: str, given: object, of_tables: bool) -> str:
     if isinstance(given, Mapping):
-        return f"must be a list of tables; write [[{name}]] for [{name}]"
+        tables = f" of tables; write [[{name}]] for [{name}]"
+        return f"must be a list{tables if of_tables else f'; write {name} = […]'}"
     is_word = isinstance(given, str) and not given[:1].isdigit()
     shown = "…" if is_word and name != "schemes" else f'"{given}"' if is_word else str(given)
     return f"must be a list; write {name} = [{shown[:_LONGEST]}]"
