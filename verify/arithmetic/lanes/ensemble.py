@@ -1,9 +1,8 @@
 """Orbits in lockstep as LLVM IR: each of a kernel's numbers is one in each lane.
 
 Nothing branches but the loop. Under an `if` a variable keeps its value in the lanes where the
-condition is false. Lanes that return within the loop retire: what they do further on is not looked
-at, and the loop ends when all have; of what they give only the first value, the steps done, is
-theirs. So a lane that fails hurts no other.
+condition is false. Lanes that return within the loop retire (`verify.arithmetic.lanes.passes`), so
+that a lane that fails hurts no other.
 """
 
 import ast
@@ -15,16 +14,17 @@ from llvmlite import ir
 from verify.arithmetic.lanes import vectors
 from verify.arithmetic.lanes.carries import Number
 from verify.arithmetic.lanes.functions import LaneFunctions
+from verify.arithmetic.lanes.memory import Memory
 from verify.arithmetic.lanes.multiply_add import MultiplyAdd
 from verify.arithmetic.lanes.numbers import Numbers
+from verify.arithmetic.lanes.passes import Retirement, Variables
 from verify.arithmetic.lanes.schedule import reordered
 from verify.arithmetic.lanes.vectors import CONDITIONS, DOUBLES, WORDS
 from verify.arithmetic.processor import LANES
 from verify.arithmetic.wide.limbs import I64, Value, constant
-from verify.arithmetic.wide.size import INTEGER_BITS, sizes_of, words_of
+from verify.arithmetic.wide.size import INTEGER_BITS, sizes_of
 
 BOOL = ir.IntType(1)
-_ALIGNED = 8  # bytes; numbers come from Python's memory
 
 
 class Ensemble:
@@ -42,10 +42,11 @@ class Ensemble:
         self.widths = sizes_of(fraction)
         self.numbers = Numbers(fraction, multiply_add())
         self.functions = LaneFunctions(self.module, self.numbers)
+        self.memory = Memory(self.numbers, self.widths, sets)
         self._known: dict[str, Any] = {}
-        self._arguments: dict[str, tuple[int, int, str]] = {}  # where each lies, and its kind
+        self._arguments: dict[str, tuple[int, str]] = {}  # where each lies, and its kind
         self._of_sets: list[dict[str, Any]] = []  # after the loop, the variables of each set
-        self._kept: dict[str, list[Value]] = {}  # what goes from pass to pass, in memory
+        self._retirement: Retirement | None = None  # of the loop
         self._where: Value | None = None  # the lanes for which an `if` holds
 
     # -- the function -------------------------------------------------------------------------
@@ -56,32 +57,18 @@ class Ensemble:
         self.allocations = ir.IRBuilder(main.append_basic_block("entry"))
         self.b = ir.IRBuilder(main.append_basic_block("body"))
         self._known["valid"] = ir.Constant(CONDITIONS, [1] * LANES)
-        at = 0
+        offset = 0
         for name, kind in arguments:
-            size = words_of(self.widths[kind]) if kind in self.widths else 1
-            self._arguments[name] = at, size, kind
+            self._arguments[name] = offset, kind
             self._known[name] = self._argument(name, 0)
-            at += size
+            offset += self.memory.size(kind)
         first = arguments[0][0] if arguments and arguments[0][1] == "int" else None
         if first:  # the steps, one number for all
             self._known[first] = self.b.extract_element(self._known[first], constant(0, 64))
 
     def _argument(self, name: str, own: int) -> Any:
         """An argument of one set of lanes."""
-        at, size, kind = self._arguments[name]
-        given = self.b.function.args[0]
-        words = [self.b.load(self._place(given, at + i, own), align=_ALIGNED) for i in range(size)]
-        return self._of_words(words, kind)
-
-    def _of_words(self, words: list[Value], kind: str) -> Any:
-        if kind in self.widths:
-            return self.numbers.from_words(self.b, words, self.widths[kind])
-        return self.b.bitcast(words[0], DOUBLES) if kind == "float" else words[0]
-
-    def _place(self, pointer: Value, at: int, own: int = 0) -> Value:
-        """Where a word of one set of lanes lies."""
-        place = self.b.gep(pointer, [constant((at * self.sets + own) * LANES, 64)])
-        return self.b.bitcast(place, WORDS.as_pointer())
+        return self.memory.read(self.b, self.b.function.args[0], *self._arguments[name], own)
 
     def end(self) -> None:
         self.allocations.branch(self.allocations.block.parent.blocks[1])
@@ -90,7 +77,8 @@ class Ensemble:
 
     def give(self, values: Callable[[], Sequence[Any]]) -> None:
         if self._where is not None:
-            self._retire(values()[0])
+            assert self._retirement is not None  # noqa: S101 - an `if` returns in the loop alone
+            self._retirement.retire(self.b, self._where, values()[0], self._finish)
             return
         for own, known in enumerate(self._of_sets or [self._known]):
             self._known = known
@@ -99,34 +87,12 @@ class Ensemble:
 
     def _write(self, values: Sequence[Any], own: int) -> None:
         """The results of one set of lanes."""
-        if "done" in self._kept:
-            values = [self.b.load(self._kept["done"][0]), *values[1:]]
-        words = [word for value in values for word in self._words(value)]
-        words.append(self.b.zext(self._lanes(self.load("valid")), WORDS))
-        for at, word in enumerate(words):
-            self.b.store(word, self._place(self.b.function.args[1], at, own), align=_ALIGNED)
-
-    def _words(self, value: Any) -> list[Value]:
-        if isinstance(value, Number):
-            return self.numbers.words(self.b, value)
-        if value.type == DOUBLES:
-            return [self.b.bitcast(value, WORDS)]
-        return [value if value.type == WORDS else vectors.same(self.b, value, WORDS)]
-
-    def _retire(self, step: Value) -> None:
-        """The lanes where an `if` holds have done so many steps, and do no more."""
         b = self.b
-        going, done = self._kept["going"][0], self._kept["done"][0]
-        leaving = b.and_(self._where, b.load(going))
-        some = b.append_basic_block("leaving")
-        after = b.append_basic_block("after")
-        b.cbranch(vectors.any_of(b, leaving), some, after)
-        b.position_at_end(some)
-        b.store(b.select(leaving, vectors.same(b, step, WORDS), b.load(done)), done)
-        rest = b.and_(b.load(going), b.not_(leaving))
-        b.store(rest, going)
-        b.cbranch(vectors.any_of(b, rest), after, self._finish)
-        b.position_at_end(after)
+        if self._retirement:
+            values = [b.load(self._retirement.done), *values[1:]]
+        words = [word for value in values for word in self.memory.words(b, value)]
+        words.append(b.zext(self._lanes(self.load("valid")), WORDS))
+        self.memory.write(b, b.function.args[1], words, own)
 
     def when(self, condition: Value, body: Callable[[], None]) -> None:
         assert self._where is None  # noqa: S101 - the language nests no `if`
@@ -135,20 +101,10 @@ class Ensemble:
         self._where = None
 
     def loop(self, name: str, limit: Value, body: Callable[[], None], changed: set[str]) -> None:
-        b = self.b
-        carried = [n for n in self._known if n in changed or n == "valid"]
-        before = dict(self._known)
-        for own in range(self.sets):
-            for n in carried:
-                first = own and n in self._arguments
-                self._known[n] = self._argument(n, own) if first else before[n]
-                parts = self._parts(self._known[n])
-                self._kept[f"{n} {own}"] = [self.allocations.alloca(p.type) for p in parts]
-            self._keep(carried, own)
-        self._kept["done"] = [self.allocations.alloca(WORDS)]
-        self._kept["going"] = [self.allocations.alloca(CONDITIONS)]
-        b.store(vectors.same(b, limit, WORDS), self._kept["done"][0])
-        b.store(ir.Constant(CONDITIONS, [1] * LANES), self._kept["going"][0])
+        b, before = self.b, dict(self._known)
+        carried = [n for n in before if n in changed or n == "valid"]
+        of_sets = [self._carried(carried, own) for own in range(self.sets)]
+        self._retirement = Retirement(b, self.allocations, limit)
         counter = self.allocations.alloca(I64)
         b.store(constant(0, 64), counter)
         for value in (value for n, value in before.items() if n not in carried):
@@ -160,40 +116,30 @@ class Ensemble:
         at = b.load(counter)
         b.cbranch(b.icmp_signed("<", at, limit), inside, self._finish)
         b.position_at_end(inside)
-        for own in range(self.sets):
-            self._known = before | {name: at}
-            self._fetch(carried, own)
+        for variables in of_sets:
+            self._known = before | {name: at} | variables.fetched(b, before)
             body()
-            self._keep(carried, own)
+            variables.keep(b, self._known)
         b.store(b.add(at, constant(1, 64)), counter)
         b.branch(head)
         b.position_at_end(self._finish)
-        for own in range(self.sets):
-            self._known = dict(before)
-            self._fetch(carried, own)
-            self._of_sets.append(self._known)
+        self._of_sets = [before | variables.fetched(b, before) for variables in of_sets]
+
+    def _carried(self, names: Sequence[str], own: int) -> Variables:
+        """The variables of one set of lanes that a loop changes, as they are before it."""
+        variables, values = Variables(self.numbers), dict[str, Any]()
+        for name in names:
+            again = own and name in self._arguments
+            values[name] = self._argument(name, own) if again else self._known[name]
+            variables.add(self.b, self.allocations, name, values[name])
+        variables.keep(self.b, values)
+        return variables
 
     def leave(self) -> None:
         raise NotImplementedError("a loop that some lanes leave before others")
 
     def ordered(self, statements: list[ast.stmt]) -> list[ast.stmt]:
         return reordered(statements)
-
-    def _parts(self, value: Any) -> list[Value]:
-        return self.numbers.settle(self.b, value) if isinstance(value, Number) else [value]
-
-    def _keep(self, names: Sequence[str], own: int) -> None:
-        for name in names:
-            places = self._kept[f"{name} {own}"]
-            for part, place in zip(self._parts(self._known[name]), places, strict=True):
-                self.b.store(part, place)
-
-    def _fetch(self, names: Sequence[str], own: int) -> None:
-        for name in names:
-            parts = [self.b.load(place) for place in self._kept[f"{name} {own}"]]
-            value = self._known[name]
-            number = isinstance(value, Number)
-            self._known[name] = self.numbers.known(parts, value.width) if number else parts[0]
 
     # -- variables and numbers ----------------------------------------------------------------
 
@@ -215,7 +161,7 @@ class Ensemble:
         if isinstance(value, Number):
             return self.numbers.choose(self.b, where, value, other)
         if value.type == I64 or other.type == I64:
-            value, other = (self._words(v)[0] for v in (value, other))
+            value, other = (self.memory.words(self.b, v)[0] for v in (value, other))
         return self.b.select(where, value, other)
 
     def integer(self, value: int) -> Value:
