@@ -21,8 +21,8 @@ from verify.arithmetic.systems import fixed, mpfr, mpmath
 from verify.kernels.chunked_loop import ChunkedLoop
 from verify.kernels.kernel import kernel_for
 from verify.kernels.stepping import KernelRun
-from verify.runs.a_posteriori import _Certificate
 from verify.runs.inverse_norm import square_of_norm
+from verify.runs.step_rounding import StepRounding
 
 ORBITS = {
     "duffing-lie2": case("p**2/2 + q**2/2 + 7*q**4/12", "lie2", "3/2", "1/3", "1/70", 60),
@@ -109,7 +109,7 @@ def rho(kernel_run: KernelRun, arithmetic: Arithmetic) -> Fraction:
     """ρ for the whole run."""
     run = kernel_run.run(arithmetic, tangent=True)
     with working_precision(96):
-        steps = _Certificate(kernel_run, arithmetic, run, len(run.trail) - 1).one_step()
+        steps = StepRounding(kernel_run, arithmetic, run, len(run.trail) - 1).errors()
         assert steps is not None
         return bounds(steps.tangent)[1]
 

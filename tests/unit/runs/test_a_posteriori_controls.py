@@ -31,9 +31,10 @@ from verify.kernels.kernel import kernel_for
 from verify.kernels.rounding import rounding_of
 from verify.kernels.step import tangent_map as tangent
 from verify.kernels.stepping import Outcome
-from verify.runs import a_posteriori as certificate
+from verify.runs import step_rounding
 from verify.runs.a_posteriori import _Certificate, certify
 from verify.runs.derivatives import Derivatives
+from verify.runs.step_rounding import StepRounding
 
 ZERO = flint.arb(0)
 
@@ -111,17 +112,17 @@ def test_without_a_lie_the_values_are_within_what_is_certified(name: str) -> Non
 # -- lies that the run does not know of -----------------------------------------------------------
 
 Patch = pytest.MonkeyPatch
-_one_step, _orbit = _Certificate.one_step, _Certificate.orbit
+_errors, _orbit = StepRounding.errors, _Certificate.orbit
 
 
 def half_a_step(patch: Patch) -> None:
     """The rounding of one step is half of what it is."""
 
-    def halved(self: _Certificate) -> Any:
-        found = _one_step(self)
+    def halved(self: StepRounding) -> Any:
+        found = _errors(self)
         return found and replace(found, state=found.state / 2)
 
-    patch.setattr(_Certificate, "one_step", halved)
+    patch.setattr(StepRounding, "errors", halved)
 
 
 def half_an_error(patch: Patch) -> None:
@@ -141,7 +142,7 @@ def free_products(patch: Patch) -> None:
         own = rounding_of(arithmetic)
         return lambda op, size: ZERO if op.kind == "mul" else own(op, size)
 
-    patch.setattr(certificate, "rounding_of", lying)
+    patch.setattr(step_rounding, "rounding_of", lying)
 
 
 def free_constants(patch: Patch) -> None:
@@ -151,17 +152,17 @@ def free_constants(patch: Patch) -> None:
         own = rounding_of(arithmetic)
         return lambda op, size: ZERO if op.kind == "const" else own(op, size)
 
-    patch.setattr(certificate, "rounding_of", lying)
+    patch.setattr(step_rounding, "rounding_of", lying)
 
 
 def exact_inputs(patch: Patch) -> None:
     """h and the parameters are held exactly."""
-    inputs = _Certificate.inputs
+    inputs = StepRounding.inputs
 
-    def lying(self: _Certificate) -> Any:
+    def lying(self: StepRounding) -> Any:
         return {name: replace(x, error=ZERO) for name, x in inputs(self).items()}
 
-    patch.setattr(_Certificate, "inputs", lying)
+    patch.setattr(StepRounding, "inputs", lying)
 
 
 def straight(patch: Patch) -> None:
@@ -171,8 +172,8 @@ def straight(patch: Patch) -> None:
 
 def narrow(patch: Patch) -> None:
     """The true orbit is where the computed one is."""
-    box = _Certificate.box
-    patch.setattr(_Certificate, "box", lambda self, _: box(self, ZERO))
+    box = StepRounding.box
+    patch.setattr(StepRounding, "box", lambda self, _: box(self, ZERO))
 
 
 def level(patch: Patch) -> None:

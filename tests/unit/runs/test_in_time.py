@@ -133,10 +133,10 @@ def test_a_bound_that_forgets_the_clock_would_be_too_small(
     )
     outcome = kernel_run.run(made, tangent=True)
     right = certify(kernel_run, made, outcome)
-    from verify.runs import a_posteriori
+    from verify.runs import step_rounding
 
-    true = a_posteriori.error_of_time
-    monkeypatch.setattr(a_posteriori, "error_of_time", lambda a, x: 1000 * true(a, x))
+    true = step_rounding.error_of_time
+    monkeypatch.setattr(step_rounding, "error_of_time", lambda a, x: 1000 * true(a, x))
     worse = certify(kernel_run, made, outcome)
     assert right is not None
     assert worse is not None
