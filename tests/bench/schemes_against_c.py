@@ -27,7 +27,8 @@ from pathlib import Path
 from verify import arithmetic, schemes
 from verify.errors import InputError
 from verify.hamiltonians import systems
-from verify.kernels.kernel import CLOSED_FORM, Kernel, kernel_for
+from verify.kernels.kernel import Kernel, kernel_for
+from verify.kernels.statements import CLOSED_FORM
 
 SECONDS, ROUNDS = 0.15, 9  # of one measurement, and how many of each there are
 TARGET = 1.2

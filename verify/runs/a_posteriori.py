@@ -43,8 +43,8 @@ import flint
 from verify.arithmetic.arb import bounds, in_reach, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic
-from verify.kernels.kernel import CLOSED_FORM
 from verify.kernels.rounding import PRECISION, Ball
+from verify.kernels.statements import CLOSED_FORM
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs import form_bound
 from verify.runs.derivatives import Derivatives, norm

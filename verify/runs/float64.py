@@ -4,7 +4,7 @@ Up to `DIRECT_STEPS` steps float64 is held against a certified run (`verify.runs
 from the exact inputs: the bound is rigorous. Where there is no certificate, and the orbit is short,
 it is held against an mpfr rerun whose precision is itself confirmed, an estimate.
 
-Beyond: against a compensated run (see `verify.kernels.kernel`), by four times the greatest
+Beyond: against a compensated run (see `verify.kernels.statements`), by four times the greatest
 difference at any of the checkpoints on the way, p and q taken together, since a single difference
 may be small by chance. That leaves the rounding of h, the parameters and the initial values aside.
 Where errors grow linearly in time it shifts the phase by about T·2⁻⁵³, while the rounding of N ≥

@@ -17,7 +17,8 @@ from verify.algebra.ring import Poly
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.kernel import OBSERVABLES, kernel_for
+from verify.kernels.kernel import kernel_for
+from verify.kernels.statements import OBSERVABLES
 from verify.kernels.step.computation import Observed, computed, step_map_of
 from verify.kernels.step.program import Evaluator, Program, _nest
 from verify.runs import derivatives

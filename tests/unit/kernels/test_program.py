@@ -22,7 +22,8 @@ from verify import arithmetic
 from verify.algebra.embedding import embed
 from verify.algebra.formula import symbol
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.kernel import OBSERVABLES, Kernel, kernel_for
+from verify.kernels.kernel import Kernel, kernel_for
+from verify.kernels.statements import OBSERVABLES
 from verify.kernels.step.program import Evaluator, Program
 
 VARIABLES = ("p", "q", "h", "delta")

@@ -22,7 +22,7 @@ from verify.schemes.step_map import StepMap, Substep, h_inside
 @dataclass(frozen=True)
 class Observed:
     """ΔJ; the determinant of the four entries; A − 1 of the tangent map; in n degrees of freedom
-    the entries of S, and M and W; see `verify.kernels.kernel`.
+    the entries of S, and M and W; see `verify.kernels.statements`.
 
     `scaled`: ΔJ is divided by the power of h that it has, and multiplied by κ. `pipelined` as in
     `verify.arithmetic.number_system.Arithmetic`.

@@ -14,7 +14,8 @@ from verify.exploration.any_sample import AnySample
 from verify.exploration.property import Violation
 from verify.exploration.sample_in_degrees import SampleInDegrees, sample_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.kernel import Writer, kernel_for
+from verify.kernels.kernel import kernel_for
+from verify.kernels.statements import Statements
 from verify.scenes.scene import scene_from
 from verify.schemes import get
 from verify.schemes.degrees import map_in_degrees
@@ -86,7 +87,7 @@ def one_order_less(sample: SampleInDegrees, patch: Patch) -> None:
 
 
 def sums_for_products(_: SampleInDegrees, patch: Patch) -> None:
-    patch.setattr(Writer, "product_of_factors", lambda self: self.sum_up("lam", "dj"))
+    patch.setattr(Statements, "product_of_factors", lambda self: self.sum_up("lam", "dj"))
 
 
 def boasting(sample: SampleInDegrees, _: Patch) -> SampleInDegrees:

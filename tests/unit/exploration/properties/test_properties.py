@@ -87,10 +87,10 @@ def another_proof(sample: Sample, patch: Patch) -> Sample:
 
 def sums_for_products(sample: Sample, patch: Patch) -> Sample:
     """Λ as the sum of the ΔJ."""
-    from verify.kernels.kernel import Writer
+    from verify.kernels.statements import Statements
 
     kernel_for.cache_clear()
-    patch.setattr(Writer, "product_of_factors", lambda self: self.sum_up("lam", "dj"))
+    patch.setattr(Statements, "product_of_factors", lambda self: self.sum_up("lam", "dj"))
     return sample
 
 
