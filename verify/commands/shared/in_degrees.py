@@ -10,7 +10,7 @@ from verify.commands.shared.answer import picked
 from verify.commands.shared.output import agreement, agreement_json, cut, line
 
 if TYPE_CHECKING:
-    from verify.integrators.degrees.check import StepFinding
+    from verify.integrators.degrees.results import StepFinding
     from verify.proof.symplectic.proof import SymplecticProof
 _LONG = 352  # characters of S, beyond which its formula stands for it
 

@@ -5,15 +5,15 @@ distance from the exact flow, as the step size falls.
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 
-from verify.algebra.domain import EVERYWHERE, Domain
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.degrees.called import StepAt, StepOfArrays
 from verify.integrators.degrees.distance import distance_of
 from verify.integrators.degrees.no_step import judged_without_call
+from verify.integrators.degrees.results import StepFinding, held_to
 from verify.integrators.degrees.traced import traced_map
 from verify.integrators.maps.check import (
     Called,
@@ -25,7 +25,7 @@ from verify.integrators.maps.check import (
 )
 from verify.integrators.maps.probes import DualProbe, FloatProbe
 from verify.integrators.probe import LADDERS
-from verify.integrators.results import Claims, agreement_told
+from verify.integrators.results import Claims
 from verify.integrators.step import Step, StepError, why, within
 from verify.integrators.tracing.domain import domain_of
 from verify.integrators.tracing.readings_of_floats import readings
@@ -33,7 +33,6 @@ from verify.integrators.tracing.rounded_order import Compared, agreement
 from verify.integrators.wrapped import periods_told
 from verify.proof.symplectic.defect import series_of
 from verify.proof.symplectic.order import Claimed, prove_map
-from verify.proof.symplectic.proof import SymplecticProof
 from verify.prose import Prose, prose, read_prose
 from verify.schemes.degrees.canonical_map import CanonicalMap
 from verify.verdict import Verdict
@@ -43,39 +42,6 @@ _SIZES = (Fraction(1, 8), Fraction(1, 64))
 _TIME = Fraction(1, 4)
 Points = Sequence[tuple[Fraction, ...]]
 _MOST = 8  # orders that are looked at but for rounding
-
-
-@dataclass(frozen=True)
-class StepFinding:
-    """What was found of a step of arrays.
-
-    `how`: "proof", "duals", "floats", or "calls" where the function was only called.
-
-    `proof`: what is proved. `convergence_order`: that of the map, None where it is not known
-    (`order_known` False) or agrees in all that was looked at. `measured`: S at points, with the
-    step size `h`, where there is no proof.
-    """
-
-    verdict: Verdict
-    reason: Prose
-    how: str
-    degrees: int
-    proof: SymplecticProof | None = None
-    symplectic: bool | None = None
-    area_preserving: bool | None = None
-    convergence_order: int | None = None
-    order_known: bool = False
-    measured: MapFinding | None = None
-    h: Fraction | None = None
-    domain: Domain = EVERYWHERE
-    notes: tuple[Prose, ...] = ()
-
-    def __repr__(self) -> str:
-        return f"StepFinding({self.verdict}: {self.reason})"
-
-    def noting(self, *parts: str | Prose) -> "StepFinding":
-        """The same with one more note, first."""
-        return replace(self, notes=(prose(*parts), *self.notes))
 
 
 def check_step(step: Step, hamiltonian: Hamiltonian, claims: Claims) -> StepFinding:
@@ -91,7 +57,7 @@ def check_step(step: Step, hamiltonian: Hamiltonian, claims: Claims) -> StepFind
                 found = _proved(own, hamiltonian, called)
         except Exception as error:  # the user's code may raise anything
             found = _measured(own, hamiltonian, points, called).noting("no proof: ", why(error))
-        return _held_to(claims, found)
+        return held_to(claims, found)
 
     return _tried(step, hamiltonian, examined, judged_without_call)
 
@@ -268,61 +234,3 @@ def _at(
 ) -> MapFinding:
     here = own.at(h, _TIME)
     return measured(here, DualProbe(here) if how == "duals" else FloatProbe(here), points)
-
-
-# -- what is claimed ------------------------------------------------------------------------------
-
-
-def _held_to(claims: Claims, found: StepFinding) -> StepFinding:
-    """REFUTED where a claim is, UNDECIDED where one is not decided.
-
-    A step that is not symplectic is no mistake unless it is claimed to be.
-    """
-    told = list(_judged(claims, found))
-    false = [said for holds, said in told if holds is False]
-    open_ = [said for holds, said in told if holds is None]
-    if found.verdict is Verdict.REFUTED and found.how != "proof" and _is_scheme(found):
-        found = replace(found, verdict=Verdict.MEASURED)  # that it is not symplectic
-    if false:
-        return replace(found, verdict=Verdict.REFUTED, reason=read_prose(false[0]))
-    if open_ and found.verdict is not Verdict.REFUTED:
-        said = read_prose(f"{open_[0]} is claimed and not decided: ")
-        return replace(found, verdict=Verdict.UNDECIDED, reason=prose(said, found.reason))
-    return found
-
-
-def _is_scheme(found: StepFinding) -> bool:
-    """Whether nothing is known against its order."""
-    return not found.order_known or found.convergence_order is None or found.convergence_order >= 1
-
-
-def _judged(claims: Claims, found: StepFinding) -> Iterator[tuple[bool | None, str]]:
-    """Each claim that does not hold: whether it is refuted, and what is said."""
-    proof, agreed = found.proof, found.convergence_order
-    if claims.order is not None:
-        claim = f"order {claims.order}"
-        if not found.order_known:
-            yield None, claim
-        elif agreed is not None and agreed < claims.order:
-            yield False, f"{claim} is claimed; {agreement_told(agreed)}"
-    if claims.symplectic and found.symplectic is not True:
-        where = f"S has order {proof.order}" if proof and proof.order else "S is not 0"
-        claim = "that it is symplectic"
-        yield (
-            found.symplectic,
-            claim if found.symplectic is None else f"{claim} is claimed; {where}",
-        )
-    if claims.area_preserving and found.area_preserving is not True:
-        power = proof.volume_order if proof else None
-        where = f"det J − 1 has order {power}" if power else "det J is not 1"
-        known = "det J ≡ 1"
-        yield (
-            found.area_preserving,
-            known if found.area_preserving is None else (f"{known} is claimed; {where}"),
-        )
-    if claims.area_order is not None and not found.area_preserving:
-        claim, power = f"ΔJ = O(`h^{claims.area_order}`)", proof.volume_order if proof else None
-        if power is None:
-            yield None, claim
-        elif power < claims.area_order:
-            yield False, f"{claim} is claimed; det J − 1 has order {power}"

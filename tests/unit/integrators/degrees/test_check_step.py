@@ -11,7 +11,8 @@ import pytest
 from tests.end_to_end.test_command_line import here, json_of
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.degrees.check import StepFinding, check_step
+from verify.integrators.degrees.check import check_step
+from verify.integrators.degrees.results import StepFinding
 from verify.integrators.loading import step_from
 from verify.integrators.results import Claims
 

@@ -10,7 +10,8 @@ import pytest
 
 from tests.unit.integrators.degrees import test_check_step as known
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.degrees.check import StepFinding, check_step
+from verify.integrators.degrees.check import check_step
+from verify.integrators.degrees.results import StepFinding
 from verify.integrators.loading import step_from
 from verify.integrators.results import Claims
 from verify.verdict import Verdict
