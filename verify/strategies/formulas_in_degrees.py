@@ -6,7 +6,7 @@ bounded below; H is open along an axis of the first degree where its part is.
 """
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
@@ -43,17 +43,17 @@ class Wanted:
         return found
 
     def part(
-        self, kind: str, separable: bool | None, first: bool = False
+        self, kinds: Sequence[str], separable: bool | None, first: bool = False
     ) -> st.SearchStrategy[Formula]:
         """Formulas of the plane, for one degree of freedom; the `first` is what decides of all."""
         bounded = self.bounded if first or self.bounded else None
         named = self.with_parameters and first
         found = formulas(
-            [kind], self.limits, separable=separable, bounded=bounded, with_parameters=named
+            kinds, self.limits, separable=separable, bounded=bounded, with_parameters=named
         )
         if not (self.time_dependent and first):
             return found
-        return driven(found, [kind], self.limits, linear=self.bounded is True)
+        return driven(found, kinds, self.limits, linear=self.bounded is True)
 
 
 def formulas_in_degrees(wanted: Wanted) -> st.SearchStrategy[Formula]:
@@ -73,9 +73,9 @@ def formulas_in_degrees(wanted: Wanted) -> st.SearchStrategy[Formula]:
 def _of_kind(wanted: Wanted, kind: str, separable: bool) -> st.SearchStrategy[Formula]:
     """Of the kind in its first degree of freedom; the others are so, or polynomials."""
     allowed = wanted.couplings(kind, separable) if wanted.coupled is not False else []
-    first = wanted.part(kind, separable, first=True)
+    first = wanted.part([kind], separable, first=True)
     kinds = dict.fromkeys(("polynomial", kind) if "polynomial" in wanted.kinds else (kind,))
-    others = st.one_of([wanted.part(each, True if separable else None) for each in kinds])
+    others = st.one_of([wanted.part([each], True if separable else None) for each in kinds])
     return _drawn(wanted, first, others, allowed, separable)
 
 

@@ -8,9 +8,8 @@ from verify.algebra.limits import MAX_EXPONENT
 from verify.errors import InputError, unknown
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.strategies.arguments import MOST_DEGREES, whole, yes_no, yes_no_either
-from verify.strategies.drives import driven
 from verify.strategies.formulas import KINDS as KINDS
-from verify.strategies.formulas import Formula, formulas
+from verify.strategies.formulas import Formula
 from verify.strategies.formulas_in_degrees import Wanted, formulas_in_degrees
 from verify.strategies.terms import Limits
 
@@ -87,15 +86,8 @@ def hamiltonians(
     several = whole("degrees", degrees, 1, MOST_DEGREES) > 1
     if yes_no_either("coupled", coupled) and not several:
         raise InputError("coupled", coupled, "wants two degrees of freedom or more")
-    if several:
-        wanted = Wanted(
-            degrees, tuple(kinds), limits, separable, bounded, coupled, with_parameters,
-            time_dependent,
-        )  # fmt: skip
-        return formulas_in_degrees(wanted).map(Formula.hamiltonian)
-    drawn = formulas(
-        kinds, limits, separable=separable, bounded=bounded, with_parameters=with_parameters
+    wanted = Wanted(
+        degrees, tuple(kinds), limits, separable, bounded, coupled, with_parameters, time_dependent
     )
-    if time_dependent:
-        drawn = driven(drawn, kinds, limits, linear=bounded is True)
+    drawn = formulas_in_degrees(wanted) if several else wanted.part(kinds, separable, first=True)
     return drawn.map(Formula.hamiltonian)
