@@ -14,6 +14,7 @@ from verify.errors import InputError
 
 if TYPE_CHECKING:
     from verify.execution.executors import Placement
+    from verify.exploration.explore import Exploration
     from verify.scenes.results.exploration import ExploreReport
 
 _SEEDS = 2**32
@@ -109,7 +110,7 @@ def explore(
     """
     import random
 
-    from verify.exploration.explore import Exploration, explore, load_failures, save_failures
+    from verify.exploration.explore import Exploration
     from verify.exploration.sample_space import SampleSpace
 
     seed = random.SystemRandom().randrange(_SEEDS) if seed is None else seed
@@ -131,6 +132,19 @@ def explore(
     if steps is not None:
         raise InputError("--steps", steps, "is of scenes that are hunted, with --maximise")
     asked = Exploration(seed=seed, examples=examples, **looks, drawn=drawn)
+    return _explored(asked, left_out, output, keep, where)
+
+
+def _explored(
+    asked: "Exploration",
+    left_out: Mapping[str, Sequence[str]],
+    output: Path,
+    keep: Path | None,
+    where: "Placement",
+) -> Answer:
+    """Explores, writes the scenes that fail, and answers what was found."""
+    from verify.exploration.explore import explore, load_failures, save_failures
+
     writable_later(output)
     earlier = load_failures(output) if output.is_dir() else []
     with kept_tasks(asked.plan.tasks, keep) as (store, done):
