@@ -6,9 +6,9 @@ hold, det J ≡ 1. They suffice; so where one does not, nothing follows for det 
 
 from collections.abc import Sequence
 
-from verify.algebra.conditions import ByConditions, Condition
 from verify.proof.every_proof import EveryProof
 from verify.prose import Formula, Number, Prose, prose
+from verify.schemes.conditions import ByConditions, Condition
 from verify.schemes.scheme import Scheme
 from verify.verdict import Verdict
 

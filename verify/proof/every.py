@@ -23,7 +23,6 @@ Coefficients. Conditions on them, exact; see `verify.proof.by_conditions`.
 import math
 from dataclasses import replace
 
-from verify.algebra.conditions import ByConditions
 from verify.algebra.series.jets import Jets, Poly, shown
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -33,6 +32,7 @@ from verify.proof.order import leading_of
 from verify.proof.telescoping import Telescoping, telescopes, telescopes_of_lie
 from verify.prose import Formula, Prose, joined, prose, read_prose
 from verify.schemes import get
+from verify.schemes.conditions import ByConditions
 from verify.schemes.every_hamiltonian import BySeries, StageEquations, TaylorSeries
 from verify.schemes.scheme import Scheme
 from verify.schemes.tree_conditions import TreeConditions

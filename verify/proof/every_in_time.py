@@ -14,7 +14,6 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 
-from verify.algebra.conditions import ByConditions
 from verify.algebra.series.jets import shown
 from verify.algebra.series.timed_jets import TimedJets
 from verify.errors import InputError
@@ -24,6 +23,7 @@ from verify.proof.every_proof import EveryProof
 from verify.proof.telescoping import potential_of_lie
 from verify.prose import Prose, prose, read_prose
 from verify.schemes import get
+from verify.schemes.conditions import ByConditions
 from verify.schemes.every_hamiltonian import TaylorSeries
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting_conditions import Splitting

@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass
 
-from verify.algebra.conditions import Condition
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.proof.lie_argument import paragraph
 from verify.prose import Prose
 from verify.schemes import get
+from verify.schemes.conditions import Condition
 from verify.schemes.every_hamiltonian import TaylorSeries
 from verify.schemes.step_map import SOLVABLE
 from verify.verdict import Verdict

@@ -10,7 +10,6 @@ as the derivatives are free, everything is decided. Two kinds are given by irrat
 
 from collections.abc import Sequence
 
-from verify.algebra.conditions import ByConditions
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.series.jets import Jets, Series, shown
 from verify.errors import InputError
@@ -19,6 +18,7 @@ from verify.proof.modified_equation import ModifiedEquation, Term, judged
 from verify.proof.modified_field import Vector, divergence, modified_field
 from verify.proof.splitting_logarithm import terms_of_splitting
 from verify.schemes import get
+from verify.schemes.conditions import ByConditions
 from verify.schemes.every_hamiltonian import BySeries
 from verify.schemes.splitting_conditions import Splitting
 from verify.schemes.step_map import SOLVABLE

@@ -9,7 +9,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 
-from verify.algebra.conditions import Condition
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.embedding import embed
 from verify.algebra.ring import Decision, Poly, Ring
@@ -19,6 +18,7 @@ from verify.proof.expansion import MOST_ORDERS, VANISHES, Expansion, Leading, fi
 from verify.proof.order_proof import Proof
 from verify.proof.parameters import almost_all, not_zero_for
 from verify.prose import Formula, Prose, prose, read_prose
+from verify.schemes.conditions import Condition
 from verify.schemes.scheme import Scheme
 from verify.schemes.step_map import Expanded, StepMap, Substep
 from verify.verdict import Verdict

@@ -11,13 +11,13 @@ shows nothing; the verdict is UNDECIDED then.
 
 from dataclasses import dataclass
 
-from verify.algebra.conditions import Condition, WithSymmetry
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.power_series import Series, at_point, at_time, partials
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import first_wrong, shown
 from verify.prose import Formula, Prose, prose, read_prose
+from verify.schemes.conditions import Condition, WithSymmetry
 from verify.schemes.every_hamiltonian import StageEquations
 from verify.schemes.scheme import Scheme
 from verify.schemes.step_map import StepMap

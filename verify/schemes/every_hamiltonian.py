@@ -13,9 +13,9 @@ from typing import Protocol, TypeVar, runtime_checkable
 import flint
 import sympy
 
-from verify.algebra.conditions import Condition
 from verify.algebra.series.jets import JetRing, Jets, Poly, Series
 from verify.prose import count
+from verify.schemes.conditions import Condition
 
 At = TypeVar("At")
 Slope = TypeVar("Slope")

@@ -14,11 +14,11 @@ from functools import lru_cache
 
 import sympy
 
-from verify.algebra.conditions import ByConditions
 from verify.algebra.implicit_unknowns import Matrix, define, unknowns
 from verify.algebra.ring import Poly
 from verify.algebra.series.power_series import Series, at_point, at_time, partials
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.schemes.conditions import ByConditions
 from verify.schemes.every_hamiltonian import BySeries
 from verify.schemes.implicit_tableau import ImplicitTableau
 from verify.schemes.scheme import Scheme

@@ -11,9 +11,9 @@ from functools import cached_property, lru_cache
 
 import sympy
 
-from verify.algebra.conditions import Condition
 from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
+from verify.schemes.conditions import Condition
 from verify.schemes.residue import condition_of
 
 _SHOWN = 5  # digits of a residue

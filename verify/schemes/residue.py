@@ -1,10 +1,10 @@
 """Conditions on numbers of a ring: decided exactly, and what is left of one that fails."""
 
-from verify.algebra.conditions import Condition
 from verify.algebra.enclosure import enclose
 from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.arb import in_reach, middle_and_radius
 from verify.arithmetic.exact import known_digits
+from verify.schemes.conditions import Condition
 
 _PRECISIONS = (128, 512, 2048)
 

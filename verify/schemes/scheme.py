@@ -4,9 +4,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 
-from verify.algebra.conditions import ByConditions
 from verify.drawable import drawn_by
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.schemes.conditions import ByConditions
 from verify.schemes.every_hamiltonian import BySeries
 from verify.schemes.step_map import StepMap
 

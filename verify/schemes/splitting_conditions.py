@@ -30,11 +30,11 @@ from typing import ClassVar
 import flint
 import sympy
 
-from verify.algebra.conditions import Condition
 from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
 from verify.prose import count
+from verify.schemes.conditions import Condition
 from verify.schemes.every_hamiltonian import StageEquations
 from verify.schemes.free_lie_words import lyndon
 from verify.schemes.residue import condition_of
@@ -51,7 +51,7 @@ class Splitting:
 
     The parts are rational or algebraic numbers. `times`: of an H that depends on time, when each
     part is made, in parts of h from the step's start, where that is given. It is a
-    `verify.algebra.conditions.ByConditions`.
+    `verify.schemes.conditions.ByConditions`.
     """
 
     parts: tuple[Part, ...]

@@ -11,7 +11,6 @@ from functools import cached_property
 
 import sympy
 
-from verify.algebra.conditions import Condition
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.formula import read, symbol, to_text
 from verify.algebra.requirement import of_expression
@@ -22,6 +21,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.vector_field import VectorField
 from verify.notebook import aligned_latex, short_latex
 from verify.schemes.composition import composed_polynomials, occurrences, polynomial
+from verify.schemes.conditions import Condition
 from verify.schemes.stages import chained
 from verify.schemes.substep import Substep as Substep
 from verify.schemes.substep import h_inside as h_inside

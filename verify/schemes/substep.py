@@ -7,11 +7,11 @@ u_p + v_q + u_p v_q − u_q v_p, in which nothing cancels where it is in closed 
 from dataclasses import dataclass
 from functools import cached_property
 
-from verify.algebra.conditions import Condition
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.power_series import Series, at_point, partials
 from verify.hamiltonians.vector_field import VectorField
 from verify.schemes.composition import arguments
+from verify.schemes.conditions import Condition
 
 
 @dataclass(frozen=True)

@@ -26,13 +26,13 @@ from functools import lru_cache
 from itertools import product
 from typing import ClassVar, Generic, Protocol, TypeVar
 
-from verify.algebra.conditions import Condition
 from verify.algebra.generator import terms_of
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.jets import Jets
 from verify.arithmetic.number import E
 from verify.errors import InputError
 from verify.prose import count
+from verify.schemes.conditions import Condition
 from verify.schemes.implicit_tableau import ImplicitTableau, Numbers
 
 Tree = tuple["Tree", ...]  # the trees that are left without the root, in descending order

@@ -6,11 +6,11 @@ from typing import Any
 import pytest
 from hypothesis import strategies as st
 
-from verify.algebra.conditions import Condition
 from verify.proof import every
 from verify.proof.every import prove_every
 from verify.proof.every_proof import EveryProof
 from verify.schemes import get
+from verify.schemes.conditions import Condition
 from verify.schemes.scheme import Scheme
 
 

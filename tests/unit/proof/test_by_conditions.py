@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import pytest
 
-from verify.algebra.conditions import Condition
 from verify.proof import every
 from verify.proof.by_conditions import prove_by_conditions
 from verify.proof.every import prove_every
+from verify.schemes.conditions import Condition
 from verify.schemes.scheme import Scheme
 from verify.verdict import Verdict
 

@@ -9,7 +9,6 @@ import sympy
 from tests.helpers.sampled.formulas import P, Q, plain
 from tests.helpers.stepping.implicit_steps import NONLINEAR, RADAU, TABLEAUS, places, planted
 from verify import schemes
-from verify.algebra.conditions import Condition
 from verify.errors import InputError
 from verify.execution.execute import compute_task
 from verify.hamiltonians import systems
@@ -17,6 +16,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
 from verify.proof.order_proof import Proof
 from verify.runs.run import run
+from verify.schemes.conditions import Condition
 from verify.schemes.implicit_runge_kutta import implicit_map
 from verify.schemes.scheme import Scheme
 from verify.schemes.step_map import StepMap, Substep

@@ -11,13 +11,13 @@ import sympy
 
 from tests.helpers.stepping.implicit_steps import NONLINEAR, RADAU, TABLEAUS, places, planted
 from verify import schemes
-from verify.algebra.conditions import ByConditions, Condition
 from verify.algebra.series.jets import Jets
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof import every
 from verify.proof.every import EveryProof, counterexample, prove_every
 from verify.proof.order import convergence_of, prove
+from verify.schemes.conditions import ByConditions, Condition
 from verify.schemes.implicit_runge_kutta import implicit_map
 from verify.schemes.implicit_tableau import ImplicitTableau
 from verify.schemes.scheme import Scheme

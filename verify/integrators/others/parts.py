@@ -10,7 +10,6 @@ from types import ModuleType
 
 from sympy import S
 
-from verify.algebra.conditions import Condition
 from verify.execution.processes import Processes
 from verify.integrators.others import libraries as others
 from verify.integrators.others import printed_libraries
@@ -21,6 +20,7 @@ from verify.integrators.step import contained, last_line
 from verify.integrators.tables.check import read_tables
 from verify.prose import prose
 from verify.scenes.results.claim import ClaimResult
+from verify.schemes.conditions import Condition
 from verify.schemes.splitting_conditions import Splitting
 from verify.verdict import Verdict
 

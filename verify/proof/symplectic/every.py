@@ -16,7 +16,6 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
-from verify.algebra.conditions import Condition
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.generator import Poly
 from verify.algebra.series.jets_in_degrees import JetsInDegrees
@@ -32,6 +31,7 @@ from verify.proof.symplectic.telescoping import potential_of_lie
 from verify.proof.symplectic.two_form import TwoForm, lie_derivative, wedge
 from verify.prose import Formula, Prose, prose, read_prose
 from verify.schemes import get
+from verify.schemes.conditions import Condition
 from verify.schemes.degrees import kind_of
 from verify.schemes.degrees.canonical_map import SOLVABLE, series_of
 from verify.schemes.every_hamiltonian import TaylorSeries

@@ -3,11 +3,11 @@
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from verify.algebra.conditions import Condition
 from verify.algebra.domain import Domain
 from verify.notebook import cut
 from verify.proof.symplectic.two_form import TwoForm
 from verify.prose import Prose
+from verify.schemes.conditions import Condition
 from verify.verdict import Verdict
 
 MOST_TERMS = 2000  # of a form that is written out

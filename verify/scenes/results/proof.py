@@ -1,9 +1,9 @@
 """What was proved of a scheme, for one H and for every H."""
 
-from verify.algebra.conditions import Condition
 from verify.prose import Prose
 from verify.scenes.frozen import Frozen, OfScheme, Said, Seconds, WithProse
 from verify.scenes.results.step import StepResult
+from verify.schemes.conditions import Condition
 from verify.verdict import Verdict
 
 

@@ -13,8 +13,8 @@ from typing import Protocol
 
 import sympy
 
-from verify.algebra.conditions import ByConditions
 from verify.errors import InputError
+from verify.schemes.conditions import ByConditions
 from verify.schemes.every_hamiltonian import RungeKutta, StageEquations
 from verify.schemes.splitting_conditions import Splitting
 from verify.schemes.timed.kinetic import Kinetic

@@ -20,7 +20,6 @@ from itertools import product
 
 import sympy
 
-from verify.algebra.conditions import Condition
 from verify.algebra.generator import terms_of
 from verify.algebra.ring import Poly
 from verify.errors import InputError
@@ -34,6 +33,7 @@ from verify.schemes.coloured_trees import (
     of_all,
     symmetry,
 )
+from verify.schemes.conditions import Condition
 from verify.schemes.residue import condition_of
 from verify.schemes.timed.differentials import Differentials, TreeJets
 from verify.schemes.timed.kinetic import Kinetic
@@ -49,7 +49,7 @@ _DIGITS = 5  # of a residue
 @dataclass(frozen=True)
 class TimedTrees:
     """A Runge–Kutta method for every H(p, q, t) (`kinetic`: for every H = T + V(q, t) with T of
-    that class). It is a `verify.algebra.conditions.ByConditions`."""
+    that class). It is a `verify.schemes.conditions.ByConditions`."""
 
     tableau: TimedTableau
     kinetic: Kinetic | None = None

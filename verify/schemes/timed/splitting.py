@@ -22,10 +22,10 @@ from typing import ClassVar
 
 import sympy
 
-from verify.algebra.conditions import Condition
 from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
+from verify.schemes.conditions import Condition
 from verify.schemes.residue import condition_of
 from verify.schemes.splitting_conditions import LETTERS, MOST_ORDER, Part, Splitting
 from verify.schemes.timed.clocks import Times, right_clocks
@@ -42,7 +42,7 @@ class TimedSplitting:
     a class.
 
     `times`: s of each part, None for the right one; ValueError unless there are as many as parts.
-    It is a `verify.algebra.conditions.ByConditions`.
+    It is a `verify.schemes.conditions.ByConditions`.
     """
 
     parts: tuple[Part, ...]

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
-from verify.algebra.conditions import Condition
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.schemes.conditions import Condition
 from verify.schemes.degrees.canonical_map import CanonicalMap, Step
 from verify.schemes.degrees.step_algebra import StepAlgebra
 from verify.schemes.every_hamiltonian import RungeKutta

@@ -9,9 +9,9 @@ Hairer, Lubich, Wanner, Geometric Numerical Integration, theorem VI.4.3).
 from collections.abc import Sequence
 from typing import Any
 
-from verify.algebra.conditions import Condition
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.schemes.conditions import Condition
 from verify.schemes.degrees.canonical_map import CanonicalMap, Step
 from verify.schemes.degrees.step_algebra import Number, StepAlgebra
 from verify.schemes.tree_conditions import TreeConditions

@@ -7,12 +7,12 @@ and S of a shear is that block less its transpose, which is 0.
 from collections.abc import Sequence
 from typing import Any
 
-from verify.algebra.conditions import Condition
 from verify.algebra.ring import Poly
 from verify.algebra.series.jets_in_degrees import JetsInDegrees
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.schemes.conditions import Condition
 from verify.schemes.degrees.canonical_map import CanonicalMap, Step
 from verify.schemes.degrees.step_algebra import StepAlgebra
 from verify.schemes.splitting import all_times

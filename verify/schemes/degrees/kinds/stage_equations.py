@@ -12,9 +12,9 @@ from typing import Any
 
 import sympy
 
-from verify.algebra.conditions import Condition
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.schemes.conditions import Condition
 from verify.schemes.degrees.canonical_map import CanonicalMap, Step
 from verify.schemes.degrees.kinds import splittings
 from verify.schemes.degrees.step_algebra import StepAlgebra

@@ -1,8 +1,8 @@
 """lieη: the exact flow's Taylor polynomial, z' = Σ hⁿ/n! Xⁿz, n = 0 … η."""
 
-from verify.algebra.conditions import Condition
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.schemes.conditions import Condition
 from verify.schemes.degrees.canonical_map import CanonicalMap, Step
 from verify.schemes.every_hamiltonian import TaylorSeries
 
