@@ -10,7 +10,7 @@ import sympy
 
 from verify.algebra.embedding import embed
 from verify.algebra.enclosure import Ball, enclose, points
-from verify.algebra.formula import to_text
+from verify.algebra.formula_text import to_text
 from verify.algebra.requirement import Relation, Requirement
 from verify.algebra.ring import Decision, Poly, Ring
 from verify.errors import InputError

@@ -9,18 +9,16 @@ import ast
 import math
 import operator
 import re
-import sys
 import warnings
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable
 from functools import lru_cache
 from types import ModuleType
 
 import sympy
-from sympy.printing.str import StrPrinter
 
 from verify.algebra.constant_size import FUNCTIONS as NAMES
 from verify.algebra.constant_size import within_reach
+from verify.algebra.formula_text import to_text
 from verify.algebra.limits import check_power, checked
 from verify.algebra.monomials import DEEPEST, Monomials, is_of_name
 from verify.algebra.requirement import Requirement, of_divisor, of_function, of_power
@@ -54,40 +52,6 @@ def symbol(name: str) -> sympy.Symbol:
     return sympy.Symbol(name, real=True)
 
 
-class _Printer(StrPrinter):  # type: ignore[misc]
-    """sympy's text form, but for e (a parameter named E?) and for powers that are exponentials."""
-
-    def _print_Exp1(self, expr: sympy.Expr) -> str:  # noqa: N802 - sympy's naming
-        return "exp(1)"
-
-    def _print_Pow(self, expr: sympy.Expr, rational: bool = False) -> str:  # noqa: N802
-        if expr.exp.is_Rational:
-            return str(super()._print_Pow(expr, rational))
-        return f"exp({self._print(expr.exp * sympy.log(expr.base))})"
-
-
-@lru_cache(maxsize=512)
-def to_text(expression: sympy.Expr) -> str:
-    """The expression as a formula that `parse` reads back, to an equal expression."""
-    with any_length():
-        return str(_Printer().doprint(expression))
-
-
-@contextmanager
-def any_length() -> Iterator[None]:
-    """Whole numbers are written in it however long they are; Python writes 4300 digits at most.
-
-    That is for numbers that come from outside. These do not: 10^1000, which a formula may hold,
-    has 7000 digits in its seventh power.
-    """
-    before = sys.get_int_max_str_digits()
-    sys.set_int_max_str_digits(0)
-    try:
-        yield
-    finally:
-        sys.set_int_max_str_digits(before)
-
-
 def parameter_name(name: str) -> str:
     """The name itself, where it may name a parameter; else InputError."""
     if not name.isascii():
@@ -104,12 +68,7 @@ def parameter_name(name: str) -> str:
     return name
 
 
-def parse(
-    text: str,
-    names: Iterable[str] | None = None,
-    *,
-    source: str = "formula",
-) -> sympy.Expr:
+def parse(text: str, names: Iterable[str] | None = None, *, source: str = "formula") -> sympy.Expr:
     """The exact expression that `text` writes.
 
     `names`: the names that may occur; None allows p, q, t and any parameter name. `source` is the
@@ -119,10 +78,7 @@ def parse(
 
 
 def read(
-    text: str,
-    names: Iterable[str] | None = None,
-    *,
-    source: str = "formula",
+    text: str, names: Iterable[str] | None = None, *, source: str = "formula"
 ) -> tuple[sympy.Expr, list[Requirement]]:
     """As `parse`, with all that what is written asks for to be defined, simplified away or not."""
     if not isinstance(text, str):
@@ -282,14 +238,11 @@ class _Reader:
         while isinstance(first, ast.BinOp) and isinstance(first.op, kinds):
             chain.append(first)
             first = first.left
-        # −a/b reads back as −(a/b), as it is printed.
-        minus = ast.Mult in kinds
-        if minus and isinstance(first, ast.UnaryOp) and isinstance(first.op, ast.USub):
-            first = first.operand
-        else:
-            minus = False
         if ast.Add in kinds:
             return self.finite(self.sum(first, chain, depth))
+        minus = False
+        if isinstance(first, ast.UnaryOp) and isinstance(first.op, ast.USub):
+            minus, first = True, first.operand  # −a/b reads back as −(a/b), as it is printed
         value = self.read(first, depth + 1)
         factors = [(type(step.op), self.read(step.right, depth + 1)) for step in reversed(chain)]
         if value.is_Rational and all(op is ast.Mult and is_of_name(x) for op, x in factors):

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import sympy
 
 from verify.algebra.differential_ring import DifferentialRing
-from verify.algebra.formula import to_text
+from verify.algebra.formula_text import to_text
 from verify.algebra.generator import Generator, Poly, generator_expression, rational_of, terms_of
 from verify.algebra.identities.polynomials import occurring
 

@@ -6,7 +6,8 @@ import sympy
 
 from verify.algebra.domain import Domain
 from verify.algebra.formula import read as read_formula
-from verify.algebra.formula import symbol, to_text
+from verify.algebra.formula import symbol
+from verify.algebra.formula_text import to_text
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 

@@ -17,7 +17,8 @@ from typing import NamedTuple
 import sympy
 
 from verify.algebra.domain import EVERYWHERE, Domain
-from verify.algebra.formula import read, symbol, to_text
+from verify.algebra.formula import read, symbol
+from verify.algebra.formula_text import to_text
 from verify.algebra.requirement import Requirement
 from verify.algebra.ring import Decision, Poly, Ring
 from verify.claims.claim import Claim

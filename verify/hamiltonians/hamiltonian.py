@@ -21,8 +21,8 @@ from verify.algebra.formula import (
     parse,
     read,
     symbol,
-    to_text,
 )
+from verify.algebra.formula_text import to_text
 from verify.algebra.monomials import names_in, reads_back
 from verify.algebra.requirement import of_expression
 from verify.algebra.ring import Poly

@@ -12,7 +12,8 @@ from functools import cached_property
 import sympy
 
 from verify.algebra.domain import EVERYWHERE, Domain
-from verify.algebra.formula import read, symbol, to_text
+from verify.algebra.formula import read, symbol
+from verify.algebra.formula_text import to_text
 from verify.algebra.requirement import of_expression
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.power_series import Series

@@ -12,7 +12,7 @@ import sympy
 
 from verify.algebra.domain import Domain
 from verify.algebra.embedding import embed
-from verify.algebra.formula import to_text
+from verify.algebra.formula_text import to_text
 from verify.claims import every_formula
 from verify.claims.checked import of_hamiltonian
 from verify.claims.findings import Findings

@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import sympy
 
-from verify.algebra.formula import to_text
+from verify.algebra.formula_text import to_text
 from verify.arithmetic.exact import text
 from verify.claims.theorems.argument import Argument, concluded, step
 from verify.claims.theorems.checks import families

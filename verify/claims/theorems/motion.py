@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 import sympy
 
-from verify.algebra.formula import parse, to_text
+from verify.algebra.formula import parse
+from verify.algebra.formula_text import to_text
 from verify.claims.theorems.argument import Argument, concluded, step
 from verify.claims.theorems.checks.check import vanishes
 from verify.claims.theorems.checks.differential import flow_of_every_hamiltonian
