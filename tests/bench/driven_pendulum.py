@@ -2,7 +2,7 @@
 
     python tests/bench/driven_pendulum.py [--rounds 7]
 
-With Λ, MSE and max |ΔJ|, in the way of fixed_against_mpfr.py; C is driven_pendulum_lie2_mpfr.c.
+With Λ, MSE and max |ΔJ|, in the way of fixed_against_mpfr.py; C is c/driven_pendulum_lie2_mpfr.c.
 Both are held against a run in mpfr with 100 digits first.
 """
 

@@ -2,7 +2,7 @@
 
     python tests/bench/fixed_against_mpfr.py [--arithmetic fixed] [--rounds 5] [--systems duffing]
 
-C is duffing_lie2_mpfr.c and pendulum_lie2_mpfr.c, compiled here with `cc -O3 -march=native` where
+C is c/duffing_lie2_mpfr.c and pendulum_lie2_mpfr.c, compiled here with `cc -O3 -march=native` where
 there are a compiler and MPFR's headers; tight mpmath is tight_mpmath.py, with mpf's operators and
 with libmp's functions, at the bits that C has. All run in turn, round by round, and what counts is
 the ratio of the medians within this run. Before that all of them are held against one run with 64
@@ -27,7 +27,7 @@ from verify import arithmetic
 from verify.hamiltonians import systems
 from verify.kernels.stepping import KernelRun
 
-HERE = Path(__file__).parent
+IN_C = Path(__file__).parent / "c"
 BITS = {33: 113, 53: 170, 72: 240}  # digits asked of us → bits of the competitors
 # At least so many times faster than C, and than mpmath, at these digits.
 TARGETS: dict[str, dict[int, tuple[float, float]]] = {
@@ -61,7 +61,7 @@ def compiled(folder: Path, systems_asked: list[str]) -> dict[str, Path]:
         return {}
     programs = {}
     for system in systems_asked:
-        program, source = folder / system, HERE / f"{system}_lie2_mpfr.c"
+        program, source = folder / system, IN_C / f"{system}_lie2_mpfr.c"
         flags = ["-O3", "-march=native", "-o", str(program), "-lmpfr", "-lgmp"]
         made = subprocess.run([compiler, str(source), *flags], capture_output=True, text=True)
         if made.returncode:

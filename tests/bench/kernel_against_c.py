@@ -2,7 +2,7 @@
 
     python tests/bench/kernel_against_c.py
 
-Compiles duffing_lie2.c with `cc -O3 -march=native`; without a compiler it says so. The two run in
+Compiles c/duffing_lie2.c with `cc -O3 -march=native`; without a compiler it says so. The two run in
 turn, and what counts is the ratio of the medians within this run. Target: at most 1.2.
 """
 
@@ -34,7 +34,7 @@ def main() -> None:
     ours, theirs = [], []
     with tempfile.TemporaryDirectory() as folder:
         program = Path(folder) / "duffing_lie2"
-        source = Path(__file__).with_name("duffing_lie2.c")
+        source = Path(__file__).parent / "c" / "duffing_lie2.c"
         subprocess.run([compiler, "-O3", "-march=native", source, "-o", program, "-lm"], check=True)
         for _ in range(ROUNDS):
             begun = time.perf_counter()
