@@ -13,6 +13,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
+from verify.errors import InputError
 from verify.execution.ensembles import Group, groups, in_lockstep
 from verify.execution.executors import (
     ANYWHERE,
@@ -101,10 +102,12 @@ def execute(
 
     On an interruption what is finished is in the store already. A task on a cluster keeps no
     checkpoints, since its machine need not have the store's folder. Times are measured when no
-    other task is under way: in this process, or on a cluster by the worker that has the task.
+    other task is under way: in this process, or on a cluster by the worker that has the task. What
+    such a task prepares is found before, beside the others, where there are workers here.
     PlaceError where the workers fail a task again and again.
     """
     results: dict[str, Frozen] = {}
+    prepared: dict[str, object] = {}
 
     def finish(name: str, result: Frozen) -> None:
         known = name in results or name not in plan.tasks  # what is given may be kept already
@@ -120,6 +123,8 @@ def execute(
         else:
             finish(name, kept)
     given = {name: waiting.pop(name) for name in given_by(waiting.values()) if name in waiting}
+    together = {name: task for name, task in waiting.items() if not task.alone}
+    alone = {name: task for name, task in waiting.items() if task.alone}
 
     def take(place: Place, tasks: Mapping[str, Task], one_by_one: bool = False) -> None:
         parts = groups(tasks, place.room)
@@ -129,7 +134,10 @@ def execute(
                     store.put(name, result)
                     finish(name, result)
             return
-        for _, found in results_of(place, _calls(parts, store, place), one_by_one=one_by_one):
+        for called, found in results_of(place, _calls(parts, store, place), one_by_one=one_by_one):
+            if place.local and called in alone:
+                prepared[called] = found
+                continue
             for name, result in found.items():
                 if not place.local:
                     store.put(name, result)
@@ -137,14 +145,16 @@ def execute(
 
     if not waiting:
         return results
-    together = {name: task for name, task in waiting.items() if not task.alone}
-    alone = {name: task for name, task in waiting.items() if task.alone}
-    with open_place(_enough(together, where), _modules(together), store.tidy) as place:
-        take(place, together)
+    count = len(waiting)
+    with open_place(_enough(together, count, where), _modules(waiting), store.tidy) as place:
+        beside = alone if place.local and place.room and count > 1 else {}
+        take(place, {**together, **beside})
         take(place, {name: task for name, task in given.items() if name not in results})
         if not place.local:
             take(place, alone, one_by_one=True)
     if place.local:
+        for name, found in prepared.items():
+            store.keeper(name).prepared = found
         with open_place(THIS_PROCESS) as place:
             take(place, alone)
     return results
@@ -153,6 +163,14 @@ def execute(
 def compute_task(task: Task, keeper: Keeper = NOTHING) -> Frozen:
     """Do one task, in whatever process."""
     return task.compute(keeper)
+
+
+def prepare_task(task: Task) -> object:
+    """What it prepares; None where its input is bad, so that `compute` says so in its turn."""
+    try:
+        return task.prepare()
+    except InputError:
+        return None
 
 
 def compute_all(task: Task, keeper: Keeper) -> list[tuple[str, Frozen]]:
@@ -166,13 +184,14 @@ def _modules(tasks: Mapping[str, Task]) -> list[str]:
     return sorted({name for kind in kinds for name in (kind.__module__, *kind.imports)})
 
 
-def _enough(tasks: Mapping[str, Task], where: Placement) -> Placement:
-    """Where nothing is said of where: so many processes as are worth their start."""
+def _enough(tasks: Mapping[str, Task], calls: int, where: Placement) -> Placement:
+    """Where nothing is said of where: so many processes as are worth their start, for so many
+    calls; what is prepared beside the tasks is not worth one by itself."""
     if where != ANYWHERE:
         return where
     if sum(task.cost for task in tasks.values()) < _WORTH_A_POOL:
         return THIS_PROCESS
-    return Placement(workers=max(1, min(os.cpu_count() or 1, len(tasks))))
+    return Placement(workers=max(1, min(os.cpu_count() or 1, calls)))
 
 
 def _computed(part: Group, store: Store) -> Iterator[tuple[str, Frozen]]:
@@ -202,6 +221,9 @@ def _calls(parts: Sequence[Group], store: Store, place: Place) -> Iterator[Funct
     # Longest first, so that no worker is left with a long one at the end.
     for part in parts:
         name, task = next(iter(part.items()))
+        if place.local and task.alone:  # it is computed in this process
+            yield FunctionCall(name, prepare_task, (task,), task.description)
+            continue
         own = store if place.local else Store(None)
         more = f" and {len(part) - 1} more" if len(part) > 1 else ""
         yield FunctionCall(name, compute_group, (part, own), task.description + more)

@@ -90,13 +90,15 @@ class Keeper:
     """The checkpoints of one task's runs, each under a label; a folder of None keeps nothing.
 
     A checkpoint is written every few seconds and where the run is interrupted, and is of use to the
-    same task and the same code only.
+    same task and the same code only. `prepared`: what the task's `prepare` has found in a worker of
+    this process; it is in memory alone.
     """
 
     def __init__(self, folder: Path | None, name: str) -> None:
         self._folder, self._name = folder, name
         self._written: dict[str, float] = {}
         self.saved = False  # whether it has kept a checkpoint
+        self.prepared: Any = None
 
     def _path(self, label: str) -> Path | None:
         if self._folder is None:

@@ -18,9 +18,9 @@ from verify.scenes.values import Coordinates, Number
 class Task(Frozen):
     """What is to be computed; two tasks of equal content are one.
 
-    `alone`: it measures run times, so that nothing else may run beside it. `result`: the model of
-    what `compute` returns. `imports`: the modules that `compute` imports, which workers then have
-    from the start.
+    `alone`: it measures run times, so that nothing else may run beside it; `prepare` has what may.
+    `result`: the model of what `compute` returns. `imports`: the modules that `compute` imports, or
+    `prepare`, which workers then have from the start.
     """
 
     alone: ClassVar[bool] = False
@@ -42,6 +42,11 @@ class Task(Frozen):
     def turn(self) -> float:
         """When it has its turn among those of its ensemble: what costs most is first."""
         return -self.cost
+
+    def prepare(self) -> object:
+        """What of a task that is `alone` may be found beside others, by a worker: `compute` takes
+        it from the keeper, and finds it itself where that has None."""
+        return None
 
     @abstractmethod
     def compute(self, keeper: Keeper) -> Frozen:

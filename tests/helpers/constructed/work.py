@@ -1,4 +1,4 @@
-"""Points and lines of error against run time that say what a test wants."""
+"""Tasks, points and lines of error against run time that say what a test wants."""
 
 from typing import Any
 
@@ -12,6 +12,18 @@ from verify.scenes.results.work_precision import (
     WorkPrecisionResult,
 )
 from verify.studies.work_precision.lines import error_slope, lambda_slope
+from verify.studies.work_precision.task import WorkPrecisionTask
+
+
+def work_task(**changes: Any) -> WorkPrecisionTask:
+    """Four step sizes of two schemes for the pendulum."""
+    own: dict[str, Any] = {
+        "hamiltonian": "p**2/2 - cos(q)", "parameters": {}, "schemes": ("lie2", "stormer-verlet"),
+        "time": 1, "step_sizes": ("0.02", "0.01", "0.005", "0.0025"), "q": 1, "p": 0,
+        "repeats": 2, "number_systems": (), "digits": (), "number_systems_scheme": "lie2",
+        "number_systems_step_size": "0.01", "peers": (), "peers_left_out": (),
+    }  # fmt: skip
+    return WorkPrecisionTask(**own | changes)
 
 
 def value(text: str | None, bound: str = "1e-30") -> Value | None:

@@ -57,13 +57,16 @@ def on_points(source: str, names: Mapping[str, Any], carried: int) -> Callable[.
     return run
 
 
-def one_point(source: str, names: Mapping[str, Any]) -> Callable[..., Any]:
+def one_point(source: str, names: Mapping[str, Any], *, anew: bool = False) -> Callable[..., Any]:
     """The kernel as a function of its own arguments, a tuple or one number as it returns.
+
+    `anew`: not from what is kept on disk.
 
     Raises NotImplementedError as `on_points` does.
     """
     constants = tuple(sorted((n, x) for n, x in names.items() if isinstance(x, float)))
-    layout, linked = Source(_annotated(source), _FRACTION, constants, "doubles").compiled()
+    made = Source(_annotated(source), _FRACTION, constants, "doubles")
+    layout, linked = made.compiled(anew=anew)
     given, found = (_record(kinds) for kinds in (layout.arguments, layout.results))
     size = layout.result_at[-1] + 8
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from contextlib import nullcontext, suppress
 from dataclasses import replace
 from fractions import Fraction
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -44,9 +44,12 @@ def make(digits: int) -> Arithmetic:
     )
 
 
-def compiled_at_once() -> Arithmetic:
-    """The same number system, each kernel compiled at its first call: for timing it."""
-    return replace(make(17), compile=_compiled)
+def compiled_at_once(*, anew: bool = False) -> Arithmetic:
+    """The same number system, each kernel compiled at its first call: for timing it.
+
+    `anew`: not from what is kept on disk, where LLVM compiles it.
+    """
+    return replace(make(17), compile=partial(_compiled, anew=anew))
 
 
 NUMBER_SYSTEM = NumberSystem(
@@ -109,12 +112,14 @@ def _unrefused(source: str, name: str, namespace: Mapping[str, Any]) -> Callable
     return interpreted(_DIVISION.sub(r"over(\1, \2)", source), name, {**namespace, **own, **_OVER})
 
 
-def _compiled(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
+def _compiled(
+    source: str, name: str, namespace: Mapping[str, Any], *, anew: bool = False
+) -> Callable[..., Any]:
     if "for k in range(steps)" in source:
         from verify.arithmetic.compiled.doubles import one_point
 
         with suppress(NotImplementedError):  # a function that is not in its language
-            return one_point(source, namespace)
+            return one_point(source, namespace, anew=anew)
     return _by_numba(source, name, namespace)
 
 

@@ -1,12 +1,13 @@
 """Error against run time: each scheme over a ladder of step sizes, peers, number systems.
 
-Errors first, then one interleaved timing of all points together
-(`verify.studies.work_precision.timing`), so that their run times can be compared; nothing else of
-this program runs meanwhile. What the errors are is told in `verify.studies.work_precision.runs`,
-what is made of the points in `verify.studies.work_precision.lines`.
+Errors first (`verify.studies.work_precision.errors`), then one interleaved timing of all points
+together (`verify.studies.work_precision.timing`), so that their run times can be compared; nothing
+else of this program runs meanwhile. What the errors are is told in
+`verify.studies.work_precision.runs`, what is made of the points in
+`verify.studies.work_precision.lines`.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from statistics import median
@@ -15,9 +16,7 @@ from time import perf_counter
 from verify.arithmetic import about
 from verify.arithmetic.exact import text, upper
 from verify.arithmetic.systems import float64
-from verify.errors import InputError
 from verify.execution.machine import machine
-from verify.flows.extrapolation import NoFlowError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import Given, point_of, shown_of
 from verify.runs.run import run
@@ -25,6 +24,7 @@ from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.run import RunResult
 from verify.scenes.results.work_precision import SystemPoint, WorkPoint, WorkPrecisionResult
 from verify.studies.work_precision import peers as peer_catalogue
+from verify.studies.work_precision.errors import Advance, Errors
 from verify.studies.work_precision.lines import comparisons, lg, line
 from verify.studies.work_precision.peer_interface import Answer, PeerError, Solver
 from verify.studies.work_precision.runs import (
@@ -33,12 +33,9 @@ from verify.studies.work_precision.runs import (
     Ladder,
     Problem,
     failed,
-    reference,
     size,
 )
 from verify.studies.work_precision.timing import Timed, above, clock, interleaved, nothing
-
-Advance = Callable[[int], None]  # called with a number of points just done
 
 
 @dataclass
@@ -66,20 +63,22 @@ def work_precision(
     number_systems_step_size: Fraction,
     peers: Sequence[str],
     peers_left_out: Sequence[tuple[str, str]],
+    errors: Errors,
     advance: Advance,
 ) -> WorkPrecisionResult:
     """Errors and run times over [t0, t0 + time] from (q, p), a number each or a list: of each
     scheme with each step size, of peers, and of number systems with so many digits, on one scheme
-    at one step size.
-
-    Raises InputError where the exact solution does not reach the time.
+    at one step size. `errors`: those of the schemes.
     """
     begun = perf_counter()
     begun_at = point_of(hamiltonian, q, p)
-    problem = _problem(hamiltonian, begun_at, time, t0)
+    problem = Problem(hamiltonian, begun_at, time, t0, errors.solution)
     _wake_compiler()
     ladders = [Ladder(problem, name) for name in schemes]
-    own = [[_scheme_point(ladder, h, advance) for h in step_sizes] for ladder in ladders]
+    own = [
+        [_scheme_point(ladder, h, errors.points[ladder.name, h]) for h in step_sizes]
+        for ladder in ladders
+    ]
     others = [_peer(problem, name, advance) for name in peers]
     overhead = _time([*own, *(timings for timings, _ in others)], repeats)
     lines = [
@@ -115,29 +114,17 @@ def work_precision(
         systems_scheme=number_systems_scheme,
         systems_step_size=text(number_systems_step_size),
         left_out=tuple(peers_left_out),
-        seconds=perf_counter() - begun,
+        seconds=errors.seconds + perf_counter() - begun,
     )
-
-
-def _problem(
-    hamiltonian: Hamiltonian, point: Mapping[str, Fraction], time: Fraction, t0: Fraction
-) -> Problem:
-    try:
-        exact = reference(hamiltonian, point, time, t0)
-    except NoFlowError as error:
-        raise InputError("work_precision.time", text(time), str(error)) from None
-    return Problem(hamiltonian, point, time, t0, exact)
 
 
 def _wake_compiler() -> None:
     """The first compilation of a process takes longer than the next; no scheme shall pay that."""
     source = "def same(steps, x):\n    for k in range(steps):\n        x = x\n    return steps, x\n"
-    float64.compiled_at_once().compile(source, "same", {})(1, 1.0)
+    float64.compiled_at_once(anew=True).compile(source, "same", {})(1, 1.0)
 
 
-def _scheme_point(ladder: Ladder, h: Fraction, advance: Advance) -> _Timing:
-    point = ladder.point(h)
-    advance(1)
+def _scheme_point(ladder: Ladder, h: Fraction, point: WorkPoint) -> _Timing:
     if point.limited_by == "failed":
         return _Timing(point, None)
     return _Timing(point, ladder.call(h), ladder.call(h, blank=True))

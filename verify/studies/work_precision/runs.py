@@ -121,7 +121,8 @@ class Ladder:
         self.problem, self.scheme = problem, get(scheme)
         self.name = scheme
         self.preserves_area = preserves(map_of(problem.hamiltonian, scheme))
-        self.arithmetic: Arithmetic = float64.compiled_at_once()
+        # Anew: what is kept of an earlier run is loaded, which says nothing of compiling.
+        self.arithmetic: Arithmetic = float64.compiled_at_once(anew=True)
         step_map = map_of(self._kernel_run(problem.time, frozenset()).hamiltonian, scheme)
         begun = time.perf_counter()
         self.kernel: Kernel = Writer(step_map, self.arithmetic, frozenset(), False).kernel()

@@ -2,12 +2,15 @@
 
 from collections.abc import Callable
 from fractions import Fraction
-from typing import ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from verify.execution.keeping import Keeper
 from verify.execution.task import HamiltonianTask
 from verify.scenes.results.work_precision import WorkPrecisionResult
 from verify.scenes.values import Coordinates, Number, StepSize
+
+if TYPE_CHECKING:
+    from verify.studies.work_precision.errors import Errors
 
 _POINT_COST = 80_000_000  # of a point of error against run time: some tenths of a second
 
@@ -19,6 +22,7 @@ class WorkPrecisionTask(HamiltonianTask):
     """
 
     alone: ClassVar[bool] = True
+    imports = ("verify.studies.work_precision.errors",)
     result = WorkPrecisionResult
     kind: Literal["work_precision"] = "work_precision"
     schemes: tuple[str, ...]
@@ -40,12 +44,26 @@ class WorkPrecisionTask(HamiltonianTask):
         """About how many float64 steps it is worth."""
         return _POINT_COST * len(self.schemes) * len(self.step_sizes)
 
-    def compute(self, keeper: Keeper) -> WorkPrecisionResult:
-        """The measured points, as a result."""
-        return self.measure(lambda _: None)
+    def prepare(self, advance: Callable[[int], None] = lambda _: None) -> "Errors":
+        """The errors of the schemes, of which nothing is timed; `advance` as in `measure`."""
+        from verify.studies.work_precision.errors import find_errors
 
-    def measure(self, advance: Callable[[int], None]) -> WorkPrecisionResult:
+        return find_errors(
+            self.exact_hamiltonian(), q=self.q, p=self.p, time=self.time, t0=self.t0,
+            schemes=self.schemes, step_sizes=self.step_sizes, advance=advance,
+        )  # fmt: skip
+
+    def compute(self, keeper: Keeper) -> WorkPrecisionResult:
+        """The measured points, as a result; the errors may be prepared."""
+        return self.measure(lambda _: None, keeper.prepared)
+
+    def measure(
+        self, advance: Callable[[int], None], errors: "Errors | None" = None
+    ) -> WorkPrecisionResult:
         """As `compute`; `advance` is called with the number of points just done."""
         from verify.studies.work_precision.measure import work_precision
 
-        return work_precision(self.exact_hamiltonian(), **self.asked(), advance=advance)
+        found = errors or self.prepare(advance)
+        return work_precision(
+            self.exact_hamiltonian(), **self.asked(), errors=found, advance=advance
+        )

@@ -3,14 +3,17 @@
 from fractions import Fraction
 from functools import cache
 from math import log2
+from typing import Any
 
 import pytest
 
+from tests.helpers.constructed.work import work_task
 from tests.paths import ROOT
+from verify.execution.execute import compute_task
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.scenes.results.work_precision import WorkPrecisionResult
 from verify.scenes.scene import Scene, load_scene
 from verify.studies.work_precision import peers
-from verify.studies.work_precision.measure import work_precision
 from verify.studies.work_precision.peer_interface import InitialValueProblem
 from verify.studies.work_precision.runs import Ladder, Problem, reference
 
@@ -64,15 +67,11 @@ def test_there_are_two_scenes_of_thirteen_methods() -> None:
 
 
 def test_energy_is_none_and_t0_counts() -> None:
-    hamiltonian = Hamiltonian.parse("p**2/2 + q**2/2 - q*cos(t)")
-    asked = {
-        "q": Fraction(1), "p": Fraction(0), "time": Fraction(1), "schemes": ["stormer-verlet"],
-        "step_sizes": [Fraction(1, 5), Fraction(1, 10)], "repeats": 1, "number_systems": (),
-        "digits": (), "number_systems_scheme": "stormer-verlet",
-        "number_systems_step_size": Fraction(1, 10), "peers": (), "peers_left_out": (),
-        "advance": lambda _: None,
-    }  # fmt: skip
-    early, late = (work_precision(hamiltonian, t0=Fraction(t), **asked) for t in (0, 2))  # type: ignore[arg-type]
+    asked = {"hamiltonian": "p**2/2 + q**2/2 - q*cos(t)", "schemes": ("stormer-verlet",)}
+    sizes: dict[str, Any] = {"step_sizes": ("0.2", "0.1"), "number_systems_step_size": "0.1"}
+    early, late = (compute_task(work_task(**asked, **sizes, t0=t)) for t in (0, 2))
+    assert isinstance(early, WorkPrecisionResult)
+    assert isinstance(late, WorkPrecisionResult)
     points = [point for found in (early, late) for line in found.lines for point in line.points]
     assert all(point.energy is None for point in points)
     errors = [point.error for point in points]

@@ -9,6 +9,7 @@ from typing import Any
 import mpmath
 import pytest
 
+from tests.helpers.constructed.work import work_task
 from verify import schemes
 from verify.arithmetic.arb import slope
 from verify.errors import InputError
@@ -19,7 +20,6 @@ from verify.scenes.results.work_precision import WorkPoint, WorkPrecisionResult
 from verify.studies.work_precision.lines import error_slope, lambda_slope, lg
 from verify.studies.work_precision.measure import _digits_of_state
 from verify.studies.work_precision.runs import ROUNDING_SHARE, Ladder, Problem, reference
-from verify.studies.work_precision.task import WorkPrecisionTask
 
 HARMONIC = Hamiltonian.parse("p**2/2 + q**2/2")
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + delta*q**4/4", {"delta": 1})
@@ -232,18 +232,8 @@ def test_gradients_are_counted_where_a_scheme_is_made_of_them() -> None:
 # -- the whole ------------------------------------------------------------------------------------
 
 
-def task(**changes: Any) -> WorkPrecisionTask:
-    own: dict[str, Any] = {
-        "hamiltonian": "p**2/2 - cos(q)", "parameters": {}, "schemes": ("lie2", "stormer-verlet"),
-        "time": 1, "step_sizes": ("0.02", "0.01", "0.005", "0.0025"), "q": 1, "p": 0,
-        "repeats": 2, "number_systems": (), "digits": (), "number_systems_scheme": "lie2",
-        "number_systems_step_size": "0.01", "peers": (), "peers_left_out": (),
-    }  # fmt: skip
-    return WorkPrecisionTask(**own | changes)
-
-
 def done(**changes: Any) -> WorkPrecisionResult:
-    found = compute_task(task(**changes))
+    found = compute_task(work_task(**changes))
     assert isinstance(found, WorkPrecisionResult)
     return found
 

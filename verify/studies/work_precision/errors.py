@@ -1,0 +1,57 @@
+"""What is found before anything is timed, in this process or in another: the errors of schemes."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from time import perf_counter
+
+from verify.arithmetic.exact import text
+from verify.errors import InputError
+from verify.flows.degrees.solution import SolutionInDegrees
+from verify.flows.extrapolation import NoFlowError
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.start import Given, point_of
+from verify.scenes.results.work_precision import WorkPoint
+from verify.studies.work_precision.runs import Ladder, Problem, reference
+
+Advance = Callable[[int], None]  # called with a number of points just done
+
+
+@dataclass(frozen=True)
+class Errors:
+    """The exact solution at the time; by scheme and step size the points, not yet timed; and how
+    long all of it took."""
+
+    solution: SolutionInDegrees
+    points: Mapping[tuple[str, Fraction], WorkPoint]
+    seconds: float
+
+
+def find_errors(
+    hamiltonian: Hamiltonian,
+    *,
+    q: Given,
+    p: Given,
+    time: Fraction,
+    t0: Fraction,
+    schemes: Sequence[str],
+    step_sizes: Sequence[Fraction],
+    advance: Advance,
+) -> Errors:
+    """The errors over [t0, t0 + time] from (q, p), of each scheme with each step size.
+
+    Raises InputError where the exact solution does not reach the time.
+    """
+    begun = perf_counter()
+    point = point_of(hamiltonian, q, p)
+    try:
+        exact = reference(hamiltonian, point, time, t0)
+    except NoFlowError as error:
+        raise InputError("work_precision.time", text(time), str(error)) from None
+    problem = Problem(hamiltonian, point, time, t0, exact)
+    points = {}
+    for ladder in (Ladder(problem, name) for name in schemes):
+        for h in step_sizes:
+            points[ladder.name, h] = ladder.point(h)
+            advance(1)
+    return Errors(exact, points, perf_counter() - begun)
