@@ -76,21 +76,34 @@ class Arithmetic:
         if self.walk is not None:
             return self.walk(kernel, every, stops, fixed, state, beyond)
         found: list[State] = []
-        for _ in range(stops):
-            try:
-                with self.context():
-                    done, *after = kernel(every, *fixed, *(found[-1] if found else state))
-            except (ArithmeticError, ValueError):  # a pole, the log or root of a negative
-                break
-            if done < every or not all(self.finite(x) for x in after if not _is_double(x)):
-                break
-            found.append(after)
+        try:
+            with self.context():
+                after = state
+                for _ in range(stops):
+                    done, *after = kernel(every, *fixed, *after)
+                    if done < every or not all(map(self._in_range, after)):
+                        break
+                    found.append(after)
+        except (ArithmeticError, ValueError):  # a pole, the log or root of a negative
+            return self._one_by_one(kernel, every, stops, fixed, state) if stops > 1 else []
         return found
 
+    def _one_by_one(
+        self, kernel: Callable[..., Any], every: int, stops: int, fixed: State, state: State
+    ) -> list[State]:
+        """The same, each stop in a context of its own: one that they share does not say at which of
+        them a number left the range, and may say so at the end only."""
+        found: list[State] = []
+        while len(found) < stops:
+            after = self.states(kernel, every, 1, fixed, found[-1] if found else state)
+            if not after:
+                break
+            found += after
+        return found
 
-def _is_double(x: Any) -> bool:
-    """Whether it is carried in float64 beside the arithmetic's numbers."""
-    return isinstance(x, float)
+    def _in_range(self, x: Any) -> bool:
+        """Of what is carried in float64 beside the arithmetic's numbers nothing is said here."""
+        return isinstance(x, float) or self.finite(x)
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,10 @@
-"""MPFR against mpmath: the same bits on + − × ÷, the same end of an orbit that leaves the range.
+"""MPFR against mpmath: the same bits on + − × ÷, the same end of an orbit that leaves the range,
+however many stops share a context.
 
 Neither has code in common with the other: mpmath rounds its own integers.
 """
 
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -104,6 +106,56 @@ def test_what_is_undefined_or_out_of_range_is_an_error_even_where_a_number_comes
         eval(source, dict(MADE.functions), {"x": x})  # noqa: S307 - this file's own text
     with MADE.context():
         assert x - x == 0, "an earlier error is forgotten"
+
+
+def counting(bad: int, worse: int = 99) -> Any:
+    """A kernel that adds 1 at each step; an infinity comes and goes in step `bad`, and step `worse`
+    is an error at once."""
+
+    def kernel(steps: int, one: Any, x: Any) -> Any:
+        for _ in range(steps):
+            x = x + one
+            if x == bad:
+                x = x + one / (one / (x - x))  # 1/(1/0) = 0
+            if x == worse:
+                raise ValueError
+        return steps, x
+
+    return kernel
+
+
+@pytest.mark.parametrize(("bad", "worse", "kept"), [(7, 99, 3), (7, 9, 3), (99, 9, 4), (99, 99, 6)])
+def test_of_stops_in_one_context_those_before_the_first_error_are_kept(
+    bad: int, worse: int, kept: int
+) -> None:
+    """What a flag remembers is seen when the context is left, some stops later."""
+    one, zero = MADE.number(Fraction(1)), MADE.number(Fraction(0))
+    found = MADE.states(counting(bad, worse), 2, 6, [one], [zero])
+    assert found == [[2], [4], [6], [8], [10], [12]][:kept]
+
+
+def test_stops_that_stay_in_range_share_a_context() -> None:
+    entered: list[int] = []
+
+    def context() -> Any:
+        entered.append(1)
+        return MADE.context()
+
+    one, zero = MADE.number(Fraction(1)), MADE.number(Fraction(0))
+    assert len(replace(MADE, context=context).states(counting(99), 1, 50, [one], [zero])) == 50
+    assert len(entered) == 1
+
+
+@pytest.mark.parametrize("name", ["mpfr", "mpmath", "ball", "float64"])
+def test_a_run_that_leaves_between_stops_ends_where_it_does_stop_by_stop(name: str) -> None:
+    """Of √q, whose root is undefined after some eighty steps, and of q, which is so nowhere."""
+    made = arithmetic.get(name, 30)
+    for formula, leaves in (("p**2/2 + sqrt(q)", True), ("p**2/2 + q", False)):
+        start = {"q": Fraction(1), "p": Fraction(-1), "h": Fraction(1, 100)}
+        of = KernelRun(Hamiltonian.parse(formula), "lie2", start, 500, frozenset(), 0, sections=100)
+        together, each = of.run(made), of.run(replace(made, chunk=of.section))
+        assert (together.done, together.trail) == (each.done, each.trail)
+        assert (1 < len(together.trail) < 100) == (together.done < of.steps) == leaves
 
 
 def test_a_context_is_its_own_whatever_the_threads_context_is() -> None:
