@@ -4,6 +4,7 @@ A file of `systems/` defines `NUMBER_SYSTEM`, all that is asked of it before it 
 is its library imported. Adding a number system is adding one file.
 """
 
+from functools import cache
 from typing import TYPE_CHECKING
 
 from verify.discovery import Catalogue
@@ -49,6 +50,7 @@ def about(name: str) -> "NumberSystem":
     return system
 
 
+@cache
 def automatic() -> "tuple[NumberSystem, ...]":
     """Those that `auto` tries, the fastest first; the last has every range and function."""
     systems = (about(name) for name in names())

@@ -117,8 +117,10 @@ class Keeper:
 
     def due(self, label: str) -> bool:
         """Whether some seconds have passed since the last checkpoint under the label."""
+        if self._folder is None:
+            return False
         last = self._written.setdefault(label, time.monotonic())
-        return self._folder is not None and time.monotonic() - last >= _SECONDS
+        return time.monotonic() - last >= _SECONDS
 
     def save(self, label: str, data: dict[str, Any]) -> None:
         """Keeps the run under the label, in place of what was kept before."""

@@ -219,6 +219,10 @@ class Hamiltonian:
 
         This is what a kernel is compiled for: the other values are its run-time arguments.
         """
+        return self._with_symbols
+
+    @cached_property
+    def _with_symbols(self) -> "Hamiltonian":
         zeros = {symbol(n): sympy.S.Zero for n, v in self.values if v == 0}
         return Hamiltonian(self.expression.subs(zeros))
 

@@ -91,6 +91,7 @@ class ChunkedLoop:
         self.turns = run.turns(arithmetic)
         self.state: State = self._first_state()
         self._at = {name: k for k, name in enumerate(kernel.state_names)}
+        self._extreme = [name for name in _EXTREMES if name in self._at]
         asked = sorted(run.observables & {*_ACCUMULATORS, _FORM})
         self._observables = (*kernel.coordinates, *asked)
         self._form = [
@@ -206,7 +207,7 @@ class ChunkedLoop:
     def _note(self) -> None:
         """Takes up the state. It is taken up whole: an interruption may come amid this."""
         before, state, done = self._now, self.state, self.done
-        seen = self._extremes(state)
+        seen = self._extremes(state) if self._extreme else {}
         trail, tangents, series = before.trail, before.tangents, before.series
         if done % self.section == 0 or done == self.run.steps:
             if self._tangent:
@@ -221,11 +222,10 @@ class ChunkedLoop:
     def _extremes(self, state: State) -> dict[str, Fraction]:
         """Those since the last note."""
         radius, found = self.arithmetic.radius or (lambda _: Fraction(0)), dict(self._now.seen)
-        for name in _EXTREMES:
-            if name in self._at:
-                x, low = state[self._at[name]], name.endswith("low")
-                end = self._exact(x) - radius(x) if low else self._exact(x) + radius(x)
-                found[name] = (min if low else max)(end, found.get(name, end))
+        for name in self._extreme:
+            x, low = state[self._at[name]], name.endswith("low")
+            end = self._exact(x) - radius(x) if low else self._exact(x) + radius(x)
+            found[name] = (min if low else max)(end, found.get(name, end))
         return found
 
     def _of_tangent(self, name: str, state: State, done: int) -> Fraction:

@@ -12,7 +12,7 @@ traps look at the flags after each operation, which makes a kernel slower by a f
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from fractions import Fraction
-from functools import partial
+from functools import lru_cache, partial
 from typing import Any
 
 from verify.arithmetic.number_system import (
@@ -33,6 +33,7 @@ def make(digits: int) -> Arithmetic:
     return at_bits(bits_for(digits))
 
 
+@lru_cache(maxsize=64)
 def at_bits(bits: int) -> Arithmetic:
     import gmpy2
 
@@ -48,7 +49,7 @@ def at_bits(bits: int) -> Arithmetic:
     own = made()
 
     def number(value: Fraction) -> Any:
-        return gmpy2.mpfr(gmpy2.mpq(value.numerator, value.denominator), 0, own)
+        return own.div(value.numerator, value.denominator)  # rounded once
 
     names = ("sin", "cos", "sin_cos", "exp", "log", "sinh", "cosh", "atan", "sqrt")
     with made():
