@@ -11,7 +11,7 @@ import re
 from decimal import Decimal
 from fractions import Fraction
 from numbers import Integral, Real
-from typing import Protocol, TypeGuard
+from typing import Any, Protocol, TypeGuard
 
 import gmpy2
 
@@ -150,6 +150,17 @@ def short(value: Fraction) -> str:
     """
     written = text(value)
     return written if len(written) <= _SHORT else decimal(value, 3)
+
+
+def quotient(x: Any) -> Any:
+    """A float, a number of MPFR or a rational as gmpy2's rational, which compares, subtracts and
+    divides some ten times as fast as a Fraction."""
+    return gmpy2.mpq(*x.as_integer_ratio())  # given x itself it takes four times as long
+
+
+def fraction(x: Any) -> Fraction:
+    """The Fraction that a rational of gmpy2 is."""
+    return Fraction(int(x.numerator), int(x.denominator))
 
 
 def of_mpf(x: Mpf) -> Fraction:

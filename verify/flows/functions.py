@@ -6,6 +6,7 @@ variable, which takes a tenth to a third off a step of several coordinates.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any
 
 from verify.algebra.ring import Poly, Ring
@@ -22,6 +23,21 @@ def functions_at(
 ) -> Function:
     """(p, q) ↦ the values of ring elements in these names alone; call it inside the context."""
     return Written.of(arithmetic, elements, names).at()
+
+
+def defined_values(mpfr: Arithmetic, at: Function, columns: Sequence[Sequence[Any]]) -> list[Any]:
+    """A function's one value at points, given by each coordinate's numbers: Fractions, or what
+    gmpy2 adds to its own. None where it has none there, or one too large."""
+    zero = mpfr.number(Fraction(0))
+    try:
+        with mpfr.context():
+            found = [x for (x,) in map(at, *([x + zero for x in column] for column in columns))]
+    except (ArithmeticError, ValueError):  # at one of them: at which, each says by itself
+        points = list(zip(*columns, strict=True))
+        if len(points) == 1:
+            return [None]
+        return [x for z in points for x in defined_values(mpfr, at, [[x] for x in z])]
+    return [x if mpfr.finite(x) else None for x in found]
 
 
 @dataclass(frozen=True)

@@ -39,6 +39,11 @@ class LazyNote(Mapping[str, Fraction]):
     def __len__(self) -> int:
         return len(self._names)
 
+    @property
+    def state(self) -> Sequence[Any]:
+        """What they are made of, as the arithmetic has it."""
+        return self._state
+
 
 class Notes(Sequence[T]):
     """Some notes, which stay as they are: one more makes others, that share what lies before it."""

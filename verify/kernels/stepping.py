@@ -6,9 +6,10 @@ from fractions import Fraction
 from itertools import chain
 
 from verify.arithmetic.exact import text
-from verify.arithmetic.number_system import Arithmetic
+from verify.arithmetic.number_system import Arithmetic, State
 from verify.kernels.chunked_loop import ChunkedLoop, Progress, Reached
 from verify.kernels.kernel import Kernel, kernel_for
+from verify.kernels.notes import LazyNote
 from verify.kernels.reach import Limits, limits
 from verify.kernels.run_inputs import RunInputs
 
@@ -31,6 +32,12 @@ class Outcome(Reached):
     def values(self) -> Mapping[str, Fraction]:
         """What is carried, after the last step that was done."""
         return self.trail[-1]
+
+    @property
+    def states(self) -> list[State]:
+        """What was carried at the points of the trail, as the arithmetic has it; the coordinates
+        come first. Of a run that was taken up again, what it has done itself."""
+        return [note.state for note in self.trail if isinstance(note, LazyNote)]
 
     @property
     def coordinates(self) -> tuple[str, ...]:

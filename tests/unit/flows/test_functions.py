@@ -7,8 +7,9 @@ import pytest
 
 from verify.algebra.embedding import embed
 from verify.algebra.formula import parse
+from verify.arithmetic.exact import quotient
 from verify.arithmetic.systems import mpfr
-from verify.flows.functions import Written, functions_at
+from verify.flows.functions import Written, defined_values, functions_at
 
 BITS_LOST = Fraction(1, 10**37)  # of 40 digits
 Slopes = Callable[..., tuple[Fraction, ...]]
@@ -88,3 +89,37 @@ def test_slopes_are_those_of_the_functions_beside_it() -> None:
         found = at(*(arithmetic.number(x) for x in z))
     for x, y in zip(found, slopes(*z), strict=True):
         assert abs(arithmetic.exact(x) - y) < BITS_LOST
+
+
+@pytest.mark.parametrize(
+    ("formula", "at"),
+    [("log(q)/p", []), ("log(q)", [2, 3]), ("1/p", [4]), ("q/p", [4]),
+     ("exp(q**10)", [1, 2, 3, 4]), ("exp(q**20)", [1, 2, 3, 4])],
+)  # fmt: skip
+def test_where_a_function_has_no_value_there_is_none_and_the_others_are_there(
+    formula: str, at: list[int]
+) -> None:
+    """Also where another point's error is seen only when the context is left."""
+    made = mpfr.make(40)
+    ring, elements = embed([parse(formula)], ("p", "q"))
+    function = functions_at(made, [(ring, x) for x in elements])
+    points = [(1, "1/3"), (2, 4), (3, -4), (4, -60), (0, 5), (7, 1)] if at else [(1, 2), (3, 4)]
+    exact = [tuple(map(Fraction, point)) for point in points]
+    found = defined_values(made, function, list(zip(*exact, strict=True)))
+    assert [k for k, x in enumerate(found) if x is None] == at
+    for point, x in zip(exact, found, strict=True):
+        if x is not None:
+            with made.context():
+                assert [x] == list(function(*map(made.number, point)))
+    if not at:
+        assert len(found) == 2
+
+
+def test_numbers_of_other_precisions_are_taken_as_they_are() -> None:
+    made, wide = mpfr.make(40), mpfr.make(90)
+    ring, elements = embed([parse("p*q")], ("p", "q"))
+    function = functions_at(made, [(ring, x) for x in elements])
+    given = [0.1, wide.number(Fraction(1, 3)), quotient(Fraction(1, 3)), Fraction(-1, 7)]
+    ones = [Fraction(1)] * len(given)
+    exact = [Fraction(*map(int, x.as_integer_ratio())) for x in given]
+    assert defined_values(made, function, [given, ones]) == list(map(made.number, exact))

@@ -12,6 +12,7 @@ from itertools import pairwise
 from math import ceil, sqrt
 from statistics import fmean, pstdev
 
+from verify.arithmetic.exact import quotient
 from verify.studies.stability.run_motion import RunMotion
 from verify.studies.stability.trail import MOST_INTERPRETED, Trail, follow_precisely
 
@@ -35,14 +36,14 @@ def drift_of(motion: RunMotion) -> Fraction | None:
     errors = _errors(motion, trail)
     if errors and errors[-1] and _died(motion, trail, period):
         return Fraction(errors[-1] / float(run.time))
-    first = _rate(motion, trail)
+    first = rate_of(errors, trail)
     if first is None:
         return None
     longer = replace(run, steps=LONGER * trail.steps)
     if longer.steps <= MOST_INTERPRETED:
         again = follow_precisely(longer, motion.digits)
         if motion.stays(again):  # else it has drifted away
-            second = _rate(motion, again)
+            second = rate_of(_errors(motion, again), again)
             if second is None or second / first < 1 / SLOWER:
                 return None
     return Fraction(first)
@@ -64,11 +65,16 @@ def _died(motion: RunMotion, trail: Trail, period: Fraction) -> bool:
 
     Looked at step by step, since a trail may meet a periodic orbit at one point of it only.
     """
-    steps = min(_MOST_LOOKED_AT, ceil(period / motion.run.step_size))
-    seen = trail.onwards(trail.points[-1], max(2, steps)).points
-    ends = [[getattr(point, name) for point in seen] for name in ("p", "q")]
-    swings = zip(ends, motion.orbit.reach, motion.orbit.turns, strict=True)
-    return all(max(x) - min(x) < r / 100 for x, r, turns in swings if not turns)
+    steps = max(2, min(_MOST_LOOKED_AT, ceil(period / motion.run.step_size)))
+    return _rests(motion, trail.onwards(trail.point(-1), steps))
+
+
+def _rests(motion: RunMotion, trail: Trail) -> bool:
+    """Whether no coordinate moves by a hundredth of the exact orbit's reach."""
+    orbit = motion.orbit
+    swings = zip(trail.columns, orbit.reach, orbit.turns, strict=True)
+    ends = ((quotient(min(x)), quotient(max(x)), r) for x, r, turns in swings if not turns)
+    return all(high - low < r / 100 for low, high, r in ends)
 
 
 def _errors(motion: RunMotion, trail: Trail) -> list[float]:
@@ -76,10 +82,6 @@ def _errors(motion: RunMotion, trail: Trail) -> list[float]:
     found = motion.energy_errors(trail)
     known = [float(x) for x in found if x is not None]
     return known if motion.orbit.scale and len(known) == len(found) else []
-
-
-def _rate(motion: RunMotion, trail: Trail) -> float | None:
-    return rate_of(_errors(motion, trail), trail)
 
 
 def rate_of(errors: Sequence[float], trail: Trail) -> float | None:
@@ -95,7 +97,7 @@ def rate_of(errors: Sequence[float], trail: Trail) -> float | None:
         return None
     if abs(moved) < _SURE * _uncertain(errors, length):
         return None
-    stretch = trail.points[length].step * float(trail.run.step_size)
+    stretch = length * trail.every * float(trail.run.step_size)
     return float(moved / (stretch * (_STRETCHES - 1)))
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from verify import arithmetic as number_systems
 from verify.arithmetic.exact import decimal, text
 from verify.arithmetic.systems import float64, mpfr
-from verify.flows.functions import functions_at
+from verify.flows.functions import defined_values, functions_at
 from verify.hamiltonians.energy import energy_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import Given, point_of, shown_of
@@ -184,17 +184,9 @@ def _energies(
         return [None] * len(points)
     arithmetic = mpfr.make(20)
     at = functions_at(arithmetic, [energy_of(hamiltonian)], hamiltonian.coordinates)
-    found: list[str | None] = []
-    for point in points:
-        try:
-            with arithmetic.context():
-                (energy,) = at(*map(arithmetic.number, point.values()))
-        except (ArithmeticError, ValueError):
-            found.append(None)
-            continue
-        finite = arithmetic.finite(energy)
-        found.append(decimal(arithmetic.exact(energy), 6) if finite else None)
-    return found
+    columns = list(zip(*(point.values() for point in points), strict=True))
+    found = defined_values(arithmetic, at, columns)
+    return [None if x is None else decimal(arithmetic.exact(x), 6) for x in found]
 
 
 def _rows(values: Sequence[_T], width: int) -> tuple[tuple[_T, ...], ...]:

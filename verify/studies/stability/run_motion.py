@@ -5,16 +5,18 @@ Bounds: ten times the exact orbit's reach in p and in q, and a hundred times its
 are apart where they differ by a tenth of the reach.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
+from operator import sub
 from typing import Any
 
 from verify import arithmetic as number_systems
+from verify.arithmetic.exact import fraction, quotient
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import mpfr
-from verify.flows.functions import functions_at
+from verify.flows.functions import defined_values, functions_at
 from verify.flows.orbit import exact_orbit
 from verify.flows.orbit_search import initial_value_digits
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -48,7 +50,7 @@ class RunMotion:
         self.orbit = exact_orbit(run.hamiltonian, run.p, run.q, run.time, run.t0)
         # More where the initial value is written with more.
         self.digits = _DIGITS + initial_value_digits((run.p, run.q))
-        self._errors: dict[int, tuple[Trail, list[Fraction | None]]] = {}
+        self._known: dict[int, tuple[Trail, list[Any]]] = {}
 
     @cached_property
     def float64(self) -> Trail:
@@ -66,48 +68,59 @@ class RunMotion:
             return self.float64
         return follow(replace(self.run, steps=asked), float64())
 
-    def energy(self, point: Point) -> Fraction | None:
-        """H at a point; None where it is not defined there or too large."""
-        arithmetic, at = _energy(self.run.hamiltonian, 2 * self.digits)
-        try:
-            with arithmetic.context():
-                (found,) = at(arithmetic.number(point.p), arithmetic.number(point.q))
-        except (ArithmeticError, ValueError):
-            return None
-        return arithmetic.exact(found) if arithmetic.finite(found) else None
+    @cached_property
+    def _first_energy(self) -> Any:
+        """H(z₀); None where it is not defined or too large."""
+        (found,) = self._energies_at([[x] for x in self.run.state])
+        return None if found is None else quotient(found)
 
     @cached_property
-    def _first_energy(self) -> Fraction | None:
-        return self.energy(Point(0, self.run.state))
+    def _scale(self) -> Any:
+        return quotient(self.orbit.scale or 1)
 
-    def energy_error(self, point: Point) -> Fraction | None:
-        """H − H(z₀) in parts of the orbit's scale."""
-        first, here = self._first_energy, self.energy(point)
-        if first is None or here is None:
+    def _energies_at(self, columns: Sequence[Sequence[Any]]) -> list[Any]:
+        """H at states, given by each coordinate's numbers; None where it is not defined or too
+        large."""
+        return defined_values(*_energy(self.run.hamiltonian, 2 * self.digits), columns)
+
+    def _error(self, energy: Any) -> Any:
+        """H − H(z₀) in parts of the orbit's scale; None where either is not known."""
+        if energy is None or self._first_energy is None:
             return None
-        return (here - first) / (self.orbit.scale or 1)
+        return (quotient(energy) - self._first_energy) / self._scale
 
-    def energy_errors(self, trail: Trail) -> list[Fraction | None]:
-        """Those of a run's points, computed once; none of a driven one."""
+    def _energies(self, trail: Trail) -> list[Any]:
+        """H at a run's points, computed once; none of a driven one."""
         if self.run.hamiltonian.time_dependent:
             return []
-        if id(trail) not in self._errors:
-            errors = [self.energy_error(point) for point in trail.points]
-            self._errors[id(trail)] = trail, errors
-        return self._errors[id(trail)][1]
+        if id(trail) not in self._known:
+            self._known[id(trail)] = trail, self._energies_at(trail.columns)
+        return self._known[id(trail)][1]
+
+    def energy_errors(self, trail: Trail) -> list[Any]:
+        """Those of a run's points, as gmpy2's rationals, None where one is not known; none of a
+        driven run."""
+        return list(map(self._error, self._energies(trail)))
+
+    def _extreme_errors(self, trail: Trail) -> list[Any]:
+        """The least and the greatest of them, and None where some are not known."""
+        energies = self._energies(trail)
+        known = [x for x in energies if x is not None]
+        ends = [self._error(end(known)) for end in (min, max)] if known else []
+        return ends if len(known) == len(energies) else [*ends, None]
 
     def worst(self, trail: Trail) -> Fraction | None:
         """The greatest energy error seen in a run, in size."""
-        errors = self.energy_errors(trail)
-        return max((abs(x) for x in errors if x is not None), default=None)
+        sizes = [abs(x) for x in self._extreme_errors(trail) if x is not None]
+        return fraction(max(sizes)) if sizes else None
 
     @cached_property
-    def _bounds(self) -> list[tuple[int, Fraction, Fraction]]:
+    def _bounds(self) -> list[tuple[int, Any, Any]]:
         """Which coordinates have some, 0 for p and 1 for q, with the least and the greatest."""
         orbit = self.orbit
         of_each = enumerate(zip(orbit.centre, orbit.reach, orbit.turns, strict=True))
         wide = [(k, c, _BEYOND * (r or 1)) for k, (c, r, turns) in of_each if not turns]
-        return [(k, centre - half, centre + half) for k, centre, half in wide]
+        return [(k, quotient(centre - half), quotient(centre + half)) for k, centre, half in wide]
 
     def outside(self, point: Point) -> bool:
         """Whether p or q is out of the exact orbit's bounds."""
@@ -116,19 +129,25 @@ class RunMotion:
 
     def beyond(self, point: Point) -> bool:
         """Whether a point is out of the exact orbit's bounds, its energy included."""
-        driven = self.run.hamiltonian.time_dependent
-        return self.outside(point) or (not driven and _too_much(self.energy_error(point)))
+        outside = self.outside(point)
+        if outside or self.run.hamiltonian.time_dependent:
+            return outside
+        (energy,) = self._energies_at([[x] for x in point.state])
+        return _too_much(self._error(energy))
 
     def stays(self, trail: Trail) -> bool:
         """Whether a run keeps within the bounds, to its end."""
-        if not trail.finished or any(map(self.outside, trail.points)):
+        if not trail.finished:
             return False
-        return not any(map(_too_much, self.energy_errors(trail)))
+        bounds = ((trail.columns[k], low, high) for k, low, high in self._bounds)
+        if not all(low <= min(x) and max(x) <= high for x, low, high in bounds):
+            return False
+        return not any(map(_too_much, self._extreme_errors(trail)))
 
     @cached_property
-    def _near(self) -> list[Fraction]:
+    def _near(self) -> list[Any]:
         """How far p and q of two runs may be from each other."""
-        return [_APART * (r or 1) for r in self.orbit.reach]
+        return [quotient(_APART * (r or 1)) for r in self.orbit.reach]
 
     def apart(self, one: Point, other: Point) -> bool:
         pairs = zip(one.state, other.state, self._near, strict=True)
@@ -136,9 +155,14 @@ class RunMotion:
 
     def together(self, one: Trail, other: Trail) -> bool:
         """Whether two runs of as many steps both end, and are together all the way."""
-        pairs = zip(one.points, other.points, strict=True)
-        return one.finished and other.finished and not any(self.apart(*x) for x in pairs)
+        columns = zip(one.columns, other.columns, self._near, strict=True)
+        return one.finished and other.finished and all(_farthest(x, y) <= d for x, y, d in columns)
 
 
-def _too_much(error: Fraction | None) -> bool:
+def _farthest(one: Sequence[Any], other: Sequence[Any]) -> Any:
+    """The greatest |x − y| of pairs of numbers."""
+    return max(map(abs, map(sub, map(quotient, one), map(quotient, other))))
+
+
+def _too_much(error: Any) -> bool:
     return error is None or abs(error) > _ENERGY

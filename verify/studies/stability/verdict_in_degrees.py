@@ -18,10 +18,9 @@ motion only where it has lost its energy before: one that keeps it, and leaves, 
 from collections.abc import Callable
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
 
 from verify.arithmetic.systems import mpfr
-from verify.flows.functions import functions_at
+from verify.flows.functions import defined_values, functions_at
 from verify.hamiltonians.energy import energy_of
 from verify.prose import prose, read_prose
 from verify.studies.stability.energy_drift import LONGER, SLOWER, rate_of
@@ -89,13 +88,8 @@ class MotionInDegrees:
         )
 
         def energy(point: Point) -> Fraction | None:
-            given: list[Any] = [arithmetic.number(x) for x in point.state]
-            try:
-                with arithmetic.context():
-                    (found,) = at(*given)
-            except (ArithmeticError, ValueError):
-                return None
-            return arithmetic.exact(found) if arithmetic.finite(found) else None
+            (found,) = defined_values(arithmetic, at, [[x] for x in point.state])
+            return None if found is None else arithmetic.exact(found)
 
         return energy
 

@@ -18,6 +18,7 @@ told in `verify.studies.stability.run_motion`.
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import chain
 
 from verify.arithmetic.systems import mpfr
 from verify.prose import Number, Prose, prose
@@ -173,14 +174,13 @@ def _vanished(motion: RunMotion) -> Prose:
 
     p or q as a whole, either of which may be small beside the other one.
     """
-    seen = [abs(x) for point in motion.float64.points for x in (point.p, point.q)]
-    if min((x for x in (*seen, *motion.orbit.reach) if x), default=_SMALL) >= _SMALL:
+    seen = (abs(x) for x in (*chain(*motion.float64.columns), *motion.orbit.reach) if x)
+    if min(seen, default=_SMALL) >= _SMALL:
         return Prose()
     run = replace(motion.run, steps=min(motion.run.steps, _RANGE_STEPS))
     wide, own = follow(run, mpfr.at_bits(_FLOAT_BITS)), follow(run, float64())
-    for name in ("q", "p"):
-        true = [getattr(point, name) for point in wide.points]
-        kept = [getattr(point, name) for point in own.points]
+    for k, name in ((1, "q"), (0, "p")):
+        true, kept = ([point.state[k] for point in trail.points] for trail in (wide, own))
         size = max(map(abs, true))
         gap = max(abs(x - y) for x, y in zip(true, kept, strict=False))
         if gap > _LOST * size:

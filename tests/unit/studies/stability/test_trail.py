@@ -8,6 +8,7 @@ import pytest
 from verify import arithmetic
 from verify.arithmetic.systems import mpfr
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.stepping import KernelRun
 from verify.studies.stability import trail as trails
 from verify.studies.stability.trail import (
     Point,
@@ -40,6 +41,23 @@ def test_a_trail_has_the_states_of_a_plain_loop() -> None:
     assert len(trail.points) > 100
     for point in trail.points[:: len(trail.points) // 5]:
         assert (float(point.p), float(point.q)) == pytest.approx(stepped(GROWING, point.step))
+
+
+@pytest.mark.parametrize("name", ["float64", "mpfr", "fixed"])
+@pytest.mark.parametrize("text", ["p**2/2 + q**2/2 + q**4/4", "p**2/2 + q**2/2 - q*cos(2*t)"])
+def test_its_points_are_the_exact_numbers_that_the_run_notes(name: str, text: str) -> None:
+    made = arithmetic.get(name, 30)
+    case = Run(Hamiltonian.parse(text), "lie2", Fraction(1, 30), Fraction(1, 3), Fraction(0), 700)
+    trail, every = follow(case, made), 7
+    noted = KernelRun(
+        case.hamiltonian, "lie2", {**case.start}, 700, frozenset(), 0, sections=100
+    ).run(made)
+    assert [point.step for point in trail.points] == [every * k for k in range(101)]
+    assert [point.state for point in trail.points[1:]] == [(x["p"], x["q"]) for x in noted.trail]
+    assert trail.points[0].state == (0, Fraction(1, 3))
+    assert [trail.point(k) for k in (0, 5, -1)] == [trail.points[k] for k in (0, 5, -1)]
+    later = trail.onwards(trail.point(5), 1).run
+    assert (later.state, {type(x) for x in later.state}) == (trail.points[5].state, {Fraction})
 
 
 @pytest.mark.parametrize("size", [2, 100, 10**5])
