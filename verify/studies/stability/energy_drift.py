@@ -14,13 +14,19 @@ from statistics import fmean, pstdev
 
 from verify.arithmetic.exact import quotient
 from verify.studies.stability.run_motion import RunMotion
-from verify.studies.stability.trail import MOST_INTERPRETED, Trail, follow_precisely
+from verify.studies.stability.trail import (
+    MOST_INTERPRETED,
+    MOST_SECTIONS,
+    Trail,
+    follow_precisely,
+)
 
 _STRETCHES = 8
 LONGER = 4
 _PERIODS = 8  # of the exact orbit, that the longer run lasts at least
 _SEEN = 2.0**-53  # of the energy scale: what float64 could not show is no drift
 _MOST_LOOKED_AT = 20_000  # steps of a last period
+_FEW = 16  # of them, in which a run that goes on moves farther than one that has died
 _SURE = 4.0  # standard errors of a mean
 SLOWER = 16.0  # times less, at most, in the longer run
 
@@ -66,7 +72,9 @@ def _died(motion: RunMotion, trail: Trail, period: Fraction) -> bool:
     Looked at step by step, since a trail may meet a periodic orbit at one point of it only.
     """
     steps = max(2, min(_MOST_LOOKED_AT, ceil(period / motion.run.step_size)))
-    return _rests(motion, trail.onwards(trail.point(-1), steps))
+    # A few steps show that of most runs; where all steps are looked at, they are among them.
+    lengths = (_FEW, steps) if _FEW < steps <= MOST_SECTIONS else (steps,)
+    return all(_rests(motion, trail.onwards(trail.point(-1), n)) for n in lengths)
 
 
 def _rests(motion: RunMotion, trail: Trail) -> bool:

@@ -22,7 +22,7 @@ from verify.kernels.orbit import Orbit
 from verify.kernels.stepping import KernelRun
 from verify.runs.digits_on_demand import worth_compiling
 
-_LEAST_SECTIONS, _MOST_SECTIONS = 128, 512  # of a trail
+_LEAST_SECTIONS, MOST_SECTIONS = 128, 512  # of a trail
 _BETWEEN = 64  # steps between two of them, where that makes so many
 _FEWEST = 5  # steps between two of them, where not every step is looked at
 MOST_INTERPRETED = 300_000  # steps in an arithmetic that has no compiler
@@ -150,9 +150,9 @@ def follow(run: Followed, arithmetic: Arithmetic) -> Trail:
 @lru_cache(maxsize=256)
 def _sections(steps: int) -> int:
     """How many stretches a trail has."""
-    if steps <= _MOST_SECTIONS:
+    if steps <= MOST_SECTIONS:
         return steps
-    aimed = min(_MOST_SECTIONS, max(_LEAST_SECTIONS, steps // _BETWEEN))
+    aimed = min(MOST_SECTIONS, max(_LEAST_SECTIONS, steps // _BETWEEN))
     lengths = ((sections, -(-steps // sections)) for sections in range(aimed, 0, -1))
     return next((k for k, length in lengths if length >= _FEWEST and isprime(length)), aimed)
 

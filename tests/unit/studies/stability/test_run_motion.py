@@ -9,6 +9,7 @@ import pytest
 
 from verify.arithmetic.exact import fraction
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.studies.stability import energy_drift
 from verify.studies.stability.run_motion import RunMotion
 from verify.studies.stability.trail import Point, Run, Trail
 
@@ -105,3 +106,22 @@ def test_where_h_has_no_value_at_a_point_the_run_does_not_stay() -> None:
     assert not well.stays(undefined)
     assert well.energy_errors(undefined).count(None) == 1
     assert well.worst(undefined) is not None
+
+
+DYING = "p**2/2 + q**2/2", "lie3", "1", 2000, "1"
+# Once around, to the pendulum's top, where it hardly moves for a long time.
+RESTING = "p**2/2 - cos(q)", "stormer-verlet", "0.2", 230, "3.1415"
+
+
+@pytest.mark.parametrize(("case", "died"), [(DYING, True), (RESTING, False)])
+def test_a_motion_that_rests_for_a_few_steps_only_has_not_died(
+    case: tuple[str, str, str, int, str], died: bool
+) -> None:
+    text, scheme, h, steps, q = case
+    motion = RunMotion(
+        Run(Hamiltonian.parse(text), scheme, Fraction(h), Fraction(q), Fraction(0), steps)
+    )
+    trail, period = motion.precise, motion.orbit.period
+    assert period is not None
+    assert energy_drift._rests(motion, trail.onwards(trail.point(-1), energy_drift._FEW))
+    assert energy_drift._died(motion, trail, period) is died
