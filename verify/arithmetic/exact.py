@@ -159,8 +159,9 @@ def quotient(x: Any) -> Any:
 
 
 def fraction(x: Any) -> Fraction:
-    """The Fraction that a rational of gmpy2 is."""
-    return Fraction(int(x.numerator), int(x.denominator))
+    """The Fraction that a rational of gmpy2 or a finite number of MPFR is."""
+    numerator, denominator = x.as_integer_ratio()
+    return Fraction(int(numerator), int(denominator))
 
 
 def of_mpf(x: Mpf) -> Fraction:

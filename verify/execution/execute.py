@@ -107,7 +107,6 @@ def execute(
     PlaceError where the workers fail a task again and again.
     """
     results: dict[str, Frozen] = {}
-    prepared: dict[str, object] = {}
 
     def finish(name: str, result: Frozen) -> None:
         known = name in results or name not in plan.tasks  # what is given may be kept already
@@ -136,7 +135,7 @@ def execute(
             return
         for called, found in results_of(place, _calls(parts, store, place), one_by_one=one_by_one):
             if place.local and called in alone:
-                prepared[called] = found
+                store.keeper(called).prepared = found
                 continue
             for name, result in found.items():
                 if not place.local:
@@ -153,8 +152,6 @@ def execute(
         if not place.local:
             take(place, alone, one_by_one=True)
     if place.local:
-        for name, found in prepared.items():
-            store.keeper(name).prepared = found
         with open_place(THIS_PROCESS) as place:
             take(place, alone)
     return results

@@ -171,8 +171,9 @@ class _Work:
     @property
     def known(self) -> bool:
         """Whether there is a closed form: of one point's motion, and so of all."""
-        starts = zip(self.p[:1].tolist(), self.q[:1].tolist(), strict=True)
-        return any(_motions(self.hamiltonian)(p, q) is not None for p, q in starts)
+        if not len(self.p):
+            return False
+        return _motions(self.hamiltonian)(float(self.p[0]), float(self.q[0])) is not None
 
     def in_closed_form(self) -> Points:
         """Each point by its own motion. Raises NoFlowError."""

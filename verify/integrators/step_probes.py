@@ -4,6 +4,7 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import TYPE_CHECKING, TypeAlias
 
+from verify.arithmetic.exact import fraction
 from verify.arithmetic.systems import mpfr
 from verify.integrators.step import Step, Theirs, lifted
 from verify.integrators.tracing.dual import BITS, Duals
@@ -122,8 +123,7 @@ class _Floats:
             for j in (0, 1):
                 totals[i][j] += weight * (mpq(y[j]) - mpq(x[j]))
         (u_p, v_p), (u_q, v_q) = ([x / mpq(60 * width) for x in total] for total in totals)
-        found = u_p + v_q + u_p * v_q - u_q * v_p
-        return Fraction(int(found.numerator), int(found.denominator))
+        return fraction(u_p + v_q + u_p * v_q - u_q * v_p)
 
 
 Probe = _Duals | _Floats

@@ -9,7 +9,7 @@ import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from fractions import Fraction
-from functools import lru_cache, partial
+from functools import cached_property, lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -90,6 +90,10 @@ class PointMap:
             given += clock_inputs(self.arithmetic, self.kernel_run.start).values()
         return [self.arithmetic.number(x) for x in given]
 
+    @cached_property
+    def _floats(self) -> np.ndarray:
+        return np.array(self._inputs(), dtype=np.float64)
+
     @property
     def _rest(self) -> list[Number]:
         """What is carried beside the coordinates, at the start."""
@@ -106,7 +110,7 @@ class PointMap:
 
     def _remembered(self, given: np.ndarray) -> np.ndarray:
         """The same; points that were followed for fewer steps go on from there."""
-        known = waypoints(self.kernel, tuple(self._inputs()))
+        known = waypoints(self.kernel, tuple(self._floats.tolist()))
         return known.followed(self._carried(given), self.steps, self._advanced)
 
     def _carried(self, given: np.ndarray) -> np.ndarray:
@@ -116,13 +120,12 @@ class PointMap:
 
     def _advanced(self, steps: int, carried: np.ndarray) -> np.ndarray:
         run, share = _stepper(self.kernel)
-        inputs = np.array(self._inputs(), dtype=np.float64)
         count = carried.shape[1]
         # A point more than once, where a call takes so many.
         every = np.pad(carried, ((0, 0), (0, -count % share)), "edge")
 
         def advance(first: int) -> None:
-            run(steps, inputs, every[:, first : first + share])
+            run(steps, self._floats, every[:, first : first + share])
 
         with ThreadPoolExecutor(os.cpu_count()) as threads:
             list(threads.map(advance, range(0, count, share)))

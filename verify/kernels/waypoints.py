@@ -34,7 +34,7 @@ class Waypoints:
         """What is carried after so many steps of all points."""
         if steps < _WORTH or not self._in_parts:
             return advance(steps, carried)
-        starts = [column.tobytes() for column in np.ascontiguousarray(carried.T)]
+        starts = _by_point(carried)
         left = np.full(len(starts), steps)
         found = carried.copy()
         for i, start in enumerate(starts):
@@ -51,8 +51,12 @@ class Waypoints:
     def _keep(self, starts: list[bytes], steps: int, found: np.ndarray) -> None:
         """The farthest of each point, of as many points as there is room for."""
         room = _MOST // len(found)
-        ends = (column.tobytes() for column in np.ascontiguousarray(found.T))
-        for start, end in zip(starts, ends, strict=True):
+        for start, end in zip(starts, _by_point(found), strict=True):
             known = self._reached.get(start)
             if (known is None and len(self._reached) < room) or (known and known[0] < steps):
                 self._reached[start] = steps, end
+
+
+def _by_point(carried: np.ndarray) -> list[bytes]:
+    """What each point carries, a column, as bytes."""
+    return [column.tobytes() for column in np.ascontiguousarray(carried.T)]

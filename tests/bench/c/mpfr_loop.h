@@ -1,4 +1,4 @@
-/* What the two loops with MPFR share: reading the arguments, what is observed at each step, and
+/* What the loops with MPFR share: reading the arguments, what is observed at each step, and
    printing. All numbers have BITS bits and every operation rounds to nearest. */
 #include <stdio.h> /* before mpfr.h, which only then declares mpfr_out_str */
 #include <stdlib.h>

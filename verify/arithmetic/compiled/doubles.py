@@ -39,9 +39,7 @@ def on_points(source: str, names: Mapping[str, Any], carried: int) -> Callable[.
     are those between the steps and them. Raises NotImplementedError where the source has what is
     not in the language.
     """
-    constants = tuple(sorted((n, x) for n, x in names.items() if isinstance(x, float)))
-    own = Source(_annotated(source), _FRACTION, constants, f"{SETS} sets", _target)
-    layout, linked = own.compiled()
+    layout, linked = _source(source, names, f"{SETS} sets", _target).compiled()
     function = linked()
     rows = len(layout.arguments)
 
@@ -60,13 +58,9 @@ def on_points(source: str, names: Mapping[str, Any], carried: int) -> Callable[.
 def one_point(source: str, names: Mapping[str, Any], *, anew: bool = False) -> Callable[..., Any]:
     """The kernel as a function of its own arguments, a tuple or one number as it returns.
 
-    `anew`: not from what is kept on disk.
-
-    Raises NotImplementedError as `on_points` does.
+    `anew`: not from what is kept on disk. Raises NotImplementedError as `on_points` does.
     """
-    constants = tuple(sorted((n, x) for n, x in names.items() if isinstance(x, float)))
-    made = Source(_annotated(source), _FRACTION, constants, "doubles")
-    layout, linked = made.compiled(anew=anew)
+    layout, linked = _source(source, names, "doubles").compiled(anew=anew)
     given, found = (_record(kinds) for kinds in (layout.arguments, layout.results))
     size = layout.result_at[-1] + 8
 
@@ -81,6 +75,17 @@ def one_point(source: str, names: Mapping[str, Any], *, anew: bool = False) -> C
 
     kernel.prepared = prepared  # type: ignore[attr-defined]
     return kernel
+
+
+def _source(
+    source: str,
+    names: Mapping[str, Any],
+    target: str,
+    make: Callable[[int], Target] | None = None,
+) -> Source:
+    """The kernel with the numbers among its names, which are all that a target asks for."""
+    constants = tuple(sorted((n, x) for n, x in names.items() if isinstance(x, float)))
+    return Source(_annotated(source), _FRACTION, constants, target, make)
 
 
 def _record(kinds: Sequence[str]) -> Struct:

@@ -37,6 +37,8 @@ def make(digits: int) -> Arithmetic:
 def at_bits(bits: int) -> Arithmetic:
     import gmpy2
 
+    from verify.arithmetic.exact import fraction
+
     # A new gmpy2.context for each use: one that is entered twice forgets what it is to restore.
     made = partial(
         gmpy2.context,
@@ -58,7 +60,7 @@ def at_bits(bits: int) -> Arithmetic:
         name=NAME,
         bits=bits,
         number=number,
-        exact=_exact,
+        exact=fraction,
         finite=lambda x: gmpy2.is_finite(x) and abs(gmpy2.get_exp(x)) <= MOST_EXPONENT,
         context=partial(_checked, made),
         functions={
@@ -92,11 +94,6 @@ def _root(x: Any, n: int) -> Any:
     if x < 0:  # MPFR takes the real root where n is odd; here a root is of what is not negative
         raise ValueError("the root of a negative number")
     return root(x, n)
-
-
-def _exact(x: Any) -> Fraction:
-    numerator, denominator = x.as_integer_ratio()
-    return Fraction(int(numerator), int(denominator))
 
 
 NUMBER_SYSTEM = NumberSystem(

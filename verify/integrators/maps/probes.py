@@ -11,6 +11,7 @@ from itertools import combinations
 
 import gmpy2
 
+from verify.arithmetic.exact import fraction
 from verify.integrators.maps.user_map import CallableMap
 from verify.integrators.number_type import DOUBLE
 from verify.integrators.step import StepError, lifted, real
@@ -80,7 +81,7 @@ class DualProbe:
         with self.kind.running():
             begun = [self.kind.rational(x).value for x in point]
             ended = [x.value for x in self._two(point, 0)]
-        return [_rational(x) for x in begun], [_rational(x) for x in ended]
+        return list(map(fraction, begun)), list(map(fraction, ended))
 
     def _two(self, point: Sequence[Fraction], first: int) -> list[Dual]:
         """z' with its derivatives by two of the coordinates."""
@@ -154,11 +155,6 @@ def _as_it_is(x: Fraction) -> Fraction:
 
 
 Probe = DualProbe | FloatProbe
-
-
-def _rational(x: "gmpy2.mpfr") -> Fraction:
-    above, below = x.as_integer_ratio()
-    return Fraction(int(above), int(below))
 
 
 def _reading(

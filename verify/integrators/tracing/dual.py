@@ -11,6 +11,7 @@ from typing import TypeAlias
 
 import gmpy2
 
+from verify.arithmetic.exact import fraction
 from verify.integrators.tracing.number import OPERATORS, Kind, TracedNumber, UntraceableError
 
 Number: TypeAlias = gmpy2.mpfr
@@ -73,11 +74,11 @@ class Dual(TracedNumber):
         """Its value where it does not move with p and q and is a rational of few bits."""
         if self.by_p or self.by_q or not gmpy2.is_finite(self.value):
             return None
-        numerator, denominator = self.value.as_integer_ratio()
-        if numerator.bit_length() + denominator.bit_length() < BITS // 2:
-            return Fraction(int(numerator), int(denominator))
+        exact = fraction(self.value)
+        if exact.numerator.bit_length() + exact.denominator.bit_length() < BITS // 2:
+            return exact
         # 1/3 and its like, as exponents: rounded to the working precision, and read back.
-        near = Fraction(int(numerator), int(denominator)).limit_denominator(10**4)
+        near = exact.limit_denominator(10**4)
         return near if self.kind.rational(near).value == self.value else None
 
     def compared(self, other: "Dual") -> int:

@@ -15,10 +15,9 @@ from typing import TypeVar
 import numpy as np
 
 from verify import arithmetic as number_systems
-from verify.arithmetic.exact import decimal, text
-from verify.arithmetic.systems import float64, mpfr
-from verify.flows.functions import defined_values, functions_at
-from verify.hamiltonians.energy import energy_of
+from verify.arithmetic.exact import decimal, fraction, text
+from verify.arithmetic.systems import float64
+from verify.flows.energies import energies_at
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import Given, point_of, shown_of
 from verify.kernels.many_points import PointMap
@@ -182,11 +181,9 @@ def _energies(
     """H at the starts; None where it is not defined, or depends on time."""
     if hamiltonian.time_dependent:
         return [None] * len(points)
-    arithmetic = mpfr.make(20)
-    at = functions_at(arithmetic, [energy_of(hamiltonian)], hamiltonian.coordinates)
     columns = list(zip(*(point.values() for point in points), strict=True))
-    found = defined_values(arithmetic, at, columns)
-    return [None if x is None else decimal(arithmetic.exact(x), 6) for x in found]
+    found = energies_at(hamiltonian, 20, columns)
+    return [None if x is None else decimal(fraction(x), 6) for x in found]
 
 
 def _rows(values: Sequence[_T], width: int) -> tuple[tuple[_T, ...], ...]:

@@ -5,21 +5,19 @@ Bounds: ten times the exact orbit's reach in p and in q, and a hundred times its
 are apart where they differ by a tenth of the reach.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
-from functools import cached_property, lru_cache
+from functools import cached_property
 from operator import sub
 from typing import Any
 
 from verify import arithmetic as number_systems
 from verify.arithmetic.exact import fraction, quotient
 from verify.arithmetic.number_system import Arithmetic
-from verify.arithmetic.systems import mpfr
-from verify.flows.functions import defined_values, functions_at
+from verify.flows.energies import energies_at
 from verify.flows.orbit import exact_orbit
 from verify.flows.orbit_search import initial_value_digits
-from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.studies.stability.trail import Point, Run, Trail, follow, follow_precisely
 
 _BEYOND = 10  # times the reach
@@ -30,16 +28,6 @@ _DIGITS = 40
 
 def float64() -> Arithmetic:
     return number_systems.get("float64", 17)
-
-
-@lru_cache(maxsize=64)
-def _energy(
-    hamiltonian: Hamiltonian, digits: int
-) -> tuple[Arithmetic, Callable[..., tuple[Any, ...]]]:
-    """H as a function of (p, q), and what to evaluate it in; the runs of one H share it."""
-    arithmetic = mpfr.make(digits)
-    field, _ = hamiltonian.field()
-    return arithmetic, functions_at(arithmetic, [(field.ring, field.energy)])
 
 
 class RunMotion:
@@ -79,9 +67,7 @@ class RunMotion:
         return quotient(self.orbit.scale or 1)
 
     def _energies_at(self, columns: Sequence[Sequence[Any]]) -> list[Any]:
-        """H at states, given by each coordinate's numbers; None where it is not defined or too
-        large."""
-        return defined_values(*_energy(self.run.hamiltonian, 2 * self.digits), columns)
+        return energies_at(self.run.hamiltonian, 2 * self.digits, columns)
 
     def _error(self, energy: Any) -> Any:
         """H − H(z₀) in parts of the orbit's scale; None where either is not known."""
@@ -122,10 +108,14 @@ class RunMotion:
         wide = [(k, c, _BEYOND * (r or 1)) for k, (c, r, turns) in of_each if not turns]
         return [(k, quotient(centre - half), quotient(centre + half)) for k, centre, half in wide]
 
+    def _inside(self, columns: Sequence[Sequence[Any]]) -> bool:
+        """Whether no p and no q of these states is out of the exact orbit's bounds."""
+        bounds = ((columns[k], low, high) for k, low, high in self._bounds)
+        return all(low <= min(x) and max(x) <= high for x, low, high in bounds)
+
     def outside(self, point: Point) -> bool:
         """Whether p or q is out of the exact orbit's bounds."""
-        state = point.state
-        return not all(low <= state[k] <= high for k, low, high in self._bounds)
+        return not self._inside([[x] for x in point.state])
 
     def beyond(self, point: Point) -> bool:
         """Whether a point is out of the exact orbit's bounds, its energy included."""
@@ -137,10 +127,7 @@ class RunMotion:
 
     def stays(self, trail: Trail) -> bool:
         """Whether a run keeps within the bounds, to its end."""
-        if not trail.finished:
-            return False
-        bounds = ((trail.columns[k], low, high) for k, low, high in self._bounds)
-        if not all(low <= min(x) and max(x) <= high for x, low, high in bounds):
+        if not (trail.finished and self._inside(trail.columns)):
             return False
         return not any(map(_too_much, self._extreme_errors(trail)))
 

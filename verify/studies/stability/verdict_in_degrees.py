@@ -15,13 +15,11 @@ depends on time. A run that leaves them in high precision is `unstable: scheme`;
 motion only where it has lost its energy before: one that keeps it, and leaves, is `sensitive`.
 """
 
-from collections.abc import Callable
 from fractions import Fraction
 from functools import cached_property
 
-from verify.arithmetic.systems import mpfr
-from verify.flows.functions import defined_values, functions_at
-from verify.hamiltonians.energy import energy_of
+from verify.arithmetic.exact import fraction
+from verify.flows.energies import energies_at
 from verify.prose import prose, read_prose
 from verify.studies.stability.energy_drift import LONGER, SLOWER, rate_of
 from verify.studies.stability.exact_motion import (
@@ -80,18 +78,9 @@ class MotionInDegrees:
         apart = [distance(a.state, b.state, self.orbit.reach) for a, b in pairs]
         return Sensitivity.of([a.step * h for a, _ in pairs], apart)
 
-    @cached_property
-    def _energy(self) -> Callable[[Point], Fraction | None]:
-        arithmetic = mpfr.make(2 * self.digits)
-        at = functions_at(
-            arithmetic, [energy_of(self.run.hamiltonian)], self.run.hamiltonian.coordinates
-        )
-
-        def energy(point: Point) -> Fraction | None:
-            (found,) = defined_values(arithmetic, at, [[x] for x in point.state])
-            return None if found is None else arithmetic.exact(found)
-
-        return energy
+    def _energy(self, point: Point) -> Fraction | None:
+        (found,) = energies_at(self.run.hamiltonian, 2 * self.digits, [[x] for x in point.state])
+        return None if found is None else fraction(found)
 
     @cached_property
     def _first_energy(self) -> Fraction | None:
