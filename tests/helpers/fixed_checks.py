@@ -19,6 +19,7 @@ from verify.arithmetic.arb import bounds, middle_and_radius, rational_ball
 from verify.arithmetic.compiled import engine
 from verify.arithmetic.compiled.engine import Fixed
 from verify.arithmetic.systems import fixed
+from verify.arithmetic.wide.functions import _ANGLES, _OCTAVE
 from verify.kernels.rounding import rounding_of
 from verify.kernels.step.program import Op
 
@@ -117,7 +118,7 @@ class Near:
 def step_of(name: str) -> Fraction:
     """An arb constant as a rational, to more bits than any width here."""
     with flint.ctx.workprec(2 * WIDEST):
-        exact = {"angle": flint.arb.pi() / 2048, "octave": flint.arb(2).log() / 256}
+        exact = {"angle": 2 * flint.arb.pi() / _ANGLES, "octave": flint.arb(2).log() / _OCTAVE}
         return middle_and_radius(exact[name])[0] if name in exact else Fraction(1)
 
 
@@ -206,7 +207,7 @@ def defined(form: Format, kind: str, x: Fraction) -> bool | None:
 
     Its value has to be in the format, and its slope; sinh and cosh are given while e^|x| < 2^14.
     """
-    unit, octave = form.value(1), 256 * step_of("octave")
+    unit, octave = form.value(1), _OCTAVE * step_of("octave")
     match kind:
         case "exp" | "sinh" | "cosh":
             inside = 15 * octave - x if kind == "exp" else 14 * octave - abs(x)

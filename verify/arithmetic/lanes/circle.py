@@ -1,15 +1,15 @@
 """sin and cos of numbers in lanes, to the bits that `verify.arithmetic.wide.functions` gives.
 
-x = k·2π/4096 + r; sin and cos of the first from a table of a quarter turn, of |r| ≤ π/4096 by
+x = k·2π/2^14 + r; sin and cos of the first from a table of a quarter turn, of |r| ≤ π/2^14 by
 Taylor polynomials, in fractions of n limbs. The function of one orbit, whose numbers take W bits in
 words of 64, loses at most `lost_by_one` units of 2^(2 − W) before it rounds, this one at most
 `_lost` units of 2^−52n. So where the value is farther than both together from where rounding
 changes, both round alike. Where it is not, in one of a hundred lanes, the function of one orbit is
 asked.
 
-What is lost here, in units of 2^−52n, with n ≤ 20 limbs: r is within 2; t = u² with u = 2^10 |r|
-within 2^11·2 + 2n; the series' terms lose 2n + 2 each, twenty of them at most beside what is left
-out; divided by 2^10 and 2^20 that leaves less than 8 of sin r, and of 1 − cos r. The products with
+What is lost here, in units of 2^−52n, with n ≤ 20 limbs: r is within 2; t = u² with u = 2^12 |r|
+within 2^13·2 + 2n; the series' terms lose 2n + 2 each, twenty of them at most beside what is left
+out; divided by 2^12 and 2^24 that leaves less than 8 of sin r, and of 1 − cos r. The products with
 the table's values, which are within 1, lose 2n + 9 each. Together that is less than 4 n + 40.
 
 What one orbit's function loses, with m limbs of 64 bits, follows from the same count: r within 2
@@ -44,9 +44,9 @@ from verify.arithmetic.wide.functions import arb_integer
 from verify.arithmetic.wide.limbs import Value
 from verify.arithmetic.wide.size import width_of
 
-_ANGLES = 4096  # table steps of a full turn
+_ANGLES = 1 << 14  # table steps of a full turn
 _QUARTER = _ANGLES // 4
-_SHIFT = 10  # |r| < 2^−10
+_SHIFT = 12  # |r| < 2^−12
 
 
 def lost_by_one(fraction: int) -> int:
@@ -112,7 +112,7 @@ class Circle:
     def _small(self, b: ir.IRBuilder, size: Sequence[Value]) -> tuple[list[Value], list[Value]]:
         """sin |r| and 1 − cos |r|."""
         fractions = self.fractions
-        u = settled(b, [vectors.up(b, limb, _SHIFT) for limb in size])
+        u = fractions.raised(b, size, _SHIFT)
         t = settled(b, fractions.product(b, u, u))
         many = range(8 * self.count)
         both = ([Fraction(1, factorial(2 * j + k)) for j in many] for k in (1, 2))

@@ -1,6 +1,6 @@
 """exp, sinh and cosh in lanes, to the bits that `verify.arithmetic.wide.functions` gives.
 
-x = k·ln 2/256 − ρ with 0 ≤ ρ < 2^−8; 2^(i/256), i = k mod 256, from a table, and by its series
+x = k·ln 2/2^12 − ρ with 0 ≤ ρ < 2^−12; 2^(i/2^12), i = k mod 2^12, from a table, and by its series
 
     1 − e^−ρ = ρ (1 − ρ/2 + ρ²/6 − …),
 
@@ -10,10 +10,10 @@ this one loses at most `_lost` units of 2^−52n of m. So where m, less and more
 to the same number, that is its result too. Where it is not, in three of a thousand lanes near
 x = 0 and in all beyond e^x = 2^13, the function of one orbit is asked.
 
-What is lost here, in units of 2^−52n, with n ≤ 8 limbs: ρ is within 2, and u = 2^8 ρ within 2^9;
+What is lost here, in units of 2^−52n, with n ≤ 8 limbs: ρ is within 2, and u = 2^12 ρ within 2^13;
 the series' terms lose 2n + 2 each, forty of them at most, and what is left out is less; with the
-product by u, that loses 2n, and divided by 2^8 this leaves less than 8 of 1 − e^−ρ. The table's
-value, half of 2^(i/256), is within 1, and the product with it loses 2n: in all less than 2 n + 16.
+product by u, that loses 2n, and divided by 2^12 this leaves less than 8 of 1 − e^−ρ. The table's
+value, half of 2^(i/2^12), is within 1, and the product with it loses 2n: in all less than 2 n + 16.
 
 What one orbit's function loses, with w limbs of 64 bits, follows from the same count: e^ρ − 1 is
 within 6 units of 2^−W, the table's value within ½ of 2^(2 − W), and the product loses 2 w + 3: less
@@ -40,8 +40,8 @@ from verify.arithmetic.processor import LANES
 from verify.arithmetic.wide.functions import arb_integer
 from verify.arithmetic.wide.limbs import Value
 
-_OCTAVE = 256  # table steps of a factor 2
-_SHIFT = 8  # ρ < 2^−8
+_OCTAVE = 1 << 12  # table steps of a factor 2
+_SHIFT = 12  # ρ < 2^−12
 _MARGIN = 2.0**-20  # of k, so that ρ is surely not negative
 _MOST, _LEAST = 12, -47  # of a, beyond which one orbit's function is asked
 
@@ -52,7 +52,7 @@ def _lost(count: int) -> int:
 
 @cache
 def _powers_of(count: int) -> ir.Constant:
-    """Half of 2^(i/256), the same in all modules."""
+    """Half of 2^(i/_OCTAVE), the same in all modules."""
     with working_precision(DIGIT * count + 256):
         step = flint.arb(2).log() / _OCTAVE
         values = [arb_integer((step * i).exp(), DIGIT * count - 1) for i in range(_OCTAVE)]
@@ -116,7 +116,7 @@ class Exponential:
     def _small(self, b: ir.IRBuilder, rho: list[Value]) -> list[Value]:
         """1 − e^−ρ."""
         fractions = self.fractions
-        u = settled(b, [vectors.up(b, limb, _SHIFT) for limb in rho])
+        u = fractions.raised(b, rho, _SHIFT)
         coefficients = [Fraction(1, factorial(j + 1)) for j in range(8 * self.count)]
         (series,) = fractions.series(b, u, coefficients, shift=_SHIFT)
         return fractions.shifted(b, settled(b, fractions.product(b, u, series)), _SHIFT)

@@ -95,3 +95,9 @@ class Fractions:
         raised = self.multiply_add.raised
         low = [raised(b, vectors.down(b, u, by), v, DIGIT - by) for u, v in pairwise(x)]
         return [*low, vectors.down(b, x[-1], by)]
+
+    def raised(self, b: ir.IRBuilder, x: Sequence[Value], by: int) -> list[Value]:
+        """x·2^by, below 1, 0 < by < 52; all limbs of x are settled."""
+        raised = self.multiply_add.raised
+        low = [splat(0), *(vectors.down(b, u, DIGIT - by) for u in x[:-1])]
+        return [raised(b, u, v, by) for u, v in zip(low, x, strict=True)]

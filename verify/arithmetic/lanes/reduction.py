@@ -20,7 +20,7 @@ class Reduction:
     """x = k·step + rest for numbers of one format, the step below 1.
 
     The rest is a fraction of `count` limbs with a sign, and within 2 units of 2^−52 count: the step
-    has 52 bits more than a fraction, and is multiplied by |k| < 2^26. `spare`: how many of a
+    has 52 bits more than a fraction, and is multiplied by |k| < 2^28. `spare`: how many of a
     fraction's bits lie below a number's.
     """
 

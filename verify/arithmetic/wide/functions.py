@@ -4,10 +4,11 @@ A number has F fraction bits and 16 integer bits, the sign among them, in W = 64
 2^−F. Inside, values are fractions of W bits, or mantissas with W − 2 fraction bits, so that what
 products leave out stays far below one unit. `error_units` bounds each function's error.
 
-sin and cos: x = k·2π/4096 + r; sin and cos of the first from a table, of |r| ≤ π/4096 by Taylor
-polynomials. exp: x = k·ln 2/256 + r likewise. In the polynomials a high term is small, so that its
-leading limbs are zero, and they are not computed. log: from float64's logarithm ℓ, as
-ℓ + log(1 + δ) with δ = x e^−ℓ − 1 below 2^−44. sqrt and 1/x: Newton's iteration from float64.
+sin and cos: x = k·2π/2^14 + r; sin and cos of the first from a table, of |r| ≤ π/2^14 by Taylor
+polynomials. exp: x = k·ln 2/2^12 + r likewise. In the polynomials a high term is small, so
+that its leading limbs are zero, and they are not computed; even terms and odd ones are two of them,
+since neither has to wait for the other. log: from float64's logarithm ℓ, as ℓ + log(1 + δ) with
+δ = x e^−ℓ − 1 below 2^−44. sqrt and 1/x: Newton's iteration from float64.
 """
 
 from collections.abc import Sequence
@@ -22,10 +23,13 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.wide import limbs
 from verify.arithmetic.wide.limbs import I64, Value, bits, constant, resized
 from verify.arithmetic.wide.products import Products
-from verify.arithmetic.wide.size import INTEGER_BITS, width_of
+from verify.arithmetic.wide.size import INTEGER_BITS, WORD, width_of
 
-_ANGLES = 4096  # table steps of a full turn
-_EXPONENTIALS = 256  # table steps of a factor 2
+_ANGLES = 1 << 14  # table steps of a full turn
+_QUARTER = _ANGLES // 4
+_OCTAVE = 1 << 12  # table steps of a factor 2
+_SHIFT = 12  # half a step of a turn, and a step of a factor 2, are below 2^−12
+_SURELY_POSITIVE = 1 << 28  # table steps, whole turns and factors of 2
 _NEGLIGIBLE = 32  # units of a fraction's last place, 2^−W
 _DOUBLE = ir.DoubleType()
 
@@ -42,15 +46,21 @@ def _table_of(values: Sequence[int], width: int) -> ir.Constant:
     return limbs.words([(v >> 64 * i) & (2**64 - 1) for v in values for i in range(width // 64)])
 
 
+def _negated(b: ir.IRBuilder, where: Value, x: Value) -> Value:
+    """−x where that is so."""
+    mask = b.sext(where, x.type)
+    return b.sub(b.xor(x, mask), mask)
+
+
 # The tables of a width are the same in all modules, and take longer to make than to compile.
 
 
 @cache
 def _sines(width: int) -> ir.Constant:
-    """sin of all table steps of five quarters, with W − 2 fraction bits."""
+    """sin of all table steps of a quarter, with W − 2 fraction bits."""
     with working_precision(width + 128):
         unit = 2 * flint.arb.pi() / _ANGLES
-        values = [arb_integer((unit * k).sin(), width - 2) for k in range(_ANGLES * 5 // 4)]
+        values = [arb_integer((unit * k).sin(), width - 2) for k in range(_QUARTER + 1)]
     return _table_of(values, width)
 
 
@@ -58,8 +68,8 @@ def _sines(width: int) -> ir.Constant:
 def _powers(width: int) -> ir.Constant:
     """2^x of all table steps below 1, with W − 2 fraction bits."""
     with working_precision(width + 128):
-        unit = flint.arb(2).log() / _EXPONENTIALS
-        values = [arb_integer((unit * k).exp(), width - 2) for k in range(_EXPONENTIALS)]
+        unit = flint.arb(2).log() / _OCTAVE
+        values = [arb_integer((unit * k).exp(), width - 2) for k in range(_OCTAVE)]
     return _table_of(values, width)
 
 
@@ -121,32 +131,28 @@ class Functions:
         bits.
 
         k is found from the leading bits alone, so that it is the floor within 2^−18, or within
-        2^−28 where |x| < 16; unit (an arb) is taken with 32 bits beyond the fraction, and k·unit is
-        right to a unit of r.
+        2^−28 where |x| < 16; k·unit is right to a unit of r. What is multiplied is k + 2^28, which
+        is not negative: |x| < 2^15, and the unit, an arb, is above 2^−13.
         """
         high = resized(b, limbs.leading(b, x, self.fraction), 128, signed=True)
         k = b.mul(high, constant(arb_integer(1 / unit, 32), 128))
         k = b.ashr(b.add(k, constant(int(offset * 2**80), 128)), constant(80, 128))
-        wide = self.width + 64
-        stretched = constant(arb_integer(unit, self.width + 32), wide)
-        multiple = b.ashr(b.mul(resized(b, k, wide, signed=True), stretched), constant(32, wide))
+        k = b.trunc(k, I64)
+        stretched = constant(arb_integer(unit, self.width + WORD), self.width + WORD)
+        multiple = limbs.times_word(b, stretched, b.add(k, constant(_SURELY_POSITIVE, WORD)))
         scaled = limbs.shifted_up(b, x, self.spare)
-        return b.trunc(k, I64), b.sub(scaled, resized(b, multiple, self.width))
+        start = constant(arb_integer(unit * _SURELY_POSITIVE, self.width), self.width)
+        return k, b.sub(b.add(scaled, start), resized(b, multiple, self.width))
 
     def _series(
-        self, b: ir.IRBuilder, t: Value, coefficients: Sequence[Fraction], shift: int, sign: int
-    ) -> Value:
-        """c₀ + sign·c₁ τ + c₂ τ² + sign·c₃ τ³ + …, where t = τ·2^shift is a fraction, and so is
-        the result; the c are positive and fall fast, `sign` is ±1.
-
-        A coefficient cⱼ 2^(−j·shift) has its leading limbs zero, and so have the sums from there.
-        """
-        return self._series_of(b, t, [coefficients], shift, sign)[0]
-
-    def _series_of(
         self, b: ir.IRBuilder, t: Value, series: Sequence[Sequence[Fraction]], shift: int, sign: int
     ) -> list[Value]:
-        """Several such series, term by term in turn: what one waits for, another has time for."""
+        """c₀ + sign·c₁ τ + c₂ τ² + sign·c₃ τ³ + … of each, where t = τ·2^shift is a fraction, and
+        so is the result; the c are positive and fall fast, `sign` is ±1.
+
+        A coefficient cⱼ 2^(−j·shift) has its leading limbs zero, and so have the sums from there.
+        All go on together: what one waits for, another has time for.
+        """
         totals: list[Value] = [None] * len(series)
         for j in reversed(range(max(map(len, series)))):
             for i, coefficients in enumerate(series):
@@ -171,8 +177,7 @@ class Functions:
 
     def _signed(self, b: ir.IRBuilder, magnitude: Value, like: Value) -> Value:
         """The magnitude with the sign of `like`."""
-        negative = b.icmp_signed("<", like, constant(0, like.type.width))
-        return b.select(negative, b.neg(magnitude), magnitude)
+        return _negated(b, b.icmp_signed("<", like, constant(0, like.type.width)), magnitude)
 
     def _rounded(self, b: ir.IRBuilder, mantissa: Value) -> Value:
         """From W − 2 fraction bits to a number."""
@@ -187,29 +192,39 @@ class Functions:
         b, x = self._define("cos_sin", 2)
         with working_precision(self.width + 128):
             k, r = self._multiple(b, x, 2 * flint.arb.pi() / _ANGLES, Fraction(1, 2))
+        sine, versine = self._small(b, self._signed(b, r, r))
+        # A quarter further cos is −sin and sin is cos, two further both change their signs.
+        odd, half = (self._has(b, k, quarters * _QUARTER) for quarters in (1, 2))
+        index = b.and_(k, constant(_QUARTER - 1, WORD))
+        rest = b.sub(constant(_QUARTER, WORD), index)
         table = self._table("sines", _sines(self.width))
-        index = b.and_(k, constant(_ANGLES - 1, 64))
-        sine = self._entry(b, table, index)
-        cosine = self._entry(b, table, b.add(index, constant(_ANGLES // 4, 64)))
+        s = self._entry(b, table, b.select(odd, rest, index))
+        c = self._entry(b, table, b.select(odd, index, rest))
         high = self.products.high
-        s = _ANGLES.bit_length() - 3  # |r| < 2^−s: u = |r|·2^s and t = r²·2^2s are fractions.
-        u = limbs.shifted_up(b, self._signed(b, r, r), s)
-        t = high(b, u, u)
-        sine_series = [Fraction(1, factorial(2 * j + 1)) for j in range(8 * self.count)]
-        versine_series = [Fraction(1, factorial(2 * j + 2)) for j in range(8 * self.count)]
-        by_u, by_t = self._series_of(b, t, [sine_series, versine_series], 2 * s, -1)
-        small = high(b, u, by_u)
-        sin_r = self._signed(b, limbs.shifted_down(b, small, s), r)
-        versine = high(b, t, by_t)
-        versine = limbs.shifted_down(b, versine, 2 * s)  # 1 − cos r
-
-        def turned(base: Value, side: Value) -> Value:
-            back = high(b, base, versine, signed=True)
-            return b.add(b.sub(base, back), high(b, side, sin_r, signed=True))
-
-        sin_x = self._rounded(b, turned(sine, cosine))
-        cos_x = self._rounded(b, turned(cosine, b.neg(sine)))
+        downwards = b.xor(b.icmp_signed("<", r, constant(0, self.width)), odd)
+        along, across = (_negated(b, downwards, high(b, each, sine)) for each in (c, s))
+        sin = b.add(b.sub(s, high(b, s, versine)), along)
+        cos = b.sub(b.sub(c, high(b, c, versine)), across)
+        sin_x = self._rounded(b, _negated(b, half, sin))
+        cos_x = self._rounded(b, _negated(b, b.xor(odd, half), cos))
         return self._result(b, ir.Constant(ir.IntType(1), 1), cos_x, sin_x)
+
+    def _small(self, b: ir.IRBuilder, r: Value) -> tuple[Value, Value]:
+        """sin r and 1 − cos r of 0 ≤ r < 2^−12."""
+        high = self.products.high
+        u = limbs.shifted_up(b, r, _SHIFT)
+        t = high(b, u, u)
+        by_u, by_t = self._series(b, t, self._inverse_factorials(1, 2), 2 * _SHIFT, -1)
+        sine, versine = high(b, u, by_u), high(b, t, by_t)
+        return (limbs.shifted_down(b, sine, _SHIFT), limbs.shifted_down(b, versine, 2 * _SHIFT))
+
+    def _inverse_factorials(self, *first: int) -> list[list[Fraction]]:
+        """Of every second number from each of these."""
+        many = range(8 * self.count)
+        return [[Fraction(1, factorial(2 * j + k)) for j in many] for k in first]
+
+    def _has(self, b: ir.IRBuilder, k: Value, bit: int) -> Value:
+        return b.icmp_unsigned("!=", b.and_(k, constant(bit, WORD)), constant(0, WORD))
 
     def _sin(self) -> ir.Function:
         return self._one_of("cos_sin", 1)
@@ -230,19 +245,20 @@ class Functions:
         m is in [1, 2], and may exceed 2 by 2^−28 just above an x for which it would be 1.
         """
         with working_precision(self.width + 128):
-            unit = flint.arb(2).log() / _EXPONENTIALS
+            unit = flint.arb(2).log() / _OCTAVE
             # A little less than the floor, so that r is surely not negative.
             k, r = self._multiple(b, x, unit, Fraction(-1, 2**20))
         if "powers" not in self._tables:
             self._tables["powers"] = self._table("powers", _powers(self.width))
-        base = self._entry(b, self._tables["powers"], b.and_(k, constant(_EXPONENTIALS - 1, 64)))
+        base = self._entry(b, self._tables["powers"], b.and_(k, constant(_OCTAVE - 1, WORD)))
         high = self.products.high
-        u = limbs.shifted_up(b, r, 8)  # r < 2^−8
-        series = [Fraction(1, factorial(j + 2)) for j in range(8 * self.count)]
-        rest = high(b, high(b, u, u), self._series(b, u, series, 8, 1))
-        growth = b.add(r, limbs.shifted_down(b, rest, 16))  # e^r − 1
-        mantissa = b.add(base, high(b, base, growth, signed=True))
-        return mantissa, b.ashr(k, constant(8, 64))
+        u = limbs.shifted_up(b, r, _SHIFT)
+        t = high(b, u, u)
+        even, odd = self._series(b, t, self._inverse_factorials(2, 3), 2 * _SHIFT, 1)
+        rest = high(b, t, b.add(even, limbs.shifted_down(b, high(b, u, odd), _SHIFT)))
+        growth = b.add(r, limbs.shifted_down(b, rest, 2 * _SHIFT))  # e^r − 1
+        mantissa = b.add(base, high(b, base, growth))
+        return mantissa, b.ashr(k, constant(_OCTAVE.bit_length() - 1, WORD))
 
     def _exp(self) -> ir.Function:
         b, x = self._define("exp", 1)

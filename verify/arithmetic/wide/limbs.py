@@ -9,7 +9,7 @@ What is left out is less than 2·`count` units of the lowest kept column, where 
 of limbs; each routine says what that means for its result.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TypeAlias
 
 from llvmlite import ir
@@ -88,74 +88,85 @@ def _columns(
     """Σ xᵢ yⱼ 2^(64 (i + j − lowest)) over the columns ≥ lowest, plus `start` and the high halves
     of the column below: 2·count − lowest limbs.
 
-    Row by row, as one multiplies by hand: product, what stands in the column, and the carry fit
-    into 128 bits. With signed numbers the highest limb is signed, and so is the carry behind it.
+    Row by row, as one multiplies by hand. `lowest` is `count` at most.
     """
-    count = x.type.width // 64
-    xs = [limb(b, x, i) for i in range(count)]
-    ys = [limb(b, y, i) for i in range(count)]
-
-    def product(i: int, j: int) -> Value:
-        return b.mul(
-            resized(b, xs[i], 128, signed=signed and i == count - 1),
-            resized(b, ys[j], 128, signed=signed and j == count - 1),
-        )
-
-    def high(value: Value) -> Value:
-        return b.trunc(b.ashr(value, constant(64, 128)), I64)
-
-    columns: dict[int, tuple[Value, bool]] = {}
-    if start:
-        columns[lowest] = constant(start, 64), False
+    count = x.type.width // WORD
+    xs, ys = _limbs(b, x), _limbs(b, y)
+    total = constant(start, WORD)
     for i in range(count):
-        carry: tuple[Value, bool] | None = None
-        if lowest - 1 - i in range(count):
-            below = product(i, lowest - 1 - i)
-            carry = high(below), signed and count - 1 in (i, lowest - 1 - i)
-        for j in range(max(0, lowest - i), count):
-            total = product(i, j)
-            for part in (columns.get(i + j), carry):
-                if part is not None:
-                    total = b.add(total, resized(b, part[0], 128, signed=part[1]))
-            columns[i + j] = b.trunc(total, I64), False
-            carry = high(total), signed and count - 1 in (i, j)
-        if carry is not None:
-            columns[i + count] = carry
-    return joined(b, [columns[c][0] for c in range(lowest, 2 * count)])
-
-
-def joined(b: ir.IRBuilder, words: Sequence[Value]) -> Value:
-    width = 64 * len(words)
-    total = constant(0, width)
-    for i, word in enumerate(words):
-        total = b.or_(total, shifted_up(b, resized(b, word, width), 64 * i))
+        row = {i + j: (xs[i], ys[j]) for j in range(max(0, lowest - 1 - i), count)}
+        total = _with_row(b, total, row, lowest, i + count)
+    for first, second in [(xs, ys), (ys, xs)] if signed else []:
+        total = _sign_taken(b, total, first[-1], second, lowest)
     return total
 
 
 def _square_columns(b: ir.IRBuilder, x: Value, lowest: int, *, start: int, signed: bool) -> Value:
     """`_columns` of x·x, each mixed product formed once and doubled."""
-    count = x.type.width // 64
-    width = 64 * (2 * count - lowest)
-    xs = [limb(b, x, i) for i in range(count)]
-    mixed, own = constant(0, width), constant(start, width)
-    for i in range(count):
-        for j in range(max(i, lowest - 1 - i), count):
-            product = b.mul(
-                resized(b, xs[i], 128, signed=signed and i == count - 1),
-                resized(b, xs[j], 128, signed=signed and j == count - 1),
-            )
-            negative = signed and i < j == count - 1
-            if i + j == lowest - 1:
-                product = (
-                    b.ashr(product, ir.Constant(I128, 64)) if negative else limb(b, product, 1)
-                )
-            part = resized(b, product, width, signed=negative)
-            part = shifted_up(b, part, 64 * max(0, i + j - lowest))
-            if i == j:
-                own = b.add(own, part)
-            else:
-                mixed = b.add(mixed, part)
-    return b.add(own, shifted_up(b, mixed, 1))
+    count = x.type.width // WORD
+    xs = _limbs(b, x)
+    mixed = constant(0, WORD)
+    for i in range(count - 1):
+        row = {i + j: (xs[i], xs[j]) for j in range(max(i + 1, lowest - 1 - i), count)}
+        mixed = _with_row(b, mixed, row, lowest, i + count)
+    mixed = resized(b, mixed, WORD * (2 * count - lowest))
+    if signed:
+        mixed = _sign_taken(b, mixed, xs[-1], xs, lowest)
+    own = {2 * i: (xs[i], xs[i]) for i in range(lowest // 2, count)}
+    return _with_row(b, b.add(mixed, mixed), own, lowest, 2 * count - 1, start)
+
+
+def _limbs(b: ir.IRBuilder, x: Value) -> list[Value]:
+    return [limb(b, x, i) for i in range(x.type.width // WORD)]
+
+
+def _with_row(
+    b: ir.IRBuilder,
+    total: Value,
+    row: Mapping[int, tuple[Value, Value]],
+    lowest: int,
+    highest: int,
+    start: int = 0,
+) -> Value:
+    """total + start + Σ u v 2^(64 (c − lowest)) over a row's products, c their columns, in the
+    columns up to `highest`; of one in the column below the lowest the high half.
+
+    The low halves are one number and the high ones another: each takes a chain of carries, which
+    makes four instructions a product.
+    """
+    low, high = {}, {}
+    for c, factors in row.items():
+        whole = b.mul(*(b.zext(v, I128) for v in factors))
+        low[c], high[c + 1] = b.trunc(whole, I64), limb(b, whole, 1)
+    low.pop(lowest - 1, None)
+    width = WORD * (highest - lowest + 1)
+    total = resized(b, total, width)
+    if row:
+        first, second = (_placed(b, each, lowest, width) for each in (low, high))
+        total = b.add(total, b.add(first, second))
+    return b.add(total, constant(start, width)) if start else total
+
+
+def _placed(b: ir.IRBuilder, words: Mapping[int, Value], lowest: int, width: int) -> Value:
+    """Σ word·2^(64 (c − lowest)) in so many bits."""
+    total = constant(0, width)
+    for c, word in words.items():
+        total = b.or_(total, shifted_up(b, resized(b, word, width), WORD * (c - lowest)))
+    return total
+
+
+def _sign_taken(
+    b: ir.IRBuilder, total: Value, sign: Value, ys: Sequence[Value], lowest: int
+) -> Value:
+    """total − Y 2^(64 (count − lowest)) where the highest limb `sign` of x is negative: its word
+    without a sign is too large by 2^64, and Y is multiplied by it."""
+    negative = b.ashr(sign, constant(WORD - 1, WORD))
+    words = {len(ys) + i: b.and_(y, negative) for i, y in enumerate(ys)}
+    return b.sub(total, _placed(b, words, lowest, total.type.width))
+
+
+def joined(b: ir.IRBuilder, words: Sequence[Value]) -> Value:
+    return _placed(b, dict(enumerate(words)), 0, WORD * len(words))
 
 
 def product(b: ir.IRBuilder, x: Value, y: Value, fraction: int) -> tuple[Value, Value | None]:
@@ -198,3 +209,9 @@ def high_product(b: ir.IRBuilder, x: Value, y: Value, *, signed: bool = False) -
     if x is y:
         return _square_columns(b, x, count, start=0, signed=signed)
     return _columns(b, x, y, count, signed=signed)
+
+
+def times_word(b: ir.IRBuilder, x: Value, word: Value) -> Value:
+    """x·word / 2^64 rounded down, neither with a sign."""
+    row = {i: (each, word) for i, each in enumerate(_limbs(b, x))}
+    return _with_row(b, constant(0, WORD), row, 1, len(row))

@@ -141,7 +141,8 @@ def small_squares(width: int) -> list[Any]:
 def arguments(name: str, width: int) -> list[Any]:
     """Where a table's entry changes, over all sizes, and at random."""
     draws, bits = Draws(width), width - 16
-    angles, octaves = (0, 1, -1, 511, 512, 1024, 2048, 3071, 4096, 2**20), (0, 1, -255, 256, 2560)
+    angles = (0, 1, -1, 2047, 2048, 4096, 8192, 12287, 16384, 2**22)
+    octaves = (0, 1, -4095, 4096, 40960)
     raws = [
         Near(step, Fraction(k), Fraction(0), add).raw(width)
         for step, ks in (("angle", angles), ("octave", octaves))

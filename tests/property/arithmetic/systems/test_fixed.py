@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from tests.examples import drawn
 from tests.helpers import fixed_checks
 from tests.helpers.fixed_checks import HARD, WIDEST, WIDTHS, Near, Shape, format_of
-from verify.arithmetic.wide import translate
+from verify.arithmetic.wide import functions, translate
 
 FORMATS = [format_of(width) for width in WIDTHS]
 ALL_FORMATS = [*FORMATS, format_of(WIDEST)]  # whose functions take long to compile
@@ -43,9 +43,10 @@ def near(step: str, most: int) -> st.SearchStrategy[Near]:
     return st.builds(Near, st.just(step), ks, tiny, st.integers(-2, 2))
 
 
-TURNS = 2**15 * 2048 // 3  # beyond the range even
-angles = near("angle", TURNS) | near("angle", 4800) | shapes
-powers = near("octave", 256 * 70) | near("octave", 3 * 256) | shapes
+TURN, OCTAVE = functions._ANGLES, functions._OCTAVE  # table steps
+BEYOND = 2**15 * TURN // 6  # the range
+angles = near("angle", BEYOND) | near("angle", TURN * 5 // 4) | shapes
+powers = near("octave", OCTAVE * 70) | near("octave", 3 * OCTAVE) | shapes
 POINTS = {"sin": angles, "cos": angles, "exp": powers, "sinh": powers, "cosh": powers}
 
 
@@ -140,7 +141,7 @@ def test_functions_are_right_at_the_ends_of_the_format_and_around_0(kind: str) -
 def test_functions_are_given_up_to_their_borders_and_refused_beyond(
     sign: int, away: Fraction
 ) -> None:
-    octave = 256 * fixed_checks.step_of("octave")
+    octave = OCTAVE * fixed_checks.step_of("octave")
     borders = {
         "exp": [15 * octave], "sinh": [14 * octave, -14 * octave], "log": [Fraction(0)],
         "cosh": [14 * octave, -14 * octave], "root": [Fraction(1, 2**26), Fraction(0)],
@@ -156,14 +157,16 @@ def test_functions_are_given_up_to_their_borders_and_refused_beyond(
 
 @pytest.mark.left_to_ci
 def test_every_entry_of_the_tables_is_right() -> None:
-    """Those of sines are of a turn and a quarter; the last of them are for cosines alone."""
+    """Those of sines are of a quarter of a turn, and each gives cosines too."""
     for form in FORMATS:
-        for k in range(4096 + 1024):
-            kind, at = ("sin", k) if k < 4096 else ("cos", k - 1024)
-            inside = Near("angle", Fraction(at), Fraction(1, 10_000)).raw(form.width)
-            fixed_checks.check_function(form, kind, inside)
-        for k in range(256):
-            inside = Near("octave", Fraction(k), Fraction(1, 1000)).raw(form.width)
+        for k in range(TURN // 4 + 1):
+            inside = Near("angle", Fraction(k), Fraction(1, 50_000)).raw(form.width)
+            fixed_checks.check_function(form, "sin", inside)
+        for k in range(TURN // 4, TURN, 7):
+            inside = Near("angle", Fraction(k), Fraction(1, 50_000)).raw(form.width)
+            fixed_checks.check_function(form, ("sin", "cos")[k % 2], inside)
+        for k in range(OCTAVE):
+            inside = Near("octave", Fraction(k), Fraction(1, 10_000)).raw(form.width)
             fixed_checks.check_function(form, "exp", inside)
 
 

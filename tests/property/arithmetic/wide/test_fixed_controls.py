@@ -11,6 +11,7 @@ from typing import Any
 
 import flint
 import pytest
+from llvmlite import ir
 
 from tests.helpers import fixed_checks
 from tests.helpers.fixed_checks import FRACTION_OF, HARD, Format, Near
@@ -20,8 +21,11 @@ from verify.arithmetic.systems import fixed
 from verify.arithmetic.wide import functions, limbs, newton, products
 from verify.arithmetic.wide.functions import Functions
 from verify.arithmetic.wide.limbs import constant, limb, resized, shifted_up
+from verify.arithmetic.wide.size import WORD
 
 WIDTH = 256
+# Steps of the tables: of a turn, whose table is of a quarter, and of a factor 2.
+TURN, OCTAVE = functions._ANGLES, functions._OCTAVE
 
 
 def fresh() -> Format:
@@ -44,9 +48,10 @@ def function(kind: str) -> Callable[[Format], None]:
     """Its check at every entry of a table, and over the sizes of the arguments."""
 
     def check(form: Format) -> None:
-        step, most = ("angle", 8192) if kind in ("sin", "cos") else ("octave", 1024)
-        for k in range(1, most, 2):
-            near = Near(step, Fraction((most + 1) * k, most), Fraction(0))
+        turns = kind in ("sin", "cos")
+        step, most, stride = ("angle", 2 * TURN, 7) if turns else ("octave", 2 * OCTAVE, 1)
+        for j, k in enumerate(range(1, most, stride)):
+            near = Near(step, k + Fraction((-1) ** j * k, 2 * most), Fraction(0))
             fixed_checks.check_function(form, kind, near.raw(form.width))
         for k in range(200):
             raw = round((1 + Fraction(k, 301)) * 2 ** (form.bits + k % 40 - 26))
@@ -156,8 +161,8 @@ def test_a_product_that_is_cut_and_not_rounded_is_caught(
 def test_a_mixed_product_that_is_not_doubled_in_a_square_is_caught(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    true = limbs.shifted_up
-    monkeypatch.setattr(limbs, "shifted_up", lambda b, x, by: true(b, x, 0 if by == 1 else by))
+    true = ir.IRBuilder.add
+    monkeypatch.setattr(ir.IRBuilder, "add", lambda b, x, y: x if x is y else true(b, x, y))
     assert_caught(operations)
 
 
@@ -181,7 +186,12 @@ def test_numbers_with_bits_less_than_promised_are_caught(
 @pytest.mark.sample(3)
 @pytest.mark.parametrize(
     ("table", "entry", "kind"),
-    [("sines", 1, "sin"), ("sines", 4095, "sin"), ("sines", 5119, "cos"), ("powers", 255, "exp")],
+    [
+        ("sines", 1, "sin"),
+        ("sines", TURN // 4 - 1, "sin"),
+        ("sines", TURN // 4, "cos"),
+        ("powers", OCTAVE - 1, "exp"),
+    ],
 )
 def test_a_table_with_one_entry_a_little_off_is_caught(
     monkeypatch: pytest.MonkeyPatch, table: str, entry: int, kind: str
@@ -202,8 +212,8 @@ def test_a_series_that_ends_a_term_too_early_is_caught(
     monkeypatch: pytest.MonkeyPatch, kind: str
 ) -> None:
     # The series' greatest argument, and the bits by which what it gives is shifted down.
-    greatest, down = {"sin": (0.61, 10), "cos": (0.61, 20)}.get(kind, (0.69, 16))
-    true = Functions._series_of
+    greatest, down = {"sin": (0.61, 12), "cos": (0.61, 24)}.get(kind, (0.48, 24))
+    true = Functions._series
 
     def ended(terms: list[Fraction], shift: int) -> list[Fraction]:
         bits = WIDTH - FRACTION_OF - down
@@ -214,22 +224,24 @@ def test_a_series_that_ends_a_term_too_early_is_caught(
     def short(
         self: Any, b: Any, t: Any, series: list[list[Fraction]], shift: int, sign: int
     ) -> Any:
-        one = 1 if kind == "cos" else 0  # sin and cos have theirs side by side
+        one = 1 if kind == "cos" else 0  # two are side by side
         series = [ended(x, shift) if i == one else x for i, x in enumerate(series)]
         return true(self, b, t, series, shift, sign)
 
-    monkeypatch.setattr(Functions, "_series_of", short)
+    monkeypatch.setattr(Functions, "_series", short)
     assert_caught(function(kind))
 
 
 def test_a_reduced_argument_without_its_further_bits_is_caught(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """2π/4096 to the format's last place: right for small arguments, and wrong for large ones."""
+    """A step to the format's last place: right for small arguments, and wrong for large ones."""
     true = functions.arb_integer
 
     def short(value: Any, shift: int) -> int:
-        lost = 48 if shift == WIDTH + 32 else 0
+        if shift == WIDTH:  # that many steps which are added
+            return true(value / functions._SURELY_POSITIVE, shift) * functions._SURELY_POSITIVE
+        lost = WORD if shift == WIDTH + WORD else 0
         return true(value, shift - lost) << lost
 
     monkeypatch.setattr(functions, "arb_integer", short)
