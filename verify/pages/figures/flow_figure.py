@@ -64,6 +64,7 @@ def draw_flow(grid: Grid) -> Figure:
     rows = -(-len(grid.panels) // columns)
     high = rows * (layout.top + layout.height) + (rows - 1) * _GAP + _BOTTOM
     figure = sheet(high, layout.total, layout=None)
+    before = _as_seen(grid.before, layout)  # the same in all panels
     for k, panel in enumerate(grid.panels):
         i, j = divmod(k, columns)
         x = layout.left + j * (layout.width + _GAP)
@@ -71,7 +72,11 @@ def draw_flow(grid: Grid) -> Figure:
         place = x / layout.total, y / high, layout.width / layout.total, layout.height / high
         axes = figure.add_axes(place)
         _frame(axes, layout, grid.axes, left=j == 0, bottom=k + columns >= len(grid.panels))
-        _draw_panel(axes, panel, grid, layout)
+        _draw_panel(axes, panel, before, layout)
+        if not grid.counts:
+            _name_all(axes, panel, grid, layout)
+        elif panel.missing:
+            axes.text(0.5, 0.5, "no image", transform=axes.transAxes, ha="center", fontsize=_LABEL)
         axes.set_title(_heading(k, grid, int(layout.width / _LETTER)))
     return figure
 
@@ -139,30 +144,31 @@ def _tick(x: float, _: object = None) -> str:
     return f"{x:g}".replace("-", "−")
 
 
-def _draw_panel(axes: Any, panel: Panel, grid: Grid, layout: _Layout) -> None:
-    if len(grid.before[0]) == 1:  # of another plane than the region's
-        axes.plot(*grid.before[0].T, linestyle="none", marker="+", color=INK, markersize=_POINT)
+def _draw_panel(axes: Any, panel: Panel, before: Curves, layout: _Layout) -> None:
+    if len(before[0]) == 1:  # of another plane than the region's
+        axes.plot(*before[0].T, linestyle="none", marker="+", color=INK, markersize=_POINT)
     else:
-        _shape(axes, grid.before, INK, layout, before=True)
+        _shape(axes, before, INK, layout, before=True)
     if panel.exact:
-        path = _path([thinned(curve, _DETAIL / layout.scale) for curve in panel.exact[:1]])
+        path = _path(_as_seen(panel.exact[:1], layout))
         faint = to_rgba(INK, 0.3)
         axes.add_artist(
             PathPatch(path, fill=False, edgecolor=faint, linewidth=_EXACT, clip_on=False)
         )
     for _, curves in panel.images:
-        _shape(axes, curves, SERIES[panel.look % len(SERIES)], layout)
-    if not grid.counts:
-        _name_all(axes, panel, grid, layout)
-    if panel.missing and grid.counts:
-        axes.text(0.5, 0.5, "no image", transform=axes.transAxes, ha="center", fontsize=_LABEL)
+        _shape(axes, _as_seen(curves, layout), SERIES[panel.look % len(SERIES)], layout)
+
+
+def _as_seen(curves: Curves, layout: _Layout) -> list[np.ndarray]:
+    """Without the points that the picture does not show."""
+    return [thinned(curve, _DETAIL / layout.scale) for curve in curves]
 
 
 def _shape(
     axes: Any, curves: Curves, colour: str, layout: _Layout, *, before: bool = False
 ) -> None:
     """The region lightly filled with a thin line, the other outlines as thinner lines."""
-    region, *others = (thinned(curve, _DETAIL / layout.scale) for curve in curves)
+    region, *others = curves
     strength = 0.35 if before else 1
     thin = _THINNER if length(region) > _LONG * (layout.width / layout.scale) else 1
     axes.add_artist(
