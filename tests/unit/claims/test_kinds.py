@@ -269,7 +269,7 @@ def short() -> tuple[Findings, dict[str, ClaimResult]]:
             grid = scene.grid.model_copy(update={"time": Fraction(2), "separate": False})
             scenes[name] = scenes[name].model_copy(update={"grid": grid})
     plan = plan_scenes([scenes[name] for name in SCENES])
-    known = add_claims(plan, FILE.claims, scenes)
+    known = add_claims(plan, list(ON_SCENES.values()), scenes)
     findings = Findings(scenes, {**known, **execute(plan, Store(None), where=THIS_PROCESS)})
     return findings, {r.id: r for r in [claim.judge(findings) for claim in ON_SCENES.values()]}
 
