@@ -3,9 +3,11 @@
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from threading import RLock
+from typing import TypeVar
 
 import flint
 
+T = TypeVar("T")
 _ONE_THREAD = RLock()
 
 
@@ -14,6 +16,19 @@ def working_precision(bits: int) -> Iterator[None]:
     """Ball arithmetic with so many bits, by one thread at a time; leaves flint's as it was."""
     with _ONE_THREAD, flint.ctx.workprec(bits):
         yield
+
+
+def at_each_precision(make: Callable[[], T]) -> Callable[[], T]:
+    """What `make` gives at flint's precision, made once for each."""
+    made: dict[int, T] = {}
+
+    def given() -> T:
+        bits = flint.ctx.prec
+        if bits not in made:
+            made[bits] = make()
+        return made[bits]
+
+    return given
 
 
 def sign_of(value: Callable[[], flint.arb]) -> int:

@@ -1,7 +1,8 @@
 """Jacobi's and Weierstrass's functions on the real axis, in balls, by flint's theta functions.
 
 A result holds the true value, or is not finite, where flint's precision is too low for the argument
-or the modulus: who asks raises the precision.
+or the modulus: who asks raises the precision. What does not depend on the argument is made once, so
+that a function belongs to the precision at which it was made.
 
 With z = u/2K, τ = iK'/K and θ_k = θ_k(z, τ) (DLMF 22.2, and 20.9 for the values at z = 0)
 
@@ -12,34 +13,49 @@ With z = u/2K, τ = iK'/K and θ_k = θ_k(z, τ) (DLMF 22.2, and 20.9 for the va
 sn asks for K(m) and K(1 − m), two arithmetic-geometric means.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 from flint import acb, arb, fmpq
 
 Real = arb | fmpq  # a ball, or an exact number in its place
+Functions = Callable[[Real], tuple[arb, arb, arb]]  # u ↦ sn, cn, dn
 NOT_KNOWN = arb.nan()
 
 
-def jacobi(u: Real, m: Real) -> tuple[arb, arb, arb]:
-    """sn, cn and dn of real u with the parameter m > 0; beyond 1 by Jacobi's transformation.
+def jacobi(m: Real) -> Functions:
+    """u ↦ sn, cn and dn of real u with the parameter m > 0; beyond 1 by Jacobi's transformation.
 
-    >>> sn, cn, dn = jacobi(arb(1), arb(1) / 2)
+    >>> sn, cn, dn = jacobi(arb(1) / 2)(arb(1))
     >>> (sn**2 + cn**2).overlaps(arb(1)), (dn**2 + sn**2 / 2).overlaps(arb(1))
     (True, True)
     """
     if m == 1:
-        return arb(u).tanh(), arb(u).sech(), arb(u).sech()
+        return lambda u: (arb(u).tanh(), arb(u).sech(), arb(u).sech())
     if m > 1:
-        k = arb(m).sqrt()
-        sn, cn, dn = jacobi(k * u, 1 / m)
-        return sn / k, dn, cn
+        return _beyond_one(m)
     if not 0 < m < 1:
-        return NOT_KNOWN, NOT_KNOWN, NOT_KNOWN
+        return lambda _: (NOT_KNOWN, NOT_KNOWN, NOT_KNOWN)
     period = quarter_period(m)
     tau = acb(0, quarter_period(1 - m) / period)
-    one, two, three, four = (x.real for x in acb(u / (2 * period)).modular_theta(tau, 0))
-    modulus, other = arb(m).root(4), arb(1 - m).root(4)
-    return one / (modulus * four), other * two / (modulus * four), other * three / four
+    turn, modulus, other = 2 * period, arb(m).root(4), arb(1 - m).root(4)
+
+    def functions(u: Real) -> tuple[arb, arb, arb]:
+        one, two, three, four = (x.real for x in acb(u / turn).modular_theta(tau, 0))
+        return one / (modulus * four), other * two / (modulus * four), other * three / four
+
+    return functions
+
+
+def _beyond_one(m: Real) -> Functions:
+    k, inside = arb(m).sqrt(), jacobi(1 / m)
+
+    def functions(u: Real) -> tuple[arb, arb, arb]:
+        sn, cn, dn = inside(k * u)
+        return sn / k, dn, cn
+
+    return functions
 
 
 def quarter_period(m: Real) -> arb:
@@ -75,20 +91,36 @@ class Weierstrass:
         above, below = -r / 2 + half, -r / 2 - half
         return cls(r, (above, below)) if sign > 0 else cls(above, (below, r))
 
-    def values(self, t: Real) -> tuple[arb, arb]:
-        """℘(t) and ℘'(t) for real t, where no two roots are the same."""
-        e1 = self.first
-        if not isinstance(self.others, acb):
-            e2, e3 = self.others
-            k = arb(e1 - e3).sqrt()
-            sn, cn, dn = jacobi(k * t, (e2 - e3) / (e1 - e3))
+    @cached_property
+    def values(self) -> Callable[[Real], tuple[arb, arb]]:
+        """t ↦ ℘(t) and ℘'(t) for real t, where no two roots are the same."""
+        others = self.others
+        return self._of_a_pair(others) if isinstance(others, acb) else self._of_three(*others)
+
+    def _of_three(self, e2: Real, e3: Real) -> Callable[[Real], tuple[arb, arb]]:
+        """By roots that are all real."""
+        apart = self.first - e3
+        k, functions = arb(apart).sqrt(), jacobi((e2 - e3) / apart)
+
+        def values(t: Real) -> tuple[arb, arb]:
+            sn, cn, dn = functions(k * t)
             pole = k / sn
             return e3 + pole * pole, -2 * pole * pole * pole * cn * dn
-        size = abs(e1 - self.others)
-        k = size.sqrt()
-        sn, cn, dn = jacobi(2 * k * t, fmpq(1, 2) - 3 * e1 / (4 * size))
-        less = 1 - cn
-        return e1 + size * (1 + cn) / less, -4 * k * size * sn * dn / (less * less)
+
+        return values
+
+    def _of_a_pair(self, e2: acb) -> Callable[[Real], tuple[arb, arb]]:
+        """By a real root and two that are conjugate."""
+        e1 = self.first
+        size = abs(e1 - e2)
+        k, functions = size.sqrt(), jacobi(fmpq(1, 2) - 3 * e1 / (4 * size))
+
+        def values(t: Real) -> tuple[arb, arb]:
+            sn, cn, dn = functions(2 * k * t)
+            less = 1 - cn
+            return e1 + size * (1 + cn) / less, -4 * k * size * sn * dn / (less * less)
+
+        return values
 
     def half_period(self) -> arb:
         """Half of the real period, which is infinite where e₁ = e₂."""

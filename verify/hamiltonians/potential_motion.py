@@ -22,7 +22,7 @@ from typing import Any
 
 from flint import arb, fmpq, fmpq_poly
 
-from verify.arithmetic.flint_precision import working_precision
+from verify.arithmetic.flint_precision import at_each_precision, working_precision
 from verify.hamiltonians.elliptic import NOT_KNOWN, Real, Weierstrass, double_root, waves
 from verify.hamiltonians.motion import Flow, Motion, State, Values, at_rest, exactly
 
@@ -111,8 +111,10 @@ class Curve:
         c, s = waves(3 * d, t)
         return biermann(self.v, self.b, self.invariants[0], (d + 1 / s**2, -2 * c / s**3))
 
-    def function(self) -> Weierstrass:
-        return Weierstrass.of(*self.invariants, self.delta)
+    @cached_property
+    def function(self) -> Callable[[], Weierstrass]:
+        """Its ℘ at flint's precision: a motion is looked at for many times."""
+        return at_each_precision(lambda: Weierstrass.of(*self.invariants, self.delta))
 
     def linear(self, t: arb) -> tuple[arb, arb]:
         """The solution of y'' = b₁/2 + b₂ y."""

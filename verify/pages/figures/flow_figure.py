@@ -159,9 +159,9 @@ def _draw_panel(axes: Any, panel: Panel, before: Curves, layout: _Layout) -> Non
         _shape(axes, _as_seen(curves, layout), SERIES[panel.look % len(SERIES)], layout)
 
 
-def _as_seen(curves: Curves, layout: _Layout) -> list[np.ndarray]:
+def _as_seen(curves: Curves, layout: _Layout) -> Curves:
     """Without the points that the picture does not show."""
-    return [thinned(curve, _DETAIL / layout.scale) for curve in curves]
+    return tuple(thinned(curve, _DETAIL / layout.scale) for curve in curves)
 
 
 def _shape(

@@ -142,17 +142,20 @@ def equation(case: Case) -> Any:
     return motion_defect(case, within(case, TIMES))
 
 
-def slightly_wrong_modulus(u: Any, m: Any) -> Any:
-    return RIGHT(u, m * (1 + TINY))
+def slightly_wrong_modulus(m: Any) -> Any:
+    return RIGHT(m * (1 + TINY))
 
 
-def wrong_sign_of_cn(u: Any, m: Any) -> Any:
-    sn, cn, dn = RIGHT(u, m)
-    return sn, -cn, dn
+def wrong_sign_of_cn(m: Any) -> Any:
+    def functions(u: Any) -> Any:
+        sn, cn, dn = RIGHT(m)(u)
+        return sn, -cn, dn
+
+    return functions
 
 
-def wrong_period(u: Any, m: Any) -> Any:
-    return RIGHT(u * (1 + TINY), m)
+def wrong_period(m: Any) -> Any:
+    return lambda u: RIGHT(m)(u * (1 + TINY))
 
 
 RIGHT = elliptic.jacobi

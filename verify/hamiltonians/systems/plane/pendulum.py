@@ -13,8 +13,8 @@ from fractions import Fraction
 
 from flint import arb
 
-from verify.arithmetic.flint_precision import sign_of
-from verify.hamiltonians.elliptic import NOT_KNOWN, Real, jacobi, quarter_period
+from verify.arithmetic.flint_precision import at_each_precision, sign_of
+from verify.hamiltonians.elliptic import NOT_KNOWN, Functions, Real, jacobi, quarter_period
 from verify.hamiltonians.motion import Motion, State, Values, at_rest, exactly
 from verify.hamiltonians.named_system import System
 
@@ -23,12 +23,16 @@ def _motion(_: Values, p: Fraction, q: Fraction) -> Motion:
     separatrix = q == 0 and abs(p) == 2
     start, d = exactly(q), exactly(p) / 2
 
-    def state(t: arb) -> State:
+    @at_each_precision
+    def begun() -> tuple[arb, arb, arb, arb, Functions]:
         turns = (start / (2 * arb.pi()) + 0.5).mid().floor()
-        half = start / 2 - turns * arb.pi()
-        s, c = half.sin_cos()
+        s, c = (start / 2 - turns * arb.pi()).sin_cos()
         m = arb(1) if separatrix else s**2 + d**2
-        s1, c1, d1 = _added(s, c, d, t, m)
+        return turns, s, c, m, jacobi(m)
+
+    def state(t: arb) -> State:
+        turns, s, c, m, functions = begun()
+        s1, c1, d1 = _added(s, c, d, functions(t))
         if separatrix or m < 1:
             # s and c tell the angle between −π and π, where it stays; c > 0 tells that it is there.
             return 2 * d1, 2 * ((s1 / c1).atan() + turns * arb.pi() if c > 0 else NOT_KNOWN)
@@ -49,8 +53,8 @@ def _motion(_: Values, p: Fraction, q: Fraction) -> Motion:
     return Motion(state, "closed form: Jacobi's elliptic functions", goes=lambda: _goes(p, q))
 
 
-def _added(s: arb, c: arb, d: Real, t: arb, m: arb) -> tuple[arb, arb, arb]:
-    sn, cn, dn = jacobi(t, m)
+def _added(s: arb, c: arb, d: Real, functions: tuple[arb, arb, arb]) -> tuple[arb, arb, arb]:
+    sn, cn, dn = functions
     n = 1 - (s * sn) ** 2
     return (
         (s * cn * dn + c * d * sn) / n,
