@@ -70,7 +70,8 @@ def test_what_is_prepared_goes_among_the_others_by_its_cost(log: Path) -> None:
     others = [Other(log=str(log), number=k, worth=LONG) for k in range(2, 6)]
     execute(plan_of(*others, alone), Store(None), where=Placement(2))
     begun = [line for line in lines_of(log) if line.when == "begins"]
-    assert "prepare" in {line.what for line in begun[:2]}
+    # The worker that has it may be the slower one to start; put last, it would begin last.
+    assert "prepare" in {line.what for line in begun[:-1]}
 
 
 def test_in_this_process_and_with_nothing_beside_it_a_task_prepares_nothing(log: Path) -> None:
