@@ -11,8 +11,8 @@ from tests.helpers.constructed.plans import kept_in
 from tests.helpers.processes.timed_tasks import Noted, Other, Timed, lines_of
 from verify.errors import InputError
 from verify.execution import execute as execution
-from verify.execution.execute import Store, execute
-from verify.execution.executors import ANYWHERE, THIS_PROCESS, Placement, open_place
+from verify.execution.execute import Store, execute, prepare_task
+from verify.execution.executors import ANYWHERE, THIS_PROCESS, FunctionCall, Placement, open_place
 from verify.execution.plan import Plan
 from verify.execution.task import Task
 
@@ -64,14 +64,27 @@ def test_workers_prepare_once_and_this_process_takes_it_up_when_nothing_else_run
     assert os.getpid() not in {line.process for line in lines[:-4]}
 
 
-def test_what_is_prepared_goes_among_the_others_by_its_cost(log: Path) -> None:
-    """So that no worker is left with a long one at the end."""
+def test_what_is_prepared_goes_among_the_others_by_its_cost(
+    log: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """So that no worker is left with a long one at the end.
+
+    What counts is in which order they are handed out: a worker may be slow to start.
+    """
+    handed: list[FunctionCall] = []
+    true = execution.results_of
+
+    def noted(place: Any, calls: Any, **more: Any) -> Any:
+        calls = list(calls)
+        handed.extend(calls)
+        return true(place, calls, **more)
+
+    monkeypatch.setattr(execution, "results_of", noted)
     alone = Timed(log=str(log), number=1, worth=2 * LONG)
     others = [Other(log=str(log), number=k, worth=LONG) for k in range(2, 6)]
     execute(plan_of(*others, alone), Store(None), where=Placement(2))
-    begun = [line for line in lines_of(log) if line.when == "begins"]
-    # The worker that has it may be the slower one to start; put last, it would begin last.
-    assert "prepare" in {line.what for line in begun[:-1]}
+    assert [call.function is prepare_task for call in handed[:5]] == [True] + 4 * [False]
+    assert "prepare" in {line.what for line in lines_of(log)}
 
 
 def test_in_this_process_and_with_nothing_beside_it_a_task_prepares_nothing(log: Path) -> None:
