@@ -13,7 +13,7 @@ arithmetic, and the panels' differences count without their signs. All curves ar
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import pairwise
+from itertools import groupby, pairwise
 
 import numpy as np
 
@@ -160,10 +160,7 @@ class Probe:
     # -- panels -------------------------------------------------------------------------------
 
     def _panels(self, parts: Sequence[_Part]) -> list[Panel]:
-        starts = [
-            self.plane.points(self.outlines[i], arc, nodes_between(self.rule.bits, a, b))
-            for i, arc, a, b in parts
-        ]
+        starts = self._starts(parts)
         images = self._images(starts, self.plane.images)
         areas = self._areas(starts), self._areas(images)
         return [
@@ -171,11 +168,20 @@ class Probe:
             for part, start, image, before, after in zip(parts, starts, images, *areas, strict=True)
         ]
 
+    def _starts(self, parts: Sequence[_Part]) -> list[Points]:
+        """The nodes of each part, those of one arc in one call."""
+        found: dict[_Part, Points] = {}
+        of_arc = groupby(sorted(parts), lambda part: part[:2])
+        for (index, arc), group in of_arc:
+            own = list(group)
+            nodes = [s for _, _, a, b in own for s in nodes_between(self.rule.bits, a, b)]
+            points = self.plane.points(self.outlines[index], arc, nodes)
+            found |= zip(own, _by_panel(points), strict=True)
+        return [found[part] for part in parts]
+
     def _images(self, starts: Sequence[Points], carry: Callable[..., Points]) -> list[Points]:
         """All points in one call."""
-        found = carry(*(np.concatenate(z) for z in zip(*starts, strict=True)))
-        cut = [slice(i, i + NODES) for i in range(0, len(found[0]), NODES)]
-        return [tuple(z[part] for z in found) for part in cut]
+        return _by_panel(carry(*(np.concatenate(z) for z in zip(*starts, strict=True))))
 
     def _areas(self, points: Sequence[Points]) -> list[tuple[int, ...]]:
         """Of each panel the area in each plane (q_k, p_k)."""
@@ -303,3 +309,9 @@ class Probe:
         """The rounding of the rule's numbers."""
         largest = max(int(abs(self.plane.whole(x)).max()) for p in panels for x in p.image)
         return len(panels[0].parts) * len(panels) * NODES**2 * largest**2
+
+
+def _by_panel(points: Points) -> list[Points]:
+    """Of each panel its own, of the points of many."""
+    cut = [slice(i, i + NODES) for i in range(0, len(points[0]), NODES)]
+    return [tuple(z[part] for z in points) for part in cut]
