@@ -16,7 +16,7 @@ from statistics import median
 from typing import Literal
 
 Call = Callable[[], object]
-_LEAST = 0.01  # seconds of one timing
+_LEAST = 0.004  # seconds of one timing
 _RESOLVED = 1e-6  # a clock this fine will do
 _MOST_CALLS = 1 << 20
 _FINEST = 1e-9  # seconds
