@@ -35,15 +35,16 @@ def dense(
 def thinned(points: np.ndarray, tolerance: float) -> np.ndarray:
     """The closed polyline with as few points as stay within the tolerance (Douglas–Peucker)."""
     closed = np.concatenate([points, points[:1]])
+    at = closed[:, 0] + 1j * closed[:, 1]
     kept = np.zeros(len(closed), dtype=bool)
-    far = int(np.hypot(*(points - points[0]).T).argmax())
+    far = int(abs(at - at[0]).argmax())
     kept[[0, far, -1]] = True
     todo = [(0, far), (far, len(closed) - 1)]
     while todo:
         first, last = todo.pop()
         if last - first < 2:
             continue
-        apart = _from_chord(closed[first + 1 : last], closed[first], closed[last])
+        apart = _from_chord(at[first + 1 : last], at[first], at[last])
         worst = int(apart.argmax())
         if apart[worst] > tolerance:
             middle = first + 1 + worst
@@ -58,13 +59,15 @@ def to_draw(curves: Sequence[np.ndarray]) -> list[np.ndarray]:
     return [thinned(curve, extent / _DRAWN) for curve in curves]
 
 
-def _from_chord(points: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:
-    """Distances of points from a segment."""
+def _from_chord(points: np.ndarray, start: complex, end: complex) -> np.ndarray:
+    """Distances of points of the complex plane from a segment."""
     along = end - start
-    length = float(along @ along)
-    share = np.clip((points - start) @ along / length, 0, 1) if length else np.zeros(len(points))
-    apart: np.ndarray = np.hypot(*(points - start - share[:, None] * along).T)
-    return apart
+    apart = points - start
+    if along:
+        apart /= along
+        apart -= np.minimum(np.maximum(apart.real, 0), 1)
+    found: np.ndarray = abs(apart) * (abs(along) or 1)
+    return found
 
 
 def text(points: np.ndarray) -> str:
