@@ -44,7 +44,7 @@ Array = Any  # numpy.ndarray, which is imported where it is used
 _ZERO = Fraction(0)
 _UPWARDS = 1 + 2.0**-50  # for a bound that is itself rounded
 _REMEMBERED = 1 << 16  # points in closed form, of which one takes a fifth of a millisecond
-_MOTIONS = 1 << 14  # some 7 kB each
+_MOTIONS = 1 << 15  # some 3 kB each
 _FLOWS = 3  # for which so many points are, in some 30 MB each
 _Rounded = tuple[float, float, float]
 _Told = tuple[str, tuple[_Rounded, ...]]
@@ -96,6 +96,7 @@ def _along_flow(hamiltonian: Hamiltonian, times: tuple[Fraction, ...]) -> Callab
     """
     zero = Fraction(0)
     ends = {max((zero, *times)), min((zero, *times))} - {zero}
+    exact_times = [exactly(time) for time in times]
     motion_from = _motions(hamiltonian)
 
     @lru_cache(maxsize=_REMEMBERED)
@@ -104,7 +105,7 @@ def _along_flow(hamiltonian: Hamiltonian, times: tuple[Fraction, ...]) -> Callab
         assert motion is not None  # noqa: S101 - as another point has one
         for time in ends:
             closed_form.ends_after(motion, time)
-        return motion.method, tuple(_rounded(motion, p, q, time) for time in times)
+        return motion.method, tuple([_rounded(motion, p, q, at) for at in exact_times])
 
     return told
 
@@ -116,25 +117,26 @@ def _motions(hamiltonian: Hamiltonian) -> Callable[[float, float], Motion | None
     return lru_cache(maxsize=_MOTIONS)(lambda p, q: motion_from(Fraction(p), Fraction(q)))
 
 
-def _rounded(motion: Motion, p: float, q: float, time: Fraction) -> _Rounded:
+def _rounded(motion: Motion, p: float, q: float, at: fmpq) -> _Rounded:
     """p, q and a bound of the error of each as they stand in float64."""
-    if time == 0 or motion.rest:
+    if at == 0 or motion.rest:
         return p, q, 0.0
-    found = partial(_in_float64, motion, max(abs(p), abs(q)), exactly(time))
+    found = partial(_in_float64, motion, max(abs(p), abs(q)), at)
     return found() or closed_form.from_precision(found, 2 * _BITS)
 
 
 def _in_float64(motion: Motion, least: float, at: fmpq) -> _Rounded | None:
     """The same; None where flint's precision does not tell. `least`: of the size of an orbit."""
-    state = motion.state(arb(at))
-    if not (state[0].is_finite() and state[1].is_finite()):
+    exact_p, exact_q = motion.state(arb(at))
+    if not (exact_p.is_finite() and exact_q.is_finite()):
         return None
-    p, q = float(state[0].mid()), float(state[1].mid())
-    if not float(max(x.rad() for x in state)) < _FINE * max(least, abs(p), abs(q)):
+    p, q = float(exact_p.mid()), float(exact_q.mid())
+    fine = _FINE * max(least, abs(p), abs(q))
+    if not (float(exact_p.rad()) < fine and float(exact_q.rad()) < fine):
         return None
     if not (isfinite(p) and isfinite(q)):
         raise OverflowError
-    error = max(float((x - middle).abs_upper()) for x, middle in zip(state, (p, q), strict=True))
+    error = max(float((exact_p - p).abs_upper()), float((exact_q - q).abs_upper()))
     return p, q, error * _UPWARDS
 
 

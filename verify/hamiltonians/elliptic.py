@@ -10,12 +10,12 @@ With z = u/2K, τ = iK'/K and θ_k = θ_k(z, τ) (DLMF 22.2, and 20.9 for the va
 
 ℘'² = 4℘³ − g₂℘ − g₃ = 4 (℘ − e₁)(℘ − e₂)(℘ − e₃) with Δ = g₂³ − 27g₃² (Abramowitz and Stegun,
 18.9; DLMF 23.6). flint's own ℘ asks for the ratio of both periods, which are two Carlson R_F;
-sn asks for K(m) and K(1 − m), two arithmetic-geometric means.
+sn asks for two arithmetic-geometric means.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import partial
 
 from flint import acb, arb, fmpq
 
@@ -37,15 +37,18 @@ def jacobi(m: Real) -> Functions:
         return _beyond_one(m)
     if not 0 < m < 1:
         return lambda _: (NOT_KNOWN, NOT_KNOWN, NOT_KNOWN)
-    period = quarter_period(m)
-    tau = acb(0, quarter_period(1 - m) / period)
-    turn, modulus, other = 2 * period, arb(m).root(4), arb(1 - m).root(4)
+    modulus, other = arb(m).sqrt(), arb(1 - m).sqrt()
+    # K(m) = π/(2 M(1, √(1 − m))) by the arithmetic-geometric mean M (DLMF 19.8.5).
+    mean, other_mean = other.agm(), modulus.agm()
+    tau = acb(0, mean / other_mean)
+    return partial(_by_theta, arb.pi() / mean, tau, modulus.sqrt(), other.sqrt())
 
-    def functions(u: Real) -> tuple[arb, arb, arb]:
-        one, two, three, four = (x.real for x in acb(u / turn).modular_theta(tau, 0))
-        return one / (modulus * four), other * two / (modulus * four), other * three / four
 
-    return functions
+def _by_theta(turn: arb, tau: acb, modulus: arb, other: arb, u: Real) -> tuple[arb, arb, arb]:
+    one, two, three, four = acb(u / turn).modular_theta(tau, 0)
+    below = four.real
+    sn_below = modulus * below
+    return one.real / sn_below, other * two.real / sn_below, other * three.real / below
 
 
 def _beyond_one(m: Real) -> Functions:
@@ -91,36 +94,17 @@ class Weierstrass:
         above, below = -r / 2 + half, -r / 2 - half
         return cls(r, (above, below)) if sign > 0 else cls(above, (below, r))
 
-    @cached_property
+    @property
     def values(self) -> Callable[[Real], tuple[arb, arb]]:
         """t ↦ ℘(t) and ℘'(t) for real t, where no two roots are the same."""
-        others = self.others
-        return self._of_a_pair(others) if isinstance(others, acb) else self._of_three(*others)
-
-    def _of_three(self, e2: Real, e3: Real) -> Callable[[Real], tuple[arb, arb]]:
-        """By roots that are all real."""
-        apart = self.first - e3
-        k, functions = arb(apart).sqrt(), jacobi((e2 - e3) / apart)
-
-        def values(t: Real) -> tuple[arb, arb]:
-            sn, cn, dn = functions(k * t)
-            pole = k / sn
-            return e3 + pole * pole, -2 * pole * pole * pole * cn * dn
-
-        return values
-
-    def _of_a_pair(self, e2: acb) -> Callable[[Real], tuple[arb, arb]]:
-        """By a real root and two that are conjugate."""
-        e1 = self.first
-        size = abs(e1 - e2)
-        k, functions = size.sqrt(), jacobi(fmpq(1, 2) - 3 * e1 / (4 * size))
-
-        def values(t: Real) -> tuple[arb, arb]:
-            sn, cn, dn = functions(2 * k * t)
-            less = 1 - cn
-            return e1 + size * (1 + cn) / less, -4 * k * size * sn * dn / (less * less)
-
-        return values
+        e1, others = self.first, self.others
+        if isinstance(others, acb):
+            size = abs(e1 - others)
+            functions = jacobi(fmpq(1, 2) - 3 * e1 / (4 * size))
+            return partial(_by_a_pair, e1, size, size.sqrt(), functions)
+        e2, e3 = others
+        apart = e1 - e3
+        return partial(_by_three, e3, arb(apart).sqrt(), jacobi((e2 - e3) / apart))
 
     def half_period(self) -> arb:
         """Half of the real period, which is infinite where e₁ = e₂."""
@@ -136,6 +120,20 @@ class Weierstrass:
     def _others(self) -> tuple[Real, Real] | tuple[acb, acb]:
         pair = self.others
         return (pair, pair.conjugate()) if isinstance(pair, acb) else pair
+
+
+def _by_three(e3: Real, k: arb, functions: Functions, t: Real) -> tuple[arb, arb]:
+    """℘ and ℘' by roots that are all real; k² = e₁ − e₃."""
+    sn, cn, dn = functions(k * t)
+    pole = k / sn
+    return e3 + pole * pole, -2 * pole * pole * pole * cn * dn
+
+
+def _by_a_pair(e1: Real, size: arb, k: arb, functions: Functions, t: Real) -> tuple[arb, arb]:
+    """℘ and ℘' by a real root and two that are conjugate; k² = `size` = |e₁ − e₂|."""
+    sn, cn, dn = functions(2 * k * t)
+    less = 1 - cn
+    return e1 + size * (1 + cn) / less, -4 * k * size * sn * dn / (less * less)
 
 
 def double_root(g2: fmpq, g3: fmpq) -> fmpq:

@@ -45,7 +45,7 @@ def motions(hamiltonian: Hamiltonian) -> Callable[[Fraction, Fraction], Motion |
         return lambda p, q: None
     found = potential(hamiltonian)
     if found is not None:
-        return partial(potential_motion.motion, *found)
+        return potential_motion.motions(*found)
     flows = [(match.system.flow, match.values) for match in named(hamiltonian)]
 
     def motion(p: Fraction, q: Fraction) -> Motion | None:

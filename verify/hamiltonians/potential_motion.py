@@ -17,12 +17,12 @@ algebraic, t is transcendental (Schneider), so that more precision always tells 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
+from functools import partial
 from typing import Any
 
-from flint import arb, fmpq, fmpq_poly
+from flint import arb, ctx, fmpq, fmpq_poly
 
-from verify.arithmetic.flint_precision import at_each_precision, working_precision
+from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians.elliptic import NOT_KNOWN, Real, Weierstrass, double_root, waves
 from verify.hamiltonians.motion import Flow, Motion, State, Values, at_rest, exactly
 
@@ -32,89 +32,103 @@ _ELEMENTARY = "closed form: elementary functions"
 
 def in_potential(coefficients: Callable[[Values], Sequence[Fraction]]) -> Flow:
     """The flow of p²/2 + Σ c_k q^k, k = 0 … 4, with these coefficients."""
-    return lambda values, p, q: motion(fmpq(1), [exactly(c) for c in coefficients(values)], p, q)
+
+    def flow(values: Values, p: Fraction, q: Fraction) -> Motion:
+        return motions(fmpq(1), [exactly(c) for c in coefficients(values)])(p, q)
+
+    return flow
 
 
-def motion(alpha: fmpq, potential: Sequence[fmpq], p: Fraction, q: Fraction) -> Motion:
-    """The solution for H = α p²/2 + V(q) through (p, q), α ≠ 0 and V of degree up to 4."""
-    start = exactly(q)
-    curve = Curve.through(alpha, potential, exactly(p), start)
+def motions(alpha: fmpq, potential: Sequence[fmpq]) -> Callable[[Fraction, Fraction], Motion]:
+    """(p, q) ↦ the solution for H = α p²/2 + V(q) from there, α ≠ 0 and V of degree up to 4."""
+    return partial(_motion, Field.of(alpha, potential))
+
+
+def _motion(field: "Field", p: Fraction, q: Fraction) -> Motion:
+    curve = Curve.through(field, exactly(p), exactly(q))
     if curve.v == 0 and curve.b[1] == 0:
         return at_rest(p, q)
-    fast = curve.degree > 2  # where it goes to infinity it does so in a finite time
-
-    def state(t: arb) -> State:
-        y, slope = curve.at(t)
-        return slope / alpha, start + y
-
-    def blow_up(sign: int) -> arb | None:
-        to = curve.destination(sign)
-        return curve.time_to_infinity(sign, to) if to else None
-
-    def goes() -> str | None:
-        to = 0 if fast else curve.destination(1)
-        return f"q goes to {'+' if to > 0 else '−'}∞ as t grows" if to else None
-
-    method = _ELEMENTARY if curve.delta == 0 else _METHOD
-    return Motion(state, method, blow_up if fast and not curve.confined else None, goes)
+    ends = curve.degree > 2 and not curve.confined
+    method = _METHOD if curve.delta else _ELEMENTARY
+    return Motion(curve.state, method, curve.blow_up if ends else None, curve.goes)
 
 
 @dataclass(frozen=True)
-class Curve:
-    """y'² = b₀ + b₁ y + … + b₄ y⁴ from y = 0 with y' = v; a_k are the b_k of q, not of q − q₀."""
+class Field:
+    """q'² = a₀ + f(q) with q' = α p: what is the same for all motions, of which each has its a₀.
 
-    v: fmpq
-    b: tuple[fmpq, fmpq, fmpq, fmpq, fmpq]
-    a: tuple[fmpq, fmpq, fmpq, fmpq, fmpq]
+    The invariants of a₀ + f are g₂ = `g2[0]` + `g2[1]` a₀, and g₃ likewise.
+    """
+
+    alpha: fmpq
+    f: fmpq_poly
+    g2: tuple[fmpq, fmpq]
+    g3: tuple[fmpq, fmpq]
 
     @classmethod
-    def through(cls, alpha: fmpq, potential: Sequence[fmpq], p: fmpq, q: fmpq) -> "Curve":
-        a1, a2, a3, a4 = (-2 * alpha * c for c in [*potential[1:], *[fmpq(0)] * 4][:4])
-        b1 = a1 + q * (2 * a2 + q * (3 * a3 + q * (4 * a4)))
-        b2, b3 = a2 + q * (3 * a3 + q * (6 * a4)), a3 + q * (4 * a4)
-        v = alpha * p
-        b0 = v * v
-        a0 = b0 - q * (a1 + q * (a2 + q * (a3 + q * a4)))
-        return cls(v, (b0, b1, b2, b3, a4), (a0, a1, a2, a3, a4))
+    def of(cls, alpha: fmpq, potential: Sequence[fmpq]) -> "Field":
+        f = fmpq_poly([0, *(-2 * alpha * c for c in potential[1:])])
+        a1, a2, a3, a4 = (f[k] for k in range(1, 5))
+        g2 = a2**2 / 12 - a3 * a1 / 4, a4
+        g3 = a3 * a2 * a1 / 48 - a2**3 / 216 - a4 * a1**2 / 16, a4 * a2 / 6 - a3**2 / 16
+        return cls(alpha, f, g2, g3)
 
-    @cached_property
-    def degree(self) -> int:
-        return next((k for k in (4, 3, 2, 1) if self.b[k]), 0)
+
+@dataclass(slots=True, eq=False)
+class Curve:
+    """y'² = b₀ + b₁ y + … + b₄ y⁴ from y = 0 with y' = v, where q = `start` + y and q' = α p."""
+
+    alpha: fmpq
+    start: fmpq
+    v: fmpq
+    b: tuple[fmpq, fmpq, fmpq, fmpq, fmpq]
+    degree: int
+    invariants: tuple[fmpq, fmpq]  # g₂ and g₃
+    delta: fmpq
+    # ℘ and ℘' at one of flint's precisions: a motion is looked at for many times.
+    _function: tuple[int, Callable[[Real], tuple[arb, arb]]] | None = None
+
+    @classmethod
+    def through(cls, field: Field, p: fmpq, q: fmpq) -> "Curve":
+        moved, v = field.f(fmpq_poly([q, 1])), field.alpha * p
+        b = v * v, moved[1], moved[2], moved[3], moved[4]
+        # g₂ and g₃ are the same for the b_k as for the coefficients of q, which are shorter.
+        a0 = b[0] - moved[0]
+        g2, g3 = (constant + a0 * more for constant, more in (field.g2, field.g3))
+        delta = g2**3 - 27 * g3**2
+        return cls(field.alpha, q, v, b, max(moved.degree(), 0), (g2, g3), delta)
 
     @property
     def confined(self) -> bool:
         """Whether V rises without end on both sides, by its term of degree 4."""
         return bool(self.b[4] < 0)
 
-    @cached_property
-    def invariants(self) -> tuple[fmpq, fmpq]:
-        """g₂ and g₃, the same for the b_k as for the a_k, which are shorter."""
-        a0, a1, a2, a3, a4 = self.a
-        g2 = a4 * a0 - a3 * a1 / 4 + a2**2 / 12
-        g3 = a0 * (a4 * a2 / 6 - a3**2 / 16) + a3 * a2 * a1 / 48 - a2**3 / 216 - a4 * a1**2 / 16
-        return g2, g3
-
-    @cached_property
-    def delta(self) -> fmpq:
-        g2, g3 = self.invariants
-        return g2**3 - 27 * g3**2
+    def state(self, t: arb) -> State:
+        """p and q at time t."""
+        y, slope = self.at(t)
+        return slope / self.alpha, self.start + y
 
     def at(self, t: arb) -> tuple[arb, arb]:
         """y and y' at time t."""
         if self.degree <= 2:
             return self.linear(t)
         if self.delta:
-            return biermann(self.v, self.b, self.invariants[0], self.function().values(t))
+            return biermann(self.v, self.b, self.invariants[0], self.function()(t))
         d = double_root(*self.invariants)
         if self._between_saddles(d):
             return self.heteroclinic(t, d)
         c, s = waves(3 * d, t)
         return biermann(self.v, self.b, self.invariants[0], (d + 1 / s**2, -2 * c / s**3))
 
-    @cached_property
-    def function(self) -> Callable[[], Weierstrass]:
-        """Its ℘ at flint's precision: a motion is looked at for many times."""
-        return at_each_precision(lambda: Weierstrass.of(*self.invariants, self.delta))
+    def function(self) -> Callable[[Real], tuple[arb, arb]]:
+        """℘ and ℘' at flint's precision."""
+        known, bits = self._function, ctx.prec
+        if known is None or known[0] != bits:
+            known = self._function = bits, self._weierstrass().values
+        return known[1]
+
+    def _weierstrass(self) -> Weierstrass:
+        return Weierstrass.of(*self.invariants, self.delta)
 
     def linear(self, t: arb) -> tuple[arb, arb]:
         """The solution of y'' = b₁/2 + b₂ y."""
@@ -144,6 +158,17 @@ class Curve:
         return above / below, (d_above * below - above * d_below) / below**2
 
     # -- where the motion goes --------------------------------------------------------------------
+
+    def blow_up(self, sign: int) -> arb | None:
+        """See `verify.hamiltonians.motion.Motion`, of which this and `goes` are; of degree 3 or 4,
+        where it goes to infinity in a finite time."""
+        to = self.destination(sign)
+        return self.time_to_infinity(sign, to) if to else None
+
+    def goes(self) -> str | None:
+        """How it goes to infinity without an end in time."""
+        to = 0 if self.degree > 2 else self.destination(1)
+        return f"q goes to {'+' if to > 0 else '−'}∞ as t grows" if to else None
 
     def destination(self, sign: int) -> int:
         """1 or −1 where y goes to ±∞, forwards or backwards in time; 0 where it stays bounded.
@@ -182,7 +207,7 @@ class Curve:
             side = 1 if slope > 0 else -1
         else:
             return NOT_KNOWN
-        return self.function().inverse(b2 / 12 + v * root / 2, side)
+        return self._weierstrass().inverse(b2 / 12 + v * root / 2, side)
 
 
 def biermann(
