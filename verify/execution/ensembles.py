@@ -14,7 +14,8 @@ from typing import TypeVar
 from verify import lockstep
 from verify.execution.task import Task
 
-MOST_AT_ONCE = 16  # under way: two sets of lanes, so that one is full where a run in it has ended
+MOST_AT_ONCE = 24  # under way: three sets of lanes, so that they are full where runs have ended
+_LEAST_IN_GROUP = 16
 _MOST_IN_GROUP = 64  # so that results come in, and every worker has some
 
 Group = dict[str, Task]
@@ -29,7 +30,7 @@ def groups(tasks: Mapping[str, Task], workers: int) -> list[Group]:
     found: list[Group] = []
     for group in by_ensemble.values():
         share = -(-len(group) // max(workers, 1))
-        size = min(max(share, MOST_AT_ONCE), _MOST_IN_GROUP)
+        size = min(max(share, _LEAST_IN_GROUP), _MOST_IN_GROUP)
         names = iter(group)
         while part := sorted(islice(names, size), key=lambda name: tasks[name].turn):
             found.append({name: tasks[name] for name in part})
