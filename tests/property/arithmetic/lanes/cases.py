@@ -30,7 +30,7 @@ def f(x, y, s: 'sum', by: 'int', g: 'float'):
     return r, x * x, (r + r) * x, -x, abs(x), x - y, z, total, abs(total), shifted(x, by), \
 shifted(y, by), approx(x), approx(total), wide(g), g * g - g, n, m, e, i
 """
-# A sum that only holds its carries where they are moved on the way, from a product that is small.
+# A sum that only holds its carries where they are moved on the way.
 LONG_SUM = "\n    ".join(
     ("def f(x, c):", "z = x * x", *["z = z + z"] * 18, "return c - z, z - c, c - z - z")
 )
@@ -133,8 +133,10 @@ def row_of(x: int, y: int, width: int) -> Any:
 
 
 def small_squares(width: int) -> list[Any]:
+    """Rows for LONG_SUM: squares below a unit, which some paths have with carries all the same,
+    and others that are 2^18 times as large within the range."""
     draws = Draws(width)
-    x = (draws.bits(width // 2 - 30) for _ in range(40))
+    x = (draws.bits(size) for size in (width // 2 - 30, width - 30) for _ in range(40))
     return [(number(v, width), number(draws.bits(width - 12), width)) for v in x]
 
 
