@@ -117,22 +117,21 @@ def write_atomically(path: Path, content: str | bytes) -> None:
     Raises InputError where a link, a device, a pipe or a read-only file stands there, and OSError,
     which names the file, where it cannot be written.
     """
-    import tempfile  # which takes as long to import as many a command
-
     check_replaceable(path)
     raw = content.encode() if isinstance(content, str) else content
     path.parent.mkdir(parents=True, exist_ok=True)
-    prefix = f".{path.name[:100]}{_by(os.getpid())}"
-    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=prefix)
+    name = f".{path.name[:100]}{_by(os.getpid())}{os.urandom(8).hex()}"
+    temporary = path.with_name(name)  # known before it is made: an interruption may come at once
     try:
+        handle = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
         with os.fdopen(handle, "wb") as file:
             file.write(raw)
             file.flush()
             os.fsync(file.fileno())
-        Path(temporary).chmod(0o644)
-        Path(temporary).replace(path)
+        temporary.chmod(0o644)
+        temporary.replace(path)
     except BaseException as error:
-        Path(temporary).unlink(missing_ok=True)
+        temporary.unlink(missing_ok=True)
         if isinstance(error, OSError):  # a full disk names no file
             error.filename = str(path)
         raise

@@ -34,10 +34,17 @@ def fail(error: BaseException) -> Callable[..., None]:
     return failing
 
 
+def made_and_interrupted(*arguments: Any, open_it: Callable[..., int] = os.open) -> int:
+    """The file is there, and nobody has heard of it."""
+    os.close(open_it(*arguments))
+    raise KeyboardInterrupt
+
+
 FAILURES: dict[str, tuple[str, Any]] = {
     "disk-full-at-write": ("fdopen", FullDisk),
     "disk-full-at-sync": ("fsync", fail(OSError(errno.ENOSPC, "No space left on device"))),
     "replace-fails": ("replace", fail(OSError(errno.EACCES, "Permission denied"))),
+    "interrupted-as-it-is-made": ("open", made_and_interrupted),
     "interrupted-at-sync": ("fsync", fail(KeyboardInterrupt())),
     "interrupted-at-replace": ("replace", fail(KeyboardInterrupt())),
 }

@@ -74,22 +74,21 @@ def kept_tasks(
     from verify.commands.shared.progress import progress_bar
     from verify.execution.execute import Store
 
-    if keep is not None:
-        keepable(keep, option)
     store = Store(keep)
-    with progress_bar(
-        f"{len(tasks)} tasks", sum(task.cost for task in tasks.values()), unit=""
-    ) as advance:
+    try:
+        if keep is not None:
+            keepable(keep, option)
+        cost = sum(task.cost for task in tasks.values())
+        with progress_bar(f"{len(tasks)} tasks", cost, unit="") as advance:
 
-        def done(name: str, _: object) -> None:
-            advance(tasks[name].cost)
+            def done(name: str, _: object) -> None:
+                advance(tasks[name].cost)
 
-        try:
             yield store, done
-        except KeyboardInterrupt:
-            if keep is not None:
-                paths = map(store.path, tasks)  # one may be written and not yet told
-                finished = sum(path is not None and path.exists() for path in paths)
-                text = f"interrupted: {finished} of {len(tasks)} tasks are kept in {keep}"
-                click.echo(f"{text}; the same command goes on from there", err=True)
-            raise
+    except KeyboardInterrupt:
+        if keep is not None:
+            paths = map(store.path, tasks)  # one may be written and not yet told
+            finished = sum(path is not None and path.exists() for path in paths)
+            text = f"interrupted: {finished} of {len(tasks)} tasks are kept in {keep}"
+            click.echo(f"{text}; the same command goes on from there", err=True)
+        raise
