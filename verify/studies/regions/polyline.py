@@ -12,6 +12,7 @@ _DRAWN = 800  # a curve is drawn to this part of the picture's size
 _TRACED = 400  # points of an arc that is drawn as it is
 _MOST_POINTS = 40_000  # of a dense curve
 _BETWEEN = 16, 128  # points of a panel of 16 nodes, at least and at most
+_TINY = float(np.finfo(np.float64).tiny)
 _MORE = 1.5  # the arc between two points may be farther from its chord than its middle is
 
 
@@ -61,12 +62,13 @@ def to_draw(curves: Sequence[np.ndarray]) -> list[np.ndarray]:
 
 def _from_chord(points: np.ndarray, start: complex, end: complex) -> np.ndarray:
     """Distances of points of the complex plane from a segment."""
-    along = end - start
-    apart = points - start
-    if along:
-        apart /= along
-        apart -= np.minimum(np.maximum(apart.real, 0), 1)
-    found: np.ndarray = abs(apart) * (abs(along) or 1)
+    along, apart = end - start, points - start
+    length = abs(along)
+    if length < _TINY:  # a point, which nothing can be divided by
+        return abs(apart)
+    apart /= along
+    apart -= np.minimum(np.maximum(apart.real, 0), 1)
+    found: np.ndarray = abs(apart) * length
     return found
 
 

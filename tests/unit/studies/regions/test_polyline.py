@@ -51,6 +51,12 @@ def test_points_that_repeat_and_a_single_point_are_thinned_too() -> None:
     assert {tuple(p) for p in thinned(square, 1e-9)} == {(0, 0), (1, 0), (1, 1), (0, 1)}
 
 
+def test_no_point_of_the_smallest_curve_is_lost() -> None:
+    least = float(np.finfo(np.float64).smallest_subnormal)
+    triangle = np.array([[0, 0], [least, 0], [0, least]])
+    assert np.array_equal(thinned(triangle, 0), triangle)
+
+
 def test_text_is_read_back_to_five_digits() -> None:
     points = np.array([[1.23456789, -2e-7], [12345678.0, 0.0]])
     assert text(points) == "1.2346,-2e-07 1.2346e+07,0"
