@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from threading import RLock
-from typing import TypeVar
+from typing import Generic, TypeVar
 
 import flint
 
@@ -18,17 +18,20 @@ def working_precision(bits: int) -> Iterator[None]:
         yield
 
 
-def at_each_precision(make: Callable[[], T]) -> Callable[[], T]:
+class AtEachPrecision(Generic[T]):
     """What `make` gives at flint's precision, made once for each."""
-    made: dict[int, T] = {}
 
-    def given() -> T:
+    __slots__ = ("_made", "_make")
+
+    def __init__(self, make: Callable[[], T]) -> None:
+        self._make = make
+        self._made: dict[int, T] = {}
+
+    def __call__(self) -> T:
         bits = flint.ctx.prec
-        if bits not in made:
-            made[bits] = make()
-        return made[bits]
-
-    return given
+        if bits not in self._made:
+            self._made[bits] = self._make()
+        return self._made[bits]
 
 
 def sign_of(value: Callable[[], flint.arb]) -> int:

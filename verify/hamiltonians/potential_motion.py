@@ -20,9 +20,9 @@ from fractions import Fraction
 from functools import partial
 from typing import Any
 
-from flint import arb, ctx, fmpq, fmpq_poly
+from flint import arb, fmpq, fmpq_poly
 
-from verify.arithmetic.flint_precision import working_precision
+from verify.arithmetic.flint_precision import AtEachPrecision, working_precision
 from verify.hamiltonians.elliptic import NOT_KNOWN, Real, Weierstrass, double_root, waves
 from verify.hamiltonians.motion import Flow, Motion, State, Values, at_rest, exactly
 
@@ -85,8 +85,8 @@ class Curve:
     degree: int
     invariants: tuple[fmpq, fmpq]  # g₂ and g₃
     delta: fmpq
-    # ℘ and ℘' at one of flint's precisions: a motion is looked at for many times.
-    _function: tuple[int, Callable[[Real], tuple[arb, arb]]] | None = None
+    # ℘ and ℘' at flint's precision: a motion is looked at for many times.
+    function: Callable[[], Callable[[Real], tuple[arb, arb]]]
 
     @classmethod
     def through(cls, field: Field, p: fmpq, q: fmpq) -> "Curve":
@@ -95,8 +95,9 @@ class Curve:
         # g₂ and g₃ are the same for the b_k as for the coefficients of q, which are shorter.
         a0 = b[0] - moved[0]
         g2, g3 = (constant + a0 * more for constant, more in (field.g2, field.g3))
-        delta = g2**3 - 27 * g3**2
-        return cls(field.alpha, q, v, b, max(moved.degree(), 0), (g2, g3), delta)
+        invariants, delta = (g2, g3), g2**3 - 27 * g3**2
+        function = AtEachPrecision(partial(_function, invariants, delta))
+        return cls(field.alpha, q, v, b, max(moved.degree(), 0), invariants, delta, function)
 
     @property
     def confined(self) -> bool:
@@ -119,16 +120,6 @@ class Curve:
             return self.heteroclinic(t, d)
         c, s = waves(3 * d, t)
         return biermann(self.v, self.b, self.invariants[0], (d + 1 / s**2, -2 * c / s**3))
-
-    def function(self) -> Callable[[Real], tuple[arb, arb]]:
-        """℘ and ℘' at flint's precision."""
-        known, bits = self._function, ctx.prec
-        if known is None or known[0] != bits:
-            known = self._function = bits, self._weierstrass().values
-        return known[1]
-
-    def _weierstrass(self) -> Weierstrass:
-        return Weierstrass.of(*self.invariants, self.delta)
 
     def linear(self, t: arb) -> tuple[arb, arb]:
         """The solution of y'' = b₁/2 + b₂ y."""
@@ -207,7 +198,11 @@ class Curve:
             side = 1 if slope > 0 else -1
         else:
             return NOT_KNOWN
-        return self._weierstrass().inverse(b2 / 12 + v * root / 2, side)
+        return Weierstrass.of(*self.invariants, self.delta).inverse(b2 / 12 + v * root / 2, side)
+
+
+def _function(invariants: tuple[fmpq, fmpq], delta: fmpq) -> Callable[[Real], tuple[arb, arb]]:
+    return Weierstrass.of(*invariants, delta).values
 
 
 def biermann(

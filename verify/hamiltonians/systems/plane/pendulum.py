@@ -13,7 +13,7 @@ from fractions import Fraction
 
 from flint import arb
 
-from verify.arithmetic.flint_precision import at_each_precision, sign_of
+from verify.arithmetic.flint_precision import AtEachPrecision, sign_of
 from verify.hamiltonians.elliptic import NOT_KNOWN, Functions, Real, jacobi, quarter_period
 from verify.hamiltonians.motion import Motion, State, Values, at_rest, exactly
 from verify.hamiltonians.named_system import System
@@ -23,7 +23,7 @@ def _motion(_: Values, p: Fraction, q: Fraction) -> Motion:
     separatrix = q == 0 and abs(p) == 2
     start, d = exactly(q), exactly(p) / 2
 
-    @at_each_precision
+    @AtEachPrecision
     def begun() -> tuple[arb, arb, arb, arb, Functions]:
         turns = (start / (2 * arb.pi()) + 0.5).mid().floor()
         s, c = (start / 2 - turns * arb.pi()).sin_cos()
