@@ -15,7 +15,7 @@ from verify import lockstep
 from verify.execution.task import Task
 
 MOST_AT_ONCE = 24  # under way: three sets of lanes, so that they are full where runs have ended
-_LEAST_IN_GROUP = 16
+_LEAST_IN_GROUP = 16  # two sets, so that lanes are full
 _MOST_IN_GROUP = 64  # so that results come in, and every worker has some
 
 Group = dict[str, Task]
