@@ -1,12 +1,12 @@
-"""float64 kernels compiled by LLVM: on many points at once, in sets of lanes that take turns, and
-on one point.
+"""float64 kernels compiled by LLVM: on many points at once, in several vectors, and on one point.
 
 The source is a float64 kernel's own, in the language of `verify.arithmetic.wide.translate`; each
-operation is rounded as there, and functions are the C library's, lane by lane. So a point has the
+operation is rounded as there, and functions have the bits of the C library's. So a point has the
 bits that it has by itself.
 """
 
 import ctypes
+import re
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from struct import Struct
@@ -16,20 +16,16 @@ import numpy as np
 import numpy.typing as npt
 
 from verify.arithmetic.compiled.translation import Source
+from verify.arithmetic.lanes import libm_circle
+from verify.arithmetic.lanes.doubles import DoublesInLanes
 from verify.arithmetic.processor import LANES
 from verify.arithmetic.wide.translate import Target
 
 POINTS = 32  # a call's
 SETS = POINTS // LANES
+_CALL = re.compile(r"(\w+)\(")
 _FRACTION = 112  # bits of wide numbers, of which there are none
 Points = npt.NDArray[np.float64]
-
-
-def _target(fraction: int) -> Target:
-    from verify.arithmetic.lanes.ensemble import Ensemble
-    from verify.arithmetic.lanes.multiply_add import Portable
-
-    return Ensemble(fraction, Portable, sets=SETS)
 
 
 def on_points(source: str, names: Mapping[str, Any], carried: int) -> Callable[..., None]:
@@ -39,7 +35,13 @@ def on_points(source: str, names: Mapping[str, Any], carried: int) -> Callable[.
     are those between the steps and them. Raises NotImplementedError where the source has what is
     not in the language.
     """
-    layout, linked = _source(source, names, f"{SETS} sets", _target).compiled()
+    called = _CALL.findall(source)
+
+    def target(_: int) -> Target:
+        return DoublesInLanes(SETS, carried, called)
+
+    own = "circle of its own" if libm_circle.there() else "libm"
+    layout, linked = _source(source, names, f"{SETS} sets, {own}", target).compiled()
     function = linked()
     rows = len(layout.arguments)
 

@@ -32,20 +32,15 @@ class Ensemble:
 
     A wide number is a `Number`; a double or an integer is a vector, but for the steps and their
     counter, which are one for all lanes; a condition is a vector too, or one for all.
-
-    `sets`: so many sets of lanes take turns in each pass of the loop, so that what one waits for
-    another has time for. What a loop does not change is then the same for all of them.
     """
 
-    def __init__(self, fraction: int, multiply_add: type[MultiplyAdd], *, sets: int = 1) -> None:
-        self.module, self.sets = ir.Module(), sets
+    def __init__(self, fraction: int, multiply_add: type[MultiplyAdd]) -> None:
+        self.module = ir.Module()
         self.widths = sizes_of(fraction)
         self.numbers = Numbers(fraction, multiply_add())
         self.functions = LaneFunctions(self.module, self.numbers)
-        self.memory = Memory(self.numbers, self.widths, sets)
+        self.memory = Memory(self.numbers, self.widths)
         self._known: dict[str, Any] = {}
-        self._arguments: dict[str, tuple[int, str]] = {}  # where each lies, and its kind
-        self._of_sets: list[dict[str, Any]] = []  # after the loop, the variables of each set
         self._retirement: Retirement | None = None  # of the loop
         self._where: Value | None = None  # the lanes for which an `if` holds
 
@@ -59,16 +54,11 @@ class Ensemble:
         self._known["valid"] = ir.Constant(CONDITIONS, [1] * LANES)
         offset = 0
         for name, kind in arguments:
-            self._arguments[name] = offset, kind
-            self._known[name] = self._argument(name, 0)
+            self._known[name] = self.memory.read(self.b, main.args[0], offset, kind)
             offset += self.memory.size(kind)
         first = arguments[0][0] if arguments and arguments[0][1] == "int" else None
         if first:  # the steps, one number for all
             self._known[first] = self.b.extract_element(self._known[first], constant(0, 64))
-
-    def _argument(self, name: str, own: int) -> Any:
-        """An argument of one set of lanes."""
-        return self.memory.read(self.b, self.b.function.args[0], *self._arguments[name], own)
 
     def end(self) -> None:
         self.allocations.branch(self.allocations.block.parent.blocks[1])
@@ -80,19 +70,13 @@ class Ensemble:
             assert self._retirement is not None  # noqa: S101 - an `if` returns in the loop alone
             self._retirement.retire(self.b, self._where, values()[0], self._finish)
             return
-        for own, known in enumerate(self._of_sets or [self._known]):
-            self._known = known
-            self._write(values(), own)
-        self.b.ret_void()
-
-    def _write(self, values: Sequence[Any], own: int) -> None:
-        """The results of one set of lanes."""
-        b = self.b
+        b, found = self.b, values()
         if self._retirement:
-            values = [b.load(self._retirement.done), *values[1:]]
-        words = [word for value in values for word in self.memory.words(b, value)]
+            found = [b.load(self._retirement.done), *found[1:]]
+        words = [word for value in found for word in self.memory.words(b, value)]
         words.append(b.zext(self._lanes(self.load("valid")), WORDS))
-        self.memory.write(b, b.function.args[1], words, own)
+        self.memory.write(b, b.function.args[1], words)
+        b.ret_void()
 
     def when(self, condition: Value, body: Callable[[], None]) -> None:
         assert self._where is None  # noqa: S101 - the language nests no `if`
@@ -103,7 +87,10 @@ class Ensemble:
     def loop(self, name: str, limit: Value, body: Callable[[], None], changed: set[str]) -> None:
         b, before = self.b, dict(self._known)
         carried = [n for n in before if n in changed or n == "valid"]
-        of_sets = [self._carried(carried, own) for own in range(self.sets)]
+        variables = Variables(self.numbers)
+        for each in carried:
+            variables.add(b, self.allocations, each, before[each])
+        variables.keep(b, before)
         self._retirement = Retirement(b, self.allocations, limit)
         counter = self.allocations.alloca(I64)
         b.store(constant(0, 64), counter)
@@ -116,24 +103,13 @@ class Ensemble:
         at = b.load(counter)
         b.cbranch(b.icmp_signed("<", at, limit), inside, self._finish)
         b.position_at_end(inside)
-        for variables in of_sets:
-            self._known = before | {name: at} | variables.fetched(b, before)
-            body()
-            variables.keep(b, self._known)
+        self._known = before | {name: at} | variables.fetched(b, before)
+        body()
+        variables.keep(b, self._known)
         b.store(b.add(at, constant(1, 64)), counter)
         b.branch(head)
         b.position_at_end(self._finish)
-        self._of_sets = [before | variables.fetched(b, before) for variables in of_sets]
-
-    def _carried(self, names: Sequence[str], own: int) -> Variables:
-        """The variables of one set of lanes that a loop changes, as they are before it."""
-        variables, values = Variables(self.numbers), dict[str, Any]()
-        for name in names:
-            again = own and name in self._arguments
-            values[name] = self._argument(name, own) if again else self._known[name]
-            variables.add(self.b, self.allocations, name, values[name])
-        variables.keep(self.b, values)
-        return variables
+        self._known = before | variables.fetched(b, before)
 
     def leave(self) -> None:
         raise NotImplementedError("a loop that some lanes leave before others")

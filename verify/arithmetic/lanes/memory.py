@@ -1,7 +1,4 @@
-"""Numbers of all lanes in memory, as LLVM IR: 64-bit words from the lowest, each once a lane.
-
-Several sets of lanes lie word by word beside each other.
-"""
+"""Numbers of all lanes in memory, as LLVM IR: 64-bit words from the lowest, each once a lane."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -22,28 +19,26 @@ _ALIGNED = 8  # bytes; numbers come from Python's memory
 
 @dataclass(frozen=True)
 class Memory:
-    """`widths`: the bits of a number, by the kinds of wide numbers; `sets`: of lanes."""
+    """`widths`: the bits of a number, by the kinds of wide numbers."""
 
     numbers: Numbers
     widths: Mapping[str, int]
-    sets: int
 
     def size(self, kind: str) -> int:
         """The words of a number of that kind."""
         return words_of(self.widths[kind]) if kind in self.widths else 1
 
-    def read(self, b: ir.IRBuilder, memory: Value, offset: int, kind: str, own: int) -> Any:
-        """The number of that kind at a word offset, of one set of lanes."""
-        places = (self._place(b, memory, offset + i, own) for i in range(self.size(kind)))
+    def read(self, b: ir.IRBuilder, memory: Value, offset: int, kind: str) -> Any:
+        """The number of that kind at a word offset."""
+        places = (self._place(b, memory, offset + i) for i in range(self.size(kind)))
         words = [b.load(place, align=_ALIGNED) for place in places]
         if kind in self.widths:
             return self.numbers.from_words(b, words, self.widths[kind])
         return b.bitcast(words[0], DOUBLES) if kind == "float" else words[0]
 
-    def write(self, b: ir.IRBuilder, memory: Value, words: Sequence[Value], own: int) -> None:
-        """Writes the words of one set of lanes."""
+    def write(self, b: ir.IRBuilder, memory: Value, words: Sequence[Value]) -> None:
         for at, word in enumerate(words):
-            b.store(word, self._place(b, memory, at, own), align=_ALIGNED)
+            b.store(word, self._place(b, memory, at), align=_ALIGNED)
 
     def words(self, b: ir.IRBuilder, value: Any) -> list[Value]:
         """The words of a number; of one for all lanes, the same in each."""
@@ -53,7 +48,7 @@ class Memory:
             return [b.bitcast(value, WORDS)]
         return [value if value.type == WORDS else vectors.same(b, value, WORDS)]
 
-    def _place(self, b: ir.IRBuilder, memory: Value, at: int, own: int) -> Value:
-        """Where a word of one set of lanes lies."""
-        place = b.gep(memory, [constant((at * self.sets + own) * LANES, 64)])
+    def _place(self, b: ir.IRBuilder, memory: Value, at: int) -> Value:
+        """Where a word lies."""
+        place = b.gep(memory, [constant(at * LANES, 64)])
         return b.bitcast(place, WORDS.as_pointer())

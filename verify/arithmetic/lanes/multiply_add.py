@@ -152,7 +152,7 @@ class Fused(MultiplyAdd):
         total.add(b, b.bitcast(high, WORDS), _bits(_HIGH))
 
     def near(self, b: ir.IRBuilder, total: Sum, x: Value, y: Value) -> None:
-        above = self._fused(b, x, y, splat_double(_HIGH))
+        above = vectors.fused(b, x, y, splat_double(_HIGH))
         total.add(b, b.bitcast(above, WORDS), _bits(_HIGH))
 
     def both(
@@ -167,16 +167,12 @@ class Fused(MultiplyAdd):
     def _split(self, b: ir.IRBuilder, x: Value, y: Value, about: float) -> tuple[Value, Value]:
         """(`about` + the higher part of the product, the rest)."""
         start = splat_double(about)
-        above = self._fused(b, x, y, start)
-        return above, self._fused(b, x, y, b.fsub(start, above))
+        above = vectors.fused(b, x, y, start)
+        return above, vectors.fused(b, x, y, b.fsub(start, above))
 
     def _whole(self, b: ir.IRBuilder, x: Value) -> Value:
         """The bits of 1.5·2^52 + x, |x| ≤ 2^51 whole: those of 1.5·2^52, and x added."""
         return b.bitcast(b.fadd(x, splat_double(_ABOUT_0)), WORDS)
-
-    def _fused(self, b: ir.IRBuilder, x: Value, y: Value, z: Value) -> Value:
-        function = vectors.declared(b.module, f"llvm.fma.v{LANES}f64", DOUBLES, [DOUBLES] * 3)
-        return b.call(function, [x, y, z])
 
 
 # x ≥ 0 is in the low bits of 2^52 + x, and x with a sign, up to 2^51 in size, of 1.5·2^52 + x.

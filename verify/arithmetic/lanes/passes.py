@@ -19,7 +19,7 @@ from verify.arithmetic.wide.limbs import Value
 
 
 class Variables:
-    """Those variables of one set of lanes that a loop changes."""
+    """Those variables that a loop changes."""
 
     def __init__(self, numbers: Numbers) -> None:
         self.numbers = numbers

@@ -90,3 +90,9 @@ def declared(
 def intrinsic(module: ir.Module, name: str) -> ir.Function:
     """LLVM's function of that name, of one vector of doubles."""
     return declared(module, f"llvm.{name}.v{LANES}f64", DOUBLES, [DOUBLES])
+
+
+def fused(b: ir.IRBuilder, x: Value, y: Value, z: Value) -> Value:
+    """x y + z, rounded once."""
+    name, kinds = f"llvm.fma.v{LANES}f64", [DOUBLES] * 3
+    return b.call(declared(b.module, name, DOUBLES, kinds), [x, y, z])

@@ -98,7 +98,7 @@ class Target(Protocol):
         """A loop's statements in the order in which they are best written."""
 
     def give(self, values: Callable[[], Sequence[Value]]) -> None:
-        """Returns what they are, and whether they are valid; called for each of several sets."""
+        """Returns what they are, and whether they are valid."""
 
 
 class Translator:

@@ -1,0 +1,260 @@
+"""float64 kernels of many points in lockstep as LLVM IR: several vectors for each of its numbers.
+
+Nothing branches but the loop, in which no point ends before the others. Under an `if` a variable
+keeps its value in the lanes where the condition is false.
+
+What is done to one set of lanes stands together, up to the next call for all of them: it has the
+registers for itself, and the processor looks ahead to the next set while it waits.
+"""
+
+import ast
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from itertools import pairwise
+from typing import Any, NoReturn
+
+from llvmlite import ir
+
+from verify.arithmetic.lanes import libm_circle, vectors
+from verify.arithmetic.lanes.libm_circle import LibmCircle
+from verify.arithmetic.lanes.schedule import reordered
+from verify.arithmetic.lanes.vectors import CONDITIONS, DOUBLES, WORDS
+from verify.arithmetic.processor import LANES
+from verify.arithmetic.wide.limbs import I64, Value, constant
+from verify.arithmetic.wide.one_orbit import BOOL, float_function
+
+_B = ir.IRBuilder
+_ALIGNED = 8  # bytes; numbers come from Python's memory
+
+
+class DoublesInLanes:
+    """See `verify.arithmetic.wide.translate.Target`.
+
+    A number is a tuple of vectors, one for each of the `sets` of lanes; or a vector, where it is
+    the same for all of them. The steps and their counter are one word. The last arguments, so many
+    as are `carried`, differ from point to point. `called`: the functions that the source calls.
+    """
+
+    def __init__(self, sets: int, carried: int, called: Sequence[str]) -> None:
+        self.module, self.sets, self.carried = ir.Module(), sets, carried
+        self.own = partial(float_function, self.module)
+        wanted = [name for name in libm_circle.NAMES if name in called]
+        self.circle = LibmCircle(self.module, self.own, sets, wanted)
+        self._known: dict[str, Any] = {"valid": ir.Constant(BOOL, 1)}
+        self._found: tuple[Any, dict[str, Any]] = None, {}  # of what, and what the circle gave
+        self._where: Any = None  # the lanes for which an `if` holds
+
+    # -- the function -------------------------------------------------------------------------
+
+    def begin(self, arguments: Sequence[tuple[str, str]], products: int) -> None:
+        pointer = I64.as_pointer()
+        main = ir.Function(self.module, ir.FunctionType(ir.VoidType(), [pointer, pointer]), "main")
+        self.allocations = ir.IRBuilder(main.append_basic_block("entry"))
+        self._open(ir.IRBuilder(main.append_basic_block("body")))
+        first_carried = len(arguments) - self.carried
+        for at, (name, kind) in enumerate(arguments):
+            sets = range(self.sets if at >= first_carried else 1)
+            found = [self._read(main.args[0], at, own, kind) for own in sets]
+            self._known[name] = tuple(found) if at >= first_carried else found[0]
+
+    def _read(self, memory: Value, at: int, own: int, kind: str) -> Value:
+        place = self._place(self.b, memory, at, own)
+        if kind == "int":
+            place = self.b.bitcast(place, I64.as_pointer())
+        return self.b.load(place, align=_ALIGNED)
+
+    def _place(self, b: ir.IRBuilder, memory: Value, at: int, own: int) -> Value:
+        """Where the row of that number has what is of one set of lanes."""
+        place = b.gep(memory, [constant((at * self.sets + own) * LANES, 64)])
+        return b.bitcast(place, DOUBLES.as_pointer())
+
+    def end(self) -> None:
+        self.allocations.branch(self.allocations.block.parent.blocks[1])
+
+    def give(self, values: Callable[[], Sequence[Any]]) -> None:
+        if self._where is not None:
+            _refuse("points that end apart")
+        found, b = [*values(), constant(1, 64)], self._close()
+        for at, value in enumerate(found):
+            for own, x in enumerate(self._in_sets(value)):
+                word = b.bitcast(vectors.same(b, x, WORDS), DOUBLES) if x.type == I64 else x
+                b.store(word, self._place(b, b.function.args[1], at, own), align=_ALIGNED)
+        b.ret_void()
+
+    def when(self, condition: Any, body: Callable[[], None]) -> None:
+        assert self._where is None  # noqa: S101 - the language nests no `if`
+        self._where = condition
+        body()
+        self._where = None
+
+    def loop(self, name: str, limit: Value, body: Callable[[], None], changed: set[str]) -> None:
+        before = dict(self._known)
+        carried = [each for each in before if each in changed]
+        if any(self.kind(before[each]) == "int" for each in carried):
+            _refuse("integers that a loop changes")
+        places = {each: self._room() for each in carried}
+        self._keep(places)
+        b, counter = self._close(), self.allocations.alloca(I64)
+        b.store(constant(0, 64), counter)
+        head, inside, done = (b.append_basic_block(n) for n in ("head", "loop", "done"))
+        b.branch(head)
+        b.position_at_end(head)
+        at = b.load(counter)
+        b.cbranch(b.icmp_signed("<", at, limit), inside, done)
+        self._open(ir.IRBuilder(inside))
+        self._known = before | {name: at} | self._fetched(places)
+        body()
+        self._keep(places)
+        b = self._close()
+        b.store(b.add(at, constant(1, 64)), counter)
+        b.branch(head)
+        self._open(ir.IRBuilder(done))
+        self._known = before | self._fetched(places)
+
+    def leave(self) -> None:
+        _refuse("a loop that some points leave before others")
+
+    def ordered(self, statements: list[ast.stmt]) -> list[ast.stmt]:
+        return reordered(statements)
+
+    # -- sets of lanes ------------------------------------------------------------------------
+
+    def _open(self, b: ir.IRBuilder) -> None:
+        """Goes on there: with what all sets share, and then with one after the other."""
+        self.b = b
+        self._of_sets = [ir.IRBuilder(b.append_basic_block("set")) for _ in range(self.sets)]
+
+    def _close(self) -> ir.IRBuilder:
+        """Ends what is done set by set; writes what comes after."""
+        chain = [self.b, *self._of_sets]
+        for builder, following in pairwise(chain):
+            builder.branch(following.block)
+        return chain[-1]
+
+    def _each(self, operation: Callable[..., Value], *values: Any) -> Any:
+        """What the operation, which takes a builder first, gives for each of the sets; once where
+        all is the same for them."""
+        if not any(isinstance(x, tuple) for x in values):
+            return operation(self.b, *values)
+        return tuple(map(operation, self._of_sets, *map(self._in_sets, values)))
+
+    def _in_sets(self, value: Any) -> Sequence[Value]:
+        return value if isinstance(value, tuple) else (value,) * self.sets
+
+    def _room(self) -> tuple[Value, ...]:
+        """Memory of a number."""
+        return tuple(self.allocations.alloca(DOUBLES) for _ in range(self.sets))
+
+    def _keep(self, places: Mapping[str, tuple[Value, ...]]) -> None:
+        for name, own in places.items():
+            self._each(_B.store, self._known[name], own)
+
+    def _fetched(self, places: Mapping[str, tuple[Value, ...]]) -> dict[str, Any]:
+        return {name: self._each(_B.load, own) for name, own in places.items()}
+
+    # -- variables and numbers ----------------------------------------------------------------
+
+    def has(self, name: str) -> bool:
+        return name in self._known
+
+    def load(self, name: str) -> Any:
+        return self._known[name]
+
+    def assign(self, name: str, value: Any) -> None:
+        if self._where is not None:
+            value = self._each(_B.select, self._where, value, self._known[name])
+        self._known[name] = value
+
+    def integer(self, value: int) -> Value:
+        return constant(value, 64)
+
+    def constant(self, value: Any) -> Value:
+        return vectors.splat_double(value)
+
+    def kind(self, value: Any) -> str:
+        return "int" if not isinstance(value, tuple) and value.type == I64 else "float"
+
+    def converted(self, value: Any, kind: str) -> Any:
+        return vectors.same(self.b, self.b.sitofp(value, ir.DoubleType()), DOUBLES)
+
+    # -- operations ---------------------------------------------------------------------------
+
+    def negative(self, x: Any) -> Any:
+        return self._each(_B.neg if self.kind(x) == "int" else _B.fneg, x)
+
+    def sum(self, sign: str, x: Any, y: Any) -> Any:
+        whole = self.kind(x) == "int"
+        if sign == "+":
+            return self._each(_B.add if whole else _B.fadd, x, y)
+        return self._each(_B.sub if whole else _B.fsub, x, y)
+
+    def product(self, x: Any, y: Any) -> Any:
+        return self._each(_B.fmul, x, y)
+
+    def quotient(self, x: Any, y: Any) -> Any:
+        return self._each(_B.fdiv, x, y)
+
+    def compare(self, order: str, x: Any, y: Any) -> Any:
+        compare = _B.icmp_signed if self.kind(x) == "int" else _B.fcmp_ordered
+        return self._each(lambda b, *each: compare(b, order, *each), x, y)
+
+    def inside(self, x: Any, limit: Any) -> Any:
+        _refuse("limits of a number format")
+
+    def opposite(self, condition: Any) -> Any:
+        return self._each(_B.not_, condition)
+
+    def both(self, x: Any, y: Any) -> Any:
+        return self._each(lambda b, *each: b.and_(*(_lanes(b, c) for c in each)), x, y)
+
+    def either(self, x: Any, y: Any) -> Any:
+        return self._each(lambda b, *each: b.or_(*(_lanes(b, c) for c in each)), x, y)
+
+    # -- functions ----------------------------------------------------------------------------
+
+    def function(self, name: str, values: Sequence[Any]) -> list[Any]:
+        x = values[0]
+        if name in ("abs", "sqrt"):
+            own = vectors.intrinsic(self.module, "fabs" if name == "abs" else name)
+            return [self._each(lambda b, each: b.call(own, [each]), x)]
+        if name in libm_circle.NAMES and libm_circle.there():
+            return [self._by_circle(name, x)]
+        return [self._each(partial(_one_by_one, self.own(name)), x)]
+
+    def _by_circle(self, name: str, x: Any) -> Any:
+        """One of the functions that are found for all sets, and all of them at once."""
+        if self._found[0] is not x:
+            wanted = self.circle.wanted
+            sizes = self.sets, self.sets * len(wanted)
+            given, found = (self.allocations.alloca(DOUBLES, size=size) for size in sizes)
+            for own, (b, each) in enumerate(zip(self._of_sets, self._in_sets(x), strict=True)):
+                b.store(each, b.gep(given, [constant(own, 64)]))
+            b = self._close()
+            b.call(self.circle.function, [given, found])
+            self._open(b)
+            rows = {f: [constant(at * self.sets + own, 64) for own in range(self.sets)]
+                    for at, f in enumerate(wanted)}  # fmt: skip
+            values = {
+                f: tuple(b.load(b.gep(found, [k])) for b, k in zip(self._of_sets, own, strict=True))
+                for f, own in rows.items()
+            }
+            self._found = x, values
+        return self._found[1][name]
+
+
+def _one_by_one(function: ir.Function, b: ir.IRBuilder, x: Value) -> Value:
+    """The C library's, lane by lane."""
+    total = ir.Constant(DOUBLES, ir.Undefined)
+    for lane in range(LANES):
+        value = b.call(function, [b.extract_element(x, constant(lane, 64))])
+        total = b.insert_element(total, value, constant(lane, 64))
+    return total
+
+
+def _lanes(b: ir.IRBuilder, condition: Value) -> Value:
+    one_for_all = condition.type == BOOL
+    return vectors.same(b, condition, CONDITIONS) if one_for_all else condition
+
+
+def _refuse(what: str) -> NoReturn:
+    raise NotImplementedError(what)

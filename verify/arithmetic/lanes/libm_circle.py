@@ -1,0 +1,235 @@
+"""sin and cos of float64 in lanes, with the bits of glibc's own.
+
+glibc's are within 0.518 units in the last place of the value, and sin x with |x| < 0.8555 within
+0.548, as its source says (`s_sin.c`, since 2.28); what Gladman, Innocente, Mather and Zimmermann
+have found is 0.516 (*Accuracy of Mathematical Functions*). So where the value is within 0.482 or
+0.452 units of a float64, that is what glibc gives: the next one is too far off. Where it is not, in
+one lane of twelve, glibc is asked. With another C library, or a processor without fused
+multiply-add, it is asked for all.
+
+Here x = k·π/2 + r, sin r = r + r z (−1/6 + z T), cos r = 1 + z (−1/2 + z (1/24 + z U)), z = r² at
+most 0.617. z T and z U are Taylor polynomials in float64, all else is in pairs of such. What is
+lost, in u = 2^−53 of the value, which is a unit in the last place at most: z T is within 3.1 u of
+itself, for its first coefficient, its last two sums and z, and z² T is 0.0035 of the sine; z U as
+much, and z³ U 0.0005 of the cosine; what the series leave out is below 0.0011 u; r, which is not
+below 2^−12, is within 2^−37 u, and pairs lose as little. Together it is less than 0.012 units.
+"""
+
+import os
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from functools import cache, cached_property
+from math import factorial
+from typing import NamedTuple
+
+import flint
+from llvmlite import ir
+
+from verify.arithmetic import processor
+from verify.arithmetic.flint_precision import working_precision
+from verify.arithmetic.lanes import vectors
+from verify.arithmetic.lanes.double_double import Pair, exact_sum, plus, times
+from verify.arithmetic.lanes.vectors import DOUBLES, WORDS, fused, splat, splat_double
+from verify.arithmetic.processor import LANES
+from verify.arithmetic.wide.functions import arb_integer
+from verify.arithmetic.wide.limbs import I64, Value, constant
+from verify.arithmetic.wide.newton import DOUBLE
+from verify.arithmetic.wide.one_orbit import BOOL
+
+NAMES = ("sin", "cos")
+SURE, SURE_NEAR_0 = 0.47, 0.44  # of a unit in the last place, the latter for a sine
+_NEAR_0 = 0.8555  # |x| below it
+_FARTHEST, _LEAST = 2.0**18, 2.0**-12  # |x| at most, |r| at least
+_WHOLE = 1.5 * 2.0**52  # what is added to it is rounded to an integer, which its low bits hold
+_BITS = 33  # of the first two parts of π/2, so that k times each is exact
+_MANTISSA = (1 << 52) - 1
+_SINE = [Fraction((-1) ** n, factorial(2 * n + 1)) for n in range(9)]
+_COSINE = [Fraction((-1) ** n, factorial(2 * n)) for n in range(10)]
+
+
+class Reduced(NamedTuple):
+    """x = k π/2 + r: sin r and cos r before they are rounded, k in low bits, and in which lanes all
+    that is as close as is promised."""
+
+    sine: Pair
+    cosine: Pair
+    quarter: Value
+    within: Value
+
+
+class Rounded(NamedTuple):
+    """The nearest float64, and in which lanes it may not be what glibc gives."""
+
+    nearest: Value
+    unsure: Value
+
+
+@cache
+def there() -> bool:
+    """Whether the C library is one of which so much is known, and the processor has what it takes.
+
+    An operation that it must call is slower than the library's own function.
+    """
+    try:
+        name, _, version = (os.confstr("CS_GNU_LIBC_VERSION") or "").partition(" ")
+        known = name == "glibc" and tuple(map(int, version.split(".")[:2])) >= (2, 28)
+    except (AttributeError, ValueError, OSError):  # another library, or another system
+        return False
+    return known and processor.features().get("fma", False)
+
+
+@cache
+def _quarter_turn() -> tuple[float, float, float]:
+    """π/2 as a sum, its first two parts of few bits."""
+    places = 5 * _BITS
+    with working_precision(2 * places):
+        rest = Fraction(arb_integer(flint.arb.pi() / 2, places), 1 << places)
+    parts = []
+    for k in (1, 2):
+        unit = 1 << k * _BITS - 1
+        parts.append(Fraction(int(rest * unit), unit))
+        rest -= parts[-1]
+    return float(parts[0]), float(parts[1]), float(rest)
+
+
+class LibmCircle:
+    """Writes those of `wanted` into a module, for so many vectors at once; `own` gives the C
+    library's function of that name."""
+
+    def __init__(
+        self,
+        module: ir.Module,
+        own: Callable[[str], ir.Function],
+        sets: int,
+        wanted: Sequence[str] = NAMES,
+    ) -> None:
+        self.module, self.own, self.sets, self.wanted = module, own, sets, wanted
+
+    @cached_property
+    def function(self) -> ir.Function:
+        """`void(x, y)` in memory: what is wanted of the vectors, first all of one function.
+
+        It is called, since its code would be longer than all else, and fills all registers.
+        """
+        pointer, count = DOUBLES.as_pointer(), constant(self.sets, 64)
+        kind = ir.FunctionType(ir.VoidType(), [pointer, pointer])
+        function = ir.Function(self.module, kind, "libm_circle")
+        function.linkage = "internal"
+        function.attributes.add("noinline")
+        entry, each, after = map(function.append_basic_block, ("entry", "each", "after"))
+        b = ir.IRBuilder(entry)
+        b.branch(each)
+        b.position_at_end(each)
+        own, *unsure = (b.phi(I64) for _ in range(1 + len(self.wanted)))
+        for phi in (own, *unsure):
+            phi.add_incoming(constant(0, 64), entry)
+        values = rounded(b, b.load(b.gep(function.args[0], [own])))
+        shift, further = b.mul(own, constant(LANES, 64)), b.add(own, constant(1, 64))
+        for at, (name, bits) in enumerate(zip(self.wanted, unsure, strict=True)):
+            place = b.gep(function.args[1], [b.add(own, constant(at * self.sets, 64))])
+            b.store(values[name].nearest, place)
+            more = b.zext(b.bitcast(values[name].unsure, ir.IntType(LANES)), I64)
+            bits.add_incoming(b.or_(bits, b.shl(more, shift)), each)
+        own.add_incoming(further, each)
+        b.cbranch(b.icmp_unsigned("<", further, count), each, after)
+        b.position_at_end(after)
+        for at, (name, bits) in enumerate(zip(self.wanted, unsure, strict=True)):
+            places = (function.args[0], b.gep(function.args[1], [constant(at * self.sets, 64)]))
+            x, y = (b.bitcast(place, DOUBLE.as_pointer()) for place in places)
+            self._ask(b, self.own(name), x, y, bits.incomings[1][0])
+        b.ret_void()
+        return function
+
+    def _ask(
+        self, b: ir.IRBuilder, function: ir.Function, x: Value, y: Value, which: Value
+    ) -> None:
+        """y = f(x) where the bit of a lane is set."""
+        head, lane, done = map(b.append_basic_block, ("head", "lane", "done"))
+        before, zero = b.block, constant(0, 64)
+        b.branch(head)
+        b.position_at_end(head)
+        left = b.phi(I64)
+        left.add_incoming(which, before)
+        b.cbranch(b.icmp_unsigned("!=", left, zero), lane, done)
+        b.position_at_end(lane)
+        at = b.cttz(left, ir.Constant(BOOL, 1))
+        b.store(b.call(function, [b.load(b.gep(x, [at]))]), b.gep(y, [at]))
+        left.add_incoming(b.and_(left, b.sub(left, constant(1, 64))), lane)
+        b.branch(head)
+        b.position_at_end(done)
+
+
+def rounded(b: ir.IRBuilder, x: Value) -> dict[str, Rounded]:
+    """sin x and cos x."""
+    found = reduced(b, x)
+    odd = b.icmp_unsigned("!=", b.and_(found.quarter, splat(1)), splat(0))
+    near_0 = b.fcmp_ordered("<", _size(b, x), splat_double(_NEAR_0))
+    rooms = [splat_double(0.5 / share) for share in (SURE_NEAR_0, SURE)]
+    sine, sure = _rounded(b, found.sine, b.select(near_0, *rooms))
+    # There sin x is a cosine of r beyond π/4.
+    cosine, also_sure = _rounded(b, found.cosine, b.select(b.and_(near_0, odd), *rooms))
+    sin, cos = b.select(odd, cosine, sine), b.select(odd, sine, cosine)
+    quarters = found.quarter, b.add(found.quarter, splat(1))
+    near = b.select(odd, also_sure, sure), b.select(odd, sure, also_sure)
+    return {
+        name: Rounded(_signed(b, value, quarter), b.not_(b.and_(each, found.within)))
+        for name, value, quarter, each in zip(NAMES, (sin, cos), quarters, near, strict=True)
+    }
+
+
+def reduced(b: ir.IRBuilder, x: Value) -> Reduced:
+    """Within 0.012 units in the last place."""
+    parts = _quarter_turn()
+    whole, inverse = splat_double(_WHOLE), splat_double(float(1 / sum(map(Fraction, parts))))
+    turned = fused(b, x, inverse, whole)
+    back = b.fsub(whole, turned)  # −k
+    first, second, third = map(splat_double, parts)
+    near = exact_sum(b, fused(b, back, first, x), b.fmul(back, second))
+    r = exact_sum(b, near.high, fused(b, back, third, near.low))
+    within = b.and_(
+        b.fcmp_ordered("<=", _size(b, x), splat_double(_FARTHEST)),
+        b.fcmp_ordered(">=", _size(b, r.high), splat_double(_LEAST)),
+    )
+    return Reduced(*_of_small(b, r), b.bitcast(turned, WORDS), within)
+
+
+def _size(b: ir.IRBuilder, x: Value) -> Value:
+    return b.call(vectors.intrinsic(b.module, "fabs"), [x])
+
+
+def _of_small(b: ir.IRBuilder, r: Pair) -> tuple[Pair, Pair]:
+    """sin r and cos r, |r| ≤ π/4 and a little more."""
+    z = times(b, r, r)
+    more = times(b, r, times(b, z, _series(b, z.high, _SINE[1:])))
+    sine = plus(b, r.high, Pair(more.high, b.fadd(r.low, more.low)))
+    cosine = _series(b, z.high, _COSINE[2:])
+    for coefficient in _COSINE[1::-1]:
+        cosine = plus(b, splat_double(float(coefficient)), times(b, z, cosine))
+    return sine, cosine
+
+
+def _series(b: ir.IRBuilder, z: Value, coefficients: Sequence[Fraction]) -> Pair:
+    """Σ cₙ zⁿ, all but c₀ in float64."""
+    first, *others = coefficients
+    *lower, total = (splat_double(float(c)) for c in others)
+    for c in reversed(lower):
+        total = fused(b, total, z, c)
+    rest = splat_double(float(first - Fraction(float(first))))
+    return exact_sum(b, splat_double(float(first)), fused(b, total, z, rest))
+
+
+def _rounded(b: ir.IRBuilder, value: Pair, room: Value) -> tuple[Value, Value]:
+    """To the nearest float64, and where that is still so with `room` times as much beside it.
+
+    Not of a power of two, below which units are halves.
+    """
+    found = exact_sum(b, *value)
+    same = b.fcmp_ordered("==", fused(b, found.low, room, found.high), found.high)
+    fraction = b.and_(b.bitcast(found.high, WORDS), splat(_MANTISSA))
+    return found.high, b.and_(same, b.icmp_unsigned("!=", fraction, splat(0)))
+
+
+def _signed(b: ir.IRBuilder, x: Value, quarter: Value) -> Value:
+    """−x where the quarter turn's bit of value 2 is set."""
+    sign = b.shl(b.and_(quarter, splat(2)), splat(62))
+    return b.bitcast(b.xor(b.bitcast(x, WORDS), sign), DOUBLES)
