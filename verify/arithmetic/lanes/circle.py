@@ -42,6 +42,7 @@ from verify.arithmetic.lanes.table import Table, rows_of
 from verify.arithmetic.lanes.vectors import DIGIT, WORDS, splat
 from verify.arithmetic.wide.functions import arb_integer
 from verify.arithmetic.wide.limbs import Value
+from verify.arithmetic.wide.limbs import constant as word
 from verify.arithmetic.wide.size import width_of
 
 _ANGLES = 1 << 14  # table steps of a full turn
@@ -90,9 +91,9 @@ class Circle:
         r = self.reduction.rest(b, x, k)
         negative = b.icmp_signed("<", r[-1], splat(0))
         sine, versine = self._small(b, settled(b, negated(b, negative, r)))
-        index = b.and_(k, splat(_QUARTER - 1))
-        table = self._sines()
-        s, c = table.entries(b, index), table.entries(b, b.sub(splat(_QUARTER), index))
+        rows = vectors.each(b, b.and_(k, splat(_QUARTER - 1)))
+        s = self._sines().entries(b, rows)
+        c = self._sines().entries(b, [b.sub(word(_QUARTER, 64), row) for row in rows])
         product = self.fractions.product
         along = negated(b, negative, product(b, c, sine))
         across = negated(b, negative, product(b, s, sine))

@@ -72,7 +72,7 @@ class Exponential:
     def exp(self, b: ir.IRBuilder, x: Number) -> tuple[Value, list[Number]]:
         """e^x."""
         k, rho = self._reduced(b, x)
-        half = self._powers().entries(b, b.and_(k, splat(_OCTAVE - 1)))
+        half = self._powers().entries(b, vectors.each(b, b.and_(k, splat(_OCTAVE - 1))))
         mantissa = taken(b, half, self.fractions.product(b, half, self._small(b, rho)))
         a = vectors.down(b, k, _OCTAVE.bit_length() - 1)
         # Of m, which is half of one orbit's mantissa.

@@ -4,17 +4,19 @@ from collections.abc import Sequence
 
 from llvmlite import ir
 
-from verify.arithmetic.lanes.vectors import DIGIT, WORDS
+from verify.arithmetic.lanes.vectors import DIGIT, shuffled
 from verify.arithmetic.processor import LANES
-from verify.arithmetic.wide.limbs import I64, Value, words
+from verify.arithmetic.wide.limbs import I64, Value, constant, words
+
+_GROUP = 4  # words that are read at once, and then turned to one vector each
+_GROUPS = ir.VectorType(I64, _GROUP)
 
 
 def rows_of(values: Sequence[int], count: int) -> ir.Constant:
     """Fractions of `count` limbs, one after the other; 1 is the fraction next to it."""
     largest = 2 ** (DIGIT * count) - 1
-    return words(
-        [(min(v, largest) >> DIGIT * i) % (1 << DIGIT) for v in values for i in range(count)]
-    )
+    limbs = [(min(v, largest) >> DIGIT * i) % (1 << DIGIT) for v in values for i in range(count)]
+    return words([*limbs, *[0] * _GROUP])  # a group may reach beyond the last row
 
 
 class Table:
@@ -26,14 +28,35 @@ class Table:
         self.rows.linkage, self.rows.global_constant = "internal", True
         self.rows.initializer = rows
 
-    def entries(self, b: ir.IRBuilder, index: Value) -> list[Value]:
-        """Those of the lanes' indices."""
-        first = b.mul(index, ir.Constant(WORDS, [self.count] * LANES))
-        found = [ir.Constant(WORDS, ir.Undefined)] * self.count
-        for lane in range(LANES):
-            at = b.extract_element(first, ir.Constant(I64, lane))
-            for i in range(self.count):
-                path = [ir.Constant(I64, 0), b.add(at, ir.Constant(I64, i))]
-                limb = b.load(b.gep(self.rows, path, inbounds=True), typ=I64)
-                found[i] = b.insert_element(found[i], limb, ir.Constant(I64, lane))
-        return found
+    def entries(self, b: ir.IRBuilder, rows: Sequence[Value]) -> list[Value]:
+        """The limbs of the lanes' rows."""
+        first = [b.mul(row, constant(self.count, 64)) for row in rows]
+        found: list[Value] = []
+        for start in range(0, self.count, _GROUP):
+            found += _turned(b, [self._group(b, b.add(at, constant(start, 64))) for at in first])
+        return found[: self.count]
+
+    def _group(self, b: ir.IRBuilder, at: Value) -> Value:
+        place = b.gep(self.rows, [constant(0, 64), at], inbounds=True)
+        return b.load(b.bitcast(place, _GROUPS.as_pointer()), align=8)
+
+
+def _turned(b: ir.IRBuilder, groups: Sequence[Value]) -> list[Value]:
+    """The first words of all lanes, then the second ones, and so on."""
+    rows = groups
+    if LANES > _GROUP:  # two groups side by side in each vector
+        both = zip(groups[:_GROUP], groups[_GROUP:], strict=True)
+        rows = [shuffled(b, x, y, range(LANES)) for x, y in both]
+    halves = range(0, LANES, _GROUP)
+
+    def paired(x: Value, y: Value, *places: int) -> Value:
+        """Of each half the words at those places, of the second vector where they are 4 or more."""
+        moved = [at + half + (LANES - _GROUP) * (at >= _GROUP) for half in halves for at in places]
+        return shuffled(b, x, y, moved)
+
+    even, odd = (
+        [paired(x, y, *places) for x, y in (rows[:2], rows[2:])]
+        for places in ((0, 4, 2, 6), (1, 5, 3, 7))
+    )
+    low, high = (0, 1, 4, 5), (2, 3, 6, 7)
+    return [paired(*pair, *places) for places in (low, high) for pair in (even, odd)]

@@ -33,6 +33,17 @@ def same(b: ir.IRBuilder, value: Value, kind: ir.VectorType) -> Value:
     return b.shuffle_vector(first, ir.Constant(kind, ir.Undefined), zeros)
 
 
+def each(b: ir.IRBuilder, x: Value) -> list[Value]:
+    """The words of all lanes, as scalars."""
+    return [b.extract_element(x, ir.Constant(I64, lane)) for lane in range(LANES)]
+
+
+def shuffled(b: ir.IRBuilder, x: Value, y: Value, places: Sequence[int]) -> Value:
+    """The elements at those places of both vectors one after the other."""
+    kind = ir.VectorType(ir.IntType(32), len(places))
+    return b.shuffle_vector(x, y, ir.Constant(kind, list(places)))
+
+
 def masked(b: ir.IRBuilder, x: Value) -> Value:
     """The low 52 bits."""
     return b.and_(x, splat(_MASK))
