@@ -41,7 +41,8 @@ def on_points(source: str, names: Mapping[str, Any], carried: int) -> Callable[.
         return DoublesInLanes(SETS, carried, called)
 
     own = "circle of its own" if libm_circle.there() else "libm"
-    layout, linked = _source(source, names, f"{SETS} sets, {own}", target).compiled()
+    form = f"{SETS} sets, {carried} rows, {own}"
+    layout, linked = _source(source, names, form, target).compiled()
     function = linked()
     rows = len(layout.arguments)
 

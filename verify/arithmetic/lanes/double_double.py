@@ -1,7 +1,7 @@
 """Unevaluated sums of two float64 in lanes, high + low with |low| far below |high|.
 
 Of a product, and of a sum whose first term is the larger one, what is lost is some units of 2^−104
-of it.
+of it. Low may be some units in the last place of high: what takes high alone must allow for that.
 """
 
 from typing import NamedTuple

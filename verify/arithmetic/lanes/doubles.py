@@ -42,6 +42,7 @@ class DoublesInLanes:
         self.circle = LibmCircle(self.module, self.own, sets, wanted)
         self._known: dict[str, Any] = {"valid": ir.Constant(BOOL, 1)}
         self._found: tuple[Any, dict[str, Any]] = None, {}  # of what, and what the circle gave
+        self._left: set[str] = set()  # variables of loops that have ended
         self._where: Any = None  # the lanes for which an `if` holds
 
     # -- the function -------------------------------------------------------------------------
@@ -110,6 +111,8 @@ class DoublesInLanes:
         b.branch(head)
         self._open(ir.IRBuilder(done))
         self._known = before | self._fetched(places)
+        self._left |= {name, *changed} - before.keys()
+        self._found = None, {}
 
     def leave(self) -> None:
         _refuse("a loop that some points leave before others")
@@ -155,15 +158,23 @@ class DoublesInLanes:
     # -- variables and numbers ----------------------------------------------------------------
 
     def has(self, name: str) -> bool:
+        if name in self._left:
+            _refuse("a variable of a loop after it")
         return name in self._known
 
     def load(self, name: str) -> Any:
         return self._known[name]
 
     def assign(self, name: str, value: Any) -> None:
+        before = self._known.get(name)
+        if before is not None and self.kind(before) == "float":
+            value = self.converted(value, "float")
         if self._where is not None:
-            value = self._each(_B.select, self._where, value, self._known[name])
+            if before is None or self.kind(before) == "int":
+                _refuse("a variable that is set for some points, and was no number before")
+            value = self._each(_B.select, self._where, value, before)
         self._known[name] = value
+        self._left.discard(name)
 
     def integer(self, value: int) -> Value:
         return constant(value, 64)
@@ -175,6 +186,8 @@ class DoublesInLanes:
         return "int" if not isinstance(value, tuple) and value.type == I64 else "float"
 
     def converted(self, value: Any, kind: str) -> Any:
+        if self.kind(value) == kind:
+            return value
         return vectors.same(self.b, self.b.sitofp(value, ir.DoubleType()), DOUBLES)
 
     # -- operations ---------------------------------------------------------------------------
@@ -189,6 +202,8 @@ class DoublesInLanes:
         return self._each(_B.sub if whole else _B.fsub, x, y)
 
     def product(self, x: Any, y: Any) -> Any:
+        if self.kind(x) == "int":
+            _refuse("a product of integers")
         return self._each(_B.fmul, x, y)
 
     def quotient(self, x: Any, y: Any) -> Any:
@@ -214,6 +229,8 @@ class DoublesInLanes:
 
     def function(self, name: str, values: Sequence[Any]) -> list[Any]:
         x = values[0]
+        if self.kind(x) == "int":
+            _refuse("a function of an integer")
         if name in ("abs", "sqrt"):
             own = vectors.intrinsic(self.module, "fabs" if name == "abs" else name)
             return [self._each(lambda b, each: b.call(own, [each]), x)]

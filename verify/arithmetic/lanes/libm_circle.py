@@ -3,16 +3,18 @@
 glibc's are within 0.518 units in the last place of the value, and sin x with |x| < 0.8555 within
 0.548, as its source says (`s_sin.c`, since 2.28); what Gladman, Innocente, Mather and Zimmermann
 have found is 0.516 (*Accuracy of Mathematical Functions*). So where the value is within 0.482 or
-0.452 units of a float64, that is what glibc gives: the next one is too far off. Where it is not, in
-one lane of twelve, glibc is asked. With another C library, or a processor without fused
+0.452 units of a float64, that is what glibc gives: the next one is too far off. Where it is not, as
+for one value of fourteen, glibc is asked. With another C library, or a processor without fused
 multiply-add, it is asked for all.
 
 Here x = k·π/2 + r, sin r = r + r z (−1/6 + z T), cos r = 1 + z (−1/2 + z (1/24 + z U)), z = r² at
 most 0.617. z T and z U are Taylor polynomials in float64, all else is in pairs of such. What is
-lost, in u = 2^−53 of the value, which is a unit in the last place at most: z T is within 3.1 u of
-itself, for its first coefficient, its last two sums and z, and z² T is 0.0035 of the sine; z U as
-much, and z³ U 0.0005 of the cosine; what the series leave out is below 0.0011 u; r, which is not
-below 2^−12, is within 2^−37 u, and pairs lose as little. Together it is less than 0.012 units.
+lost, in u = 2^−53 of the value: z T is within 4.2 u of itself, 2.1 for the low part of z, which it
+does not have, the rest for its first coefficient and its sums; z² T is at most 0.0035 of the sine;
+z U is within as much, and z³ U at most 0.0005 of the cosine; what the series leave out is below
+0.0011 u; r, which is not below 2^−12, is within 2^−37 u, and pairs lose as little. Together it is
+less than 0.016 u, and that only of sines from ½ to 0.7072, where u of the value is 0.7072 units at
+most; of all others, less than 0.005 u. So it is less than 0.012 units in the last place.
 """
 
 import os
@@ -41,7 +43,7 @@ SURE, SURE_NEAR_0 = 0.47, 0.44  # of a unit in the last place, the latter for a 
 _NEAR_0 = 0.8555  # |x| below it
 _FARTHEST, _LEAST = 2.0**18, 2.0**-12  # |x| at most, |r| at least
 _WHOLE = 1.5 * 2.0**52  # what is added to it is rounded to an integer, which its low bits hold
-_BITS = 33  # of the first two parts of π/2, so that k times each is exact
+_BITS = 33  # of the first two parts of π/2: x less k times the first, and k times the second, exact
 _MANTISSA = (1 << 52) - 1
 _SINE = [Fraction((-1) ** n, factorial(2 * n + 1)) for n in range(9)]
 _COSINE = [Fraction((-1) ** n, factorial(2 * n)) for n in range(10)]
@@ -68,7 +70,7 @@ class Rounded(NamedTuple):
 def there() -> bool:
     """Whether the C library is one of which so much is known, and the processor has what it takes.
 
-    An operation that it must call is slower than the library's own function.
+    Where a fused multiply-add is itself a call, the library's own sine is faster.
     """
     try:
         name, _, version = (os.confstr("CS_GNU_LIBC_VERSION") or "").partition(" ")
@@ -103,6 +105,7 @@ class LibmCircle:
         sets: int,
         wanted: Sequence[str] = NAMES,
     ) -> None:
+        assert sets * LANES <= 64  # noqa: S101 - a word has a bit for each lane
         self.module, self.own, self.sets, self.wanted = module, own, sets, wanted
 
     @cached_property
@@ -120,17 +123,17 @@ class LibmCircle:
         b = ir.IRBuilder(entry)
         b.branch(each)
         b.position_at_end(each)
-        own, *unsure = (b.phi(I64) for _ in range(1 + len(self.wanted)))
-        for phi in (own, *unsure):
+        at_set, *unsure = (b.phi(I64) for _ in range(1 + len(self.wanted)))
+        for phi in (at_set, *unsure):
             phi.add_incoming(constant(0, 64), entry)
-        values = rounded(b, b.load(b.gep(function.args[0], [own])))
-        shift, further = b.mul(own, constant(LANES, 64)), b.add(own, constant(1, 64))
+        values = rounded(b, b.load(b.gep(function.args[0], [at_set])))
+        shift, further = b.mul(at_set, constant(LANES, 64)), b.add(at_set, constant(1, 64))
         for at, (name, bits) in enumerate(zip(self.wanted, unsure, strict=True)):
-            place = b.gep(function.args[1], [b.add(own, constant(at * self.sets, 64))])
+            place = b.gep(function.args[1], [b.add(at_set, constant(at * self.sets, 64))])
             b.store(values[name].nearest, place)
             more = b.zext(b.bitcast(values[name].unsure, ir.IntType(LANES)), I64)
             bits.add_incoming(b.or_(bits, b.shl(more, shift)), each)
-        own.add_incoming(further, each)
+        at_set.add_incoming(further, each)
         b.cbranch(b.icmp_unsigned("<", further, count), each, after)
         b.position_at_end(after)
         for at, (name, bits) in enumerate(zip(self.wanted, unsure, strict=True)):
@@ -221,12 +224,12 @@ def _series(b: ir.IRBuilder, z: Value, coefficients: Sequence[Fraction]) -> Pair
 def _rounded(b: ir.IRBuilder, value: Pair, room: Value) -> tuple[Value, Value]:
     """To the nearest float64, and where that is still so with `room` times as much beside it.
 
-    Not of a power of two, below which units are halves.
+    It is never said of a power of two, or of the number below one: there units change.
     """
     found = exact_sum(b, *value)
     same = b.fcmp_ordered("==", fused(b, found.low, room, found.high), found.high)
-    fraction = b.and_(b.bitcast(found.high, WORDS), splat(_MANTISSA))
-    return found.high, b.and_(same, b.icmp_unsigned("!=", fraction, splat(0)))
+    after = b.and_(b.add(b.bitcast(found.high, WORDS), splat(1)), splat(_MANTISSA))
+    return found.high, b.and_(same, b.icmp_unsigned(">", after, splat(1)))
 
 
 def _signed(b: ir.IRBuilder, x: Value, quarter: Value) -> Value:

@@ -1,4 +1,4 @@
-"""Tables of fractions, looked up lane by lane."""
+"""Tables of fractions, of which each lane has a row."""
 
 from collections.abc import Sequence
 
