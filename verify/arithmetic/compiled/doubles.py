@@ -16,8 +16,6 @@ import numpy as np
 import numpy.typing as npt
 
 from verify.arithmetic.compiled.translation import Source
-from verify.arithmetic.lanes import libm_circle
-from verify.arithmetic.lanes.doubles import DoublesInLanes
 from verify.arithmetic.processor import LANES
 from verify.arithmetic.wide.translate import Target
 
@@ -35,6 +33,9 @@ def on_points(source: str, names: Mapping[str, Any], carried: int) -> Callable[.
     are those between the steps and them. Raises NotImplementedError where the source has what is
     not in the language.
     """
+    from verify.arithmetic.lanes import libm_circle
+    from verify.arithmetic.lanes.doubles import DoublesInLanes
+
     called = _CALL.findall(source)
 
     def target(_: int) -> Target:
