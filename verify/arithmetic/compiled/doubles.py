@@ -19,7 +19,7 @@ from verify.arithmetic.compiled.translation import Source
 from verify.arithmetic.processor import LANES
 from verify.arithmetic.wide.translate import Target
 
-POINTS = 32  # a call's
+POINTS = 64  # a call's
 SETS = POINTS // LANES
 _CALL = re.compile(r"(\w+)\(")
 _FRACTION = 112  # bits of wide numbers, of which there are none
