@@ -9,19 +9,19 @@ registers for itself, and the processor looks ahead to the next set while it wai
 
 import ast
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
 from itertools import pairwise
 from typing import Any, NoReturn
 
 from llvmlite import ir
 
 from verify.arithmetic.lanes import libm_circle, vectors
+from verify.arithmetic.lanes.functions import of_doubles
 from verify.arithmetic.lanes.libm_circle import LibmCircle
 from verify.arithmetic.lanes.schedule import reordered
-from verify.arithmetic.lanes.vectors import CONDITIONS, DOUBLES, WORDS
+from verify.arithmetic.lanes.vectors import DOUBLES, WORDS
 from verify.arithmetic.processor import LANES
 from verify.arithmetic.wide.limbs import I64, Value, constant
-from verify.arithmetic.wide.one_orbit import BOOL, float_function
+from verify.arithmetic.wide.one_orbit import BOOL
 
 _B = ir.IRBuilder
 _ALIGNED = 8  # bytes; numbers come from Python's memory
@@ -37,9 +37,8 @@ class DoublesInLanes:
 
     def __init__(self, sets: int, carried: int, called: Sequence[str]) -> None:
         self.module, self.sets, self.carried = ir.Module(), sets, carried
-        self.own = partial(float_function, self.module)
         wanted = [name for name in libm_circle.NAMES if name in called]
-        self.circle = LibmCircle(self.module, self.own, sets, wanted)
+        self.circle = LibmCircle(self.module, sets, wanted)
         self._known: dict[str, Any] = {"valid": ir.Constant(BOOL, 1)}
         self._found: tuple[Any, dict[str, Any]] = None, {}  # of what, and what the circle gave
         self._left: set[str] = set()  # variables of loops that have ended
@@ -220,10 +219,10 @@ class DoublesInLanes:
         return self._each(_B.not_, condition)
 
     def both(self, x: Any, y: Any) -> Any:
-        return self._each(lambda b, *each: b.and_(*(_lanes(b, c) for c in each)), x, y)
+        return self._each(lambda b, *each: b.and_(*(vectors.in_lanes(b, c) for c in each)), x, y)
 
     def either(self, x: Any, y: Any) -> Any:
-        return self._each(lambda b, *each: b.or_(*(_lanes(b, c) for c in each)), x, y)
+        return self._each(lambda b, *each: b.or_(*(vectors.in_lanes(b, c) for c in each)), x, y)
 
     # -- functions ----------------------------------------------------------------------------
 
@@ -231,12 +230,11 @@ class DoublesInLanes:
         x = values[0]
         if self.kind(x) == "int":
             _refuse("a function of an integer")
-        if name in ("abs", "sqrt"):
-            own = vectors.intrinsic(self.module, "fabs" if name == "abs" else name)
-            return [self._each(lambda b, each: b.call(own, [each]), x)]
+        if name == "abs":
+            return [self._each(vectors.absolute, x)]
         if name in libm_circle.NAMES and libm_circle.there():
             return [self._by_circle(name, x)]
-        return [self._each(partial(_one_by_one, self.own(name)), x)]
+        return [self._each(lambda b, each: of_doubles(b, name, each), x)]
 
     def _by_circle(self, name: str, x: Any) -> Any:
         """One of the functions that are found for all sets, and all of them at once."""
@@ -244,33 +242,22 @@ class DoublesInLanes:
             wanted = self.circle.wanted
             sizes = self.sets, self.sets * len(wanted)
             given, found = (self.allocations.alloca(DOUBLES, size=size) for size in sizes)
-            for own, (b, each) in enumerate(zip(self._of_sets, self._in_sets(x), strict=True)):
-                b.store(each, b.gep(given, [constant(own, 64)]))
+            self._each(
+                lambda b, own, k: b.store(own, b.gep(given, [k])), self._in_sets(x), self._row(0)
+            )
             b = self._close()
             b.call(self.circle.function, [given, found])
             self._open(b)
-            rows = {f: [constant(at * self.sets + own, 64) for own in range(self.sets)]
-                    for at, f in enumerate(wanted)}  # fmt: skip
             values = {
-                f: tuple(b.load(b.gep(found, [k])) for b, k in zip(self._of_sets, own, strict=True))
-                for f, own in rows.items()
+                function: self._each(lambda b, k: b.load(b.gep(found, [k])), self._row(at))
+                for at, function in enumerate(wanted)
             }
             self._found = x, values
         return self._found[1][name]
 
-
-def _one_by_one(function: ir.Function, b: ir.IRBuilder, x: Value) -> Value:
-    """The C library's, lane by lane."""
-    total = ir.Constant(DOUBLES, ir.Undefined)
-    for lane in range(LANES):
-        value = b.call(function, [b.extract_element(x, constant(lane, 64))])
-        total = b.insert_element(total, value, constant(lane, 64))
-    return total
-
-
-def _lanes(b: ir.IRBuilder, condition: Value) -> Value:
-    one_for_all = condition.type == BOOL
-    return vectors.same(b, condition, CONDITIONS) if one_for_all else condition
+    def _row(self, at: int) -> tuple[Value, ...]:
+        """The places of a number's sets, rows of them one after the other."""
+        return tuple(constant(at * self.sets + own, 64) for own in range(self.sets))
 
 
 def _refuse(what: str) -> NoReturn:

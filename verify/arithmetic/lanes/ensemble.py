@@ -13,7 +13,7 @@ from llvmlite import ir
 
 from verify.arithmetic.lanes import vectors
 from verify.arithmetic.lanes.carries import Number
-from verify.arithmetic.lanes.functions import LaneFunctions
+from verify.arithmetic.lanes.functions import LaneFunctions, of_doubles
 from verify.arithmetic.lanes.memory import Memory
 from verify.arithmetic.lanes.multiply_add import MultiplyAdd
 from verify.arithmetic.lanes.numbers import Numbers
@@ -23,8 +23,6 @@ from verify.arithmetic.lanes.vectors import CONDITIONS, DOUBLES, WORDS
 from verify.arithmetic.processor import LANES
 from verify.arithmetic.wide.limbs import I64, Value, constant
 from verify.arithmetic.wide.size import INTEGER_BITS, sizes_of
-
-BOOL = ir.IntType(1)
 
 
 class Ensemble:
@@ -74,13 +72,13 @@ class Ensemble:
         if self._retirement:
             found = [b.load(self._retirement.done), *found[1:]]
         words = [word for value in found for word in self.memory.words(b, value)]
-        words.append(b.zext(self._lanes(self.load("valid")), WORDS))
+        words.append(b.zext(vectors.in_lanes(b, self.load("valid")), WORDS))
         self.memory.write(b, b.function.args[1], words)
         b.ret_void()
 
     def when(self, condition: Value, body: Callable[[], None]) -> None:
         assert self._where is None  # noqa: S101 - the language nests no `if`
-        self._where = self._lanes(condition)
+        self._where = vectors.in_lanes(self.b, condition)
         body()
         self._where = None
 
@@ -189,18 +187,14 @@ class Ensemble:
     def quotient(self, x: Value, y: Value) -> Value:
         return self.b.fdiv(x, y)
 
-    def _lanes(self, condition: Value) -> Value:
-        one_for_all = condition.type == BOOL
-        return vectors.same(self.b, condition, CONDITIONS) if one_for_all else condition
-
     def opposite(self, condition: Value) -> Value:
         return self.b.not_(condition)
 
     def both(self, x: Value, y: Value) -> Value:
-        return self.b.and_(self._lanes(x), self._lanes(y))
+        return self.b.and_(*(vectors.in_lanes(self.b, each) for each in (x, y)))
 
     def either(self, x: Value, y: Value) -> Value:
-        return self.b.or_(self._lanes(x), self._lanes(y))
+        return self.b.or_(*(vectors.in_lanes(self.b, each) for each in (x, y)))
 
     def compare(self, order: str, x: Any, y: Any) -> Value:
         b = self.b
@@ -231,7 +225,7 @@ class Ensemble:
         if name == "abs":
             if isinstance(x, Number):
                 return [self.numbers.absolute(b, x)]
-            return [b.call(vectors.intrinsic(self.module, "fabs"), [x])]
+            return [vectors.absolute(b, x)]
         if name == "approx":
             return [self.numbers.to_double(b, x)]
         if name == "shifted":
@@ -241,14 +235,14 @@ class Ensemble:
         if name == "wide":
             return [self._wide(x)]
         if not isinstance(x, Number):
-            return [self.functions.of_doubles(b, name, x)]
+            return [of_doubles(b, name, x)]
         valid, found = self.functions.call(b, name, x, self.allocations)
         self._require(valid)
         return list(found)
 
     def _wide(self, x: Value) -> Number:
         top = vectors.splat_double(2.0 ** (INTEGER_BITS - 1))
-        size = self.b.call(vectors.intrinsic(self.module, "fabs"), [x])
+        size = vectors.absolute(self.b, x)
         fits = self.b.fcmp_ordered("<", size, top)
         self._require(fits)
         x = self.b.select(fits, x, vectors.splat_double(0.0))  # what fits not has no words

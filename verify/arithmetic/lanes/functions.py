@@ -77,17 +77,6 @@ class LaneFunctions:
         found = [self.numbers.known([b.load(p) for p in own], self.numbers.size) for own in places]
         return valid, found
 
-    def of_doubles(self, b: ir.IRBuilder, name: str, x: Value) -> Value:
-        """A function of float64, lane by lane: the same bits as for one orbit."""
-        if name.removeprefix("f_") == "sqrt":
-            return b.call(vectors.intrinsic(self.module, "sqrt"), [x])
-        function = float_function(self.module, name)
-        total = ir.Constant(DOUBLES, ir.Undefined)
-        for lane in range(LANES):
-            value = b.call(function, [b.extract_element(x, constant(lane, 64))])
-            total = b.insert_element(total, value, constant(lane, 64))
-        return total
-
     # -- lane by lane -------------------------------------------------------------------------
 
     def _one_by_one(
@@ -153,6 +142,16 @@ class LaneFunctions:
         for i in range(count):
             b.store(limbs.limb(b, value, i), b.gep(pointer, [constant(LANES * (at + i), 64)]))
         return at + count
+
+
+def of_doubles(b: ir.IRBuilder, name: str, x: Value) -> Value:
+    """A function of float64, lane by lane: the same bits as for one orbit."""
+    if name.removeprefix("f_") == "sqrt":
+        return b.call(vectors.intrinsic(b.module, "sqrt"), [x])
+    function, total = float_function(b.module, name), ir.Constant(DOUBLES, ir.Undefined)
+    for lane, each in enumerate(vectors.each(b, x)):
+        total = b.insert_element(total, b.call(function, [each]), constant(lane, 64))
+    return total
 
 
 def _part(both: tuple[Value, list[Number]], index: int) -> tuple[Value, list[Number]]:

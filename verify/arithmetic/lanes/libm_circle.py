@@ -18,7 +18,7 @@ most; of all others, less than 0.005 u. So it is less than 0.012 units in the la
 """
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from functools import cache, cached_property
 from math import factorial
@@ -29,14 +29,20 @@ from llvmlite import ir
 
 from verify.arithmetic import processor
 from verify.arithmetic.flint_precision import working_precision
-from verify.arithmetic.lanes import vectors
 from verify.arithmetic.lanes.double_double import Pair, exact_sum, plus, times
-from verify.arithmetic.lanes.vectors import DOUBLES, WORDS, fused, splat, splat_double
+from verify.arithmetic.lanes.vectors import (
+    DOUBLES,
+    WORDS,
+    absolute,
+    fused,
+    splat,
+    splat_double,
+)
 from verify.arithmetic.processor import LANES
 from verify.arithmetic.wide.functions import arb_integer
 from verify.arithmetic.wide.limbs import I64, Value, constant
 from verify.arithmetic.wide.newton import DOUBLE
-from verify.arithmetic.wide.one_orbit import BOOL
+from verify.arithmetic.wide.one_orbit import BOOL, float_function
 
 NAMES = ("sin", "cos")
 SURE, SURE_NEAR_0 = 0.47, 0.44  # of a unit in the last place, the latter for a sine
@@ -95,18 +101,11 @@ def _quarter_turn() -> tuple[float, float, float]:
 
 
 class LibmCircle:
-    """Writes those of `wanted` into a module, for so many vectors at once; `own` gives the C
-    library's function of that name."""
+    """Writes those of `wanted` into a module, for so many vectors at once."""
 
-    def __init__(
-        self,
-        module: ir.Module,
-        own: Callable[[str], ir.Function],
-        sets: int,
-        wanted: Sequence[str] = NAMES,
-    ) -> None:
+    def __init__(self, module: ir.Module, sets: int, wanted: Sequence[str]) -> None:
         assert sets * LANES <= 64  # noqa: S101 - a word has a bit for each lane
-        self.module, self.own, self.sets, self.wanted = module, own, sets, wanted
+        self.module, self.sets, self.wanted = module, sets, wanted
 
     @cached_property
     def function(self) -> ir.Function:
@@ -139,34 +138,33 @@ class LibmCircle:
         for at, (name, bits) in enumerate(zip(self.wanted, unsure, strict=True)):
             places = (function.args[0], b.gep(function.args[1], [constant(at * self.sets, 64)]))
             x, y = (b.bitcast(place, DOUBLE.as_pointer()) for place in places)
-            self._ask(b, self.own(name), x, y, bits.incomings[1][0])
+            _ask(b, float_function(self.module, name), x, y, bits.incomings[1][0])
         b.ret_void()
         return function
 
-    def _ask(
-        self, b: ir.IRBuilder, function: ir.Function, x: Value, y: Value, which: Value
-    ) -> None:
-        """y = f(x) where the bit of a lane is set."""
-        head, lane, done = map(b.append_basic_block, ("head", "lane", "done"))
-        before, zero = b.block, constant(0, 64)
-        b.branch(head)
-        b.position_at_end(head)
-        left = b.phi(I64)
-        left.add_incoming(which, before)
-        b.cbranch(b.icmp_unsigned("!=", left, zero), lane, done)
-        b.position_at_end(lane)
-        at = b.cttz(left, ir.Constant(BOOL, 1))
-        b.store(b.call(function, [b.load(b.gep(x, [at]))]), b.gep(y, [at]))
-        left.add_incoming(b.and_(left, b.sub(left, constant(1, 64))), lane)
-        b.branch(head)
-        b.position_at_end(done)
+
+def _ask(b: ir.IRBuilder, function: ir.Function, x: Value, y: Value, which: Value) -> None:
+    """y = f(x) where the bit of a lane is set."""
+    head, lane, done = map(b.append_basic_block, ("head", "lane", "done"))
+    before, zero = b.block, constant(0, 64)
+    b.branch(head)
+    b.position_at_end(head)
+    left = b.phi(I64)
+    left.add_incoming(which, before)
+    b.cbranch(b.icmp_unsigned("!=", left, zero), lane, done)
+    b.position_at_end(lane)
+    at = b.cttz(left, ir.Constant(BOOL, 1))
+    b.store(b.call(function, [b.load(b.gep(x, [at]))]), b.gep(y, [at]))
+    left.add_incoming(b.and_(left, b.sub(left, constant(1, 64))), lane)
+    b.branch(head)
+    b.position_at_end(done)
 
 
 def rounded(b: ir.IRBuilder, x: Value) -> dict[str, Rounded]:
     """sin x and cos x."""
     found = reduced(b, x)
     odd = b.icmp_unsigned("!=", b.and_(found.quarter, splat(1)), splat(0))
-    near_0 = b.fcmp_ordered("<", _size(b, x), splat_double(_NEAR_0))
+    near_0 = b.fcmp_ordered("<", absolute(b, x), splat_double(_NEAR_0))
     rooms = [splat_double(0.5 / share) for share in (SURE_NEAR_0, SURE)]
     sine, sure = _rounded(b, found.sine, b.select(near_0, *rooms))
     # There sin x is a cosine of r beyond π/4.
@@ -190,14 +188,10 @@ def reduced(b: ir.IRBuilder, x: Value) -> Reduced:
     near = exact_sum(b, fused(b, back, first, x), b.fmul(back, second))
     r = exact_sum(b, near.high, fused(b, back, third, near.low))
     within = b.and_(
-        b.fcmp_ordered("<=", _size(b, x), splat_double(_FARTHEST)),
-        b.fcmp_ordered(">=", _size(b, r.high), splat_double(_LEAST)),
+        b.fcmp_ordered("<=", absolute(b, x), splat_double(_FARTHEST)),
+        b.fcmp_ordered(">=", absolute(b, r.high), splat_double(_LEAST)),
     )
     return Reduced(*_of_small(b, r), b.bitcast(turned, WORDS), within)
-
-
-def _size(b: ir.IRBuilder, x: Value) -> Value:
-    return b.call(vectors.intrinsic(b.module, "fabs"), [x])
 
 
 def _of_small(b: ir.IRBuilder, r: Pair) -> tuple[Pair, Pair]:

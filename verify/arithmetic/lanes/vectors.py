@@ -33,6 +33,11 @@ def same(b: ir.IRBuilder, value: Value, kind: ir.VectorType) -> Value:
     return b.shuffle_vector(first, ir.Constant(kind, ir.Undefined), zeros)
 
 
+def in_lanes(b: ir.IRBuilder, condition: Value) -> Value:
+    """A condition that may be one for all lanes, in each of them."""
+    return condition if condition.type == CONDITIONS else same(b, condition, CONDITIONS)
+
+
 def each(b: ir.IRBuilder, x: Value) -> list[Value]:
     """The words of all lanes, as scalars."""
     return [b.extract_element(x, ir.Constant(I64, lane)) for lane in range(LANES)]
@@ -101,6 +106,11 @@ def declared(
 def intrinsic(module: ir.Module, name: str) -> ir.Function:
     """LLVM's function of that name, of one vector of doubles."""
     return declared(module, f"llvm.{name}.v{LANES}f64", DOUBLES, [DOUBLES])
+
+
+def absolute(b: ir.IRBuilder, x: Value) -> Value:
+    """|x| of float64."""
+    return b.call(intrinsic(b.module, "fabs"), [x])
 
 
 def fused(b: ir.IRBuilder, x: Value, y: Value, z: Value) -> Value:

@@ -20,7 +20,9 @@ KERNELS = {
     "two angles": ("", ["z = sin(x) + cos(y)", "x = x + h * z", "y = y - sin(x) * h"]),
     "an angle again": ("", ["z = sin(x)", "y = y + h * z", "x = x + h * cos(x) + z * y"]),
     "roots and sizes": ("", ["x = sqrt(abs(x) + a)", "y = abs(y - x)"]),
-    "the C library's": ("", ["x = x + h * exp(y) + atan(x)", "y = log(abs(y) + a) - tanh_(x)"]),
+    "the C library's": (
+        "", ["x = x + h * exp(y) + atan(x)", "y = log(abs(y) + a) - sinh(x) / cosh(x)"],
+    ),
     "a condition": ("", ["x = x + h * y", "if x > a: x = x - a", "if y < x: y = y + h"]),
     "conditions together": (
         "", ["x = x * a + h", "if x > a and not y > x or y == a: x = y - h"],
@@ -40,11 +42,10 @@ KERNELS = {
 
 
 def source(before: str, lines: list[str]) -> str:
-    made = LOOP.format(
+    return LOOP.format(
         before=f"    {before}\n" if before else "",
         lines="".join(f"        {line}\n" for line in lines),
     )
-    return made.replace("tanh_(x)", "sinh(x) / cosh(x)")
 
 
 def differing(text: str, steps: int, seed: int) -> int:
