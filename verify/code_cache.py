@@ -1,4 +1,4 @@
-"""Machine code of kernels, kept on disk for the processes to come.
+"""Machine code of kernels, and what was read of a Hamiltonian, on disk for the processes to come.
 
 Contract: `load(key)` gives the very bytes that `keep(key, code)` was given, by this user, or None.
 What is loaded will be run. So the folder and each file in it must be this user's own and nobody

@@ -29,7 +29,7 @@ ROOMS = ("commands", "calls", "pages", "reference", "exploration", "strategies",
          "studies", "integrators", "runs", "flows", "kernels", "execution", "scenes", "proof",
          "schemes", "hamiltonians", "algebra", "arithmetic")  # fmt: skip
 GROUND = ("code_cache", "content", "discovery", "drawable", "errors", "files", "formats", "frames",
-          "lateral", "lockstep", "notebook", "prose", "verdict")  # fmt: skip
+          "late", "lateral", "lockstep", "notebook", "prose", "verdict")  # fmt: skip
 
 
 def floor(name: str) -> int:
@@ -65,6 +65,7 @@ BY_NAME = {
     "verify": {"import_module"},  # public names, when they are used
     "verify.calls.progress": {"modules"},  # IPython, where it is imported
     "verify.discovery": {"import_module"},  # files of a package, by their names
+    "verify.late": {"import_module"},  # sympy, when it is asked for something
     "verify.frames": {"import_module"},  # pandas and xarray, where they are installed
     "verify.from_type": {"modules"},  # hypothesis, where it is imported
     "verify.integrators.faults": {"modules"},  # numpy, where it is imported

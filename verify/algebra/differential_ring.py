@@ -3,16 +3,17 @@
 What it is for, and how zero is decided in it, is told in `verify.algebra.ring`.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
 import flint
-import sympy
 
-from verify.algebra.formula import symbol
 from verify.algebra.generator import Generator, Poly, System
 from verify.algebra.identities.polynomials import occurring, split
+from verify.late import sympy
 
 _SPARE = 6  # generators that later calls to `inverse` may still add
 _LONG = 64  # terms of what has no p and q in it, beyond which it may have a name
@@ -37,8 +38,7 @@ class DifferentialRing:
         self._gens = self.context.gens()
         self.zero, self.one = self.context.constant(0), self.context.constant(1)
         self.generators: list[Generator] = [
-            Generator(self.room + k, "variable", symbol(name))
-            for k, name in enumerate(self.variables)
+            Generator(self.room + k, "variable", name=name) for k, name in enumerate(self.variables)
         ]
         self._by_index = {g.index: g for g in self.generators}
         self.places = {name: self.room + k for k, name in enumerate(self.variables)}
@@ -49,7 +49,7 @@ class DifferentialRing:
         self._rules: dict[int, Callable[[str], Poly]] = {}
         # Of equations, by their unknowns; see `verify.algebra.implicit_unknowns`.
         self.systems: dict[int, System] = {}
-        self.expressions: dict[int, sympy.Expr] = {}  # of generators, by `verify.algebra.ring_text`
+        self.expressions: dict[int, sympy.Expr] = {}  # of generators
 
     # -- elements -----------------------------------------------------------------------------
 
@@ -157,19 +157,13 @@ class DifferentialRing:
 
     # -- generators ---------------------------------------------------------------------------
 
-    def add(
-        self,
-        kind: str,
-        expression: sympy.Expr | None,
-        argument: Poly | None = None,
-        degree: int = 1,
-    ) -> Poly:
+    def add(self, kind: str, argument: Poly | None = None, degree: int = 1) -> Poly:
         """A new generator; its relation and gradient are added by `relate` and `set_gradient`."""
         count = len(self.generators) - len(self.variables)
         if count >= self.room:
             raise RingFullError(f"more than {self.room} functions and denominators are needed")
         index = self.room - 1 - count
-        generator = Generator(index, kind, expression, argument, degree)
+        generator = Generator(index, kind, argument, degree)
         self.generators.append(generator)
         self._by_index[index] = generator
         return self._gens[index]
@@ -191,6 +185,10 @@ class DifferentialRing:
         gradient = {
             name: self.multiply(outer, part) for name, part in partials if not part.is_zero()
         }
+        self.set_partials(generator, gradient)
+
+    def set_partials(self, generator: Poly, gradient: dict[str, Poly]) -> None:
+        """The partial derivatives of the generator that are not 0, by the variables' names."""
         self._gradients[self._gens.index(generator)] = gradient
 
     def gradient(self, index: int) -> dict[str, Poly]:
@@ -231,6 +229,6 @@ class DifferentialRing:
             return known
         if len(self.generators) - len(self.variables) >= self.room:
             return x
-        name = self.add("stage", None, x)
+        name = self.add("stage", x)
         self.set_chain(name, [(self.one, x)])
         return name

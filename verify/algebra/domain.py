@@ -1,19 +1,20 @@
 """Where a formula is defined: conditions on p, q, h and the parameters, in few and simple ones."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from itertools import groupby, islice
 
-import sympy
-
 from verify.algebra.embedding import embed
 from verify.algebra.enclosure import Ball, enclose, points
-from verify.algebra.formula_text import to_text
+from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.requirement import Relation, Requirement
 from verify.algebra.ring import Decision, Poly, Ring
 from verify.errors import InputError
+from verify.late import sympy
 from verify.prose import Formula, Prose, joined, prose
 
 _SIGNS = {"!=": "≠", ">=": "≥", ">": ">", "<=": "≤", "<": "<"}
@@ -34,12 +35,12 @@ class Domain:
     words: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, requirements: Iterable[Requirement], *words: str) -> "Domain":
+    def of(cls, requirements: Iterable[Requirement], *words: str) -> Domain:
         """The domain in its simplest terms; what always holds is left out."""
         simple = {r for each in requirements for r in _simplified(*each)}
         return cls(tuple(_merged(simple)), tuple(dict.fromkeys(words)))
 
-    def __and__(self, other: "Domain") -> "Domain":
+    def __and__(self, other: Domain) -> Domain:
         if not other:
             return self
         return Domain.of((*self.requirements, *other.requirements), *self.words, *other.words)
@@ -73,7 +74,7 @@ class Domain:
     def _elements(self) -> tuple[Ring, list[Poly]]:
         return embed([r.expression for r in self.requirements], sorted(self.names))
 
-    def replaced(self, values: Mapping[sympy.Symbol, sympy.Expr]) -> "Domain":
+    def replaced(self, values: Mapping[sympy.Symbol, sympy.Expr]) -> Domain:
         """The domain with these values put in; InputError where a requirement then fails."""
         if not values or not self.requirements:
             return self
@@ -91,6 +92,8 @@ class Domain:
 
         The point gives a value to each of `names`.
         """
+        if not self.requirements:
+            return True
         ring, elements = self._elements
         answers = [
             holds(enclose(ring, x, point, _PRECISION), r.relation)

@@ -4,31 +4,33 @@
 sines (and of all exponentials) decide together over which basis they are expanded.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Sequence
 from functools import partial
 
 import flint
-import sympy
 
-from verify.algebra.functions_used import (
-    EXPONENTIAL,
-    OTHER,
-    TRIGONOMETRIC,
+from verify.algebra.expressions.functions_used import (
+    is_exponential,
     is_exponential_power,
+    is_hyperbolic,
     is_natural,
+    is_other,
+    is_trigonometric,
     levels_of,
     subexpressions,
 )
+from verify.algebra.expressions.monomials import monomials_of
 from verify.algebra.identities.numbers import rational_root
 from verify.algebra.lattice import lattice, lattice_and_turns
-from verify.algebra.monomials import monomials_of
 from verify.algebra.ring import Poly, Ring, RingFullError
 from verify.errors import LimitError
+from verify.late import sympy
 
 MAX_TERMS = 20000
 _MOST_BITS = 12  # of a number under a root, before it is scaled
-_HYPERBOLIC = (sympy.sinh, sympy.cosh, sympy.tanh)
 
 
 def embed(
@@ -93,13 +95,11 @@ class _Builder:
 
     def functions(self, level: Sequence[sympy.Expr]) -> None:
         """Generators for one level of functions, whose arguments are elements by now."""
-        self.family(
-            [f for f in level if isinstance(f, TRIGONOMETRIC)], self.circle, lattice_and_turns
-        )
-        exponentials = [f for f in level if isinstance(f, EXPONENTIAL) or f.is_Pow]
+        self.family([f for f in level if is_trigonometric(f)], self.circle, lattice_and_turns)
+        exponentials = [f for f in level if is_hyperbolic(f) or is_exponential(f) or f.is_Pow]
         self.family(exponentials, self.exponential, lattice)
         for function in level:
-            if isinstance(function, OTHER):
+            if is_other(function):
                 self.other(function)
 
     def family(
@@ -119,7 +119,7 @@ class _Builder:
             for k, b in enumerate(basis)
         ]
         for function, row in zip(functions, multiples, strict=True):
-            trigonometric = isinstance(function, TRIGONOMETRIC)
+            trigonometric = is_trigonometric(function)
             even, odd = ring.one, ring.zero
             for k, value in zip(row, values, strict=True):
                 c, s = value(k)
@@ -131,7 +131,7 @@ class _Builder:
             return even
         if isinstance(function, sympy.sin | sympy.sinh):
             return odd
-        if isinstance(function, sympy.exp | type(sympy.E)) or function.is_Pow:
+        if is_exponential(function) or function.is_Pow:
             return self.ring.reduce(even + odd)
         return self.ring.multiply(odd, self.inverse(even, function))
 
@@ -147,11 +147,11 @@ class _Builder:
         Returns k ↦ (even, odd) with even + odd = exp kb; without hyperbolic functions odd is 0.
         """
         ring = self.ring
-        if ring.find("cosh", b) is not None or any(isinstance(f, _HYPERBOLIC) for f in functions):
+        if ring.find("cosh", b) is not None or any(map(is_hyperbolic, functions)):
             return partial(self.multiple, *self.pair(b, "cosh", "sinh", sign=1), sign=1)
         e = ring.find("exp", b)
         if e is None:
-            e = ring.add("exp", sympy.exp(ring.expression(b)), b)
+            e = ring.add("exp", b)
             ring.set_gradient(e, e, b)
         return lambda k: (e**k if k >= 0 else ring.inverse(e) ** -k, ring.zero)
 
@@ -160,9 +160,7 @@ class _Builder:
         ring = self.ring
         c, s = ring.find(even, b), ring.find(odd, b)
         if c is None or s is None:
-            expression = ring.expression(b)
-            c = ring.add(even, getattr(sympy, even)(expression), b)
-            s = ring.add(odd, getattr(sympy, odd)(expression), b)
+            c, s = ring.add(even, b), ring.add(odd, b)
             ring.relate(s, 2, s**2 - sign * c**2 + sign)
             ring.set_gradient(c, sign * s, b)
             ring.set_gradient(s, c, b)
@@ -190,7 +188,7 @@ class _Builder:
             self.known[function] = same
             return
         outer = self.inverse(u if kind == "log" else ring.reduce(u * u + 1), function)
-        generator = ring.add(kind, function, u)
+        generator = ring.add(kind, u)
         ring.set_gradient(generator, outer, u)
         self.known[function] = generator
 
@@ -210,7 +208,7 @@ class _Builder:
         if node.is_Symbol:
             return ring.variable(node.name)
         if node is sympy.pi:
-            return ring.add("pi", sympy.pi)
+            return ring.add("pi")
         if node.is_Add:
             return self.sum(node)
         if node.is_Mul:
@@ -266,7 +264,7 @@ class _Builder:
         if common > 1 and factors:
             return self.root_of_power(u, common, degree, node)
         inverse = self.inverse(u, node)
-        root = ring.add("root", ring.expression(u) ** sympy.Rational(1, degree), u, degree)
+        root = ring.add("root", u, degree)
         ring.relate(root, degree, root**degree - u)
         ring.set_gradient(root, ring.multiply(root, inverse) / degree, u)
         return root

@@ -5,6 +5,8 @@ parameter name), exact numbers, + − * / ** (also written ^), `pi`, and the fun
 `FUNCTIONS`. Decimals are exact: `0.1` is 1/10. Everything else is an InputError.
 """
 
+from __future__ import annotations
+
 import ast
 import math
 import operator
@@ -14,23 +16,20 @@ from collections.abc import Callable, Iterable
 from functools import lru_cache
 from types import ModuleType
 
-import sympy
-
-from verify.algebra.constant_size import FUNCTIONS as NAMES
-from verify.algebra.constant_size import within_reach
-from verify.algebra.formula_text import to_text
+from verify.algebra.expressions.constant_size import FUNCTIONS as NAMES
+from verify.algebra.expressions.constant_size import within_reach
+from verify.algebra.expressions.formula_text import to_text
+from verify.algebra.expressions.monomials import DEEPEST, Monomials, is_of_name
 from verify.algebra.limits import check_power, checked
-from verify.algebra.monomials import DEEPEST, Monomials, is_of_name
 from verify.algebra.requirement import Requirement, of_divisor, of_function, of_power
 from verify.arithmetic.exact import rational
 from verify.errors import InputError, LimitError
+from verify.late import sympy
 
 MAX_LENGTH = 5000  # that of a chain of 64 masses is 4,240
 MAX_DEPTH = 60
 
-FUNCTIONS: dict[str, Callable[[sympy.Expr], sympy.Expr]] = {
-    name: getattr(sympy, name) for name in (*NAMES, "sqrt")
-}
+FUNCTIONS = (*NAMES, "sqrt")
 NOT_SMOOTH = frozenset(
     {"abs", "Abs", "fabs", "sign", "sgn", "floor", "ceil", "round", "trunc", "max", "min"}
 )
@@ -50,6 +49,12 @@ _PARAMETER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,31}")
 def symbol(name: str) -> sympy.Symbol:
     """The one symbol of that name: real, so that √(q²) is |q| and is seen not to be smooth."""
     return sympy.Symbol(name, real=True)
+
+
+def function(name: str) -> Callable[[sympy.Expr], sympy.Expr]:
+    """The function of that name, one of `FUNCTIONS`."""
+    made: Callable[[sympy.Expr], sympy.Expr] = getattr(sympy, name)
+    return made
 
 
 def parameter_name(name: str) -> str:
@@ -211,7 +216,7 @@ class _Reader:
             return self.finite(self.exponential(argument))
         if not argument.free_symbols and not within_reach(argument):
             raise self.beyond(f"{name} of a constant that is too large, or not defined")
-        value = self.finite(self.apply(FUNCTIONS[name], argument, shown=f"{name} of that argument"))
+        value = self.finite(self.apply(function(name), argument, shown=f"{name} of that argument"))
         # sympy turns tan(q + pi/2) into −cot(q), which is not a function of this list.
         return value.replace(sympy.cot, lambda x: 1 / sympy.tan(x))
 

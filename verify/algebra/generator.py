@@ -1,14 +1,16 @@
 """One generator of a ring: which function it is, of what, and how it is written."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 
 import flint
-import sympy
 
+from verify.algebra.formula import symbol
 from verify.algebra.identities.polynomials import Poly as Poly
 from verify.algebra.identities.polynomials import terms_of as terms_of
+from verify.late import sympy
 
 # Kinds that are functions of one argument, by the name that sympy and arb know them by.
 NAMED = ("sin", "cos", "exp", "sinh", "cosh", "log", "atan")
@@ -16,31 +18,25 @@ NAMED = ("sin", "cos", "exp", "sinh", "cosh", "log", "atan")
 
 @dataclass(frozen=True)
 class Generator:
-    """One ring generator: `kind` of function, its argument, and its expression.
+    """One ring generator: `kind` of function, and its argument.
 
-    `kind`: variable, pi, sin, cos, exp, sinh, cosh, log, atan, root (of `degree`), inverse, or
-    stage, which is its argument itself under a name, or solved: an unknown of a system of equations
-    (see `verify.algebra.implicit_unknowns`), the `degree`-th of it, of which its argument is 0.
-    `expression` is None where it is made from the argument's when it is asked for.
+    `kind`: variable, which has a `name`, pi, sin, cos, exp, sinh, cosh, log, atan, root (of
+    `degree`), inverse, or stage, which is its argument itself under a name, or solved: an unknown
+    of a system of equations (see `verify.algebra.implicit_unknowns`), the `degree`-th of it, of
+    which its argument is 0.
     """
 
     index: int
     kind: str
-    expression: sympy.Expr | None
     argument: Poly | None = None
     degree: int = 1
+    name: str = ""
 
     @property
     def inner(self) -> Poly:
         """The argument; of a function, an inverse, a stage, an unknown: not of a variable or π."""
         assert self.argument is not None  # noqa: S101 - the caller looks at the kind
         return self.argument
-
-    @cached_property
-    def name(self) -> str:
-        """Of a variable; sympy takes long to print it."""
-        assert self.kind == "variable"  # noqa: S101 - the caller looks at the kind
-        return str(self.expression)
 
 
 @dataclass(frozen=True)
@@ -60,7 +56,10 @@ class System:
 
 
 def generator_expression(g: Generator, argument: sympy.Expr) -> sympy.Expr:
-    """The generator's function of an expression."""
+    """The generator's function of an expression, which is not looked at where it has no argument
+    or is an unknown."""
+    if g.kind == "variable":
+        return symbol(g.name)
     return _FUNCTIONS[g.kind](argument, g.degree)
 
 
@@ -73,6 +72,8 @@ _FUNCTIONS: dict[str, Callable[[sympy.Expr, int], sympy.Expr]] = {
     "root": lambda x, degree: x ** sympy.Rational(1, degree),
     "inverse": lambda x, _: 1 / x,
     "stage": lambda x, _: x,
+    "pi": lambda x, _: sympy.pi,
+    "solved": lambda x, number: sympy.Symbol(f"Z_{number + 1}"),
 }
 
 

@@ -11,8 +11,6 @@ does, Newton's method fails, and the kernel says so.
 
 from collections.abc import Callable, Mapping, Sequence
 
-import sympy
-
 from verify.algebra.generator import System
 from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
@@ -23,7 +21,7 @@ Matrix = Sequence[Sequence[Poly]]
 
 def unknowns(ring: Ring, count: int) -> list[Poly]:
     """New generators, which `define` gives their equations."""
-    return [ring.add("solved", sympy.Symbol(f"Z_{k + 1}"), None, k) for k in range(count)]
+    return [ring.add("solved", None, k) for k in range(count)]
 
 
 def define(
@@ -120,7 +118,7 @@ class Elimination:
             return x
         found = ring.find("inverse", x)
         if found is None:
-            found = ring.add("inverse", None, x)
+            found = ring.add("inverse", x)
             ring.set_chain(found, [(-(found**2), x)])
         return found
 

@@ -1,18 +1,16 @@
 """What an expression must be to be handled exactly: finite, real, smooth and of bounded size."""
 
+from __future__ import annotations
+
 import math
 
-import sympy
-
-from verify.algebra.monomials import monomials_of
+from verify.algebra.expressions.monomials import monomials_of
 from verify.errors import InputError, LimitError
+from verify.late import sympy
 
 MAX_EXPONENT = 64
 MAX_NUMBER_BITS = 4000
 MAX_ROOT_BITS = 2000  # bits of a number times the index of its root: sympy looks for its factors
-
-_INFINITE = (sympy.nan, sympy.zoo, sympy.oo, -sympy.oo)
-_NOT_SMOOTH_NODES = (sympy.Abs, sympy.sign, sympy.Piecewise, sympy.Max, sympy.Min, sympy.floor)
 
 
 def checked(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
@@ -26,9 +24,9 @@ def checked(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
 
         result = without_absolute_values(result)
         numbers, powers, others = _by_kind(result)
-    if any(node in _INFINITE or isinstance(node, sympy.AccumBounds) for node in others):
+    if any(_is_no_number(node) or isinstance(node, sympy.AccumBounds) for node in others):
         raise InputError(source, text, "divides by zero, or is not finite: it is not defined")
-    if any(isinstance(node, _NOT_SMOOTH_NODES) for node in others):
+    if any(_has_an_edge(node) for node in others):
         raise LimitError(source, text, "is not smooth: the root of an even power is |x|")
     for number in numbers:
         if max(number.p.bit_length(), number.q.bit_length()) > MAX_NUMBER_BITS:
@@ -40,6 +38,17 @@ def checked(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
     if sympy.I in others or any(f.args[0].is_nonpositive for f in logarithms):
         raise InputError(source, text, "is not real, so it is not defined")
     return result
+
+
+def _is_no_number(node: sympy.Expr) -> bool:
+    """Whether it is infinite, or not defined."""
+    return node in (sympy.nan, sympy.zoo, sympy.oo, -sympy.oo)
+
+
+def _has_an_edge(node: sympy.Expr) -> bool:
+    """Whether it is a function that is not smooth."""
+    edged = (sympy.Abs, sympy.sign, sympy.Piecewise, sympy.Max, sympy.Min, sympy.floor)
+    return isinstance(node, edged)
 
 
 def _small_polynomial(x: sympy.Expr) -> bool:

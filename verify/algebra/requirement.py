@@ -3,11 +3,12 @@
 sympy simplifies as it builds: √q·√q becomes q, δ²/δ becomes δ, and what they ask for would be lost.
 """
 
+from __future__ import annotations
+
 from typing import Literal, NamedTuple
 
-import sympy
-
-from verify.algebra.monomials import monomials_of
+from verify.algebra.expressions.monomials import monomials_of
+from verify.late import sympy
 
 Relation = Literal["!=", ">=", ">"]
 

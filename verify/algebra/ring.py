@@ -20,7 +20,7 @@ Functions of sums are expanded over a basis of the lattice that their arguments 
 sin(p + q) and sin(p), or exp(q) and exp(2 q), are not taken for independent.
 """
 
-import sympy
+from __future__ import annotations
 
 from verify.algebra.differential_ring import DifferentialRing
 from verify.algebra.differential_ring import RingFullError as RingFullError
@@ -28,6 +28,7 @@ from verify.algebra.generator import Poly as Poly
 from verify.algebra.ring_text import as_expression, as_product, as_text
 from verify.algebra.zero_test import Decision as Decision
 from verify.algebra.zero_test import decided
+from verify.late import sympy
 
 _MOST_FACTORS = 4
 
@@ -71,7 +72,7 @@ class Ring(DifferentialRing):
         known = self.find("inverse", u)
         if known is not None:
             return known
-        w = self.add("inverse", 1 / self.expression(u), u)
+        w = self.add("inverse", u)
         self.relate(w, 1, w * u - 1)
         self.set_gradient(w, -(w**2), u)
         return w

@@ -1,16 +1,16 @@
 """Ring elements as expressions and as text."""
 
+from __future__ import annotations
+
 import re
 from collections.abc import Mapping
 
-import sympy
-
 from verify.algebra.differential_ring import DifferentialRing
-from verify.algebra.formula_text import to_text
+from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.generator import Generator, Poly, generator_expression, rational_of, terms_of
 from verify.algebra.identities.polynomials import occurring
+from verify.late import sympy
 
-_NO_NUMBERS = sympy.nan, sympy.zoo, sympy.oo, -sympy.oo
 _MOST_FACTORED = 300  # terms, beyond which factoring and sympy take seconds
 
 
@@ -23,7 +23,8 @@ def as_expression_at_0(ring: DifferentialRing, x: Poly, symbol: sympy.Symbol) ->
     """The same where the symbol is 0; nan where it is no expression there."""
     try:
         generators = {k: g.subs(symbol, 0) for k, g in _occurring(ring, x).items()}
-        if any(g.has(*_NO_NUMBERS) for g in generators.values()):
+        no_numbers = sympy.nan, sympy.zoo, sympy.oo, -sympy.oo
+        if any(g.has(*no_numbers) for g in generators.values()):
             return as_expression(ring, x).subs(symbol, 0)
     except TypeError:  # sympy has compared a nan within with a number
         return sympy.nan
@@ -47,10 +48,10 @@ def _with(x: Poly, generators: Mapping[int, sympy.Expr]) -> sympy.Expr:
 
 def _of(ring: DifferentialRing, g: Generator) -> sympy.Expr:
     """The generator as an expression, made once for each ring."""
-    if g.expression is not None:
-        return g.expression
     if g.index not in ring.expressions:
-        ring.expressions[g.index] = generator_expression(g, as_expression(ring, g.inner))
+        alone = g.argument is None or g.kind == "solved"
+        argument = sympy.S.Zero if alone else as_expression(ring, g.inner)
+        ring.expressions[g.index] = generator_expression(g, argument)
     return ring.expressions[g.index]
 
 

@@ -5,13 +5,14 @@ would never end. So the tree is rebuilt here from its leaves, and a constant is 
 function of it is made.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 
-import sympy
-
-from verify.algebra.constant_size import within_reach
+from verify.algebra.expressions.constant_size import within_reach
 from verify.algebra.limits import MAX_EXPONENT, check_power, checked
 from verify.errors import InputError
+from verify.late import sympy
 
 
 def substitute(

@@ -1,6 +1,6 @@
 """`verify.export`: a step map, its Jacobian and ΔJ as code."""
 
-from verify.algebra.formula_text import to_text
+from verify.algebra.expressions.formula_text import to_text
 from verify.calls.given import (
     GivenParameters,
     GivenScheme,

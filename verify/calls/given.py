@@ -13,7 +13,7 @@ from numbers import Integral
 from typing import Any
 
 from verify import schemes
-from verify.algebra.formula_text import to_text
+from verify.algebra.expressions.formula_text import to_text
 from verify.arithmetic.exact import Exact, whole
 from verify.errors import InputError, unknown
 from verify.execution.execute import Store, execute

@@ -5,9 +5,9 @@ import re
 import sympy
 
 from verify.algebra.domain import Domain
+from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.formula import read as read_formula
 from verify.algebra.formula import symbol
-from verify.algebra.formula_text import to_text
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 

@@ -17,10 +17,11 @@ from typing import NamedTuple
 import sympy
 
 from verify.algebra.domain import EVERYWHERE, Domain
+from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.formula import read, symbol
-from verify.algebra.formula_text import to_text
 from verify.algebra.requirement import Requirement
 from verify.algebra.ring import Decision, Poly, Ring
+from verify.algebra.symbols import H_STEP
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
 from verify.errors import InputError
@@ -30,7 +31,7 @@ from verify.prose import Formula, Number, Prose, joined, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.scene import Scene
 from verify.schemes import get
-from verify.schemes.step_map import H_STEP, StepMap, grouped, h_inside
+from verify.schemes.step_map import StepMap, grouped, h_inside
 from verify.verdict import Verdict
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Self
 from pydantic import Field
 
 from verify.algebra.domain import EVERYWHERE
-from verify.algebra.formula_text import to_text
+from verify.algebra.expressions.formula_text import to_text
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
 from verify.claims.formulas import step_map_of, within, witness_of

@@ -10,7 +10,7 @@ from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering
 from verify.commands.shared.cache import cache_option
 from verify.commands.shared.initial_value import listed, start_options
-from verify.commands.shared.input import PATH, keepable, scheme_option, with_hamiltonian
+from verify.commands.shared.input import PATH, keepable, scheme_option, with_kept_hamiltonian
 from verify.commands.shared.orbit_file import STANDARD_OUTPUT, check_orbit_file, write_orbit
 from verify.errors import InputError
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@with_hamiltonian
+@with_kept_hamiltonian
 @scheme_option
 @answering
 @cache_option
@@ -120,7 +120,7 @@ def _result(
     count = steps_from(steps, time, step_size)
     if keep is not None:
         keepable(keep)
-    asked = (exact.expression, exact.values, scheme, step_size, count, start, digits, arithmetic)
+    asked = (exact.formula, exact.values, scheme, step_size, count, start, digits, arithmetic)
     keeper = Keeper(keep, name_of(asked))
     with counting_bar("stepping", count) as tell:
         result = run_scheme(

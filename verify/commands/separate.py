@@ -8,14 +8,14 @@ from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering
 from verify.commands.shared.cache import cache_option
 from verify.commands.shared.initial_value import listed, start_options
-from verify.commands.shared.input import scheme_option, with_hamiltonian
+from verify.commands.shared.input import scheme_option, with_kept_hamiltonian
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
 
 
 @click.command()
-@with_hamiltonian
+@with_kept_hamiltonian
 @scheme_option
 @answering
 @cache_option

@@ -178,7 +178,8 @@ def compute_all(task: Task, keeper: Keeper) -> list[tuple[str, Frozen]]:
 def _modules(tasks: Mapping[str, Task]) -> list[str]:
     """What workers import before their first call, so that it is done once for all of them."""
     kinds = {type(task) for task in tasks.values()}
-    return sorted({name for kind in kinds for name in (kind.__module__, *kind.imports)})
+    own = {name for kind in kinds for name in (kind.__module__, *kind.imports)}
+    return sorted({*own, "sympy"})  # which each reads its H with, and which comes late by itself
 
 
 def _enough(tasks: Mapping[str, Task], calls: int, where: Placement) -> Placement:

@@ -7,7 +7,7 @@ from itertools import chain
 
 import sympy
 
-from verify.algebra.formula_text import to_text
+from verify.algebra.expressions.formula_text import to_text
 from verify.arithmetic.exact import text
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian

@@ -4,17 +4,18 @@ z = (p1 … pn, q1 … qn); z' = f with f = −∂H/∂q for a momentum and ∂H
 the Lie derivative, and D = ∂_t + X takes its place where H depends on t.
 """
 
+from __future__ import annotations
+
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from functools import cached_property, lru_cache
 
-import sympy
-
 from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.coefficient_ring import CoefficientRing
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.late import sympy
 
 
 class Flow(ABC):

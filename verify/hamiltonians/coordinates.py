@@ -3,13 +3,14 @@
 And names likely meant for something else where a coordinate is missing: x for q, pq for p*q.
 """
 
+from __future__ import annotations
+
 import re
 from collections.abc import Collection
 
-import sympy
-
-from verify.algebra.monomials import names_in
+from verify.algebra.expressions.monomials import names_in
 from verify.errors import InputError
+from verify.late import sympy
 
 _LIKELY = {
     "p": re.compile(r"[vPy]|[pPv]_?([1-9xyzr]|theta|phi)|(mom|vel)\w*|[xpq]_?dot|dp|dx"),

@@ -4,16 +4,18 @@ In n degrees of freedom its coordinates are p1 … pn and q1 … qn; what is der
 `verify.hamiltonians.canonical_field`.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
 from typing import Any
 
-import sympy
-
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.embedding import MAX_TERMS, embed
+from verify.algebra.expressions.formula_text import to_text
+from verify.algebra.expressions.monomials import names_in, reads_back
 from verify.algebra.formula import (
     MAX_DEPTH,
     MAX_LENGTH,
@@ -22,8 +24,6 @@ from verify.algebra.formula import (
     read,
     symbol,
 )
-from verify.algebra.formula_text import to_text
-from verify.algebra.monomials import names_in, reads_back
 from verify.algebra.requirement import of_expression
 from verify.algebra.ring import Poly
 from verify.algebra.substitution import substitute
@@ -32,12 +32,13 @@ from verify.drawable import drawn_by
 from verify.errors import InputError
 from verify.hamiltonians.coordinates import PLANE, check_coordinates, coordinates_of
 from verify.hamiltonians.vector_field import VectorField
+from verify.late import sympy
 from verify.notebook import aligned_latex, cut, short_latex
 
 
 # A report asks for the same few Hamiltonians thousands of times: once for every task.
 @lru_cache(maxsize=64)
-def _of_formula(formula: str) -> "Hamiltonian":
+def _of_formula(formula: str) -> Hamiltonian:
     """H as it is read from its own text: tasks, kept results and certificates hold that.
 
     It can be much longer than the formula, and sympy multiplies a number into a sum one level
@@ -57,7 +58,7 @@ def _of_formula(formula: str) -> "Hamiltonian":
 
 
 @lru_cache(maxsize=64)
-def _with_values(made: "Hamiltonian", values: tuple[tuple[str, Fraction], ...]) -> "Hamiltonian":
+def _with_values(made: Hamiltonian, values: tuple[tuple[str, Fraction], ...]) -> Hamiltonian:
     result = replace(made, values=values)
     result.domain  # noqa: B018 - refuses values for which H is not defined
     return result
@@ -83,7 +84,7 @@ class Hamiltonian:
         cls,
         formula: str,
         parameters: Mapping[str, Exact | None] | None = None,
-    ) -> "Hamiltonian":
+    ) -> Hamiltonian:
         """From a formula (see `verify.algebra.formula`) and parameter values; None leaves a symbol.
 
         Raises InputError for a bad formula, a bad value, a parameter that H does not have, or a
@@ -98,7 +99,7 @@ class Hamiltonian:
         check_coordinates(formula, made.expression, result.symbols)
         return result
 
-    def with_values(self, parameters: Mapping[str, Exact | None]) -> "Hamiltonian":
+    def with_values(self, parameters: Mapping[str, Exact | None]) -> Hamiltonian:
         """The same H with these parameter values instead of its present ones."""
         given = {}
         for name, value in parameters.items():
@@ -214,7 +215,7 @@ class Hamiltonian:
         made = sympy.lambdify((*given, *time), wanted, modules="math", cse=True)
         return made
 
-    def with_symbols(self) -> "Hamiltonian":
+    def with_symbols(self) -> Hamiltonian:
         """H with its parameters as symbols, but for those of value 0, whose terms vanish.
 
         This is what a kernel is compiled for: the other values are its run-time arguments.
@@ -222,7 +223,7 @@ class Hamiltonian:
         return self._with_symbols
 
     @cached_property
-    def _with_symbols(self) -> "Hamiltonian":
+    def _with_symbols(self) -> Hamiltonian:
         zeros = {symbol(n): sympy.S.Zero for n, v in self.values if v == 0}
         return Hamiltonian(self.expression.subs(zeros))
 
@@ -236,12 +237,13 @@ class Hamiltonian:
         self.check_planar()
         if not others and most_terms == MAX_TERMS:
             return _field_of(self), []
-        return _embedded(self, others, most_terms)
+        return embedded(self, others, most_terms)
 
 
-def _embedded(
+def embedded(
     hamiltonian: Hamiltonian, others: Sequence[sympy.Expr], most_terms: int
 ) -> tuple[VectorField, list[Poly]]:
+    """As `Hamiltonian.field`, in a ring of its own, made anew."""
     time = ("t",) if hamiltonian.time_dependent else ()
     variables = ("p", "q", "h", *time, *hamiltonian.symbols)
     ring, elements = embed([hamiltonian.exact, *others], variables, most_terms)
@@ -252,4 +254,4 @@ def _embedded(
 # field keeps what was derived along it.
 @lru_cache(maxsize=8)
 def _field_of(hamiltonian: Hamiltonian) -> VectorField:
-    return _embedded(hamiltonian, (), MAX_TERMS)[0]
+    return embedded(hamiltonian, (), MAX_TERMS)[0]

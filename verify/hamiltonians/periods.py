@@ -1,15 +1,16 @@
 """Periods of H(p, q, t): one that is found, one that is given for t, and whether q is an angle."""
 
+from __future__ import annotations
+
 import math
 from fractions import Fraction
 from functools import lru_cache
-
-import sympy
 
 from verify.algebra.formula import symbol
 from verify.arithmetic.exact import text
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.late import sympy
 
 
 def check_period(hamiltonian: Hamiltonian, period: Fraction) -> None:

@@ -4,17 +4,19 @@ Where H has the period P in t, a step from t is the step from t − m P. As P is
 not, t − m P is rounded: by 2^−20 of the format's unit at most, whatever m is.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from fractions import Fraction
 
 import flint
-import sympy
 
 from verify.arithmetic.arb import Ball, middle_and_radius, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.periods import period_in
+from verify.late import sympy
 
 _LARGE = 2**12  # of t, and of the angle that it makes: in the format are numbers below 2^15
 _SMALL = 16  # no period is looked for

@@ -1,22 +1,23 @@
 """The Taylor coefficients in h of a ring element, and the first of them that does not vanish."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-import sympy
-
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.embedding import embed
+from verify.algebra.formula import symbol
 from verify.algebra.limits import checked
 from verify.algebra.ring import Decision, Poly, Ring
 from verify.algebra.ring_text import as_expression_at_0
 from verify.algebra.series.power_series import Series
 from verify.algebra.series.quotient_series import QuotientSeries
 from verify.errors import InputError, LimitError
+from verify.late import sympy
 from verify.proof.parameters import not_zero_for
-from verify.schemes.step_map import H_STEP
 from verify.schemes.substep import h_inside
 
 MOST_ORDERS = 12  # Taylor coefficients looked at where a map is not a polynomial in h
@@ -50,7 +51,7 @@ class Leading:
             return EVERYWHERE
         return not_zero_for(*self.element, f"the coefficient of h^{self.power}")
 
-    def within(self, domain: Domain) -> "Leading":
+    def within(self, domain: Domain) -> Leading:
         """As it is in the domain: the witness lies there, and without a point nothing is said."""
         if self.decision.zero is None or not domain.requirements:
             return self
@@ -98,7 +99,7 @@ class Expansion:
             return self.ring, self._quotient.coefficients[n]
         while len(self._derivatives) <= n:
             self._derivatives.append(self.ring.diff(self._derivatives[-1], "h"))
-        value = as_expression_at_0(self.ring, self._derivatives[n], H_STEP)
+        value = as_expression_at_0(self.ring, self._derivatives[n], symbol("h"))
         try:
             checked(value, "map", str(value))
         except InputError as error:

@@ -7,11 +7,11 @@ import sympy
 
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.ring import Poly, Ring
+from verify.algebra.symbols import H_STEP
 from verify.errors import InputError
 from verify.notebook import aligned_latex, cut, html_table, short_latex
 from verify.prose import Prose, prose, read_prose
 from verify.schemes.scheme import Scheme
-from verify.schemes.step_map import H_STEP
 from verify.verdict import Verdict
 
 NOTHING = Prose()

@@ -4,12 +4,14 @@ where H depends on time.
 That it is not zero at some point says nothing of a single value of δ: 12 δ p q is zero at δ = 0.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Sequence
 from functools import reduce
 from itertools import islice, product
+from typing import TypeAlias
 
 import flint
-import sympy
 
 from verify.algebra.domain import Domain
 from verify.algebra.embedding import embed
@@ -20,6 +22,7 @@ from verify.algebra.ring import Poly, Ring
 from verify.algebra.zero_test import clear_inverses
 from verify.errors import InputError
 from verify.hamiltonians.coordinates import PLANE, coordinates_of
+from verify.late import sympy
 
 _STEP_AND_TIME = ("h", "t")
 _AT = (0, 1, 2)  # where functions of p and q have simple values
@@ -113,7 +116,7 @@ def _not_all_zero(rests: Sequence[sympy.Expr]) -> list[Requirement]:
 
 # -- of functions ---------------------------------------------------------------------------------
 
-_Point = tuple[sympy.Expr, ...]
+_Point: TypeAlias = "tuple[sympy.Expr, ...]"
 
 
 def _points(ring: Ring, x: Poly, factors: Sequence[Poly]) -> Iterator[_Point]:

@@ -20,13 +20,13 @@ from verify.algebra.embedding import embed
 from verify.algebra.enclosure import enclose, points
 from verify.algebra.linear_combination import combination, may_combine
 from verify.algebra.ring import Poly, Ring
+from verify.algebra.symbols import P, Q
 from verify.errors import InputError
 from verify.hamiltonians.vector_field import VectorField
 from verify.proof.order_proof import Proof
 from verify.proof.telescoping import potential_of_lie
 from verify.schemes.every_hamiltonian import TaylorSeries
 from verify.schemes.scheme import Scheme
-from verify.schemes.step_map import P, Q
 
 _MOST_MONOMIALS, _MOST_DEGREE = 300, 20
 _PLACES = (sympy.S.Zero, sympy.S.One, -sympy.S.One, sympy.pi, -sympy.pi)

@@ -1,12 +1,13 @@
 """Compositions of maps in closed form: of polynomial ones in the ring, and how large others are."""
 
-from collections.abc import Mapping, Sequence
+from __future__ import annotations
 
-import sympy
+from collections.abc import Mapping, Sequence
 
 from verify.algebra.formula import symbol
 from verify.algebra.generator import terms_of
 from verify.algebra.ring import Poly, Ring
+from verify.late import sympy
 
 Map = tuple[Poly, Poly]  # p' and q'
 STATE = ("p", "q")
@@ -45,7 +46,7 @@ def unfolded(ring: Ring, elements: Sequence[Poly], most: int) -> list[Poly] | No
     None where there are more than `most` terms on the way.
     """
     used = ring.generators_in(*elements)
-    images = {g.index: ring.variable(str(g.expression)) for g in used if g.kind == "variable"}
+    images = {g.index: ring.variable(g.name) for g in used if g.kind == "variable"}
     for g in used:
         if g.kind == "stage":
             image = _put(ring, g.inner, images, most)

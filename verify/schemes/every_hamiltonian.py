@@ -4,6 +4,8 @@
 `StageEquations` have more: their equations, which give det J without solving them.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -11,9 +13,9 @@ from fractions import Fraction
 from typing import Protocol, TypeVar, runtime_checkable
 
 import flint
-import sympy
 
 from verify.algebra.series.jets import JetRing, Jets, Poly, Series
+from verify.late import sympy
 from verify.prose import count
 from verify.schemes.conditions import Condition
 
@@ -150,7 +152,7 @@ class StageEquations:
         return f"{count(len(self.stages), 'stage')}, solved by Newton's method"
 
     @classmethod
-    def of_shears(cls, parts: Sequence[tuple[str, sympy.Rational]]) -> "StageEquations":
+    def of_shears(cls, parts: Sequence[tuple[str, sympy.Rational]]) -> StageEquations:
         """Kicks and drifts of so many step sizes, for H = T(p) + V(q)."""
         stages = []
         for kind, size in parts:

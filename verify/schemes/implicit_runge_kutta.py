@@ -17,13 +17,14 @@ import sympy
 from verify.algebra.implicit_unknowns import Matrix, define, unknowns
 from verify.algebra.ring import Poly
 from verify.algebra.series.power_series import Series, at_point, at_time, partials
+from verify.algebra.symbols import H_STEP, P, Q
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.conditions import ByConditions
 from verify.schemes.every_hamiltonian import BySeries
 from verify.schemes.implicit_tableau import ImplicitTableau
 from verify.schemes.scheme import Scheme
 from verify.schemes.stages import Point, Stages
-from verify.schemes.step_map import H_STEP, Expanded, P, Q, StepMap, Substep
+from verify.schemes.step_map import Expanded, StepMap, Substep
 from verify.schemes.tree_order import order_of
 
 _NAMES_PER_STAGE = 100

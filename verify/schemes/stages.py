@@ -78,9 +78,8 @@ class _Moved:
             image = self._known(g)
             if image is None:
                 new[g.index] = g
-                expression = g.expression if g.argument is None else None
                 argument = None if g.argument is None else self(g.argument)
-                image = target.add(g.kind, expression, argument, g.degree)
+                image = target.add(g.kind, argument, g.degree)
             self.images[g.index] = image
         for index, power, relation in source.relations:
             if index in new:
@@ -93,8 +92,7 @@ class _Moved:
 
     def _known(self, g: Generator) -> Poly | None:
         if g.kind == "variable":
-            name = str(g.expression)
-            return self.point[name] if name in self.point else self.target.variable(name)
+            return self.point[g.name] if g.name in self.point else self.target.variable(g.name)
         argument = None if g.argument is None else self(g.argument)
         return self.target.find(g.kind, argument, g.degree)
 

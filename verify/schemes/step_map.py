@@ -5,21 +5,22 @@ scheme, two shears for symplectic Euler; or one in stages (see `verify.schemes.s
 Runge–Kutta scheme; see `verify.schemes.substep`. 1 + ΔJ of the composition is the product along it.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-import sympy
-
 from verify.algebra.domain import EVERYWHERE, Domain
+from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.formula import read, symbol
-from verify.algebra.formula_text import to_text
 from verify.algebra.requirement import of_expression
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.power_series import Series
 from verify.errors import InputError, LimitError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.vector_field import VectorField
+from verify.late import sympy
 from verify.notebook import aligned_latex, short_latex
 from verify.schemes.composition import composed_polynomials, occurrences, polynomial
 from verify.schemes.conditions import Condition
@@ -28,7 +29,6 @@ from verify.schemes.substep import Substep as Substep
 from verify.schemes.substep import h_inside as h_inside
 
 Expanded = tuple[VectorField, Series, Series]  # H's field, and p' and q' in its ring
-P, Q, H_STEP = symbol("p"), symbol("q"), symbol("h")
 # Terms of the largest composition that is written in closed form: those in its parts, its own, and
 # those of its ΔJ.
 _MOST_IN_PARTS = 150
@@ -117,14 +117,14 @@ class StepMap:
     @classmethod
     def from_expressions(
         cls, hamiltonian: Hamiltonian, p_next: sympy.Expr, q_next: sympy.Expr
-    ) -> "StepMap":
+    ) -> StepMap:
         """A map from p' and q' as expressions in p, q, h; InputError where they are not smooth."""
         whole, (p1, q1) = hamiltonian.field(p_next, q_next)
         asked = Domain.of(r for x in (p_next, q_next) for r in of_expression(x, smooth=True))
         return cls(hamiltonian, (Substep(whole, p1, q1),), asked=asked)
 
     @classmethod
-    def from_formulas(cls, hamiltonian: Hamiltonian, p_next: str, q_next: str) -> "StepMap":
+    def from_formulas(cls, hamiltonian: Hamiltonian, p_next: str, q_next: str) -> StepMap:
         """A user's own map, from formulas in p, q, h, the parameters of H, and t where H has it.
 
         `q_next` may also use p_next, and then stands for the composition. Raises InputError.
@@ -146,9 +146,9 @@ class StepMap:
         """p' and q' in closed form. Raises InputError for a map that is given by equations."""
         if self.implicit:
             raise LimitError("map", str(self.hamiltonian.expression), _NOT_WRITTEN)
-        p1, q1 = P, Q
+        p, q = p1, q1 = symbol("p"), symbol("q")
         for step in self.substeps:
-            put = {P: p1, Q: q1}
+            put = {p: p1, q: q1}
             p1, q1 = (step.ring.expression(x).xreplace(put) for x in (step.p_next, step.q_next))
         return p1, q1
 
@@ -261,4 +261,5 @@ def grouped(ring: Ring, x: Poly) -> sympy.Expr:
 
 def _by_powers(ring: Ring, coefficients: Mapping[int, Poly]) -> sympy.Expr:
     """Σ hⁿ cₙ, each coefficient factored."""
-    return sympy.Add(*(H_STEP**n * ring.factored(c) for n, c in sorted(coefficients.items())))
+    h = symbol("h")
+    return sympy.Add(*(h**n * ring.factored(c) for n, c in sorted(coefficients.items())))

@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
+from verify.algebra.expressions.monomials import monomials_of, names_in
 from verify.algebra.formula import parse, symbol
-from verify.algebra.monomials import monomials_of, names_in
 
 NAMES = ("p", "q", "a", "delta", "x1")
 NUMBERS = st.builds(Fraction, st.integers(-9, 9), st.integers(1, 4))

@@ -27,7 +27,7 @@ from tests.helpers.sampled.formulas import (
     polynomials,
     trigonometric,
 )
-from verify.algebra.formula_text import to_text
+from verify.algebra.expressions.formula_text import to_text
 from verify.arithmetic.exact import decimal
 from verify.claims.check import prepare
 from verify.claims.file import load_claims

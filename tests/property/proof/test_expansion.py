@@ -22,8 +22,8 @@ from tests.helpers.sampled.formulas import (
 )
 from tests.helpers.sampled.maps import determinant, order_of_flow
 from verify.algebra.embedding import embed
+from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.formula import parse
-from verify.algebra.formula_text import to_text
 from verify.algebra.ring import Decision
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import MOST_ORDERS, Expansion, Leading, first_nonzero

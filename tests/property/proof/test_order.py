@@ -27,7 +27,7 @@ from tests.helpers.sampled.formulas import (
     trigonometric,
 )
 from verify import schemes
-from verify.algebra.formula_text import to_text
+from verify.algebra.expressions.formula_text import to_text
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove

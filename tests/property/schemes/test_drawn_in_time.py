@@ -15,8 +15,8 @@ from hypothesis import HealthCheck, Phase, find, given, reject, settings
 from hypothesis import strategies as st
 
 from tests.examples import drawn
+from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.formula import symbol
-from verify.algebra.formula_text import to_text
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove

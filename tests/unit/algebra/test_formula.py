@@ -9,8 +9,8 @@ from hypothesis import given
 from tests.examples import drawn
 from tests.helpers.sampled.formulas import NAMES, evaluate, formulas, is_real, plain, points
 from verify.algebra.embedding import embed
+from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.formula import parse, symbol
-from verify.algebra.formula_text import to_text
 from verify.errors import InputError
 
 P, Q = symbol("p"), symbol("q")

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
+from verify.algebra.expressions.monomials import Monomials
 from verify.algebra.formula import _Reader, parse
-from verify.algebra.monomials import Monomials
 from verify.errors import InputError
 
 _numbers = st.sampled_from(

@@ -7,9 +7,9 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from verify.algebra import formula
+from verify.algebra.expressions.formula_text import to_text
+from verify.algebra.expressions.monomials import reads_back
 from verify.algebra.formula import MAX_LENGTH, parse, symbol
-from verify.algebra.formula_text import to_text
-from verify.algebra.monomials import reads_back
 from verify.errors import InputError
 from verify.hamiltonians import hamiltonian
 from verify.hamiltonians.hamiltonian import Hamiltonian

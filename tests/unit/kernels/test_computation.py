@@ -124,7 +124,7 @@ def in_order(evaluator: Evaluator, x: Poly, order: tuple[int, ...], name: str) -
     """The sum with p and q, or q and p, by Horner's or Estrin's rule."""
     ring, program = evaluator.ring, evaluator.program
     used = ring.generators_in(x)
-    at = {str(g.expression): (g.index, evaluator.at(g)) for g in used}
+    at = {g.name: (g.index, evaluator.at(g)) for g in used}
     present = [n for n in STATE if n in at]
     places = [at[n][0] for n in present]
     static = {i for n, (i, _) in at.items() if n not in STATE}

@@ -6,13 +6,14 @@ import sympy
 
 from tests.helpers.sampled.formulas import P, Q
 from verify import schemes
+from verify.algebra.symbols import H_STEP
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof import hamiltonian_of_field, modified
 from verify.proof.modified import modified_of
 from verify.proof.modified_equation import ModifiedEquation, Term, judged
 from verify.proof.modified_field import Vector
-from verify.schemes.step_map import H_STEP, StepMap
+from verify.schemes.step_map import StepMap
 from verify.verdict import Verdict
 
 DUFFING, PENDULUM = "p**2/2 + q**2/2 + q**4/4", "p**2/2 - cos(q)"

@@ -9,6 +9,7 @@ from tests.examples import drawn
 from tests.helpers.sampled.formulas import P, Q
 from verify import schemes
 from verify.algebra.series.jets import Jets, shown
+from verify.algebra.symbols import H_STEP
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof import modified_every
@@ -17,7 +18,6 @@ from verify.proof.modified_every import modified_for_every
 from verify.proof.modified_field import field_of
 from verify.proof.splitting_logarithm import Logarithm, terms_of_splitting
 from verify.schemes.splitting_conditions import Splitting
-from verify.schemes.step_map import H_STEP
 from verify.verdict import Verdict
 
 # Hairer, Lubich, Wanner, IX.3 and IX.4, in our signs: by the exponentials, worked out by hand

@@ -7,12 +7,12 @@ import sympy
 import verify
 from tests.helpers.sampled.formulas import P, Q
 from verify import schemes
+from verify.algebra.symbols import H_STEP
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.modified import modified_of
 from verify.proof.modified_equation import ModifiedEquation
 from verify.runs.energy_drift import energy_drifts
-from verify.schemes.step_map import H_STEP
 from verify.verdict import Verdict
 
 T = sympy.Symbol("t", real=True)

@@ -12,7 +12,8 @@ import sympy
 
 from verify.algebra.domain import Domain
 from verify.algebra.embedding import embed
-from verify.algebra.formula_text import to_text
+from verify.algebra.expressions.formula_text import to_text
+from verify.algebra.symbols import H_STEP
 from verify.claims import every_formula
 from verify.claims.checked import of_hamiltonian
 from verify.claims.findings import Findings
@@ -24,7 +25,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import leading_of
 from verify.prose import Formula, Prose, prose
 from verify.scenes.results.claim import ClaimResult
-from verify.schemes.step_map import H_STEP, grouped
+from verify.schemes.step_map import grouped
 from verify.verdict import Verdict
 
 if TYPE_CHECKING:

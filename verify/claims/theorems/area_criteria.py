@@ -5,7 +5,8 @@ from fractions import Fraction
 
 import sympy
 
-from verify.algebra.formula_text import to_text
+from verify.algebra.expressions.formula_text import to_text
+from verify.algebra.symbols import H_STEP, P, Q
 from verify.arithmetic.exact import text
 from verify.claims.theorems.argument import Argument, concluded, step
 from verify.claims.theorems.checks import families
@@ -16,7 +17,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.assistant.stated import Shipped
 from verify.proof.order import prove
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.schemes.step_map import H_STEP, P, Q, StepMap
+from verify.schemes.step_map import StepMap
 from verify.verdict import Verdict
 
 _H = Fraction(1, 10)

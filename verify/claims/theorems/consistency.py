@@ -15,6 +15,7 @@ from fractions import Fraction
 import flint
 import sympy
 
+from verify.algebra.symbols import H_STEP, P
 from verify.arithmetic.exact import text
 from verify.arithmetic.flint_precision import working_precision
 from verify.claims.theorems.argument import Argument, concluded, step
@@ -25,7 +26,7 @@ from verify.claims.theorems.oscillator import PRECISION
 from verify.hamiltonians import systems
 from verify.proof.assistant.stated import Shipped
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.schemes.step_map import H_STEP, P, StepMap
+from verify.schemes.step_map import StepMap
 from verify.verdict import Verdict
 
 TIME = 20000

@@ -8,6 +8,7 @@ from itertools import pairwise
 import flint
 import sympy
 
+from verify.algebra.symbols import H_STEP, P, Q
 from verify.arithmetic.flint_precision import working_precision
 from verify.claims.theorems.argument import Argument, concluded, step
 from verify.claims.theorems.checks.check import BALLS, Check
@@ -19,7 +20,6 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.assistant.stated import Shipped
 from verify.proof.order import convergence_of
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.schemes.step_map import H_STEP, P, Q
 from verify.verdict import Verdict
 
 SYSTEMS = ("duffing", "pendulum")

@@ -5,7 +5,8 @@ from collections.abc import Sequence
 
 import sympy
 
-from verify.algebra.formula_text import to_text
+from verify.algebra.expressions.formula_text import to_text
+from verify.algebra.symbols import H_STEP, P, Q
 from verify.claims.theorems.argument import Argument, concluded, step
 from verify.claims.theorems.checks import families
 from verify.claims.theorems.checks.check import Check
@@ -15,7 +16,6 @@ from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import convergence_of, prove
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.schemes.step_map import H_STEP, P, Q
 from verify.verdict import Verdict
 
 SYSTEMS = ("duffing", "pendulum")

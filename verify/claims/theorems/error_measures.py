@@ -4,6 +4,7 @@ from fractions import Fraction
 
 import sympy
 
+from verify.algebra.symbols import P, Q
 from verify.arithmetic.exact import decimal, text
 from verify.claims.theorems.argument import Argument, Step, concluded, step
 from verify.claims.theorems.checks.check import NUMBERS, Check, vanishes
@@ -14,7 +15,7 @@ from verify.claims.theorems.exact_maps import Point, areas, jacobian, next_point
 from verify.hamiltonians import systems
 from verify.proof.assistant.stated import Shipped
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.schemes.step_map import P, Q, StepMap
+from verify.schemes.step_map import StepMap
 from verify.verdict import Verdict
 
 _H = Fraction(1, 10)

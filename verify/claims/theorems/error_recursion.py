@@ -6,6 +6,7 @@ from fractions import Fraction
 import flint
 import sympy
 
+from verify.algebra.symbols import P, Q
 from verify.arithmetic.exact import text
 from verify.arithmetic.flint_precision import working_precision
 from verify.claims.theorems.argument import Argument, concluded, step
@@ -19,7 +20,6 @@ from verify.claims.theorems.oscillator import PRECISION
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.assistant.stated import Shipped
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.schemes.step_map import P, Q
 from verify.verdict import Verdict
 
 _RATES = (Fraction(1, 2), Fraction(1), Fraction(3))  # L

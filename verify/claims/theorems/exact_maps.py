@@ -6,9 +6,10 @@ from math import prod
 
 import sympy
 
+from verify.algebra.symbols import H_STEP, P, Q
 from verify.arithmetic.exact import text
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.schemes.step_map import H_STEP, P, Q, StepMap
+from verify.schemes.step_map import StepMap
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from collections.abc import Callable
 import sympy
 
 from verify.algebra.formula import symbol
+from verify.algebra.symbols import H_STEP, P, Q
 from verify.claims.theorems.argument import Argument, concluded, step
 from verify.claims.theorems.checks.check import Check, vanishes
 from verify.claims.theorems.checks.differential import Flow, Poly, flow_of_every_hamiltonian
@@ -13,7 +14,6 @@ from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.assistant.stated import Shipped
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.schemes.step_map import H_STEP, P, Q
 from verify.verdict import Verdict
 
 MOST = 5  # powers of X looked at for a generic H; the rest is by induction

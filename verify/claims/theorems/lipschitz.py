@@ -6,6 +6,7 @@ from fractions import Fraction
 import flint
 import sympy
 
+from verify.algebra.symbols import H_STEP, P, Q
 from verify.arithmetic.exact import decimal, text
 from verify.arithmetic.flint_precision import working_precision
 from verify.claims.theorems.argument import Argument, concluded, step
@@ -17,7 +18,6 @@ from verify.claims.theorems.oscillator import PRECISION, errors, factor
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.schemes.step_map import H_STEP, P, Q
 from verify.verdict import Verdict
 
 PAIR = (Point(p=Fraction(0), q=Fraction(0)), Point(p=Fraction(0), q=Fraction(1)))

@@ -4,14 +4,14 @@ from collections.abc import Sequence
 
 import sympy
 
+from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.formula import parse
-from verify.algebra.formula_text import to_text
+from verify.algebra.symbols import P, Q
 from verify.claims.theorems.argument import Argument, concluded, step
 from verify.claims.theorems.checks.check import vanishes
 from verify.claims.theorems.checks.differential import flow_of_every_hamiltonian
 from verify.claims.theorems.checks.formulas import same
 from verify.proof.assistant.stated import Shipped
-from verify.schemes.step_map import P, Q
 from verify.verdict import Verdict
 
 DUFFING = ("p**2/2 + q**2/2 + delta*q**4/4", "q + delta*q**3")  # H, and q'' less its sign

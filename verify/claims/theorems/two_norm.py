@@ -4,6 +4,7 @@ from fractions import Fraction
 
 import sympy
 
+from verify.algebra.symbols import P, Q
 from verify.arithmetic.exact import decimal, text
 from verify.claims.theorems.argument import Argument, concluded, step
 from verify.claims.theorems.checks.check import NUMBERS, Check
@@ -14,7 +15,6 @@ from verify.claims.theorems.lipschitz import PAIR, duffing
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.schemes.step_map import P, Q
 from verify.verdict import Verdict
 
 STRETCHED = Point(p=Fraction(0), q=Fraction(2))

@@ -24,5 +24,5 @@ cache_option = click.option(
     is_flag=True,
     expose_value=False,
     callback=_left_out,
-    help="Compile every kernel anew, and keep none.",
+    help="Read H and compile every kernel anew, and keep nothing.",
 )

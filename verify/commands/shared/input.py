@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable, Iterable
-from functools import wraps
+from functools import partial, wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -124,8 +124,11 @@ def hamiltonian_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return command
 
 
-def with_hamiltonian(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The command with these options, which it gets as one Hamiltonian, `exact`."""
+def with_hamiltonian(command: Callable[..., Any], *, kept: bool = False) -> Callable[..., Any]:
+    """The command with these options, which it gets as one Hamiltonian, `exact`.
+
+    `kept`: as it was kept, where it was; for a command with --no-cache, and no need of sympy.
+    """
 
     @wraps(command)
     def given(
@@ -135,10 +138,13 @@ def with_hamiltonian(command: Callable[..., Any]) -> Callable[..., Any]:
         params: tuple[str, ...],
         **options: Any,
     ) -> Any:
-        exact = hamiltonian_of(system, hamiltonian, params)
+        exact = hamiltonian_of(system, hamiltonian, params, kept=kept)
         return command(*args, exact=exact, **options)
 
     return hamiltonian_options(given)
+
+
+with_kept_hamiltonian = partial(with_hamiltonian, kept=True)
 
 
 def values_of(params: tuple[str, ...]) -> dict[str, str]:
@@ -158,19 +164,22 @@ def values_of(params: tuple[str, ...]) -> dict[str, str]:
 
 
 def hamiltonian_of(
-    system: str | None, hamiltonian: str | None, params: tuple[str, ...]
+    system: str | None, hamiltonian: str | None, params: tuple[str, ...], *, kept: bool = False
 ) -> "Hamiltonian":
     """The Hamiltonian that the options name; InputError unless they name one."""
     from verify.hamiltonians import systems
     from verify.hamiltonians.hamiltonian import Hamiltonian
+    from verify.hamiltonians.kept import kept_or_read
 
     if (system is None) == (hamiltonian is None):
         raise InputError("--system, --hamiltonian", system or NOT_GIVEN, "give one of the two")
     values = values_of(params)
     if system is not None:
-        return systems.get(system).hamiltonian(values)
-    systems.check_is_formula(hamiltonian or "")
-    return Hamiltonian.parse(hamiltonian or "", values)
+        source, read = f"system {system}", systems.get(system).hamiltonian
+    else:
+        systems.check_is_formula(hamiltonian or "")
+        source, read = f"formula {hamiltonian}", partial(Hamiltonian.parse, hamiltonian or "")
+    return kept_or_read(source, values, read) if kept else read(values)
 
 
 def paper_folder() -> Path:

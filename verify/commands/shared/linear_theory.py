@@ -38,7 +38,7 @@ def linear_answer(scene: str | None, given: Mapping[str, Any]) -> Answer:
 
 
 def _of_oscillator(scheme: str) -> Answer:
-    from verify.algebra.formula_text import to_text
+    from verify.algebra.expressions.formula_text import to_text
     from verify.studies.stability.linear import linear_stability
 
     found = linear_stability(scheme)

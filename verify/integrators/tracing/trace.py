@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 import sympy
 
-from verify.algebra.formula import FUNCTIONS, symbol
+from verify.algebra.formula import function, symbol
 from verify.algebra.limits import MAX_EXPONENT
 from verify.integrators.tracing.number import OPERATORS, Kind, TracedNumber, UntraceableError
 
@@ -206,7 +206,7 @@ def _expression(node: Node, inputs: list[Any], put: Mapping[str, sympy.Expr]) ->
         case "add" | "subtract" | "multiply" | "divide" as name:
             return OPERATORS[name](*inputs)
         case name:
-            return FUNCTIONS[name](inputs[0])
+            return function(name)(inputs[0])
 
 
 def sizes(nodes: Iterable[Node]) -> dict[int, int]:

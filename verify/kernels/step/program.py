@@ -102,7 +102,7 @@ class Evaluator:
 
     def _generator(self, g: Generator) -> int:
         if g.kind == "variable":
-            return self._inputs[str(g.expression)]
+            return self._inputs[g.name]
         if g.kind == "pi":
             return self.program.apply("pi")
         if g.kind == "stage":

@@ -1,4 +1,4 @@
-"""Formula text (as `verify.algebra.formula_text` prints it) → MathML Core, by a small printer.
+"""Formula text → MathML Core, by a small printer.
 
 The text is read by the whitelist parser and never evaluated. What that parser refuses (a formula
 longer than its limit, say) is shown as it is written. In which order sums and products go is said

@@ -109,15 +109,14 @@ class Plain:
         self.ring, self.coordinates = ring, coordinates
         self.variables = (*coordinates, *("t",) * ("t" in ring.variables))
         self.names = {
-            g.index: str(g.expression) if g.kind == "variable" else f"#{g.index}"
-            for g in ring.generators
+            g.index: g.name if g.kind == "variable" else f"#{g.index}" for g in ring.generators
         }
         made = [g for g in ring.generators if g.kind != "variable"]
         for g in made:
             if g.kind not in _KINDS:
                 raise InputError(
                     "hamiltonian",
-                    str(g.expression),
+                    ring.text(ring.context.gens()[g.index]),
                     "no certificate: it takes sin, cos, exp, denominators",
                 )
         self.functions = [[self.names[g.index], g.kind, terms(g.inner, self.names)] for g in made]

@@ -13,7 +13,7 @@ from math import isfinite
 from typing import Any
 
 from verify import schemes
-from verify.algebra.formula_text import to_text
+from verify.algebra.expressions.formula_text import to_text
 from verify.arithmetic.exact import short
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian

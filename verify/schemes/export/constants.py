@@ -13,7 +13,7 @@ import sympy
 
 from verify.algebra.embedding import embed
 from verify.algebra.enclosure import enclose
-from verify.algebra.formula_text import to_text
+from verify.algebra.expressions.formula_text import to_text
 from verify.arithmetic.arb import bounds
 from verify.arithmetic.exact import decimal
 from verify.errors import LimitError

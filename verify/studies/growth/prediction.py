@@ -12,7 +12,7 @@ from fractions import Fraction
 from functools import lru_cache
 
 from verify.algebra.enclosure import enclose_over
-from verify.algebra.formula_text import to_text
+from verify.algebra.expressions.formula_text import to_text
 from verify.arithmetic.arb import (
     UNKNOWN,
     Ball,

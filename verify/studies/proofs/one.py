@@ -5,7 +5,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any, Literal
 
-from verify.algebra.formula_text import to_text
+from verify.algebra.expressions.formula_text import to_text
 from verify.arithmetic.exact import text
 from verify.execution.keeping import Keeper
 from verify.execution.task import SchemeTask

@@ -20,10 +20,11 @@ from typing import Protocol
 import flint
 import sympy
 
+from verify.algebra.symbols import H_STEP
 from verify.errors import InputError
 from verify.hamiltonians import systems
 from verify.schemes import get
-from verify.schemes.step_map import H_STEP, StepMap
+from verify.schemes.step_map import StepMap
 from verify.studies.stability.matrix_product import product, ring_polynomial
 from verify.studies.stability.positive_roots import PositiveRoot, positive_roots
 

@@ -7,9 +7,9 @@ from verify import schemes
 from verify.algebra.embedding import embed
 from verify.algebra.formula import parse
 from verify.algebra.series.quotient_series import QuotientSeries
+from verify.algebra.symbols import H_STEP
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import Expansion
-from verify.schemes.step_map import H_STEP
 
 VARIABLES = ("p", "q", "h")
 

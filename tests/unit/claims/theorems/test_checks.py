@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 
 from tests.helpers.planted.theorem_controls import refused
+from verify.algebra.symbols import P, Q
 from verify.claims.theorems import area_criteria, criteria, determinant, lipschitz, two_norm
 from verify.claims.theorems.checks import developables, families, linear, matrices, sums, triangle
 from verify.claims.theorems.checks.check import Check
@@ -20,7 +21,6 @@ from verify.claims.theorems.criteria_examples import (
     shrinks_to,
     turns_to_and_fro,
 )
-from verify.schemes.step_map import P, Q
 
 PLANTED: list[tuple[Callable[..., Check], Any]] = [
     (triangle.triangle, 0),

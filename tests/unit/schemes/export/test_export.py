@@ -15,8 +15,9 @@ import sympy
 import verify
 from verify import InputError, schemes
 from verify.algebra.formula import symbol
+from verify.algebra.symbols import H_STEP, P, Q
 from verify.calls.given import hamiltonian_from
-from verify.schemes.step_map import H_STEP, P, Q, StepMap
+from verify.schemes.step_map import StepMap
 
 Functions = tuple[Callable[..., Any], Callable[..., Any], Callable[..., Any]]
 JULIA = ("sin", "cos", "tan", "exp", "log", "sqrt", "atan", "sinh", "cosh")

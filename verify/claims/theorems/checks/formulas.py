@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import sympy
 
 from verify.algebra.embedding import embed
-from verify.algebra.formula_text import to_text
+from verify.algebra.expressions.formula_text import to_text
 from verify.claims.theorems.checks.check import Check
 
 

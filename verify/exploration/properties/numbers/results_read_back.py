@@ -3,7 +3,7 @@
 import tomllib
 
 from verify.algebra.enclosure import enclose
-from verify.algebra.formula_text import to_text
+from verify.algebra.expressions.formula_text import to_text
 from verify.arithmetic.arb import shown
 from verify.exploration.ball_steps import BITS
 from verify.exploration.property import Violation

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 import sympy
 
+from verify.algebra.symbols import P, Q
 from verify.schemes.export.program import Program
-from verify.schemes.step_map import P, Q
 
 SUFFIX = ".tex"
 RESERVED: frozenset[str] = frozenset()

@@ -14,6 +14,7 @@ from functools import lru_cache
 from verify.algebra.implicit_unknowns import define, unknowns
 from verify.algebra.ring import Poly
 from verify.algebra.series.power_series import Series, at_point, partials
+from verify.algebra.symbols import H_STEP, P, Q
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.vector_field import VectorField
 from verify.schemes.every_hamiltonian import Stage, StageEquations
@@ -21,7 +22,7 @@ from verify.schemes.methods.splitting.symplectic_euler import PARTS
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import shears
 from verify.schemes.stages import Stages
-from verify.schemes.step_map import H_STEP, Expanded, P, Q, StepMap, Substep
+from verify.schemes.step_map import Expanded, StepMap, Substep
 
 _ONE = Fraction(1)
 _NAMES = 20

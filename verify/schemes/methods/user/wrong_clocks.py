@@ -20,6 +20,7 @@ from itertools import count
 import sympy
 
 from verify.algebra.formula import symbol
+from verify.algebra.symbols import H_STEP
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.every_hamiltonian import RungeKutta, TaylorSeries
@@ -28,7 +29,7 @@ from verify.schemes.runge_kutta import runge_kutta_map
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import splitting, sums_before
 from verify.schemes.splitting_conditions import Part, Splitting
-from verify.schemes.step_map import H_STEP, StepMap
+from verify.schemes.step_map import StepMap
 
 EXAMPLES = ()  # its names are the users' own
 _NAME = re.compile(r"\s*(?P<base>[^,;]+?)\s*,\s*clock\s+(?P<clock>.*\S)\s*")

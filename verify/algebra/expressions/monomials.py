@@ -4,22 +4,23 @@ What else a formula is made of goes node by node through sympy, which looks at e
 what it could be simplified to.
 """
 
+from __future__ import annotations
+
 import ast
 from collections.abc import Callable, Sequence
-from functools import cmp_to_key, lru_cache
-from typing import NamedTuple
+from functools import cache, cmp_to_key, lru_cache
+from typing import Any, NamedTuple, TypeAlias
 
 import gmpy2
-import sympy
 
 from verify.errors import InputError
+from verify.late import sympy
 
 DEEPEST = 6  # levels of nesting within a monomial, at most
 _LONGEST = 18  # digits of a number
 _MOST_BITS, _MOST_POWER = 1000, 64
-_PLACE = cmp_to_key(sympy.Basic.compare)  # in sums
 
-Powers = tuple[tuple[sympy.Symbol, int], ...]
+Powers: TypeAlias = "tuple[tuple[sympy.Symbol, int], ...]"
 Quotient = tuple[int, int]  # numerator, denominator
 
 
@@ -65,7 +66,7 @@ class Monomials:
                 terms.append(factors[0] if len(factors) == 1 else _in_order(sympy.Mul, factors))
         if len(terms) < 2:
             return sympy.Add(constant, *terms)
-        terms.sort(key=_PLACE)
+        terms.sort(key=_place())
         return _in_order(sympy.Add, terms if constant.is_zero else [constant, *terms])
 
     def _quotient(self, node: ast.expr, powers: dict[str, int], levels: int) -> Quotient | None:
@@ -105,6 +106,12 @@ class Monomials:
             return None
         above, below = above * found[0], below * found[1]
         return (above, below) if max(abs(above), abs(below)).bit_length() <= _MOST_BITS else None
+
+
+@cache
+def _place() -> Callable[[sympy.Expr], Any]:
+    """The key by which sympy orders what is summed."""
+    return cmp_to_key(sympy.Basic.compare)
 
 
 def _in_order(kind: type[sympy.Expr], args: Sequence[sympy.Expr]) -> sympy.Expr:

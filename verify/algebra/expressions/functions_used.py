@@ -1,13 +1,34 @@
 """Which functions and powers expressions are made of, innermost first."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from functools import cache
 
-import sympy
+from verify.late import sympy
 
-TRIGONOMETRIC = (sympy.sin, sympy.cos, sympy.tan)
-EXPONENTIAL = (sympy.exp, sympy.sinh, sympy.cosh, sympy.tanh, type(sympy.E))  # e is exp(1)
-OTHER = (sympy.log, sympy.atan)
+
+def is_trigonometric(node: sympy.Expr) -> bool:
+    """Whether it is sin, cos or tan of something."""
+    return isinstance(node, sympy.sin | sympy.cos | sympy.tan)
+
+
+def is_hyperbolic(node: sympy.Expr) -> bool:
+    """Whether it is sinh, cosh or tanh of something."""
+    return isinstance(node, sympy.sinh | sympy.cosh | sympy.tanh)
+
+
+def is_exponential(node: sympy.Expr) -> bool:
+    """Whether it is exp of something, as e is of 1."""
+    return isinstance(node, sympy.exp) or node is sympy.E
+
+
+def is_other(node: sympy.Expr) -> bool:
+    """Whether it is log or atan of something."""
+    return isinstance(node, sympy.log | sympy.atan)
+
+
+_KINDS = is_trigonometric, is_hyperbolic, is_exponential, is_other
 
 
 def subexpressions(expressions: Sequence[sympy.Expr]) -> set[sympy.Expr]:
@@ -32,7 +53,7 @@ def levels_of(nodes: set[sympy.Expr]) -> list[list[sympy.Expr]]:
         if is_exponential_power(node):
             inner = visit(sympy.log(node.base)) + 1
             depth[node] = inner
-        elif isinstance(node, (*TRIGONOMETRIC, *EXPONENTIAL, *OTHER)):
+        elif any(is_kind(node) for is_kind in _KINDS):
             inner += 1
             depth[node] = inner
         return inner

@@ -4,18 +4,19 @@ sympy settles signs and identities of constants by evaluating them, which for si
 never ends. Ball arithmetic says at once that such a constant is out of reach.
 """
 
+from __future__ import annotations
+
 import math
 
 import flint
-import sympy
 
 from verify.arithmetic.flint_precision import working_precision
+from verify.late import sympy
 
 MAX_BITS = 4000
 
 # What may be written of one argument, by the name that sympy and arb know it by.
 FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh", "atan")
-_NAMES = {getattr(sympy, name): name for name in FUNCTIONS}
 
 
 def within_reach(constant: sympy.Expr) -> bool:
@@ -44,6 +45,7 @@ def _ball(node: sympy.Expr) -> flint.arb | None:
         return math.prod(arguments, start=flint.arb(1))
     if node.is_Pow:
         return arguments[0] ** arguments[1]
-    method = _NAMES.get(node.func)
-    found: flint.arb | None = getattr(arguments[0], method)() if method else None
+    if not (isinstance(node, sympy.Function) and node.func.__name__ in FUNCTIONS):
+        return None
+    found: flint.arb = getattr(arguments[0], node.func.__name__)()
     return found

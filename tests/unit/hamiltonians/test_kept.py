@@ -1,0 +1,236 @@
+"""A Hamiltonian that was kept is the one that was read; what is to be read again is not kept."""
+
+import json
+import pickle
+import subprocess
+import sys
+from fractions import Fraction
+from itertools import count
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+
+from tests.examples import drawn
+from tests.paths import ROOT
+from verify import strategies
+from verify.algebra.ring_record import record_of, recorded
+from verify.arithmetic.exact import text
+from verify.code_cache import OFF, VARIABLE
+from verify.errors import InputError
+from verify.hamiltonians import kept, systems
+from verify.hamiltonians.hamiltonian import Hamiltonian, embedded
+from verify.hamiltonians.kept import KeptHamiltonian, kept_or_read
+from verify.hamiltonians.vector_field import VectorField
+
+NUMBER = count()
+FORMULAS = [
+    "p**2/2 - cos(q)",
+    "p**2/2 + q**2/2 + 3*q**4/7",
+    "p*q",
+    "7",
+    "exp(-q**2)*(1 + p**2) + sinh(p)*cosh(q) + tanh(q/2)",
+    "sqrt(1 + p**2 + q**2) + atan(q)/(2 + q**2) + pi*q",
+    "log(2 + cos(q)) + 1/(3 + sin(p)*cos(2*q))",
+    "p**2/2 + q**2*cos(2*pi*t) + exp(t)*q",
+    f"p**2/2 + {10**1100}*q**3/{7**1000}",
+]
+
+
+@pytest.fixture(autouse=True)
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
+    return tmp_path / "kernels"
+
+
+def twice(formula: str, **values: str) -> tuple[Hamiltonian, Hamiltonian]:
+    """As it is read, and as the next process has it."""
+
+    def read(given: object) -> Hamiltonian:
+        assert given == values
+        return Hamiltonian.parse(formula, values)
+
+    source = f"formula {formula}, test {next(NUMBER)}"
+    found = [kept_or_read(source, values, read) for _ in range(2)]
+    assert type(found[0]) is Hamiltonian
+    return found[0], found[1]
+
+
+def of_field(field: VectorField) -> list[object]:
+    """All that is in it, as texts."""
+    ring = field.ring
+    polynomials = (field.h_p, field.h_q, field.energy)
+    gradients = [
+        {name: str(x) for name, x in ring.gradient(g.index).items()} for g in ring.generators
+    ]
+    relations = [(k, n, str(x)) for k, n, x in ring.relations]
+    made = [(g.index, g.kind, str(g.argument), g.degree, g.name) for g in ring.generators]
+    return [ring.variables, ring.room, made, relations, gradients, [*map(str, polynomials)]]
+
+
+def same(one: Hamiltonian, other: Hamiltonian) -> None:
+    assert type(other) is KeptHamiltonian
+    names = ("formula", "values", "parameters", "coordinates", "time_dependent", "symbols", "texts")
+    for name in (*names, "planar", "degrees", "domain", "written"):
+        assert getattr(one, name) == getattr(other, name), name
+    assert repr(one) == repr(other)
+    assert of_field(embedded(one, (), 20000)[0]) == of_field(other.field()[0])
+    assert "expression" not in vars(other), "nothing was read for that"
+    assert (one.expression, one.exact) == (other.expression, other.exact)
+
+
+@pytest.mark.parametrize("formula", FORMULAS)
+def test_what_was_kept_is_what_was_read(formula: str) -> None:
+    same(*twice(formula))
+
+
+@pytest.mark.parametrize("name", systems.all_systems())
+def test_the_systems_are_kept_with_their_values_and_without(name: str) -> None:
+    system = systems.get(name)
+    for regime in system.regimes:
+        values = {key: text(x) for key, x in system.regime(regime)[0].items()}
+        one, other = twice(system.formula, **values)
+        if one.domain:
+            assert type(other) is Hamiltonian
+            continue
+        generic, kept_generic = one.with_symbols(), other.with_symbols()
+        same(one, other)
+        if values and not generic.domain:
+            same(generic, kept_generic)
+        assert kept_generic.expression == generic.expression
+
+
+@drawn(40)
+@given(strategies.hamiltonians())
+def test_of_what_is_drawn_the_record_gives_the_same_field(drawn_one: Hamiltonian) -> None:
+    field = embedded(drawn_one, (), 20000)[0]
+    record = json.loads(json.dumps(record_of(field.ring, field.energy)))
+    assert of_field(VectorField.of(*recorded(record))) == of_field(field)
+
+
+def test_a_record_with_another_number_gives_another_field() -> None:
+    field = embedded(Hamiltonian.parse("p**2/2 - cos(q)"), (), 20000)[0]
+    record = json.loads(json.dumps(record_of(field.ring, field.energy)))
+    record["element"][0][1] = "7"
+    assert of_field(VectorField.of(*recorded(record))) != of_field(field)
+    record = json.loads(json.dumps(record_of(field.ring, field.energy)))
+    record["relations"] = []
+    assert of_field(VectorField.of(*recorded(record))) != of_field(field)
+
+
+@pytest.mark.parametrize(
+    "formula",
+    ["p**2/2 + log(q)", "p**2/2 + 1/q", "sqrt(q)**2 + p**2", "q**(1/3) + p", "p1**2 + q1*q2 + p2"],
+)
+def test_what_has_a_domain_or_more_degrees_is_read_again(formula: str, cache: Path) -> None:
+    one, other = twice(formula)
+    assert type(other) is Hamiltonian
+    assert one == other
+    assert not cache.exists()
+
+
+def test_other_values_another_text_and_other_code_are_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    def found(formula: str, **values: str) -> Hamiltonian:
+        def read(_: object) -> Hamiltonian:
+            return Hamiltonian.parse(formula, values)
+
+        return kept_or_read(formula, values, read)
+
+    formula = "p**2/2 + delta*q**4/4"
+    for source, value in ((formula, "1"), (formula, "1/2"), (formula + " ", "1")):
+        assert type(found(source, delta=value)) is Hamiltonian
+        assert type(found(source, delta=value)) is KeptHamiltonian
+    assert found(formula, delta="1/2").values == (("delta", Fraction(1, 2)),)
+    assert found(formula, delta="1/2").exact != found(formula, delta="1").exact
+    monkeypatch.setattr(kept, "_readers", lambda: "another version")
+    assert type(found(formula, delta="1")) is Hamiltonian
+
+
+def test_bad_input_is_refused_each_time(cache: Path) -> None:
+    for _ in range(2):
+        with pytest.raises(InputError, match="division by zero"):
+            twice("p/0")
+        with pytest.raises(InputError, match="no such parameter"):
+            twice("p**2 + q**2", delta="1")
+    assert not cache.exists()
+
+
+def test_what_is_damaged_is_read_again(cache: Path) -> None:
+    def found() -> Hamiltonian:
+        return kept_or_read("formula p*q", {}, lambda _: Hamiltonian.parse("p*q"))
+
+    assert [type(found()), type(found())] == [Hamiltonian, KeptHamiltonian]
+    (path,) = cache.iterdir()
+    raw = bytearray(path.read_bytes())
+    raw[-3] ^= 1
+    path.write_bytes(bytes(raw))
+    assert [type(found()), type(found())] == [Hamiltonian, KeptHamiltonian]
+
+
+def test_without_a_folder_nothing_is_kept(monkeypatch: pytest.MonkeyPatch, cache: Path) -> None:
+    monkeypatch.setenv(VARIABLE, OFF)
+    assert type(twice("p**2/2 - cos(q)")[1]) is Hamiltonian
+    assert not cache.exists()
+
+
+def test_what_is_too_long_is_not_kept(monkeypatch: pytest.MonkeyPatch, cache: Path) -> None:
+    monkeypatch.setattr(kept, "_MOST_BYTES", 100)
+    assert type(twice("p**2/2 - cos(q)")[1]) is Hamiltonian
+    assert not cache.exists()
+
+
+def test_it_is_compared_pickled_and_given_values_as_what_it_is() -> None:
+    one, other = twice("p**2/2 + delta*q**4/4", delta="1")
+    again = twice("p**2/2 + delta*q**4/4", delta="1")[1]
+    assert other is not again
+    assert other == again
+    assert hash(other) == hash(again)
+    assert other != one
+    assert one != other
+    assert pickle.loads(pickle.dumps(other)) == one  # noqa: S301
+    assert other.with_values({"delta": 2}) == one.with_values({"delta": 2})
+    assert other.gradient()(1.0, 2.0) == one.gradient()(1.0, 2.0)
+    field, (energy,) = other.field(one.exact)
+    assert energy == field.energy
+
+
+def test_what_was_added_to_the_shared_ring_is_not_kept() -> None:
+    one = Hamiltonian.parse("p**2/2 + 1/(1 + q**2)")
+    ring = one.field()[0].ring
+    ring.add("stage", ring.variable("p"))
+    assert [g.kind for g in one.field()[0].ring.generators][3:] == ["inverse", "stage"]
+    same(*twice("p**2/2 + 1/(1 + q**2)"))
+
+
+WITHOUT = """
+import sys
+from verify.commands.main import main
+try:
+    main(sys.argv[1:])
+except SystemExit as done:
+    assert not done.code, done.code
+print("sympy" in sys.modules, file=sys.stderr)
+"""
+RUNS = [
+    "run --system pendulum --scheme lie2 --digits 20",
+    "run --system duffing --param delta=1 --scheme rk4",
+    "run --hamiltonian p**2/2+exp(-q**2)*cos(3*t) --scheme lie3",
+    "separate --system duffing --param delta=1 --scheme lie2",
+]
+
+
+@pytest.mark.left_to_ci
+@pytest.mark.sample(2)
+@pytest.mark.parametrize("command", RUNS)
+def test_a_second_run_tells_the_same_without_sympy(command: str) -> None:
+    told = []
+    given = f"{command} --step-size 0.01 --steps 40 --q 1 --p 0 --json".split()
+    for with_sympy in (True, False):
+        done = subprocess.run(
+            [sys.executable, "-c", WITHOUT, *given],
+            capture_output=True, text=True, check=True, cwd=ROOT,
+        )  # fmt: skip
+        assert done.stderr.splitlines()[-1] == str(with_sympy)
+        data = json.loads(done.stdout)
+        told.append({name: value for name, value in data.items() if "seconds" not in name})
+    assert told[0] == told[1]

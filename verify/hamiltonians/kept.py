@@ -1,0 +1,147 @@
+"""What was read of a Hamiltonian, kept on disk for the commands to come.
+
+A run asks H for its text, its names, where it is smooth, and its element of a ring. To make that of
+a formula takes sympy, whose import is half of what a short command does. So what was made is kept
+beside the kernels (`verify.code_cache`), and the formula is read again only by who asks for its
+expression.
+
+Kept is an H(p, q), or H(p, q, t), that is smooth everywhere: under a name made of what it was read
+from, the values of its parameters, and the code and libraries that read it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from functools import cache, cached_property
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from verify import code_cache
+from verify.algebra.domain import EVERYWHERE
+from verify.algebra.embedding import MAX_TERMS
+from verify.algebra.formula import parse
+from verify.algebra.ring import Poly
+from verify.algebra.ring_record import record_of, recorded
+from verify.arithmetic.exact import Exact, text
+from verify.errors import InputError
+from verify.hamiltonians.coordinates import PLANE
+from verify.hamiltonians.hamiltonian import Hamiltonian, embedded
+from verify.hamiltonians.vector_field import VectorField
+from verify.late import sympy
+
+_FORMAT = "hamiltonian 1"
+_MOST_BYTES = 2**20
+_CODE = ("algebra/**/*.py", "hamiltonians/**/*.py", "arithmetic/exact.py")
+_LIBRARIES = ("sympy", "python-flint")
+
+
+def kept_or_read(
+    source: str, values: Mapping[str, str], read: Callable[[Mapping[str, str]], Hamiltonian]
+) -> Hamiltonian:
+    """The H of that formula, or system, with these values: as it was kept, else as it is `read`,
+    and kept from then on where that can be done."""
+    if code_cache.folder() is None:
+        return read(values)
+    given = json.dumps(sorted(values.items()))
+    key = code_cache.key_of(_FORMAT, _readers(), source, given)
+    known = code_cache.load(key)
+    if known is not None:
+        return KeptHamiltonian(json.loads(known))
+    found = read(values)
+    written = json.dumps(_record(found), separators=(",", ":")).encode()
+    if written != b"null" and len(written) <= _MOST_BYTES:
+        code_cache.keep(key, written)
+    return found
+
+
+class KeptHamiltonian(Hamiltonian):
+    """A Hamiltonian by its record. It equals others of the same text and values that were kept, and
+    none that was read: to compare the two would be to read it."""
+
+    def __init__(self, record: Mapping[str, Any]) -> None:
+        vars(self).update(
+            formula=record["formula"],
+            values=tuple((name, Fraction(value)) for name, value in record["values"]),
+            parameters=tuple(record["parameters"]),
+            coordinates=PLANE,
+            time_dependent=record["time_dependent"],
+            written=EVERYWHERE,
+            domain=EVERYWHERE,
+            _record=record,
+        )
+
+    @cached_property
+    def expression(self) -> sympy.Expr:
+        """The formula's, which is read now."""
+        return parse(self.formula, source="hamiltonian")
+
+    def with_values(self, parameters: Mapping[str, Exact | None]) -> Hamiltonian:
+        """The same H with other values, which is read for that."""
+        return self._read.with_values(parameters)
+
+    def field(
+        self, *others: sympy.Expr, most_terms: int = MAX_TERMS
+    ) -> tuple[VectorField, list[Poly]]:
+        """As of one that was read."""
+        if others or most_terms != MAX_TERMS:
+            return super().field(*others, most_terms=most_terms)
+        return self._field, []
+
+    @cached_property
+    def _field(self) -> VectorField:
+        return VectorField.of(*recorded(vars(self)["_record"]["ring"]))
+
+    @cached_property
+    def _with_symbols(self) -> Hamiltonian:
+        if not self.values:
+            return self
+        generic = vars(self)["_record"]["generic"]
+        return KeptHamiltonian(generic) if generic else self._read.with_symbols()
+
+    @property
+    def _read(self) -> Hamiltonian:
+        return Hamiltonian(self.expression, self.values)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, KeptHamiltonian):
+            return NotImplemented
+        return (self.formula, self.values) == (other.formula, other.values)
+
+    def __hash__(self) -> int:
+        return hash((self.formula, self.values))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Hamiltonian, (self.expression, self.values)
+
+
+def _record(hamiltonian: Hamiltonian) -> dict[str, Any] | None:
+    """What is kept of it; None where nothing is."""
+    if not hamiltonian.planar or hamiltonian.domain or hamiltonian.written:
+        return None
+    try:
+        # Anew, without what schemes have added to the ring that is shared.
+        field = embedded(hamiltonian, (), MAX_TERMS)[0]
+    except InputError:  # too large, say, which is told where it is asked for
+        return None
+    return {
+        "formula": hamiltonian.formula,
+        "values": [(name, text(value)) for name, value in hamiltonian.values],
+        "parameters": hamiltonian.parameters,
+        "time_dependent": hamiltonian.time_dependent,
+        "ring": record_of(field.ring, field.energy),
+        "generic": _record(hamiltonian.with_symbols()) if hamiltonian.values else None,
+    }
+
+
+@cache
+def _readers() -> str:
+    """A name for all that reads a formula."""
+    digest = hashlib.sha256()
+    house = Path(__file__).parents[1]
+    for path in sorted(path for files in _CODE for path in house.glob(files)):
+        digest.update(f"{path.relative_to(house)}\n".encode() + path.read_bytes())
+    return " ".join([digest.hexdigest(), *map(version, _LIBRARIES)])
