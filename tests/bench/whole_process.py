@@ -32,9 +32,8 @@ _TABLES = (
 )
 
 
-_SECOND = (
-    "run --system duffing --param delta=1 --scheme lie2 --step-size 0.001 --steps 1000 --q 1 --p 0"
-).split()
+_SECOND = ["run", "--system", "duffing", "--param", "delta=1", "--scheme", "lie2",
+           "--step-size", "0.001", "--steps", "1000", "--q", "1", "--p", "0"]  # fmt: skip
 
 
 def measure(command: Sequence[str], rounds: int = ROUNDS) -> tuple[float, int]:
