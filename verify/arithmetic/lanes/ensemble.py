@@ -11,9 +11,10 @@ from typing import Any
 
 from llvmlite import ir
 
-from verify.arithmetic.lanes import vectors
+from verify.arithmetic.lanes import libm_circle, vectors
 from verify.arithmetic.lanes.carries import Number
 from verify.arithmetic.lanes.functions import LaneFunctions, of_doubles
+from verify.arithmetic.lanes.libm_circle import LibmCircle
 from verify.arithmetic.lanes.memory import Memory
 from verify.arithmetic.lanes.multiply_add import MultiplyAdd
 from verify.arithmetic.lanes.numbers import Numbers
@@ -38,6 +39,8 @@ class Ensemble:
         self.numbers = Numbers(fraction, multiply_add())
         self.functions = LaneFunctions(self.module, self.numbers)
         self.memory = Memory(self.numbers, self.widths)
+        self.circle = LibmCircle(self.module, 1, libm_circle.NAMES)
+        self._found: tuple[Any, dict[str, Value]] = None, {}  # of what, and what the circle gave
         self._known: dict[str, Any] = {}
         self._retirement: Retirement | None = None  # of the loop
         self._where: Value | None = None  # the lanes for which an `if` holds
@@ -108,6 +111,7 @@ class Ensemble:
         b.branch(head)
         b.position_at_end(self._finish)
         self._known = before | variables.fetched(b, before)
+        self._found = None, {}
 
     def leave(self) -> None:
         raise NotImplementedError("a loop that some lanes leave before others")
@@ -235,10 +239,28 @@ class Ensemble:
         if name == "wide":
             return [self._wide(x)]
         if not isinstance(x, Number):
+            plain = name.removeprefix("f_")
+            if plain in libm_circle.NAMES and libm_circle.there():
+                return [self._by_circle(plain, x)]
             return [of_doubles(b, name, x)]
         valid, found = self.functions.call(b, name, x, self.allocations)
         self._require(valid)
         return list(found)
+
+    def _by_circle(self, name: str, x: Value) -> Value:
+        """sin or cos of float64; both are found at once."""
+        if self._found[0] is not x:
+            b, (given, found) = self.b, (self.allocations.alloca(DOUBLES, size=n) for n in (1, 2))
+            b.store(x, given)
+            b.call(self.circle.function, [given, found])
+            self._found = (
+                x,
+                {
+                    each: b.load(b.gep(found, [constant(at, 64)]))
+                    for at, each in enumerate(self.circle.wanted)
+                },
+            )
+        return self._found[1][name]
 
     def _wide(self, x: Value) -> Number:
         top = vectors.splat_double(2.0 ** (INTEGER_BITS - 1))

@@ -1,10 +1,12 @@
 """Numbers in lanes have the bits of one orbit's, whatever stands in the other lanes."""
 
+import math
 import os
 import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tests.helpers.lanes import IN_LANES, number
@@ -75,6 +77,25 @@ WAYS = [x for x in WAYS if x[1] == IN_LANES[0] or x[0] in (WIDTHS[0], WIDTHS[3])
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_functions_have_the_bits_of_one_orbit(name: str, width: int, way: str) -> None:
     assert not first_differing(both(FUNCTIONS[name], width, way), arguments(name, width))
+
+
+BESIDE = """\
+def f(x, g: 'float'):
+    s = f_sin(g)
+    c = f_cos(g)
+    d = f_cos(g + s)
+    return x + x, s, c, d, f_sin(d), f_sin(g)
+"""
+
+
+@pytest.mark.parametrize("way", IN_LANES)
+def test_sines_of_float64_beside_fixed_numbers_have_the_bits_of_one_orbit(way: str) -> None:
+    draw = np.random.default_rng(5)
+    sizes = draw.choice([7.0, 0.9, 1e-9, 2.0**18, 1e18, 2.0**1000], 4000)
+    given = (draw.uniform(-1, 1, 4000) * sizes).tolist()
+    given += [0.0, -0.0, math.inf, math.nan, 5e-324, math.pi / 2, 1.6762015014439702]
+    rows = [(number(k, 128), x) for k, x in enumerate(given)]
+    assert not first_differing(both(BESIDE, 128, way), rows)
 
 
 OTHER_COUNT = """\
