@@ -35,7 +35,7 @@ def key_of(*parts: str) -> str:
     """A name for these texts, in this order."""
     digest = hashlib.sha256()
     for part in parts:
-        raw = part.encode()
+        raw = part.encode(errors="surrogatepass")  # what is typed may be no Unicode
         digest.update(b"%d\n" % len(raw) + raw)
     return digest.hexdigest()
 

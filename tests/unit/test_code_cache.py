@@ -36,6 +36,10 @@ def test_what_is_kept_is_loaded_and_nothing_under_another_key(kernels: Path) -> 
     assert load(KEY) == b"new"
 
 
+def test_there_is_a_key_of_any_text() -> None:
+    assert len({key_of("\udcff"), key_of("\xff"), key_of("")}) == 3
+
+
 def test_keys_tell_apart_where_one_text_ends(kernels: Path) -> None:
     assert KEY != OTHER
     assert key_of("one", "2") == KEY

@@ -11,6 +11,8 @@ from verify.algebra.generator import Generator, Poly, generator_expression, rati
 from verify.algebra.identities.polynomials import occurring
 from verify.late import sympy
 
+_FACTORED = ("log", "atan")  # of a product, which it mostly was, it is the shorter text
+_LONG = 100  # terms of what is not factored for that
 _MOST_FACTORED = 300  # terms, beyond which factoring and sympy take seconds
 
 
@@ -49,10 +51,16 @@ def _with(x: Poly, generators: Mapping[int, sympy.Expr]) -> sympy.Expr:
 def _of(ring: DifferentialRing, g: Generator) -> sympy.Expr:
     """The generator as an expression, made once for each ring."""
     if g.index not in ring.expressions:
-        alone = g.argument is None or g.kind == "solved"
-        argument = sympy.S.Zero if alone else as_expression(ring, g.inner)
-        ring.expressions[g.index] = generator_expression(g, argument)
+        ring.expressions[g.index] = generator_expression(g, _argument(ring, g))
     return ring.expressions[g.index]
+
+
+def _argument(ring: DifferentialRing, g: Generator) -> sympy.Expr:
+    """What it is a function of; 0 where it is of nothing."""
+    if g.argument is None or g.kind == "solved":
+        return sympy.S.Zero
+    factored = g.kind in _FACTORED and len(g.inner) < _LONG
+    return (as_product if factored else as_expression)(ring, g.inner)
 
 
 def as_product(ring: DifferentialRing, x: Poly) -> sympy.Expr:

@@ -34,7 +34,7 @@ from verify.hamiltonians.vector_field import VectorField
 from verify.late import sympy
 
 _FORMAT = "hamiltonian 1"
-_MOST_BYTES = 2**20
+_MOST_BYTES, _MOST_TERMS = 2**20, 2000
 _CODE = ("algebra/**/*.py", "hamiltonians/**/*.py", "arithmetic/exact.py")
 _LIBRARIES = ("sympy", "python-flint")
 
@@ -44,7 +44,7 @@ def kept_or_read(
 ) -> Hamiltonian:
     """The H of that formula, or system, with these values: as it was kept, else as it is `read`,
     and kept from then on where that can be done."""
-    if code_cache.folder() is None:
+    if code_cache.folder() is None or not _readers():
         return read(values)
     given = json.dumps(sorted(values.items()))
     key = code_cache.key_of(_FORMAT, _readers(), source, given)
@@ -122,10 +122,12 @@ def _record(hamiltonian: Hamiltonian) -> dict[str, Any] | None:
     """What is kept of it; None where nothing is."""
     if not hamiltonian.planar or hamiltonian.domain or hamiltonian.written:
         return None
+    if parse(hamiltonian.formula) != hamiltonian.expression:  # with zeros put in it may be so
+        return None
     try:
         # Anew, without what schemes have added to the ring that is shared.
-        field = embedded(hamiltonian, (), MAX_TERMS)[0]
-    except InputError:  # too large, say, which is told where it is asked for
+        field = embedded(hamiltonian, (), _MOST_TERMS)[0]
+    except InputError:  # too large, or refused where it is asked for
         return None
     return {
         "formula": hamiltonian.formula,
@@ -139,9 +141,12 @@ def _record(hamiltonian: Hamiltonian) -> dict[str, Any] | None:
 
 @cache
 def _readers() -> str:
-    """A name for all that reads a formula."""
+    """A name for all that reads a formula; empty where the code is not there to look at."""
     digest = hashlib.sha256()
     house = Path(__file__).parents[1]
-    for path in sorted(path for files in _CODE for path in house.glob(files)):
+    paths = sorted(path for files in _CODE for path in house.glob(files))
+    if not paths:
+        return ""
+    for path in paths:
         digest.update(f"{path.relative_to(house)}\n".encode() + path.read_bytes())
     return " ".join([digest.hexdigest(), *map(version, _LIBRARIES)])

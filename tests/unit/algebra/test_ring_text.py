@@ -8,7 +8,9 @@ import pytest
 import sympy
 
 from verify.algebra.embedding import embed
-from verify.algebra.formula import symbol
+from verify.algebra.formula import parse, symbol
+from verify.algebra.implicit_unknowns import unknowns
+from verify.algebra.ring import Ring
 from verify.algebra.ring_text import as_expression, as_expression_at_0
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.stages import Stages
@@ -83,3 +85,28 @@ def test_where_it_is_no_expression_it_is_no_number(formula: str) -> None:
         there = as_expression_at_0(ring, element, symbol("h"))
         assert there.has(sympy.nan, sympy.zoo, sympy.oo)
         element = ring.diff(element, "h")
+
+
+@pytest.mark.parametrize(
+    "formula",
+    [
+        "log((q + 1)**20)",
+        "log(q*(q + 1))",
+        "atan(p*(q**2 + 1))",
+        "log(q**2/2 + 1/2)",
+        "log(cos(q) + 2)",
+        "exp(q**2 + q)",
+        "sqrt(q**2 + q + 1)",
+        "pi*q",
+    ],
+)
+def test_functions_are_written_of_what_they_were_of(formula: str) -> None:
+    ring, (x,) = embed([parse(formula)], ["p", "q"])
+    assert ring.text(x) == formula
+
+
+def test_unknowns_of_equations_have_names_of_their_own() -> None:
+    ring = Ring(["p"], 3)
+    x, y = unknowns(ring, 2)
+    assert (ring.text(x), ring.text(y)) == ("Z_1", "Z_2")
+    assert ring.expression(x - y) != 0

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
 
 from tests.examples import drawn
 from tests.paths import ROOT
@@ -118,6 +119,35 @@ def test_a_record_with_another_number_gives_another_field() -> None:
     assert of_field(VectorField.of(*recorded(record))) != of_field(field)
 
 
+@drawn(150)
+@given(
+    st.lists(
+        st.sampled_from(["p", "q", "(p - q)", "(p + c)", "cos(q)", "3", "(a + 2)"]), min_size=2
+    ),
+    st.lists(st.sampled_from(["((q - b)**2 + 3)", "(p**2 + 5)", "(3 + b)"]), max_size=3),
+    st.sampled_from(["0", "1/2", "-2"]),
+)
+def test_with_parameters_of_value_0_the_generic_h_is_the_same_expression(
+    factors: list[str], divisors: list[str], b: str
+) -> None:
+    formula = f"{'*'.join(factors)}{''.join(f'/{x}' for x in divisors)} + a*p + b*q + c"
+    one = Hamiltonian.parse(formula, {"a": 0, "b": b, "c": 0})
+    record = kept._record(one)
+    assert record is not None
+    generic = KeptHamiltonian(record).with_symbols()
+    assert generic.expression == one.with_symbols().expression
+    assert of_field(generic.field()[0]) == of_field(embedded(one.with_symbols(), (), 20000)[0])
+
+
+def test_a_generic_h_that_reads_back_otherwise_is_not_kept() -> None:
+    formula = "p**2/2 + p/(3 + b)/((p - q)**2 + 3)"
+    one, other = twice(formula, b="0")
+    generic = one.with_symbols()
+    assert Hamiltonian.parse(generic.formula).expression != generic.expression
+    assert type(other) is KeptHamiltonian
+    assert other.with_symbols() == generic
+
+
 @pytest.mark.parametrize(
     "formula",
     ["p**2/2 + log(q)", "p**2/2 + 1/q", "sqrt(q)**2 + p**2", "q**(1/3) + p", "p1**2 + q1*q2 + p2"],
@@ -165,6 +195,17 @@ def test_what_is_damaged_is_read_again(cache: Path) -> None:
     raw[-3] ^= 1
     path.write_bytes(bytes(raw))
     assert [type(found()), type(found())] == [Hamiltonian, KeptHamiltonian]
+
+
+def test_where_the_code_is_not_there_to_look_at_nothing_is_kept(
+    monkeypatch: pytest.MonkeyPatch, cache: Path
+) -> None:
+    kept._readers.cache_clear()
+    monkeypatch.setattr(kept, "_CODE", ("none/*.py",))
+    assert kept._readers() == ""
+    assert type(twice("p**2/2 - cos(q)")[1]) is Hamiltonian
+    assert not cache.exists()
+    kept._readers.cache_clear()
 
 
 def test_without_a_folder_nothing_is_kept(monkeypatch: pytest.MonkeyPatch, cache: Path) -> None:

@@ -94,6 +94,6 @@ def _closed(hamiltonian: Hamiltonian, p_next: Node, q_next: Node) -> Substep | N
 def _unwritten(hamiltonian: Hamiltonian) -> Substep:
     """A map of which nothing but its series is known: two unknowns without an equation."""
     ring = Ring(("p", "q", "h", *hamiltonian.symbols), 2, spare=0)
-    unknowns = [ring.add("solved") for _ in "pq"]
+    unknowns = [ring.add("solved", None, k) for k in range(2)]
     field = VectorField(ring, ring.variable("p"), ring.variable("q"))
     return Substep(field, unknowns[0], unknowns[1])
