@@ -7,10 +7,12 @@ degrees of freedom, in which the clocks are coordinates, and the order that the 
 separable H stays. A time that is given is a part of h as well.
 """
 
-from collections.abc import Iterable, Sequence
-from itertools import cycle
+from __future__ import annotations
 
-import sympy
+from collections.abc import Iterable, Sequence
+from fractions import Fraction
+from itertools import cycle
+from typing import TypeAlias
 
 from verify.algebra.formula import symbol
 from verify.algebra.ring import Poly
@@ -18,11 +20,12 @@ from verify.algebra.series.power_series import Series, at_time
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.vector_field import VectorField
+from verify.late import sympy
 from verify.schemes.scheme import Scheme
-from verify.schemes.splitting_conditions import LETTERS, Part, Splitting
+from verify.schemes.splitting_conditions import LETTERS, Part, Parts, Splitting, expressed
 from verify.schemes.step_map import Expanded, StepMap, Substep
 
-Times = tuple[sympy.Expr | None, ...]  # those that are given, None for one that is not
+Times: TypeAlias = "tuple[sympy.Expr | None, ...]"  # those that are given, None for one that is not
 
 
 def splitting(
@@ -50,13 +53,17 @@ def splitting(
     )
 
 
-def alternating(first: str, sizes: Iterable[sympy.Expr]) -> tuple[Part, ...]:
+def alternating(first: str, sizes: Iterable[sympy.Expr | Fraction]) -> tuple[Part, ...]:
     """Kicks and drifts in turn, `first` one of them, of these parts of h."""
     kinds = cycle([first, *(kind for kind in LETTERS if kind != first)])
-    return tuple((kind, sympy.sympify(size)) for kind, size in zip(kinds, sizes, strict=False))
+    return tuple(zip(kinds, map(_exact, sizes), strict=False))
 
 
-def palindrome(first: str, half: Sequence[sympy.Expr]) -> tuple[Part, ...]:
+def _exact(size: sympy.Expr | Fraction) -> sympy.Expr | Fraction:
+    return size if isinstance(size, Fraction) else sympy.sympify(size)
+
+
+def palindrome(first: str, half: Sequence[sympy.Expr | Fraction]) -> tuple[Part, ...]:
     """As `alternating`, forth and back again; the last of `half` stands once, in the middle."""
     return alternating(first, [*half, *half[-2::-1]])
 
@@ -107,7 +114,7 @@ def shears(
 
     Raises InputError unless H = T(p) + V(q), or T(p, t) + V(q, t).
     """
-    field, sizes = hamiltonian.field(*(size for _, size in parts))
+    field, sizes = _with_sizes(hamiltonian, parts)
     if not field.separable():
         raise InputError(
             "hamiltonian",
@@ -115,7 +122,7 @@ def shears(
             f"{scheme} is explicit only for H = T(p) + V(q)",
         )
     if field.timed:
-        return _at_times(hamiltonian, parts, all_times(parts, times))
+        return _at_times(hamiltonian, expressed(parts), all_times(parts, times))
     h = field.ring.variable("h")
     moves = [_move(field, kind) for kind, _ in parts]
     steps = [
@@ -123,6 +130,17 @@ def shears(
         for (kind, _), size, move in zip(parts, sizes, moves, strict=True)
     ]
     return StepMap(hamiltonian, tuple(steps))
+
+
+def _with_sizes(
+    hamiltonian: Hamiltonian, parts: Sequence[Part]
+) -> tuple[VectorField, Sequence[Poly]]:
+    """The field of H, and the sizes of the parts in its ring."""
+    rational = [size for _, size in parts if isinstance(size, Fraction)]
+    if len(rational) < len(parts):
+        return hamiltonian.field(*(size for _, size in expressed(parts)))
+    field = hamiltonian.field()[0]
+    return field, [field.ring.constant(size) for size in rational]
 
 
 def _move(field: VectorField, kind: str) -> Poly:
@@ -135,9 +153,7 @@ def _shear(field: VectorField, kind: str, by: Poly) -> Substep:
     return Substep(field, p + by, q) if kind == "kick" else Substep(field, p, q + by)
 
 
-def _at_times(
-    hamiltonian: Hamiltonian, parts: Sequence[Part], times: Sequence[sympy.Expr]
-) -> StepMap:
+def _at_times(hamiltonian: Hamiltonian, parts: Parts, times: Sequence[sympy.Expr]) -> StepMap:
     """The shears of H(p, q, t), each with H's derivative at its own time."""
     p, q, t, h = map(symbol, "pqth")
     slopes = {"kick": -hamiltonian.exact.diff(q), "drift": hamiltonian.exact.diff(p)}
@@ -150,7 +166,7 @@ def _at_times(
 
 
 def _taylor(
-    hamiltonian: Hamiltonian, parts: Sequence[Part], times: Sequence[sympy.Expr], most: int
+    hamiltonian: Hamiltonian, parts: Parts, times: Sequence[sympy.Expr], most: int
 ) -> Expanded:
     """p' and q' up to h^most."""
     numbers = [x for (_, size), time in zip(parts, times, strict=True) for x in (size, time)]

@@ -19,27 +19,32 @@ letters are independent over all V and T up to n = 8 (a test has their rank; of 
 letters there are 54), so that some H has another map.
 """
 
+from __future__ import annotations
+
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from math import factorial
-from typing import ClassVar
+from typing import ClassVar, TypeAlias
 
 import flint
-import sympy
 
 from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
+from verify.late import sympy
 from verify.prose import count
 from verify.schemes.conditions import Condition
 from verify.schemes.every_hamiltonian import StageEquations
 from verify.schemes.free_lie_words import lyndon
 from verify.schemes.residue import condition_of
 
-Part = tuple[str, sympy.Expr]  # "kick" or "drift", and what part of h it takes
+# "kick" or "drift", and what part of h it takes: what needs no root may be a Fraction, whose scheme
+# then needs no sympy.
+Part: TypeAlias = "tuple[str, sympy.Expr | Fraction]"
+Parts: TypeAlias = "tuple[tuple[str, sympy.Expr], ...]"
 MOST_ORDER = 8  # beyond which fewer conditions would do in the plane
 LETTERS = {"kick": "K", "drift": "D"}
 _DIGITS = 12  # of a residue
@@ -49,20 +54,26 @@ _DIGITS = 12  # of a residue
 class Splitting:
     """Kicks p − a h V'(q) and drifts q + a h T'(p) of these parts of h, for H = T(p) + V(q).
 
-    The parts are rational or algebraic numbers. `times`: of an H that depends on time, when each
+    The sizes that are given are rational or algebraic numbers; those of `parts` are sympy's.
+    `times`: of an H that depends on time, when each
     part is made, in parts of h from the step's start, where that is given. It is a
     `verify.schemes.conditions.ByConditions`.
     """
 
-    parts: tuple[Part, ...]
+    given: tuple[Part, ...]
     separable: bool = True
     times: tuple[sympy.Expr | None, ...] = ()
     most_order: ClassVar[int] = MOST_ORDER  # the highest of which there are conditions
 
+    @cached_property
+    def parts(self) -> Parts:
+        """The parts, each with its size as an expression."""
+        return expressed(self.given)
+
     @property
     def evaluations(self) -> dict[str, int]:
         """Those of H_p and of H_q in a step."""
-        kinds = Counter(kind for kind, _ in self.parts)
+        kinds = Counter(kind for kind, _ in self.given)
         return {"H_p": kinds["drift"], "H_q": kinds["kick"]}
 
     @property
@@ -142,6 +153,11 @@ class Splitting:
         if all(size.is_Rational for _, size in self.parts):
             return StageEquations.of_shears(self.parts)
         return None
+
+
+def expressed(parts: Sequence[Part]) -> Parts:
+    """The same parts, their sizes as expressions."""
+    return tuple((kind, sympy.sympify(size)) for kind, size in parts)
 
 
 def coefficient(ring: Ring, parts: Sequence[tuple[str, Poly]], word: str) -> Poly:

@@ -256,6 +256,7 @@ RUNS = [
     "run --system pendulum --scheme lie2 --digits 20",
     "run --system duffing --param delta=1 --scheme rk4",
     "run --hamiltonian p**2/2+exp(-q**2)*cos(3*t) --scheme lie3",
+    "run --system duffing --param delta=1/3 --scheme stormer-verlet",
     "separate --system duffing --param delta=1 --scheme lie2",
 ]
 

@@ -3,11 +3,11 @@
 q½ = q + (h/2) T'(p), p' = p − h V'(q½), q' = q½ + (h/2) T'(p').
 """
 
-import sympy
+from fractions import Fraction
 
 from verify.schemes.splitting import palindrome, splitting
 
-_HALF = (sympy.S.Half, sympy.S.One)
+_HALF = (Fraction(1, 2), Fraction(1))
 ALIASES = ("drift-kick-drift",)
 SCHEME = splitting(
     "position-verlet",

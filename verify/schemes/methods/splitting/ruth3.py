@@ -1,11 +1,11 @@
 """Ruth's scheme of order 3, for H = T(p) + V(q): kicks 7/24, 3/4, −1/24, drifts 2/3, −2/3, 1."""
 
-from sympy import Rational
+from fractions import Fraction
 
 from verify.schemes.splitting import alternating, splitting
 
 _SIZES = (
-    Rational(7, 24), Rational(2, 3), Rational(3, 4), Rational(-2, 3), Rational(-1, 24), Rational(1),
+    Fraction(7, 24), Fraction(2, 3), Fraction(3, 4), Fraction(-2, 3), Fraction(-1, 24), Fraction(1),
 )  # fmt: skip
 SCHEME = splitting(
     "ruth3",

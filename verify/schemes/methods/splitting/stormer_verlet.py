@@ -3,11 +3,11 @@
 p½ = p − (h/2) V'(q), q' = q + h T'(p½), p' = p½ − (h/2) V'(q'). Three shears, so det J ≡ 1.
 """
 
-import sympy
+from fractions import Fraction
 
 from verify.schemes.splitting import palindrome, splitting
 
-_HALF = (sympy.S.Half, sympy.S.One)
+_HALF = (Fraction(1, 2), Fraction(1))
 ALIASES = ("verlet", "leapfrog", "leap-frog", "velocity-verlet", "kick-drift-kick", "strang")
 SCHEME = splitting(
     "stormer-verlet",

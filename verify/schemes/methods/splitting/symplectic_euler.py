@@ -4,11 +4,11 @@ Each of its two substeps is a shear, so det J ≡ 1. For an H that is not separa
 implicit; this file holds the explicit one and says so.
 """
 
-import sympy
+from fractions import Fraction
 
 from verify.schemes.splitting import alternating, splitting
 
-PARTS = alternating("kick", (sympy.S.One, sympy.S.One))
+PARTS = alternating("kick", (Fraction(1), Fraction(1)))
 ALIASES = ("semi-implicit-euler", "euler-cromer")
 SCHEME = splitting(
     "symplectic-euler",
