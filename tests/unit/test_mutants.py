@@ -249,7 +249,7 @@ def test_a_killer_passes_on_sound_code_and_kills_a_wrong_scheme(tmp_path: Path) 
     path = tmp_path / "test_mine.py"
     path.write_text(CHECK)
     ruth = "verify.schemes.methods.splitting.ruth3"
-    wrong = [one(ruth, "minus-dropped -2"), one(ruth, "Rational(7, 24) → Rational(24, 7)")]
+    wrong = [one(ruth, "minus-dropped -2"), one(ruth, "Fraction(7, 24) → Fraction(24, 7)")]
     broken, unseen = one(ruth, "alternating(_SIZES"), one(ruth, "truth False → True")
     text = RUN.format(path=str(path), indices=[m.index for m in (*wrong, broken, unseen)])
     sound, *killed, lives = json.loads(in_a_process(text).splitlines()[-1])
