@@ -4,8 +4,9 @@
 In a checkout both lie beside the package, in a wheel inside it, in `verify/data`.
 """
 
+import hashlib
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from importlib.resources import files
 from pathlib import Path
 
@@ -38,6 +39,15 @@ def shipped_files(package: Path | None = None) -> dict[str, Path]:
     for folder in _FOLDERS:
         shipped |= {f"{folder}/{name}": path for name, path in _below(root / folder)}
     return shipped
+
+
+def digest_of(files: Mapping[str, Path], others: str = "") -> str:
+    """A name for what these files hold, each under its name, and for `others`."""
+    digest = hashlib.sha256(others.encode())
+    for name, path in sorted(files.items()):
+        raw = path.read_bytes()
+        digest.update(f"\n{name} {len(raw)}\n".encode() + raw)
+    return digest.hexdigest()
 
 
 def is_shipped(path: Path) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import flint
 
-from verify.algebra.formula import symbol
+from verify.algebra.formula import function, symbol
 from verify.algebra.identities.polynomials import Poly as Poly
 from verify.algebra.identities.polynomials import terms_of as terms_of
 from verify.late import sympy
@@ -64,7 +64,7 @@ def generator_expression(g: Generator, argument: sympy.Expr) -> sympy.Expr:
 
 
 def _by_name(name: str) -> Callable[[sympy.Expr, int], sympy.Expr]:
-    return lambda x, _: getattr(sympy, name)(x)
+    return lambda x, _: function(name)(x)
 
 
 _FUNCTIONS: dict[str, Callable[[sympy.Expr, int], sympy.Expr]] = {

@@ -24,7 +24,7 @@ def checked(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
 
         result = without_absolute_values(result)
         numbers, powers, others = _by_kind(result)
-    if any(_is_no_number(node) or isinstance(node, sympy.AccumBounds) for node in others):
+    if any(node in no_numbers() or isinstance(node, sympy.AccumBounds) for node in others):
         raise InputError(source, text, "divides by zero, or is not finite: it is not defined")
     if any(_has_an_edge(node) for node in others):
         raise LimitError(source, text, "is not smooth: the root of an even power is |x|")
@@ -40,9 +40,9 @@ def checked(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
     return result
 
 
-def _is_no_number(node: sympy.Expr) -> bool:
-    """Whether it is infinite, or not defined."""
-    return node in (sympy.nan, sympy.zoo, sympy.oo, -sympy.oo)
+def no_numbers() -> tuple[sympy.Expr, ...]:
+    """What is infinite, or not defined."""
+    return sympy.nan, sympy.zoo, sympy.oo, -sympy.oo
 
 
 def _has_an_edge(node: sympy.Expr) -> bool:

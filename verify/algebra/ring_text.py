@@ -9,6 +9,7 @@ from verify.algebra.differential_ring import DifferentialRing
 from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.generator import Generator, Poly, generator_expression, rational_of, terms_of
 from verify.algebra.identities.polynomials import occurring
+from verify.algebra.limits import no_numbers
 from verify.late import sympy
 
 _FACTORED = ("log", "atan")  # of a product, which it mostly was, it is the shorter text
@@ -25,8 +26,7 @@ def as_expression_at_0(ring: DifferentialRing, x: Poly, symbol: sympy.Symbol) ->
     """The same where the symbol is 0; nan where it is no expression there."""
     try:
         generators = {k: g.subs(symbol, 0) for k, g in _occurring(ring, x).items()}
-        no_numbers = sympy.nan, sympy.zoo, sympy.oo, -sympy.oo
-        if any(g.has(*no_numbers) for g in generators.values()):
+        if any(g.has(*no_numbers()) for g in generators.values()):
             return as_expression(ring, x).subs(symbol, 0)
     except TypeError:  # sympy has compared a nan within with a number
         return sympy.nan

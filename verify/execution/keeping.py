@@ -4,14 +4,13 @@ import contextlib
 import hashlib
 import json
 import time
-from collections.abc import Mapping
 from fractions import Fraction
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from verify.content import shipped_files
+from verify.content import digest_of, shipped_files
 from verify.errors import InputError
 from verify.execution.machine import versions
 from verify.files import read_text, write_atomically
@@ -25,16 +24,7 @@ _SECONDS = 5.0  # between two checkpoints of a run
 def fingerprint() -> str:
     """A name for this package, its content and its libraries: no result of others is taken up."""
     drawing = {name: version(name) for name in _DRAWING}
-    return digest_of(shipped_files(), json.dumps(versions() | drawing))
-
-
-def digest_of(files: Mapping[str, Path], others: str = "") -> str:
-    """A name for what these files hold, each under its name, and for `others`."""
-    digest = hashlib.sha256(others.encode())
-    for name, path in sorted(files.items()):
-        raw = path.read_bytes()
-        digest.update(f"\n{name} {len(raw)}\n".encode() + raw)
-    return digest.hexdigest()[:12]
+    return digest_of(shipped_files(), json.dumps(versions() | drawing))[:12]
 
 
 def name_of(asked: object) -> str:

@@ -11,7 +11,6 @@ from, the values of its parameters, and the code and libraries that read it.
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Callable, Mapping
 from fractions import Fraction
@@ -27,6 +26,7 @@ from verify.algebra.formula import parse
 from verify.algebra.ring import Poly
 from verify.algebra.ring_record import record_of, recorded
 from verify.arithmetic.exact import Exact, text
+from verify.content import digest_of
 from verify.errors import InputError
 from verify.hamiltonians.coordinates import PLANE
 from verify.hamiltonians.hamiltonian import Hamiltonian, embedded
@@ -52,15 +52,19 @@ def kept_or_read(
     if known is not None:
         return KeptHamiltonian(json.loads(known))
     found = read(values)
-    written = json.dumps(_record(found), separators=(",", ":")).encode()
-    if written != b"null" and len(written) <= _MOST_BYTES:
-        code_cache.keep(key, written)
+    record = _record_of(found)
+    if record is not None:
+        written = json.dumps(record, separators=(",", ":")).encode()
+        if len(written) <= _MOST_BYTES:
+            code_cache.keep(key, written)
     return found
 
 
 class KeptHamiltonian(Hamiltonian):
     """A Hamiltonian by its record. It equals others of the same text and values that were kept, and
     none that was read: to compare the two would be to read it."""
+
+    _record: Mapping[str, Any]
 
     def __init__(self, record: Mapping[str, Any]) -> None:
         vars(self).update(
@@ -93,13 +97,13 @@ class KeptHamiltonian(Hamiltonian):
 
     @cached_property
     def _field(self) -> VectorField:
-        return VectorField.of(*recorded(vars(self)["_record"]["ring"]))
+        return VectorField.of(*recorded(self._record["ring"]))
 
     @cached_property
     def _with_symbols(self) -> Hamiltonian:
         if not self.values:
             return self
-        generic = vars(self)["_record"]["generic"]
+        generic = self._record["generic"]
         return KeptHamiltonian(generic) if generic else self._read.with_symbols()
 
     @property
@@ -118,7 +122,7 @@ class KeptHamiltonian(Hamiltonian):
         return Hamiltonian, (self.expression, self.values)
 
 
-def _record(hamiltonian: Hamiltonian) -> dict[str, Any] | None:
+def _record_of(hamiltonian: Hamiltonian) -> dict[str, Any] | None:
     """What is kept of it; None where nothing is."""
     if not hamiltonian.planar or hamiltonian.domain or hamiltonian.written:
         return None
@@ -135,18 +139,13 @@ def _record(hamiltonian: Hamiltonian) -> dict[str, Any] | None:
         "parameters": hamiltonian.parameters,
         "time_dependent": hamiltonian.time_dependent,
         "ring": record_of(field.ring, field.energy),
-        "generic": _record(hamiltonian.with_symbols()) if hamiltonian.values else None,
+        "generic": _record_of(hamiltonian.with_symbols()) if hamiltonian.values else None,
     }
 
 
 @cache
 def _readers() -> str:
     """A name for all that reads a formula; empty where the code is not there to look at."""
-    digest = hashlib.sha256()
     house = Path(__file__).parents[1]
-    paths = sorted(path for files in _CODE for path in house.glob(files))
-    if not paths:
-        return ""
-    for path in paths:
-        digest.update(f"{path.relative_to(house)}\n".encode() + path.read_bytes())
-    return " ".join([digest.hexdigest(), *map(version, _LIBRARIES)])
+    files = {str(x.relative_to(house)): x for pattern in _CODE for x in house.glob(pattern)}
+    return digest_of(files, " ".join(map(version, _LIBRARIES))) if files else ""

@@ -15,6 +15,7 @@ from flint import fmpq
 
 from verify.algebra.embedding import embed
 from verify.algebra.formula import symbol
+from verify.algebra.symbols import P, Q
 from verify.errors import InputError
 from verify.hamiltonians import potential_motion
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -23,7 +24,6 @@ from verify.hamiltonians.named_system import System
 from verify.hamiltonians.systems import all_systems
 
 _MOST_TERMS = 8
-_P, _Q = symbol("p"), symbol("q")
 
 
 @dataclass(frozen=True)
@@ -59,10 +59,10 @@ def motions(hamiltonian: Hamiltonian) -> Callable[[Fraction, Fraction], Motion |
 def potential(hamiltonian: Hamiltonian) -> tuple[fmpq, tuple[fmpq, ...]] | None:
     """α and (c₀, …, c₄) where H = α p²/2 + Σ c_k q^k with α ≠ 0."""
     terms = _terms(hamiltonian.exact)
-    if terms is None or not terms.is_polynomial(_P, _Q):
+    if terms is None or not terms.is_polynomial(P, Q):
         return None
     kinetic, coefficients = fmpq(0), [fmpq(0)] * 5
-    for (i, j), c in sympy.Poly(terms, _P, _Q).terms():
+    for (i, j), c in sympy.Poly(terms, P, Q).terms():
         if not c.is_Rational or (i and (i, j) != (2, 0)) or j > 4:
             return None
         value = fmpq(int(c.p), int(c.q))
@@ -116,7 +116,7 @@ def _terms(exact: sympy.Expr) -> sympy.Expr | None:
 
 def _values(terms: sympy.Expr, own: sympy.Expr, names: tuple[str, ...]) -> Values | None:
     """The parameters with which the system may be this sum."""
-    wild = {symbol(name): sympy.Wild(name, exclude=[_P, _Q]) for name in names}
+    wild = {symbol(name): sympy.Wild(name, exclude=[P, Q]) for name in names}
     pattern = _without_constant(sympy.expand(own)).subs(wild)
     match = _without_constant(terms).match(pattern)
     if match is None or not all(x.is_Rational for x in match.values()):
@@ -125,7 +125,7 @@ def _values(terms: sympy.Expr, own: sympy.Expr, names: tuple[str, ...]) -> Value
 
 
 def _without_constant(terms: sympy.Expr) -> sympy.Expr:
-    return terms.as_independent(_P, _Q, as_Add=True)[1]
+    return terms.as_independent(P, Q, as_Add=True)[1]
 
 
 def _same_field(system: System, values: Values, exact: sympy.Expr) -> bool:

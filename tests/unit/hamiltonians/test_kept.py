@@ -132,7 +132,7 @@ def test_with_parameters_of_value_0_the_generic_h_is_the_same_expression(
 ) -> None:
     formula = f"{'*'.join(factors)}{''.join(f'/{x}' for x in divisors)} + a*p + b*q + c"
     one = Hamiltonian.parse(formula, {"a": 0, "b": b, "c": 0})
-    record = kept._record(one)
+    record = kept._record_of(one)
     assert record is not None
     generic = KeptHamiltonian(record).with_symbols()
     assert generic.expression == one.with_symbols().expression

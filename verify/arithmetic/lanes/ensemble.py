@@ -253,13 +253,8 @@ class Ensemble:
             b, (given, found) = self.b, (self.allocations.alloca(DOUBLES, size=n) for n in (1, 2))
             b.store(x, given)
             b.call(self.circle.function, [given, found])
-            self._found = (
-                x,
-                {
-                    each: b.load(b.gep(found, [constant(at, 64)]))
-                    for at, each in enumerate(self.circle.wanted)
-                },
-            )
+            values = [b.load(b.gep(found, [constant(at, 64)])) for at in range(2)]
+            self._found = x, dict(zip(self.circle.wanted, values, strict=True))
         return self._found[1][name]
 
     def _wide(self, x: Value) -> Number:

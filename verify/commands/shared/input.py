@@ -169,7 +169,6 @@ def hamiltonian_of(
     """The Hamiltonian that the options name; InputError unless they name one."""
     from verify.hamiltonians import systems
     from verify.hamiltonians.hamiltonian import Hamiltonian
-    from verify.hamiltonians.kept import kept_or_read
 
     if (system is None) == (hamiltonian is None):
         raise InputError("--system, --hamiltonian", system or NOT_GIVEN, "give one of the two")
@@ -179,7 +178,11 @@ def hamiltonian_of(
     else:
         systems.check_is_formula(hamiltonian or "")
         source, read = f"formula {hamiltonian}", partial(Hamiltonian.parse, hamiltonian or "")
-    return kept_or_read(source, values, read) if kept else read(values)
+    if not kept:
+        return read(values)
+    from verify.hamiltonians.kept import kept_or_read
+
+    return kept_or_read(source, values, read)
 
 
 def paper_folder() -> Path:
