@@ -22,9 +22,10 @@ from verify.calls.given import hamiltonian_from
 from verify.errors import InputError, unknown
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.check import check_integrator
-from verify.integrators.loading import step_from
+from verify.integrators.loading import callee_from
 from verify.integrators.results import MOST_CLAIMED, Claims, Finding
 from verify.integrators.step import TIME_LIMIT
+from verify.integrators.survey import Request
 from verify.verdict import Verdict
 
 __all__ = ["assert_area_order", "assert_area_preserving", "assert_convergence_order"]
@@ -95,8 +96,11 @@ def _asserted(
         raise InputError("p, q", p if p is not None else q, "give both or none")
     start = None if p is None or q is None else (rational(p, "p"), rational(q, "q"))
     limit = options.get("time_limit", TIME_LIMIT)
-    made, notes = step_from(step, options.get("arguments"), dict(exact.values), limit)
-    found = check_integrator(made, exact, claims, start).noting(*notes)
+    callee = callee_from(
+        step, exact.coordinates, arguments=options.get("arguments"),
+        parameters=dict(exact.values), time_limit=limit,
+    )  # fmt: skip
+    found = check_integrator(callee, exact, claims, Request(z=start))
     if not found.verdict.holds:
         raise AssertionError(_message(found))
     return found

@@ -6,13 +6,12 @@ from typing import Any
 import pytest
 
 from tests.helpers.pages.parts_of_prose import UNMARKED, proses, unmarked
+from tests.helpers.programs.judged import judged
 from verify.claims.theorems import check_theorem
 from verify.claims.theorems import names as theorems
 from verify.execution.keeping import NOTHING
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.check import check_integrator
 from verify.integrators.results import Claims
-from verify.integrators.step import Step
 from verify.proof.every import prove_every
 from verify.proof.symmetry import prove_symmetry
 from verify.prose import Formula, Number, Prose, prose
@@ -100,7 +99,7 @@ STEPS = {
 @pytest.mark.parametrize("step", STEPS.values(), ids=STEPS)
 @pytest.mark.parametrize("claims", [Claims(), Claims(order=2, area_order=3), Claims(2, 3, True)])
 def test_what_is_found_of_a_step_is_marked(step: Any, claims: Claims) -> None:
-    found = check_integrator(Step(step), DUFFING, claims)
+    found = judged(step, claims, hamiltonian=DUFFING)
     said = [found.reason, *found.notes]
     assert unmarked(said) == []
     assert list(proses(said)) == said

@@ -15,9 +15,10 @@ from verify.calls.given import (
 )
 from verify.errors import InputError
 from verify.integrators.check import check_integrator
-from verify.integrators.loading import step_from
+from verify.integrators.loading import callee_from
 from verify.integrators.results import MOST_CLAIMED, Claims, Finding
 from verify.integrators.step import TIME_LIMIT
+from verify.integrators.survey import Request
 from verify.proof.order import prove
 from verify.proof.order_proof import Proof
 from verify.schemes.scheme import Scheme
@@ -69,9 +70,12 @@ def check(
     if (p is None) != (q is None):
         raise InputError("p, q", p if p is not None else q, "give both or none")
     start = None if p is None or q is None else (rational(p, "p"), rational(q, "q"))
-    made, notes = step_from(step, arguments, dict(exact.values), time_limit)
+    callee = callee_from(
+        step, exact.coordinates, arguments=arguments, parameters=dict(exact.values),
+        time_limit=time_limit,
+    )  # fmt: skip
     claims = Claims(order=order, area_preserving=area_preserving)
-    return check_integrator(made, exact, claims, start).noting(*notes)
+    return check_integrator(callee, exact, claims, Request(z=start))
 
 
 def _claiming(found: Any, order: int | None, area_preserving: bool) -> Scheme | None:

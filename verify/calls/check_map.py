@@ -3,12 +3,14 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from verify.arithmetic.exact import Exact, rational
+from verify.arithmetic.exact import Exact, positive, rational
 from verify.errors import InputError
-from verify.integrators.maps.check import MapFinding
-from verify.integrators.maps.check import check_map as check
-from verify.integrators.maps.user_map import map_from
+from verify.hamiltonians.coordinates import check_degrees, coordinates_in
+from verify.integrators.check import check_map as check
+from verify.integrators.loading import callee_from
+from verify.integrators.results import Finding
 from verify.integrators.step import TIME_LIMIT
+from verify.integrators.survey import Request
 
 
 def check_map(
@@ -18,8 +20,9 @@ def check_map(
     arguments: str | None = None,
     parameters: Mapping[str, Exact] | None = None,
     point: Sequence[Exact] | None = None,
+    within: Exact | None = None,
     time_limit: float = TIME_LIMIT,
-) -> MapFinding:
+) -> Finding:
     """Whether a map of one's own is symplectic, JᵀΩJ = Ω everywhere: proved, else measured.
 
     Parameters
@@ -28,8 +31,8 @@ def check_map(
         else; or map(z) → z' of one array of 2·degrees numbers. It is called.
     arguments: where the coordinates stand in z, such as "q1,p1,q2,p2"; else p1, …, pn, q1, …, qn.
     parameters: further arguments that it takes by name, exact.
-    point: p1, …, pn, q1, …, qn of a point to look at beside others; `time_limit`: seconds for all
-        calls.
+    point: p1, …, pn, q1, …, qn of a point to look at first; `within`: a defect that is allowed;
+        `time_limit`: seconds for all calls.
 
     Raises InputError, one line.
 
@@ -42,11 +45,17 @@ def check_map(
     """
     if not callable(function):
         raise InputError("map", function, "is no function; wanted: map(p, q), which returns p', q'")
-    given = {n: rational(x, f"parameter {n}") for n, x in (parameters or {}).items()}
-    own = map_from(function, degrees, arguments, given, time_limit)
-    start = None
+    check_degrees(degrees)
+    names = coordinates_in(degrees)
+    values = {n: rational(x, f"parameter {n}") for n, x in (parameters or {}).items()}
+    callee = callee_from(
+        function, names, stepped=False, arguments=arguments, parameters=values, strict=True,
+        time_limit=time_limit,
+    )  # fmt: skip
+    z = None
     if point is not None:
-        start = [rational(x, "point") for x in point]
-        if len(start) != len(own.names):
-            raise InputError("point", point, f"has {len(start)} numbers; allowed: {len(own.names)}")
-    return check(own, start)
+        z = tuple(rational(x, "point") for x in point)
+        if len(z) != len(names):
+            raise InputError("point", point, f"has {len(z)} numbers; allowed: {len(names)}")
+    allowed = None if within is None else positive(within, "within")
+    return check(callee, Request(z=z, within=allowed))

@@ -40,6 +40,11 @@ def numbered(degrees: int) -> tuple[str, ...]:
     return tuple(f"{letter}{k}" for letter in PLANE for k in range(1, degrees + 1))
 
 
+def coordinates_in(degrees: int) -> tuple[str, ...]:
+    """Of so many degrees of freedom: p and q, or p1 … pn, q1 … qn."""
+    return PLANE if degrees == 1 else numbered(degrees)
+
+
 def check_degrees(degrees: int) -> None:
     """InputError unless that is a number of degrees of freedom."""
     if not 1 <= degrees <= MOST_DEGREES:

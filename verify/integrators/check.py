@@ -1,91 +1,198 @@
-"""Whether a user's step is a scheme for H, and what it preserves: proved, else measured."""
+"""Whether a user's step is a scheme for H, and whether a step or a map keeps Ω: proved, else
+measured.
+
+One way leads to every answer: the layout of the function, the places that fit its Hamiltonian or
+the map, a trace and a proof where its code lets symbols through, else readings at the places.
+"""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 
-from verify.arithmetic.exact import decimal
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.agreement import by_duals, must_agree, must_agree_but_for_rounding
-from verify.integrators.claims import with_claims
-from verify.integrators.defined import UNDEFINED, first_defined
+from verify.integrators.agreement import must_agree, trace_must_agree
+from verify.integrators.calling import settle_layout
+from verify.integrators.claims import Evidence, counterexample, of_reading, with_claims
 from verify.integrators.faults import Fault, changed_since, examined
-from verify.integrators.measured import of_measured
-from verify.integrators.probe import Trial, measured
+from verify.integrators.loading import Callee
+from verify.integrators.measured import finding_of_map, finding_of_step
+from verify.integrators.order import Distances, distances_of
+from verify.integrators.other_forms import digits_noted, masses_noted, masses_of
+from verify.integrators.places import USER, Place
+from verify.integrators.probes.duals import DualProbe
+from verify.integrators.probes.floats import FloatProbe
 from verify.integrators.repeated import repeated
 from verify.integrators.results import NOTHING, Claims, Finding
-from verify.integrators.step import Step, StepError, why, within
-from verify.integrators.step_probes import Point, dual_step
+from verify.integrators.step import why, within
 from verify.integrators.still_clock import measured_mistakes
+from verify.integrators.structure import Probe, Structure, structure_of
+from verify.integrators.survey import NOWHERE, Request, places_of_field, places_of_map, unit_of_map
+from verify.integrators.traced import (
+    Trace,
+    proved_in_degrees,
+    proved_in_plane,
+    proved_of_map,
+    trace_of,
+)
 from verify.integrators.tracing.clocks import clock_mistakes
-from verify.integrators.tracing.domain import domain_of
-from verify.integrators.tracing.functions import copied
-from verify.integrators.tracing.readings_of_floats import readings
-from verify.integrators.tracing.rounded_order import Rounded, rounded_orders
-from verify.integrators.tracing.step_map import TracedMap, traced_map
-from verify.integrators.tracing.trace import Node, Tape
-from verify.proof.expansion import MOST_ORDERS
-from verify.proof.order import prove
-from verify.prose import Prose, prose, read_prose
+from verify.integrators.units import Field
+from verify.integrators.user_map import UserMap
+from verify.prose import Prose, prose
 from verify.verdict import Verdict
 
-POINTS: tuple[Point, ...] = (
-    (Fraction(1, 3), Fraction(3, 5)),
-    (Fraction(-1, 2), Fraction(7, 8)),
-    (Fraction(1, 7), Fraction(6, 5)),
-    (Fraction(3, 4), Fraction(-2, 5)),
-    (Fraction(-1, 5), Fraction(-2, 5)),
-)
-_PROOF_SECONDS, _CLOCK_SECONDS = 30.0, 10.0
+UNDEFINED = "H has no exact solution from any of the places that are tried"
+_PROOF, _CLOCK_SECONDS = 1 / 3, 10.0  # of the time that is left; seconds
+_MOST_PROOF, _MOST_OF_MANY = 20.0, 6.0  # seconds; and of three degrees of freedom and more
 _KEPT = 0.4  # of the time that is left, for floats after dual numbers, which are slow
-_FARTHEST = 10**9
+
+
+@dataclass
+class Trial:
+    """A user's step or map, the H that it is for, and the places at which it is tried."""
+
+    step: UserMap
+    hamiltonian: Hamiltonian | None
+    places: list[Place]
+    claims: Claims = NOTHING
+    request: Request = NOWHERE
+
+    def measure(
+        self, how: str, ladder: Sequence[Fraction] = ()
+    ) -> "tuple[Structure, Distances | None]":
+        """What is measured by dual numbers or by floats. Raises StepError, and what the user's code
+        raises."""
+        probe: Probe = DualProbe(self.step) if how == "duals" else FloatProbe(self.step)
+        if isinstance(probe, DualProbe):
+            must_agree(probe, self.places)
+        if self.hamiltonian is None:
+            return structure_of(self.step, probe, self.places), None
+        structure = structure_of(self.step, probe, self.places)
+        places = list(dict.fromkeys(x.place for x in structure.readings))
+        return structure, distances_of(self.step, probe, self.hamiltonian, places, ladder)
+
+    @cached_property
+    def evidence(self) -> Evidence:
+        """Where a claim may be seen to fail."""
+
+        def either() -> tuple[Structure | None, Distances | None]:
+            for how in self.step.ways:
+                try:
+                    return self.measure(how)
+                except Exception:  # noqa: S112 - the user's code may raise anything
+                    continue
+            return None, None
+
+        return Evidence(self.step, either)
 
 
 def check_integrator(
-    step: Step, hamiltonian: Hamiltonian, claims: Claims = NOTHING, start: Point | None = None
+    callee: Callee, hamiltonian: Hamiltonian, claims: Claims = NOTHING, request: Request = NOWHERE
 ) -> Finding:
-    """Runs the user's code. `start`: an initial value to look at beside those of `POINTS`.
+    """Runs the user's code: a step for H, held to what is claimed of it.
 
-    Raises InputError where a parameter of H has no value, or `start` is too far for floats.
+    Raises InputError where a parameter of H has no value, H has no motion where the user asks, or
+    no call returns a state.
     """
-    hamiltonian.check_planar()
     if hamiltonian.symbols:
         raise InputError("parameter", hamiltonian.symbols[0], "has no value; a step needs one")
-    for name, x in zip("pq", start or (), strict=False):
-        if abs(x) > _FARTHEST:
-            raise InputError(
-                name, decimal(x, 3), f"is beyond {_FARTHEST:.0e}, for a step in floats"
-            )
+    step, field = callee.step, Field(hamiltonian)
     step.moving = hamiltonian.time_dependent
-    trial = Trial(step, hamiltonian, ((start,) if start else ()) + POINTS)
-    faults, first = examined(step, trial.points)
+    places = places_of_field(field, step.moving, request)
+    if request.z is not None and not any(x.source == USER for x in places):
+        raise InputError("--q, --p", _shown(step, request.z), "H has no motion there")
+    if not places:
+        return Finding(Verdict.UNDECIDED, prose(UNDEFINED), "calls", hamiltonian.degrees)
+    notes = settle_layout(callee, places, field)
+    finding = _checked(Trial(step, hamiltonian, places, claims, request))
+    return finding.noting(*notes, *_of_time(step))
+
+
+def check_map(callee: Callee, request: Request = NOWHERE) -> Finding:
+    """Runs the user's code: a map without an H, and whether it is symplectic.
+
+    Raises InputError where no call returns a state.
+    """
+    step = callee.step
+    notes = settle_layout(callee, places_of_map(step.names, Fraction(1), request), None)
+    places = places_of_map(step.names, unit_of_map(step), request)
+    claims = Claims(symplectic=True)
+    return _checked(Trial(step, None, places, claims, request)).noting(*notes)
+
+
+def _shown(step: UserMap, z: Sequence[Fraction]) -> str:
+    return ", ".join(f"{name} = {x}" for name, x in zip(step.names, z, strict=True))
+
+
+def _checked(trial: Trial) -> Finding:
+    step = trial.step
+    faults, first = examined(step, trial.places)
     if not any(fault.fatal for fault in faults):
-        faults += repeated(step, trial.points)
+        faults += repeated(step, trial.places)
     if any(fault.fatal for fault in faults):
         return _no_step(trial, faults)
     provable = all(fault.allows is Verdict.PROVED for fault in faults)
-    found = _examine(trial, provable)
+    finding = _examine(trial, provable)
     later = changed_since(step, first)
     if later:
         return _no_step(trial, [*faults, *later])
-    if found.verdict is Verdict.REFUTED:
-        found = found.noting(*_exchanged(trial, provable))
-    found = replace(found, faults=tuple(fault.name for fault in faults))
-    found = found.noting(*(fault.text for fault in faults), *_of_time(step))
-    return _but_for(faults, with_claims(found, claims, trial))
+    finding = replace(finding, faults=tuple(fault.name for fault in faults))
+    finding = _but_for(faults, finding.noting(*(fault.text for fault in faults)))
+    finding = finding.noting(*_otherwise(finding, trial))
+    if trial.hamiltonian is None:
+        return _of_map(finding, trial)
+    return with_claims(finding, trial.claims, trial.evidence)
 
 
-def _but_for(faults: Sequence[Fault], found: Finding) -> Finding:
+def _otherwise(finding: Finding, trial: Trial) -> list[str]:
+    """What a map that is refuted may be all the same."""
+    step = trial.step
+    if trial.hamiltonian is None:
+        structure, _ = trial.evidence.measured if finding.symplectic is False else (None, None)
+        if structure is None:
+            return []
+        return [*digits_noted(structure.readings), *masses_noted(structure.readings, step.names)]
+    masses = masses_of(trial.hamiltonian)
+    if finding.verdict is not Verdict.REFUTED or not masses or step.masses or step.left <= 0:
+        return []
+    other = Trial(replace(step, masses=masses), trial.hamiltonian, trial.places, trial.claims)
+    try:
+        structure, distances = other.measure(step.ways[0])
+        assert distances is not None  # noqa: S101 - there is an H
+        seen = finding_of_step(other.step, structure, distances, NOTHING, trial.request)
+    except Exception:  # the user's code may raise anything
+        return []
+    if not seen.scheme:
+        return []
+    kept = " and symplectic" if seen.symplectic else ""
+    shown = ", ".join(map(str, masses))
+    return [f"in momenta p = m·v, m = ({shown}), it is of order {seen.convergence_order}{kept}"]
+
+
+def _of_map(finding: Finding, trial: Trial) -> Finding:
+    """A map is asked whether it is symplectic, by whoever gives it."""
+    if finding.symplectic is not False or finding.counterexample is not None:
+        return finding
+    if finding.against is not None:
+        example = of_reading(trial.step, finding.against, "that it is symplectic")
+        return replace(finding, counterexample=example)
+    example = counterexample("that it is symplectic", trial.claims, trial.evidence)
+    return replace(finding, counterexample=example)
+
+
+def _but_for(faults: Sequence[Fault], finding: Finding) -> Finding:
     """UNDECIDED where a fault lets no more stand; what is refuted stays so."""
     in_the_way = [fault for fault in faults if fault.allows is Verdict.UNDECIDED]
-    if not in_the_way or not found.verdict.holds:
-        return found
-    reason = prose(in_the_way[0].text, " (", found.reason, ")")
-    return replace(found, verdict=Verdict.UNDECIDED, reason=reason, order_decided=False)
+    if not in_the_way or finding.verdict is Verdict.REFUTED:
+        return finding
+    reason = prose(in_the_way[0].text, " (", finding.reason, ")")
+    return replace(finding, verdict=Verdict.UNDECIDED, reason=reason, order_decided=False,
+                   symplectic=finding.symplectic and None,
+                   area_preserving=finding.area_preserving and None)  # fmt: skip
 
 
-def _of_time(step: Step) -> list[str]:
+def _of_time(step: UserMap) -> list[str]:
     """What is said where H or the step does not depend on time."""
     if step.timed and not step.moving:
         return ["H does not depend on time: it is called with t = 0"]
@@ -95,166 +202,146 @@ def _of_time(step: Step) -> list[str]:
 
 
 def _no_step(trial: Trial, faults: Sequence[Fault]) -> Finding:
-    """REFUTED, but where its calls lack time, or H is defined at none of the points either."""
+    """What is no scheme, or no map, by a fault that ends it."""
     fault = next(fault for fault in faults if fault.fatal)
-    verdict, text = Verdict.REFUTED, prose(fault.text)
-    if fault.fails:
-        h, t = Fraction(1, 8), Fraction(1, 4)
-        if trial.step.left <= 0:
-            verdict = Verdict.UNDECIDED
-        elif first_defined(trial.hamiltonian, trial.points, h, t) is None:
-            verdict, text = Verdict.UNDECIDED, prose(text, UNDEFINED)
-    return Finding(verdict, text, "calls", faults=tuple(fault.name for fault in faults))
+    names = tuple(each.name for each in faults)
+    return Finding(fault.allows if fault.allows is not Verdict.PROVED else Verdict.UNDECIDED,
+                   prose(fault.text), "calls", trial.step.degrees, faults=names)  # fmt: skip
+
+
+# -- proved, else measured ------------------------------------------------------------------------
 
 
 def _examine(trial: Trial, provable: bool) -> Finding:
     step, notes = trial.step, list[Prose]()
+    if provable and not step.foreign:
+        try:
+            most = _MOST_PROOF if step.degrees < 3 else _MOST_OF_MANY
+            with within(min(most, max(step.left, 0.1) * _PROOF), "its proof takes too long"):
+                trace = trace_of(step)
+                trace_must_agree(step, trace.roots, trial.places)
+                finding = _proved(trial, trace)
+            finding = _decided(finding, trial, trace)
+            if finding is not None:
+                return finding.noting(*_clock(trial, trace, finding.convergence_order))
+        except Exception as error:  # the user's code may raise anything
+            notes.append(prose("no proof: ", why(error)))
+    return _measured(trial, notes)
+
+
+def _proved(trial: Trial, trace: Trace) -> Finding:
+    if trial.hamiltonian is None:
+        return proved_of_map(trace, trial.step.names)
+    prove = proved_in_plane if trial.step.degrees == 1 else proved_in_degrees
+    return prove(trace, trial.hamiltonian)
+
+
+def _decided(finding: Finding, trial: Trial, trace: Trace) -> Finding | None:
+    """What a proof says of Ω, where it says it; else with what is measured of that."""
+    rounded = bool(trace.tape.rounded) and finding.symplectic is False
+    open_ = finding.symplectic is None and finding.verdict is not Verdict.REFUTED
+    volume_open = finding.symplectic is False and finding.area_preserving is None
+    if not (
+        rounded
+        or open_
+        or volume_open
+        or (trial.hamiltonian is None and finding.symplectic is False)
+    ):
+        return finding
     try:
-        if provable and not step.foreign:
-            with within(_PROOF_SECONDS, "its proof takes too long"):
-                found, ends = _proved(trial)
-            return found.noting(*_clock(trial.hamiltonian, *ends, found.convergence_order))
+        structure, distances = trial.measure("duals")
     except Exception as error:  # the user's code may raise anything
-        notes.append(prose("no proof: ", why(error)))
+        return finding.noting(prose("not measured: ", why(error)))
+    trial.evidence.measure = lambda: (structure, distances)
+    if trial.hamiltonian is None:
+        seen = finding_of_map(trial.step, structure, trial.request)
+        if rounded or open_:
+            return replace(seen, notes=(*finding.notes, *seen.notes))
+        return _refuted_map(finding, seen, structure)
+    assert distances is not None  # noqa: S101 - there is an H
+    seen = finding_of_step(trial.step, structure, distances, trial.claims, trial.request)
+    if not rounded and not open_:
+        return replace(finding, area_preserving=structure.volume_kept)
+    reason = (
+        prose(seen.reason, " (", "what algebra says: ", finding.reason, ")")
+        if open_
+        else prose(finding.reason, "; ", seen.reason.partition("; ")[2])
+    )
+    order = finding.convergence_order if finding.order_decided else seen.convergence_order
+    return replace(
+        seen,
+        verdict=Verdict.REFUTED if finding.verdict is Verdict.REFUTED else seen.verdict,
+        reason=reason,
+        convergence_order=order,
+        order_decided=finding.order_decided or seen.order_decided,
+        leading=finding.leading,
+        area_at_least=finding.area_at_least if open_ or seen.symplectic is not False else None,
+        notes=(*finding.notes, *seen.notes),
+    )
+
+
+def _refuted_map(finding: Finding, seen: Finding, structure: Structure) -> Finding:
+    """By algebra, and by dual numbers at places where it shows."""
+    volume = finding.area_preserving
+    if volume is None:
+        volume = structure.volume_kept
+    if seen.symplectic is not False:
+        # Algebra says it is not 0; it is too small for doubles to show.
+        return replace(seen, notes=(*finding.notes, *seen.notes))
+    kept = (
+        "; det J ≡ 1 all the same"
+        if volume and finding.area_preserving
+        else "; det J is 1 where it was measured, all the same"
+        if volume
+        else ""
+    )
+    entry = seen.entry or finding.entry
+    reason = prose(f"it is not symplectic: the entry {entry} of S is not 0{kept}")
+    return replace(finding, reason=reason, area_preserving=volume, entry=entry,
+                   largest=seen.largest, probe_error=seen.probe_error, against=seen.against,
+                   places=seen.places)  # fmt: skip
+
+
+def _clock(trial: Trial, trace: Trace, order: int | None) -> list[str]:
+    """Which mistake its clock looks like; a proof stands without where that takes too long."""
+    if trial.hamiltonian is None or not trial.step.moving or trial.step.degrees > 1:
+        return []
+    try:
+        with within(_CLOCK_SECONDS, "its clock takes too long"):
+            return clock_mistakes(trial.hamiltonian, *trace.roots, order)
+    except Exception:  # no more is known then
+        return []
+
+
+def _measured(trial: Trial, notes: list[Prose]) -> Finding:
+    step = trial.step
     kept = 0.0 if step.foreign else _KEPT * max(step.left, 0)
     for how in step.ways:
         step.left += -kept if how == "duals" else kept
         try:
-            if how == "duals":
-                must_agree(trial, by_duals(step))
-            told = of_measured(measured(trial, how), trial)
-            return replace(told, notes=(*notes, *told.notes)).noting(*_still(trial, how, told))
+            structure, distances = trial.measure(how)
+            trial.evidence.measure = lambda pair=(structure, distances): pair
+            if distances is None:
+                finding = finding_of_map(step, structure, trial.request)
+            else:
+                finding = finding_of_step(step, structure, distances, trial.claims, trial.request)
+            finding = replace(finding, notes=(*notes, *finding.notes))
+            return finding.noting(*_still(trial, how, finding))
         except Exception as error:  # as above
             notes.append(prose(f"not measured with {how}: ", why(error)))
     neither = prose("it can be neither traced nor measured")
-    return Finding(Verdict.UNDECIDED, neither, "calls").noting(*notes)
+    return Finding(Verdict.UNDECIDED, neither, "calls", step.degrees).noting(*notes)
 
 
-def _still(trial: Trial, how: str, found: Finding) -> list[str]:
+def _still(trial: Trial, how: str, finding: Finding) -> list[str]:
     """Which mistake its clock looks like; nothing where that cannot be measured in time."""
-    try:
-        return measured_mistakes(trial, how, found.convergence_order)
-    except Exception:  # the user's code may raise anything
+    if trial.hamiltonian is None or not trial.step.moving or trial.step.degrees > 1:
         return []
-
-
-def _exchanged(trial: Trial, provable: bool) -> list[str]:
-    """Whether it is a scheme when p and q stand in each other's place."""
-    exchange = {"p": "q", "q": "p"}
-    order = tuple(exchange.get(name, name) for name in trial.step.order)
-    other = replace(trial, step=replace(trial.step, order=order))
-    if not _examine(other, provable).verdict.holds:
-        return []
-    return [f"with arguments in the order {','.join(order)} it is a scheme for this H"]
-
-
-# -- proved ---------------------------------------------------------------------------------------
-
-
-def _proved(trial: Trial) -> tuple[Finding, tuple[Node, Node]]:
-    """What is proved, and p' and q' as traced."""
-    tape, step = Tape(), trial.step
-    symbols = [tape.symbol(name) for name in ("pqht" if step.moving else "pqh")]
-    symbols += [] if step.moving else [tape.rational(Fraction(0))]
-    roots = dual_step(step, copied(step.function, tape), *symbols)
-    tape.check()
-    p_next, q_next = (x.node for x in roots)
-    must_agree_but_for_rounding(trial, p_next, q_next)
-    traced = traced_map(trial.hamiltonian, p_next, q_next)
-    proof = prove(traced.step_map)
-    found = Finding(
-        proof.verdict,
-        proof.reason,
-        "proof",
-        order=proof.order,
-        area_preserving=proof.area_preserving,
-        convergence_order=proof.convergence_order,
-        order_decided=proof.convergence_decided,
-        area_at_least=proof.first.power or MOST_ORDERS + 1,
-        leading=proof.first.text,
-        delta_j=proof.step_map.delta_j_text,
-        proof=proof,
-        domain=(proof.domain & domain_of(tape)).texts,
-    ).noting(
-        f"traced with symbols; the map {traced.how}",
-        *readings(tape),
-    )
-    found = _but_for_rounding(found, traced, tape)
-    return _measured_area(found, trial), (p_next, q_next)
-
-
-def _clock(hamiltonian: Hamiltonian, p_next: Node, q_next: Node, order: int | None) -> list[str]:
-    """Which mistake its clock looks like; a proof stands without where that takes too long."""
     try:
         with within(_CLOCK_SECONDS, "its clock takes too long"):
-            return clock_mistakes(hamiltonian, p_next, q_next, order)
-    except StepError:
+            probe: Probe = DualProbe(trial.step) if how == "duals" else FloatProbe(trial.step)
+            return measured_mistakes(
+                probe, trial.hamiltonian, trial.places, finding.convergence_order
+            )
+    except Exception:  # the user's code may raise anything
         return []
-
-
-def _but_for_rounding(found: Finding, traced: TracedMap, tape: Tape) -> Finding:
-    """The orders that hold but for the rounding of its coefficients, where they are others."""
-    if not tape.rounded or traced.series is None:
-        return found
-    field, p, q = traced.series
-    better = rounded_orders(field, p, q)
-    if better.convergence == found.convergence_order and better.area in (found.order, None):
-        return found
-    if better.residue == 0:
-        return found
-    kept = found.area_preserving is True
-    area = None if kept else better.area
-    leading = found.leading
-    if not kept:
-        leading = field.ring.text(better.leading) if better.leading is not None else None
-    return replace(
-        found,
-        verdict=Verdict.MEASURED if _is_scheme(better) else found.verdict,
-        reason=_rounded_reason(found, better, p.most),
-        order=area,
-        area_preserving=True if kept else None if area is None else False,
-        convergence_order=better.convergence if better.convergence is not None else p.most,
-        leading=leading,
-        area_at_least=p.most,
-        proof=None,
-    )
-
-
-def _is_scheme(better: Rounded) -> bool:
-    return better.convergence is None or better.convergence >= 1
-
-
-def _rounded_reason(found: Finding, better: Rounded, most: int) -> Prose:
-    order = f"order {better.convergence}" if better.convergence is not None else f"order ≥ {most}"
-    if found.area_preserving:
-        area = "det J ≡ 1, proved"
-    else:
-        area = f"ΔJ = O(`h^{better.area if better.area is not None else most}`)"
-    strictly = found.convergence_order
-    exactly = f"; taken exactly, they make the order {strictly}" if strictly is not None else ""
-    residue = decimal(better.residue, 2)
-    return read_prose(
-        f"{order} and {area}, but for the rounding of its coefficients, which leaves residues of "
-        f"up to `{residue}`{exactly}"
-    )
-
-
-def _measured_area(found: Finding, trial: Trial) -> Finding:
-    """What algebra leaves open of ΔJ is measured with dual numbers."""
-    if found.area_preserving is not None or found.verdict is Verdict.REFUTED:
-        return found
-    try:
-        other = of_measured(measured(trial, "duals"), trial)
-    except Exception as error:  # the user's code may raise anything
-        return found.noting(prose("not measured: ", why(error)))
-    if other.verdict is not Verdict.MEASURED:
-        return found
-    return replace(
-        other,
-        convergence_order=found.convergence_order,
-        order_decided=found.order_decided,
-        reason=prose(other.reason, " (the coefficients of ΔJ are not decided: ", found.reason, ")"),
-        notes=(*found.notes, *other.notes),
-        leading=found.leading,
-        area_at_least=found.area_at_least,
-    )

@@ -1,4 +1,4 @@
-"""A user's own step function: loaded, and its arguments understood.
+"""A user's own step or map: loaded, and its arguments understood, as far as their names tell.
 
 `verify check-integrator` and `verify.testing` run the user's code; nothing else in `verify` does.
 """
@@ -7,26 +7,28 @@ import importlib
 import importlib.util
 import inspect
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from fractions import Fraction
+from itertools import permutations
 from pathlib import Path
 from types import ModuleType
 
 from verify.errors import InputError, is_meant, nearest
-from verify.integrators.step import TIME_LIMIT, Step, Theirs, contained, last_line
+from verify.integrators.layout import Layout, role_of, shapes
+from verify.integrators.step import TIME_LIMIT, Theirs, contained, last_line
+from verify.integrators.user_map import UserMap
 
-_NAMES = {
-    **dict.fromkeys(("p", "v", "p0", "momentum", "velocity", "mom", "vel"), "p"),
-    **dict.fromkeys(("q", "x", "q0", "position", "displacement", "pos"), "q"),
-    **dict.fromkeys(("t", "time", "t0"), "t"),
-    **dict.fromkeys(("h", "dt", "tau", "step", "step_size", "stepsize", "delta_t"), "h"),
-}
-_USUAL = ("p", "q", "h")
-_COUNTS = {4: ["h", "p", "q", "t"], 3: ["h", "p", "q"]}  # arguments, sorted, t among them first
-_USUAL_IN_TIME = ("p", "q", "t", "h")
 _MOST_SECONDS = 86_400
 _LISTED = 8  # functions of a module, in an error
 _POSITIONAL = inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD
+_STEPS = {4: "pqth", 3: "pqh", 2: "zh"}  # roles of so many arguments
+_WITH_T = {3: "zth"}
+_MAPS = {2: "pq", 1: "z"}
+_WANTED = {
+    True: "wanted: step(p, q, h) or step(p, q, t, h), which returns p', q', or step(z, h), z'",
+    False: "wanted: map(p, q), which returns p', q', or map(z), which returns z'",
+}
 
 
 def load(target: str, called: str = "integrator") -> Callable[..., Theirs]:
@@ -95,60 +97,175 @@ def _module(place: str, target: str, called: str) -> ModuleType:
 # -- its signature --------------------------------------------------------------------------------
 
 
-def step_from(
+@dataclass(frozen=True)
+class Callee:
+    """A user's function, and the layouts in which it may take its state, the likeliest first.
+
+    `named`: whether its arguments' names tell p from q.
+    """
+
+    step: UserMap
+    layouts: tuple[Layout, ...]
+    named: bool = True
+    arguments: tuple[str, ...] = ()
+    notes: list[str] = field(default_factory=list)
+
+
+def callee_from(
     function: Callable[..., Theirs],
+    names: tuple[str, ...],
+    *,
+    stepped: bool = True,
     arguments: str | None = None,
     parameters: Mapping[str, Fraction] | None = None,
     time_limit: float = TIME_LIMIT,
-) -> tuple[Step, list[str]]:
-    """The function as a Step, and notes on how its arguments are understood.
+    strict: bool = False,
+) -> Callee:
+    """The function with the coordinates `names`, p and q or p1 … qn.
 
-    `arguments`: "q,p,h" or another order; without it the names of its arguments tell, where they
-    do. `parameters`: those of H, which it may take by name. InputError for a wrong signature, or
-    a time limit that is none.
+    `stepped`: whether it has an h. `arguments`: "q,p,h" or another order, "q1,p1,q2,p2" of the one
+    z that a map takes; without it the names of its arguments tell, where they do. `parameters`:
+    what else it may take by name; `strict`: and must. InputError for a wrong signature, or a time
+    limit that is none.
     """
     if not 0.01 <= time_limit <= _MOST_SECONDS:
         problem = f"is no number of seconds from 0.01 to {_MOST_SECONDS}"
         raise InputError("time limit", time_limit, problem)
-    order = _order(arguments) if arguments is not None else None
-    try:
-        named = inspect.signature(function).parameters.values()
-    except (TypeError, ValueError):  # some functions written in C have none
-        return Step(function, order or _USUAL, left=time_limit), []
-    name = getattr(function, "__name__", "step")
-    places = [x for x in named if x.kind in _POSITIONAL]
-    variadic = any(x.kind is inspect.Parameter.VAR_POSITIONAL for x in named)
-    called = [_NAMES.get(x.name.lower().strip("_"), "") for x in places]
-    named_so = (
-        None
-        if order
-        else next((o for n in _COUNTS if (o := _as_order(called[:n])) is not None), None)
-    )
-    count = len(order or named_so or _USUAL)
-    rest = [*places[count:], *(x for x in named if x.kind is inspect.Parameter.KEYWORD_ONLY)]
-    known = parameters or {}
-    given = {x.name: float(known[x.name]) for x in rest if x.name in known}
-    missing = [x.name for x in rest if x.default is x.empty and x.name not in given]
-    if (len(places) < count and not variadic) or missing:
-        shown = f"{name}({', '.join(str(x) for x in named)})"
-        wanted = "wanted: step(p, q, h) or step(p, q, t, h), which returns p', q'"
-        raise InputError("integrator", shown, wanted)
-    notes = []
-    if order is None:
-        order = named_so or _USUAL
-        if named_so not in (_USUAL, _USUAL_IN_TIME):
-            first = ", ".join(x.name for x in places[:count])
-            notes.append(f"its arguments ({first}) are taken as ({', '.join(order)})")
-    return Step(function, order, given, left=time_limit), notes
+    values = dict(parameters or {})
+    signature = _Signature(function, stepped, values, strict)
+    places: tuple[int, ...] = ()
+    if arguments is None:
+        orders, named = signature.orders()
+    else:
+        order, places = _order(arguments, names, stepped, signature)
+        orders, named = [order], True
+    halves = [("p", "q")] if places else None
+    layouts = [x for roles in orders for x in _layouts(roles, len(names) // 2, halves)]
+    layouts = [
+        Layout(x.roles, x.halves, x.shape, x.kind, places, signature.record) for x in layouts
+    ]
+    used = {name: x for name, x in values.items() if name in signature.takes}
+    step = UserMap(function, layouts[0], names, used, left=time_limit)
+    several = len({(x.roles, x.halves) for x in layouts}) > 1
+    return Callee(step, tuple(layouts), named and not several, signature.shown(len(orders[0])))
 
 
-def _order(arguments: str) -> tuple[str, ...]:
-    order = _as_order([name.strip() for name in arguments.split(",")])
-    if order is None:
+def foreign_callee(step: UserMap) -> Callee:
+    """A step of a library or a program, whose layout is what its interface says."""
+    return Callee(step, (step.layout,))
+
+
+class _Signature:
+    """A function's arguments. InputError where they can be none of a step's or a map's."""
+
+    def __init__(
+        self, function: Callable[..., Theirs], stepped: bool, values: dict[str, Fraction],
+        strict: bool,
+    ) -> None:  # fmt: skip
+        self.stepped, self.record = stepped, None
+        self.takes: set[str] = set()
+        try:
+            named = list(inspect.signature(function).parameters.values())
+        except (TypeError, ValueError):  # some functions written in C have none
+            named = []
+        self.text = f"{getattr(function, '__name__', 'step')}({', '.join(map(str, named))})"
+        every = {x.name for x in named}
+        for name in values if strict else ():
+            if name not in every:
+                raise InputError("parameter", name, f"is no argument of {self.text}")
+        places = [x for x in named if x.kind in _POSITIONAL]
+        self.variadic = not named or any(x.kind is x.VAR_POSITIONAL for x in named)
+        # A parameter of H that stands where a coordinate does is no coordinate.
+        self.places = [
+            x for x in places if x.name not in values or role_of(x.name) in ("p", "q", "h")
+        ]
+        self.places = [x for k, x in enumerate(places) if x in self.places]
+        self.needed = [x for x in self.places if x.default is x.empty]
+        self.takes = {x.name for x in named if x.name in values and x not in self.places[:4]}
+        keywords = [x for x in named if x.kind is x.KEYWORD_ONLY and x.default is x.empty]
+        if any(x.name not in values for x in keywords):
+            raise self.wrong()
+        if self.places and _is_record(self.places[0].annotation):
+            self.record = self.places[0].annotation
+
+    def wrong(self) -> InputError:
+        """What is said of a signature that is none."""
+        return InputError("integrator" if self.stepped else "map", self.text, _WANTED[self.stepped])
+
+    def shown(self, count: int) -> tuple[str, ...]:
+        """The names of the first arguments."""
+        return tuple(x.name for x in self.places[:count])
+
+    def orders(self) -> tuple[list[tuple[str, ...]], bool]:
+        """Roles of its arguments, the likeliest first; and whether their names tell them."""
+        if self.variadic and not self.needed:
+            return [tuple("pqh" if self.stepped else "pq")], True
+        roles = [role_of(x.name) for x in self.places]
+        counts = _STEPS if self.stepped else _MAPS
+        for count in counts:
+            wanted = [counts[count], *([_WITH_T[3]] if count == 3 and self.stepped else [])]
+            if sorted(roles[:count]) in map(sorted, wanted) and len(self.needed) <= count:
+                return [tuple(roles[:count])], True
+        count = len(self.needed)
+        if count not in counts:
+            count = next((n for n in counts if count <= n <= len(self.places)), 0)
+        if not count:
+            raise self.wrong()
+        return list(_filled(roles[:count], counts[count])), self._plain(count)
+
+    def _plain(self, count: int) -> bool:
+        """Whether the order is the only one, as of a map, to which p and q are alike."""
+        return not self.stepped or count == 1
+
+
+def _filled(roles: Sequence[str], wanted: str) -> Iterator[tuple[str, ...]]:
+    """Orders that keep to the roles that names tell; the usual order first."""
+    kept = [role if role in wanted and roles.count(role) == 1 else "" for role in roles]
+    orders = sorted(set(permutations(wanted)), key=lambda x: (x != tuple(wanted), x))
+    for order in orders:
+        if all(role in ("", one) for role, one in zip(kept, order, strict=True)):
+            yield order
+
+
+def _is_record(annotation: object) -> bool:
+    return isinstance(annotation, type) and sorted(
+        map(role_of, getattr(annotation, "_fields", ()))
+    ) == ["p", "q"]
+
+
+def _layouts(
+    roles: tuple[str, ...], degrees: int, halves: list[tuple[str, str]] | None
+) -> Iterator[Layout]:
+    if "z" not in roles:
+        first = "p" if roles.index("p") < roles.index("q") else "q"
+        order = ("p", "q") if first == "p" else ("q", "p")
+        for shape, kind in shapes(degrees):
+            yield Layout(roles, order, shape, kind)
+        return
+    for order in halves or [("p", "q"), ("q", "p")]:
+        yield Layout(roles, order, (degrees,), "flat")
+        for shape, kind in shapes(degrees):
+            if kind == "array" and shape:
+                yield Layout(roles, order, shape, "rows")
+        for shape, kind in shapes(degrees):
+            yield Layout(roles, order, shape, "pair" if kind == "array" else "list")
+
+
+def _order(
+    arguments: str, names: tuple[str, ...], stepped: bool, signature: _Signature
+) -> tuple[tuple[str, ...], tuple[int, ...]]:
+    """The roles that are written, and where coordinates stand in one z."""
+    words = [name.strip() for name in arguments.split(",")]
+    if not stepped and sorted(words) == sorted(names):
+        if len(names) == 2 and len(signature.needed) == 2:
+            return tuple(words), ()
+        return ("z",), tuple(map(words.index, names))
+    roles = [role_of(word) for word in words]
+    counts = [*(_STEPS if stepped else _MAPS).values(), *(_WITH_T.values() if stepped else ())]
+    if sorted(roles) not in map(sorted, counts):
+        listed = ", ".join(names)
         problem = "is no order of p, q and h, such as q,p,h, nor of p, q, t and h"
-        raise InputError("--arguments", arguments, problem)
-    return order
-
-
-def _as_order(names: Sequence[str]) -> tuple[str, ...] | None:
-    return tuple(names) if sorted(names) in _COUNTS.values() else None
+        raise InputError(
+            "--arguments", arguments, problem if stepped else f"is no order of {listed}"
+        )
+    return tuple(roles), ()

@@ -1,151 +1,321 @@
-"""What is said of a step that was measured: its verdict, in words, with what could not be seen."""
+"""What is said of a user's map that was measured: its verdict, in words, with where it was seen."""
 
-from dataclasses import replace
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from verify.arithmetic.exact import plain
-from verify.hamiltonians.coordinates import PLANE
-from verify.integrators.fitted_order import Fitted
-from verify.integrators.probe import Measured, Trial, measured
-from verify.integrators.results import Finding
+from verify.integrators.number_type import DOUBLE
+from verify.integrators.order import Distances, PlaceOrder
+from verify.integrators.places import SIDE, USER, Place
+from verify.integrators.results import Claims, Finding
+from verify.integrators.sides import Sides
+from verify.integrators.structure import REFUTES, Structure
+from verify.integrators.survey import Request
+from verify.integrators.user_map import UserMap
 from verify.integrators.wrapped import periods_told
-from verify.prose import Number, Prose, prose, read_prose
+from verify.prose import Number, Prose, joined, prose, read_prose
 from verify.verdict import Verdict
 
-_SEEN = 1e-6  # a ΔJ that no tolerance makes
-_NO_AREA = 1e-8  # a ΔJ above it, of no power of h, or a probe's error, leaves it undecided
-_ROUNDING = 1e-12  # a ΔJ that rounded coefficients leave
+_ENOUGH = 4  # slopes of a place that has not settled, with which it counts
+_PRECISE = 3  # decimals of a number that is shown
 
 
-def of_measured(found: Measured, trial: Trial) -> Finding:
-    """What was found of the step, which is measured once more where dual numbers say too little.
+@dataclass(frozen=True)
+class _Order:
+    """`order`: None where none is seen (`exact`) or none has settled. `decided`: whether it is no
+    higher, and no lower than what is claimed."""
 
-    Raises StepError, or what the user's code raises.
-    """
-    told = _as_it_stands(found)
-    small = told.order is not None and told.largest is not None and told.largest <= _SEEN
-    if found.how == "duals" and found.opaque and small:
-        told = _with_floats(told, trial)
-    return _consistent(told)
+    order: int | None
+    decided: bool
+    said: str
+    domain: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+    exact: bool = False
 
 
-def _as_it_stands(found: Measured) -> Finding:
-    area, distance = found.area, found.distance
-    exact = all(row.error <= 10 * row.error_noise for row in found.rows)
-    order = None if distance.power is None else distance.power - 1
-    preserving, said = _area_sentence(found)
-    verdict, told = Verdict.MEASURED, _order_sentence(distance, exact)
-    sure = distance.tail is None or distance.tail.small
-    if order is not None and order < 1:
+def finding_of_map(step: UserMap, structure: Structure, request: Request) -> Finding:
+    """Whether a map without an H is symplectic where it was looked at."""
+    kept = structure.kept(request.within)
+    said = _structure_said(step, structure, kept, request)
+    verdict = {True: Verdict.MEASURED, False: Verdict.REFUTED, None: Verdict.UNDECIDED}[kept]
+    if kept is False:
+        volume = "; det J is 1 all the same" if structure.volume_kept else ""
+        entry = _entry(step, structure)
+        said = f"it is not symplectic: the entry {entry} of S is not 0{volume}"
+    finding = _base(step, structure, verdict, read_prose(said), kept)
+    notes = [*_places_noted(step, structure), *_sides_noted(structure)]
+    return finding.noting(*map(read_prose, notes))
+
+
+def finding_of_step(
+    step: UserMap, structure: Structure, distances: Distances, claims: Claims, request: Request
+) -> Finding:
+    """Its order, and whether it keeps Ω, where it was looked at."""
+    kept = structure.kept(request.within)
+    order = _order(distances, structure.sides, claims)
+    said = _structure_said(step, structure, kept, request)
+    verdict, told = Verdict.MEASURED, order.said
+    if order.order is not None and order.decided and order.order < 1:
         verdict, told = Verdict.REFUTED, f"not a scheme for this H: {told}"
-    elif preserving is None or (order is None and not exact):
+    elif kept is None or not order.decided:
         verdict = Verdict.UNDECIDED
-    finding = Finding(
+    finding = _base(step, structure, verdict, read_prose(f"{told}; {said}"), kept)
+    finding = replace(
+        finding,
+        order=None if kept else structure.power,
+        convergence_order=order.order,
+        order_decided=order.decided,
+        domain=(*order.domain, *finding.domain),
+    )
+    notes = [*_places_noted(step, structure), *periods_told(step.names, distances.periods)]
+    notes += [*order.notes, *_unseen_noted(step, distances), *_sides_noted(structure)]
+    return _consistent(finding.noting(*map(read_prose, notes)))
+
+
+def _base(
+    step: UserMap, structure: Structure, verdict: Verdict, reason: Prose, kept: bool | None
+) -> Finding:
+    reading = structure.largest
+    places = tuple(dict.fromkeys(x.place for x in structure.readings))
+    return Finding(
         verdict,
-        read_prose(f"{told}; {said}"),
-        found.how,
-        order=area.power,
-        area_preserving=preserving,
-        convergence_order=order,
-        order_decided=exact or (order is not None and sure),
-        largest=abs(found.largest.delta_j),
-        probe_error=found.noise,
-        domain=(str(_where(found)),),
+        reason,
+        structure.how,
+        step.degrees,
+        symplectic=kept,
+        area_preserving=kept if step.degrees == 1 else True if kept else structure.volume_kept,
+        largest=structure.largest.defect,
+        probe_error=structure.noise,
+        against=reading,
+        entry=_entry(step, structure) if kept is False else "",
+        domain=(str(where_seen(step, places)),),
+        places=places,
     )
-    return finding.noting(*_notes(found))
 
 
-def _order_sentence(distance: Fitted, exact: bool) -> str:
-    if exact:
-        return "the map is the exact flow to its last digits"
-    if distance.power is None:
-        return "its error follows no power of h"
-    seen = f"as seen for h = {Fraction(distance.first)} … `{distance.last:.1e}`"
-    if distance.power == 0:
-        return f"its error after one step does not shrink with h, {seen}"
-    return f"the map's order is {distance.power - 1}, {seen}"
+# -- the structure --------------------------------------------------------------------------------
 
 
-def _area_sentence(found: Measured) -> tuple[bool | None, str]:
-    """Whether ΔJ is 0 as far as can be seen, and what is seen of it."""
-    if found.area.power is not None:
-        return False, f"ΔJ shrinks as `h^{found.area.power}`"
-    largest, noise = abs(found.largest.delta_j), found.noise
-    most = max(largest, noise)  # a ΔJ of 0 is not known better than its noise
-    shown = plain(Fraction(most), 2) if most >= 1e-3 else f"`{most:.1e}`"
-    clear = found.how == "duals" and not found.opaque  # then ΔJ is that of the map itself
-    least = 10 * noise
-    if found.how == "duals" and (found.opaque or found.rounded):
-        least = _NO_AREA if found.opaque else _ROUNDING
-    if largest <= least and noise <= _NO_AREA:
-        return True, f"|ΔJ| ≤ {shown} at every point and step"
-    if found.ragged:
-        return None, (
-            f"|ΔJ| up to {shown} rises and falls as h shrinks, as what the tolerance of a loop "
-            "leaves, and not as a truncation error"
+def _entry(step: UserMap, structure: Structure) -> str:
+    a, b = structure.largest.shown
+    return f"d{step.names[a]}∧d{step.names[b]}"
+
+
+def _structure_said(
+    step: UserMap, structure: Structure, kept: bool | None, request: Request
+) -> str:
+    """Whether S, or ΔJ in the plane, is 0 as far as can be seen, and what is seen of it."""
+    name = "ΔJ" if step.degrees == 1 else "S"
+    largest, noise = structure.largest.defect, structure.noise
+    if request.within is not None:
+        allowed = f"`{float(request.within):.1e}` that is allowed"
+        if kept:
+            return f"|{name}| ≤ {_size(largest)} at every place, within the {allowed}"
+        if kept is None:
+            return (
+                f"|{name}| is up to {_size(largest)}, the probe's own error `{noise:.1e}`: "
+                f"whether it is within the {allowed} is not seen"
+            )
+        return f"|{name}| is up to {_size(largest)}, more than the {allowed}"
+    if kept:
+        numbers = _numbers(step) if structure.how == "floats" else "doubles"
+        at = "place and step size" if step.stepped else "place"
+        most = _size(max(largest, noise))
+        return f"|{name}| ≤ {most} at every {at}, within the noise of {numbers}"
+    if kept is None and structure.worst.beyond <= REFUTES:
+        if noise > 1e-7:
+            return f"{name} is hidden by the probe's own error, `{noise:.1e}`"
+        return f"|{name}| ≤ {_size(largest)}, where the noise of its numbers is `{noise:.1e}`"
+    if structure.power is not None:
+        return f"{name} shrinks as `h^{structure.power}`"
+    if structure.how == "duals" and structure.iterates:
+        jumps = ", and jumps where the number of iterations changes" if structure.jumps else ""
+        return (
+            f"|{name}| is up to {_size(largest)}, follows no power of h{jumps}: an iteration that "
+            f"stops, at a tolerance of at least {_size(largest)}"
         )
-    if noise > _NO_AREA:
-        return None, f"ΔJ is hidden by the probe's own error, `{noise:.1e}`"
-    at = found.largest.h
-    return False if clear else None, f"|ΔJ| up to {shown}, at h = {at}, follows no power of h"
+    return f"|{name}| is up to {_size(largest)} and follows no power of h"
 
 
-def _consistent(found: Finding) -> Finding:
-    """A map that agrees with the flow up to h^r has ΔJ = O(h^(r+1)): less is not of that order."""
-    area, order = found.order, found.convergence_order
-    if found.verdict is Verdict.REFUTED or area is None or order is None or area > order:
-        return found
-    but = f", which no map of order {order} does: a small mistake, or a tolerance"
-    reason = prose(found.reason, but)
-    return replace(found, verdict=Verdict.UNDECIDED, reason=reason, order_decided=False)
+def _size(x: float) -> str:
+    return plain(Fraction(x), 2) if 1e-3 <= x < 1e3 else f"`{x:.1e}`"
 
 
-def _notes(found: Measured) -> list[Prose]:
-    notes: list[str] = [prose("measured at ", _where(found), ", and nowhere else")]
-    notes += periods_told(PLANE, found.periods)
-    if found.how == "floats":
-        unseen = f"about `{found.unseen:.0e}`"
+def _numbers(step: UserMap) -> str:
+    return "doubles" if step.numbers is DOUBLE else step.numbers.declared_as
+
+
+# -- the order ------------------------------------------------------------------------------------
+
+
+def _order(distances: Distances, sides: Sides, claims: Claims) -> _Order:
+    places = distances.places
+    if all(x.exact for x in places):
+        return _Order(None, True, "the map is the exact flow to its last digits", exact=True)
+    resolved = [x for x in places if x.power is not None]
+    loose = [x for x in places if not x.exact and x.power is None]
+    loose = [x for x in loose if len(resolved) < 2 or _counts(x, resolved)]
+    if not resolved:
+        return _Order(None, False, f"its error follows no power of h{_slopes_said(loose)}")
+    usual = Counter(x.power or 0 for x in resolved if x.place.source != SIDE) or Counter(
+        x.power or 0 for x in resolved
+    )
+    main = min(power for power, times in usual.items() if times == max(usual.values()))
+    failing = [x for x in resolved if (x.power or 0) < main]
+    passing = [x for x in places if x not in failing and x not in loose]
+    domain: tuple[str, ...] = ()
+    notes = list[str]()
+    if failing:
+        branch = sides.separating([x.place for x in passing], [x.place for x in failing])
+        if branch is not None and not any(x.place.source == USER for x in failing):
+            here = sides.condition(branch)
+            least = min(x.power or 0 for x in failing) - 1
+            domain = (here,)
+            notes.append(
+                f"the order is that for {here}; beyond it the code does something else, which "
+                f"agrees with the exact flow of this H up to `h^{least}` only"
+                if least >= 0
+                else f"the order is that for {here}; beyond it the code is no scheme for this H"
+            )
+            resolved = [x for x in resolved if x not in failing]
+    lowest = min(resolved, key=lambda x: x.power or 0)
+    order = (lowest.power or 0) - 1
+    decided = not loose or (claims.order is not None and order < claims.order)
+    said = _order_said(order, lowest)
+    if not decided:
+        said += _slopes_said(loose)
+    tails = [x for x in resolved if x.tail is not None]
+    if tails:
+        tail = max(tails, key=lambda x: x.tail.error if x.tail else 0.0).tail
+        assert tail is not None  # noqa: S101 - they all have one
+        law = "follows no power" if tail.power is None else f"shrinks as `h^{tail.power}` only"
         notes.append(
-            f"in {found.numbers}: an error of p' − p or q' − q below {unseen} of them is not seen"
+            f"for h below `{tail.h:.1e}`, where its error is `{tail.error:.1e}`, that {law}, as "
+            "an iteration that stops at a tolerance leaves it"
         )
-    if found.opaque and found.area.power is not None and len(found.steady) < len(found.rows):
-        grows = float(found.rows[len(found.steady)].h)
-        notes.append(f"ΔJ grows again at h = `{grows:.1e}`, as where a loop with a tolerance ends")
-    tail = found.distance.tail
-    if tail is not None:
-        notes.append(
-            f"for h below `{tail.h:.1e}`, where its error is `{tail.error:.1e}`, that shrinks as "
-            f"`h^{tail.power}` only, as the tolerance of a loop or a small mistake makes it"
-        )
-    return list(map(read_prose, notes))
+    return _Order(order, decided, said, domain, tuple(notes))
 
 
-def _where(found: Measured) -> Prose:
-    """The points and steps that were looked at."""
-    first, last = found.rows[0].h, found.rows[-1].h
-    most = [max(abs(point[i]) for point in found.points) for i in (0, 1)]
-    clock = f", {min(found.times)} ≤ t ≤ {max(found.times)}" if found.times else ""
-    return prose(
-        f"{len(found.points)} points, |p| ≤ {most[0]}, |q| ≤ {most[1]}{clock}, ",
-        f"for h from {first} to ",
-        Number(f"{float(last):.1e}"),
-    )  # fmt: skip
+def _counts(loose: PlaceOrder, resolved: Sequence[PlaceOrder]) -> bool:
+    """Whether a place that has not settled may have a lower order than the others.
 
-
-def _with_floats(found: Finding, trial: Trial) -> Finding:
-    """ΔJ of a step that compares values is taken from floats.
-
-    A loop with a tolerance ends before the derivatives have settled: what dual numbers have is then
-    the derivative of the operations that were done, and no more of the map.
+    It has not where its slopes stay above theirs; and where a loop ends at a tolerance it tells
+    nothing.
     """
-    other = _as_it_stands(measured(trial, "floats"))
-    area = replace(
-        found,
-        verdict=other.verdict if found.verdict is Verdict.MEASURED else found.verdict,
-        reason=prose(found.reason.partition("; ")[0], "; ", other.reason.partition("; ")[2]),
-        order=other.order,
-        area_preserving=other.area_preserving,
-        largest=other.largest,
-        probe_error=other.probe_error,
+    least = min(x.power or 0 for x in resolved)
+    if len(loose.slopes) < _ENOUGH or any(x.tail for x in resolved):
+        return False
+    return min(loose.slopes[-2:]) < least - 0.2
+
+
+def _order_said(order: int, lowest: PlaceOrder) -> str:
+    run = lowest.run
+    seen = "" if run is None else f", as seen for h = {_step(run.first)} … `{run.last:.1e}`"
+    if order == -1:
+        return f"its error after one step does not shrink with h{seen}"
+    if order == 0:
+        return f"its error after one step is of order h{seen}"
+    return f"the map's order is {order}{seen}"
+
+
+def _step(h: float) -> str:
+    exact = Fraction(h)
+    return str(exact) if exact.denominator <= 1024 and exact.numerator <= 1024 else f"`{h:.1e}`"
+
+
+def _slopes_said(loose: Sequence[PlaceOrder]) -> str:
+    """The slopes that have not settled, of one component at one place."""
+    shown = next((x for x in loose if x.slopes), None)
+    if shown is None:
+        return ""
+    slopes = ", ".join(f"{x:.1f}" for x in shown.slopes[:8])
+    return f" (the slopes of {shown.component}' as h falls: {slopes})"
+
+
+def _consistent(finding: Finding) -> Finding:
+    """A map that agrees with the flow up to h^r has a defect of O(h^(r+1)): less is not of that
+    order."""
+    area, order = finding.order, finding.convergence_order
+    if finding.verdict is Verdict.REFUTED or area is None or order is None or area > order:
+        return finding
+    but = f", which no map of order {order} does: a small mistake, or a tolerance"
+    reason = prose(finding.reason, but)
+    return replace(finding, verdict=Verdict.UNDECIDED, reason=reason, order_decided=False)
+
+
+# -- where ----------------------------------------------------------------------------------------
+
+
+def where_seen(step: UserMap, places: Sequence[Place]) -> Prose:
+    """The places and step sizes that were looked at."""
+    n = step.degrees
+    ranges = []
+    for name, part in (("p", slice(0, n)), ("q", slice(n, 2 * n))):
+        most = max(max(abs(x) for x in place.z[part]) for place in places)
+        ranges.append(f"|{name}| ≤ {_plain(most)}")
+    if step.moving:
+        times = [place.t for place in places]
+        ranges.append(f"{_plain(min(times))} ≤ t ≤ {_plain(max(times))}")
+    count = f"{len(places)} place" + ("s" if len(places) != 1 else "")
+    parts = [count, *ranges]
+    steps = [place.step for place in places if place.step]
+    if steps:
+        parts.append(f"h ≤ {_plain(max(steps))}")
+    return prose(joined(", ", parts))
+
+
+def _plain(x: Fraction) -> str:
+    if x.denominator <= 1000 and abs(x.numerator) < 10**5:
+        return str(x)
+    return Number(f"{float(x):.{_PRECISE}g}")
+
+
+def _places_noted(step: UserMap, structure: Structure) -> list[str]:
+    places = list(dict.fromkeys(x.place for x in structure.readings))
+    kind = (
+        "measured with dual numbers"
+        if structure.how == "duals"
+        else f"measured in {_numbers(step)}"
     )
-    return area.noting("ΔJ is measured with floats, as a tolerance may hide in a smaller one")
+    if structure.how == "floats" and step.numbers is DOUBLE:
+        kind = "measured in floats"
+    notes = [f"{kind} at {where_seen(step, places)}, and nowhere else"]
+    if structure.blind:
+        each = [
+            ", ".join(f"{name} = `{x}`" for name, x in zip(step.names, r.place.z, strict=True))
+            + f" (`{r.blur:.1e}`)"
+            for r in structure.blind[:4]
+        ]
+        notes.append(
+            f"left out, as the probe's own error is not small against 1: {'; '.join(each)}"
+        )
+    if structure.lost:
+        notes.append(f"at {len(structure.lost)} calls it returned no state: {structure.lost[0]}")
+    return notes
+
+
+def _sides_noted(structure: Structure) -> list[str]:
+    far = list(structure.sides.far)
+    beyond = [x.place for x in structure.readings if x.place.source == SIDE]
+    notes = []
+    if beyond:
+        notes.append(
+            f"{len(set(beyond))} of them lie on sides of comparisons that the others do not reach"
+        )
+    if far:
+        notes.append(
+            f"it compares, and may do something else, where {'; '.join(far[:3])}: not looked at"
+        )
+    return notes
+
+
+def _unseen_noted(step: UserMap, distances: Distances) -> list[str]:
+    if distances.how != "floats":
+        return []
+    unseen = max(x.unseen for x in distances.places)
+    numbers = "floats" if step.numbers is DOUBLE else step.numbers.declared_as
+    return [
+        f"in {numbers}: an error of p' − p or q' − q below about `{unseen:.0e}` of them is not seen"
+    ]

@@ -1,6 +1,6 @@
-"""A user's step called many hundred times: one map of (p, q, h), and one that is smooth in floats.
+"""A user's map called many hundred times: one map of z, and one that is smooth in floats.
 
-From each point p or q moves away by a little, then by twice as much, and so on. A smooth map bends
+From each place p or q moves away by a little, then by twice as much, and so on. A smooth map bends
 as the square of such a move. Where its numbers have few digits, or a value that was kept for a
 point nearby is taken, it jumps. Then all is called again, in other orders.
 """
@@ -8,52 +8,72 @@ point nearby is taken, it jumps. Then all is called again, in other orders.
 import random
 from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 
 from verify.integrators.faults import Fault, not_a_function
 from verify.integrators.kept_state import changed, kept_by
-from verify.integrators.step import State, Step, last_line
+from verify.integrators.places import Place
+from verify.integrators.step import last_line
+from verify.integrators.user_map import State, UserMap
 from verify.prose import Prose, joined, prose, read_prose
 from verify.verdict import Verdict
 
-_SIZE = 0.125
-_MOVES = [2.0**-k for k in range(44, 3, -1)]
-_DIRECTIONS = (1, 0), (0, 1)
+_MOVES = [2.0**-k for k in range(44, 3, -1)]  # in units of what is small at a place
 _WIDE = 2.0**-8  # from here on a move tells how the map bends
 _BENDS = 16  # times as much as that, it may nearer by
 _COARSE = 2.0**-40  # a jump beyond what rounding leaves of floats, and sums of many of them
 _ROUNDS = 4  # in which all is called again
-_PART, _MOST_SECONDS = 0.1, 3.0  # of the time that is left
+_PLACES = 5
+_PART, _MOST_SECONDS = 0.05, 2.0  # of the time that is left
 Outcome = State | Exception
 
 
 @dataclass(frozen=True)
 class _Jump:
-    """How far p' or q' is from where it should be, after a move of p or q."""
+    """How far a component of z' is from where it should be, after a move, in units."""
 
     size: float
     move: float
 
 
-def repeated(step: Step, points: Sequence[tuple[Fraction, Fraction]]) -> list[Fault]:
+@dataclass(frozen=True)
+class _Ladder:
+    """States further and further from that of a place, p or q moved."""
+
+    place: Place
+    moves_p: bool
+    states: tuple[tuple[float, ...], ...]
+
+
+def _ladders(places: Sequence[Place]) -> list[_Ladder]:
+    made = []
+    for place in places[:_PLACES]:
+        z, half = [float(x) for x in place.z], len(place.z) // 2
+        for moves_p in (True, False):
+            reach = [float(u) if (k < half) is moves_p else 0.0 for k, u in enumerate(place.reach)]
+            states = [
+                z,
+                *([x + move * r for x, r in zip(z, reach, strict=True)] for move in _MOVES),
+            ]
+            made.append(_Ladder(place, moves_p, tuple(map(tuple, states))))
+    return made
+
+
+def repeated(step: UserMap, places: Sequence[Place]) -> list[Fault]:
     """What shows when it is called often, as time allows: that it keeps a state, or is coarse."""
     until = step.left - min(_PART * step.left, _MOST_SECONDS)
-    ladders = [
-        [(p, q), *((p + move * x, q + move * y) for move in _MOVES)]
-        for p, q in (map(float, point) for point in points)
-        for x, y in _DIRECTIONS
-    ]
+    ladders = _ladders(places)
     before, others = {} if step.foreign else kept_by(step.function), set[str]()
 
     def watch() -> None:
         if not step.foreign:  # of another process it shows in what it returns alone
             others.update(changed(before, kept_by(step.function)))
 
-    known: dict[State, Outcome] = {}
+    known: dict[tuple[Place, State], Outcome] = {}
     for ladder in ladders:
-        for state in ladder:
-            if step.left > until and state not in known:
-                known[state] = _outcome(step, state)
+        for state in ladder.states:
+            key = ladder.place, state
+            if step.left > until and key not in known:
+                known[key] = _outcome(step, *key)
             if len(known) == 1:  # what comes and goes is seen after an odd number of calls
                 watch()
         watch()
@@ -61,39 +81,39 @@ def repeated(step: Step, points: Sequence[tuple[Fraction, Fraction]]) -> list[Fa
     if any(fault.fatal for fault in faults):
         return faults
     watch()
-    return [*(faults or _coarse(ladders, known)), *_state_faults(sorted(others))]
+    return [*(faults or _coarse(step, ladders, known)), *_state_faults(sorted(others))]
 
 
-def _outcome(step: Step, state: State) -> Outcome:
+def _outcome(step: UserMap, place: Place, state: State) -> Outcome:
     try:
-        return step.at(*state, _SIZE)
+        return step.at(state, float(place.step / 8), float(place.t))
     except Exception as error:  # the user's code may raise anything
         return error
 
 
-def _again(step: Step, known: dict[State, Outcome], until: float) -> list[Fault]:
+def _again(step: UserMap, known: dict[tuple[Place, State], Outcome], until: float) -> list[Fault]:
     """Whether the same arguments give the same result, bit by bit, in other orders of calls."""
     order = list(known)[::-1]
     for turn in range(_ROUNDS):
-        for state in order:
+        for place, state in order:
             if step.left <= until:
                 return []
-            fault = _parted(state, known[state], _outcome(step, state))
+            fault = _parted(step, state, known[place, state], _outcome(step, place, state))
             if fault is not None and step.left > 0:
                 return [fault]
         random.Random(turn).shuffle(order)  # noqa: S311 - any orders do
     return []
 
 
-def _parted(state: State, before: Outcome, after: Outcome) -> Fault | None:
+def _parted(step: UserMap, state: State, before: Outcome, after: Outcome) -> Fault | None:
     raised = [x for x in (before, after) if isinstance(x, Exception)]
     if len(raised) == 1:
         said = prose(
             "it raises ", last_line(raised[0]), " at one call and not at another, the same"
         )
-        return Fault("fails", said, Verdict.UNDECIDED, fails=True)
+        return Fault("fails", said, Verdict.UNDECIDED)
     if isinstance(before, tuple) and isinstance(after, tuple) and before != after:
-        return not_a_function(state, _SIZE, before, after)
+        return not_a_function(step, state, before, after)
     return None
 
 
@@ -105,17 +125,20 @@ def _state_faults(names: Sequence[str]) -> list[Fault]:
     return [Fault("keeps a state", said, Verdict.MEASURED)]
 
 
-def _coarse(ladders: Sequence[Sequence[State]], known: dict[State, Outcome]) -> list[Fault]:
-    """Whether it jumps at most points: at a few it may, where a loop does one turn more."""
-    found = [_jump(ladder, known) for ladder in ladders]
+def _coarse(
+    step: UserMap, ladders: Sequence[_Ladder], known: dict[tuple[Place, State], Outcome]
+) -> list[Fault]:
+    """Whether it jumps at most places: at a few it may, where a loop does one turn more."""
     jumps: list[_Jump] = []
-    for k in range(len(_DIRECTIONS)):
-        told = [jump for jump in found[k :: len(_DIRECTIONS)] if jump is not None]
+    for moves_p in (True, False):
+        each = [_jump(x, known) for x in ladders if x.moves_p is moves_p]
+        told = [jump for jump in each if jump is not None]
         seen = [jump for jump in told if jump.size > 0]
         jumps += seen if 2 * len(seen) > len(told) else []
     if not jumps:
         return []
     largest = max(jumps, key=lambda jump: jump.size)
+    step.coarseness = largest.size
     said = (
         f"its numbers are coarse: p' or q' jumps by `{largest.size:.1e}` as p or q moves by "
         f"`{largest.move:.1e}`, as where they are of single precision, are rounded, or are kept "
@@ -124,21 +147,26 @@ def _coarse(ladders: Sequence[Sequence[State]], known: dict[State, Outcome]) -> 
     return [Fault("coarse", read_prose(said), Verdict.UNDECIDED)]
 
 
-def _jump(ladder: Sequence[State], known: dict[State, Outcome]) -> _Jump | None:
+def _jump(ladder: _Ladder, known: dict[tuple[Place, State], Outcome]) -> _Jump | None:
     """The largest jump along a ladder, of size 0 where there is none. None where a call failed."""
-    found = [known.get(state) for state in ladder]
-    states = [x for x in found if isinstance(x, tuple)]
-    if len(states) < len(found):
+    outcomes = [known.get((ladder.place, state)) for state in ladder.states]
+    states = [x for x in outcomes if isinstance(x, tuple)]
+    if len(states) < len(outcomes):
         return None
-    here, away = states[0], states[1:]
+    units = [float(u) for u in ladder.place.units]
+    sizes = [
+        max(u, *(abs(state[k]) for state in (*states, *ladder.states))) for k, u in enumerate(units)
+    ]
+    here, *away = [[x / s for x, s in zip(state, sizes, strict=True)] for state in states]
     # One that is off its line: twice the way makes twice the change.
     bent = [
-        (move, max(abs((two[i] - one[i]) - (one[i] - here[i])) for i in (0, 1)))
+        (move, max(abs((b - a) - (a - x)) for x, a, b in zip(here, one, two, strict=True)))
         for move, one, two in zip(_MOVES, away, away[1:], strict=False)
     ]
     curvature = max(size / move**2 for move, size in bent if move >= _WIDE)
-    least = _COARSE * (1 + max(abs(x) for state in (*states, *ladder) for x in state))
     jumps = [
-        _Jump(size, move) for move, size in bent if size > least + _BENDS * curvature * move**2
+        _Jump(size, move)
+        for move, size in bent
+        if size > 2 * _COARSE + _BENDS * curvature * move**2
     ]
     return max(jumps, key=lambda jump: jump.size, default=_Jump(0.0, 0.0))

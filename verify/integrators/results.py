@@ -1,10 +1,14 @@
-"""What was found of a user's step, and what it claims."""
+"""What is known of a user's step or map, and what is claimed of it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
+from verify.integrators.places import Place
+from verify.integrators.probes.reading import Reading
 from verify.proof.order_proof import Proof
 from verify.proof.potential import Potential, potential_of
+from verify.proof.symplectic.proof import SymplecticProof
 from verify.prose import Prose, prose, read_prose
 from verify.schemes.scheme import Scheme
 from verify.verdict import Verdict
@@ -31,23 +35,36 @@ NOTHING = Claims()
 
 @dataclass(frozen=True)
 class Counterexample:
-    """At (p, q) with step h: what `quantity` is there, and what it would have to be.
+    """At the state z, by names, with step h: what `quantity` is there, and what it would have to
+    be. `t`: where H depends on it; `h`: None of a map."""
 
-    `t`: where H depends on it.
-    """
-
-    p: Fraction
-    q: Fraction
-    h: Fraction
+    z: dict[str, Fraction]
+    h: Fraction | None
     quantity: str
     found: str
     expected: str
     t: Fraction | None = None
 
+    @property
+    def p(self) -> Fraction:
+        """That of the plane."""
+        return self.z["p"]
+
+    @property
+    def q(self) -> Fraction:
+        """That of the plane."""
+        return self.z["q"]
+
+    @property
+    def place(self) -> str:
+        """Where it is, as text."""
+        named = [f"{name} = {x}" for name, x in self.z.items()]
+        named += [f"t = {self.t}"] if self.t is not None else []
+        named += [f"h = {self.h}"] if self.h is not None else []
+        return ", ".join(named)
+
     def __str__(self) -> str:
-        time = "" if self.t is None else f", t = {self.t}"
-        at = f"at p = {self.p}, q = {self.q}{time}, h = {self.h}"
-        return f"{at}: {self.quantity} is {self.found}, expected {self.expected}"
+        return f"at {self.place}: {self.quantity} is {self.found}, expected {self.expected}"
 
 
 @dataclass(frozen=True)
@@ -56,30 +73,37 @@ class Finding:
     was only called.
 
     `domain`: where the verdict holds, one condition a text.
-    `order`: ΔJ = O(h^order) and no better, None where det J ≡ 1 or it is not known.
-    `area_at_least`: then ΔJ = O(h^area_at_least) may be known. `convergence_order`: None where no
-    difference from the exact flow is found, or, with `order_decided` False, where it is not known.
-    `leading`, `delta_j`: formulas, of a proof. `largest`: the largest |ΔJ| that was measured, and
-    `probe_error`: the error of such a value.
+    `order`: the defect, ΔJ or S, is O(h^order) and no better, None where it is 0 or not known.
+    `area_at_least`: then it may be known to be O(h^area_at_least). `convergence_order`: None
+    where no difference from the exact flow is seen, or, with `order_decided` False, where it is not
+    known. `leading`, `delta_j`: formulas, of a proof. `largest`: the largest defect that was
+    measured, in units of its place, and `probe_error`: the error of such a value. `places`: where
+    was looked.
     """
 
     verdict: Verdict
     reason: Prose
     how: str
+    degrees: int = 1
     order: int | None = None
+    symplectic: bool | None = None
     area_preserving: bool | None = None
     area_at_least: int | None = None
     convergence_order: int | None = None
     order_decided: bool = False
     leading: str | None = None
     delta_j: str | None = None
-    proof: Proof | None = field(default=None, repr=False)
+    proof: Proof | SymplecticProof | None = field(default=None, repr=False)
     largest: float | None = None
     probe_error: float | None = None
+    against: Reading | None = field(default=None, repr=False)
+    entry: str = ""
     domain: tuple[str, ...] = ()
     notes: tuple[Prose, ...] = ()
     faults: tuple[str, ...] = ()
     counterexample: Counterexample | None = None
+    places: tuple[Place, ...] = field(default=(), repr=False)
+    sharp: float | None = None  # a defect that would have been seen
 
     def __repr__(self) -> str:
         return f"Finding({self.verdict}: {self.reason})"
@@ -96,7 +120,7 @@ class Finding:
         return replace(self, notes=(*self.notes, *map(prose, notes)))
 
 
-Judged = tuple[Prose, bool | None, Prose]  # a claim, whether it holds, and what was found
+Judged = tuple[Prose, bool | None, Prose]  # a claim, whether it holds, and what is known
 
 
 def agreement_told(power: int | None) -> str:
@@ -106,38 +130,66 @@ def agreement_told(power: int | None) -> str:
     return f"the map agrees with the exact flow up to `h^{power}` only"
 
 
-def judged(claims: Claims, found: Finding) -> list[Judged]:
+def judged(claims: Claims, finding: Finding) -> list[Judged]:
     """Each claim; None where it is not decided."""
-    told: list[tuple[str, bool | None, str]] = []
+    made: list[tuple[str, bool | None, str]] = []
     if claims.order is not None:
         holds = None
-        if found.order_decided:
-            holds = found.convergence_order is None or found.convergence_order >= claims.order
-        known = agreement_told(found.convergence_order)
-        told.append((f"order {claims.order}", holds, known))
-    area = f"ΔJ has order {found.order}"
-    if found.order is None:
-        area = "ΔJ is not 0"
-        if found.area_at_least is not None:
-            area = (
-                f"ΔJ is not 0, but O(`h^{found.area_at_least}`), as where an iteration ends early"
-            )
-    if claims.area_preserving or claims.symplectic:
-        told.append(("det J ≡ 1", found.area_preserving, area))
+        if finding.order_decided:
+            holds = finding.convergence_order is None or finding.convergence_order >= claims.order
+        made.append((f"order {claims.order}", holds, agreement_told(finding.convergence_order)))
+    defect = _defect_told(finding)
+    if claims.symplectic and finding.degrees > 1:
+        made.append(("that it is symplectic", finding.symplectic, defect))
+    elif claims.symplectic or claims.area_preserving:
+        made.append(("det J ≡ 1", finding.area_preserving, defect))
+    if claims.area_preserving and finding.degrees > 1:
+        made.append(("det J ≡ 1", finding.area_preserving, _volume_told(finding)))
     if claims.area_order is not None:
-        shown = found.area_at_least is not None and claims.area_order <= found.area_at_least
-        holds = True if found.area_preserving or shown else None
-        if found.order is not None:
-            holds = found.order >= claims.area_order
-        told.append((f"ΔJ = O(`h^{claims.area_order}`)", holds, area))
-    return [(read_prose(claim), holds, read_prose(known)) for claim, holds, known in told]
+        made.append(_area_order(claims.area_order, finding, defect))
+    return [(read_prose(claim), holds, read_prose(known)) for claim, holds, known in made]
 
 
-def potential_of_finding(found: Finding) -> Potential:
+def _defect_told(finding: Finding) -> str:
+    name = "ΔJ" if finding.degrees == 1 else "S"
+    if finding.order is not None:
+        return f"{name} has order {finding.order}"
+    if finding.area_at_least is not None:
+        return (
+            f"{name} is not 0, but O(`h^{finding.area_at_least}`), as where an iteration ends early"
+        )
+    return f"{name} is not 0"
+
+
+def _volume_power(finding: Finding) -> int | None:
+    if finding.degrees == 1:
+        return finding.order
+    return finding.proof.volume_order if isinstance(finding.proof, SymplecticProof) else None
+
+
+def _volume_told(finding: Finding) -> str:
+    power = _volume_power(finding)
+    return f"det J − 1 has order {power}" if power else "det J is not 1"
+
+
+def _area_order(claimed: int, finding: Finding, defect: str) -> tuple[str, bool | None, str]:
+    shown = finding.area_at_least is not None and claimed <= finding.area_at_least
+    holds = True if finding.area_preserving or shown else None
+    power = _volume_power(finding)
+    if power is not None:
+        holds = power >= claimed
+    return (
+        f"ΔJ = O(`h^{claimed}`)",
+        holds,
+        defect if finding.degrees == 1 else _volume_told(finding),
+    )
+
+
+def potential_of_finding(finding: Finding) -> Potential:
     """As of a scheme that is known by its proof alone."""
-    proof = found.proof
-    if proof is None:
-        if found.area_preserving and found.how == "proof":
+    proof = finding.proof
+    if isinstance(proof, SymplecticProof) or proof is None:
+        if finding.area_preserving and finding.how == "proof":
             return Potential(True, "ΔJ ≡ 0")
         return Potential(None, "the leading coefficient is not proved")
     alone = Scheme(
@@ -150,3 +202,6 @@ def potential_of_finding(found: Finding) -> Potential:
         build=lambda _: proof.step_map,
     )
     return potential_of(proof, alone)
+
+
+Names = Sequence[str]

@@ -12,14 +12,12 @@ _EPSILON = 2.0**-52
 Rounded = tuple[float, float]  # a value, and a bound of its error to first order
 
 
-def rounding_noise(
-    nodes: Sequence[Node], p: float, q: float, h: float, t: float
-) -> dict[int, float]:
+def rounding_noise(nodes: Sequence[Node], start: dict[str, float]) -> dict[int, float]:
     """A bound of each node's error where each operation is rounded, by the nodes' numbers.
 
-    Raises ArithmeticError or ValueError where floats do not reach.
+    `start`: the coordinates, h and t by name. Raises ArithmeticError or ValueError where floats do
+    not reach.
     """
-    start = {"p": p, "q": q, "h": h, "t": t}
 
     def rounded(node: Node, x: list[Rounded]) -> Rounded:
         value, inherited = _made(node, x, start)

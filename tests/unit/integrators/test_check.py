@@ -3,34 +3,24 @@
 import math
 from collections.abc import Callable
 from contextlib import suppress
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
 import pytest
 
 from tests.helpers.programs import user_steps as own_steps
+from tests.helpers.programs.judged import judged as found_of
 from verify.algebra.formula import parse
 from verify.errors import InputError
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.check import check_integrator
-from verify.integrators.loading import step_from
-from verify.integrators.results import NOTHING, Claims, Finding
+from verify.integrators.results import Claims
+from verify.integrators.survey import Request
 from verify.proof.order import prove
 from verify.schemes import get
 
-PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
 Function = Callable[..., Any]
-
-
-def found_of(
-    function: Function,
-    claims: Claims = NOTHING,
-    limit: float = 20,
-    hamiltonian: Hamiltonian = PENDULUM,
-) -> Finding:
-    step, _ = step_from(function, time_limit=limit)
-    return check_integrator(step, hamiltonian, claims)
 
 
 RIGHT = [
@@ -52,6 +42,9 @@ RIGHT = [
 ]
 
 
+# Iterations that stop before doubles do: what they leave is allowed by whoever uses them.
+TOLERANCES = {own_steps.midpoint_until: Fraction(1, 10**11),
+              own_steps.midpoint_loosely: Fraction(1, 10**7)}  # fmt: skip
 NAMES = [row[0].__name__ for row in RIGHT]
 
 
@@ -61,11 +54,20 @@ NAMES = [row[0].__name__ for row in RIGHT]
 def test_a_right_step_is_told_its_orders_and_its_claims_hold(
     function: Function, how: str, verdict: str, order: int, area: int | None
 ) -> None:
-    found = found_of(function, Claims(order, area, area is None))
+    request = Request(within=TOLERANCES.get(function))
+    found = found_of(function, Claims(order, area, area is None), request=request)
     assert (found.verdict, found.how) == (verdict, how), found
     assert (found.convergence_order, found.order) == (order, area)
     assert found.area_preserving is (area is None)
     assert found.counterexample is None
+
+
+@pytest.mark.parametrize("function", TOLERANCES, ids=lambda f: f.__name__)
+def test_a_tolerance_that_nobody_allows_is_refuted_and_named(function: Function) -> None:
+    found = found_of(function, Claims(order=2, area_preserving=True))
+    assert found.verdict == "REFUTED"
+    assert "an iteration that stops, at a tolerance of at least" in found.reason
+    assert found_of(function, Claims(order=2)).verdict == "MEASURED"
 
 
 @pytest.mark.left_to_ci
@@ -135,25 +137,39 @@ def test_rounded_coefficients_are_neither_a_proof_nor_an_error() -> None:
 
 
 @pytest.mark.parametrize(
-    ("function", "fault", "said"),
+    ("function", "verdict", "fault", "said"),
     [
-        (own_steps.frozen, "frozen", "preserves area and is no scheme"),
-        (own_steps.without_h, "ignores h", "it ignores h"),
-        (own_steps.not_a_number, "not a step", "it returns nan"),
-        (own_steps.raising, "raises", "it raises ValueError: no luck at p ="),
-        (own_steps.nothing, "not a step", "it returns None"),
-        (own_steps.texts, "not a step", "it returns text"),
-        (own_steps.three, "not a step", "it returns a tuple of 3"),
-        (own_steps.drawn, "not a function", "not deterministic"),
-        (own_steps.counting, "not a function", "not deterministic"),
-        (own_steps.quitting, "not a step", "it calls sys.exit, or os._exit"),
-        (own_steps.leaving, "not a step", "it calls sys.exit, or os._exit"),
+        (own_steps.frozen, "REFUTED", "frozen", "preserves area and is no scheme"),
+        (own_steps.without_h, "REFUTED", "ignores h", "it ignores h"),
+        (own_steps.drawn, "UNDECIDED", "not a function", "not deterministic"),
+        (own_steps.counting, "UNDECIDED", "not a function", "not deterministic"),
     ],
 )
-def test_what_is_wrong_is_named(function: Function, fault: str, said: str) -> None:
+def test_what_is_wrong_is_named(function: Function, verdict: str, fault: str, said: str) -> None:
     found = found_of(function)
-    assert (found.verdict, found.how, found.faults) == ("REFUTED", "calls", (fault,))
+    assert (found.verdict, found.how, found.faults) == (verdict, "calls", (fault,))
     assert said in found.reason
+
+
+@pytest.mark.parametrize(
+    ("function", "said"),
+    [
+        (own_steps.not_a_number, "it returns what is not finite (nan, "),
+        (own_steps.raising, "raises ValueError: no luck at p ="),
+        (own_steps.nothing, "it returns None; wanted: p', q'"),
+        (own_steps.texts, "it returns text; wanted: p', q'"),
+        (own_steps.three, "it returns 3 numbers; wanted: p', q'"),
+        (own_steps.quitting, "it calls sys.exit, or os._exit"),
+        (own_steps.leaving, "it calls sys.exit, or os._exit"),
+    ],
+)
+def test_a_call_that_returns_no_state_is_an_error_and_refutes_nothing(
+    function: Function, said: str
+) -> None:
+    with pytest.raises(InputError) as error:
+        found_of(function, Claims(order=2))
+    assert said in str(error.value)
+    assert "\n" not in str(error.value)
 
 
 def test_a_state_that_shows_after_many_calls_is_found_at_the_end() -> None:
@@ -168,8 +184,8 @@ def test_a_state_that_shows_after_many_calls_is_found_at_the_end() -> None:
 
 
 def test_an_endless_call_is_ended() -> None:
-    found = found_of(own_steps.endless, limit=0.3)
-    assert (found.verdict, "does not end within" in found.reason) == ("UNDECIDED", True)
+    with pytest.raises(InputError, match="does not end within"):
+        found_of(own_steps.endless, limit=0.3)
 
 
 def test_a_step_that_fails_where_h_is_not_defined_is_not_refuted() -> None:
@@ -177,9 +193,11 @@ def test_a_step_that_fails_where_h_is_not_defined_is_not_refuted() -> None:
         p = p - h / (2 * math.sqrt(q - 5))
         return p, q + h * p
 
-    found = found_of(euler_b, hamiltonian=Hamiltonian.parse("p**2/2 + sqrt(q - 5)"))
+    assert found_of(euler_b, hamiltonian="p**2/2 + sqrt(q - 5)").verdict == "PROVED"
+    found = found_of(euler_b, hamiltonian="p**2/2 + sqrt(q - 5) + sqrt(4 - q)")
     assert (found.verdict, "H has no exact solution" in found.reason) == ("UNDECIDED", True)
-    assert found_of(euler_b).verdict == "REFUTED"
+    with pytest.raises(InputError, match="raises ValueError"):
+        found_of(euler_b)
 
 
 def test_changed_arrays_are_named_and_nothing_is_refuted() -> None:
@@ -203,10 +221,9 @@ def test_a_parameter_of_the_hamiltonian_is_given_by_name() -> None:
         p = p - h * c * q**3
         return p, q + h * p
 
-    made, _ = step_from(step, parameters=dict(quartic.values))
-    assert check_integrator(made, quartic).verdict == "PROVED"
+    assert found_of(step, hamiltonian=quartic).verdict == "PROVED"
     with pytest.raises(InputError, match="has no value"):
-        check_integrator(made, Hamiltonian.parse("p**2/2 + c*q**4/4"))
+        found_of(own_steps.verlet, hamiltonian="p**2/2 + c*q**4/4")
 
 
 def test_a_branch_that_hides_from_symbols_is_seen() -> None:
@@ -277,14 +294,14 @@ def test_a_map_that_is_not_the_identity_at_h_0_is_no_scheme() -> None:
     assert found.reason.endswith("not even at h = 0")
 
 
-def test_exchanged_arguments_are_told() -> None:
+def test_names_that_do_not_tell_take_the_order_that_fits() -> None:
     def step(x: Any, y: Any, z: Any) -> Any:
         return own_steps.euler_b(x, y, z)
 
     found = found_of(step)
-    assert found.verdict == "REFUTED"
-    assert "with arguments in the order q,p,h it is a scheme for this H" in found.notes
-    assert not any("in the order" in note for note in found_of(own_steps.flipped).notes)
+    assert found.verdict == "PROVED"
+    assert "its arguments (x, y, z) are taken as (q, p, h), the order that fits" in found.notes
+    assert not any("the order that" in note for note in found_of(own_steps.flipped).notes)
 
 
 @pytest.mark.left_to_ci
@@ -311,8 +328,7 @@ def test_a_traced_scheme_is_proved_as_the_scheme_itself_is(name: str, scheme: st
         c = slope(z + h / 2 * b)
         return z + h / 6 * (a + 2 * b + 2 * c + slope(z + h * c))
 
-    made, _ = step_from(step)
-    found = check_integrator(made, hamiltonian)
+    found = found_of(step, hamiltonian=hamiltonian)
     known = prove(get(scheme).step_map(hamiltonian))
     assert (found.how, found.verdict) == ("proof", known.verdict), found.notes
     assert (found.order, found.convergence_order) == (known.order, known.convergence_order)

@@ -7,7 +7,7 @@ import pytest
 
 from tests.helpers.programs import remembering_steps
 from tests.helpers.programs import user_steps as own_steps
-from tests.unit.integrators.test_check import found_of
+from tests.helpers.programs.judged import judged as found_of
 from verify.integrators.results import NOTHING, Claims
 
 Function = Callable[..., Any]
@@ -22,7 +22,7 @@ def test_area_is_not_refuted_where_the_order_is(function: Function) -> None:
         assert (found.verdict, found.area_preserving) == ("REFUTED", True)
         assert "the order is refuted, not det J ≡ 1, which is proved: not a sch" in found.reason
         assert found.counterexample is not None
-        assert "distance from the exact flow" in found.counterexample.quantity
+        assert "from the exact flow after one step" in found.counterexample.quantity
 
 
 def test_of_a_wrong_area_nothing_of_the_kind_is_said() -> None:

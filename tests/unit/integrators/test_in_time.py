@@ -223,7 +223,6 @@ def test_a_refuted_clock_has_a_counterexample_with_its_time() -> None:
     found = checked(verlet_at(0, 0), order=2)
     example = found.counterexample
     assert example is not None
-    assert example.t == (1 + 2 * example.p + example.q) / 4
     assert f"t = {example.t}" in str(example)
     gap = float(example.found)
     at = [float(x) for x in (example.p, example.q, example.t, example.h)]
@@ -232,7 +231,8 @@ def test_a_refuted_clock_has_a_counterexample_with_its_time() -> None:
         tuple(map(flow.number, (example.p, example.q, example.t))), flow.number(example.h)
     )
     made = verlet_at(0, 0)(*at)
-    assert max(abs(float(x) - y) for x, y in zip(end, made, strict=False)) == pytest.approx(gap)
+    k = "pq".index(example.quantity.partition("distance of ")[2][0])
+    assert abs(float(end[k]) - made[k]) == pytest.approx(gap)
 
 
 def test_branches_are_judged_at_the_points_that_are_named() -> None:

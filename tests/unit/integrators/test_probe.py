@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from tests.helpers.programs import user_steps as own_steps
-from tests.unit.integrators.test_check import found_of
+from tests.helpers.programs.judged import judged as found_of
 from verify.integrators.results import Claims, Finding
 from verify.verdict import Verdict
 
@@ -14,10 +14,12 @@ from verify.verdict import Verdict
 @pytest.mark.left_to_ci
 @pytest.mark.sample(3)
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-5, 1e-6, 1e-7, 1e-8])
-def test_what_a_loops_tolerance_leaves_is_no_truncation_error(tolerance: float) -> None:
+def test_what_a_loops_tolerance_leaves_is_refuted_with_its_size(tolerance: float) -> None:
     found = found_of(own_steps.midpoint_to(tolerance), Claims(area_preserving=True))
-    assert (found.verdict, found.order) == ("UNDECIDED", None)
-    assert "as what the tolerance of a loop leaves" in found.reason
+    assert (found.verdict, found.order) == ("REFUTED", None)
+    assert found.largest is not None
+    assert tolerance / 100 < found.largest < 100 * tolerance
+    assert found.counterexample is not None
     if tolerance < 1e-5:  # what is claimed and seen does not need what is not
         assert found_of(own_steps.midpoint_to(tolerance), Claims(order=2)).verdict == "MEASURED"
         assert found_of(own_steps.midpoint_to(tolerance), Claims(order=3)).verdict == "REFUTED"

@@ -1,4 +1,4 @@
-"""Steps that remember, or are coarse: never proved, and refuted where calls differ."""
+"""Steps that remember, or are coarse: never proved, and undecided where calls differ."""
 
 from typing import Any
 
@@ -6,23 +6,24 @@ import pytest
 
 from tests.helpers.programs import remembering_steps as steps
 from tests.helpers.programs import user_steps as own_steps
-from tests.unit.integrators.test_check import found_of
+from tests.helpers.programs.judged import judged as found_of
 from verify.integrators.kept_state import changed, kept_by
 from verify.integrators.results import Claims
 
 
 @pytest.mark.parametrize("period", [2, 37, 100, 500])
-def test_the_same_arguments_with_two_results_are_refuted(period: int) -> None:
+def test_the_same_arguments_with_two_results_are_no_map(period: int) -> None:
     for step in (steps.spoiling(period), steps.by_a_method(period)):
         found = found_of(step)
-        assert (found.verdict, found.faults) == ("REFUTED", ("not a function",))
+        assert (found.verdict, found.faults) == ("UNDECIDED", ("not a function",))
         assert " and then (" in found.reason
         assert " at p = " in found.reason
 
 
 def test_so_is_a_cache_that_forgets() -> None:
     steps.NEARBY.clear()
-    assert found_of(steps.kept_for_a_while).verdict == "REFUTED"
+    found = found_of(steps.kept_for_a_while)
+    assert (found.verdict, found.faults) == ("UNDECIDED", ("not a function",))
 
 
 def test_what_raises_at_times_is_not_decided() -> None:

@@ -11,10 +11,8 @@ import pytest
 
 from tests.end_to_end.test_command_line import here
 from tests.helpers.programs import user_steps
-from tests.unit.integrators.test_check import found_of
+from tests.helpers.programs.judged import judged as found_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.degrees.check import check_step
-from verify.integrators.loading import step_from
 from verify.integrators.results import Claims
 from verify.integrators.wrapped import periods_of
 from verify.verdict import Verdict
@@ -121,8 +119,7 @@ def of_chain(p: Any, q: Any, h: Any) -> Any:
 
 @pytest.mark.parametrize(("turn", "verdict"), [(TURN, "MEASURED"), (6.283, "REFUTED")])
 def test_in_two_degrees_of_freedom(turn: float, verdict: str) -> None:
-    step, _ = step_from(reduced(of_chain, turn))
-    found = check_step(step, CHAIN, Claims(order=2))
+    found = found_of(reduced(of_chain, turn), Claims(order=2), hamiltonian=CHAIN)
     assert found.verdict == verdict, found.reason
     noted = "q2 is compared modulo 6.28319, a period of the motion" in found.notes
     assert noted is (verdict == "MEASURED")

@@ -5,6 +5,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from verify.commands.checks.looking import (
+    looking_options,
+    places_json,
+    print_measured,
+    print_notes,
+    request_from,
+    step_size_option,
+)
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering, picked
 from verify.commands.shared.input import time_limit_option, with_hamiltonian
@@ -12,8 +20,8 @@ from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
-    from verify.integrators.results import Claims, Finding
-    from verify.integrators.step import Step
+    from verify.integrators.loading import Callee
+    from verify.integrators.results import Finding
 
 _CLAIMED = click.IntRange(1, 12)
 
@@ -40,8 +48,8 @@ _CLAIMED = click.IntRange(1, 12)
     help="How it takes p, q and h, such as q,p,h, or q,p,t,h; it returns p' and q' in that order "
     "too. Without it the names of its arguments tell.",
 )
-@click.option("--q", "q", metavar="Q", help="An initial value to look at beside others.")
-@click.option("--p", "p", metavar="P", help="Its momentum.")
+@looking_options
+@step_size_option
 @click.option("--order", type=_CLAIMED, metavar="K", help="Claimed order of convergence.")
 @click.option("--area-preserving", is_flag=True, help="Claimed: det J ≡ 1.")
 @click.option("--symplectic", is_flag=True, help="Claimed: JᵀΩJ ≡ Ω; in the plane det J ≡ 1.")
@@ -56,6 +64,9 @@ def check_integrator(
     arguments: str | None,
     q: str | None,
     p: str | None,
+    scale: str | None,
+    within: str | None,
+    step_size: str | None,
     order: int | None,
     area_preserving: bool,
     symplectic: bool,
@@ -85,44 +96,37 @@ def check_integrator(
     verify check-integrator ./libstep.so:step --system pendulum --order 2 --symplectic
     verify check-integrator --command './step' --system pendulum --type long-double
     """
-    from verify.arithmetic.exact import rational
     from verify.integrators.check import check_integrator as check
     from verify.integrators.results import Claims
 
     begun = time.perf_counter()
-    if (p is None) != (q is None):
-        raise InputError("--p, --q", p or q or NOT_GIVEN, "give both or none")
-    start = None if p is None or q is None else (rational(p, "--p"), rational(q, "--q"))
+    request = request_from(exact.coordinates, q, p, scale, within, step_size)
     if exact.symbols:
         raise InputError("--param", exact.symbols[0], "has no value; a step of one's own needs it")
     called = command or target or ""
-    step, notes = _step(target, command, number_type, arguments, exact, time_limit)
+    callee = _callee(target, command, number_type, arguments, exact, time_limit)
     claims = Claims(order, area_order, area_preserving, symplectic)
-    claimed = claims != Claims()
-    if not exact.planar:
-        if start is not None:
-            raise InputError("--p, --q", p or "", "go with one degree of freedom")
-        return _in_degrees(exact, called, step, claims, notes)
-    found = check(step, exact, claims, start).noting(*notes)
+    finding = check(callee, exact, claims, request)
     seconds = f"{time.perf_counter() - begun:.6f}"
     return Answer(
-        lambda: _json(exact, called, found, seconds),
-        lambda: _print(exact, called, found),
-        failed=found.verdict.value == "REFUTED" or (claimed and not found.verdict.holds),
+        lambda: _json(exact, called, finding, seconds),
+        lambda: _print(exact, called, finding),
+        failed=finding.verdict.value == "REFUTED"
+        or (claims != Claims() and not finding.verdict.holds),
     )
 
 
-def _step(
+def _callee(
     target: str | None,
     command: str | None,
     number_type: str,
     arguments: str | None,
     exact: "Hamiltonian",
     time_limit: float,
-) -> "tuple[Step, list[str]]":
-    """The step, and notes on how it is understood."""
+) -> "Callee":
+    """The step, as far as it is understood before it is called."""
     from verify.integrators.foreign.called import is_library, of_command, of_library
-    from verify.integrators.loading import load, step_from
+    from verify.integrators.loading import callee_from, foreign_callee, load
     from verify.integrators.number_type import DOUBLE, type_of
 
     if (target is None) == (command is None):
@@ -133,76 +137,74 @@ def _step(
     if foreign and arguments is not None:
         raise InputError("--arguments", arguments, "goes with a Python function")
     if command is not None:
-        return of_command(command, kind, time_limit), []
+        return foreign_callee(of_command(command, kind, time_limit, exact.degrees))
     if foreign:
-        return of_library(target or "", exact.degrees, kind, time_limit), []
+        return foreign_callee(of_library(target or "", exact.degrees, kind, time_limit))
     if kind is not DOUBLE:
         raise InputError("--type", number_type, "goes with LIB.so:SYMBOL or --command")
-    return step_from(load(target or ""), arguments, dict(exact.values), time_limit)
+    return callee_from(
+        load(target or ""), exact.coordinates, arguments=arguments,
+        parameters=dict(exact.values), time_limit=time_limit,
+    )  # fmt: skip
 
 
-def _in_degrees(
-    exact: "Hamiltonian", target: str, step: "Step", claims: "Claims", notes: list[str]
-) -> Answer:
-    """For an H of several degrees of freedom."""
-    from verify.commands.shared.in_degrees import print_step, step_json
-    from verify.integrators.degrees.check import check_step
-    from verify.integrators.results import Claims
-
-    begun = time.perf_counter()
-    found = check_step(step, exact, claims)
-    for note in notes:
-        found = found.noting(note)
-    seconds = f"{time.perf_counter() - begun:.6f}"
-    failed = found.verdict == "REFUTED" or (claims != Claims() and not found.verdict.holds)
-    return Answer(
-        lambda: step_json(exact.texts, target, found, seconds),
-        lambda: print_step(exact.texts, target, found),
-        failed=failed,
-    )
-
-
-def _json(exact: "Hamiltonian", target: str, found: "Finding", seconds: str) -> dict[str, Any]:
+def _json(exact: "Hamiltonian", target: str, finding: "Finding", seconds: str) -> dict[str, Any]:
     from verify.arithmetic.exact import text
     from verify.integrators.results import potential_of_finding
+    from verify.proof.symplectic.proof import SymplecticProof
 
-    potential = potential_of_finding(found)
-    witness = found.proof.witness if found.proof else {}
-    example = found.counterexample
+    proof, example = finding.proof, finding.counterexample
+    of_form = proof if isinstance(proof, SymplecticProof) else None
+    potential = None if of_form else potential_of_finding(finding)
+    witness = proof.witness if proof and finding.symplectic is not True else {}
+    if not witness and example is not None and finding.degrees > 1:
+        witness = example.z
+    against = finding.against
     return {
-        **picked(found, "verdict", "reason"),
+        **picked(finding, "verdict", "reason"),
         **exact.texts,
+        "degrees": finding.degrees,
         "integrator": target,
-        **picked(found, "how", "order", "leading", "delta_j", "area_preserving"),
-        "convergence_order": found.convergence_order,
-        "convergence_order_known": found.order_decided,
+        **picked(finding, "how", "order", "leading", "delta_j", "symplectic", "area_preserving"),
+        "volume_order": of_form.volume_order if of_form else None,
+        "convergence_order": finding.convergence_order,
+        "convergence_order_known": finding.order_decided,
+        "entry": finding.entry,
         "witness": {name: text(value) for name, value in witness.items()},
-        "telescopes": potential.holds,
-        "potential": potential.text,
-        "delta_j_max": None if found.largest is None else f"{found.largest:.6e}",
-        "probe_error": None if found.probe_error is None else f"{found.probe_error:.1e}",
+        "value": of_form.enclosure if of_form else example.found if example else "",
+        "telescopes": of_form.telescopes if of_form else potential and potential.holds,
+        "potential": (of_form.potential or None) if of_form else potential and potential.text,
+        "delta_j_max": None if finding.largest is None else f"{finding.largest:.6e}",
+        "probe_error": None if finding.probe_error is None else f"{finding.probe_error:.1e}",
+        "step_size": None if against is None else text(against.h),
         "counterexample": example and {
-            **{name: text(value) for name, value in picked(example, "p", "q", "h").items()},
+            **{name: text(value) for name, value in example.z.items()},
+            **({} if example.h is None else {"h": text(example.h)}),
             **({} if example.t is None else {"t": text(example.t)}),
             **picked(example, "quantity", "found", "expected"),
         },
-        **picked(found, "domain", "faults", "notes"),
+        "places": places_json(exact.coordinates, finding.places),
+        **picked(finding, "domain", "faults", "notes"),
         "seconds": seconds,
     }  # fmt: skip
 
 
-def _print(exact: "Hamiltonian", target: str, found: "Finding") -> None:
-    from verify.integrators.results import potential_of_finding
+def _print(exact: "Hamiltonian", target: str, finding: "Finding") -> None:
+    from dataclasses import replace
 
-    if found.proof is not None and found.verdict is found.proof.verdict:
-        show.print_proof(exact, target, found.proof, potential_of_finding(found))
+    from verify.commands.shared.in_degrees import print_symplectic
+    from verify.integrators.results import potential_of_finding
+    from verify.proof.order_proof import Proof
+
+    proof, degrees = finding.proof, finding.degrees
+    if isinstance(proof, Proof) and finding.verdict is proof.verdict:
+        show.print_proof(exact, target, proof, potential_of_finding(finding))
+    elif proof is not None and not isinstance(proof, Proof):
+        print_symplectic(exact.texts, target,
+                         replace(proof, verdict=finding.verdict, reason=finding.reason))  # fmt: skip
     else:
-        show.print_head(exact, target, found)
-        if found.leading is not None and found.order is not None:
-            click.echo(f"  ΔJ       ({show.cut(found.leading)})·h^{found.order} + …")
-        if found.probe_error is not None:
-            click.echo(f"  probe    error of a measured ΔJ: {found.probe_error:.1e}, estimated")
-    if found.counterexample is not None:
-        click.echo(f"  against  {found.counterexample}")
-    for note in found.notes:
-        click.echo(f"  note     {note}")
+        show.print_head(exact, target, finding)
+        if finding.leading is not None and finding.order is not None and degrees == 1:
+            click.echo(f"  ΔJ       ({show.cut(finding.leading)})·h^{finding.order} + …")
+        print_measured(finding)
+    print_notes(finding)

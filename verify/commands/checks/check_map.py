@@ -5,11 +5,18 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from verify.commands.checks.looking import (
+    looking_options,
+    places_json,
+    print_measured,
+    print_notes,
+    request_from,
+)
 from verify.commands.shared.answer import Answer, answering, picked
 from verify.commands.shared.input import time_limit_option, values_of
 
 if TYPE_CHECKING:
-    from verify.integrators.maps.check import MapFinding
+    from verify.integrators.results import Finding
 
 
 @click.command("check-map")
@@ -28,8 +35,7 @@ if TYPE_CHECKING:
     metavar="NAME=VALUE",
     help="A further argument that it takes by name; repeatable.",
 )
-@click.option("--q", "q", metavar="Q1,Q2", help="A point to look at beside others: q1, …, qn.")
-@click.option("--p", "p", metavar="P1,P2", help="Its p1, …, pn.")
+@looking_options
 @time_limit_option
 @answering
 def check_map(
@@ -39,6 +45,8 @@ def check_map(
     params: tuple[str, ...],
     q: str | None,
     p: str | None,
+    scale: str | None,
+    within: str | None,
     time_limit: float,
 ) -> Answer:
     """Check whether a Python function map(p, q) → (p', q') of your own is symplectic, without an H.
@@ -57,55 +65,54 @@ def check_map(
     verify check-map ring.py:turn --degrees 2 --arguments q1,p1,q2,p2 --param strength=0.3
     """
     from verify.arithmetic.exact import rational
-    from verify.integrators.loading import load
-    from verify.integrators.maps.check import check_map as check
-    from verify.integrators.maps.user_map import map_from, start_of
+    from verify.hamiltonians.coordinates import check_degrees, coordinates_in
+    from verify.integrators.check import check_map as check
+    from verify.integrators.loading import callee_from, load
 
     begun = time.perf_counter()
-    given = {n: rational(x, f"parameter {n}") for n, x in values_of(params).items()}
-    own = map_from(load(target, "map"), degrees, arguments, given, time_limit)
-    found = check(own, start_of(own, p, q))
+    check_degrees(degrees)
+    names = coordinates_in(degrees)
+    request = request_from(names, q, p, scale, within)
+    parameters = {n: rational(x, f"parameter {n}") for n, x in values_of(params).items()}
+    callee = callee_from(
+        load(target, "map"), names, stepped=False, arguments=arguments, parameters=parameters,
+        strict=True, time_limit=time_limit,
+    )  # fmt: skip
+    finding = check(callee, request)
     seconds = f"{time.perf_counter() - begun:.6f}"
     return Answer(
-        lambda: _json(target, found, seconds),
-        lambda: _print(target, found),
-        failed=not found.verdict.holds,
+        lambda: _json(target, names, finding, seconds),
+        lambda: _print(target, finding),
+        failed=not finding.verdict.holds,
     )
 
 
-def _json(target: str, found: "MapFinding", seconds: str) -> dict[str, Any]:
+def _json(target: str, names: tuple[str, ...], finding: "Finding", seconds: str) -> dict[str, Any]:
     from verify.arithmetic.exact import text
 
-    example = found.counterexample
+    example = finding.counterexample
     return {
-        **picked(found, "verdict", "reason"),
+        **picked(finding, "verdict", "reason"),
         "map": target,
-        **picked(found, "degrees", "how", "symplectic", "area_preserving"),
+        **picked(finding, "degrees", "how", "symplectic", "area_preserving"),
         "counterexample": example and {
-            **{name: text(x) for name, x in example.items()},
-            "entry": found.entry,
-            "found": found.value,
+            **{name: text(x) for name, x in example.z.items()},
+            "entry": finding.entry,
+            "found": example.found,
         },
-        "defect_max": None if found.largest is None else f"{found.largest:.6e}",
-        "probe_error": None if found.probe_error is None else f"{found.probe_error:.1e}",
-        **picked(found, "domain", "notes"),
+        "defect_max": None if finding.largest is None else f"{finding.largest:.6e}",
+        "probe_error": None if finding.probe_error is None else f"{finding.probe_error:.1e}",
+        "places": places_json(names, finding.places),
+        **picked(finding, "domain", "faults", "notes"),
         "seconds": seconds,
     }  # fmt: skip
 
 
-def _print(target: str, found: "MapFinding") -> None:
-    from verify.arithmetic.exact import text
-
-    click.echo(f"{found.verdict}: {found.reason}")
+def _print(target: str, finding: "Finding") -> None:
+    click.echo(f"{finding.verdict}: {finding.reason}")
     click.echo(f"  map      {target}")
-    if found.counterexample is not None:
-        at = ", ".join(f"{name} = {text(x)}" for name, x in found.counterexample.items())
-        click.echo(f"  against  {found.entry} has {found.value} at {at}")
-    if found.largest is not None:
-        error = f"the probe's error {found.probe_error:.1e}"
-        click.echo(f"  measured |S| up to {found.largest:.1e}; {error}")
-    if found.area_preserving is not None:
-        where = "" if found.how == "proof" else " where it was measured"
-        click.echo(f"  det J    is {'' if found.area_preserving else 'not '}1{where}")
-    for note in found.notes:
-        click.echo(f"  note     {note}")
+    if finding.how == "proof" and finding.area_preserving is not None:
+        click.echo(f"  det J    is {'' if finding.area_preserving else 'not '}1")
+    else:
+        print_measured(finding)
+    print_notes(finding)

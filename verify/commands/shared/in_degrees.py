@@ -1,7 +1,6 @@
 """How a proof in n degrees of freedom is printed, and what its JSON has."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -10,7 +9,6 @@ from verify.commands.shared.answer import picked
 from verify.commands.shared.output import agreement, agreement_json, cut, line
 
 if TYPE_CHECKING:
-    from verify.integrators.degrees.results import StepFinding
     from verify.proof.symplectic.proof import SymplecticProof
 _LONG = 352  # characters of S, beyond which its formula stands for it
 
@@ -48,63 +46,6 @@ def symplectic_json(
         "special_values": [],
         "seconds": seconds,
     }
-
-
-def step_json(
-    texts: Mapping[str, Any], target: str, found: "StepFinding", seconds: str
-) -> dict[str, Any]:
-    """Of a step of one's own: the keys of a proof where there is one, and what was measured."""
-    from verify.arithmetic.exact import text
-
-    proof = found.proof
-    seen = found.measured
-    against = {} if seen is None else seen.counterexample or {}
-    of_proof = proof.witness if proof and not proof.symplectic else {}
-    return {
-        **picked(found, "verdict", "reason"),
-        **texts,
-        "degrees": found.degrees,
-        "integrator": target,
-        **picked(found, "how", "symplectic", "area_preserving"),
-        "order": proof.order if proof else None,
-        "leading": proof.leading_text if proof else None,
-        "volume_order": proof.volume_order if proof else None,
-        "convergence_order": found.convergence_order,
-        "convergence_order_known": found.order_known,
-        "telescopes": proof.telescopes if proof else None,
-        "entry": proof.entry if proof else (seen.entry if seen else ""),
-        "witness": {name: text(value) for name, value in (of_proof or against).items()},
-        "value": proof.enclosure if proof else (seen.value if seen else ""),
-        "step_size": None if found.h is None else text(found.h),
-        "probe_error": None if seen is None else f"{seen.probe_error:.1e}",
-        "domain": found.domain.texts,
-        **picked(found, "notes"),
-        "seconds": seconds,
-    }
-
-
-def print_step(texts: Mapping[str, Any], target: str, found: "StepFinding") -> None:
-    """The same for a reader."""
-    if found.proof is not None:
-        shown = replace(
-            found.proof, verdict=found.verdict, reason=found.reason, domain=found.domain
-        )
-        print_symplectic(texts, target, shown)
-    else:
-        click.echo(f"{found.verdict}: {found.reason}")
-        line("H", texts["hamiltonian"])
-        line("scheme", target)
-        seen = found.measured
-        if seen is not None:
-            line(
-                "measured",
-                f"|S| up to {seen.largest:.1e}; the probe's error {seen.probe_error:.1e}",
-            )
-        if seen is not None and seen.counterexample is not None:
-            at = ", ".join(f"{name} = {x}" for name, x in seen.counterexample.items())
-            line("against", f"{seen.entry} has {seen.value} at {at}, h = {found.h}")
-    for note in found.notes:
-        line("note", str(note))
 
 
 def print_symplectic(texts: Mapping[str, Any], scheme: str, proof: "SymplecticProof") -> None:

@@ -9,11 +9,14 @@ from fractions import Fraction
 from pathlib import Path
 
 from verify.errors import InputError
+from verify.hamiltonians.coordinates import coordinates_in
 from verify.integrators.foreign import host
 from verify.integrators.foreign.lines import line_of, numbers_of
 from verify.integrators.foreign.process import Program
+from verify.integrators.layout import Layout
 from verify.integrators.number_type import DOUBLE, NumberType
-from verify.integrators.step import Step, Theirs
+from verify.integrators.step import Theirs
+from verify.integrators.user_map import UserMap
 
 _FIRST_SECONDS = 20.0  # for the first answer of a program that compiles itself
 _ORDER = ("p", "q", "t", "h")
@@ -67,7 +70,7 @@ def _hexadecimal(x: Fraction, kind: NumberType) -> str:
     return f"{'-' if x < 0 else ''}0x{abs(x.numerator):x}p{-power}"
 
 
-def of_command(command: str, kind: NumberType, seconds: float) -> Step:
+def of_command(command: str, kind: NumberType, seconds: float, degrees: int = 1) -> UserMap:
     """The program's step. Raises InputError where it does not start."""
     try:
         words = shlex.split(command)
@@ -78,9 +81,8 @@ def of_command(command: str, kind: NumberType, seconds: float) -> Step:
     if shutil.which(words[0]) is None:
         problem = "there is no such program; write ./NAME for one in this folder"
         raise InputError("--command", words[0], problem)
-    return _step(
-        ForeignFunction(Program(words, command, seconds, _FIRST_SECONDS), kind), kind, seconds
-    )
+    program = Program(words, command, seconds, _FIRST_SECONDS)
+    return _step(ForeignFunction(program, kind), kind, seconds, degrees)
 
 
 def is_library(target: str) -> bool:
@@ -90,7 +92,7 @@ def is_library(target: str) -> bool:
     return Path(place or target).suffix in LIBRARIES or ".so." in name
 
 
-def of_library(target: str, degrees: int, kind: NumberType, seconds: float) -> Step:
+def of_library(target: str, degrees: int, kind: NumberType, seconds: float) -> UserMap:
     """The step of LIB.so:SYMBOL. Raises InputError where it does not load."""
     place, _, symbol = target.rpartition(":")
     if not place or not symbol.isidentifier():
@@ -101,8 +103,13 @@ def of_library(target: str, degrees: int, kind: NumberType, seconds: float) -> S
     script = str(Path(host.__file__).resolve())
     words = [sys.executable, "-I", "-S", script, own, symbol, kind.name, str(degrees)]
     program = Program(words, target, seconds, greeting="ready")
-    return _step(LibraryFunction(program, kind), kind, seconds)
+    return _step(LibraryFunction(program, kind), kind, seconds, degrees)
 
 
-def _step(function: ForeignFunction, kind: NumberType, seconds: float) -> Step:
-    return Step(function, _ORDER, left=seconds, numbers=kind, foreign=True)
+def _step(function: ForeignFunction, kind: NumberType, seconds: float, degrees: int) -> UserMap:
+    layout = Layout(
+        _ORDER, shape=() if degrees == 1 else (degrees,), kind="list" if degrees > 1 else "array"
+    )
+    return UserMap(
+        function, layout, coordinates_in(degrees), left=seconds, numbers=kind, foreign=True
+    )

@@ -4,7 +4,6 @@ from collections.abc import Iterable, Iterator
 from fractions import Fraction
 from functools import partial, singledispatch
 
-from verify.integrators.check import POINTS
 from verify.integrators.others import reproductions
 from verify.integrators.others.methods.integrator import (
     Compared,
@@ -13,6 +12,7 @@ from verify.integrators.others.methods.integrator import (
     ReleasedIntegrator,
 )
 from verify.integrators.others.methods.measured import finding
+from verify.integrators.others.methods.problems import POINTS
 from verify.integrators.others.methods.tableau import (
     WRONG,
     Symplecticity,

@@ -1,18 +1,28 @@
-"""Dual numbers of many digits, x + a ε_p + b ε_q: a value and its derivatives by p and q.
+"""Dual numbers x + Σ a_k ε_k: a value and its derivatives along as many directions as wanted.
 
 They can be compared, by their values, so that branches and loops with a tolerance go through: what
-comes out has the derivatives of the operations that were done. gmpy2's context is set by `running`.
+comes out has the derivatives of the operations that were done. Each comparison is written down with
+the line of code that made it. gmpy2's context is set by `running`.
 """
 
-from collections.abc import Callable, Iterator
+import sys
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from fractions import Fraction
+from pathlib import Path
 from typing import TypeAlias
 
 import gmpy2
 
 from verify.arithmetic.exact import fraction
-from verify.integrators.tracing.number import OPERATORS, Kind, TracedNumber, UntraceableError
+from verify.integrators.tracing.number import (
+    OPERATORS,
+    Kind,
+    TracedNumber,
+    UntraceableError,
+    constant,
+)
 
 Number: TypeAlias = gmpy2.mpfr
 BITS = 200
@@ -30,80 +40,139 @@ SLOPES: dict[str, Callable[[Number, Number], Number]] = {  # of each function y 
 }
 
 
-class Duals(Kind):
-    """Makes dual numbers of `BITS` bits. Use it inside `running`."""
+_MOST_COMPARISONS = 4096  # of one call that are written down
 
-    def __init__(self) -> None:
+
+@dataclass(frozen=True)
+class Comparison:
+    """`line`: of the code that compared two numbers, with its file; `gap`: the first less the
+    second; `limit`: the second, where it is a constant."""
+
+    line: tuple[str, int]
+    gap: "Dual"
+    limit: Number | None
+
+    @property
+    def sign(self) -> int:
+        """Of the gap: which side of the comparison was taken."""
+        return int(self.gap.value > 0) - int(self.gap.value < 0)
+
+
+class Duals(Kind):
+    """Makes dual numbers of so many bits. Use it inside `running`.
+
+    `comparisons`: those of numbers that move with the state, since the last `clear`.
+    """
+
+    def __init__(self, bits: int = BITS) -> None:
         super().__init__()
+        self.bits = bits
+        self.comparisons: list[Comparison] = []
         self.compared = False  # whether values were: there may be branches, or a tolerance
 
     @contextmanager
     def running(self) -> Iterator[None]:
-        with gmpy2.context(precision=BITS, round=gmpy2.RoundToNearest):
+        with gmpy2.context(precision=self.bits, round=gmpy2.RoundToNearest):
             yield
 
+    def clear(self) -> None:
+        """Forgets the comparisons that were written down."""
+        self.comparisons = []
+
     def rational(self, value: Fraction) -> "Dual":
-        zero = gmpy2.mpfr(0)
-        return Dual(self, gmpy2.mpfr(gmpy2.mpq(value.numerator, value.denominator)), zero, zero)
+        return Dual(self, gmpy2.mpfr(gmpy2.mpq(value.numerator, value.denominator)), ())
 
     def pi(self) -> "Dual":
-        zero = gmpy2.mpfr(0)
-        return Dual(self, gmpy2.const_pi(), zero, zero)
+        return Dual(self, gmpy2.const_pi(), ())
 
-    def state(self, p: Fraction, q: Fraction) -> tuple["Dual", "Dual"]:
-        """p and q, whose derivatives are the unit vectors."""
-        x, y = self.rational(p), self.rational(q)
-        one = gmpy2.mpfr(1)
-        return Dual(self, x.value, one, x.by_q), Dual(self, y.value, y.by_p, one)
+    def state(self, *z: Fraction) -> list["Dual"]:
+        """z, whose derivatives are the unit vectors."""
+        zero, one = gmpy2.mpfr(0), gmpy2.mpfr(1)
+        return [
+            Dual(
+                self, self.rational(x).value, tuple(one if j == k else zero for j in range(len(z)))
+            )
+            for k, x in enumerate(z)
+        ]
+
+
+def _line_of_user() -> tuple[str, int]:
+    """Where the code that is called compares: the innermost frame that is not ours or numpy's."""
+    frame = sys._getframe(2)
+    while frame.f_back is not None:
+        home = str(frame.f_globals.get("__name__", "")).partition(".")[0]
+        if home not in ("verify", "numpy"):
+            break
+        frame = frame.f_back
+    return Path(frame.f_code.co_filename).name, frame.f_lineno
 
 
 class Dual(TracedNumber):
-    """`value`, and `by_p` and `by_q`, its partial derivatives."""
+    """`value`, and `slopes`, its derivatives; no slopes are zeros, as of a constant."""
 
-    __slots__ = ("by_p", "by_q", "value")
+    __slots__ = ("slopes", "value")
     kind: Duals
 
-    def __init__(self, kind: Duals, value: Number, by_p: Number, by_q: Number) -> None:
+    def __init__(self, kind: Duals, value: Number, slopes: Sequence[Number]) -> None:
         super().__init__(kind)
-        self.value, self.by_p, self.by_q = value, by_p, by_q
+        self.value, self.slopes = value, slopes
 
     def _chained(self, value: Number, slope: Number) -> "Dual":
-        return Dual(self.kind, value, slope * self.by_p, slope * self.by_q)
+        return Dual(self.kind, value, tuple([slope * a for a in self.slopes]))
 
     def known(self) -> Fraction | None:
-        """Its value where it does not move with p and q and is a rational of few bits."""
-        if self.by_p or self.by_q or not gmpy2.is_finite(self.value):
+        """Its value where it does not move with the state and is a rational of few bits."""
+        if any(self.slopes) or not gmpy2.is_finite(self.value):
             return None
         exact = fraction(self.value)
-        if exact.numerator.bit_length() + exact.denominator.bit_length() < BITS // 2:
+        if exact.numerator.bit_length() + exact.denominator.bit_length() < self.kind.bits // 2:
             return exact
         # 1/3 and its like, as exponents: rounded to the working precision, and read back.
         near = exact.limit_denominator(10**4)
         return near if self.kind.rational(near).value == self.value else None
 
+    def _order(self, other: object) -> int:
+        lifted = constant(self.kind, other)
+        if lifted is None:
+            self.refuse("it compares a number with what is none")
+        return self.compared(lifted)
+
     def compared(self, other: "Dual") -> int:
-        self.kind.compared = True
+        if self.slopes or other.slopes:
+            self.kind.compared = True
+            if len(self.kind.comparisons) < _MOST_COMPARISONS:
+                limit = None if other.slopes else other.value
+                gap = self.combined("subtract", other)
+                self.kind.comparisons.append(Comparison(_line_of_user(), gap, limit))
         if gmpy2.is_nan(self.value) or gmpy2.is_nan(other.value):
             return 2 if gmpy2.is_nan(self.value) else -2
         return int(self.value > other.value) - int(self.value < other.value)
 
     def combined(self, name: str, other: "Dual") -> "Dual":
-        x, y = self.value, other.value
+        x, y, kind = self.value, other.value, self.kind
+        if not other.slopes:  # a constant moves nothing
+            return self._with_constant(name, y)
+        a, b = self.slopes or (gmpy2.mpfr(0),) * len(other.slopes), other.slopes
+        pairs = zip(a, b, strict=True)
         match name:
             case "add" | "subtract":
-                parts = ((x, y), *self._slopes(other))
-                return Dual(self.kind, *(OPERATORS[name](a, b) for a, b in parts))
+                act = OPERATORS[name]
+                return Dual(kind, act(x, y), tuple([act(u, v) for u, v in pairs]))
             case "multiply":
-                by_p, by_q = (a * y + x * b for a, b in self._slopes(other))
-                return Dual(self.kind, x * y, by_p, by_q)
+                return Dual(kind, x * y, tuple([u * y + x * v for u, v in pairs]))
         if y == 0:
             raise ZeroDivisionError("division by zero")
         z = x / y
-        by_p, by_q = ((a - z * b) / y for a, b in self._slopes(other))
-        return Dual(self.kind, z, by_p, by_q)
+        return Dual(kind, z, tuple([(u - z * v) / y for u, v in pairs]))
 
-    def _slopes(self, other: "Dual") -> tuple[tuple[Number, Number], tuple[Number, Number]]:
-        return (self.by_p, other.by_p), (self.by_q, other.by_q)
+    def _with_constant(self, name: str, y: Number) -> "Dual":
+        x, a, kind = self.value, self.slopes, self.kind
+        if name in ("add", "subtract"):
+            return Dual(kind, OPERATORS[name](x, y), a)
+        if name == "divide" and y == 0:
+            raise ZeroDivisionError("division by zero")
+        act = OPERATORS[name]
+        return Dual(kind, act(x, y), tuple([act(u, y) for u in a]))
 
     def applied(self, name: str) -> "Dual":
         x = self.value

@@ -122,34 +122,35 @@ class Readings:
         """By derivatives along h, and along the flow in place of it, at a very small step."""
         kind, at = self._kind, self._at
         zero, one, h = gmpy2.mpfr(0), gmpy2.mpfr(1), kind.rational(_STEP).value
-        t = Dual(kind, at["t"], zero, zero)
+        t = Dual(kind, at["t"], (zero, zero))
         symbols = {
-            "p": Dual(kind, at["p"], zero, -at["H_q"]),
-            "q": Dual(kind, at["q"], zero, at["H_p"]),
-            "h": Dual(kind, h, one, zero),
+            "p": Dual(kind, at["p"], (zero, -at["H_q"])),
+            "q": Dual(kind, at["q"], (zero, at["H_p"])),
+            "h": Dual(kind, h, (one, zero)),
             "t": t,
         }
         made = self._replayed(kind, symbols, [t] * len(self._places))
         due = []
         for place in self._places:
             x = made[place.moves.number]
-            if not x.by_q:
+            along_h, along_flow = x.slopes or (zero, zero)
+            if not along_flow:
                 raise NoReadingsError
             # It may have a power of h as a factor, as h p has: what it is without that counts.
-            power = round(gmpy2.log2(abs(x.by_q)) / gmpy2.log2(h))
-            due.append(_rational((x.by_p - power * x.value / h) / x.by_q))
+            power = round(gmpy2.log2(abs(along_flow)) / gmpy2.log2(h))
+            due.append(_rational((along_h - power * x.value / h) / along_flow))
         return due
 
     def _part(self, place: _Place) -> tuple[Fraction, bool]:
         """By the derivatives of p' and q' along its time, at a very small step."""
         kind, at = self._kind, self._at
         zero, one = gmpy2.mpfr(0), gmpy2.mpfr(1)
-        still = {name: Dual(kind, at[name], zero, zero) for name in "pqt"}
-        moved = Dual(kind, at["t"], one, zero)
+        still = {name: Dual(kind, at[name], (zero,)) for name in "pqt"}
+        moved = Dual(kind, at["t"], (one,))
         times = [moved if x is place else still["t"] for x in self._places]
         h = kind.rational(_STEP)
         made = self._replayed(kind, {**still, "h": h}, times)
-        slopes = [made[root.number].by_p / h.value for root in self.roots]
+        slopes = [(made[root.number].slopes or (zero,))[0] / h.value for root in self.roots]
         whole = -at["H_qt"], at["H_pt"]
         parts = [
             Fraction(*map(int, (slope / x).as_integer_ratio())) if x else Fraction(0)

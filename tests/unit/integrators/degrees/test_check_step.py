@@ -9,12 +9,9 @@ import numpy as np
 import pytest
 
 from tests.end_to_end.test_command_line import here, json_of
+from tests.helpers.programs.judged import judged
 from verify.errors import InputError
-from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.degrees.check import check_step
-from verify.integrators.degrees.results import StepFinding
-from verify.integrators.loading import step_from
-from verify.integrators.results import Claims
+from verify.integrators.results import Claims, Finding
 
 HENON = "(p1**2 + p2**2 + q1**2 + q2**2)/2 + q1**2*q2 - q2**3/3"
 DRIVEN = f"{HENON} - q1*cos(t)"
@@ -22,6 +19,7 @@ KEPLER = "(p1**2 + p2**2)/2 - 1/sqrt(q1**2 + q2**2)"
 ROTATING = "(p1**2 + p2**2)/2 + p1*q2 - p2*q1 + q1**2*q2"  # not separable
 W1 = 1 / (2 - 2 ** (1 / 3))
 ROOTS = "(p1**2 + p2**2)/2 + sqrt(q1 - 5) + q2"
+NOWHERE = f"{ROOTS} + sqrt(4 - q1)"
 Step = Callable[..., Any]
 
 
@@ -158,9 +156,8 @@ def driven_by_a_still_clock(p, q, t, h):
     return p + h / 2 * pushed(q), q
 
 
-def checked(step: Step, formula: str = HENON, **claims: Any) -> StepFinding:
-    made, _ = step_from(step)
-    return check_step(made, Hamiltonian.parse(formula), Claims(**claims))
+def checked(step: Step, formula: str = HENON, **claims: Any) -> Finding:
+    return judged(step, Claims(**claims), hamiltonian=formula)
 
 
 # H, order of the map, symplectic, det J ≡ 1, order of S
@@ -206,7 +203,7 @@ def test_what_compares_numbers_is_measured() -> None:
     right, wrong = checked(midpoint, order=2, symplectic=True), checked(trapezoid)
     assert (right.verdict, right.how, right.symplectic) == ("MEASURED", "duals", True)
     assert (wrong.verdict, wrong.how, wrong.symplectic) == ("MEASURED", "duals", False)
-    assert (right.order_known, right.convergence_order, wrong.convergence_order) == (True, 2, 2)
+    assert (right.order_decided, right.convergence_order, wrong.convergence_order) == (True, 2, 2)
     assert checked(trapezoid, symplectic=True).verdict == "REFUTED"
     assert checked(midpoint, order=3).verdict == "REFUTED"
 
@@ -232,21 +229,29 @@ def test_claims(step: Step, claims: dict[str, Any], verdict: str, words: str) ->
 @pytest.mark.parametrize(
     ("step", "words"),
     [
-        (lambda p, q, h: p, "it returns 2 numbers; wanted: 4"),
+        (
+            lambda p, q, h: p,
+            "it returns 2 numbers, in arrays of shape (2,); wanted: p', q', arrays",
+        ),
         (lambda p, q, h: 1 / 0, "division by zero"),
-        (lambda p, q, h: 1 / 0, " at p = (0.333333, -0.25), q = (0.142857, 0.4), h = 0.125"),
-        (lambda p, q, h: None, "it returns None; wanted: p', q' at p = ("),
-        (lambda p, q, h: (p + np.nan, q), "it returns what is not finite at p = ("),
-        (lambda p, q, h: (p + np.random.default_rng().normal(), q), "another result"),
+        (lambda p, q, h: 1 / 0, " at p1 = 0.5, p2 = 0.833333, q1 = 0.583333, q2 = 0.375, h = 0.0"),
+        (lambda p, q, h: None, "it returns None; wanted: p', q'"),
+        (lambda p, q, h: (p + np.nan, q), "it returns what is not finite (nan, nan, "),
     ],
 )
-def test_what_is_no_step_is_refuted_as_in_the_plane(step: Step, words: str) -> None:
-    found = checked(step)
-    assert (found.verdict, words in str(found.reason)) == ("REFUTED", True), found.reason
+def test_a_call_that_returns_no_state_is_an_error_as_in_the_plane(step: Step, words: str) -> None:
+    with pytest.raises(InputError) as error:
+        checked(step)
+    assert words in str(error.value)
 
 
-def of_lists(p, q, h):
-    """Right, but that it asks of q what lists alone answer."""
+def test_a_step_that_is_not_deterministic_is_undecided() -> None:
+    found = checked(lambda p, q, h: (p + np.random.default_rng().normal(), q), order=1)
+    assert (found.verdict, found.faults) == ("UNDECIDED", ("not a function",))
+
+
+def taking_lists(p, q, h):
+    """It asks of q what lists alone answer."""
     if not q:
         return p, q
     p, q = verlet(np.array(p), np.array(q), h)
@@ -261,17 +266,24 @@ def endless(p, q, h):
 @pytest.mark.parametrize(
     ("step", "formula", "words"),
     [
-        (of_lists, HENON, "and takes lists"),
-        (verlet_of_roots, ROOTS, "H has no exact solution from any of the points"),
-        (endless, HENON, "does not end"),
+        (verlet_of_roots, NOWHERE, "H has no exact solution from any of the places"),
     ],
 )
 def test_what_fails_for_no_fault_of_its_own_is_undecided(
     step: Step, formula: str, words: str
 ) -> None:
-    exact = Hamiltonian.parse(formula)
-    found = check_step(step_from(step, time_limit=0.5)[0], exact, Claims(order=2))
+    found = judged(step, Claims(order=2), 0.5, formula)
     assert (found.verdict, words in str(found.reason)) == ("UNDECIDED", True), found.reason
+
+
+def test_an_endless_step_is_an_error() -> None:
+    with pytest.raises(InputError, match="does not end"):
+        judged(endless, Claims(order=2), 0.5, HENON)
+
+
+def test_lists_and_places_where_h_is_defined_are_found() -> None:
+    assert judged(taking_lists, Claims(order=2, symplectic=True), hamiltonian=HENON).verdict.holds
+    assert judged(verlet_of_roots, Claims(order=2), hamiltonian=ROOTS).verdict.holds
 
 
 def test_a_parameter_needs_its_value() -> None:
@@ -303,8 +315,12 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert found["leading"] == "dp1∧dq1 + dp2∧dq2"
     status, out, _ = here(capsys, *typed, "--symplectic")
     assert (status, "REFUTED: that it is symplectic is claimed" in out) == (1, True)
-    status, _, err = here(capsys, *typed, "--q", "1", "--p", "1")
-    assert (status, err.count("\n")) == (2, 1)
+    for wrong in (("--q", "1", "--p", "1"), ("--q", "1,2"), ("--scale", "q=0"), ("--within", "-1"),
+                  ("--scale", "r=1"), ("--step-size", "0")):  # fmt: skip
+        status, _, err = here(capsys, *typed, *wrong)
+        assert (status, err.count("\n")) == (2, 1)
+    status, out, _ = here(capsys, *typed, "--q", "1,0", "--p", "0,1", "--step-size", "0.01")
+    assert status == 0
     plane = ("check-integrator", f"{file}:flat", "--system", "harmonic", "--param", "omega=1")
     file.write_text("def flat(p, q, h):\n    return p - h*q, q + h*p\n")
     assert here(capsys, *plane, "--symplectic")[0] == 1

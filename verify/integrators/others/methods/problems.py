@@ -77,6 +77,11 @@ COUPLED = Problem(
 )
 EACH = TWO_WAVES, DRIVEN, HENON_HEILES
 AGAIN = {TWO_WAVES: PENDULUM, DRIVEN: SWUNG, HENON_HEILES: COUPLED}  # the second of a kind
+# p, q of the points at which a step is tried where nothing else is said.
+POINTS = tuple(
+    (Fraction(p), Fraction(q))
+    for p, q in (("1/3", "3/5"), ("-1/2", "7/8"), ("1/7", "6/5"), ("3/4", "-2/5"), ("-1/5", "-2/5"))
+)
 # Where a high order is seen in float64, between a step that is too large for it and rounding.
 AWAY = (
     (Fraction(5, 4), Fraction(-1, 2)),

@@ -4,7 +4,6 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from verify.integrators.check import POINTS
 from verify.integrators.others.methods.integrator import FloatStep, Map, ReleasedIntegrator
 from verify.integrators.others.methods.problems import (
     AGAIN,
@@ -12,6 +11,7 @@ from verify.integrators.others.methods.problems import (
     DRIVEN,
     EACH,
     LONG,
+    POINTS,
     USUAL,
     Problem,
 )

@@ -1,0 +1,32 @@
+"""A user's step or map to its finding, as the commands do it."""
+
+from collections.abc import Callable
+from typing import Any
+
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.integrators.check import check_integrator
+from verify.integrators.loading import callee_from, foreign_callee
+from verify.integrators.results import NOTHING, Claims, Finding
+from verify.integrators.survey import NOWHERE, Request
+from verify.integrators.user_map import UserMap
+
+PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
+
+
+def judged(
+    function: Callable[..., Any] | UserMap,
+    claims: Claims = NOTHING,
+    limit: float = 20,
+    hamiltonian: Hamiltonian | str = PENDULUM,
+    request: Request = NOWHERE,
+    arguments: str | None = None,
+) -> Finding:
+    """What `verify check-integrator` finds of the function, or of a library's or program's step."""
+    exact = Hamiltonian.parse(hamiltonian) if isinstance(hamiltonian, str) else hamiltonian
+    if isinstance(function, UserMap):
+        return check_integrator(foreign_callee(function), exact, claims, request)
+    callee = callee_from(
+        function, exact.coordinates, arguments=arguments, parameters=dict(exact.values),
+        time_limit=limit,
+    )  # fmt: skip
+    return check_integrator(callee, exact, claims, request)

@@ -1,0 +1,135 @@
+"""Where a check of a user's code looks: options, and how they are read."""
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from verify.errors import InputError
+
+if TYPE_CHECKING:
+    from verify.integrators.places import Place
+    from verify.integrators.results import Finding
+    from verify.integrators.survey import Request
+
+_OPTIONS = (
+    click.option("--q", "q", metavar="Q", help="A state to look at first: q, or q1,q2,…"),
+    click.option("--p", "p", metavar="P", help="Its momenta: p, or p1,p2,…"),
+    click.option(
+        "--scale",
+        metavar="NAME=SIZE,…",
+        help="Sizes of the coordinates, such as q=7000,p=7.5; else they are found from H or the map.",
+    ),
+    click.option(
+        "--within",
+        metavar="SIZE",
+        help="A defect that you allow, such as 1e-8; else that of the numbers' rounding.",
+    ),
+)
+_STEP_SIZE = click.option(
+    "--step-size", metavar="H", help="The step size that matters to you: the largest looked at."
+)
+
+
+def looking_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The command with the options that say where to look, for a map."""
+    for option in reversed(_OPTIONS):
+        command = option(command)
+    return command
+
+
+def step_size_option(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The command with the step size that a step is looked at with."""
+    return _STEP_SIZE(command)
+
+
+def request_from(
+    names: Sequence[str],
+    q: str | None,
+    p: str | None,
+    scale: str | None,
+    within: str | None,
+    step_size: str | None = None,
+) -> "Request":
+    """What these options ask for. Raises InputError."""
+    from verify.arithmetic.exact import positive
+    from verify.integrators.survey import Request
+
+    return Request(
+        z=state_from(names, q, p),
+        step_size=None if step_size is None else positive(step_size, "--step-size"),
+        scale={} if scale is None else _scale(names, scale),
+        within=None if within is None else positive(within, "--within"),
+    )
+
+
+def state_from(names: Sequence[str], q: str | None, p: str | None) -> tuple[Fraction, ...] | None:
+    """p1, …, qn of two lists; None where neither is there. Raises InputError."""
+    from verify.arithmetic.exact import rational
+
+    if p is None and q is None:
+        return None
+    if p is None or q is None:
+        raise InputError("--p, --q", p or q or "", "give both or none")
+    degrees, z = len(names) // 2, list[Fraction]()
+    for name, written in (("--p", p), ("--q", q)):
+        numbers = [rational(part.strip(), name) for part in written.split(",")]
+        if len(numbers) != degrees:
+            problem = (
+                f"has {len(numbers)} numbers; allowed: {degrees}, one for each degree of freedom"
+            )
+            raise InputError(name, written, problem)
+        z += numbers
+    return tuple(z)
+
+
+def _scale(names: Sequence[str], written: str) -> dict[str, Fraction]:
+    from verify.arithmetic.exact import positive
+
+    sizes: dict[str, Fraction] = {}
+    for part in written.split(","):
+        name, equals, value = (x.strip() for x in part.partition("="))
+        meant = [x for x in names if name in (x, x[0])]
+        if not equals or not meant:
+            listed = ", ".join(dict.fromkeys(["q", "p", *names]))
+            problem = f"is no size of a coordinate; write NAME=SIZE; allowed: {listed}"
+            raise InputError("--scale", part, problem)
+        for coordinate in meant:
+            sizes[coordinate] = positive(value, "--scale")
+    return sizes
+
+
+def places_json(step_names: Sequence[str], places: "Sequence[Place]") -> list[dict[str, str]]:
+    """The places that were looked at, by the names of their coordinates."""
+    from verify.arithmetic.exact import text
+
+    return [
+        {
+            **{name: text(x) for name, x in zip(step_names, place.z, strict=True)},
+            "t": text(place.t),
+            "step_size": text(place.step),
+            "chosen_by": place.source,
+        }
+        for place in places
+    ]
+
+
+def print_measured(finding: "Finding") -> None:
+    """What was measured, for a reader."""
+    if finding.largest is not None and finding.probe_error is not None:
+        name = "ΔJ" if finding.degrees == 1 else "S"
+        shown = f"|{name}| up to {finding.largest:.1e}; the noise of such a value {finding.probe_error:.1e}"
+        click.echo(f"  measured {shown}")
+    if finding.degrees > 1 and finding.symplectic is False and finding.area_preserving is not None:
+        click.echo(
+            f"  det J    is {'' if finding.area_preserving else 'not '}1 where it was measured"
+        )
+
+
+def print_notes(finding: "Finding") -> None:
+    """Its counterexample and its notes, for a reader."""
+    if finding.counterexample is not None:
+        click.echo(f"  against  {finding.counterexample}")
+    for note in finding.notes:
+        click.echo(f"  note     {note}")

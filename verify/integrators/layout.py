@@ -1,0 +1,195 @@
+"""The shapes in which people write a step or a map, and how a state goes in and comes out.
+
+A state z is always p1 … pn, q1 … qn here. A layout says how the user's function takes it: as two
+numbers, two arrays of any shape, two lists, or one thing that holds both, in either order.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import prod
+from typing import Any
+
+from verify.integrators.step import StepError, Theirs, single
+
+# What people call the arguments of a step.
+ROLES = {
+    **dict.fromkeys(
+        ("p", "v", "p0", "v0", "pq_p", "momentum", "momenta", "mom", "moms", "velocity",
+         "velocities", "vel", "vels", "speed", "qdot", "xdot", "x_dot", "q_dot", "px", "vx"), "p"),
+    **dict.fromkeys(
+        ("q", "x", "q0", "x0", "r", "position", "positions", "pos", "coordinates", "coords",
+         "displacement", "angle", "theta", "phi"), "q"),
+    **dict.fromkeys(("t", "time", "t0", "t_n", "tn"), "t"),
+    **dict.fromkeys(
+        ("h", "dt", "tau", "step", "step_size", "stepsize", "time_step", "timestep", "delta_t",
+         "deltat", "eps", "epsilon", "delta", "hh", "ds"), "h"),
+    **dict.fromkeys(("z", "y", "state", "s", "u", "w", "y0", "z0", "phase", "qp", "pq"), "z"),
+}  # fmt: skip
+
+
+def role_of(name: str) -> str:
+    """Which of p, q, t, h and z an argument of that name is; empty where the name does not tell."""
+    return ROLES.get(name.lower().strip("_"), "")
+
+
+class Pair(tuple[Theirs, ...]):
+    """p and q as one thing that also answers to names: y.q, y.pos, y.velocity."""
+
+    order: tuple[str, ...]
+
+    @property
+    def _fields(self) -> tuple[str, ...]:
+        return self.order
+
+    def __getattr__(self, name: str) -> Theirs:
+        role = role_of(name)
+        if role not in self.order:
+            raise AttributeError(name)
+        return self[self.order.index(role)]
+
+    def _replace(self, **changed: Theirs) -> "Pair":
+        parts = {role_of(name): x for name, x in changed.items()}
+        return pair([parts.get(name, x) for name, x in zip(self.order, self, strict=True)],
+                    self.order)  # fmt: skip
+
+
+def pair(parts: Sequence[Theirs], order: tuple[str, ...]) -> Pair:
+    """p and q in that order as one thing."""
+    made = Pair(parts)
+    made.order = order
+    return made
+
+
+@dataclass(frozen=True)
+class Layout:
+    """`roles`: the function's arguments in their order, each p, q, t, h or z. `halves`: in which
+    order p and q stand in z, and in what is returned. `shape`: of p and of q, () for plain numbers.
+    `kind`: "array", or "list"; of z "flat", one array of all, "rows", an array of two, or "pair", a
+    tuple of two. `places`: where p1 … qn stand in a flat z, where that is another order."""
+
+    roles: tuple[str, ...]
+    halves: tuple[str, str] = ("p", "q")
+    shape: tuple[int, ...] = ()
+    kind: str = "array"
+    places: tuple[int, ...] = ()
+    record: Callable[..., Theirs] | None = None  # of a named tuple that an annotation names
+
+    @property
+    def timed(self) -> bool:
+        """Whether t goes in."""
+        return "t" in self.roles
+
+    @property
+    def stepped(self) -> bool:
+        """Whether h goes in."""
+        return "h" in self.roles
+
+    def exchanged(self) -> "Layout":
+        """The same with p and q in each other's place."""
+        other = {"p": "q", "q": "p"}
+        roles = tuple(other.get(name, name) for name in self.roles)
+        return replace(self, roles=roles, halves=(self.halves[1], self.halves[0]))
+
+    def arguments(
+        self, z: Sequence[Theirs], h: Theirs, t: Theirs
+    ) -> list[Theirs]:  # what the function is called with
+        """The function's arguments for z, in its order."""
+        n = len(z) // 2
+        halves = {"p": z[:n], "q": z[n:]}
+        parts: dict[str, Theirs] = {"h": h, "t": t}
+        if "z" in self.roles:
+            parts["z"] = self._whole(z, halves)
+        else:
+            parts |= {name: self._shaped(x) for name, x in halves.items()}
+        return [parts[name] for name in self.roles]
+
+    def _whole(self, z: Sequence[Theirs], halves: dict[str, Sequence[Theirs]]) -> Theirs:
+        if self.places:
+            return array([z[self.places.index(k)] for k in range(len(z))], (len(z),))
+        first, second = (halves[name] for name in self.halves)
+        if self.kind == "flat":
+            return array([*first, *second], (len(z),))
+        if self.kind == "rows":
+            return array([*first, *second], (2, *self.shape))
+        parts = [self._shaped(first), self._shaped(second)]
+        if self.record is not None:
+            return self.record(*parts)
+        return pair(parts, self.halves)
+
+    def _shaped(self, x: Sequence[Theirs]) -> Theirs:
+        if self.kind == "list":
+            return list(x)
+        return array(x, self.shape) if self.shape else x[0]
+
+    def state(self, result: Theirs, size: int) -> list[Theirs]:
+        """z' of what the function returned. Raises StepError."""
+        numbers = list(_numbers(result, self.wanted, depth=4))
+        if len(numbers) != size:
+            raise StepError(f"it returns {_shape_of(result, len(numbers))}; {self.wanted}")
+        if self.places:
+            return [numbers[place] for place in self.places]
+        halves = self.halves
+        fields = tuple(map(role_of, getattr(result, "_fields", ())))
+        if sorted(fields) == ["p", "q"]:
+            halves = (fields[0], fields[1])
+        n = size // 2
+        return numbers if halves == ("p", "q") else [*numbers[n:], *numbers[:n]]
+
+    @property
+    def wanted(self) -> str:
+        """What has to be returned, for people."""
+        if "z" in self.roles:
+            return "wanted: z', of the shape of z"
+        first, second = self.halves
+        shape = f", arrays of shape {self.shape}" if self.shape and self.kind == "array" else ""
+        return f"wanted: {first}', {second}'{shape}"
+
+    def __str__(self) -> str:
+        if "z" not in self.roles:
+            return ", ".join(self.roles)
+        inside = ", ".join(self.halves)
+        return ", ".join(f"({inside})" if name == "z" else name for name in self.roles)
+
+
+def shapes(degrees: int) -> Iterator[tuple[tuple[int, ...], str]]:
+    """The shapes and kinds in which p and q of so many degrees may stand, the usual first."""
+    if degrees == 1:
+        yield from (((), "array"), ((1,), "array"), ((1, 1), "array"))
+        return
+    yield (degrees,), "array"
+    yield from (((degrees // k, k), "array") for k in (3, 2, 1) if degrees % k == 0)
+    yield (degrees,), "list"
+
+
+def array(numbers: Sequence[Theirs], shape: tuple[int, ...]) -> Theirs:
+    """An array of floats; or of numbers of ours, as objects."""
+    import numpy as np
+
+    made = np.empty(prod(shape), dtype=float if isinstance(numbers[0], float) else object)
+    for k, x in enumerate(numbers):
+        made[k] = x
+    return made.reshape(shape)
+
+
+def _shape_of(result: Theirs, count: int) -> str:
+    parts = result if isinstance(result, tuple | list) else [result]
+    arrays = [x.shape for x in parts if getattr(x, "shape", ())]
+    shaped = f", in arrays of shape {', '.join(map(str, arrays))}" if arrays else ""
+    return f"{count} number{'s' if count != 1 else ''}{shaped}"
+
+
+def _numbers(result: Theirs, wanted: str, depth: int) -> list[Theirs]:
+    if result is None or isinstance(result, str | bytes | dict | set):
+        kind = "None" if result is None else "text" if isinstance(result, str) else None
+        raise StepError(f"it returns {kind or type(result).__name__}; {wanted}")
+    if getattr(result, "shape", ()):
+        result = list(result.ravel())
+    if not isinstance(result, list | tuple):
+        return [single(result)]
+    if depth == 0:
+        raise StepError(f"it returns lists in lists in lists; {wanted}")
+    return [x for part in result for x in _numbers(part, wanted, depth - 1)]
+
+
+OfNumber = Callable[[Fraction], Any]

@@ -1,0 +1,276 @@
+"""How far one step is from the exact flow, component by component, as its step size falls.
+
+The order is that of the worst component at the worst place, where its slope has settled. An error
+is counted where it is beyond the noise of the numbers that the code computes in.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+
+from verify.flows.degrees.extrapolation import FlowInDegrees
+from verify.flows.extrapolation import NoFlowError
+from verify.hamiltonians.canonical_field import canonical_field
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.integrators.places import SIDE, USER, Place, spread
+from verify.integrators.probes.duals import DualProbe
+from verify.integrators.probes.floats import FloatProbe
+from verify.integrators.slopes import Run, Slopes, slopes_of
+from verify.integrators.step import StepError, why
+from verify.integrators.user_map import UserMap
+from verify.integrators.wrapped import Periods, unwrapped, wrapped
+
+SPACED = tuple(Fraction(2) ** k for k in range(9))  # parts of a place's largest step
+_FINE = tuple(2**k for k in (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 15, 18, 22, 27, 33, 40, 48))
+_COARSE = (
+    *(Fraction(2**k, x) for k in range(2, 11) for x in (4, 3)),
+    *(2**k for k in range(9, 27)),
+)
+LADDERS = {"duals": tuple(map(Fraction, _FINE)), "floats": tuple(map(Fraction, _COARSE))}
+_DIGITS, _MORE = 50, 4  # of the exact flow for dual numbers; and more than a step's own have
+_COEFFICIENTS = 2.0**-46  # of a step's length: what rounded coefficients do to it
+_PLACES = {1: 7}  # at which it is looked
+_OTHERWISE = 4
+_FEWEST_IN_TAIL = 5  # slopes of a lower power that floats alone show
+_TOLERANCE = 1e-7  # in units: below it such a power may be what the tolerance of a loop leaves
+_QUIET = 3  # step sizes in the noise, after which none is looked at
+Probe = DualProbe | FloatProbe
+
+
+@dataclass(frozen=True)
+class Tail:
+    """A lower power, from `h` down, where the error is `error` in units of the place."""
+
+    power: int | None
+    h: float
+    error: float
+
+
+@dataclass(frozen=True)
+class PlaceOrder:
+    """At one place: `power` of h by which the worst component's error falls; None where that has
+    not settled, or, `exact`, where none is seen. `slopes`: those that are seen, for people."""
+
+    place: Place
+    power: int | None
+    exact: bool
+    component: str = ""
+    run: Run | None = None
+    tail: Tail | None = None
+    slopes: tuple[float, ...] = ()
+    rows: tuple[tuple[float, float, float], ...] = ()  # of that component, as they stand
+    unseen: float = 0.0  # an error of the step, in parts of it, that would not show
+
+
+@dataclass(frozen=True)
+class Distances:
+    """Of one step from the exact flow, at places; `periods`: modulo which they were compared."""
+
+    how: str
+    places: tuple[PlaceOrder, ...]
+    periods: Periods = ()
+    lost: tuple[str, ...] = ()
+
+
+def distances_of(
+    step: UserMap,
+    probe: Probe,
+    hamiltonian: Hamiltonian,
+    places: Sequence[Place],
+    ladder: Sequence[Fraction] = (),
+) -> Distances:
+    """Raises StepError where no exact flow is known, or the step fails, at all of the places."""
+    flow = flow_of(hamiltonian, probe)
+    chosen = _chosen(places, _PLACES.get(step.degrees, _OTHERWISE))
+    parts = tuple(ladder) or LADDERS[probe.how]
+    step.periods = _periods(step, probe, flow, hamiltonian, chosen, parts[-1])
+    made, lost = list[PlaceOrder](), list[str]()
+    for place in chosen:
+        try:
+            made.append(_at(step, probe, flow, place, parts))
+        except Exception as error:  # the user's code may raise anything
+            lost.append(f"{why(error)}{step.place([float(x) for x in place.z], float(place.step))}")
+        if step.left <= 0:
+            break
+    if not made:
+        raise StepError(lost[0] if lost else "it has no exact solution from any of the places")
+    return Distances(probe.how, tuple(made), step.periods, tuple(lost))
+
+
+def flow_of(hamiltonian: Hamiltonian, probe: Probe) -> FlowInDegrees:
+    """The exact flow, to the digits that a probe asks for."""
+    digits = _DIGITS if probe.how == "duals" else probe.step.numbers.digits + _MORE
+    return FlowInDegrees(canonical_field(hamiltonian)[0], digits)
+
+
+def _chosen(places: Sequence[Place], most: int) -> list[Place]:
+    """The user's, those on sides of their own, and others from all amplitudes."""
+    needed = [x for x in places if x.source in (USER, SIDE)]
+    others = [x for x in places if x not in needed]
+    return [*needed, *spread(others, most)]
+
+
+def _periods(
+    step: UserMap, probe: Probe, flow: FlowInDegrees, hamiltonian: Hamiltonian,
+    places: Sequence[Place], part: Fraction,
+) -> Periods:  # fmt: skip
+    """By which it reduces its coordinates, as a step of almost no length shows."""
+    ends = []
+    for place in places:
+        try:
+            h = place.step / part
+            ends.append((probe.end(place, h), goal(flow, probe, place, h)))
+        except Exception:  # noqa: S112 - the user's code may raise anything
+            continue
+    smallest = min((place.step for place in places), default=Fraction(1)) / part
+    return wrapped(ends, hamiltonian, smallest) if ends else ()
+
+
+def goal(flow: FlowInDegrees, probe: Probe, place: Place, h: Fraction) -> list[Fraction]:
+    """Where the exact flow ends, from the state and over the time that the probe calls with.
+
+    Raises StepError.
+    """
+    z = probe.begin(place)
+    t, size = probe.times(place, h)
+    state = flow.state({**dict(zip(probe.step.names, z, strict=True)), "t": t})
+    try:
+        ended = flow.advance(state, flow.number(size))
+    except NoFlowError as error:
+        raise StepError(error.said) from None
+    return [flow.arithmetic.exact(x) for x in ended[: len(z)]]
+
+
+def _at(
+    step: UserMap, probe: Probe, flow: FlowInDegrees, place: Place, parts: Sequence[Fraction]
+) -> PlaceOrder:
+    """All components at one place."""
+    size, begun = len(place.z), probe.begin(place)
+    rows: list[list[tuple[float, float, float]]] = [[] for _ in range(size)]
+    counts, quiet, unseen, lost = list[int](), 0, float("inf"), ""
+    for part in parts:
+        h = place.step / part
+        try:
+            ended = probe.end(place, h)
+            count = len(probe.comparisons)
+            exact = goal(flow, probe, place, h)
+        except Exception as error:  # a step size may be too large for it
+            lost = str(why(error))
+            continue
+        errors, noise, moved = _row(step, probe, place, h, begun, ended, exact)
+        for k in range(size):
+            rows[k].append((float(h), errors[k], noise[k]))
+        counts.append(count)
+        if moved:
+            scaled = zip(errors, noise, place.units, strict=True)
+            unseen = min(unseen, max((e + 10 * n) / float(u) for e, n, u in scaled) / moved)
+        quiet = quiet + 1 if all(e <= 10 * n for e, n in zip(errors, noise, strict=True)) else 0
+        if quiet >= _QUIET or step.left <= 0:
+            break
+    if len(rows[0]) < _QUIET:
+        raise StepError(lost or "it fails for most step sizes")
+    return _judged(step, place, rows, counts, probe.how, unseen)
+
+
+def _row(
+    step: UserMap, probe: Probe, place: Place, h: Fraction, begun: Sequence[Fraction],
+    ended: Sequence[Fraction], exact: Sequence[Fraction],
+) -> tuple[list[float], list[float], float]:  # fmt: skip
+    """Errors and noise of the components, and how far the flow goes in units of the place."""
+    periods = step.periods or (Fraction(0),) * len(exact)
+    here = list(map(unwrapped, ended, exact, periods))
+    errors = [float(abs(x - y)) for x, y in zip(here, exact, strict=True)]
+    ways = [float(abs(y - z)) for y, z in zip(exact, begun, strict=True)]
+    units = [float(u) for u in place.units]
+    moved = max(way / unit for way, unit in zip(ways, units, strict=True))
+    noise = probe.noise(place, ended)
+    if isinstance(probe, DualProbe):
+        noise = [
+            n + _COEFFICIENTS * (way + unit * moved / 8)
+            for n, way, unit in zip(noise, ways, units, strict=True)
+        ]
+    else:
+        scatter = probe.scatter(place, place.step / 8)
+        noise = [max(pair) for pair in zip(noise, scatter, strict=True)]
+    return errors, noise, moved
+
+
+def _judged(
+    step: UserMap, place: Place, rows: list[list[tuple[float, float, float]]],
+    counts: Sequence[int], how: str, unseen: float,
+) -> PlaceOrder:  # fmt: skip
+    """By the component whose error falls most slowly."""
+    each = [(k, slopes_of(r)) for k, r in enumerate(rows)]
+    seen = [(k, x) for k, x in each if x.seen]
+    if not seen:
+        return PlaceOrder(place, None, True, unseen=unseen)
+    judged = []
+    for k, slopes in seen:
+        unit = float(place.units[k])
+        power, run, tail = _settled(slopes, rows[k], counts, how, unit)
+        judged.append(
+            PlaceOrder(place, power, False, step.names[k], run, tail, _shown(rows[k]),
+                       tuple(rows[k]), unseen)
+        )  # fmt: skip
+    settled = [x for x in judged if x.power is not None]
+    loose = [x for x in judged if x.power is None]
+    if settled:
+        lowest = min(settled, key=lambda x: x.power or 0)
+        # What has not settled may be lower, unless it is small beside what has.
+        return lowest if not _hides(loose, lowest) else loose[0]
+    return max(loose, key=lambda x: len(x.slopes))
+
+
+def _hides(loose: Sequence[PlaceOrder], lowest: PlaceOrder) -> bool:
+    """Whether a component that has not settled is seen over as many step sizes as one needs."""
+    if lowest.power is not None and lowest.power <= 1:
+        return False
+    return any(len(x.slopes) >= 4 for x in loose)
+
+
+def _settled(
+    slopes: Slopes, rows: Sequence[tuple[float, float, float]], counts: Sequence[int], how: str,
+    unit: float,
+) -> tuple[int | None, Run | None, Tail | None]:  # fmt: skip
+    """The power that holds, its stretch, and what a loop leaves below it.
+
+    Where the number of comparisons changes with h, a loop ends at a tolerance: a lower power below
+    is then what it leaves, unless it goes on through such changes as no tolerance does.
+    """
+    if not slopes.runs:
+        return None, None, None
+    chosen, tail = slopes.runs[0], None
+    iterates = len(set(counts)) > 1
+    for run in slopes.runs[1:]:
+        if run.power > chosen.power and tail is None:
+            chosen = run  # what is seen of larger steps has not settled
+            continue
+        if run.power >= chosen.power:
+            continue
+        at = [k for k, row in enumerate(rows) if run.last <= row[0] <= run.first]
+        error = rows[at[0]][1] / unit
+        if how == "duals":
+            real = not iterates or len({counts[k] for k in at}) > 1
+        else:
+            real = run.count >= _FEWEST_IN_TAIL and error > _TOLERANCE
+        if real:
+            chosen, tail = run, None
+        else:
+            tail = tail or Tail(run.power, rows[at[0]][0], error)
+    if slopes.unsettled and chosen is slopes.runs[-1]:
+        end = next(k for k, row in enumerate(rows) if row[0] == chosen.last)
+        error = rows[min(end + 1, len(rows) - 1)][1] / unit
+        if (how == "duals" and not iterates) or (how == "floats" and error > _TOLERANCE):
+            return None, None, None
+        tail = tail or Tail(None, rows[end][0], error)
+    return chosen.power, chosen, tail
+
+
+def _shown(rows: Sequence[tuple[float, float, float]]) -> tuple[float, ...]:
+    """The slopes between neighbours beyond their noise."""
+    clear = [(h, e) for h, e, n in rows if e > 10 * n]
+    return tuple(
+        math.log(a / b) / math.log(h / g) for (h, a), (g, b) in pairwise(clear) if a > 0 and b > 0
+    )

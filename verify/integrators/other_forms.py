@@ -1,0 +1,129 @@
+"""What a map that is not symplectic may be all the same: rounded, or written in velocities.
+
+A matrix that a program prints with few digits is not symplectic, and one that is may lie within
+half a unit of its last digit. A map of positions and velocities may keep Σ m_i dv_i∧dx_i.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.integrators.probes.reading import Reading
+
+if TYPE_CHECKING:
+    import numpy as np
+
+_SAME = 1e-13  # of J at two places, of a linear map
+_MOST_DIGITS = 14
+_TURNS = 40  # of a search for the least largest change
+_NOTHING, _SOMETHING = 1e-9, 1e-5  # parts of the largest singular value
+_MOST_MASS = 10**6
+
+
+def digits_noted(readings: Sequence[Reading]) -> list[str]:
+    """A sentence where the map is a matrix of few digits that a symplectic one rounds to."""
+    import numpy as np
+
+    first = np.array(readings[0].jacobian)
+    size = np.abs(first).max()
+    if len(readings) < 2 or any(
+        np.abs(np.array(x.jacobian) - first).max() > _SAME * size for x in readings
+    ):
+        return []
+    digits = _digits(first)
+    if digits is None or _change(first) > 0.5 * 10.0**-digits * (1 + 1e-6):
+        return []
+    ending = {1: "st", 2: "nd", 3: "rd"}.get(digits if digits < 4 else 0, "th")
+    return [
+        f"a symplectic matrix lies within half a unit of the {digits}{ending} digit of its entries"
+    ]
+
+
+def _digits(matrix: "np.ndarray") -> int | None:
+    """Digits after the point that all entries have at most; None where they have more."""
+    import numpy as np
+
+    for digits in range(_MOST_DIGITS + 1):
+        scaled = matrix * 10.0**digits
+        if np.all(np.abs(scaled - np.round(scaled)) <= 4e-16 * np.abs(scaled)):
+            return digits
+    return None
+
+
+def _change(matrix: "np.ndarray") -> float:
+    """The largest change of an entry by which a symplectic matrix is reached, made small.
+
+    The change δ of least norm with MᵀΩδ + δᵀΩM = −S, its large entries weighed more each turn.
+    """
+    import numpy as np
+
+    size = len(matrix)
+    half = size // 2
+    unit = np.eye(half)
+    omega = np.block([[np.zeros((half, half)), unit], [-unit, np.zeros((half, half))]])
+    defect = matrix.T @ omega @ matrix - omega
+    pairs = list(combinations(range(size), 2))
+    rows = np.zeros((len(pairs), size * size))
+    left = matrix.T @ omega  # (left δ)_ab − (left δ)_ba
+    for k, (a, b) in enumerate(pairs):
+        for i in range(size):
+            rows[k, i * size + b] += left[a, i]
+            rows[k, i * size + a] -= left[b, i]
+    wanted = -np.array([defect[a, b] for a, b in pairs])
+    weights, least = np.ones(size * size), np.inf
+    for _ in range(_TURNS):
+        change = weights * np.linalg.lstsq(rows * weights, wanted, rcond=None)[0]
+        largest = np.abs(change).max()
+        least = min(least, largest)
+        if largest == 0:
+            return 0.0
+        weights *= (np.abs(change) / largest + 0.05) ** -0.3
+    return float(least)
+
+
+def masses_noted(readings: Sequence[Reading], names: Sequence[str]) -> list[str]:
+    """A sentence where the map keeps Σ m_i dp_i∧dq_i with masses that are not all alike."""
+    import numpy as np
+
+    half = len(names) // 2
+    if half < 2:
+        return []
+    rows = []
+    for reading in readings:
+        jacobian = np.array(reading.jacobian)
+        for a, b in combinations(range(2 * half), 2):
+            u, v = jacobian[:, a], jacobian[:, b]
+            row = u[:half] * v[half:] - u[half:] * v[:half]
+            if b == a + half:
+                row[a] -= 1
+            rows.append(row * reading.scales[a, b])
+    _, sizes, directions = np.linalg.svd(np.array(rows))
+    if sizes[-1] > _NOTHING * sizes[0] or sizes[-2] < _SOMETHING * sizes[0]:
+        return []
+    least = min(directions[-1], key=abs)
+    if abs(least) * _MOST_MASS < 1:
+        return []
+    masses = directions[-1] / least
+    if not np.all(masses > 0) or np.ptp(masses) < _SOMETHING:
+        return []
+    shown = ", ".join(f"{x:.6g}" for x in masses)
+    return [
+        f"it keeps Σ m dp∧dq with m = ({shown}), up to a factor: taken as velocities, in momenta "
+        "p = m·v it is symplectic"
+    ]
+
+
+def masses_of(hamiltonian: Hamiltonian) -> tuple[Fraction, ...]:
+    """m_i of an H = Σ p_i²/(2 m_i) + V(q); () where H is another, or all are 1."""
+    from verify.algebra.formula import symbol
+
+    half, masses = hamiltonian.degrees, []
+    for name in hamiltonian.coordinates[:half]:
+        slope = hamiltonian.exact.diff(symbol(name))
+        rate = slope.diff(symbol(name))
+        if not rate.is_Rational or rate <= 0 or slope.subs(symbol(name), 0) != 0:
+            return ()
+        masses.append(Fraction(int(rate.q), int(rate.p)))
+    return tuple(masses) if set(masses) != {Fraction(1)} else ()

@@ -1,0 +1,177 @@
+"""A user's map at floats, or at numbers of another type: J by extrapolated central differences.
+
+The differences of each coordinate begin at the width over which the motion changes there, and are
+halved; Richardson's extrapolation (Ridders, Adv. Eng. Softw. 4 (1982)) takes of each entry the
+value whose error, by its neighbours in the tableau and by the rounding of the numbers, is least.
+What is made of the numbers that come back is exact.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+import gmpy2
+
+from verify.integrators.places import Place
+from verify.integrators.probes.reading import BITS, Reading, reading_of
+from verify.integrators.step import StepError
+from verify.integrators.tracing.dual import Comparison
+from verify.integrators.user_map import UserMap
+from verify.integrators.wrapped import unwrapped
+
+_LEVELS = 8  # halvings of a difference's width
+_MOVES = 8  # tiny ones, by which it is seen how far its numbers scatter
+_SPREAD = 2.0  # times the scatter that is seen
+
+
+class FloatProbe:
+    """The map at numbers as its users call it."""
+
+    how = "floats"
+    opaque = True  # nothing is seen of what it does inside
+    comparisons: Sequence[Comparison] = ()
+
+    def __init__(self, step: UserMap) -> None:
+        self.step = step
+        self._scatter: dict[tuple[Place, Fraction], list[float]] = {}
+
+    def begin(self, place: Place) -> list[Fraction]:
+        """Where it is called: z in numbers of its type."""
+        return [self.step.numbers.rounded(x) for x in place.z]
+
+    def end(self, place: Place, h: Fraction) -> list[Fraction]:
+        """z' as the rationals that it is. Raises StepError, and what the user's code raises."""
+        (ended,) = self._ends([self.begin(place)], place, h)
+        return ended
+
+    def times(self, place: Place, h: Fraction) -> tuple[Fraction, Fraction]:
+        """t and h as it is called with them."""
+        return self.step.numbers.rounded(place.t), self.step.numbers.rounded(h)
+
+    def noise(self, place: Place, state: Sequence[Fraction]) -> list[float]:
+        """Of z': what a rounding of each operation leaves, at least."""
+        epsilon = self.step.numbers.epsilon
+        return [epsilon * float(max(abs(x), abs(y)))
+                for x, y in zip(state, place.z, strict=True)]  # fmt: skip
+
+    def scatter(self, place: Place, h: Fraction) -> list[float]:
+        """By how much the components of z' scatter about a smooth curve: their noise as seen."""
+        key = place, h
+        if key not in self._scatter:
+            self._scatter[key] = self._seen_scatter(place, h)
+        return self._scatter[key]
+
+    def _seen_scatter(self, place: Place, h: Fraction) -> list[float]:
+        z, epsilon = self.begin(place), self.step.numbers.epsilon
+        # Over so little a smooth map bends below its numbers' rounding.
+        tiny = Fraction(1, 2 ** (2 * self.step.numbers.bits // 5))
+        rounded = self.step.numbers.rounded
+        moved = [
+            [rounded(x + k * tiny * u) for x, u in zip(z, place.reach, strict=True)]
+            for k in range(_MOVES)
+        ]
+        ends = self._ends(moved, place, h)
+        seen = []
+        for i in range(len(z)):
+            values = [float(end[i] - ends[0][i]) for end in ends]
+            # Third differences of a smooth curve are nothing at such a distance.
+            thirds = [
+                abs(d - 3 * c + 3 * b - a)
+                for a, b, c, d in zip(values, values[1:], values[2:], values[3:], strict=False)
+            ]
+            least = epsilon * float(max(abs(ends[0][i]), abs(z[i])))
+            jump = self.step.coarseness * max(float(place.units[i]), abs(float(ends[0][i])))
+            seen.append(least + _SPREAD * max(thirds) / 8 + jump)
+        return seen
+
+    def reading(self, place: Place, h: Fraction) -> Reading:
+        """S and det J − 1. Raises StepError, and what the user's code raises."""
+        z, scatter = self.begin(place), self.scatter(place, h)
+        columns, blurs = [], []
+        with gmpy2.context(precision=BITS):
+            for j in range(len(z)):
+                column, blur = self._column(place, h, z, j, scatter)
+                columns.append(column)
+                blurs.append(blur)
+        rows = [list(row) for row in zip(*columns, strict=True)]
+        errors = [list(row) for row in zip(*blurs, strict=True)]
+        least = 4 * self.step.numbers.epsilon
+        for row, error in zip(rows, errors, strict=True):
+            for k, x in enumerate(row):
+                error[k] += least * abs(float(x))
+        return reading_of(place, h, rows, errors, self.step.numbers.epsilon)
+
+    def _column(
+        self, place: Place, h: Fraction, z: list[Fraction], j: int, scatter: list[float]
+    ) -> tuple[list["gmpy2.mpfr"], list[float]]:
+        """∂z'/∂z_j, and the errors of its entries."""
+        widths = [place.reach[j] / 2**k for k in range(1, _LEVELS + 1)]
+        tiny = place.reach[j] / 2 ** (self.step.numbers.bits // 3)
+        widths += [2 * tiny, tiny]
+        states, steps = [], []
+        for width in widths:
+            pair = [list(z), list(z)]
+            for state, sign in zip(pair, (1, -1), strict=True):
+                state[j] = self.step.numbers.rounded(z[j] + sign * width)
+            states += pair
+            steps.append(gmpy2.mpq(pair[0][j] - pair[1][j]))
+        ends = self._ends(states, place, h)
+        column, blur = [], []
+        for i in range(len(z)):
+            slopes = [
+                gmpy2.mpfr((gmpy2.mpq(ahead[i]) - gmpy2.mpq(behind[i])) / step)
+                for ahead, behind, step in zip(ends[::2], ends[1::2], steps, strict=True)
+            ]
+            noises = [2 * scatter[i] / float(step) for step in steps]
+            value, error = _best(slopes, noises, self.step.coarseness > 0)
+            column.append(value)
+            blur.append(error)
+        return column, blur
+
+    def _ends(
+        self, states: Sequence[Sequence[Fraction]], place: Place, h: Fraction
+    ) -> list[list[Fraction]]:
+        ends = self.step.exactly(states, *reversed(self.times(place, h)))
+        if self.step.periods:  # all on one side of where it wraps
+            first = ends[0]
+            ends = [list(map(unwrapped, end, first, self.step.periods)) for end in ends]
+        return ends
+
+
+def _best(
+    slopes: Sequence["gmpy2.mpfr"], noises: Sequence[float], coarse: bool
+) -> tuple["gmpy2.mpfr", float]:
+    """What is extrapolated, where the last slopes, of tiny widths, do not contradict it.
+
+    Where the map jumps within the wider differences, as where it wraps or a loop does one turn
+    more, the tiny ones are on one side of it. Of coarse numbers neither is known to be right.
+    """
+    *wide, twice, tiny = slopes
+    value, error = _extrapolated(wide, noises)
+    noise = 2 * noises[-1]
+    apart = abs(float(tiny - value))
+    bent = abs(float(wide[0] - value)) * (noises[0] / noises[-1]) ** 2  # over the tiny width
+    if not coarse and apart <= error + 4 * noise + bent:
+        return value, error
+    agree = abs(float(tiny - twice)) <= 4 * noise
+    return (tiny, noise + bent) if agree and not coarse else (value, error + apart)
+
+
+def _extrapolated(
+    slopes: Sequence["gmpy2.mpfr"], noises: Sequence[float]
+) -> tuple["gmpy2.mpfr", float]:
+    """The value of the tableau whose error is least, and that error."""
+    best, least = slopes[-1], float("inf")
+    above: list[gmpy2.mpfr] = []
+    for k, slope in enumerate(slopes):
+        row = [slope]
+        for m, before in enumerate(above, start=1):
+            row.append(row[-1] + (row[-1] - before) / (4**m - 1))
+            # Both neighbours: one alone may agree by chance.
+            error = max(abs(float(row[m] - row[m - 1])), abs(float(row[m] - before)))
+            error = error + 2 * noises[k]
+            if error < least:
+                best, least = row[m], error
+        above = row
+    if least != least or least == float("inf"):
+        raise StepError("its differences are not finite")
+    return best, least

@@ -1,0 +1,135 @@
+"""S = JᵀΩJ − Ω and det J − 1 of a Jacobian that was measured, each with the noise that it may have.
+
+The noise of an entry follows from that of J's entries, one by one, so that no unit enters: what is
+said of S is the same in kilometres and in metres.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import combinations
+from typing import TYPE_CHECKING, TypeAlias
+
+import gmpy2
+
+from verify.integrators.places import Place
+
+if TYPE_CHECKING:
+    Real: TypeAlias = gmpy2.mpfr
+Entry = tuple[int, int]
+Matrix: TypeAlias = "Sequence[Sequence[Real]]"  # rows
+BITS = 250
+_ROUNDINGS = 32  # of an entry of Ω: what tens of operations in its numbers leave
+
+
+@dataclass(frozen=True)
+class Reading:
+    """At a place, with step size h (0 of a map that has none): S's entries a < b and det J − 1.
+
+    `defect` and `noise` are of entries in the units of the place, where those of Ω are about 1;
+    `entries` are as they stand. `jacobian`: J by rows, as floats.
+    """
+
+    place: Place
+    h: Fraction
+    entries: dict[Entry, float]
+    noise: dict[Entry, float]
+    scales: dict[Entry, float]
+    volume: float
+    volume_noise: float
+    jacobian: tuple[tuple[float, ...], ...]
+
+    @property
+    def worst(self) -> Entry:
+        """The entry that is most of all beyond its noise."""
+        return max(self.entries, key=lambda at: abs(self.entries[at]) / self.noise[at])
+
+    @property
+    def shown(self) -> Entry:
+        """The largest entry in units of the place, of those beyond their noise where there are."""
+        clear = [at for at, x in self.entries.items() if abs(x) > 4 * self.noise[at]]
+        return max(clear or self.entries, key=lambda at: abs(self.entries[at]) * self.scales[at])
+
+    @property
+    def beyond(self) -> float:
+        """How many times its noise that entry is."""
+        return abs(self.entries[self.worst]) / self.noise[self.worst]
+
+    @property
+    def defect(self) -> float:
+        """The largest entry in units of the place, of those beyond their noise where there are."""
+        return abs(self.entries[self.shown]) * self.scales[self.shown]
+
+    @property
+    def blur(self) -> float:
+        """The largest noise of an entry, in units of the place."""
+        return max(x * self.scales[at] for at, x in self.noise.items())
+
+
+def reading_of(
+    place: Place, h: Fraction, jacobian: Matrix, errors: list[list[float]], epsilon: float
+) -> Reading:
+    """Those of J and the errors of its entries, both by rows; `epsilon`: of the numbers that the
+    code computes in. Some dozens of roundings are allowed of each entry of Ω."""
+    size, half = len(jacobian), len(jacobian) // 2
+    units = [float(x) for x in place.units]
+    with gmpy2.context(precision=BITS):
+        columns = list(zip(*jacobian, strict=True))
+        blurs = list(zip(*errors, strict=True))
+        sizes = [[abs(float(x)) for x in column] for column in columns]
+        entries, noise, scales = {}, {}, {}
+        # Pairs may have different units of action: Ω's entries are then held against their mean.
+        action = [units[i] * units[half + i] for i in range(half)]
+        mean = sum(action) / half
+        for a, b in combinations(range(size), 2):
+            u, v, e, f, x, y = columns[a], columns[b], blurs[a], blurs[b], sizes[a], sizes[b]
+            total = gmpy2.mpfr(-1 if b == a + half else 0)
+            blur = 0.0
+            for i in range(half):
+                j = half + i
+                total += u[i] * v[j] - u[j] * v[i]
+                blur += e[i] * y[j] + e[j] * y[i] + f[j] * x[i] + f[i] * x[j]
+            entries[a, b] = float(total)
+            scales[a, b] = units[a] * units[b] / (action[a % half] if b == a + half else mean)
+            noise[a, b] = blur + _ROUNDINGS * epsilon / scales[a, b]
+        volume, blur = _volume(jacobian, errors, place.units)
+        blur += _ROUNDINGS * epsilon
+    rows = tuple(tuple(map(float, row)) for row in jacobian)
+    return Reading(place, h, entries, noise, scales, volume, blur, rows)
+
+
+def _volume(
+    jacobian: Matrix, errors: list[list[float]], units: Sequence[Fraction]
+) -> tuple[float, float]:
+    """det J − 1, and its noise by the entries of the inverse (Jacobi's formula)."""
+    scale = [gmpy2.mpfr(float(x)) for x in units]
+    rows = [[x * scale[j] / scale[i] for j, x in enumerate(row)] for i, row in enumerate(jacobian)]
+    inverse, determinant = _inverse(rows)
+    if inverse is None:
+        return -1.0, max(map(max, errors), default=0.0)
+    blur = sum(
+        abs(float(inverse[j][i])) * errors[i][j] * float(scale[j] / scale[i])
+        for i in range(len(rows))
+        for j in range(len(rows))
+    )
+    return float(determinant - 1), abs(float(determinant)) * blur
+
+
+def _inverse(rows: "list[list[Real]]") -> "tuple[list[list[Real]] | None, Real]":
+    """The inverse, None where there is none, and the determinant: by elimination."""
+    size, determinant = len(rows), gmpy2.mpfr(1)
+    wide = [[*row, *(gmpy2.mpfr(i == k) for i in range(size))] for k, row in enumerate(rows)]
+    for k in range(size):
+        at = max(range(k, size), key=lambda i: abs(wide[i][k]))
+        pivot = wide[at][k]
+        if pivot == 0:
+            return None, gmpy2.mpfr(0)
+        if at != k:
+            wide[k], wide[at], determinant = wide[at], wide[k], -determinant
+        determinant *= pivot
+        wide[k] = [x / pivot for x in wide[k]]
+        for i in range(size):
+            share = wide[i][k]
+            if i != k and share != 0:
+                wide[i] = [x - share * y for x, y in zip(wide[i], wide[k], strict=True)]
+    return [row[size:] for row in wide], determinant

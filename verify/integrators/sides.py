@@ -1,0 +1,151 @@
+"""The comparisons that a user's code makes, and places on the side of them that was not seen.
+
+Code that compares numbers has branches. A branch that no place reaches is looked for: the numbers
+that were compared are known with their derivatives, so that the state at which they change places
+is solved for. What lies out of all proportion, as q > 1e300, is named and not visited.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from verify.integrators.places import SIDE, Place
+from verify.integrators.probes.duals import DualProbe
+from verify.integrators.tracing.dual import Comparison
+
+Line = tuple[str, int]
+_BEYOND = 1.25  # times the way to where the sides meet
+_TRIES, _MOST_LINES = 6, 12
+_FARTHEST = 100  # units
+_ITERATED = 4  # comparisons of one line in one call are those of a loop
+
+
+@dataclass(frozen=True)
+class Branch:
+    """One comparison of a call at a place, which took one side: `sign`. `slopes`: of the gap."""
+
+    line: Line
+    sign: int
+    gap: float
+    slopes: tuple[float, ...]
+    limit: float | None
+    place: Place
+    h: Fraction
+
+
+class Sides:
+    """What was compared at which place. `far`: sides that are named and not visited."""
+
+    def __init__(self, names: Sequence[str]) -> None:
+        self.names = names
+        self.at: dict[Place, dict[Line, int]] = {}
+        self.branches: dict[Line, list[Branch]] = {}
+        self.far: dict[str, None] = {}
+
+    def note(self, place: Place, h: Fraction, comparisons: Sequence[Comparison]) -> None:
+        """Writes down the comparisons of a call that are no loop's."""
+        by_line: dict[Line, list[Comparison]] = {}
+        for each in comparisons:
+            by_line.setdefault(each.line, []).append(each)
+        signs = self.at.setdefault(place, {})
+        for line, several in by_line.items():
+            if len({x.sign for x in several}) == 1 and len(several) < _ITERATED:
+                signs[line] = several[0].sign
+                branches = self.branches.setdefault(line, [])
+                if len(branches) < 50:
+                    branches += [_branch(x, place, h) for x in several[:2]]
+
+    def unseen(self) -> Iterator[tuple[Line, list[Branch]]]:
+        """Lines of which one side was seen alone, with what is known of them, the nearest first."""
+        for line, branches in list(self.branches.items())[:_MOST_LINES]:
+            if len({x.sign for x in branches}) == 1 and branches[0].sign:
+                yield line, sorted(branches, key=_distance)[:3]
+
+    def separating(self, one: Sequence[Place], two: Sequence[Place]) -> Branch | None:
+        """A comparison that has one sign at all of the first places, and another at the second."""
+        for line, branches in self.branches.items():
+            first = {self.at.get(x, {}).get(line, 0) for x in one}
+            second = {self.at.get(x, {}).get(line, 0) for x in two}
+            if len(first) == len(second) == 1 and first != second and 0 not in first | second:
+                return next(x for x in branches if x.sign in first)
+        return None
+
+    def condition(self, branch: Branch) -> str:
+        """The side of a branch as a condition: q ≤ 50, or the line of code that asks."""
+        moving = [k for k, x in enumerate(branch.slopes) if x]
+        if len(moving) == 1 and branch.limit is not None:
+            slope = branch.slopes[moving[0]]
+            here = float(branch.place.z[moving[0]])
+            bound = here - branch.gap / slope
+            if abs(slope) == 1:
+                sign = "≥" if branch.sign * slope > 0 else "≤"
+                return f"{self.names[moving[0]]} {sign} `{bound:.6g}`"
+        name, line = branch.line
+        sign = "≥" if branch.sign > 0 else "≤"
+        return f"what is compared in line {line} of {name} is {sign} its bound"
+
+
+def _branch(x: Comparison, place: Place, h: Fraction) -> Branch:
+    slopes = tuple(map(float, x.gap.slopes)) or (0.0,) * len(place.z)
+    limit = None if x.limit is None else float(x.limit)
+    return Branch(x.line, x.sign, float(x.gap.value), slopes, limit, place, h)
+
+
+def _distance(branch: Branch) -> float:
+    """How far the other side is, in units of the place, by the gap's derivatives."""
+    norm = (
+        sum((s * float(u)) ** 2 for s, u in zip(branch.slopes, branch.place.units, strict=True))
+        ** 0.5
+    )
+    return abs(branch.gap) / norm if norm else float("inf")
+
+
+def other_sides(probe: DualProbe, sides: Sides, farthest: Mapping[str, float]) -> list[Place]:
+    """A place on each side that was not seen, where one can be solved for.
+
+    `farthest`: of each coordinate, up to where it is followed.
+    """
+    made = []
+    for line, branches in list(sides.unseen()):
+        for branch in branches:
+            place = _solved(probe, sides, branch, line, farthest)
+            if place is not None:
+                made.append(place)
+                break
+    return made
+
+
+def _solved(
+    probe: DualProbe, sides: Sides, branch: Branch, line: Line, farthest: Mapping[str, float]
+) -> Place | None:
+    """By Newton's method along the gap's gradient, in units of the place."""
+    current = branch
+    for _ in range(_TRIES):
+        units = [float(u) for u in current.place.units]
+        norm = sum((s * u) ** 2 for s, u in zip(current.slopes, units, strict=True))
+        if norm == 0 or norm != norm:
+            return None
+        share = _BEYOND * current.gap / norm
+        moved = [
+            float(x) - share * s * u * u
+            for x, s, u in zip(current.place.z, current.slopes, units, strict=True)
+        ]
+        if not all(abs(x) < farthest[name] for name, x in zip(sides.names, moved, strict=True)):
+            opposite = replace(branch, sign=-branch.sign)
+            sides.far[sides.condition(opposite)] = None
+            return None
+        z = tuple(
+            Fraction(x).limit_denominator(10**6) if abs(x) > 1e-3 else Fraction(x) for x in moved
+        )
+        place = replace(current.place, z=z, source=SIDE)
+        try:
+            probe.reading(place, current.h)
+        except Exception:  # the user's code may raise anything
+            return None
+        here = [x for x in probe.comparisons if x.line == line]
+        if not here:
+            return place  # the line is not reached: it is another side all the same
+        if here[0].sign != branch.sign:
+            return place
+        current = _branch(here[0], place, current.h)
+    return None

@@ -1,0 +1,138 @@
+"""Which places are looked at: the user's first, then patterns in the units of H, or of the map.
+
+Places at which H has no motion, or one that is faster by far than at the others, as where atoms lie
+on top of each other, are left out.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+
+from verify.flows.extrapolation import NoFlowError
+from verify.integrators.places import USER, Place, simple, states
+from verify.integrators.probes.duals import DualProbe
+from verify.integrators.units import Field, rate, reaches, units_of
+from verify.integrators.user_map import UserMap
+
+_FASTEST = 40.0  # times the median of the others' rates
+_MOMENTS = tuple(map(Fraction, ("1/4", "5/7", "1/20", "13/5", "1003/7")))  # in units of t
+_MOST = {1: 12, 2: 16}
+_OTHERWISE = 10  # places of more degrees of freedom
+_BENT = 0.1  # of the largest entry of J
+_LARGEST = Fraction(1)  # of the step size, in parts of the time in which the motion changes
+
+
+@dataclass(frozen=True)
+class Request:
+    """What the user says of where to look: a state, a step size, units by the coordinates' names,
+    and how large a defect is allowed."""
+
+    z: tuple[Fraction, ...] | None = None
+    step_size: Fraction | None = None
+    scale: Mapping[str, Fraction] = field(default_factory=dict)
+    within: Fraction | None = None
+
+
+NOWHERE = Request()
+
+
+def places_of_field(field_: Field, moving: bool, request: Request = NOWHERE) -> list[Place]:
+    """For a step of that H; empty where H has a motion from none of them."""
+    units, unit_of_time = units_of(field_)
+    units = [request.scale.get(name, x) for name, x in zip(field_.names, units, strict=True)]
+    trials = [(z, "pattern") for z in states(units)]
+    if request.z is not None:
+        trials.insert(0, (request.z, USER))
+    made = []
+    for k, (z, source) in enumerate(trials):
+        t = _MOMENTS[k % len(_MOMENTS)] * unit_of_time if moving else Fraction(0)
+        place = _place(field_, z, t, units, unit_of_time if moving else None, source, request)
+        if place is not None:
+            made.append(place)
+    return _calm(made, _MOST.get(field_.degrees, _OTHERWISE))
+
+
+def _place(
+    field_: Field, z: tuple[Fraction, ...], t: Fraction, units: Sequence[Fraction],
+    unit_of_time: Fraction | None, source: str, request: Request,
+) -> Place | None:  # fmt: skip
+    at, when = [float(x) for x in z], float(t)
+    local = [
+        float(max(u, abs(x) / 4)) if source == USER else float(u)
+        for u, x in zip(units, z, strict=True)
+    ]
+    try:
+        reach = reaches(field_, at, when, local)
+        speed = rate(field_, at, when, reach)
+    except (NoFlowError, OverflowError, ZeroDivisionError):
+        return None
+    if unit_of_time is not None:
+        speed = max(speed, 0.5 / float(unit_of_time))
+    step = _LARGEST / _power(speed) if speed > 0 and math.isfinite(speed) else _LARGEST
+    if request.step_size is not None:
+        step = request.step_size
+    return Place(z, t, tuple(units), tuple(_power(x) for x in reach), step, source)
+
+
+def _power(x: float) -> Fraction:
+    """The nearest power of 2, from below."""
+    return Fraction(2) ** math.floor(math.log2(x))
+
+
+def _calm(places: list[Place], most: int) -> list[Place]:
+    """Those whose motion is not faster by far than that of the others; the user's all the same."""
+    steps = sorted(place.step for place in places)
+    if not steps:
+        return []
+    least = float(steps[len(steps) // 2]) / _FASTEST
+    calm = [x for x in places if x.source == USER or float(x.step) >= least]
+    return calm[: most + 1 if calm[0].source == USER else most]
+
+
+def places_of_map(names: Sequence[str], unit: Fraction, request: Request = NOWHERE) -> list[Place]:
+    """For a map without an H, in that unit of all its coordinates."""
+    units = tuple(request.scale.get(name, unit) for name in names)
+    reach = tuple(_power(float(u)) for u in units)
+    made = [Place(z, Fraction(0), units, reach) for z in states(units)]
+    if request.z is not None:
+        mine = Place(request.z, Fraction(0), units, reach, source=USER)
+        made.insert(0, replace(mine, reach=tuple(
+            _power(float(max(abs(x) / 4, u))) for x, u in zip(request.z, units, strict=True)
+        )))  # fmt: skip
+    degrees = len(names) // 2
+    return made[: _MOST.get(degrees, _OTHERWISE) + (request.z is not None)]
+
+
+def unit_of_map(step: UserMap) -> Fraction:
+    """How far from 0 the map's Jacobian has changed: a length of its own; 1 where it has none."""
+    before: list[list[float]] | None = None
+    try:
+        probe = DualProbe(step)
+        for exponent in range(-20, 21):
+            unit = Fraction(2) ** exponent
+            jacobian = _jacobian(probe, step.names, unit)
+            if jacobian is not None and before is not None and _changed(before, jacobian):
+                return simple(float(unit))
+            before = before or jacobian
+    except Exception:  # the user's code may raise anything
+        return Fraction(1)
+    return Fraction(1)
+
+
+def _jacobian(probe: DualProbe, names: Sequence[str], unit: Fraction) -> list[list[float]] | None:
+    units = (unit,) * len(names)
+    try:
+        reading = probe.reading(Place(states(units)[0], Fraction(0), units, units), Fraction(0))
+    except Exception:  # it may not be defined there
+        return None
+    return [list(row) for row in reading.jacobian]
+
+
+def _changed(before: list[list[float]], after: list[list[float]]) -> bool:
+    """Whether an entry has moved by a tenth of the largest."""
+    largest = max(abs(x) for row in before for x in row)
+    pairs = zip(before, after, strict=True)
+    return any(
+        abs(x - y) > _BENT * largest for one, two in pairs for x, y in zip(one, two, strict=True)
+    )

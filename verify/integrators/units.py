@@ -1,0 +1,218 @@
+"""The units of a Hamiltonian's coordinates, and how fast its motion is at a place.
+
+A field has sizes of its own: where its forces turn from one power of the coordinates to another
+(σ of a molecule, the length of a pendulum), and momenta whose kinetic energy is that of moving
+through such a length. Where it has none, as Kepler's, any length will do, and 1 is taken.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from itertools import pairwise
+
+from verify.flows.degrees.extrapolation import FlowInDegrees
+from verify.flows.extrapolation import NoFlowError
+from verify.hamiltonians.canonical_field import canonical_field
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.integrators.places import simple
+
+_DIGITS = 20
+_OCTAVES = range(-44, 45)  # of lengths that are looked at
+_DEPARTS, _PLATEAU = 0.3, 0.1  # of a power of the coordinates
+_APART = 30  # times another coordinate's length, one counts for itself
+_DIRECTION = (1.0, -1.27, 0.78, 1.13, -0.87, 0.69, -1.41, 0.93, 1.31, -0.74)
+Vector = Sequence[float]
+
+
+class Field:
+    """f(z, t) of an H whose parameters have values, as floats; None where it is not defined."""
+
+    def __init__(self, hamiltonian: Hamiltonian) -> None:
+        self.degrees, self.names = hamiltonian.degrees, hamiltonian.coordinates
+        self.timed = hamiltonian.time_dependent
+        self._flow = FlowInDegrees(canonical_field(hamiltonian)[0], _DIGITS)
+
+    def __call__(self, z: Vector, t: float = 0.25) -> list[float] | None:
+        try:
+            state = [self._flow.number(Fraction(x)) for x in (*z, *((t,) if self.timed else ()))]
+            slopes = [float(x) for x in self._flow.slope(tuple(state))]
+        except (NoFlowError, ValueError, OverflowError):
+            return None
+        return slopes if all(map(math.isfinite, slopes)) else None
+
+    def jacobian(self, z: Vector, t: float, reach: Vector) -> list[list[float]]:
+        """∂f/∂z by columns, by central differences of many digits. Raises NoFlowError."""
+        flow, columns = self._flow, []
+        for j, length in enumerate(reach):
+            width = Fraction(length) / 2**24
+            ends = []
+            for sign in (1, -1):
+                moved = [Fraction(x) + sign * width * (k == j) for k, x in enumerate(z)]
+                clock = [Fraction(t)] if self.timed else []
+                ends.append(flow.slope(tuple(flow.number(x) for x in (*moved, *clock))))
+            with flow.arithmetic.context():
+                columns.append(
+                    [float((a - b) / flow.number(2 * width)) for a, b in zip(*ends, strict=True)]
+                )
+        return columns
+
+
+def units_of(field: Field) -> tuple[list[Fraction], Fraction]:
+    """A unit of each coordinate, p1 … qn, and of t."""
+    lengths = _lengths(field)
+    momenta = _momenta(field, lengths)
+    return [simple(x) for x in (*momenta, *lengths)], simple(_duration(field, [*momenta, *lengths]))
+
+
+def _lengths(field: Field) -> list[float]:
+    """Of each q: where its forces turn from one power to another; else 1."""
+    n = field.degrees
+    direction = [_DIRECTION[k % len(_DIRECTION)] * (1 + k // len(_DIRECTION)) for k in range(n)]
+
+    def force(s: float) -> float | None:
+        slopes = field([0.0] * n + [s * x for x in direction])
+        return None if slopes is None else math.sqrt(sum(x * x for x in slopes[:n]))
+
+    common = _crossover(force) or 1.0
+    base = [0.0] * n + [common * x for x in direction]
+    lengths = [common] * n
+    for k in range(n):
+        alone = _crossover(_response(field, base, n + k))
+        if alone is not None and not 1 / _APART < alone / common < _APART:
+            lengths[k] = alone
+    return lengths
+
+
+def _response(field: Field, base: Vector, j: int) -> Callable[[float], float | None]:
+    """How far the forces change as one coordinate moves."""
+    still = field(base)
+
+    def change(s: float) -> float | None:
+        moved = list(base)
+        moved[j] += s
+        slopes = field(moved)
+        if slopes is None or still is None:
+            return None
+        return math.sqrt(sum((x - y) ** 2 for x, y in zip(slopes, still, strict=True)))
+
+    return change
+
+
+def _crossover(size: Callable[[float], float | None]) -> float | None:
+    """Where a size first turns from one power of s to another; None where it does not."""
+    values = [size(2.0**k) for k in _OCTAVES]
+    powers = [
+        math.log2(b / a) if a and b and math.isfinite(a) and math.isfinite(b) else None
+        for a, b in pairwise(values)
+    ]
+    begun: float | None = None
+    first = next((k for k, x in enumerate(values) if x is not None), 0)
+    if first:
+        return math.ldexp(1.5, _OCTAVES[first])  # it is not defined nearer to 0
+    for k in range(2, len(powers)):
+        three = powers[k - 2 : k + 1]
+        steady = [x for x in three if x is not None]
+        if len(steady) == 3 and max(steady) - min(steady) < _PLATEAU and begun is None:
+            begun = steady[0]
+        elif begun is not None and powers[k] is None:
+            return math.ldexp(1.0, _OCTAVES[k - 1])  # it is not defined beyond
+        elif begun is not None and abs((powers[k] or 0.0) - begun) > _DEPARTS:
+            return math.ldexp(1.5, _OCTAVES[k])
+    return None
+
+
+def _momenta(field: Field, lengths: Vector) -> list[float]:
+    """Of each p: that whose kinetic energy is the work of its force over its length."""
+    n = field.degrees
+    base = [0.0] * n + [x * y for x, y in zip(lengths, _DIRECTION * (1 + n // 10), strict=False)]
+    slopes = field(base) or [0.0] * (2 * n)
+    work = [abs(slopes[k]) * lengths[k] for k in range(n)]
+    mean = sum(work) / n or 1.0
+    return [_momentum(field, base, k, work[k] or mean) for k in range(n)]
+
+
+def _momentum(field: Field, base: Vector, k: int, work: float) -> float:
+    n = field.degrees
+
+    def energy(p: float) -> float:
+        moved = list(base)
+        moved[k] = p
+        slopes = field(moved)
+        return math.inf if slopes is None else abs(p * slopes[n + k])
+
+    low, high = -200.0, 200.0  # of its binary logarithm
+    if not energy(2.0**high) > work > energy(2.0**low):
+        return 1.0
+    while high - low > 0.25:
+        middle = (low + high) / 2
+        low, high = (middle, high) if energy(2.0**middle) < work else (low, middle)
+    return math.pow(2.0, high)
+
+
+def _duration(field: Field, units: Vector) -> float:
+    """Over which the field changes otherwise than by a line in t; 1 where it does not."""
+    if not field.timed:
+        return 1.0
+    still = field(units, 0.125)
+
+    def change(s: float) -> float | None:
+        slopes = field(units, 0.125 + s)
+        if slopes is None or still is None:
+            return None
+        return math.sqrt(sum((x - y) ** 2 for x, y in zip(slopes, still, strict=True)))
+
+    return _crossover(change) or 1.0
+
+
+# -- at one place ---------------------------------------------------------------------------------
+
+
+def reaches(field: Field, z: Vector, t: float, units: Vector) -> list[float]:
+    """How far each coordinate may be moved before the field bends, at most its unit."""
+    still = field(z, t)
+    if still is None:
+        raise NoFlowError("H is not defined there")
+    return [_reach(field, z, t, j, still, units[j]) for j in range(len(z))]
+
+
+def _reach(field: Field, z: Vector, t: float, j: int, still: Vector, unit: float) -> float:
+    length = unit
+    for _ in range(20):
+        ends = []
+        for sign in (1, -1):
+            moved = list(z)
+            moved[j] += sign * length
+            ends.append(field(moved, t))
+        if ends[0] is not None and ends[1] is not None:
+            pairs = list(zip(ends[0], ends[1], still, strict=True))
+            bend = max(
+                abs(a - 2 * c + b) / (abs(a - b) + abs(c) * 1e-3 + 1e-300) for a, b, c in pairs
+            )
+            if bend < 1 or all(abs(a - 2 * c + b) <= 0.5 * abs(c) for a, b, c in pairs):
+                return length
+        length /= 4
+    return length
+
+
+def rate(field: Field, z: Vector, t: float, reach: Vector) -> float:
+    """How fast the motion changes: ‖∂f/∂z‖ with its coordinates balanced, and of its way.
+
+    Balancing (Osborne, J. ACM 7 (1960)) takes units out: the norm is then near the largest
+    frequency. Raises NoFlowError.
+    """
+    columns = field.jacobian(z, t, reach)
+    size = len(columns)
+    entries = [[abs(columns[j][i]) * reach[j] / reach[i] for j in range(size)] for i in range(size)]
+    for _ in range(20):
+        for k in range(size):
+            row = sum(entries[k][j] for j in range(size) if j != k)
+            column = sum(entries[i][k] for i in range(size) if i != k)
+            if row > 0 and column > 0:
+                ratio = math.sqrt(column / row)
+                for j in range(size):
+                    if j != k:
+                        entries[k][j] *= ratio
+                        entries[j][k] /= ratio
+    slopes = field(z, t) or []
+    moving = max((abs(x) / length for x, length in zip(slopes, reach, strict=True)), default=0.0)
+    return max(map(sum, entries)) + moving / 2

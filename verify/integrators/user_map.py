@@ -1,0 +1,123 @@
+"""A user's own step or map as it is called: z → z', in any number of degrees of freedom.
+
+A step has an h, and perhaps a t; a map has neither. What is asked of either goes through here, in
+floats, in numbers of ours, or in those of another program.
+"""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from verify.integrators.layout import Layout, OfNumber
+from verify.integrators.number_type import DOUBLE, NumberType
+from verify.integrators.step import TIME_LIMIT, StepError, Theirs, limited, real
+
+State = tuple[float, ...]
+Exactly = tuple[Fraction, ...]
+
+
+@dataclass
+class UserMap:
+    """`names`: of the coordinates, p and q or p1 … pn, q1 … qn. `parameters`: further arguments by
+    their names. `left`: seconds left for its calls. `moving`: whether H depends on time; else its
+    t is 0. `numbers`: the type that it computes in. `foreign`: it is of another language, so that
+    numbers alone go in. `periods`: of each coordinate, where it is seen to reduce them so.
+    `masses`: where its p are velocities, what makes momenta of them. `coarseness`: by how much z'
+    is seen to jump, in parts of its size, where its numbers are coarser than their type.
+    """
+
+    function: Callable[..., Theirs]
+    layout: Layout
+    names: tuple[str, ...]
+    parameters: Mapping[str, Fraction] = field(default_factory=dict)
+    left: float = TIME_LIMIT
+    moving: bool = False
+    numbers: NumberType = DOUBLE
+    foreign: bool = False
+    periods: tuple[Fraction, ...] = ()
+    masses: tuple[Fraction, ...] = ()
+    coarseness: float = 0.0
+
+    @property
+    def degrees(self) -> int:
+        """Of freedom."""
+        return len(self.names) // 2
+
+    @property
+    def stepped(self) -> bool:
+        """Whether it is a step, with an h."""
+        return self.layout.stepped
+
+    @property
+    def timed(self) -> bool:
+        """Whether it takes t."""
+        return self.layout.timed
+
+    @property
+    def ways(self) -> tuple[str, ...]:
+        """In which it can be measured, the clearest first."""
+        return ("floats",) if self.foreign else ("duals", "floats")
+
+    def call(
+        self,
+        function: Callable[..., Theirs],
+        z: Sequence[Theirs],
+        h: Theirs,
+        t: Theirs,
+        number: OfNumber,
+    ) -> list[Theirs]:
+        """z' of the function, or a copy of it. Raises StepError, and what the user's code raises.
+
+        `number`: makes of a parameter what the function takes.
+        """
+        masses = [number(x) for x in self.masses]
+        if masses:
+            z = [*(x / m for x, m in zip(z, masses, strict=False)), *z[len(masses) :]]
+        named = {name: number(x) for name, x in self.parameters.items()}
+        with limited(self):
+            result = function(*self.layout.arguments(z, h, t), **named)
+            after = self.layout.state(result, len(self.names))
+        if masses:
+            after = [*(x * m for x, m in zip(after, masses, strict=False)), *after[len(masses) :]]
+        return after
+
+    def at(self, z: Sequence[float], h: float, t: float) -> State:
+        """z' as floats. Raises StepError, also for what is not finite."""
+        state = tuple(map(real, self.call(self.function, z, h, t, float)))
+        if not all(map(math.isfinite, state)):
+            shown = ", ".join(f"{x:g}" for x in state)
+            raise StepError(f"it returns what is not finite ({shown}){self.place(z, h)}")
+        return state
+
+    def exactly(
+        self, states: Sequence[Sequence[Fraction]], h: Fraction, t: Fraction
+    ) -> list[list[Fraction]]:
+        """z' of each z as the numbers of its type that they are. Raises StepError, as `at`."""
+        several = getattr(self.function, "several", None)
+        if several is not None:
+            return self._together(several, states, h, t)
+        return [self._of_its_type(z, h, t) for z in states]
+
+    def _of_its_type(self, z: Sequence[Fraction], h: Fraction, t: Fraction) -> list[Fraction]:
+        if self.numbers is DOUBLE:
+            return [Fraction(x) for x in self.at([float(x) for x in z], float(h), float(t))]
+        return [Fraction(x) for x in self.call(self.function, z, h, t, Fraction)]
+
+    def _together(
+        self, several: Callable[..., Theirs], states: Sequence[Sequence[Fraction]], h: Fraction,
+        t: Fraction,
+    ) -> list[list[Fraction]]:  # fmt: skip
+        """By one exchange with another program."""
+        n = self.degrees
+        with limited(self, "calls of it do not end"):
+            answers = several([(z[:n], z[n:], t, h) for z in states])
+        for answer in answers:
+            if isinstance(answer, StepError):
+                raise answer
+        return [[Fraction(x) for half in answer for x in half] for answer in answers]
+
+    def place(self, z: Sequence[float], h: float) -> str:
+        """A state and a step size as text, for what is said of a call."""
+        shown = ", ".join(f"{name} = {float(x):g}" for name, x in zip(self.names, z, strict=True))
+        return f" at {shown}" + (f", h = {float(h):g}" if self.stepped else "")
