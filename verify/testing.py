@@ -22,10 +22,10 @@ from verify.calls.given import hamiltonian_from
 from verify.errors import InputError, unknown
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.check import check_integrator
-from verify.integrators.loading import callee_from
+from verify.integrators.measures.survey import Request
 from verify.integrators.results import MOST_CLAIMED, Claims, Finding
-from verify.integrators.step import TIME_LIMIT
-from verify.integrators.survey import Request
+from verify.integrators.user_code.loading import callee_from
+from verify.integrators.user_code.step import TIME_LIMIT
 from verify.verdict import Verdict
 
 __all__ = ["assert_area_order", "assert_area_preserving", "assert_convergence_order"]

@@ -68,9 +68,9 @@ BY_NAME = {
     "verify.late": {"import_module"},  # sympy, when it is asked for something
     "verify.frames": {"import_module"},  # pandas and xarray, where they are installed
     "verify.from_type": {"modules"},  # hypothesis, where it is imported
-    "verify.integrators.faults": {"modules"},  # numpy, where it is imported
-    "verify.integrators.kept_state": {"modules"},  # numpy as above, and where a function is from
-    "verify.integrators.loading": {"import_module", "modules", "spec_from_file_location",
+    "verify.integrators.user_code.faults": {"modules"},  # numpy, where it is imported
+    "verify.integrators.user_code.kept_state": {"modules"},  # numpy as above, and where a function is from
+    "verify.integrators.user_code.loading": {"import_module", "modules", "spec_from_file_location",
                                    "exec_module"},  # the user's code
     "verify.integrators.others.parts": {"import_module"},  # a library that may be broken
     "verify.integrators.others.methods.scripted": {"exec"},  # lines of ours, which are shown

@@ -15,10 +15,10 @@ from verify.calls.given import (
 )
 from verify.errors import InputError
 from verify.integrators.check import check_integrator
-from verify.integrators.loading import callee_from
+from verify.integrators.measures.survey import Request
 from verify.integrators.results import MOST_CLAIMED, Claims, Finding
-from verify.integrators.step import TIME_LIMIT
-from verify.integrators.survey import Request
+from verify.integrators.user_code.loading import callee_from
+from verify.integrators.user_code.step import TIME_LIMIT
 from verify.proof.order import prove
 from verify.proof.order_proof import Proof
 from verify.schemes.scheme import Scheme

@@ -7,10 +7,10 @@ from verify.arithmetic.exact import Exact, positive, rational
 from verify.errors import InputError
 from verify.hamiltonians.coordinates import check_degrees, coordinates_in
 from verify.integrators.check import check_map as check
-from verify.integrators.loading import callee_from
+from verify.integrators.measures.survey import Request
 from verify.integrators.results import Finding
-from verify.integrators.step import TIME_LIMIT
-from verify.integrators.survey import Request
+from verify.integrators.user_code.loading import callee_from
+from verify.integrators.user_code.step import TIME_LIMIT
 
 
 def check_map(

@@ -12,23 +12,26 @@ from functools import cached_property
 
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.agreement import must_agree, trace_must_agree
-from verify.integrators.calling import settle_layout
 from verify.integrators.claims import Evidence, counterexample, of_reading, with_claims
-from verify.integrators.faults import Fault, changed_since, examined
-from verify.integrators.loading import Callee
 from verify.integrators.measured import finding_of_map, finding_of_step
-from verify.integrators.order import Distances, distances_of
-from verify.integrators.other_forms import digits_noted, masses_noted, masses_of
-from verify.integrators.places import USER, Place
+from verify.integrators.measures.order import Distances, distances_of
+from verify.integrators.measures.other_forms import digits_noted, masses_noted, masses_of
+from verify.integrators.measures.still_clock import measured_mistakes
+from verify.integrators.measures.structure import Probe, Structure, structure_of
+from verify.integrators.measures.survey import (
+    NOWHERE,
+    Request,
+    check_request,
+    places_of_field,
+    places_of_map,
+    unit_of_map,
+)
+from verify.integrators.places.place import USER, Place
+from verify.integrators.places.units import Field
+from verify.integrators.probes.agreement import must_agree, trace_must_agree
 from verify.integrators.probes.duals import DualProbe
 from verify.integrators.probes.floats import FloatProbe
-from verify.integrators.repeated import repeated
 from verify.integrators.results import NOTHING, Claims, Finding
-from verify.integrators.step import why, within
-from verify.integrators.still_clock import measured_mistakes
-from verify.integrators.structure import Probe, Structure, structure_of
-from verify.integrators.survey import NOWHERE, Request, places_of_field, places_of_map, unit_of_map
 from verify.integrators.traced import (
     Trace,
     proved_in_degrees,
@@ -37,8 +40,12 @@ from verify.integrators.traced import (
     trace_of,
 )
 from verify.integrators.tracing.clocks import clock_mistakes
-from verify.integrators.units import Field
-from verify.integrators.user_map import UserMap
+from verify.integrators.user_code.calling import settle_layout
+from verify.integrators.user_code.faults import Fault, changed_since, examined
+from verify.integrators.user_code.loading import Callee
+from verify.integrators.user_code.repeated import repeated
+from verify.integrators.user_code.step import why, within
+from verify.integrators.user_code.user_map import UserMap
 from verify.prose import Prose, prose
 from verify.verdict import Verdict
 
@@ -98,6 +105,7 @@ def check_integrator(
     if hamiltonian.symbols:
         raise InputError("parameter", hamiltonian.symbols[0], "has no value; a step needs one")
     step, field = callee.step, Field(hamiltonian)
+    check_request(step.names, request)
     step.moving = hamiltonian.time_dependent
     places = places_of_field(field, step.moving, request)
     if request.z is not None and not any(x.source == USER for x in places):
@@ -115,6 +123,7 @@ def check_map(callee: Callee, request: Request = NOWHERE) -> Finding:
     Raises InputError where no call returns a state.
     """
     step = callee.step
+    check_request(step.names, request)
     notes = settle_layout(callee, places_of_map(step.names, Fraction(1), request), None)
     places = places_of_map(step.names, unit_of_map(step), request)
     claims = Claims(symplectic=True)
@@ -177,8 +186,10 @@ def _of_map(finding: Finding, trial: Trial) -> Finding:
     if finding.against is not None:
         example = of_reading(trial.step, finding.against, "that it is symplectic")
         return replace(finding, counterexample=example)
-    example = counterexample("that it is symplectic", trial.claims, trial.evidence)
-    return replace(finding, counterexample=example)
+    return replace(
+        finding,
+        counterexample=counterexample("that it is symplectic", trial.claims, trial.evidence),
+    )
 
 
 def _but_for(faults: Sequence[Fault], finding: Finding) -> Finding:
@@ -222,8 +233,7 @@ def _examine(trial: Trial, provable: bool) -> Finding:
                 trace_must_agree(step, trace.roots, trial.places)
                 finding = _proved(trial, trace)
             finding = _decided(finding, trial, trace)
-            if finding is not None:
-                return finding.noting(*_clock(trial, trace, finding.convergence_order))
+            return finding.noting(*_clock(trial, trace, finding.convergence_order))
         except Exception as error:  # the user's code may raise anything
             notes.append(prose("no proof: ", why(error)))
     return _measured(trial, notes)
@@ -236,7 +246,7 @@ def _proved(trial: Trial, trace: Trace) -> Finding:
     return prove(trace, trial.hamiltonian)
 
 
-def _decided(finding: Finding, trial: Trial, trace: Trace) -> Finding | None:
+def _decided(finding: Finding, trial: Trial, trace: Trace) -> Finding:
     """What a proof says of Ω, where it says it; else with what is measured of that."""
     rounded = bool(trace.tape.rounded) and finding.symplectic is False
     open_ = finding.symplectic is None and finding.verdict is not Verdict.REFUTED
@@ -252,7 +262,7 @@ def _decided(finding: Finding, trial: Trial, trace: Trace) -> Finding | None:
         structure, distances = trial.measure("duals")
     except Exception as error:  # the user's code may raise anything
         return finding.noting(prose("not measured: ", why(error)))
-    trial.evidence.measure = lambda: (structure, distances)
+    trial.evidence.take(structure, distances)
     if trial.hamiltonian is None:
         seen = finding_of_map(trial.step, structure, trial.request)
         if rounded or open_:
@@ -308,7 +318,7 @@ def _clock(trial: Trial, trace: Trace, order: int | None) -> list[str]:
         return []
     try:
         with within(_CLOCK_SECONDS, "its clock takes too long"):
-            return clock_mistakes(trial.hamiltonian, *trace.roots, order)
+            return clock_mistakes(trial.hamiltonian, trace.roots[0], trace.roots[1], order)
     except Exception:  # no more is known then
         return []
 
@@ -320,7 +330,7 @@ def _measured(trial: Trial, notes: list[Prose]) -> Finding:
         step.left += -kept if how == "duals" else kept
         try:
             structure, distances = trial.measure(how)
-            trial.evidence.measure = lambda pair=(structure, distances): pair
+            trial.evidence.take(structure, distances)
             if distances is None:
                 finding = finding_of_map(step, structure, trial.request)
             else:

@@ -7,12 +7,12 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
 
-from verify.integrators.order import Distances, PlaceOrder
-from verify.integrators.places import Place
+from verify.integrators.measures.order import Distances, PlaceOrder
+from verify.integrators.measures.structure import REFUTES, Structure
+from verify.integrators.places.place import Place
 from verify.integrators.probes.reading import Reading
 from verify.integrators.results import NOTHING, Claims, Counterexample, Finding, judged
-from verify.integrators.structure import REFUTES, Structure
-from verify.integrators.user_map import UserMap
+from verify.integrators.user_code.user_map import UserMap
 from verify.prose import Prose, joined, prose
 from verify.verdict import Verdict
 
@@ -27,6 +27,10 @@ class Evidence:
 
     step: UserMap
     measure: Callable[[], tuple[Structure | None, Distances | None]]
+
+    def take(self, structure: Structure, distances: Distances | None) -> None:
+        """What has been measured already."""
+        self.measure = lambda: (structure, distances)
 
     @cached_property
     def measured(self) -> tuple[Structure | None, Distances | None]:

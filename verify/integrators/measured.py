@@ -6,15 +6,15 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from verify.arithmetic.exact import plain
-from verify.integrators.number_type import DOUBLE
-from verify.integrators.order import Distances, PlaceOrder
-from verify.integrators.places import SIDE, USER, Place
+from verify.integrators.measures.order import Distances, PlaceOrder
+from verify.integrators.measures.sides import Sides
+from verify.integrators.measures.structure import REFUTES, Structure
+from verify.integrators.measures.survey import Request
+from verify.integrators.places.place import SIDE, USER, Place
+from verify.integrators.places.wrapped import periods_told
 from verify.integrators.results import Claims, Finding
-from verify.integrators.sides import Sides
-from verify.integrators.structure import REFUTES, Structure
-from verify.integrators.survey import Request
-from verify.integrators.user_map import UserMap
-from verify.integrators.wrapped import periods_told
+from verify.integrators.user_code.number_type import DOUBLE
+from verify.integrators.user_code.user_map import UserMap
 from verify.prose import Number, Prose, joined, prose, read_prose
 from verify.verdict import Verdict
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
-from verify.integrators.places import Place
+from verify.integrators.places.place import Place
 from verify.integrators.probes.reading import Reading
 from verify.proof.order_proof import Proof
 from verify.proof.potential import Potential, potential_of

@@ -13,7 +13,6 @@ from verify.errors import InputError
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.results import Finding
-from verify.integrators.step import StepError, lifted
 from verify.integrators.tracing.domain import domain_of
 from verify.integrators.tracing.functions import copied
 from verify.integrators.tracing.readings_of_floats import readings
@@ -26,7 +25,8 @@ from verify.integrators.tracing.rounded_order import (
 from verify.integrators.tracing.series import TracedSeries
 from verify.integrators.tracing.step_map import TracedMap, traced_map
 from verify.integrators.tracing.trace import Node, Tape, expressions, in_order, sizes
-from verify.integrators.user_map import UserMap
+from verify.integrators.user_code.step import StepError, lifted
+from verify.integrators.user_code.user_map import UserMap
 from verify.proof.expansion import MOST_ORDERS
 from verify.proof.order import prove
 from verify.proof.symplectic import closed_form

@@ -5,10 +5,10 @@ from typing import Any
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.check import check_integrator
-from verify.integrators.loading import callee_from, foreign_callee
+from verify.integrators.measures.survey import NOWHERE, Request
 from verify.integrators.results import NOTHING, Claims, Finding
-from verify.integrators.survey import NOWHERE, Request
-from verify.integrators.user_map import UserMap
+from verify.integrators.user_code.loading import callee_from, foreign_callee
+from verify.integrators.user_code.user_map import UserMap
 
 PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
 

@@ -15,8 +15,8 @@ from verify.algebra.formula import parse
 from verify.errors import InputError
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.integrators.measures.survey import Request
 from verify.integrators.results import Claims
-from verify.integrators.survey import Request
 from verify.proof.order import prove
 from verify.schemes import get
 

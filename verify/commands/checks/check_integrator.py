@@ -20,8 +20,8 @@ from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
-    from verify.integrators.loading import Callee
     from verify.integrators.results import Finding
+    from verify.integrators.user_code.loading import Callee
 
 _CLAIMED = click.IntRange(1, 12)
 
@@ -126,8 +126,8 @@ def _callee(
 ) -> "Callee":
     """The step, as far as it is understood before it is called."""
     from verify.integrators.foreign.called import is_library, of_command, of_library
-    from verify.integrators.loading import callee_from, foreign_callee, load
-    from verify.integrators.number_type import DOUBLE, type_of
+    from verify.integrators.user_code.loading import callee_from, foreign_callee, load
+    from verify.integrators.user_code.number_type import DOUBLE, type_of
 
     if (target is None) == (command is None):
         problem = "give MODULE:FUNCTION, LIB.so:SYMBOL, or --command 'PROGRAM'; one of them"
@@ -200,8 +200,8 @@ def _print(exact: "Hamiltonian", target: str, finding: "Finding") -> None:
     if isinstance(proof, Proof) and finding.verdict is proof.verdict:
         show.print_proof(exact, target, proof, potential_of_finding(finding))
     elif proof is not None and not isinstance(proof, Proof):
-        print_symplectic(exact.texts, target,
-                         replace(proof, verdict=finding.verdict, reason=finding.reason))  # fmt: skip
+        shown = replace(proof, verdict=finding.verdict, reason=finding.reason)
+        print_symplectic(exact.texts, target, shown)
     else:
         show.print_head(exact, target, finding)
         if finding.leading is not None and finding.order is not None and degrees == 1:

@@ -67,7 +67,7 @@ def check_map(
     from verify.arithmetic.exact import rational
     from verify.hamiltonians.coordinates import check_degrees, coordinates_in
     from verify.integrators.check import check_map as check
-    from verify.integrators.loading import callee_from, load
+    from verify.integrators.user_code.loading import callee_from, load
 
     begun = time.perf_counter()
     check_degrees(degrees)

@@ -9,9 +9,9 @@ import click
 from verify.errors import InputError
 
 if TYPE_CHECKING:
-    from verify.integrators.places import Place
+    from verify.integrators.measures.survey import Request
+    from verify.integrators.places.place import Place
     from verify.integrators.results import Finding
-    from verify.integrators.survey import Request
 
 _OPTIONS = (
     click.option("--q", "q", metavar="Q", help="A state to look at first: q, or q1,q2,…"),
@@ -19,7 +19,7 @@ _OPTIONS = (
     click.option(
         "--scale",
         metavar="NAME=SIZE,…",
-        help="Sizes of the coordinates, such as q=7000,p=7.5; else they are found from H or the map.",
+        help="Sizes of the coordinates, such as q=7000,p=7.5; else those of H, or of the map.",
     ),
     click.option(
         "--within",
@@ -54,7 +54,7 @@ def request_from(
 ) -> "Request":
     """What these options ask for. Raises InputError."""
     from verify.arithmetic.exact import positive
-    from verify.integrators.survey import Request
+    from verify.integrators.measures.survey import Request
 
     return Request(
         z=state_from(names, q, p),
@@ -119,8 +119,8 @@ def print_measured(finding: "Finding") -> None:
     """What was measured, for a reader."""
     if finding.largest is not None and finding.probe_error is not None:
         name = "ΔJ" if finding.degrees == 1 else "S"
-        shown = f"|{name}| up to {finding.largest:.1e}; the noise of such a value {finding.probe_error:.1e}"
-        click.echo(f"  measured {shown}")
+        noise = f"the noise of such a value {finding.probe_error:.1e}"
+        click.echo(f"  measured |{name}| up to {finding.largest:.1e}; {noise}")
     if finding.degrees > 1 and finding.symplectic is False and finding.area_preserving is not None:
         click.echo(
             f"  det J    is {'' if finding.area_preserving else 'not '}1 where it was measured"

@@ -13,10 +13,10 @@ from verify.hamiltonians.coordinates import coordinates_in
 from verify.integrators.foreign import host
 from verify.integrators.foreign.lines import line_of, numbers_of
 from verify.integrators.foreign.process import Program
-from verify.integrators.layout import Layout
-from verify.integrators.number_type import DOUBLE, NumberType
-from verify.integrators.step import Theirs
-from verify.integrators.user_map import UserMap
+from verify.integrators.user_code.layout import Layout
+from verify.integrators.user_code.number_type import DOUBLE, NumberType
+from verify.integrators.user_code.step import Theirs
+from verify.integrators.user_code.user_map import UserMap
 
 _FIRST_SECONDS = 20.0  # for the first answer of a program that compiles itself
 _ORDER = ("p", "q", "t", "h")

@@ -10,8 +10,8 @@ import re
 from collections.abc import Sequence
 from fractions import Fraction
 
-from verify.integrators.number_type import DOUBLE_BITS, NumberType
-from verify.integrators.step import StepError
+from verify.integrators.user_code.number_type import DOUBLE_BITS, NumberType
+from verify.integrators.user_code.step import StepError
 from verify.prose import count
 
 _DECIMAL = re.compile(r"([+-]?)(\d*)\.?(\d*)(?:[eEdDqQ]([+-]?\d+))?", re.ASCII)

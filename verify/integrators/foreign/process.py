@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from verify.errors import InputError
-from verify.integrators.step import StepError
+from verify.integrators.user_code.step import StepError
 
 MOST_MEMORY = 2 * 2**30  # bytes
 CALL_SECONDS = 5.0  # for one line

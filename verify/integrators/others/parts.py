@@ -16,8 +16,8 @@ from verify.integrators.others import printed_libraries
 from verify.integrators.others.claims import claims_of
 from verify.integrators.others.methods.integrator import ReleasedIntegrator
 from verify.integrators.others.methods.measured import FAILURES
-from verify.integrators.step import contained, last_line
 from verify.integrators.tables.check import read_tables
+from verify.integrators.user_code.step import contained, last_line
 from verify.prose import prose
 from verify.scenes.results.claim import ClaimResult
 from verify.schemes.conditions import Condition

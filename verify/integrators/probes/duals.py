@@ -9,12 +9,12 @@ from fractions import Fraction
 
 import gmpy2
 
-from verify.integrators.places import Place
+from verify.integrators.places.place import Place
 from verify.integrators.probes.reading import Matrix, Reading, reading_of
-from verify.integrators.step import StepError, Theirs, lifted, within
 from verify.integrators.tracing.dual import BITS, Comparison, Dual, Duals
 from verify.integrators.tracing.functions import copied
-from verify.integrators.user_map import UserMap
+from verify.integrators.user_code.step import StepError, Theirs, lifted, within
+from verify.integrators.user_code.user_map import UserMap
 
 _EPSILON = 2.0**-53  # half a unit of a double's last place
 _ROUNDINGS, _SPREAD = 8, 3  # of each entry at least; and times what is seen of them

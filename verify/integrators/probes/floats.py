@@ -11,12 +11,12 @@ from fractions import Fraction
 
 import gmpy2
 
-from verify.integrators.places import Place
+from verify.integrators.places.place import Place
+from verify.integrators.places.wrapped import unwrapped
 from verify.integrators.probes.reading import BITS, Reading, reading_of
-from verify.integrators.step import StepError
 from verify.integrators.tracing.dual import Comparison
-from verify.integrators.user_map import UserMap
-from verify.integrators.wrapped import unwrapped
+from verify.integrators.user_code.step import StepError
+from verify.integrators.user_code.user_map import UserMap
 
 _LEVELS = 8  # halvings of a difference's width
 _MOVES = 8  # tiny ones, by which it is seen how far its numbers scatter

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import gmpy2
 
-from verify.integrators.places import Place
+from verify.integrators.places.place import Place
 
 if TYPE_CHECKING:
     Real: TypeAlias = gmpy2.mpfr

@@ -135,6 +135,7 @@ class Dual(TracedNumber):
         lifted = constant(self.kind, other)
         if lifted is None:
             self.refuse("it compares a number with what is none")
+        assert isinstance(lifted, Dual)  # noqa: S101 - of this kind
         return self.compared(lifted)
 
     def compared(self, other: "Dual") -> int:

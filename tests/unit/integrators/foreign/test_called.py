@@ -15,8 +15,8 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.foreign import process
 from verify.integrators.foreign.called import is_library, of_command, of_library
-from verify.integrators.number_type import DOUBLE, NumberType, type_of
 from verify.integrators.results import Claims, Finding
+from verify.integrators.user_code.number_type import DOUBLE, NumberType, type_of
 from verify.verdict import Verdict
 
 PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")

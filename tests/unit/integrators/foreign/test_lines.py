@@ -9,8 +9,14 @@ from hypothesis import strategies as st
 from verify.integrators.foreign import host
 from verify.integrators.foreign.called import _hexadecimal
 from verify.integrators.foreign.lines import line_of, number_of, numbers_of
-from verify.integrators.number_type import DOUBLE, DOUBLE_DOUBLE, FLOAT128, LONG_DOUBLE, TYPES
-from verify.integrators.step import StepError
+from verify.integrators.user_code.number_type import (
+    DOUBLE,
+    DOUBLE_DOUBLE,
+    FLOAT128,
+    LONG_DOUBLE,
+    TYPES,
+)
+from verify.integrators.user_code.step import StepError
 
 FLOATS = st.floats(-1e6, 1e6, allow_nan=False).map(Fraction)
 

@@ -6,19 +6,19 @@ from functools import lru_cache
 
 from verify.errors import InputError
 from verify.integrators.check import Trial
-from verify.integrators.faults import examined
-from verify.integrators.loading import callee_from
 from verify.integrators.measured import finding_of_step
-from verify.integrators.order import Distances
+from verify.integrators.measures.order import Distances
+from verify.integrators.measures.still_clock import measured_mistakes
+from verify.integrators.measures.survey import NOWHERE, places_of_field
 from verify.integrators.others.methods.integrator import FloatStep
 from verify.integrators.others.methods.problems import POINTS
-from verify.integrators.places import Place
+from verify.integrators.places.place import Place
+from verify.integrators.places.units import Field
 from verify.integrators.probes.floats import FloatProbe
 from verify.integrators.results import NOTHING, Finding
-from verify.integrators.step import StepError, last_line
-from verify.integrators.still_clock import measured_mistakes
-from verify.integrators.survey import NOWHERE, places_of_field
-from verify.integrators.units import Field
+from verify.integrators.user_code.faults import examined
+from verify.integrators.user_code.loading import callee_from
+from verify.integrators.user_code.step import StepError, last_line
 from verify.prose import joined, prose, read_prose
 from verify.verdict import Verdict
 

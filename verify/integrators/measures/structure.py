@@ -9,15 +9,15 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import pairwise
 
-from verify.integrators.order import SPACED
-from verify.integrators.places import USER, Place, spread
+from verify.integrators.measures.order import SPACED
+from verify.integrators.measures.sides import Sides, other_sides
+from verify.integrators.measures.slopes import Row, slopes_of
+from verify.integrators.places.place import USER, Place, spread
 from verify.integrators.probes.duals import DualProbe
 from verify.integrators.probes.floats import FloatProbe
 from verify.integrators.probes.reading import Reading
-from verify.integrators.sides import Sides, other_sides
-from verify.integrators.slopes import Row, slopes_of
-from verify.integrators.step import StepError, why
-from verify.integrators.user_map import UserMap
+from verify.integrators.user_code.step import StepError, why
+from verify.integrators.user_code.user_map import UserMap
 
 REFUTES = 4.0  # times its noise that an entry is where it is not 0
 _HOLDS = REFUTES  # and at most where nothing is seen

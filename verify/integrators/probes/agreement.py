@@ -6,13 +6,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
-from verify.integrators.places import Place
+from verify.integrators.places.place import Place
 from verify.integrators.probes.duals import DualProbe
-from verify.integrators.rounding_noise import rounding_noise
+from verify.integrators.probes.rounding_noise import rounding_noise
 from verify.integrators.tracing.dual import Dual, Duals
 from verify.integrators.tracing.number import UntraceableError
 from verify.integrators.tracing.trace import Node, in_order, replayed, through
-from verify.integrators.user_map import State, UserMap
+from verify.integrators.user_code.user_map import State, UserMap
 from verify.prose import read_prose
 
 _PARTS = 8, 64  # of a place's largest step

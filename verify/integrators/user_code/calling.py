@@ -8,12 +8,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from verify.errors import InputError
-from verify.integrators.layout import Layout
-from verify.integrators.loading import Callee
-from verify.integrators.places import Place
-from verify.integrators.step import StepError, last_line
-from verify.integrators.units import Field
-from verify.integrators.user_map import UserMap
+from verify.integrators.places.place import Place
+from verify.integrators.places.units import Field
+from verify.integrators.user_code.layout import Layout
+from verify.integrators.user_code.loading import Callee
+from verify.integrators.user_code.step import StepError, last_line
+from verify.integrators.user_code.user_map import UserMap
 
 _PART = 64  # of the largest step size
 _FITS = 0.2  # of the way that the flow goes

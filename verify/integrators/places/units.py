@@ -14,7 +14,7 @@ from verify.flows.degrees.extrapolation import FlowInDegrees
 from verify.flows.extrapolation import NoFlowError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.places import simple
+from verify.integrators.places.place import simple
 
 _DIGITS = 20
 _OCTAVES = range(-44, 45)  # of lengths that are looked at

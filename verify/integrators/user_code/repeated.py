@@ -9,11 +9,11 @@ import random
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from verify.integrators.faults import Fault, not_a_function
-from verify.integrators.kept_state import changed, kept_by
-from verify.integrators.places import Place
-from verify.integrators.step import last_line
-from verify.integrators.user_map import State, UserMap
+from verify.integrators.places.place import Place
+from verify.integrators.user_code.faults import Fault, not_a_function
+from verify.integrators.user_code.kept_state import changed, kept_by
+from verify.integrators.user_code.step import last_line
+from verify.integrators.user_code.user_map import State, UserMap
 from verify.prose import Prose, joined, prose, read_prose
 from verify.verdict import Verdict
 

@@ -10,7 +10,7 @@ from fractions import Fraction
 from math import prod
 from typing import Any
 
-from verify.integrators.step import StepError, Theirs, single
+from verify.integrators.user_code.step import StepError, Theirs, single
 
 # What people call the arguments of a step.
 ROLES = {

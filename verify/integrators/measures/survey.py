@@ -9,11 +9,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
+from verify.arithmetic.exact import decimal
+from verify.errors import InputError
 from verify.flows.extrapolation import NoFlowError
-from verify.integrators.places import USER, Place, simple, states
+from verify.integrators.places.place import USER, Place, simple, states
+from verify.integrators.places.units import Field, rate, reaches, units_of
 from verify.integrators.probes.duals import DualProbe
-from verify.integrators.units import Field, rate, reaches, units_of
-from verify.integrators.user_map import UserMap
+from verify.integrators.user_code.user_map import UserMap
 
 _FASTEST = 40.0  # times the median of the others' rates
 _MOMENTS = tuple(map(Fraction, ("1/4", "5/7", "1/20", "13/5", "1003/7")))  # in units of t
@@ -35,6 +37,20 @@ class Request:
 
 
 NOWHERE = Request()
+_LARGEST_NUMBER = Fraction(10) ** 150  # beyond it products overflow in doubles
+
+
+def check_request(names: Sequence[str], request: Request) -> None:
+    """InputError where a number of the request is out of the range of floats."""
+    numbers = {
+        **dict(zip(names, request.z or (), strict=False)),
+        **{f"scale of {name}": x for name, x in request.scale.items()},
+        **({} if request.step_size is None else {"step size": request.step_size}),
+    }
+    for name, x in numbers.items():
+        small = x != 0 and abs(x) * _LARGEST_NUMBER < 1
+        if abs(x) > _LARGEST_NUMBER or (small and name not in names):
+            raise InputError(name, decimal(x, 3), "is out of range, 1e-150 … 1e150, for floats")
 
 
 def places_of_field(field_: Field, moving: bool, request: Request = NOWHERE) -> list[Place]:

@@ -4,9 +4,9 @@ import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from verify.integrators.places import Place
-from verify.integrators.step import StepError, last_line, limited
-from verify.integrators.user_map import State, UserMap
+from verify.integrators.places.place import Place
+from verify.integrators.user_code.step import StepError, last_line, limited
+from verify.integrators.user_code.user_map import State, UserMap
 from verify.prose import Number, Prose, joined, prose
 from verify.verdict import Verdict
 
@@ -85,16 +85,16 @@ def _as_a_map(step: UserMap, first: Mapping[Place, State]) -> list[Fault]:
                 second[place] = at(step, place, _PARTS[1])
             after = at(step, place)
         except Exception as error:  # the user's code may raise anything
-            said = error.said if isinstance(error, StepError) else f"it raises {last_line(error)}"
-            text = prose(said, ", at a later call")
-            return [Fault("fails", text, Verdict.PROVED, ends=step.left <= 0)]
+            raised = prose("it raises ", last_line(error))
+            cause = error.said if isinstance(error, StepError) else raised
+            return [Fault("fails", prose(cause, ", at a later call"), Verdict.PROVED, ends=step.left <= 0)]
         if after != before:
             return [not_a_function(step, [float(x) for x in place.z], before, after)]
     if not step.stepped or not first:
         return []
     if all(tuple(map(float, place.z)) == after for place, after in first.items()):
-        text = "it is frozen: p' = p and q' = q, which preserves area and is no scheme"
-        return [Fault("frozen", text)]
+        frozen = "it is frozen: p' = p and q' = q, which preserves area and is no scheme"
+        return [Fault("frozen", frozen)]
     if all(second[place] == after for place, after in first.items()):
         return [Fault("ignores h", "it ignores h: its step is the same for h and h/2")]
     return []

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from verify.integrators.places import SIDE, Place
+from verify.integrators.places.place import SIDE, Place
 from verify.integrators.probes.duals import DualProbe
 from verify.integrators.tracing.dual import Comparison
 

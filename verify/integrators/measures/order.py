@@ -14,13 +14,13 @@ from verify.flows.degrees.extrapolation import FlowInDegrees
 from verify.flows.extrapolation import NoFlowError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.places import SIDE, USER, Place, spread
+from verify.integrators.measures.slopes import Run, Slopes, slopes_of
+from verify.integrators.places.place import SIDE, USER, Place, spread
+from verify.integrators.places.wrapped import Periods, unwrapped, wrapped
 from verify.integrators.probes.duals import DualProbe
 from verify.integrators.probes.floats import FloatProbe
-from verify.integrators.slopes import Run, Slopes, slopes_of
-from verify.integrators.step import StepError, why
-from verify.integrators.user_map import UserMap
-from verify.integrators.wrapped import Periods, unwrapped, wrapped
+from verify.integrators.user_code.step import StepError, why
+from verify.integrators.user_code.user_map import UserMap
 
 SPACED = tuple(Fraction(2) ** k for k in range(9))  # parts of a place's largest step
 _FINE = tuple(2**k for k in (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 15, 18, 22, 27, 33, 40, 48))

@@ -15,9 +15,9 @@ from pathlib import Path
 from types import ModuleType
 
 from verify.errors import InputError, is_meant, nearest
-from verify.integrators.layout import Layout, role_of, shapes
-from verify.integrators.step import TIME_LIMIT, Theirs, contained, last_line
-from verify.integrators.user_map import UserMap
+from verify.integrators.user_code.layout import Layout, role_of, shapes
+from verify.integrators.user_code.step import TIME_LIMIT, Theirs, contained, last_line
+from verify.integrators.user_code.user_map import UserMap
 
 _MOST_SECONDS = 86_400
 _LISTED = 8  # functions of a module, in an error
@@ -209,7 +209,9 @@ class _Signature:
         count = len(self.needed)
         if count not in counts:
             count = next((n for n in counts if count <= n <= len(self.places)), 0)
-        if not count:
+        told = set(roles[:count]) - {""}
+        both, all_told = {"p", "q"} <= told, {"p", "q", "h"} <= told
+        if not count or (self.stepped and ((count == 2 and both) or (count == 4 and all_told))):
             raise self.wrong()
         return list(_filled(roles[:count], counts[count])), self._plain(count)
 

@@ -9,10 +9,10 @@ from fractions import Fraction
 
 from verify.algebra.formula import symbol
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.mean_time import mean_time
-from verify.integrators.order import LADDERS, Probe, flow_of, goal
-from verify.integrators.places import Place
-from verify.integrators.slopes import Row, slopes_of
+from verify.integrators.measures.mean_time import mean_time
+from verify.integrators.measures.order import LADDERS, Probe, flow_of, goal
+from verify.integrators.measures.slopes import Row, slopes_of
+from verify.integrators.places.place import Place
 from verify.integrators.tracing.clocks import MOMENTS, stands_still
 
 _PLACES, _MEANS = 2, 5

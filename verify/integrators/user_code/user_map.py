@@ -9,9 +9,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from verify.integrators.layout import Layout, OfNumber
-from verify.integrators.number_type import DOUBLE, NumberType
-from verify.integrators.step import TIME_LIMIT, StepError, Theirs, limited, real
+from verify.integrators.user_code.layout import Layout, OfNumber
+from verify.integrators.user_code.number_type import DOUBLE, NumberType
+from verify.integrators.user_code.step import TIME_LIMIT, StepError, Theirs, limited, real
 
 State = tuple[float, ...]
 Exactly = tuple[Fraction, ...]

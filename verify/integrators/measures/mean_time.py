@@ -12,8 +12,8 @@ import sympy
 
 from verify.algebra.formula import symbol
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.order import Probe, flow_of, goal
-from verify.integrators.places import Place
+from verify.integrators.measures.order import Probe, flow_of, goal
+from verify.integrators.places.place import Place
 from verify.integrators.tracing.misread import moment
 
 _SIZES = {"duals": Fraction(1, 2**20), "floats": Fraction(1, 2**9)}

@@ -1,0 +1,1 @@
+"""A user's own code: loaded, understood, called, and watched."""
