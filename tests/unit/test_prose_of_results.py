@@ -90,7 +90,6 @@ STEPS = {
     "a power": lambda p, q, h: (p - h * (q + q**3), q + h * (p - h * (q + q**3))),
     "rounded": lambda p, q, h: (p - 0.3333333333333333 * h * q, q + h * p),
     "frozen": lambda p, q, _: (p, q),
-    "raises": lambda p, q, h: (p, q / (h - h)),
     "of floats": lambda p, q, h: (float(p) - h * float(q + q**3), float(q) + h * float(p)),
 }
 

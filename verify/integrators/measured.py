@@ -173,12 +173,10 @@ def _order(distances: Distances, sides: Sides, claims: Claims) -> _Order:
             here = sides.condition(branch)
             least = min(x.power or 0 for x in failing) - 1
             domain = (here,)
-            notes.append(
-                f"the order is that for {here}; beyond it the code does something else, which "
-                f"agrees with the exact flow of this H up to `h^{least}` only"
-                if least >= 0
-                else f"the order is that for {here}; beyond it the code is no scheme for this H"
-            )
+            beyond = f"agrees with the exact flow of this H up to `h^{max(least, 0)}` only"
+            beyond = beyond if least >= 0 else "is no scheme for this H"
+            notes.append(f"the order is that for {here}; beyond it the code does something else, "
+                         f"which {beyond}")  # fmt: skip
             resolved = [x for x in resolved if x not in failing]
     lowest = min(resolved, key=lambda x: x.power or 0)
     order = (lowest.power or 0) - 1

@@ -13,7 +13,7 @@ from verify.integrators.places.place import SIDE, Place
 from verify.integrators.probes.duals import DualProbe
 from verify.integrators.tracing.dual import Comparison
 
-Line = tuple[str, int]
+Line = tuple[str, int, int]  # file, line, instruction
 _BEYOND = 1.25  # times the way to where the sides meet
 _TRIES, _MOST_LINES = 6, 12
 _FARTHEST = 100  # units
@@ -80,9 +80,9 @@ class Sides:
             if abs(slope) == 1:
                 sign = "≥" if branch.sign * slope > 0 else "≤"
                 return f"{self.names[moving[0]]} {sign} `{bound:.6g}`"
-        name, line = branch.line
-        sign = "≥" if branch.sign > 0 else "≤"
-        return f"what is compared in line {line} of {name} is {sign} its bound"
+        name, line, _ = branch.line
+        side = "this" if branch in self.branches.get(branch.line, ()) else "the other"
+        return f"{side} side of the comparison in line {line} of {name}"
 
 
 def _branch(x: Comparison, place: Place, h: Fraction) -> Branch:

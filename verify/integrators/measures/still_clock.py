@@ -24,7 +24,7 @@ def measured_mistakes(
 ) -> list[str]:
     """One sentence, where the step is seen to have a higher order than `order` with the force held
     still, or to read it too early or too late in the mean. Raises what the user's code raises."""
-    if order is None or not probe.step.moving:
+    if order is None or order < 1 or not probe.step.moving:
         return []
     for words, part in MOMENTS.items():
         higher = _order(probe, hamiltonian, places, part, order)

@@ -19,6 +19,7 @@ from verify.integrators.places.place import simple
 _DIGITS = 20
 _OCTAVES = range(-44, 45)  # of lengths that are looked at
 _DEPARTS, _PLATEAU = 0.3, 0.1  # of a power of the coordinates
+_ASIDE = (1.0, 0.61, 1.43)  # parts of a state, for others beside it
 _APART = 30  # times another coordinate's length, one counts for itself
 _DIRECTION = (1.0, -1.27, 0.78, 1.13, -0.87, 0.69, -1.41, 0.93, 1.31, -0.74)
 Vector = Sequence[float]
@@ -69,17 +70,21 @@ def _lengths(field: Field) -> list[float]:
     n = field.degrees
     direction = [_DIRECTION[k % len(_DIRECTION)] * (1 + k // len(_DIRECTION)) for k in range(n)]
 
+    rest = field([0.0] * (2 * n)) or [0.0] * (2 * n)  # a constant force is of no size
+
     def force(s: float) -> float | None:
         slopes = field([0.0] * n + [s * x for x in direction])
-        return None if slopes is None else math.sqrt(sum(x * x for x in slopes[:n]))
+        return None if slopes is None else math.dist(slopes[:n], rest[:n])
 
     common = _crossover(force) or 1.0
     base = [0.0] * n + [common * x for x in direction]
     lengths = [common] * n
     for k in range(n):
-        alone = _crossover(_response(field, base, n + k))
-        if alone is not None and not 1 / _APART < alone / common < _APART:
-            lengths[k] = alone
+        # At several states, as a force may be still at one of them.
+        each = [_crossover(_response(field, [x * y for x in base], n + k)) for y in _ASIDE]
+        alone = [x for x in each if x is not None]
+        if alone and not 1 / _APART < max(alone) / common < _APART:
+            lengths[k] = max(alone)
     return lengths
 
 
@@ -93,7 +98,7 @@ def _response(field: Field, base: Vector, j: int) -> Callable[[float], float | N
         slopes = field(moved)
         if slopes is None or still is None:
             return None
-        return math.sqrt(sum((x - y) ** 2 for x, y in zip(slopes, still, strict=True)))
+        return math.dist(slopes, still)
 
     return change
 
@@ -125,10 +130,17 @@ def _momenta(field: Field, lengths: Vector) -> list[float]:
     """Of each p: that whose kinetic energy is the work of its force over its length."""
     n = field.degrees
     base = [0.0] * n + [x * y for x, y in zip(lengths, _DIRECTION * (1 + n // 10), strict=False)]
-    slopes = field(base) or [0.0] * (2 * n)
-    work = [abs(slopes[k]) * lengths[k] for k in range(n)]
-    mean = sum(work) / n or 1.0
-    return [_momentum(field, base, k, work[k] or mean) for k in range(n)]
+    work = [min(each, default=0.0) for each in zip(*_works(field, base, lengths), strict=True)]
+    mean = sum(work) / max(len(work), 1) or 1.0
+    return [_momentum(field, base, k, work[k] if work and work[k] else mean) for k in range(n)]
+
+
+def _works(field: Field, base: Vector, lengths: Vector) -> list[list[float]]:
+    """Of each force over its length, at states beside one another, as one may lie in a core."""
+    n = len(lengths)
+    states = [field([x * y for x in base]) for y in _ASIDE]
+    works = [[abs(z[k]) * lengths[k] for k in range(n)] for z in states if z is not None]
+    return works or [[0.0] * n]
 
 
 def _momentum(field: Field, base: Vector, k: int, work: float) -> float:
@@ -159,7 +171,7 @@ def _duration(field: Field, units: Vector) -> float:
         slopes = field(units, 0.125 + s)
         if slopes is None or still is None:
             return None
-        return math.sqrt(sum((x - y) ** 2 for x, y in zip(slopes, still, strict=True)))
+        return math.dist(slopes, still)
 
     return _crossover(change) or 1.0
 

@@ -45,10 +45,10 @@ _MOST_COMPARISONS = 4096  # of one call that are written down
 
 @dataclass(frozen=True)
 class Comparison:
-    """`line`: of the code that compared two numbers, with its file; `gap`: the first less the
-    second; `limit`: the second, where it is a constant."""
+    """`line`: of the code that compared two numbers, with its file and its instruction; `gap`: the
+    first less the second; `limit`: the second, where it is a constant."""
 
-    line: tuple[str, int]
+    line: tuple[str, int, int]
     gap: "Dual"
     limit: Number | None
 
@@ -96,7 +96,7 @@ class Duals(Kind):
         ]
 
 
-def _line_of_user() -> tuple[str, int]:
+def _line_of_user() -> tuple[str, int, int]:
     """Where the code that is called compares: the innermost frame that is not ours or numpy's."""
     frame = sys._getframe(2)
     while frame.f_back is not None:
@@ -104,7 +104,7 @@ def _line_of_user() -> tuple[str, int]:
         if home not in ("verify", "numpy"):
             break
         frame = frame.f_back
-    return Path(frame.f_code.co_filename).name, frame.f_lineno
+    return Path(frame.f_code.co_filename).name, frame.f_lineno, frame.f_lasti
 
 
 class Dual(TracedNumber):
