@@ -12,6 +12,7 @@ import sys
 import threading
 import time
 from collections import deque
+from enum import Enum
 from random import random as draw
 from time import perf_counter
 from typing import Any
@@ -255,6 +256,15 @@ class Vector:
 COUNTER = Counter()
 
 
+class Form(Enum):
+    KICK = 1
+
+
+def in_an_enum(p: Any, q: Any) -> Any:
+    Form.KICK.calls = getattr(Form.KICK, "calls", 0) + 1  # type: ignore[attr-defined]
+    return p, q
+
+
 def by_an_object(p: Any, q: Any) -> Any:
     return COUNTER.in_itself(p, q)
 
@@ -309,5 +319,6 @@ BY_NAME: dict[str, tuple[Any, str]] = {
     "by_its_generator": (Counter().by_its_generator, "self.random (random.Random)"),
     "a_called_object": (Counter(), "Counter.n is changed"),
     "by_an_object": (by_an_object, "COUNTER.n is changed"),
+    "in_an_enum": (in_an_enum, "Form.KICK.calls is changed"),
     "by_making_objects": (by_making_objects, "Vector.made is changed"),
 }

@@ -26,6 +26,7 @@ UNUSED = random.Random(1)
 LOG = logging.getLogger("maps")
 DEBUG = False
 Point = namedtuple("Point", "p q")
+TABLE = types.MappingProxyType({"h": 0.1})
 SPACE = types.SimpleNamespace(h=0.1, weights=(0.5, 0.5))
 
 
@@ -139,7 +140,7 @@ def with_a_dataclass(p: Any, q: Any) -> Any:
 
 
 def with_a_namespace(p: Any, q: Any) -> Any:
-    return p + SPACE.h * SPACE.weights[0] * force(q), q
+    return p + SPACE.h * SPACE.weights[0] * force(q) + TABLE["h"], q
 
 
 def with_an_enum(p: Any, q: Any) -> Any:

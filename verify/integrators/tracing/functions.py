@@ -14,6 +14,7 @@ import inspect
 import sys
 import types
 from collections.abc import Iterable
+from enum import EnumType
 from typing import Any
 
 from verify.integrators.tracing.number import Kind, TracedNumber
@@ -65,6 +66,9 @@ class _Copier:
         if id(x) in self.pure:
             return self._keep(x, replacement(self.kind, *self.pure[id(x)]))
         if is_plain(x) or isinstance(x, TracedNumber) or self._is_method_of_pure(x):
+            if isinstance(x, EnumType):
+                for member in list[Any](x):
+                    self.outside.watch(str(member), member)
             return x
         try:
             made = self._copy(x, name)
@@ -117,6 +121,8 @@ class _Copier:
         """A copy of what holds others."""
         if type(x) in (tuple, frozenset):
             return type(x)(self.value(v, name) for v in x)
+        if type(x) is types.MappingProxyType:
+            return types.MappingProxyType(self.value(dict(x), name))
         made: Any
         if type(x) in (list, set):
             made = self._keep(x, type(x)())
