@@ -1,113 +1,274 @@
 """A copy of a user's function in which `math` and numpy know our numbers, too.
 
-The copy has globals of its own: modules like `math` and functions like `sin` are replaced, and so
-are the helper functions of the user's modules, in closures and defaults as well. These modules are
-not changed. What is hidden deeper, as in an object's attributes, is called as it is.
+All that it reaches is copied as it is reached: functions, with closures and defaults, classes,
+objects, lists and arrays, and modules with what is looked up in them. Nothing of the user's is
+changed by a call of the copy. What is neither copied nor pure is called as it is, and named in
+`Kind.impure`, as is what a call leaves other than it was (`verify.integrators.tracing.purity`).
 """
 
-import cmath
+import abc
+import builtins
 import contextlib
 import functools
-import math
-import operator
+import inspect
 import sys
 import types
-from collections.abc import Callable, Iterable
-from fractions import Fraction
-from pathlib import Path
+from collections.abc import Iterable
+from enum import EnumType
 from typing import Any
 
-from verify.integrators.tracing.number import FUNCTIONS, Kind, TracedNumber, constant
+from verify.integrators.tracing.number import Kind, TracedNumber
+from verify.integrators.tracing.purity import (
+    attributes,
+    described,
+    is_of_user,
+    is_plain,
+    is_users_module,
+    pure_things,
+    types_of_numpy,
+)
+from verify.integrators.tracing.replacements import replacement
 
-_MODULES = ("math", "cmath", "numpy")
-_FOREIGN = ("numpy", "scipy", "numba")
-_PLAIN = int | float | Fraction
-_FILLED = ("zeros", "ones", "empty", "full", "zeros_like", "ones_like", "empty_like", "full_like")
+_FOREIGN = ("jax", "mpmath", "numba", "numpy", "scipy", "sympy", "torch")
+# What a class is made with; all else is put into it afterwards, as it may be of the class.
+_DECLARED = ("__slots__", "__module__", "__qualname__", "__orig_bases__")
+_LEFT_OUT = (*_DECLARED, "__dict__", "__weakref__", "_abc_impl")
+_MAKERS = ("collections", "dataclasses", "functools", "typing")  # of methods of users' classes
+_SLOTS = types.MemberDescriptorType | types.GetSetDescriptorType
 
 
 def copied(function: Any, kind: Kind) -> Any:
     """The function with replaced globals; itself where it is not written in Python."""
-    call = vars(type(function)).get("__call__")
-    if isinstance(call, types.FunctionType):
-        function = types.MethodType(call, function)  # an object that is called
-    return _Copier(kind).value(function)
+    return _Copier(kind).value(function, getattr(function, "__name__", type(function).__name__))
 
 
-def _is_users(x: types.FunctionType) -> bool:
-    """Whether it is the user's: not of Python's library, nor of one that is full of floats."""
+def _is_traced(x: types.FunctionType) -> bool:
+    """Whether it is neither of Python's library nor of one with numbers of its own."""
     home = (x.__module__ or "").partition(".")[0]
     return home not in sys.stdlib_module_names - {"__main__"} and home not in _FOREIGN
-
-
-def is_users_module(x: types.ModuleType) -> bool:
-    """Whether it is the user's: neither of Python's library nor installed."""
-    folders = Path(getattr(x, "__file__", None) or "site-packages").parts
-    standard = x.__name__.partition(".")[0] in sys.stdlib_module_names
-    return not standard and not {"site-packages", "dist-packages"} & set(folders)
 
 
 class _Copier:
     """Copies what a function reaches, each thing once."""
 
     def __init__(self, kind: Kind) -> None:
-        self.kind = kind
+        self.kind, self.outside = kind, kind.outside
         self.copies: dict[int, Any] = {}
         self.kept: list[Any] = []  # so that no id is used again
-        own = [(math, name) for name in (*FUNCTIONS, *_OTHERS) if hasattr(math, name)]
-        self.known = {id(getattr(module, name)): name for module, name in own}
+        self.late: dict[tuple[int, str], tuple[Any, str]] = {}  # attributes that are not pure
+        self.pure = pure_things()
+        self.builtins = {**vars(builtins), "__import__": self._imported}
 
-    def value(self, x: Any) -> Any:
+    def value(self, x: Any, name: str = "") -> Any:
+        """The copy of x, which the function reaches by that name."""
         if id(x) in self.copies:
             return self.copies[id(x)]
-        if isinstance(x, types.ModuleType):
-            if x.__name__ in _MODULES:
-                return _Module(x, self)
-            return _Helpers(x, self) if is_users_module(x) else x
-        if isinstance(x, functools.partial):
-            bound = {name: self.value(v) for name, v in x.keywords.items()}
-            return functools.partial(self.value(x.func), *map(self.value, x.args), **bound)
-        if isinstance(x, types.MethodType) and isinstance(x.__func__, types.FunctionType):
-            return types.MethodType(self.value(x.__func__), _Self(x.__self__, self))
+        if id(x) in self.pure:
+            return self._keep(x, replacement(self.kind, *self.pure[id(x)]))
+        if is_plain(x) or isinstance(x, TracedNumber) or self._is_method_of_pure(x):
+            if isinstance(x, EnumType):
+                for member in list[Any](x):
+                    self.outside.watch(str(member), member)
+            return x
+        try:
+            made = self._copy(x, name)
+        except (TypeError, AttributeError):  # it does not let itself be made
+            made = x
+        if made is x and type(x) not in (tuple, frozenset):
+            self.outside.reach(described(x, name))
+        return self._keep(x, made) if made is not x else x
+
+    def _keep(self, x: Any, made: Any) -> Any:
+        self.kept.append(x)
+        self.copies[id(x)] = made
+        return made
+
+    def _is_method_of_pure(self, x: Any) -> bool:
+        """Whether it is one as `tuple.__new__` and `list.append` are."""
+        if not isinstance(x, types.BuiltinFunctionType | types.MethodDescriptorType):
+            return False
+        return id(getattr(x, "__objclass__", getattr(x, "__self__", None))) in self.pure
+
+    def attribute(self, module: types.ModuleType, name: str) -> Any:
+        """What a library's module has by that name."""
+        x, called = getattr(module, name), f"{module.__name__}.{name}"
+        if type(x) in (list, dict, set):  # who may change it is not known
+            self.outside.reach(described(x, called))
+        return self.value(x, called)
+
+    def _copy(self, x: Any, name: str) -> Any:
         # numba's functions, and those with a cache, hold the plain one.
         inner = getattr(x, "py_func", None) or getattr(x, "__wrapped__", None)
         if isinstance(inner, types.FunctionType) and not isinstance(x, types.FunctionType):
-            return self.value(inner)
-        if isinstance(x, types.FunctionType):
-            return self.function(x) if _is_users(x) else x
-        return self.replacement(x)
+            return self.value(inner, name)
+        match x:
+            case types.ModuleType():
+                return _Module(x, self)
+            case types.FunctionType() if _is_traced(x):
+                return self._function(x)
+            case types.MethodType(__func__=types.FunctionType() as called) if _is_traced(called):
+                return types.MethodType(self.value(called), self.value(x.__self__, "self"))
+            case functools.partial():
+                bound = {k: self.value(v, f"{name}.{k}") for k, v in x.keywords.items()}
+                return functools.partial(
+                    self.value(x.func, name), *(self.value(v, name) for v in x.args), **bound
+                )
+            case type() if is_of_user(x):
+                return self._class(x)
+        return self._holder(x, name)
 
-    def replacement(self, x: Any) -> Any:
-        """For a function that was imported by its name; else the thing itself."""
-        name = self.known.get(id(x))
-        if name is None and type(x).__module__ == "numpy" and type(x).__name__ == "ufunc":
-            name = x.__name__
-        return self.named(name, x) if name is not None else x
-
-    def named(self, name: str, x: Any) -> Any:
-        if name in FUNCTIONS:
-            return _applied(self.kind, FUNCTIONS[name], x)
-        if name in _OTHERS and isinstance(x, types.BuiltinFunctionType | type):
-            return _guarded(_OTHERS[name], x)
-        return x
-
-    def function(self, x: types.FunctionType) -> types.FunctionType:
-        code, scope = x.__code__, dict(x.__globals__)
-        cells = tuple(types.CellType() for _ in x.__closure__ or ())
-        made = types.FunctionType(code, scope, x.__name__, None, cells or None)
-        self.copies[id(x)] = made  # before what it calls: it may call itself
-        self.kept.append(x)
-        for name in names_in(code):
-            if name in scope:
-                scope[name] = self.value(scope[name])
-        scope.setdefault("float", _Float)
-        for cell, own in zip(cells, x.__closure__ or (), strict=True):
-            with contextlib.suppress(ValueError):  # a name that has no value yet
-                cell.cell_contents = self.value(own.cell_contents)
-        if x.__defaults__:
-            made.__defaults__ = tuple(map(self.value, x.__defaults__))
-        if x.__kwdefaults__:
-            made.__kwdefaults__ = {name: self.value(v) for name, v in x.__kwdefaults__.items()}
+    def _holder(self, x: Any, name: str) -> Any:
+        """A copy of what holds others."""
+        if type(x) in (tuple, frozenset):
+            return type(x)(self.value(v, name) for v in x)
+        if type(x) is types.MappingProxyType:
+            return types.MappingProxyType(self.value(dict(x), name))
+        made: Any
+        if type(x) in (list, set):
+            made = self._keep(x, type(x)())
+            (made.extend if isinstance(made, list) else made.update)(self.value(v, name) for v in x)
+        elif type(x) is dict:
+            made = self._keep(x, {})
+            made.update((self.value(k, name), self.value(v, name)) for k, v in x.items())
+        elif type(x) in types_of_numpy("ndarray"):
+            made = self._keep(x, x.copy())
+            if x.dtype == object:
+                made.flat = [self.value(v, name) for v in x.flat]
+        elif is_of_user(type(x)) or type(x) is types.SimpleNamespace:
+            return self._object(x, name)
+        else:
+            return x
+        self.outside.watch(name, made)
         return made
+
+    def scope(self, names: dict[str, Any]) -> "_Scope":
+        """The copy of a module's globals."""
+        if id(names) not in self.copies:
+            self._keep(names, _Scope(names, self))
+        scope: _Scope = self.copies[id(names)]
+        return scope
+
+    def _function(self, x: types.FunctionType) -> types.FunctionType:
+        code, scope = x.__code__, self.scope(x.__globals__)
+        cells = dict(zip(code.co_freevars, x.__closure__ or (), strict=True))
+        new = {name: cell for name, cell in cells.items() if id(cell) not in self.copies}
+        for cell in new.values():
+            self._keep(cell, types.CellType())
+        closure = tuple(self.copies[id(cell)] for cell in cells.values())
+        made = types.FunctionType(code, scope, x.__name__, None, closure or None)
+        self._keep(x, made)  # before what it calls: it may call itself
+        for name, cell in new.items():
+            with contextlib.suppress(ValueError):  # a name that has no value yet
+                self.copies[id(cell)].cell_contents = self.value(cell.cell_contents, name)
+            self.outside.watch(name, self.copies[id(cell)])
+        for inner in code.co_consts:  # a class's names are looked up in the globals as they stand
+            if isinstance(inner, types.CodeType) and not inner.co_flags & inspect.CO_OPTIMIZED:
+                for name in inner.co_names:
+                    with contextlib.suppress(KeyError):
+                        scope[name]
+        of_it = f"a default of {x.__name__}"
+        if x.__defaults__:
+            made.__defaults__ = tuple(self.value(v, of_it) for v in x.__defaults__)
+        if x.__kwdefaults__:
+            made.__kwdefaults__ = {k: self.value(v, of_it) for k, v in x.__kwdefaults__.items()}
+        for name, v in vars(x).items():
+            setattr(made, name, self.value(v, f"{x.__name__}.{name}"))
+        self.outside.watch(x.__name__, made)
+        return made
+
+    def _class(self, x: type) -> type:
+        if type(x) not in (type, abc.ABCMeta):
+            return x  # what others make is not known
+        bases = tuple(self.value(base, base.__name__) for base in x.__bases__)
+        declared = {name: vars(x)[name] for name in _DECLARED if name in vars(x)}
+        if not any("__getattr__" in vars(base) for base in x.__mro__):
+            declared["__getattr__"] = lambda own, name: self._asked_late(own, name)
+        made: type = self._keep(x, type(x)(x.__name__, bases, declared))
+        for name, part in vars(x).items():
+            if name not in _LEFT_OUT and not isinstance(part, _SLOTS):
+                setattr(made, name, self._part(part, f"{x.__name__}.{name}", name))
+        self.outside.watch(x.__name__, made)
+        return made
+
+    def _part(self, part: Any, called: str, name: str) -> Any:
+        """Of a class: what is in it by that name."""
+        match part:
+            case property():
+                return property(*(f and self.value(f) for f in (part.fget, part.fset, part.fdel)))
+            case staticmethod() | classmethod():
+                return type(part)(self._part(part.__func__, called, name))
+        made = isinstance(part, types.FunctionType) and part.__module__ in _MAKERS
+        return part if made or name == "__annotations__" else self.value(part, called)
+
+    def _object(self, x: Any, name: str) -> Any:
+        """Of a user's class."""
+        made_of = self.value(type(x), name)
+        if made_of is type(x) and made_of is not types.SimpleNamespace:
+            return x
+        base = next(c for c in (tuple, types.SimpleNamespace, object) if isinstance(x, c))
+        inner = [[self.value(v, name) for v in x]] if isinstance(x, tuple) else []
+        made = self._keep(x, base.__new__(made_of, *inner))
+        for part, v in attributes(x).items():
+            before, called = dict(self.outside.reached), f"{name}.{part}"
+            copy = self.value(v, called)
+            if copy is v and before != self.outside.reached and not hasattr(made_of, part):
+                self.outside.reached = before  # it is not, before the function asks for it
+                self.late[id(made), part] = v, called
+            elif part in getattr(x, "__dict__", {}):
+                made.__dict__[part] = copy
+            else:
+                object.__setattr__(made, part, copy)
+        self.outside.watch(name, made)
+        return made
+
+    def _asked_late(self, own: Any, name: str) -> Any:
+        """The `__getattr__` of copied objects, which have copies of all else."""
+        if (id(own), name) not in self.late:
+            raise AttributeError(f"{type(own).__name__!r} object has no attribute {name!r}")
+        return self.value(*self.late[id(own), name])
+
+    def _imported(self, *given: Any, **options: Any) -> Any:
+        return self.value(builtins.__import__(*given, **options))
+
+
+class _Scope(dict[str, Any]):
+    """A module's globals, each copied when it is first looked up, and Python's names after them."""
+
+    def __init__(self, names: dict[str, Any], copier: _Copier) -> None:
+        special = {name: x for name, x in names.items() if name.startswith("__")}
+        super().__init__({**special, "__builtins__": copier.builtins})
+        self.names, self.copier, self.seen = names, copier, dict(self)
+        copier.outside.watch("", self, self.seen)
+
+    def __missing__(self, name: str) -> Any:
+        home = self.names if name in self.names else vars(builtins)
+        if name in self.seen or name not in home:  # deleted, or not there
+            raise KeyError(name)
+        self[name] = self.seen[name] = self.copier.value(home[name], name)
+        return self[name]
+
+
+class _Module:
+    """A module, whose functions are copied or replaced as they are asked for."""
+
+    def __init__(self, module: types.ModuleType, copier: _Copier) -> None:
+        scope = copier.scope(vars(module)) if is_users_module(module) else None
+        vars(self).update(_module=module, _copier=copier, _scope=scope)
+
+    def __getattr__(self, name: str) -> Any:
+        if self._scope is None:
+            vars(self)[name] = self._copier.attribute(self._module, name)
+            return vars(self)[name]
+        if name in self._scope or name in vars(self._module):
+            return self._scope[name]
+        return self._copier.value(getattr(self._module, name), name)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if self._scope is None:
+            self._copier.outside.reach(f"{self._module.__name__}.{name} is changed")
+            vars(self)[name] = value
+        else:
+            self._scope[name] = value
 
 
 def names_in(code: types.CodeType) -> Iterable[str]:
@@ -116,117 +277,3 @@ def names_in(code: types.CodeType) -> Iterable[str]:
     for inner in code.co_consts:
         if isinstance(inner, types.CodeType):
             yield from names_in(inner)
-
-
-class _Module:
-    """`math` or numpy, with functions that know our numbers, and all else as it is."""
-
-    def __init__(self, module: types.ModuleType, copier: _Copier) -> None:
-        self._module, self._copier = module, copier
-
-    def __getattr__(self, name: str) -> Any:
-        kind = self._copier.kind
-        if name in ("pi", "e", "tau") and self._module is not cmath:
-            pi = kind.pi()
-            return {"pi": pi, "tau": 2 * pi, "e": kind.rational(Fraction(1)).applied("exp")}[name]
-        found = getattr(self._module, name)
-        if self._module is cmath:
-            return found
-        if name in ("float64", "float_", "double"):
-            return _Float
-        if name in _FILLED:
-            return _of_objects(found)
-        return self._copier.named(name, found)
-
-
-class _Helpers:
-    """A module of the user's, whose functions are copied as they are asked for."""
-
-    def __init__(self, module: types.ModuleType, copier: _Copier) -> None:
-        self._module, self._copier = module, copier
-
-    def __getattr__(self, name: str) -> Any:
-        return self._copier.value(getattr(self._module, name))
-
-
-class _Self:
-    """An object of the user's class, whose methods are copied; the object itself is the user's."""
-
-    def __init__(self, own: Any, copier: _Copier) -> None:
-        object.__setattr__(self, "_own", own)
-        object.__setattr__(self, "_copier", copier)
-
-    def __getattr__(self, name: str) -> Any:
-        found = getattr(self._own, name)
-        if isinstance(found, types.MethodType) and found.__self__ is self._own:
-            return types.MethodType(self._copier.value(found.__func__), self)
-        return self._copier.value(found)
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        setattr(self._own, name, value)
-
-
-class _FloatType(type):
-    def __instancecheck__(cls, x: object) -> bool:
-        return isinstance(x, float | TracedNumber)
-
-
-class _Float(float, metaclass=_FloatType):
-    """`float` that lets our numbers through; as an array's type it is that of objects."""
-
-    def __new__(cls, x: Any = 0.0) -> Any:
-        return x if isinstance(x, TracedNumber) else float(x)
-
-
-def _of_objects(original: Callable[..., Any]) -> Callable[..., Any]:
-    """What makes an array of floats makes one of objects, which our numbers can be put into."""
-
-    def call(*given: Any, **options: Any) -> Any:
-        if options.get("dtype") in (None, float, _Float):
-            options["dtype"] = object
-        return original(*given, **options)
-
-    return call
-
-
-def _applied(kind: Kind, name: str, original: Callable[..., Any]) -> Callable[..., Any]:
-    """The function of ours for our numbers and for plain ones, whose value stays exact."""
-
-    def call(x: Any, *others: Any, **options: Any) -> Any:
-        if not others and not options and isinstance(x, TracedNumber | _PLAIN):
-            lifted = constant(kind, x)
-            if lifted is not None:
-                return lifted.applied(name)
-        return original(x, *others, **options)
-
-    return call
-
-
-def _guarded(own: Callable[..., Any], original: Callable[..., Any]) -> Callable[..., Any]:
-    """`own` where one of our numbers is given, else the original."""
-
-    def call(*given: Any, **options: Any) -> Any:
-        listed = not options and len(given) == 1 and isinstance(given[0], list | tuple)
-        if any(isinstance(x, TracedNumber) for x in (given[0] if listed else given)):
-            return own(*given, **options)
-        return original(*given, **options)
-
-    return call
-
-
-def _isclose(x: Any, y: Any, *, rel_tol: float = 1e-9, abs_tol: float = 0.0) -> bool:
-    return bool(abs(x - y) <= max(rel_tol * max(abs(x), abs(y)), abs_tol))
-
-
-_OTHERS: dict[str, Callable[..., Any]] = {
-    "isclose": _isclose,
-    "pow": operator.pow,
-    "fabs": operator.abs,
-    "expm1": lambda x: x.applied("exp") - 1,
-    "log1p": lambda x: (x + 1).applied("log"),
-    "isnan": lambda x: not x.isfinite(),
-    "isinf": lambda x: not x.isfinite(),
-    "isfinite": lambda x: x.isfinite(),
-    "fsum": sum,
-    "hypot": lambda *given: sum(x * x for x in given) ** Fraction(1, 2),
-}

@@ -15,6 +15,9 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from verify.integrators.tracing import derived
+from verify.integrators.tracing.purity import Outside
+
 if TYPE_CHECKING:
     import numpy
 
@@ -48,7 +51,13 @@ OPERATORS: dict[str, Callable[..., Any]] = {
     "not_equal": operator.ne,
     "isfinite": lambda x: x.isfinite(),
     "isnan": lambda x: not x.isfinite(),
+    **derived.OF_TWO,
 }
+
+
+def is_function(name: str) -> bool:
+    """Whether numpy or `math` calls a function of one number so, and it is one here."""
+    return name in FUNCTIONS or name in derived.OF_ONE
 
 
 class UntraceableError(TypeError):
@@ -72,13 +81,21 @@ class Kind(ABC):
 
     `readings`: floats that were read as another number than their value; `rounded`: those that were
     taken by their binary value, and are no integers; `refused`: what was asked of its numbers and
-    cannot be had, as code may catch the error.
+    cannot be had, as code may catch the error; `outside`: what it reached beside its arguments.
     """
+
+    ordered = True  # whether its numbers can be compared
 
     def __init__(self) -> None:
         self.readings: dict[float, Fraction] = {}
         self.rounded: set[float] = set()
         self.refused: list[str] = []
+        self.outside = Outside()
+
+    @property
+    def impure(self) -> list[str]:
+        """What makes it more than a function of its arguments, by now: nothing where it is one."""
+        return self.outside.texts
 
     @abstractmethod
     def rational(self, value: Fraction) -> "TracedNumber": ...
@@ -155,6 +172,21 @@ class TracedNumber(ABC):
     @abstractmethod
     def known(self) -> Fraction | None:
         """Its value, where it is a rational number that does not depend on p, q and h."""
+
+    def arctan2(self, other: Any) -> "TracedNumber":
+        """The angle of the point (other, self), of whose coordinates one may be a plain number."""
+        lifted = constant(self.kind, other)
+        if lifted is None:
+            self.refuse("it takes the angle of what is no number")
+        angle: TracedNumber = derived.arctan2(self, lifted)
+        return angle
+
+    def function(self, name: str) -> "TracedNumber":
+        """What numpy or `math` calls so, of it."""
+        if name in FUNCTIONS:
+            return self.applied(FUNCTIONS[name])
+        made: TracedNumber = derived.OF_ONE[name](self)
+        return made
 
     def compared(self, other: Any) -> int:
         """−1, 0 or 1."""
@@ -261,10 +293,12 @@ class TracedNumber(ABC):
 
     # -- numpy --------------------------------------------------------------------------------
 
-    def __getattr__(self, name: str) -> "Callable[[], TracedNumber]":
+    def __getattr__(self, name: str) -> "Callable[..., TracedNumber]":
         """`sin`, `arctan`, …: what numpy calls of the objects in an array."""
-        if name in FUNCTIONS:
-            return lambda: self.applied(FUNCTIONS[name])
+        if is_function(name):
+            return lambda: self.function(name)
+        if name in derived.OF_TWO:
+            return lambda other: OPERATORS[name](self, constant(self.kind, other))
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
@@ -277,8 +311,8 @@ class TracedNumber(ABC):
         lifted = [constant(self.kind, x) for x in inputs]
         if None in [x if x is None else 0 for x in lifted]:
             self.refuse(f"it gives numpy's {ufunc.__name__} what is no number")
-        if ufunc.__name__ in FUNCTIONS:
-            return self.applied(FUNCTIONS[ufunc.__name__])
+        if is_function(ufunc.__name__):
+            return self.function(ufunc.__name__)
         if ufunc.__name__ in OPERATORS:
             return OPERATORS[ufunc.__name__](*lifted)
         self.refuse(f"it calls numpy's {ufunc.__name__}")

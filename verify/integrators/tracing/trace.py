@@ -36,6 +36,8 @@ class Node:
 class Tape(Kind):
     """Makes nodes, and the numbers that record."""
 
+    ordered = False
+
     def __init__(self) -> None:
         super().__init__()
         self.positive = False  # whether it was asked for the sign of h

@@ -2,7 +2,8 @@
 
 Globals that it names, the cells and defaults of it and of the functions that it reaches, the
 attributes of functions, objects and classes of the user's: all as bytes, by the name through which
-the function reaches them. A library's modules and classes count as constant.
+the function reaches them. Of a library's module it is the numbers and texts in it that count, and
+its classes are constant.
 """
 
 import contextlib
@@ -15,10 +16,10 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from verify.integrators.tracing.functions import is_users_module, names_in
+from verify.integrators.tracing.functions import names_in
+from verify.integrators.tracing.purity import is_of_user, is_plain, is_users_module
 
 Kept = Mapping[str, bytes]  # by name
-_OURS = __name__.partition(".")[0]
 
 
 def kept_by(function: Callable[..., Any]) -> Kept:
@@ -52,8 +53,8 @@ def _reached(x: Any) -> Iterator[tuple[str, Any]]:
         yield getattr(x, "__name__", type(x).__name__), x
         return
     code = x.__code__
-    for name in sorted(set(names_in(code)) & set(x.__globals__)):
-        yield name, x.__globals__[name]
+    for name in sorted(set(names_in(code)) & {*x.__globals__, *sys.modules}):  # it may import it
+        yield name, x.__globals__.get(name, sys.modules.get(name))
     for name, cell in zip(code.co_freevars, x.__closure__ or (), strict=True):
         with contextlib.suppress(ValueError):  # a name that has no value yet
             yield name, cell.cell_contents
@@ -86,11 +87,11 @@ class _Pickler(pickle.Pickler):
     def reducer_override(self, x: Any) -> Any:
         function = _plain(x)
         if isinstance(function, types.FunctionType):
-            return _Blank, (), dict(_reached(function)) if _of_user(function) else None
+            return _Blank, (), dict(_reached(function)) if is_of_user(function) else None
         if isinstance(x, type):
-            return (_Blank, (), _attributes(x)) if _of_user(x) else NotImplemented
+            return (_Blank, (), _attributes(x)) if is_of_user(x) else NotImplemented
         if isinstance(x, types.ModuleType):
-            return _Blank, (), _attributes(x) if is_users_module(x) else None
+            return _Blank, (), _attributes(x) if is_users_module(x) else _plain_in(x)
         if isinstance(x, types.BuiltinFunctionType):
             return _Blank, (), getattr(x, "__self__", None)  # a method of what may change
         if isinstance(x, property | staticmethod | classmethod):
@@ -98,8 +99,8 @@ class _Pickler(pickle.Pickler):
             return _Blank, (), {name: getattr(x, name, None) for name in parts}
         try:
             return x.__reduce_ex__(4)
-        except Exception:  # a lock, a file, a generator
-            return str, (repr(x),), {"turns": _turns(x)}
+        except Exception:  # a lock, a file, a generator, what a thread keeps
+            return str, (repr(x),), {"turns": _turns(x), "holds": getattr(x, "__dict__", None)}
 
 
 def _turns(x: Any) -> Any:
@@ -108,18 +109,13 @@ def _turns(x: Any) -> Any:
     return frame and (frame.f_lasti, dict(frame.f_locals))
 
 
+def _plain_in(x: types.ModuleType) -> dict[str, Any]:
+    return {k: v for k, v in vars(x).items() if not k.startswith("_") and is_plain(v)}
+
+
 def _attributes(x: Any) -> dict[str, Any]:
     return {
         name: value
         for name, value in vars(x).items()
         if not name.startswith("__") or isinstance(value, types.FunctionType)
     }
-
-
-def _of_user(x: Any) -> bool:
-    """Whether a function or class is the user's: of no library, nor of this package."""
-    home = x.__module__ or ""
-    module = sys.modules.get(home)
-    if module is None or home == "__main__":
-        return True
-    return home.partition(".")[0] != _OURS and is_users_module(module)

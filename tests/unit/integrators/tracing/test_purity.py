@@ -1,0 +1,84 @@
+"""What a trace reached is named where it is not pure, and nothing is where all of it is."""
+
+import sys
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from tests.helpers.programs import impure_maps, pure_maps
+from verify.integrators.tracing.functions import copied
+from verify.integrators.tracing.trace import Tape
+
+
+def impure(function: Callable[..., Any]) -> list[str]:
+    tape = Tape()
+    copied(function, tape)(tape.symbol("p"), tape.symbol("q"))
+    return tape.impure
+
+
+@pytest.mark.parametrize("name", impure_maps.BY_NAME)
+def test_what_is_more_than_a_function_of_its_arguments_says_why(name: str) -> None:
+    function, why = impure_maps.BY_NAME[name]
+    assert impure(function) == why.split("; ")
+
+
+@pytest.mark.parametrize("function", pure_maps.MAPS)
+def test_of_a_function_of_its_arguments_nothing_is_said(function: Callable[..., Any]) -> None:
+    assert impure(function) == []
+
+
+def test_nothing_of_the_users_is_changed_by_a_trace() -> None:
+    counter = impure_maps.Counter()
+    before = list(impure_maps.COUNT), dict(impure_maps.TABLE), impure_maps.CALLS, counter.n
+    for function, _ in impure_maps.BY_NAME.values():
+        impure(function)
+    impure(counter)
+    after = list(impure_maps.COUNT), dict(impure_maps.TABLE), impure_maps.CALLS, counter.n
+    assert before == after
+    assert not impure_maps.ARRAY.any()
+    assert (
+        impure_maps.Counter.made == len(impure_maps.Counter.table) == impure_maps.Vector.made == 0
+    )
+    assert not hasattr(impure_maps.math, "counter")
+    assert not hasattr(sys, "x")
+
+
+def test_copies_are_of_one_world() -> None:
+    """What one function writes another one reads, as it is with the user's own."""
+    table: list[Any] = []
+
+    def write(x: Any) -> None:
+        table.append(x)
+
+    def step(p: Any, q: Any) -> Any:
+        write(p)
+        return table[-1], q + len(table)
+
+    tape = Tape()
+    p, q = tape.symbol("p"), tape.symbol("q")
+    assert copied(step, tape)(p, q)[0] is p
+    assert tape.impure == ["table is changed"]
+    assert table == []
+
+
+def test_what_has_changed_back_when_the_call_is_over_is_no_state() -> None:
+    turns = [1, 2, 3]
+
+    def step(p: Any, q: Any) -> Any:
+        turns.reverse()
+        p = p * turns[0]
+        turns.reverse()
+        return p, q
+
+    assert impure(step) == []
+
+
+def test_a_state_that_comes_back_after_several_calls_is_seen_after_one() -> None:
+    turns = [1, 2, 3]
+
+    def step(p: Any, q: Any) -> Any:
+        turns.append(turns.pop(0))
+        return p * turns[0], q
+
+    assert impure(step) == ["turns is changed"]

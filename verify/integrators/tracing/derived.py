@@ -1,0 +1,92 @@
+"""Functions that are made of others: what numpy and `math` call them, and how.
+
+Each is written once, for numbers of any kind; what it asks of its argument is what its parts do.
+"""
+
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any
+
+_HALF, _THIRD = Fraction(1, 2), Fraction(1, 3)
+
+
+def _degree(x: Any) -> Any:
+    return x.kind.pi() / 180
+
+
+def _root(x: Any) -> Any:
+    return x.raised(_HALF)
+
+
+def _log(x: Any) -> Any:
+    return x.applied("log")
+
+
+def _log_of(base: int) -> Callable[[Any], Any]:
+    return lambda x: _log(x) / _log(x.kind.rational(Fraction(base)))
+
+
+def _arcsin(x: Any) -> Any:
+    return (x / _root(1 - x * x)).applied("atan")
+
+
+def _sinc(x: Any) -> Any:
+    turned = x.kind.pi() * x
+    return turned.applied("sin") / turned
+
+
+def _signed(x: Any, at_zero: Any = 0) -> Any:
+    """The sign of x, by comparisons, as a number of its kind."""
+    return x * 0 + (at_zero if x == 0 else 1 if x > 0 else -1)
+
+
+def arctan2(y: Any, x: Any) -> Any:
+    """The angle of the point (x, y); its branch is where y = 0 and x < 0."""
+    if not y.kind.ordered and None in (y.known(), x.known()):  # not there, but smooth elsewhere
+        return 2 * (y / (x + hypot(x, y))).applied("atan")
+    if abs(x) >= abs(y):
+        angle = (y / x).applied("atan")
+        return angle if x > 0 else angle + (y.kind.pi() if y >= 0 else -y.kind.pi())
+    quarter = y.kind.pi() / 2
+    return (quarter if y > 0 else -quarter) - (x / y).applied("atan")
+
+
+def _cbrt(x: Any) -> Any:
+    return -((-x) ** _THIRD) if x.kind.ordered and x < 0 else x**_THIRD
+
+
+def hypot(*x: Any) -> Any:
+    """The root of the sum of their squares."""
+    return _root(sum(each * each for each in x))
+
+
+OF_ONE: dict[str, Callable[[Any], Any]] = {
+    "arcsin": _arcsin,
+    "arccos": lambda x: x.kind.pi() / 2 - _arcsin(x),
+    "arcsinh": lambda x: _log(x + _root(x * x + 1)),
+    "arccosh": lambda x: _log(x + _root(x - 1) * _root(x + 1)),
+    "arctanh": lambda x: _log((1 + x) / (1 - x)) / 2,
+    "cbrt": _cbrt,
+    "degrees": lambda x: x / _degree(x),
+    "radians": lambda x: x * _degree(x),
+    "exp2": lambda x: 2**x,
+    "expm1": lambda x: x.applied("exp") - 1,
+    "log10": _log_of(10),
+    "log1p": lambda x: _log(x + 1),
+    "log2": _log_of(2),
+    "sinc": _sinc,
+    "sign": _signed,
+}
+# As `math` and new versions of numpy call them.
+OF_ONE |= {name.replace("arc", "a"): call for name, call in OF_ONE.items()}
+OF_ONE |= {"rad2deg": OF_ONE["degrees"], "deg2rad": OF_ONE["radians"]}
+OF_TWO: dict[str, Callable[[Any, Any], Any]] = {
+    "arctan2": lambda y, x: y.arctan2(x),
+    "hypot": hypot,
+    "copysign": lambda x, y: abs(x) * _signed(y, at_zero=1),
+    "heaviside": lambda x, at_zero: (1 + _signed(x, at_zero=2 * at_zero - 1)) / 2,
+    "logaddexp": lambda x, y: _log(x.applied("exp") + y.applied("exp")),
+    "maximum": lambda x, y: x if x >= y else y,
+    "minimum": lambda x, y: x if x <= y else y,
+}
+OF_TWO |= {"atan2": OF_TWO["arctan2"], "fmax": OF_TWO["maximum"], "fmin": OF_TWO["minimum"]}

@@ -1,0 +1,54 @@
+"""numpy's `solve`, `inv` and `det` for arrays of our numbers, which LAPACK does not take."""
+
+from typing import Any
+
+from verify.integrators.tracing.number import Kind, constant
+
+
+def solve(kind: Kind, matrix: Any, right: Any) -> Any:
+    """x of matrix·x = right, one vector or the columns of a matrix."""
+    import numpy as np
+
+    right = np.asarray(right, dtype=object)
+    rows, _ = _eliminated(kind, matrix, right.reshape(len(right), -1))
+    size = len(rows)
+    found = [[x / row[k] for x in row[size:]] for k, row in enumerate(rows)]
+    return np.array(found, dtype=object).reshape(right.shape)
+
+
+def inv(kind: Kind, matrix: Any) -> Any:
+    """The inverse."""
+    import numpy as np
+
+    return solve(kind, matrix, np.identity(len(matrix), dtype=object))
+
+
+def det(kind: Kind, matrix: Any) -> Any:
+    """The determinant."""
+    rows, found = _eliminated(kind, matrix, [()] * len(matrix))
+    for k, row in enumerate(rows):
+        found = found * row[k]
+    return found
+
+
+def _eliminated(kind: Kind, matrix: Any, right: Any) -> tuple[list[list[Any]], int]:
+    """A diagonal matrix, with what stands to the right of it, by Gauss; and the sign of det."""
+    rows: list[list[Any]] = [
+        [constant(kind, x) for x in (*a, *b)] for a, b in zip(matrix, right, strict=True)
+    ]
+    sign = 1
+    for k in range(len(rows)):
+        pivot = max(range(k, len(rows)), key=lambda i: _size(kind, rows[i][k]))
+        if pivot != k:
+            rows[k], rows[pivot], sign = rows[pivot], rows[k], -sign
+        for i, row in enumerate(rows):
+            if i != k:
+                factor = row[k] / rows[k][k]
+                rows[i] = [x - factor * y for x, y in zip(row, rows[k], strict=True)]
+    return rows, sign
+
+
+def _size(kind: Kind, x: Any) -> Any:
+    """By which pivots are chosen: a symbol, of no size, comes first, and 0 last."""
+    known = x.known()
+    return abs(x) if kind.ordered else 1 if known is None else bool(known) / 2
