@@ -44,13 +44,14 @@ from verify.integrators.user_code.calling import settle_layout
 from verify.integrators.user_code.faults import Fault, changed_since, examined
 from verify.integrators.user_code.loading import Callee
 from verify.integrators.user_code.repeated import repeated
-from verify.integrators.user_code.step import why, within
+from verify.integrators.user_code.step import StepError, why, within
 from verify.integrators.user_code.user_map import UserMap
-from verify.prose import Prose, prose
+from verify.prose import Prose, joined, prose
 from verify.verdict import Verdict
 
 UNDEFINED = "H has no exact solution from any of the places that are tried"
 _PROOF, _CLOCK_SECONDS = 1 / 3, 10.0  # of the time that is left; seconds
+_LISTED = 3  # of what is not pure
 _MOST_PROOF, _MOST_OF_MANY = 20.0, 6.0  # seconds; and of three degrees of freedom and more
 _KEPT = 0.4  # of the time that is left, for floats after dual numbers, which are slow
 
@@ -230,6 +231,7 @@ def _examine(trial: Trial, provable: bool) -> Finding:
             most = _MOST_PROOF if step.degrees < 3 else _MOST_OF_MANY
             with within(min(most, max(step.left, 0.1) * _PROOF), "its proof takes too long"):
                 trace = trace_of(step)
+                _must_be_pure(trace)
                 trace_must_agree(step, trace.roots, trial.places)
                 finding = _proved(trial, trace)
             finding = _decided(finding, trial, trace)
@@ -237,6 +239,14 @@ def _examine(trial: Trial, provable: bool) -> Finding:
         except Exception as error:  # the user's code may raise anything
             notes.append(prose("no proof: ", why(error)))
     return _measured(trial, notes)
+
+
+def _must_be_pure(trace: Trace) -> None:
+    """StepError where it reaches what is not known to stay the same from call to call."""
+    impure = trace.tape.impure
+    if impure:
+        listed = joined(", ", map(prose, impure[:_LISTED]))
+        raise StepError(prose("what it reaches may change from call to call: ", listed))
 
 
 def _proved(trial: Trial, trace: Trace) -> Finding:

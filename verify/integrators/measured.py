@@ -205,7 +205,8 @@ def _counts(loose: PlaceOrder, resolved: Sequence[PlaceOrder]) -> bool:
     least = min(x.power or 0 for x in resolved)
     if len(loose.slopes) < _ENOUGH or any(x.tail for x in resolved):
         return False
-    return min(loose.slopes[-2:]) < least - 0.2
+    before, last = loose.slopes[-2:]
+    return last < least - (0.5 if last >= before else 0.2)  # one that rises is on its way
 
 
 def _order_said(order: int, lowest: PlaceOrder) -> str:

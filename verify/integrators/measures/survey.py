@@ -22,7 +22,7 @@ _MOMENTS = tuple(map(Fraction, ("1/4", "5/7", "1/20", "13/5", "1003/7")))  # in 
 _MOST = {1: 12, 2: 16}
 _OTHERWISE = 10  # places of more degrees of freedom
 _BENT = 0.1  # of the largest entry of J
-_LARGEST = Fraction(1)  # of the step size, in parts of the time in which the motion changes
+_LARGEST = Fraction(1, 2)  # of the step size, in parts of the time in which the motion changes
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from verify.integrators.places.place import Place
+from verify.integrators.user_code.second_process import outcome, outcomes_elsewhere
 from verify.integrators.user_code.step import StepError, last_line, limited
 from verify.integrators.user_code.user_map import State, UserMap
 from verify.prose import Number, Prose, joined, prose
@@ -12,6 +13,7 @@ from verify.verdict import Verdict
 
 _PARTS = 8, 16  # of a place's largest step, with which it is tried
 _MOST = 6  # places
+_SECONDS = 2.0  # for calls in a second process
 
 
 @dataclass(frozen=True)
@@ -44,7 +46,27 @@ def examined(step: UserMap, places: Sequence[Place]) -> tuple[list[Fault], Calls
             continue
         if step.left <= 0:
             break
-    return [*_as_a_map(step, first), *_with_arrays(step, first)], first
+    return [*_as_a_map(step, first), *_elsewhere(step, first), *_with_arrays(step, first)], first
+
+
+def _elsewhere(step: UserMap, first: Mapping[Place, State]) -> list[Fault]:
+    """Whether it answers the same in a second process, in the reverse order."""
+    if step.foreign or not first:
+        return []
+
+    def call(place: Place) -> State:
+        return at(step, place)
+
+    seconds = min(_SECONDS, step.left / 10)
+    answers = outcomes_elsewhere(call, list(first), seconds)
+    for (place, state), answer in zip(first.items(), answers, strict=True):
+        if answer is not None and answer != outcome(lambda known: known, state):
+            z = ", ".join(f"{n} = {float(x):g}" for n, x in zip(step.names, place.z, strict=True))
+            said = (
+                f"in a second process, in another order of calls, it returns another result at {z}"
+            )
+            return [Fault("not a function", said, Verdict.UNDECIDED, ends=True)]
+    return []
 
 
 def at(step: UserMap, place: Place, part: int = _PARTS[0]) -> State:
@@ -87,7 +109,11 @@ def _as_a_map(step: UserMap, first: Mapping[Place, State]) -> list[Fault]:
         except Exception as error:  # the user's code may raise anything
             raised = prose("it raises ", last_line(error))
             cause = error.said if isinstance(error, StepError) else raised
-            return [Fault("fails", prose(cause, ", at a later call"), Verdict.PROVED, ends=step.left <= 0)]
+            return [
+                Fault(
+                    "fails", prose(cause, ", at a later call"), Verdict.PROVED, ends=step.left <= 0
+                )
+            ]
         if after != before:
             return [not_a_function(step, [float(x) for x in place.z], before, after)]
     if not step.stepped or not first:

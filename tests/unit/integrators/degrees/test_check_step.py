@@ -234,7 +234,7 @@ def test_claims(step: Step, claims: dict[str, Any], verdict: str, words: str) ->
             "it returns 2 numbers, in arrays of shape (2,); wanted: p', q', arrays",
         ),
         (lambda p, q, h: 1 / 0, "division by zero"),
-        (lambda p, q, h: 1 / 0, " at p1 = 0.5, p2 = 0.833333, q1 = 0.583333, q2 = 0.375, h = 0.0"),
+        (lambda p, q, h: 1 / 0, " at p1 = 0.2, p2 = 0.833333, q1 = 1.16667, q2 = 0.75, h = 0.0"),
         (lambda p, q, h: None, "it returns None; wanted: p', q'"),
         (lambda p, q, h: (p + np.nan, q), "it returns what is not finite (nan, nan, "),
     ],
