@@ -22,6 +22,7 @@ from verify.schemes.step_map import StepMap
 
 if TYPE_CHECKING:
     from verify.claims.checked import AboutAll
+    from verify.proof.every_proof import EveryProof
 
 Order = Annotated[int, Field(ge=1, le=64, strict=True)]
 OF_DELTA_J: "AboutAll" = frozenset({"volume"})
@@ -50,6 +51,12 @@ class OrderedClaim(QuantifiedClaim):
     def of_one(self, hamiltonian: Hamiltonian) -> Self:
         """An order that is not passed for all H together may well be passed for one."""
         return self.model_copy(update={"every": None, "at_least": True}) if self.every else self
+
+
+def every_delta_j(proof: "EveryProof") -> ProvedOrder:
+    """The order of ΔJ for every H."""
+    preserves, order = proof.area_preserving, proof.order
+    return ProvedOrder(order or 0, order is not None, preserves, proof.reason, proof.domain)
 
 
 def delta_j_of(claim: Claim, findings: Findings) -> ProvedOrder:

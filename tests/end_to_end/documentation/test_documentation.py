@@ -42,8 +42,8 @@ Append this to `mine.toml`:
 ```toml
 [[claim]]
 id = "order"
-kind = "order"
-order = 4
+kind = "defect_order"
+defect_order = 4
 ```
 
 ```console

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands.shared.answer import picked
-from verify.commands.shared.output import agreement, agreement_json, cut, line
+from verify.commands.shared.output import agreement, agreement_json, cut, line, order_json
 
 if TYPE_CHECKING:
     from verify.integrators.degrees.results import StepFinding
@@ -31,7 +31,7 @@ def symplectic_json(
         **texts,
         "degrees": proof.degrees,
         "scheme": scheme,
-        "order": proof.order,
+        **order_json(proof.order),
         "leading": proof.leading_text,
         "formula": proof.formula or None,
         "delta_j": "0" if proof.area_preserving else None,
@@ -66,7 +66,7 @@ def step_json(
         "degrees": found.degrees,
         "integrator": target,
         **picked(found, "how", "symplectic", "area_preserving"),
-        "order": proof.order if proof else None,
+        **order_json(proof.order if proof else None),
         "leading": proof.leading_text if proof else None,
         "volume_order": proof.volume_order if proof else None,
         "convergence_order": found.convergence_order,
