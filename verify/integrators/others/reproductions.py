@@ -7,7 +7,7 @@ from fractions import Fraction
 from verify.arithmetic.exact import decimal
 from verify.integrators.tables.entry import TableEntry
 from verify.integrators.tables.splittings.claims import timed_parts
-from verify.integrators.tables.splittings.table import PrintedTable
+from verify.schemes.printed.splitting_table import PrintedTable
 
 Point = tuple[Fraction, ...]  # p, then q
 _DIGITS = 45

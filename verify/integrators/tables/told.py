@@ -6,7 +6,6 @@ from fractions import Fraction
 from typing import Protocol, Self, TypeVar
 
 from verify.errors import InputError
-from verify.integrators.tables.asked import Asked
 from verify.integrators.tables.cost import (
     DIGITS_BELOW,
     DIGITS_SEEN,
@@ -15,10 +14,11 @@ from verify.integrators.tables.cost import (
     exact_numbers,
     severity_of,
 )
-from verify.integrators.tables.judged import Judged
-from verify.integrators.tables.printed_numbers import PrintedNumbers, rounded_to
-from verify.integrators.tables.sentences import Details, of_conditions, of_digits, of_printed
 from verify.prose import Prose
+from verify.schemes.printed.asked import Asked
+from verify.schemes.printed.judged import Judged
+from verify.schemes.printed.printed_numbers import PrintedNumbers, rounded_to
+from verify.schemes.printed.sentences import Details, of_conditions, of_digits, of_printed
 from verify.verdict import Verdict
 
 WRONG_ORDER = "wrong order"

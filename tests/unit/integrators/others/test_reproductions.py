@@ -10,7 +10,7 @@ import pytest
 from verify.integrators.others import reproductions
 from verify.integrators.others.claims import claims_of
 from verify.integrators.others.libraries import literature
-from verify.integrators.tables.splittings.table import PrintedTable, judge_order
+from verify.schemes.printed.splitting_table import PrintedTable, judge_order
 from verify.verdict import Verdict
 
 TABLES = {integrator.name: integrator for integrator in literature.integrators()}

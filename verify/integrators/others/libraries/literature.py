@@ -10,7 +10,7 @@ from typing import Any
 from verify.content import content
 from verify.integrators.others.methods.integrator import ReleasedIntegrator
 from verify.integrators.tables.splittings.claims import alternating, mirrored
-from verify.integrators.tables.splittings.table import PrintedTable
+from verify.schemes.printed.splitting_table import PrintedTable
 
 TITLE = "printed tables"
 LIBRARY = None

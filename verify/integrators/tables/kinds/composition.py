@@ -6,7 +6,6 @@ from dataclasses import replace
 from pydantic import StrictBool
 
 from verify.errors import InputError
-from verify.integrators.tables.entry import Naming
 from verify.integrators.tables.layout import named_columns
 from verify.integrators.tables.splittings.claims import (
     SizesEntry,
@@ -15,9 +14,10 @@ from verify.integrators.tables.splittings.claims import (
     sizes_of,
     symmetric_claims,
 )
-from verify.integrators.tables.splittings.table import PrintedTable
 from verify.integrators.tables.told import WRONG_ORDER, WRONG_WEIGHTS, TableClaim
 from verify.prose import prose
+from verify.schemes.printed.naming import Naming
+from verify.schemes.printed.splitting_table import PrintedTable
 from verify.verdict import Verdict
 
 

@@ -10,12 +10,9 @@ from pydantic import BeforeValidator
 
 from verify.arithmetic.number import E
 from verify.errors import NOT_GIVEN, InputError
-from verify.integrators.tables.asked import Asked, Named
-from verify.integrators.tables.entry import MOST_ENTRIES, Naming, Order, Row, TableEntry
-from verify.integrators.tables.judged import Judged, judge
+from verify.integrators.tables.entry import Order, Row, TableEntry
 from verify.integrators.tables.layout import named_columns, one_column
 from verify.integrators.tables.splittings.clocks import TimedTable, judge_clocks, judge_in_time
-from verify.integrators.tables.splittings.table import PrintedTable, judge_order
 from verify.integrators.tables.told import (
     OF_WORDS,
     WRONG_CLOCK,
@@ -26,6 +23,10 @@ from verify.integrators.tables.told import (
     order_claims,
 )
 from verify.prose import prose
+from verify.schemes.printed.asked import Asked, Named
+from verify.schemes.printed.judged import Judged, judge
+from verify.schemes.printed.naming import MOST_ENTRIES, Naming
+from verify.schemes.printed.splitting_table import PrintedTable, judge_order
 from verify.verdict import Verdict
 
 _EXCHANGED = {"kick": "drift", "drift": "kick"}

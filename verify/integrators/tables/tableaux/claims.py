@@ -6,10 +6,7 @@ from dataclasses import replace
 from pydantic import StrictBool
 
 from verify.errors import NOT_GIVEN, InputError
-from verify.integrators.tables.asked import Asked
 from verify.integrators.tables.entry import Order, TableEntry
-from verify.integrators.tables.judged import Judged, judge
-from verify.integrators.tables.printed_numbers import PrintedNumbers
 from verify.integrators.tables.tableaux.order import (
     MANY,
     judge_in_time,
@@ -32,6 +29,9 @@ from verify.integrators.tables.told import (
     order_claims,
 )
 from verify.prose import prose
+from verify.schemes.printed.asked import Asked
+from verify.schemes.printed.judged import Judged, judge
+from verify.schemes.printed.printed_numbers import PrintedNumbers
 from verify.verdict import Verdict
 
 

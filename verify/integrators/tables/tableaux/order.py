@@ -14,9 +14,6 @@ import sympy
 
 from verify.arithmetic.number import E
 from verify.errors import InputError
-from verify.integrators.tables.asked import Asked, Named, Residues
-from verify.integrators.tables.judged import Judged, judge
-from verify.integrators.tables.misprint import Misprint
 from verify.integrators.tables.tableaux.table import TableauTable
 from verify.integrators.tables.tableaux.tree_weights import Block, dot
 from verify.schemes.coloured_trees import (
@@ -28,6 +25,9 @@ from verify.schemes.coloured_trees import (
     symmetry,
     vertices,
 )
+from verify.schemes.printed.asked import Asked, Named, Residues
+from verify.schemes.printed.judged import Judged, judge
+from verify.schemes.printed.misprint import Misprint
 from verify.verdict import Verdict
 
 _MOST_TREES = 2500

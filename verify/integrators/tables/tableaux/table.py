@@ -11,9 +11,9 @@ import sympy
 
 from verify.arithmetic.number import E
 from verify.errors import InputError
-from verify.integrators.tables.printed_numbers import PrintedNumbers
 from verify.integrators.tables.tableaux.tree_weights import Block, TreeWeights
 from verify.schemes.coloured_trees import Grammar
+from verify.schemes.printed.printed_numbers import PrintedNumbers
 
 MOST_STAGES = 40
 Texts = tuple[str, ...]

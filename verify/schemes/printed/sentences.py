@@ -3,9 +3,9 @@
 from fractions import Fraction
 
 from verify.arithmetic.exact import decimal
-from verify.integrators.tables.judged import WITHIN, Judged
-from verify.integrators.tables.printed_numbers import PrintedNumbers, rounded_to
 from verify.prose import Prose, count, prose, read_prose
+from verify.schemes.printed.judged import WITHIN, Judged
+from verify.schemes.printed.printed_numbers import PrintedNumbers, rounded_to
 from verify.verdict import Verdict
 
 Details = tuple[tuple[str, ...], ...]

@@ -9,8 +9,8 @@ import flint
 from verify.algebra.formula import symbol
 from verify.arithmetic.arb import Ball, middle_and_radius
 from verify.arithmetic.flint_precision import working_precision
-from verify.integrators.tables.asked import BITS, Asked
-from verify.integrators.tables.nearby import AnyNumbers, Nearby, small
+from verify.schemes.printed.asked import BITS, Asked
+from verify.schemes.printed.nearby import AnyNumbers, Nearby, small
 
 _TURNS = 9
 _HELD = flint.arb(2) ** -150  # a residue that is 0, where no number is rounded

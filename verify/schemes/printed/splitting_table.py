@@ -9,9 +9,6 @@ import sympy
 
 from verify.arithmetic.number import E
 from verify.errors import InputError
-from verify.integrators.tables.asked import Asked, Residues
-from verify.integrators.tables.judged import Judged, judge
-from verify.integrators.tables.printed_numbers import PrintedNumbers, power
 from verify.schemes.free_lie_words import (
     KINDS,
     MOST_ORDER,
@@ -21,6 +18,9 @@ from verify.schemes.free_lie_words import (
     residue,
     step,
 )
+from verify.schemes.printed.asked import Asked, Residues
+from verify.schemes.printed.judged import Judged, judge
+from verify.schemes.printed.printed_numbers import PrintedNumbers, power
 from verify.schemes.splitting_conditions import LETTERS
 
 _ODD = (1, 3, 5, 7, 9)

@@ -1,4 +1,4 @@
-"""What the digits of a printed table can say of conditions; see `verify.integrators.tables.nearby`.
+"""What the digits of a printed table can say of conditions; see `verify.schemes.printed.nearby`.
 
 - PROVED or REFUTED by exact algebra where no coefficient is rounded;
 - REFUTED where no numbers within ten units of the last digits satisfy all conditions, and a residue
@@ -19,11 +19,11 @@ from verify.algebra.enclosure import enclose
 from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.arb import in_reach, middle_and_radius
 from verify.arithmetic.flint_precision import working_precision
-from verify.integrators.tables.asked import BITS, Asked, Equation
-from verify.integrators.tables.misprint import Misprint, exact_misprint, misprint
-from verify.integrators.tables.nearby import Nearby
-from verify.integrators.tables.nearest import far, nearest
-from verify.integrators.tables.printed_numbers import PrintedNumbers
+from verify.schemes.printed.asked import BITS, Asked, Equation
+from verify.schemes.printed.misprint import Misprint, exact_misprint, misprint
+from verify.schemes.printed.nearby import Nearby
+from verify.schemes.printed.nearest import far, nearest
+from verify.schemes.printed.printed_numbers import PrintedNumbers
 from verify.verdict import Verdict
 
 WITHIN = 10  # units of the last digit, for the order

@@ -9,9 +9,9 @@ import pytest
 from verify.errors import InputError
 from verify.integrators.others.claims import claims_of
 from verify.integrators.others.libraries import literature
-from verify.integrators.tables.printed_numbers import evaluated
-from verify.integrators.tables.splittings.table import PrintedTable, judge_order
 from verify.schemes.free_lie_words import KINDS, MOST_ORDER, conditions, residue, step
+from verify.schemes.printed.printed_numbers import evaluated
+from verify.schemes.printed.splitting_table import PrintedTable, judge_order
 from verify.schemes.splitting_conditions import Splitting
 from verify.verdict import Verdict
 
