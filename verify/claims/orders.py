@@ -11,13 +11,15 @@ from verify.claims.claim import Claim
 from verify.claims.findings import Findings
 from verify.claims.formulas import step_map_of, within, witness_of
 from verify.claims.orders_in_degrees import defect_order, flow_order, volume_order
-from verify.claims.proved_order import ProvedOrder
+from verify.claims.proved_order import ProvedOrder, told_of
 from verify.claims.quantified import QuantifiedClaim
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import MOST_ORDERS
-from verify.proof.order import convergence_of, leading_of
+from verify.proof.order import convergence_of_scheme, leading_of
 from verify.prose import Formula, prose
 from verify.scenes.results.claim import ClaimResult
+from verify.schemes import get
+from verify.schemes.scheme import Scheme
 from verify.schemes.step_map import StepMap
 
 if TYPE_CHECKING:
@@ -79,7 +81,7 @@ def flow_of(claim: Claim, findings: Findings) -> ProvedOrder:
     """Up to which power of h its map agrees with the exact flow, in any number of degrees."""
     hamiltonian = findings.scene_of(claim).exact_hamiltonian()
     if hamiltonian.planar:
-        return convergence_order(step_map_of(hamiltonian, claim.scheme))
+        return convergence_order(step_map_of(hamiltonian, claim.scheme), get(claim.scheme))
     return flow_order(hamiltonian, claim.scheme)
 
 
@@ -104,9 +106,9 @@ def delta_j_order(step_map: StepMap) -> ProvedOrder:
     return ProvedOrder(power, True, False, evidence, step_map.domain, leading.domain)
 
 
-def convergence_order(step_map: StepMap) -> ProvedOrder:
+def convergence_order(step_map: StepMap, scheme: Scheme | None = None) -> ProvedOrder:
     """To which power of h the map agrees with the exact flow."""
-    found = convergence_of(step_map)
+    found, near = convergence_of_scheme(step_map, scheme)
     if found.order is None:
         evidence = f"the map agrees with the exact flow in all orders looked at, {MOST_ORDERS}"
         return ProvedOrder(MOST_ORDERS, False, None, evidence, step_map.domain)
@@ -115,4 +117,7 @@ def convergence_order(step_map: StepMap) -> ProvedOrder:
         agrees = prose("the map does not agree with the exact flow even at h = 0")
     more = " and no further" if found.decided else "; whether further is not decided"
     exact_for = found.exact_for() if found.decided else EVERYWHERE
-    return ProvedOrder(found.order, found.decided, False, agrees + more, step_map.domain, exact_for)
+    known = ProvedOrder(
+        found.order, found.decided, False, agrees + more, step_map.domain, exact_for
+    )
+    return told_of(known, near)
