@@ -174,6 +174,7 @@ class Stub:
     leading: str = "H_p*H_ppq - 2*H_q*H_ppp"
     domain: Domain = EVERYWHERE
     convergence_decided: bool = True
+    nearby: None = None
 
 
 EULER = Stub(order=None, area_preserving=True, convergence_order=1, leading="0")

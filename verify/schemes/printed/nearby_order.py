@@ -4,13 +4,12 @@ near them, as `verify.schemes.printed.judged` says.
 Taken exactly, Yoshida's 1.3512071919596578 makes a map of order 0.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache
+from functools import cached_property
 
-import flint
-
-from verify.arithmetic.arb import middle_and_radius
+from verify.arithmetic.arb import middle_and_radius, rational_ball
 from verify.arithmetic.exact import decimal
 from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
@@ -21,53 +20,60 @@ from verify.schemes.printed.naming import Naming
 from verify.schemes.printed.printed_numbers import entries_at
 from verify.schemes.printed.sentences import of_printed
 from verify.schemes.printed.splitting_table import PrintedTable, judge_order
-from verify.schemes.splitting_conditions import Nearby
 
 _DIGITS = 12  # of a residue
 
 
-def nearby_of(parts: Sequence[tuple[str, str]]) -> Nearby | None:
+def nearby_of(parts: Sequence[tuple[str, str]]) -> "PrintedSizes | None":
     """What finds the order of kicks and drifts with these sizes, as they are written; None where
     they stand for nothing but themselves."""
-    tables = readings_of(parts)
-    return cache(lambda most: _highest(tables, most)) if tables else None
-
-
-def readings_of(parts: Sequence[tuple[str, str]]) -> list[PrintedTable]:
-    """The table as it may be read, those without a rounded number left out."""
     naming = Naming({})
     try:
         sizes = naming.entries((size for _, size in parts), "size")
         named = tuple((kind, size) for (kind, _), size in zip(parts, sizes, strict=True))
         plain = PrintedTable("splitting", named, naming.numbers)
         tables = [plain.read(numbers) for numbers in naming.printed.of_a_method()]
-        return [table for table in tables if table.units]
-    except InputError:  # no table: sizes that are beyond all coefficients
-        return []
+        rounded = tuple(table for table in tables if table.units)
+        for table in rounded:
+            parts_at(table, table.values)
+    except InputError:  # sizes beyond all coefficients, or no polynomials in the decimals
+        return None
+    return PrintedSizes(rounded) if rounded else None
+
+
+@dataclass(frozen=True)
+class PrintedSizes:
+    """`tables`: one for each way in which the sizes may be read, that taken first before others."""
+
+    tables: tuple[PrintedTable, ...]
+
+    def __call__(self, most: int) -> NearbyOrder | None:
+        """The highest order up to `most` that exact sizes near these have."""
+        if most not in self._known:
+            self._known[most] = _highest(self.tables, most)
+        return self._known[most]
+
+    @cached_property
+    def _known(self) -> dict[int, NearbyOrder | None]:
+        return {}
 
 
 def _highest(tables: Sequence[PrintedTable], most: int) -> NearbyOrder | None:
     best: tuple[int, PrintedTable, Judged] | None = None
     wrong = None
     for order in range(1, most + 1):
-        judged = [(table, _judged(table, order)) for table in tables]
-        near = next((pair for pair in judged if pair[1] and _is_near(pair[1])), None)
-        if near is None or near[1] is None:
+        judged = [(table, judge_order(table, order)) for table in tables]
+        near = next((pair for pair in judged if _is_near(pair[1])), None)
+        if near is None:
             wrong = _wrong(judged[-1][1], order)
             break
-        best = order, near[0], near[1]
+        best = order, *near
     if best is None:
         return None
     order, table, found = best
     verdict, said, _ = of_printed(found, order)
-    return NearbyOrder(order, verdict, said, wrong, _nearest_parts(table, found))
-
-
-def _judged(table: PrintedTable, order: int) -> Judged | None:
-    try:
-        return judge_order(table, order)
-    except InputError:  # sizes that are no polynomials in the decimals
-        return None
+    parts = () if found.nearest is None else parts_at(table, found.nearest)
+    return NearbyOrder(order, verdict, said, wrong, parts)
 
 
 def _is_near(found: Judged) -> bool:
@@ -77,18 +83,18 @@ def _is_near(found: Judged) -> bool:
     )
 
 
-def _wrong(found: Judged | None, order: int) -> Condition | None:
-    failing = None if found is None else found.failing
-    if found is None or failing is None or failing.order > order:
+def _wrong(found: Judged, order: int) -> Condition | None:
+    failing = found.failing
+    if failing is None or failing.order > order:
         return None
     return Condition(failing.name, failing.order, decimal(found.residue, _DIGITS), False)
 
 
-def _nearest_parts(table: PrintedTable, found: Judged) -> tuple[tuple[str, Fraction], ...]:
-    if found.nearest is None:
-        return ()
+def parts_at(
+    table: PrintedTable, numbers: Mapping[str, Fraction]
+) -> tuple[tuple[str, Fraction], ...]:
+    """The parts with these numbers, to some 90 digits."""
     with working_precision(BITS):
-        numbers = found.nearest.items()
-        at = {name: flint.arb(flint.fmpq(x.numerator, x.denominator)) for name, x in numbers}
+        at = {name: rational_ball(numbers[name]) for name in table.units}
         sizes = [middle_and_radius(x)[0] for x in entries_at(table.sizes, at, ball_of)]
     return tuple((kind, size) for (kind, _), size in zip(table.parts, sizes, strict=True))
