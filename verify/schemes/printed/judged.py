@@ -36,7 +36,8 @@ class Judged:
     """What was found of conditions of orders up to a claimed one.
 
     `order`: the highest that is not excluded, of those looked at. `failing`: the first condition
-    that excludes more, with its `residue` as printed. `largest`: the largest residue of the claimed
+    that excludes more, with its `residue` as printed; `lower`: one of a lower order, whose residue
+    is of wrong digits. `largest`: the largest residue of the claimed
     order's conditions. `off`: how far the printed number that is farthest from a solution's is from
     it, in units of its last digit, and `nearest` the solution's numbers; None where none is known.
     `shown`: how many conditions are shown to hold there, of `checked`; the others do to 60 digits.
@@ -57,6 +58,7 @@ class Judged:
     misprint: Misprint | None = None
     residues: tuple[tuple[Equation, Fraction], ...] = ()
     read: PrintedNumbers | None = None
+    lower: tuple[Equation, Fraction] | None = None
 
     @property
     def holds(self) -> bool:
@@ -91,7 +93,10 @@ def _of(near: Nearby, order: int, numbers: PrintedNumbers) -> Judged:
     condition = None if failing is None else equations[failing]
     size = Fraction(0) if failing is None else near.at_print[failing]
     residues = tuple(zip(equations, near.at_print, strict=True))
+    first = min(wrong, key=lambda k: equations[k].order, default=None)
     seen = Judged(Verdict.MEASURED, allowed, checked, condition, size, largest, residues=residues)
+    if first is not None and condition is not None and equations[first].order < condition.order:
+        seen = replace(seen, lower=residues[first])
     if allowed < order and largest > OF_DIGITS:
         seen = replace(seen, verdict=Verdict.REFUTED, digits=False)
         if numbers.tentative:

@@ -68,9 +68,13 @@ def _excluded(found: Judged, claimed: int) -> str:
             f"{found.checked} conditions together{far}; residues are up to {_short(found.largest)}"
         )
     assert found.failing is not None  # noqa: S101 - it is what excludes more
+    but = ""
+    if found.lower is not None:
+        lower, by = found.lower[0], _short(found.lower[1])
+        but = f", but for wrong digits (of `h^{lower.order}`, `{lower.name}` fails by {by})"
     said = (
-        f"its order is {found.order}: of `h^{found.failing.order}`, `{found.failing.name}` fails "
-        f"by {_short(found.residue)}{_none_near(found)}"
+        f"its order is {found.order}{but}: of `h^{found.failing.order}`, `{found.failing.name}` "
+        f"fails by {_short(found.residue)}{_none_near(found)}"
     )
     return said + _alone(found)
 

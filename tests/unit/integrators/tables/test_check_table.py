@@ -326,3 +326,15 @@ def test_long_quotients_may_stand_for_irrational_numbers() -> None:
     assert found["order"].verdict in (Verdict.ENCLOSED, Verdict.MEASURED), found["order"].evidence
     wrong = {**table, "b": [near[1], "2744310/9369319"]}
     assert claims(wrong)["order"].verdict is Verdict.REFUTED
+
+
+def test_wrong_digits_of_a_lower_order_are_told_beside_the_order() -> None:
+    """Σ w is off by 7e-11, of 18 digits: the weights have no order at all as they stand."""
+    outer = "1.351207191959657634"
+    yoshida = {"name": "x", "kind": "composition", "order": 6,
+               "sizes": [outer, "-1.702414383919315268", outer]}  # fmt: skip
+    right = claims(yoshida)["order"].evidence
+    wrong = claims({**yoshida, "sizes": [outer, "-1.702414383849315268", outer]})["order"].evidence
+    assert right.startswith("its order is 4: of h^5")
+    said = "its order is 4, but for wrong digits (of h^1, Σ w = 1 fails by 7.00e-11): of h^5"
+    assert wrong.startswith(said)
