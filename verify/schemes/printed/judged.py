@@ -28,6 +28,7 @@ from verify.verdict import Verdict
 
 WITHIN = 10  # units of the last digit, for the order
 OF_DIGITS = Fraction(1, 10**9)  # a residue below it is of wrong digits, and not of a wrong method
+AS_PRINTED = Fraction(1, 10**30)  # units, within which a solution is what is printed
 _AT_LEAST = Verdict.PROVED, Verdict.ENCLOSED, Verdict.MEASURED
 
 
@@ -119,6 +120,8 @@ def _with_nearest(seen: Judged, near: Nearby, own: Sequence[int], order: int, sl
     wrong_digits = off > slack and (allowed < order or near.apart(own, slack))
     one = misprint(near, own) if wrong_digits and off > WITHIN else None
     digits = True if off <= slack else False if wrong_digits else None
+    if off < AS_PRINTED and found.shown < len(near.names):
+        digits = None  # any others of those that are free would do as well
     known = allowed >= order and off <= WITHIN
     verdict = Verdict.ENCLOSED if known or largest <= OF_DIGITS else Verdict.MEASURED
     if off > WITHIN and largest > OF_DIGITS and near.apart(own, WITHIN):

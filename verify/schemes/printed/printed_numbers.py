@@ -119,6 +119,10 @@ class PrintedNumbers:
             self, exact_up_to=_SHORTEST, exact_digits=0, exact_quotients=False, tentative=True
         )
 
+    def with_number(self, name: str, text: str) -> "PrintedNumbers":
+        """The same with one of them printed so."""
+        return replace(self, numbers={**self.numbers, name: text})
+
     def of_a_method(self) -> list["PrintedNumbers"]:
         """As those of a method are read that stands alone: what has few digits is exact, and long
         quotients are where it holds so."""

@@ -87,6 +87,14 @@ class PrintedTable:
         """The highest order that is looked at."""
         return MOST_ORDER[self.kind]
 
+    def mended(self, name: str, text: str) -> "PrintedTable":
+        """The same with this number, or else part, written so; as it is where it has none."""
+        if name in self.numbers:
+            return replace(self, numbers={**self.numbers, name: text})
+        parts = ((kind, text if name == f"{kind} {k + 1}" else size) for k, (kind, size) in
+                 enumerate(self.parts))  # fmt: skip
+        return replace(self, parts=tuple(parts))
+
     def read(self, numbers: PrintedNumbers) -> "PrintedTable":
         """The same with its numbers read so."""
         return replace(
