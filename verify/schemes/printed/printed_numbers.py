@@ -120,8 +120,8 @@ class PrintedNumbers:
         )
 
     def with_number(self, name: str, text: str) -> "PrintedNumbers":
-        """The same with one of them printed so."""
-        return replace(self, numbers={**self.numbers, name: text})
+        """The same with one of them printed so, to see whether it holds."""
+        return replace(self, numbers={**self.numbers, name: text}, tentative=True)
 
     def of_a_method(self) -> list["PrintedNumbers"]:
         """As those of a method are read that stands alone: what has few digits is exact, and long

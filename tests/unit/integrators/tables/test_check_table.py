@@ -420,3 +420,15 @@ def test_digits_of_numbers_that_the_order_leaves_free_are_not_judged() -> None:
     assert all("units" not in str(claim.evidence) for claim in found.values())
     wrong = {**free, "sizes": [*sizes[:2], "0.753086522", *sizes[3:]]}
     assert claims(wrong)["order"].verdict is Verdict.REFUTED, "of these the sum is not 1"
+
+
+def test_a_table_of_order_8_with_a_wrong_digit_takes_seconds() -> None:
+    """The row sums fail by 1e-9, so that 1,540 conditions with times would be looked at."""
+    a = [list(row) for row in ORDER_8["a"]]
+    assert a[2][1] == "0.0591751709536137"
+    a[2][1] = "0.0591751719536137"
+    begun = time.process_time()
+    found = claims({**ORDER_8, "a": a})
+    assert time.process_time() - begun < 12
+    assert found["row sums"].verdict is Verdict.REFUTED
+    assert found["order in time"].verdict is Verdict.UNDECIDED

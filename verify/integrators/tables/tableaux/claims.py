@@ -79,15 +79,14 @@ def _claims(
     separable: bool,
     hints: Hints = NONE,
 ) -> Iterator[TableClaim]:
-    sums = None
+    sums, claimed = None, entry.row_sums if entry.row_sums is not None else table.timed
     if table.timed:
         sums = best_reading(table, judge_row_sums)
     if entry.order is not None:
         known = hints.kept(_judged(table, entry.order))
         yield from _of_order("order", f"order {entry.order}", table, known, entry.order)
-        if sums is not None:
+        if sums is not None and not (claimed and hints is NONE):  # then the row sums tell
             yield _in_time(table, entry.order, known, sums, hints)
-    claimed = entry.row_sums if entry.row_sums is not None else table.timed
     if claimed:
         sums = sums or best_reading(table, judge_row_sums)
         if sums.verdict is Verdict.REFUTED and not table.nystrom and sums.misprint is None:
