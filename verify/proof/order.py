@@ -24,7 +24,9 @@ from verify.prose import Formula, Prose, prose, read_prose
 from verify.schemes.conditions import Condition, NearbyOrder
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import splitting
+from verify.schemes.splitting_conditions import Splitting
 from verify.schemes.step_map import Expanded, StepMap, Substep
+from verify.schemes.timed.for_scheme import conditions_for
 from verify.verdict import Verdict
 
 _Coefficient = Callable[[str, int], tuple[VectorField, Ring, Poly]]
@@ -195,16 +197,23 @@ def convergence_of_scheme(
 ) -> tuple[Convergence, NearbyOrder | None]:
     """As `convergence_of`, of exact coefficients where those of the scheme are printed."""
     printed = convergence_of(step_map, series)
-    return nearby_convergence(scheme, printed, partial(_of_scheme, step_map.hamiltonian))
+    exact = step_map.hamiltonian
+    return nearby_convergence(scheme, printed, exact, partial(_of_scheme, exact))
 
 
 def nearby_convergence(
-    scheme: Scheme | None, printed: Convergence, of: Callable[[Scheme], Convergence]
+    scheme: Scheme | None,
+    printed: Convergence,
+    hamiltonian: Hamiltonian,
+    of: Callable[[Scheme], Convergence],
 ) -> tuple[Convergence, NearbyOrder | None]:
     """The order of exact coefficients near those that a scheme prints, where it is higher than that
     of these; `of` finds that of a scheme whose coefficients are right to `RESIDUE` and better."""
-    near = nearby_order(scheme.every_h, scheme.order) if scheme else None
-    if scheme is None or near is None or printed.order is None or near.order <= printed.order:
+    if scheme is None or scheme.every_h is None:
+        return printed, None
+    timed = hamiltonian.time_dependent and isinstance(scheme.every_h, Splitting)
+    near = nearby_order(conditions_for(scheme.every_h) if timed else scheme.every_h, scheme.order)
+    if near is None or printed.order is None or near.order <= printed.order:
         return printed, None
     found = Convergence(near.order, False)
     if near.parts:

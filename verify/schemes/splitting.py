@@ -52,7 +52,7 @@ def splitting(
         symmetric=symmetric,
         source=source,
         build=lambda hamiltonian: shears(hamiltonian, name, parts, times),
-        every_h=Splitting(tuple(parts), times=own, nearby=None if own else nearby),
+        every_h=Splitting(tuple(parts), times=own, nearby=nearby),
     )
 
 

@@ -75,7 +75,9 @@ def prove_map(
     series = series_of(step, claimed.order + 1)
     most = max(_MOST, claimed.order + 1)
     printed = _convergence(step, series, most)
-    convergence, near = nearby_convergence(scheme, printed, partial(_of_scheme, step, most))
+    convergence, near = nearby_convergence(
+        scheme, printed, step.hamiltonian, partial(_of_scheme, step, most)
+    )
     defect = _within(step.domain, _defect(step, series, most))
     verdict, reason = _verdict(claimed, convergence, defect, most)
     if near is not None and verdict is Verdict.PROVED:

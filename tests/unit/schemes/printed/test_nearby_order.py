@@ -100,3 +100,27 @@ def test_the_nearest_parts_are_right_to_many_digits() -> None:
     assert abs((2 - 1 / gamma) ** 3 - 2) < Fraction(1, 10**80)
     assert near.parts[0][0] == "kick"
     assert near.wrong.order == 5
+
+
+DRIVEN = Hamiltonian.parse("p**2/2 + q**4/4 - q*cos(t)")
+
+
+def test_times_that_are_given_count_where_h_depends_on_time() -> None:
+    """A clock that stands still loses the order there, and changes nothing without time."""
+    half, total, times = HALVES[2], Fraction(0), list[str]()
+    sizes = (*half, *half[-2::-1])
+    for kind, size in zip(KINDS, sizes, strict=True):
+        times.append(f" at {total}" if kind == "kick" else "")
+        total += Fraction(size) if kind == "drift" else 0
+    parts = [f"{kind} {size}" for kind, size in zip(KINDS, sizes, strict=True)]
+    right = "; ".join(map("".join, zip(parts, times, strict=True))) + "; order 4"
+    frozen = "; ".join(x + " at 0" * x.startswith("kick") for x in parts) + "; order 4"
+    for name in (right, frozen):
+        scheme = schemes.get(name)
+        assert prove(scheme.step_map(PENDULUM), scheme).verdict is ENCLOSED
+    found = {name: schemes.get(name) for name in (right, frozen)}
+    verdicts = {
+        name: {prove(x.step_map(DRIVEN), x).verdict, prove_every_in_time(name).verdict}
+        for name, x in found.items()
+    }
+    assert verdicts == {right: {ENCLOSED}, frozen: {REFUTED}}
