@@ -3,10 +3,9 @@
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 
-from verify.integrators.tables.told import TableClaim
+from verify.integrators.tables.told import TableClaim, nearest_texts
 from verify.schemes.printed.judged import Judged
 from verify.schemes.printed.misprint import Misprint
-from verify.schemes.printed.printed_numbers import rounded_to
 from verify.schemes.printed.sentences import mended_text
 from verify.verdict import Verdict
 
@@ -33,10 +32,9 @@ class Hints:
                 self.one = m
                 return found
             found = replace(found, misprint=None)
-        if not refuted or found.nearest is None or found.read is None:
+        if not refuted or found.nearest is None:
             return found
-        units, numbers = found.read.units, found.nearest.items()
-        if self._holds({name: rounded_to(x, units[name] / 10**6) for name, x in numbers}):
+        if self._holds(nearest_texts(found) or {}):
             return found
         return replace(found, nearest=None, off=None)
 

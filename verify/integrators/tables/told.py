@@ -102,7 +102,7 @@ def order_claims(
             after = None
     if verdict is Verdict.REFUTED:
         yield TableClaim(kind, statement, verdict, evidence, details, severity,
-                         _nearest(found), cost_of(found, order, after))  # fmt: skip
+                         nearest_texts(found), cost_of(found, order, after))  # fmt: skip
         return
     yield TableClaim(kind, statement, verdict, evidence, details)
     if found.read is not None and found.read.units:
@@ -118,7 +118,7 @@ def condition_claims(
     claim = TableClaim(kind, statement, verdict, evidence, details)
     cost = cost_of(found, None) if exact_numbers(found) else None
     if verdict is Verdict.REFUTED:
-        yield replace(claim, severity=severity, nearest=_nearest(found), cost=cost)
+        yield replace(claim, severity=severity, nearest=nearest_texts(found), cost=cost)
         return
     yield claim
     if found.digits is False:
@@ -132,10 +132,11 @@ def _digits_claim(
     claim = TableClaim(kind, statement, *of_digits(found))
     if claim.verdict is not Verdict.REFUTED:
         return claim
-    return replace(claim, severity=severity_of(found, severity), nearest=_nearest(found), cost=cost)
+    own = severity_of(found, severity)
+    return replace(claim, severity=own, nearest=nearest_texts(found), cost=cost)
 
 
-def _nearest(found: Judged) -> dict[str, str] | None:
+def nearest_texts(found: Judged) -> dict[str, str] | None:
     """To a few digits more than are printed."""
     numbers, read = exact_numbers(found), found.read
     if not numbers or read is None:

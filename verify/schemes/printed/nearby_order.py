@@ -31,7 +31,7 @@ def nearby_of(parts: Sequence[tuple[str, str]]) -> "PrintedSizes | None":
     try:
         sizes = naming.entries((size for _, size in parts), "size")
         named = tuple((kind, size) for (kind, _), size in zip(parts, sizes, strict=True))
-        plain = PrintedTable("splitting", named, naming.numbers)
+        plain = PrintedTable("splitting", named, naming.printed)
         tables = [plain.read(numbers) for numbers in naming.printed.of_a_method()]
         rounded = tuple(table for table in tables if table.units)
         for table in rounded:

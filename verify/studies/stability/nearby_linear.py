@@ -104,7 +104,7 @@ def _closed(table: PrintedTable, order: int, gaps: Sequence[Fraction]) -> Neares
     free = dict.fromkeys(names, _FREE)
     texts = {name: decimal(y, 12) for name, y in zip(names, gaps, strict=True)}
     numbers = AnyNumbers(
-        {**table.numbers, **texts},
+        {**table.printed.numbers, **texts},
         {**table.values, **dict(zip(names, gaps, strict=True))},
         {**table.units, **free},
     )

@@ -41,7 +41,7 @@ def claims(entry: Entry) -> Iterator[TableClaim]:
         sizes, half = sizes_of(entry)
     named = naming.entries(sizes, "w")
     parts = tuple(("step", size) for size in (mirrored(named) if half else named))
-    table = PrintedTable(entry.kind, parts, naming.numbers)
+    table = PrintedTable(entry.kind, parts, naming.printed)
 
     def again(numbers: Mapping[str, str]) -> Iterator[TableClaim]:
         made = table

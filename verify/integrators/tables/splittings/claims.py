@@ -84,7 +84,7 @@ def of_alternating(entry: AlternatingEntry) -> Iterator[TableClaim]:
     both = entry.first == "both"
     for first in ("kick", "drift") if both else (kinds[0],):
         own = kinds if first == kinds[0] else tuple(_EXCHANGED[kind] for kind in kinds)
-        table = PrintedTable(entry.kind, tuple(zip(own, sizes, strict=True)), naming.numbers)
+        table = PrintedTable(entry.kind, tuple(zip(own, sizes, strict=True)), naming.printed)
         again = partial(_mended, entry, table, times)
         for claim in _of_table(entry, table, times, Hints(again)):
             yield _named(claim, f", {first} first") if both else claim
