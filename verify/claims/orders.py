@@ -1,6 +1,5 @@
 """Claims that say an order in h, and what is proved of such an order."""
 
-from abc import abstractmethod
 from typing import TYPE_CHECKING, Annotated, Self
 
 from pydantic import Field
@@ -40,9 +39,9 @@ class OrderedClaim(QuantifiedClaim):
     """Whether a higher order is as claimed, too."""
 
     @property
-    @abstractmethod
     def claimed(self) -> int:
-        """The order that is claimed."""
+        """The order that is claimed, which stands under the name of the kind."""
+        return int(getattr(self, self.kind))
 
     def judge_known(self, known: ProvedOrder) -> ClaimResult:
         """Whether what is proved is as claimed."""

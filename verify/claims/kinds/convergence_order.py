@@ -13,24 +13,17 @@ from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
 if TYPE_CHECKING:
-    from verify.claims.checked import AboutAll
     from verify.proof.every_proof import EveryProof
 
 
 class ConvergenceOrderClaim(OrderedClaim):
     """The order of the scheme."""
 
+    about = OF_MAP
+
     kind: Literal["convergence_order"]
     convergence_order: Order
     """The order of the global error."""
-
-    @property
-    def claimed(self) -> int:
-        return self.convergence_order
-
-    @property
-    def about(self) -> "AboutAll":
-        return OF_MAP
 
     @property
     def looked_at(self) -> int:

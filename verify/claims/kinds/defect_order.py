@@ -10,24 +10,17 @@ from verify.claims.orders import OF_S, Order, OrderedClaim, defect_of, every_del
 from verify.scenes.results.claim import ClaimResult
 
 if TYPE_CHECKING:
-    from verify.claims.checked import AboutAll
     from verify.proof.every_proof import EveryProof
 
 
 class DefectOrderClaim(OrderedClaim):
     """The order of S in h; in the plane that of ΔJ."""
 
+    about = OF_S
+
     kind: Literal["defect_order"]
     defect_order: Order
     """The first power of h in S, or ΔJ."""
-
-    @property
-    def claimed(self) -> int:
-        return self.defect_order
-
-    @property
-    def about(self) -> "AboutAll":
-        return OF_S
 
     def judge_one(self, findings: Findings) -> ClaimResult:
         return self.judge_known(defect_of(self, findings))

@@ -12,7 +12,6 @@ from verify.prose import prose
 from verify.scenes.results.claim import ClaimResult
 
 if TYPE_CHECKING:
-    from verify.claims.checked import AboutAll
     from verify.proof.every_proof import EveryProof
 
 AMBIGUOUS = (
@@ -26,17 +25,11 @@ class OrderClaim(OrderedClaim):
 
     warning = AMBIGUOUS
 
+    about = OF_DELTA_J
+
     kind: Literal["order"]
     order: Order
     """The first power of h in ΔJ; better written as a `defect_order`."""
-
-    @property
-    def claimed(self) -> int:
-        return self.order
-
-    @property
-    def about(self) -> "AboutAll":
-        return OF_DELTA_J
 
     def judge_one(self, findings: Findings) -> ClaimResult:
         return self._warned(delta_j_of(self, findings))
