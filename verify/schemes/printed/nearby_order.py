@@ -61,7 +61,7 @@ class PrintedSizes:
 def _highest(tables: Sequence[PrintedTable], most: int) -> NearbyOrder | None:
     best: tuple[int, PrintedTable, Judged] | None = None
     wrong = None
-    for order in range(1, most + 1):
+    for order in range(1, min(most, tables[0].most_order) + 1):
         judged = [(table, judge_order(table, order)) for table in tables]
         near = next((pair for pair in judged if _is_near(pair[1])), None)
         if near is None:

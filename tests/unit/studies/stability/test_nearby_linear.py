@@ -59,3 +59,8 @@ def test_at_an_equilibrium_the_largest_step_is_that_of_exact_coefficients() -> N
     found = linear_in_degrees(oscillators, scheme_of(HALF), origin, steps)
     assert abs(Fraction(found.step_size) - LONGEST / 2) < Fraction(1, 10**5)
     assert found.decided == {steps[0]: True, steps[1]: False}
+
+
+def test_a_limit_is_told_of_an_order_beyond_which_no_condition_is_known() -> None:
+    verlet = "kick 0.50000000; drift 1.00000000; kick 0.50000000; order 8"
+    assert abs(Fraction(linear_stability(verlet).decimal()) - 2) < Fraction(1, 10**6)
