@@ -21,12 +21,22 @@ _BEGINNING = 200  # bytes within which our files name their format
 def read_json(path: Path, wanted: str) -> dict[str, Any]:
     """The object of that format in a file. InputError for what is not there, or no such JSON."""
     try:
-        data = json.loads(read_bytes(path))
+        data = json.loads(read_bytes(path), object_pairs_hook=unique)
     except InputError:
         raise
-    except (ValueError, RecursionError):
+    except RecursionError:
         raise InputError("file", str(path), "is not JSON") from None
+    except ValueError as error:
+        raise InputError("file", str(path), f"is not JSON: {error}") from None
     return check_format(data, wanted, str(path))
+
+
+def unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """The object; ValueError where a key stands twice, of which each reader may take another."""
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        raise ValueError("a key stands twice")
+    return found
 
 
 def check_format(data: object, wanted: str, file: str) -> dict[str, Any]:

@@ -88,8 +88,8 @@ formula = "3*h**3*delta*p*q"
 up_to = 4
 [[claim]]
 id = "order"
-kind = "order"
-order = 3
+kind = "defect_order"
+defect_order = 3
 [[claim]]
 id = "preserves-area"
 kind = "area_preserving"

@@ -38,8 +38,8 @@ up_to = 4
 
 [[claim]]
 id = "order"
-kind = "order"
-order = 3
+kind = "defect_order"
+defect_order = 3
 
 [[claim]]
 id = "convergence"
@@ -51,7 +51,7 @@ id = "area"
 kind = "area_preserving"
 area_preserving = false
 """
-WRONG = SYMBOLIC.replace("order = 3", "order = 4")
+WRONG = SYMBOLIC.replace("defect_order = 3", "defect_order = 4")
 OPEN = SYMBOLIC.replace('"3*h**3*delta*p*q"', f'"3*h**3*delta*p*q + h*({HIDDEN})"')
 NUMBERS = """
 [defaults]
@@ -129,6 +129,19 @@ def test_json_is_one_object_with_the_claims(
     assert all(c["evidence"] for c in found)
 
 
+def test_a_bare_order_is_warned_of_where_it_is_checked(
+    capsys: pytest.CaptureFixture[str], claims: Any
+) -> None:
+    path = claims(SYMBOLIC.replace("defect_order", "order"))
+    status, out, err = here(capsys, "check", path)
+    assert status == 0
+    assert err.startswith("verify: claims.toml:22: claim order: ")
+    for text in (err, next(line for line in out.splitlines() if "PROVED     order" in line)):
+        assert "defect_order" in text
+        assert "convergence_order" in text
+    assert here(capsys, "check", path, "--only", "map")[2] == ""
+
+
 def test_only_the_claims_that_are_named_are_checked(
     capsys: pytest.CaptureFixture[str], claims: Any
 ) -> None:
@@ -141,7 +154,11 @@ def test_only_the_claims_that_are_named_are_checked(
 @pytest.mark.parametrize(
     ("content", "more", "named"),
     [
-        (SYMBOLIC.replace("order = 3", "order = 0"), [], "claims.toml:23: claim order: order=0"),
+        (
+            SYMBOLIC.replace("order = 3", "order = 0"),
+            [],
+            "claims.toml:23: claim order: defect_order=",
+        ),
         (SYMBOLIC.replace("delta*p*q", "eps"), [], "claims.toml:17: claim first-term: formula="),
         (SYMBOLIC, ["--only", "none"], "--only=none: no claim has this id"),
         ("[[claim]", [], "is not TOML"),

@@ -15,8 +15,8 @@ from tests.paths import ROOT
 
 FILES = {block.file: block.text for block in blocks(PAGES["docs/how-to/check-integrator.md"])}
 EXAMPLE, TESTED = FILES["mine.py"], FILES["test_mine.py"]
-KEYS = {"verdict", "order", "leading", "delta_j", "area_preserving", "convergence_order",
-        "telescopes", "potential", "seconds", "reason", "witness"}  # fmt: skip
+KEYS = {"verdict", "order", "defect_order", "leading", "delta_j", "area_preserving",
+        "convergence_order", "telescopes", "potential", "seconds", "reason", "witness"}  # fmt: skip
 
 
 @pytest.fixture

@@ -195,6 +195,7 @@ def test_prove_prints_its_json_keys(capsys: pytest.CaptureFixture[str]) -> None:
     assert {"verdict", "order", "leading", "delta_j", "area_preserving", "telescopes", "potential",
             "seconds"} <= set(found)  # fmt: skip
     assert (found["verdict"], int(found["order"]), found["area_preserving"]) == ("PROVED", 3, False)
+    assert found["defect_order"] == found["order"]
     assert found["leading"] == "3*delta*p*q"
     assert DECIMAL.fullmatch(found["seconds"])
 

@@ -166,3 +166,21 @@ def test_what_was_sealed_is_told_by_its_format() -> None:
 
 def test_of_a_sample_of_the_campaigns_damages_all_are_noticed() -> None:
     assert kept_results(60, seed=3) == []
+
+
+@pytest.mark.parametrize("kind", READERS)
+def test_a_key_that_stands_twice_is_refused_by_every_reader(kind: str, tmp_path: Path) -> None:
+    """The last one counts for Python, and the first one for others."""
+    _, read, text = READERS[kind]
+    path = tmp_path / "duffing.json"
+    first = text().lstrip().removeprefix("{")
+    path.write_text('{"title": 1, "title": 2, ' + first)
+    with pytest.raises(InputError, match="a key stands twice"):
+        read(path)
+
+
+def test_a_key_of_a_certificate_that_stands_twice_within_it_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "twice.json"
+    path.write_text(f'{{"format": "{certificates.FORMAT}", "witness": {{"p": "1", "p": "2"}}}}')
+    with pytest.raises(InputError, match="a key stands twice"):
+        certificates.checked(path)

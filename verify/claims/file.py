@@ -11,8 +11,8 @@
     source = "Eq. 3"                # these three may be left out
     section = "2 The scheme"         # a report groups the claims by it
     statement = "ΔJ is of order `h^3`."   # a formula stands between backticks
-    kind = "order"
-    order = 3
+    kind = "defect_order"
+    defect_order = 3
 
 `title` names the whole; `about` lines say what it is, before all else, and `[[left_out]]` tables
 name with `what` and `why` what of the paper is not claimed. See `verify.claims.readings` for claims
@@ -23,7 +23,7 @@ file, or the file of that name beside it.
 """
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -71,6 +71,14 @@ class ClaimsFile:
     scenes: dict[str, Scene] = field(default_factory=dict)
     figures: list[PaperFigure] = field(default_factory=list)
     lines: Lines = field(default_factory=lambda: Lines({}))
+
+    def warnings(self, claims: Collection[Claim]) -> list[str]:
+        """What readers may take amiss of these claims, one line each, with its place."""
+        return [
+            f"{self.name}:{self.lines.of('claim', k, 'kind')}: claim {claim.id}: {claim.warning}"
+            for k, claim in enumerate(self.claims)
+            if claim.warning and claim in claims
+        ]
 
     def located(self, index: int, claim: str, error: InputError) -> InputError:
         """The error with the file, the claim and the line of the key that it names."""

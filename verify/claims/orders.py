@@ -1,6 +1,5 @@
 """Claims that say an order in h, and what is proved of such an order."""
 
-from abc import abstractmethod
 from typing import TYPE_CHECKING, Annotated, Self
 
 from pydantic import Field
@@ -11,17 +10,20 @@ from verify.claims.claim import Claim
 from verify.claims.findings import Findings
 from verify.claims.formulas import step_map_of, within, witness_of
 from verify.claims.orders_in_degrees import defect_order, flow_order, volume_order
-from verify.claims.proved_order import ProvedOrder
+from verify.claims.proved_order import ProvedOrder, told_of
 from verify.claims.quantified import QuantifiedClaim
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import MOST_ORDERS
-from verify.proof.order import convergence_of, leading_of
+from verify.proof.order import convergence_of_scheme, leading_of
 from verify.prose import Formula, prose
 from verify.scenes.results.claim import ClaimResult
+from verify.schemes import get
+from verify.schemes.scheme import Scheme
 from verify.schemes.step_map import StepMap
 
 if TYPE_CHECKING:
     from verify.claims.checked import AboutAll
+    from verify.proof.every_proof import EveryProof
 
 Order = Annotated[int, Field(ge=1, le=64, strict=True)]
 OF_DELTA_J: "AboutAll" = frozenset({"volume"})
@@ -37,9 +39,9 @@ class OrderedClaim(QuantifiedClaim):
     """Whether a higher order is as claimed, too."""
 
     @property
-    @abstractmethod
     def claimed(self) -> int:
-        """The order that is claimed."""
+        """The order that is claimed, which stands under the name of the kind."""
+        return int(getattr(self, self.kind))
 
     def judge_known(self, known: ProvedOrder) -> ClaimResult:
         """Whether what is proved is as claimed."""
@@ -50,6 +52,12 @@ class OrderedClaim(QuantifiedClaim):
     def of_one(self, hamiltonian: Hamiltonian) -> Self:
         """An order that is not passed for all H together may well be passed for one."""
         return self.model_copy(update={"every": None, "at_least": True}) if self.every else self
+
+
+def every_delta_j(proof: "EveryProof") -> ProvedOrder:
+    """The order of ΔJ for every H."""
+    preserves, order = proof.area_preserving, proof.order
+    return ProvedOrder(order or 0, order is not None, preserves, proof.reason, proof.domain)
 
 
 def delta_j_of(claim: Claim, findings: Findings) -> ProvedOrder:
@@ -72,7 +80,7 @@ def flow_of(claim: Claim, findings: Findings) -> ProvedOrder:
     """Up to which power of h its map agrees with the exact flow, in any number of degrees."""
     hamiltonian = findings.scene_of(claim).exact_hamiltonian()
     if hamiltonian.planar:
-        return convergence_order(step_map_of(hamiltonian, claim.scheme))
+        return convergence_order(step_map_of(hamiltonian, claim.scheme), get(claim.scheme))
     return flow_order(hamiltonian, claim.scheme)
 
 
@@ -97,9 +105,9 @@ def delta_j_order(step_map: StepMap) -> ProvedOrder:
     return ProvedOrder(power, True, False, evidence, step_map.domain, leading.domain)
 
 
-def convergence_order(step_map: StepMap) -> ProvedOrder:
+def convergence_order(step_map: StepMap, scheme: Scheme | None = None) -> ProvedOrder:
     """To which power of h the map agrees with the exact flow."""
-    found = convergence_of(step_map)
+    found, near = convergence_of_scheme(step_map, scheme)
     if found.order is None:
         evidence = f"the map agrees with the exact flow in all orders looked at, {MOST_ORDERS}"
         return ProvedOrder(MOST_ORDERS, False, None, evidence, step_map.domain)
@@ -108,4 +116,7 @@ def convergence_order(step_map: StepMap) -> ProvedOrder:
         agrees = prose("the map does not agree with the exact flow even at h = 0")
     more = " and no further" if found.decided else "; whether further is not decided"
     exact_for = found.exact_for() if found.decided else EVERYWHERE
-    return ProvedOrder(found.order, found.decided, False, agrees + more, step_map.domain, exact_for)
+    known = ProvedOrder(
+        found.order, found.decided, False, agrees + more, step_map.domain, exact_for
+    )
+    return told_of(known, near)

@@ -3,14 +3,13 @@
 from functools import lru_cache
 
 from verify.algebra.domain import EVERYWHERE
-from verify.claims.proved_order import ProvedOrder
+from verify.claims.proved_order import ProvedOrder, told_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import MOST_ORDERS
 from verify.proof.symplectic.order import prove_symplectic
 from verify.proof.symplectic.proof import SymplecticProof
 from verify.prose import Formula, prose
 from verify.schemes import get
-from verify.verdict import Verdict
 
 _BEYOND = MOST_ORDERS + 1  # an order of what vanishes
 
@@ -53,6 +52,6 @@ def flow_order(hamiltonian: Hamiltonian, scheme: str) -> ProvedOrder:
         evidence = prose("the map agrees with the exact flow in all orders looked at")
         return ProvedOrder(0, False, None, evidence, proof.domain, EVERYWHERE)
     evidence = prose("the map agrees with the exact flow up to ", Formula(f"h^{agreed}"))
-    exact = proof.verdict in (Verdict.PROVED, Verdict.REFUTED)
+    exact = proof.convergence_decided
     more = " and no further" if exact else "; whether further is not decided"
-    return ProvedOrder(agreed, exact, False, evidence + more, proof.domain)
+    return told_of(ProvedOrder(agreed, exact, False, evidence + more, proof.domain), proof.nearby)

@@ -8,7 +8,7 @@ not zero for some H; det J ≡ 1 is false where some H has another det J.
 
 from abc import abstractmethod
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Literal, Self
+from typing import TYPE_CHECKING, ClassVar, Literal, Self
 
 from verify.claims.checked import of_every, of_scene
 from verify.claims.claim import Claim
@@ -34,7 +34,10 @@ Every = Literal[
 
 
 class QuantifiedClaim(Claim):
-    """The base of the kinds that have `every`."""
+    """The base of the kinds that have `every`. `about`: what of a proof it asks about; see
+    `verify.proof.checked.proved`."""
+
+    about: ClassVar["AboutAll"] = frozenset()
 
     every: Every | None = None
     """Of which H, all of them, in place of one; `in time`: of all that depend on t, too."""
@@ -55,11 +58,6 @@ class QuantifiedClaim(Claim):
         from verify.proof.every import prove_every
 
         return self.judge_every(prove_every(self.scheme, self.of_separable, self.looked_at))
-
-    @property
-    def about(self) -> "AboutAll":
-        """What of a proof it asks about; see `verify.proof.checked.proved`."""
-        return frozenset()
 
     def checked_by(self, found: ClaimResult, findings: Findings) -> Sequence[Prose]:
         """By the proof for every H that it is made of, or for the scene's."""

@@ -10,7 +10,7 @@ import click
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering, picked
 from verify.commands.shared.input import PATH, hamiltonian_of, hamiltonian_options, scheme_option
-from verify.commands.shared.output import agreement, agreement_json, cut, line
+from verify.commands.shared.output import agreement, agreement_json, cut, line, order_json
 from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
@@ -196,9 +196,9 @@ def _every_in_degrees(
 def _special_json(special: "SpecialValue") -> dict[str, Any]:
     from verify.arithmetic.exact import text
 
-    keys = ("verdict", "reason", "order", "area_preserving")
-    return {"parameter": special.parameter, "value": text(special.value),
-            **picked(special.proof, *keys), "domain": special.proof.domain.texts}  # fmt: skip
+    proof, keys = special.proof, ("verdict", "reason", "area_preserving")
+    return {"parameter": special.parameter, "value": text(special.value), **order_json(proof.order),
+            **picked(proof, *keys), "domain": proof.domain.texts}  # fmt: skip
 
 
 def _print_one(
@@ -250,7 +250,8 @@ def _every_json(proof: "EveryProof", seconds: str) -> dict[str, Any]:
     return {
         **picked(proof, "verdict", "reason"),
         "hamiltonian": proof.quantifier,
-        **picked(proof, "scheme", "order", "leading"),
+        **order_json(proof.order),
+        **picked(proof, "scheme", "leading"),
         "formula": proof.formula or None,
         "delta_j": "0" if proof.area_preserving else None,  # there is no closed form in the jets
         "area_preserving": proof.area_preserving,

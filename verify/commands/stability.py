@@ -94,12 +94,16 @@ def _print(found: "StabilityFindings") -> None:
             detail = textwrap.fill(run.detail, _WIDTH, initial_indent=_IN, subsequent_indent=_IN)
             click.echo(detail)
     for step in found.largest_steps:
-        measured = f"bounded up to h = {step.bounded}" if step.bounded else "never bounded"
+        measured, detail = f"bounded up to h = {step.bounded}", str(step.detail)
+        if step.bounded is None:
+            measured = "never bounded"
+        elif step.unbounded is None:
+            measured, detail = f"{detail}, the largest h = {step.bounded},", ""
         linear = f"linear theory {step.linear}" if step.linear else "linear theory sets no limit"
         within = [f"energy error ≤ {step.energy_error}"] * bool(step.energy_error)
         within += [f"|W| ≤ {step.symplectic_defect}"] * bool(step.symplectic_defect)
         with_ = f" with {' and '.join(within)}" if within else ""
-        said = f"{measured}{with_} until t = {step.time}; {linear}  {step.detail}"
+        said = f"{measured}{with_} until t = {step.time}; {linear}  {detail}"
         click.echo(f"{step.scheme}: {said}")
     for over in found.maps:
         counted = ", ".join(f"{n} {kind}" for kind, n in over.counted().items())

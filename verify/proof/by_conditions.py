@@ -4,11 +4,11 @@ The order is the largest r for which all conditions up to h^r hold. Where the co
 hold, det J ≡ 1. They suffice; so where one does not, nothing follows for det J.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from verify.proof.every_proof import EveryProof
 from verify.prose import Formula, Number, Prose, prose
-from verify.schemes.conditions import ByConditions, Condition
+from verify.schemes.conditions import ByConditions, Condition, NearbyOrder
 from verify.schemes.scheme import Scheme
 from verify.verdict import Verdict
 
@@ -23,6 +23,9 @@ def prove_by_conditions(scheme: Scheme, every_h: ByConditions, least: int = 0) -
     det J is not; `order` (of ΔJ) is always None.
     """
     agreed, wrong = agreed_order(every_h, max(scheme.order, least))
+    near = nearby_order(every_h, max(scheme.order, least))
+    if near is not None and near.order > agreed:
+        return _of_nearby(scheme, every_h, near, agreed)
     asked = tuple(c for c in every_h.order_conditions(scheme.order) if c.order)
     area = every_h.area_conditions()
     preserved = bool(area) and all(condition.holds for condition in area)
@@ -38,6 +41,44 @@ def prove_by_conditions(scheme: Scheme, every_h: ByConditions, least: int = 0) -
         convergence_decided=wrong is not None and wrong.holds is False,
         checked=(prose(f"order {agreed}, {_count(every_h, agreed)}"), *_no_further(wrong)),
         conditions=(*asked, *area),
+    )
+
+
+def nearby_order(every_h: object, least: int) -> NearbyOrder | None:
+    """Of exact coefficients near printed ones, as far as `agreed_order`; None where none is, or
+    where clocks are not the right ones."""
+    nearby: Callable[[int], NearbyOrder | None] | None = getattr(every_h, "nearby", None)
+    if nearby is None or not isinstance(every_h, ByConditions):
+        return None
+    if not getattr(every_h, "clocks_are_right", True):
+        return None
+    return nearby(min(least + _MORE, every_h.most_order))
+
+
+def told_nearby(near: NearbyOrder) -> Prose:
+    """Of which coefficients the order is, and what the digits leave."""
+    return prose(f"order {near.order} of exact coefficients near the printed ones: ", near.said)
+
+
+def _of_nearby(scheme: Scheme, every_h: ByConditions, near: NearbyOrder, agreed: int) -> EveryProof:
+    """Where the digits of the coefficients leave residues: of a splitting, whose det J ≡ 1."""
+    area, asked = every_h.area_conditions(), every_h.order_conditions(scheme.order)
+    verdict = near.verdict if agreed < scheme.order else Verdict.PROVED
+    reason = prose("det J ≡ 1, and ", told_nearby(near))
+    if near.order < scheme.order:
+        verdict, reason = _verdict(scheme, [near.wrong] if near.wrong else [], area)
+    return EveryProof(
+        scheme.name,
+        every_h.separable,
+        verdict,
+        reason,
+        order=None,
+        area_preserving=all(condition.holds for condition in area) or None,
+        convergence_order=near.order,
+        convergence_decided=near.wrong is not None,
+        checked=(told_nearby(near), *_no_further(near.wrong)),
+        conditions=(*(c for c in asked if c.order), *area),
+        nearby=near,
     )
 
 

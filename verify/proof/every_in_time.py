@@ -112,7 +112,8 @@ def _why(eta: int, holds: bool) -> Prose:
 
 
 def _of_splitting(scheme: Scheme, every_h: Splitting, least: int) -> EveryProof:
-    timed = TimedSplitting(every_h.parts, every_h.times or (None,) * len(every_h.parts))
+    times = every_h.times or (None,) * len(every_h.parts)
+    timed = TimedSplitting(every_h.parts, times, nearby=every_h.nearby)
     found = prove_by_conditions(scheme, timed, least)
     named = mistakes_of_splitting(timed) if found.verdict is Verdict.REFUTED else []
     reason = prose(found.reason, f"; it is {'; '.join(named)}") if named else found.reason

@@ -6,7 +6,7 @@ from verify.algebra.domain import EVERYWHERE, Domain
 from verify.proof.lie_argument import paragraph
 from verify.prose import Prose
 from verify.schemes import get
-from verify.schemes.conditions import Condition
+from verify.schemes.conditions import Condition, NearbyOrder
 from verify.schemes.every_hamiltonian import TaylorSeries
 from verify.schemes.step_map import SOLVABLE
 from verify.verdict import Verdict
@@ -24,7 +24,8 @@ class EveryProof:
     is known. `telescopes`: whether it is X·`potential` for every H, `why` says how that is known.
     `checked` names the identities that were checked, `conditions` those on the coefficients, of a
     scheme that is given by them. `timed`: for every such H that depends on t, with D = ∂_t + X in
-    place of X.
+    place of X. `nearby`: of which coefficients it is, where those of the scheme are printed with
+    digits that leave residues.
     """
 
     scheme: str
@@ -43,6 +44,7 @@ class EveryProof:
     checked: tuple[Prose, ...] = ()
     conditions: tuple[Condition, ...] = ()
     timed: bool = False
+    nearby: NearbyOrder | None = None
 
     @property
     def argument(self) -> Prose:

@@ -7,30 +7,37 @@ p' and q' in h are held against those of the exact flow, Xⁿp/n! and Xⁿq/n!.
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from fractions import Fraction
 from functools import cached_property, partial
 
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.embedding import embed
 from verify.algebra.ring import Decision, Poly, Ring
 from verify.algebra.series.power_series import delta_j
+from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.vector_field import VectorField
+from verify.proof.by_conditions import nearby_order, told_nearby
 from verify.proof.expansion import MOST_ORDERS, VANISHES, Expansion, Leading, first_nonzero
 from verify.proof.order_proof import Proof
 from verify.proof.parameters import almost_all, not_zero_for
 from verify.prose import Formula, Prose, prose, read_prose
-from verify.schemes.conditions import Condition
+from verify.schemes.conditions import Condition, NearbyOrder
 from verify.schemes.scheme import Scheme
+from verify.schemes.splitting import splitting
+from verify.schemes.splitting_conditions import Splitting
 from verify.schemes.step_map import Expanded, StepMap, Substep
+from verify.schemes.timed.for_scheme import conditions_for
 from verify.verdict import Verdict
 
 _Coefficient = Callable[[str, int], tuple[VectorField, Ring, Poly]]
+RESIDUE = Fraction(1, 2**100)  # and above it what the coefficients of the nearest leave
 _FIRST_ORDERS = 6  # of them, those that are made at once where no order is claimed
 
 
 def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
     """The order of ΔJ and of the map by exact algebra, and whether `scheme`'s claims hold."""
     series = _BySeries(step_map, scheme.order + 1 if scheme else _FIRST_ORDERS)
-    convergence = convergence_of(step_map, series)
+    convergence, near = convergence_of_scheme(step_map, scheme, series)
     leading, domain = leading_of(step_map, series), step_map.domain
     inside = leading.within(domain)
     verdict, said = _verdict(convergence, inside, scheme)
@@ -42,6 +49,8 @@ def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
         reason = prose(reason, ", ", _by_conditions(step_map.conditions))
     if verdict is Verdict.PROVED and leading.domain:
         reason = prose(reason, ", where ", leading.domain.prose)
+    if near is not None and verdict is Verdict.PROVED:
+        verdict, reason = near.verdict, prose(reason, "; ", told_nearby(near))
     return Proof(
         verdict=verdict,
         reason=reason,
@@ -157,8 +166,10 @@ class Convergence:
         return self.order is not None and self.order < claimed
 
 
-def convergence_of(step_map: StepMap, series: _BySeries | None = None) -> Convergence:
-    """The order to which the map agrees with the exact flow."""
+def convergence_of(
+    step_map: StepMap, series: _BySeries | None = None, residues: bool = False
+) -> Convergence:
+    """The order to which the map agrees with the exact flow; with `residues`, up to such."""
     known = step_map.known_order()
     if known is not None:
         # Shown at a point, without its coefficient.
@@ -170,12 +181,62 @@ def convergence_of(step_map: StepMap, series: _BySeries | None = None) -> Conver
     coefficient, most = by_series if series.usable else _by_expansions(step_map.flat)
     for n in range(_first_to_look_at(step_map), most + 1):
         for name in ("p", "q"):
-            ring, gap = _gap(*coefficient(name, n), name, n)
+            field, own, x = coefficient(name, n)
+            ring, gap = _gap(field, own, x, name, n)
+            if residues and own is ring and is_residue(ring.reduce(gap), x):
+                continue
             agrees = ring.vanishes(gap)
             if agrees is not True:
                 what = f"the difference at h^{n}"
                 return Convergence(n - 1, agrees is False, partial(not_zero_for, ring, gap, what))
     return Convergence(None, True)
+
+
+def convergence_of_scheme(
+    step_map: StepMap, scheme: Scheme | None, series: _BySeries | None = None
+) -> tuple[Convergence, NearbyOrder | None]:
+    """As `convergence_of`, of exact coefficients where those of the scheme are printed."""
+    printed = convergence_of(step_map, series)
+    exact = step_map.hamiltonian
+    return nearby_convergence(scheme, printed, exact, partial(_of_scheme, exact))
+
+
+def nearby_convergence(
+    scheme: Scheme | None,
+    printed: Convergence,
+    hamiltonian: Hamiltonian,
+    of: Callable[[Scheme], Convergence],
+) -> tuple[Convergence, NearbyOrder | None]:
+    """The order of exact coefficients near those that a scheme prints, where it is higher than that
+    of these; `of` finds that of a scheme whose coefficients are right to `RESIDUE` and better."""
+    if scheme is None or scheme.every_h is None:
+        return printed, None
+    timed = hamiltonian.time_dependent and isinstance(scheme.every_h, Splitting)
+    near = nearby_order(conditions_for(scheme.every_h) if timed else scheme.every_h, scheme.order)
+    if near is None or printed.order is None or near.order <= printed.order:
+        return printed, None
+    found = Convergence(near.order, False)
+    if near.parts:
+        nearest = splitting(
+            scheme.name, near.parts, order=near.order, symmetric=False, source=scheme.source
+        )
+        exact = of(nearest)
+        found = exact if exact.order is None or exact.order >= near.order else found
+    return found, near
+
+
+def _of_scheme(hamiltonian: Hamiltonian, scheme: Scheme) -> Convergence:
+    return convergence_of(scheme.step_map(hamiltonian), residues=True)
+
+
+def is_residue(gap: Poly, term: Poly) -> bool:
+    """Whether a difference from a term is of coefficients that are right to some 90 digits."""
+    return size_of(gap) < RESIDUE * max(size_of(term), size_of(term - gap))
+
+
+def size_of(x: Poly) -> Fraction:
+    """The largest coefficient."""
+    return max((abs(Fraction(int(c.p), int(c.q))) for c in x.coeffs()), default=Fraction(0))
 
 
 def _first_to_look_at(step_map: StepMap) -> int:

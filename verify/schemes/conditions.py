@@ -1,7 +1,11 @@
 """Conditions on a scheme's coefficients, evaluated exactly, each with its residue."""
 
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Protocol, runtime_checkable
+
+from verify.prose import Prose
+from verify.verdict import Verdict
 
 
 @dataclass(frozen=True)
@@ -17,6 +21,22 @@ class Condition:
     order: int
     residue: str
     holds: bool | None
+
+
+@dataclass(frozen=True)
+class NearbyOrder:
+    """The highest order that exact coefficients near printed ones have, and how that is known.
+
+    `said`: how near they are, and the residues that the digits leave. `wrong`: a condition of the
+    next order that none near them satisfy; None where that is not decided. `parts`: the nearest, to
+    some 90 digits; none where they are not known.
+    """
+
+    order: int
+    verdict: Verdict
+    said: Prose
+    wrong: Condition | None
+    parts: tuple[tuple[str, Fraction], ...]
 
 
 @runtime_checkable

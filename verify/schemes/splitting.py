@@ -22,7 +22,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.vector_field import VectorField
 from verify.late import sympy
 from verify.schemes.scheme import Scheme
-from verify.schemes.splitting_conditions import LETTERS, Part, Parts, Splitting, expressed
+from verify.schemes.splitting_conditions import LETTERS, Nearby, Part, Parts, Splitting, expressed
 from verify.schemes.step_map import Expanded, StepMap, Substep
 
 Times: TypeAlias = "tuple[sympy.Expr | None, ...]"  # those that are given, None for one that is not
@@ -36,11 +36,14 @@ def splitting(
     symmetric: bool,
     source: str,
     times: Times = (),
+    nearby: Nearby | None = None,
 ) -> Scheme:
     """The scheme that kicks and drifts by these parts of h in turn; every one preserves area.
 
-    `times`: that of each part, in parts of h; left out, the two clocks' own.
+    `times`: that of each part, in parts of h; left out, the two clocks' own. `nearby`: see
+    `verify.schemes.splitting_conditions.Splitting`.
     """
+    own = times if any(x is not None for x in times) else ()
     return Scheme(
         name=name,
         order=order,
@@ -49,7 +52,7 @@ def splitting(
         symmetric=symmetric,
         source=source,
         build=lambda hamiltonian: shears(hamiltonian, name, parts, times),
-        every_h=Splitting(tuple(parts), times=times if any(x is not None for x in times) else ()),
+        every_h=Splitting(tuple(parts), times=own, nearby=nearby),
     )
 
 

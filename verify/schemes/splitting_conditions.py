@@ -22,8 +22,8 @@ letters there are 54), so that some H has another map.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 from math import factorial
@@ -36,7 +36,7 @@ from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
 from verify.late import sympy
 from verify.prose import count
-from verify.schemes.conditions import Condition
+from verify.schemes.conditions import Condition, NearbyOrder
 from verify.schemes.every_hamiltonian import StageEquations
 from verify.schemes.free_lie_words import lyndon
 from verify.schemes.residue import condition_of
@@ -45,6 +45,7 @@ from verify.schemes.residue import condition_of
 # then needs no sympy.
 Part: TypeAlias = "tuple[str, sympy.Expr | Fraction]"
 Parts: TypeAlias = "tuple[tuple[str, sympy.Expr], ...]"
+Nearby: TypeAlias = Callable[[int], NearbyOrder | None]  # of the highest order to look at
 MOST_ORDER = 8  # beyond which fewer conditions would do in the plane
 LETTERS = {"kick": "K", "drift": "D"}
 _DIGITS = 12  # of a residue
@@ -56,13 +57,15 @@ class Splitting:
 
     The sizes that are given are rational or algebraic numbers; those of `parts` are sympy's.
     `times`: of an H that depends on time, when each
-    part is made, in parts of h from the step's start, where that is given. It is a
+    part is made, in parts of h from the step's start, where that is given. `nearby`: of sizes that
+    are printed decimals, the order that exact ones near them have. It is a
     `verify.schemes.conditions.ByConditions`.
     """
 
     given: tuple[Part, ...]
     separable: bool = True
     times: tuple[sympy.Expr | None, ...] = ()
+    nearby: Nearby | None = field(default=None, compare=False, repr=False)
     most_order: ClassVar[int] = MOST_ORDER  # the highest of which there are conditions
 
     @cached_property

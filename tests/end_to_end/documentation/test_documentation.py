@@ -42,8 +42,8 @@ Append this to `mine.toml`:
 ```toml
 [[claim]]
 id = "order"
-kind = "order"
-order = 4
+kind = "defect_order"
+defect_order = 4
 ```
 
 ```console
@@ -57,7 +57,7 @@ $ echo $?
 $ cat mine.toml
 [defaults]
 …
-order = 4
+defect_order = 4
 ```
 
 ```python
@@ -87,7 +87,7 @@ WRONG = {
     "a program that is not known": ("python3 -m", "pyhton3 -m"),
     "Python that fails": ("import get", "import got"),
     "another value": (".order\n2", ".order\n3"),
-    "lines left out where others stand": ("…\norder = 4", "…\norder = 5"),
+    "lines left out where others stand": ("…\ndefect_order = 4", "…\ndefect_order = 5"),
     "a block of no kind": ("```sh", "```"),
 }
 

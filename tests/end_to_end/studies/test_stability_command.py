@@ -123,3 +123,18 @@ def test_a_scene_that_asks_for_nothing_of_it_is_refused(
     status, _, err = here(capsys, "stability", str(path))
     assert status == 2
     assert "asks for no [[stability]]" in err
+
+
+def test_a_largest_step_beyond_which_nothing_was_looked_at_is_no_limit(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """The step is then the largest that was looked at."""
+    path = tmp_path / "free.toml"
+    path.write_text(
+        'hamiltonian = "p**2/2"\nschemes = ["lie2"]\n'
+        "[[largest_step]]\ntime = 1\ninitial_value = { q = 0, p = 1 }\n"
+    )
+    status, out, _ = here(capsys, "stability", str(path))
+    assert status == 0
+    assert "bounded up to" not in out
+    assert out.count("bounded with every step size looked at, the largest h = ") == 1

@@ -16,8 +16,8 @@ from tests.helpers.tables.by_series import gap
 from tests.paths import ROOT
 from verify.errors import InputError
 from verify.integrators.tables import kinds
-from verify.integrators.tables.printed_numbers import unit_of
 from verify.integrators.tables.told import TableClaim
+from verify.schemes.printed.printed_numbers import unit_of
 from verify.verdict import Verdict
 
 _NUMBERS = ("sizes", "half", "numbers", "times", "a", "b", "c", "embedded", "b_bar", "p", "q",

@@ -13,8 +13,9 @@ from verify.algebra.domain import EVERYWHERE, Domain
 from verify.claims.findings import Findings
 from verify.claims.kinds.area_preserving import AreaClaim
 from verify.claims.kinds.convergence_order import ConvergenceOrderClaim
+from verify.claims.kinds.defect_order import DefectOrderClaim
 from verify.claims.kinds.delta_j import DeltaJClaim
-from verify.claims.kinds.order import OrderClaim
+from verify.claims.kinds.order import AMBIGUOUS, OrderClaim
 from verify.claims.orders import ProvedOrder
 from verify.errors import InputError
 from verify.scenes.results.claim import ClaimResult
@@ -50,8 +51,9 @@ def judged(claim: Any, hamiltonian: str, **scene: Any) -> ClaimResult:
     return claim.judge(Findings({"made": made}))
 
 
-def order(r: int, scheme: str, **more: Any) -> OrderClaim:
-    return OrderClaim(id="c", scene="made", scheme=scheme, kind="order", order=r, **more)
+def order(r: int, scheme: str, **more: Any) -> DefectOrderClaim:
+    return DefectOrderClaim(id="c", scene="made", scheme=scheme, kind="defect_order",
+                            defect_order=r, **more)  # fmt: skip
 
 
 def convergence(k: int, scheme: str, **more: Any) -> ConvergenceOrderClaim:
@@ -172,6 +174,7 @@ class Stub:
     leading: str = "H_p*H_ppq - 2*H_q*H_ppp"
     domain: Domain = EVERYWHERE
     convergence_decided: bool = True
+    nearby: None = None
 
 
 EULER = Stub(order=None, area_preserving=True, convergence_order=1, leading="0")
@@ -290,3 +293,16 @@ def test_every_planted_order_of_the_papers_schemes_is_refuted(
         planted += [order(delta_j + d, scheme) for d in (1, -1)]
     assert {judged(claim, hamiltonian).verdict for claim in true} == {PROVED}
     assert {judged(claim, hamiltonian).verdict for claim in planted} == {REFUTED}
+
+
+@pytest.mark.parametrize("every", [None, "hamiltonian"])
+def test_a_bare_order_is_judged_as_a_defect_order_and_says_what_to_write(every: Any) -> None:
+    for r in (2, 3):  # the method's order, which is refuted; and that of ΔJ
+        old = OrderClaim(id="c", scene="made", scheme="lie2", kind="order", order=r, every=every)
+        new = judged(order(r, "lie2", every=every), DUFFING)
+        found = judged(old, DUFFING)
+        assert (found.verdict, found.domain) == (new.verdict, new.domain)
+        assert found.evidence == f"{new.evidence}; {AMBIGUOUS}"
+        assert AMBIGUOUS not in new.evidence
+    assert "defect_order" in AMBIGUOUS
+    assert "convergence_order" in AMBIGUOUS

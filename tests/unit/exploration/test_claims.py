@@ -189,7 +189,7 @@ def test_claims_of_one_scene_are_left_out_with_the_reason() -> None:
     claims = load_claims(PAPER / "claims.toml").claims
     texts, without = claim_texts(claims), claims_left_out(claims)
     asked = {json.loads(text)["kind"] for text in texts}
-    assert asked == {"monotone", "less", "criteria", "growth", "order", "area_preserving"}
+    assert asked == {"monotone", "less", "criteria", "growth", "defect_order", "area_preserving"}
     assert len(texts) + sum(map(len, without.values())) == len(claims)
     assert "table-1" in without["printed numbers are those of its own runs"]
     assert "eq-19" in without["a printed formula is that of its own Hamiltonian"]

@@ -8,7 +8,7 @@ from tests.helpers.sampled.formulas import P, Q
 from verify import schemes
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.composition import composed_polynomials, occurrences, polynomial
-from verify.studies.stability.linear import linear_stability
+from verify.studies.stability.nearby_linear import linear_stability
 
 DUFFING, PENDULUM = "p**2/2 + q**2/2 + q**4/4", "p**2/2 - cos(q)"
 

@@ -20,7 +20,8 @@ from verify.schemes.conditions import Condition
 from verify.schemes.implicit_runge_kutta import implicit_map
 from verify.schemes.scheme import Scheme
 from verify.schemes.step_map import StepMap, Substep
-from verify.studies.stability.linear import linear_stability, of_map
+from verify.studies.stability.linear import of_map
+from verify.studies.stability.nearby_linear import linear_stability
 from verify.verdict import Verdict
 
 IMPLICIT = ("implicit-midpoint", "implicit-symplectic-euler", "gauss4", "gauss6")

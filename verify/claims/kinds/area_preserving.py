@@ -13,20 +13,17 @@ from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
 if TYPE_CHECKING:
-    from verify.claims.checked import AboutAll
     from verify.proof.every_proof import EveryProof
 
 
 class AreaClaim(QuantifiedClaim):
     """The map preserves area exactly, or does not."""
 
+    about = OF_DELTA_J
+
     kind: Literal["area_preserving"]
     area_preserving: Annotated[bool, Field(strict=True)]
     """Whether det J ≡ 1 is claimed, or that it is not so."""
-
-    @property
-    def about(self) -> "AboutAll":
-        return OF_DELTA_J
 
     def judge_one(self, findings: Findings) -> ClaimResult:
         known = delta_j_of(self, findings)

@@ -7,30 +7,23 @@ from typing import TYPE_CHECKING, Literal
 
 from verify.claims.findings import Findings
 from verify.claims.orders import OF_MAP, Order, OrderedClaim, flow_of
-from verify.claims.proved_order import ProvedOrder
+from verify.claims.proved_order import ProvedOrder, told_of
 from verify.prose import Formula, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
 if TYPE_CHECKING:
-    from verify.claims.checked import AboutAll
     from verify.proof.every_proof import EveryProof
 
 
 class ConvergenceOrderClaim(OrderedClaim):
     """The order of the scheme."""
 
+    about = OF_MAP
+
     kind: Literal["convergence_order"]
     convergence_order: Order
     """The order of the global error."""
-
-    @property
-    def claimed(self) -> int:
-        return self.convergence_order
-
-    @property
-    def about(self) -> "AboutAll":
-        return OF_MAP
 
     @property
     def looked_at(self) -> int:
@@ -48,7 +41,8 @@ class ConvergenceOrderClaim(OrderedClaim):
             "the map agrees with the exact flow of every H up to ", Formula(f"h^{found}"),
             " and, of some, no further" if exact else "; whether further is not decided",
         )  # fmt: skip
-        return self.judge_known(ProvedOrder(found, exact, False, evidence, proof.domain))
+        known = ProvedOrder(found, exact, False, evidence, proof.domain)
+        return self.judge_known(told_of(known, proof.nearby))
 
 
 CLAIM = ConvergenceOrderClaim

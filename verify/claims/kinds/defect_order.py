@@ -1,35 +1,32 @@
-"""S = JᵀΩJ − Ω = c h^order + …, c not the zero form; with `at_least`, S = O(h^order)."""
+"""S = JᵀΩJ − Ω = c h^order + …, c not the zero form; with `at_least`, S = O(h^order).
 
-from collections.abc import Sequence
-from typing import Literal
+In the plane S is ΔJ·Ω, and this is the order of ΔJ.
+"""
 
-from verify.claims.checked import of_scene
-from verify.claims.claim import Claim
+from typing import TYPE_CHECKING, Literal
+
 from verify.claims.findings import Findings
-from verify.claims.formulas import within
-from verify.claims.orders import OF_S, Order, defect_of
-from verify.prose import Prose
+from verify.claims.orders import OF_S, Order, OrderedClaim, defect_of, every_delta_j
 from verify.scenes.results.claim import ClaimResult
 
+if TYPE_CHECKING:
+    from verify.proof.every_proof import EveryProof
 
-class DefectOrderClaim(Claim):
+
+class DefectOrderClaim(OrderedClaim):
     """The order of S in h; in the plane that of ΔJ."""
+
+    about = OF_S
 
     kind: Literal["defect_order"]
     defect_order: Order
-    """The first power of h in S."""
-    at_least: bool = False
-    """Whether a higher order is as claimed, too."""
+    """The first power of h in S, or ΔJ."""
 
-    def judge(self, findings: Findings) -> ClaimResult:
-        """By the proof for the scene's H."""
-        known = defect_of(self, findings)
-        verdict = known.verdict(self.defect_order, at_least=self.at_least)
-        domain = known.holds_in(self.defect_order, at_least=self.at_least)
-        return self.result(verdict, known.evidence + within(domain), domain=domain)
+    def judge_one(self, findings: Findings) -> ClaimResult:
+        return self.judge_known(defect_of(self, findings))
 
-    def checked_by(self, found: ClaimResult, findings: Findings) -> Sequence[Prose]:
-        return of_scene(self, findings, OF_S)
+    def judge_every(self, proof: "EveryProof") -> ClaimResult:
+        return self.judge_known(every_delta_j(proof))
 
 
 CLAIM = DefectOrderClaim

@@ -29,7 +29,6 @@ from verify.schemes.step_map import grouped
 from verify.verdict import Verdict
 
 if TYPE_CHECKING:
-    from verify.claims.checked import AboutAll
     from verify.proof.every_proof import EveryProof
 
 _PRINTED_AS = {
@@ -41,6 +40,8 @@ _PRINTED_AS = {
 
 class DeltaJClaim(QuantifiedClaim, FormulaClaim):
     """ΔJ as printed."""
+
+    about = OF_DELTA_J
 
     kind: Literal["delta_j", "mse_summand", "lambda_factor"]
     formula: str
@@ -65,10 +66,6 @@ class DeltaJClaim(QuantifiedClaim, FormulaClaim):
         return formula - 1 if self.kind == "lambda_factor" else formula
 
     # -- who checked it ---------------------------------------------------------------------------
-
-    @property
-    def about(self) -> "AboutAll":
-        return OF_DELTA_J
 
     def checked_by(self, found: ClaimResult, findings: Findings) -> Sequence[Prose]:
         """A certificate tells the first term alone: it says nothing of what is printed beyond."""

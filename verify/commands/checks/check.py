@@ -45,8 +45,8 @@ def check(claims: str, only: tuple[str, ...], keep: Path | None, where: "Placeme
     \b
     [[claim]]
     id = "order-of-every-H"
-    kind = "order"                    # ΔJ = c h³ + …
-    order = 3
+    kind = "defect_order"             # ΔJ = c h³ + …
+    defect_order = 3
     every = "hamiltonian"             # or "separable hamiltonian"
 
     \b
@@ -65,6 +65,8 @@ def check(claims: str, only: tuple[str, ...], keep: Path | None, where: "Placeme
 
     path = paper_folder() / "claims.toml" if claims == "paper" else Path(claims)
     prepared = prepare(load_claims(path), only)
+    for warning in prepared.file.warnings(prepared.claims):
+        click.echo(f"verify: {warning}", err=True)
     with kept_tasks(prepared.plan.tasks, keep) as (store, done):
         found = prepared.run(store, where=where, done=done)
     statements = prepared.statements(found)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands.shared.answer import picked
-from verify.commands.shared.output import agreement, agreement_json, cut, line
+from verify.commands.shared.output import agreement, agreement_json, cut, line, order_json
 
 if TYPE_CHECKING:
     from verify.proof.symplectic.proof import SymplecticProof
@@ -29,7 +29,7 @@ def symplectic_json(
         **texts,
         "degrees": proof.degrees,
         "scheme": scheme,
-        "order": proof.order,
+        **order_json(proof.order),
         "leading": proof.leading_text,
         "formula": proof.formula or None,
         "delta_j": "0" if proof.area_preserving else None,

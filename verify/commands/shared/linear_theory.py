@@ -39,13 +39,14 @@ def linear_answer(scene: str | None, given: Mapping[str, Any]) -> Answer:
 
 def _of_oscillator(scheme: str) -> Answer:
     from verify.algebra.expressions.formula_text import to_text
-    from verify.studies.stability.linear import linear_stability
+    from verify.studies.stability.nearby_linear import linear_stability
 
     found = linear_stability(scheme)
     data = {
         "scheme": found.scheme,
         "interval": found.decimal(),
         "interval_exact": found.exact,
+        "note": found.note,
         "delta_j": to_text(found.delta_j),
     }
     return Answer(lambda: data, lambda: _print_oscillator(found, data["delta_j"]))
@@ -55,8 +56,10 @@ def _print_oscillator(found: "LinearStability", delta_j: str) -> None:
     ends = {"infinite": "for every hω > 0", "0": "for no hω > 0"}
     shown = ends.get(found.exact, f"for 0 < hω < {found.decimal(_SHOWN)}")
     click.echo(f"{found.scheme} on the harmonic oscillator is stable {shown}")
-    if found.exact not in ends and not found.exact.isdecimal():
+    if found.exact and found.exact not in ends and not found.exact.isdecimal():
         click.echo(f"  exactly  {found.exact}")
+    if found.note:
+        click.echo(f"  note     {found.note}")
     click.echo(f"  ΔJ       {delta_j}, y = hω")
 
 
@@ -90,6 +93,7 @@ def _data(found: "LinearInDegrees") -> dict[str, Any]:
         "oscillates": found.oscillates,
         "interval": None if interval is None else interval.decimal(),
         "interval_exact": None if interval is None else interval.exact,
+        "note": "" if interval is None else interval.note,
         "step_size": found.step_size,
         "step_size_exact": found.step_size_exact,
         "decided": [
@@ -115,6 +119,8 @@ def _print_equilibrium(found: "LinearInDegrees") -> None:
             click.echo(f"  bounded    for 0 < h < {least}, until {reach}")
         if found.step_size_exact:
             click.echo(f"  exactly    {found.step_size_exact}")
+        if found.interval.note:
+            click.echo(f"  note       {found.interval.note}")
     for h, bounded in found.decided.items():
         click.echo(f"  h = {text(h):6} {_SAID[bounded]}")
 

@@ -64,6 +64,11 @@ def agreement_json(proof: Agreeing) -> dict[str, Any]:
     return {"convergence_order": order, "convergence_order_known": known}
 
 
+def order_json(order: int | None) -> dict[str, int | None]:
+    """The order of ΔJ, or of S: `order`, and by the name that no method's order has."""
+    return {"order": order, "defect_order": order}
+
+
 def cut(formula: str) -> str:
     """A formula as it is, or its beginning where it is long: the JSON has all of it."""
     if len(formula) <= _LONGEST:
@@ -81,7 +86,7 @@ def proof_json(
         **picked(proof, "verdict", "reason"),
         **exact.texts,
         "scheme": scheme,
-        "order": proof.order,
+        **order_json(proof.order),
         "leading": proof.first.text,
         "delta_j": proof.step_map.delta_j_text,
         "area_preserving": proof.area_preserving,

@@ -26,8 +26,6 @@ from verify.integrators.others.second.look import Look, at_claim, at_step, at_ta
 from verify.integrators.results import Finding
 from verify.integrators.tables import kinds
 from verify.integrators.tables.cost import severity_of
-from verify.integrators.tables.sentences import of_digits, of_printed
-from verify.integrators.tables.splittings.table import PrintedTable, judge_order
 from verify.integrators.tables.told import (
     NOT_SYMPLECTIC,
     OF_WORDS,
@@ -38,6 +36,8 @@ from verify.integrators.tables.told import (
 )
 from verify.prose import Formula, Number, Prose, joined, prose, read_prose
 from verify.scenes.results.claim import ClaimResult
+from verify.schemes.printed.sentences import of_digits, of_printed
+from verify.schemes.printed.splitting_table import PrintedTable, judge_order
 from verify.verdict import Verdict
 
 _Judgement = tuple[Verdict, Prose, tuple[tuple[str, ...], ...]]

@@ -7,7 +7,7 @@ from fractions import Fraction
 from verify.arithmetic.exact import decimal
 from verify.integrators.tables.entry import TableEntry
 from verify.integrators.tables.splittings.claims import timed_parts
-from verify.integrators.tables.splittings.table import PrintedTable
+from verify.schemes.printed.splitting_table import PrintedTable
 
 Point = tuple[Fraction, ...]  # p, then q
 _DIGITS = 45
@@ -113,9 +113,13 @@ def of_digits(table: PrintedTable, nearest: Mapping[str, Fraction] | None, order
     they are known, differ from the flow of one H, in exact fractions."""
     quadratic = table.kind == "nystrom"
     names = ", ".join(table.units)
-    printed = _listed([f'F("{table.numbers[name].strip()}")' for name in table.units], "    ")
+    printed = _listed(
+        [f'F("{table.printed.numbers[name].strip()}")' for name in table.units], "    "
+    )
     exact = ",\n    ".join(f'F("{decimal(nearest[n], _DIGITS)}")' for n in table.units if nearest)
-    rest = [f"    {n} = {_exact(x)}" for n, x in table.numbers.items() if n not in table.units]
+    rest = [
+        f"    {n} = {_exact(x)}" for n, x in table.printed.numbers.items() if n not in table.units
+    ]
     lines = [
         "from fractions import Fraction as F",
         "",

@@ -15,10 +15,10 @@ import flint
 
 from verify.arithmetic.arb import middle_and_radius
 from verify.arithmetic.flint_precision import working_precision
-from verify.integrators.tables.asked import BITS, Asked, ball_of
-from verify.integrators.tables.judged import Judged
-from verify.integrators.tables.printed_numbers import entries_at
 from verify.prose import Prose, read_prose
+from verify.schemes.printed.asked import BITS, Asked, ball_of
+from verify.schemes.printed.judged import Judged
+from verify.schemes.printed.printed_numbers import entries_at
 from verify.verdict import Verdict
 
 DIGITS_SEEN, DIGITS_BELOW = "digits that a double notices", "digits below that"

@@ -1,20 +1,12 @@
 """What tables of every kind may have: their keys, and numbers as they are written."""
 
-import re
-from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, PrivateAttr, StrictBool, StringConstraints
 
-from verify.algebra.formula import RESERVED
-from verify.errors import InputError
-from verify.integrators.tables.printed_numbers import PrintedNumbers, unit_of, unit_of_quotient
 from verify.integrators.tables.signs import LONGEST, plain
 from verify.scenes.frozen import Frozen
-
-MOST_ENTRIES = 2000
-_SHARED = 8  # decimals from which two numbers that are printed alike are taken for one
 
 
 def written(value: Any) -> Any:
@@ -29,12 +21,6 @@ def written(value: Any) -> Any:
 Written = Annotated[str, StringConstraints(max_length=LONGEST), BeforeValidator(written)]
 Row = tuple[Written, ...]
 Order = Annotated[int, Field(ge=1, le=20)]
-# Within a formula: a long decimal, or a long quotient that nothing before it takes apart.
-_LONG_INSIDE = re.compile(
-    r"(?<![\w.])\d*\.\d{8,}(?:[eE][+-]?\d+)?(?![\w.])|(?<![\w.*/^])\d{6,}/\d{7,40}(?![\w.^*])",
-    re.ASCII,
-)
-_WRAPPED = re.compile(r"\([^()]*\)")
 
 
 class TableEntry(Frozen):
@@ -59,69 +45,3 @@ class TableEntry(Frozen):
     def folder(self) -> Path:
         """Where its files lie."""
         return self._folder
-
-
-class Naming:
-    """Gives decimals that stand in a table without a name one, and long quotients: `entry` returns
-    what to write there.
-
-    Two that are printed alike to 8 decimals or more are one number.
-    """
-
-    def __init__(self, numbers: Mapping[str, str]) -> None:
-        for name in numbers:
-            if not (name.isascii() and name.isidentifier()) or name in RESERVED:
-                problem = "is no name of a number: letters, digits and _, and no function's name"
-                raise InputError("numbers", name, problem)
-        self.numbers = {**numbers}
-        self._known = {_size(text): name for name, text in numbers.items() if _is_long(text)}
-
-    def entry(self, text: str, label: str) -> str:
-        """A formula in names; `label` is the name of a decimal that has none, and begins that of
-        long ones within a formula."""
-        text = text.strip()
-        while _WRAPPED.fullmatch(text):
-            text = text[1:-1].strip()
-        if not text:
-            return "0"
-        if unit_of(text) is not None or unit_of_quotient(text) is not None:
-            return self._named(text, label)
-        found = iter(range(1, MOST_ENTRIES))
-        return _LONG_INSIDE.sub(
-            lambda m: self._named(m[0], f"{label}_{next(found)}") if _is_long(m[0]) else m[0], text
-        )
-
-    def _named(self, text: str, label: str) -> str:
-        name = self._known.get(_size(text)) if _is_long(text) else None
-        if name is None:
-            name = label
-            while name in self.numbers:
-                name += "_"
-            self.numbers[name] = text
-            if _is_long(text):
-                self._known[_size(text)] = name
-        same = self.numbers[name].startswith("-") == text.startswith("-")
-        return name if same else f"(-{name})"
-
-    def entries(self, texts: Iterable[str], label: str) -> tuple[str, ...]:
-        """One after the other, counted from 1."""
-        return tuple(self.entry(x, f"{label}{_place(k)}") for k, x in enumerate(texts))
-
-    @property
-    def printed(self) -> PrintedNumbers:
-        """All numbers that there are by now."""
-        return PrintedNumbers(self.numbers)
-
-
-def _size(text: str) -> str:
-    """Without its sign."""
-    return text.lstrip("+-")
-
-
-def _is_long(text: str) -> bool:
-    unit = unit_of(text) or unit_of_quotient(text)
-    return unit is not None and unit <= 1 / 10**_SHARED
-
-
-def _place(k: int) -> str:
-    return str(k + 1) if k < 9 else f"_{k + 1}"

@@ -6,7 +6,6 @@ from fractions import Fraction
 from typing import Protocol, Self, TypeVar
 
 from verify.errors import InputError
-from verify.integrators.tables.asked import Asked
 from verify.integrators.tables.cost import (
     DIGITS_BELOW,
     DIGITS_SEEN,
@@ -15,10 +14,11 @@ from verify.integrators.tables.cost import (
     exact_numbers,
     severity_of,
 )
-from verify.integrators.tables.judged import Judged
-from verify.integrators.tables.printed_numbers import PrintedNumbers, rounded_to
-from verify.integrators.tables.sentences import Details, of_conditions, of_digits, of_printed
 from verify.prose import Prose
+from verify.schemes.printed.asked import Asked
+from verify.schemes.printed.judged import Judged
+from verify.schemes.printed.printed_numbers import PrintedNumbers, rounded_to
+from verify.schemes.printed.sentences import Details, of_conditions, of_digits, of_printed
 from verify.verdict import Verdict
 
 WRONG_ORDER = "wrong order"
@@ -102,7 +102,7 @@ def order_claims(
             after = None
     if verdict is Verdict.REFUTED:
         yield TableClaim(kind, statement, verdict, evidence, details, severity,
-                         _nearest(found), cost_of(found, order, after))  # fmt: skip
+                         nearest_texts(found), cost_of(found, order, after))  # fmt: skip
         return
     yield TableClaim(kind, statement, verdict, evidence, details)
     if found.read is not None and found.read.units:
@@ -118,7 +118,7 @@ def condition_claims(
     claim = TableClaim(kind, statement, verdict, evidence, details)
     cost = cost_of(found, None) if exact_numbers(found) else None
     if verdict is Verdict.REFUTED:
-        yield replace(claim, severity=severity, nearest=_nearest(found), cost=cost)
+        yield replace(claim, severity=severity, nearest=nearest_texts(found), cost=cost)
         return
     yield claim
     if found.digits is False:
@@ -132,10 +132,11 @@ def _digits_claim(
     claim = TableClaim(kind, statement, *of_digits(found))
     if claim.verdict is not Verdict.REFUTED:
         return claim
-    return replace(claim, severity=severity_of(found, severity), nearest=_nearest(found), cost=cost)
+    own = severity_of(found, severity)
+    return replace(claim, severity=own, nearest=nearest_texts(found), cost=cost)
 
 
-def _nearest(found: Judged) -> dict[str, str] | None:
+def nearest_texts(found: Judged) -> dict[str, str] | None:
     """To a few digits more than are printed."""
     numbers, read = exact_numbers(found), found.read
     if not numbers or read is None:

@@ -13,6 +13,7 @@ from fractions import Fraction
 from verify.algebra.ring import Poly
 from verify.algebra.series.power_series import Series, delta_j
 from verify.hamiltonians.vector_field import VectorField
+from verify.proof.order import size_of
 
 _ROUNDING = Fraction(1, 2**44)
 
@@ -49,8 +50,8 @@ def agreement(coefficients: Iterable[Iterable[Compared]]) -> Agreement:
     for n, components in enumerate(coefficients):
         gap = Fraction(0)
         for x, y, difference in components:
-            gap = max(gap, _size(difference))
-            scale = max(scale, _size(x), _size(y))
+            gap = max(gap, size_of(difference))
+            scale = max(scale, size_of(x), size_of(y))
         if gap > _ROUNDING * scale:
             return Agreement(n - 1, residue, scale)
         residue = max(residue, gap)
@@ -68,12 +69,7 @@ def rounded_orders(field: VectorField, p: Series, q: Series) -> Rounded:
     found = agreement(map(compared, range(p.most + 1)))
     convergence, residue, scale = found.order, found.residue, found.scale
     for n, x in enumerate(delta_j(p, q).coefficients):
-        if _size(x) > _ROUNDING * scale:
+        if size_of(x) > _ROUNDING * scale:
             return Rounded(convergence, n, residue, x)
-        residue = max(residue, _size(x))
+        residue = max(residue, size_of(x))
     return Rounded(convergence, None, residue, None)
-
-
-def _size(x: Poly) -> Fraction:
-    """The largest coefficient."""
-    return max((abs(Fraction(int(c.p), int(c.q))) for c in x.coeffs()), default=Fraction(0))

@@ -32,7 +32,7 @@ from verify.proof.certificates.readers import (
 Form = dict[tuple[str, str], Poly]  # entries that are not 0
 
 PLANE = ("p", "q")
-_PARAMETER = re.compile(r"(?!H_)[A-Za-z][A-Za-z0-9_]{0,63}")
+_PARAMETER = re.compile(r"(?!H_|[pq][0-9]+$)[A-Za-z][A-Za-z0-9_]{0,63}")
 _KINDS = ("sin", "cos", "exp", "inverse")
 _DERIVATIVE = re.compile("H_((?:[pq][0-9]{0,2}|t)+)")
 _ONE = re.compile("[pq][0-9]*|t")

@@ -22,7 +22,7 @@ from verify.algebra.series.jets_in_degrees import JetsInDegrees
 from verify.errors import LimitError
 from verify.hamiltonians.canonical_field import Flow
 from verify.hamiltonians.coordinates import check_degrees, numbered
-from verify.proof.by_conditions import first_wrong
+from verify.proof.by_conditions import first_wrong, told_nearby
 from verify.proof.every import prove_every
 from verify.proof.every_in_time import prove_every_in_time
 from verify.proof.symplectic.defect import DefectSeries
@@ -108,7 +108,9 @@ def _by_conditions(
     wrong = first_wrong(own)
     verdict, reason, agreed = planar.verdict, planar.reason, planar.convergence_order
     symplectic = True if wrong is None and own else None
-    if verdict is Verdict.PROVED:
+    if planar.nearby is not None and verdict is planar.nearby.verdict and symplectic:
+        reason = prose("symplectic, and ", told_nearby(planar.nearby))
+    elif verdict is Verdict.PROVED:
         verdict = Verdict.PROVED if symplectic else Verdict.UNDECIDED
         held = "every condition on the coefficients holds exactly"
         reason = prose(f"symplectic, and of order {scheme.order}: {held}")
@@ -128,6 +130,7 @@ def _by_conditions(
         telescopes=True if symplectic else None,
         potential="0" if symplectic else "",
         convergence_decided=planar.convergence_decided,
+        nearby=planar.nearby,
     )
 
 

@@ -12,7 +12,8 @@ from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.ring import Decision, Poly, Ring
 from verify.hamiltonians.canonical_field import CanonicalField
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.order import Convergence
+from verify.proof.by_conditions import told_nearby
+from verify.proof.order import Convergence, is_residue, nearby_convergence
 from verify.proof.parameters import not_zero_for
 from verify.proof.symplectic import closed_form
 from verify.proof.symplectic.defect import DefectSeries, series_of
@@ -64,16 +65,23 @@ def prove_symplectic(hamiltonian: Hamiltonian, scheme: Scheme) -> SymplecticProo
     """
     called = f"`{scheme.name}`" if "=" in scheme.name else scheme.name
     claimed = Claimed(called, scheme.order, scheme.area_preserving)
-    return prove_map(map_in_degrees(scheme, hamiltonian), claimed)
+    return prove_map(map_in_degrees(scheme, hamiltonian), claimed, scheme)
 
 
-def prove_map(step: CanonicalMap, claimed: Claimed) -> SymplecticProof:
-    """The same of a map that is made."""
+def prove_map(
+    step: CanonicalMap, claimed: Claimed, scheme: Scheme | None = None
+) -> SymplecticProof:
+    """The same of a map that is made, by a scheme if by one."""
     series = series_of(step, claimed.order + 1)
     most = max(_MOST, claimed.order + 1)
-    convergence = _convergence(step, series, most)
+    printed = _convergence(step, series, most)
+    convergence, near = nearby_convergence(
+        scheme, printed, step.hamiltonian, partial(_of_scheme, step, most)
+    )
     defect = _within(step.domain, _defect(step, series, most))
     verdict, reason = _verdict(claimed, convergence, defect, most)
+    if near is not None and verdict is Verdict.PROVED:
+        verdict, reason = near.verdict, prose(reason, "; ", told_nearby(near))
     found = _Rest(step, series, defect, most)
     return SymplecticProof(
         verdict=verdict,
@@ -89,17 +97,23 @@ def prove_map(step: CanonicalMap, claimed: Claimed) -> SymplecticProof:
         witness=defect.decision.witness,
         enclosure=defect.decision.enclosure,
         conditions=step.conditions,
+        nearby=near,
         **found.volume(),
         **found.telescoping(),
     )
 
 
+def _of_scheme(step: CanonicalMap, most: int, scheme: Scheme) -> Convergence:
+    made = map_in_degrees(scheme, step.hamiltonian)
+    return _convergence(made, series_of(made, most), most, residues=True)
+
+
 def _convergence(
-    step: CanonicalMap, series: DefectSeries[CanonicalField], most: int
+    step: CanonicalMap, series: DefectSeries[CanonicalField], most: int, residues: bool = False
 ) -> Convergence:
-    """The order to which the map agrees with the exact flow."""
+    """The order to which the map agrees with the exact flow; with `residues`, up to such."""
     for n in range(step.flow_up_to + 1, most + 1):
-        agrees, gap = series.agrees(n)
+        agrees, gap = series.agrees(n, is_residue if residues else None)
         if agrees is not True:
             exact_for = partial(not_zero_for, series.flow.ring, gap, f"the difference at h^{n}")
             return Convergence(n - 1, agrees is False, exact_for)

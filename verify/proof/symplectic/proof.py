@@ -7,7 +7,7 @@ from verify.algebra.domain import Domain
 from verify.notebook import cut
 from verify.proof.symplectic.two_form import TwoForm
 from verify.prose import Prose
-from verify.schemes.conditions import Condition
+from verify.schemes.conditions import Condition, NearbyOrder
 from verify.verdict import Verdict
 
 MOST_TERMS = 2000  # of a form that is written out
@@ -22,7 +22,8 @@ class SymplecticProof:
     `witness`, where it has the value `enclosure`. `area_preserving`: whether det J ≡ 1, which every
     symplectic map fulfils and some others do; `volume_order` and `volume_leading` are those of
     det J − 1. `convergence_order`: z' agrees with the exact flow up to h to this power; None: in
-    all that was looked at; `convergence_decided`: whether it is shown to agree no further.
+    all that was looked at; `convergence_decided`: whether it is shown to agree no further;
+    `nearby`: of which coefficients, where those of the scheme are printed and leave residues.
     `telescopes`: whether `leading` is the Lie derivative of a 2-form,
     `potential`; None where that is not known; `why` says how it is.
     `formula`: what `leading` is of lieη, for any η. `checked` names the identities
@@ -50,6 +51,7 @@ class SymplecticProof:
     conditions: tuple[Condition, ...] = ()
     checked: tuple[Prose, ...] = ()
     convergence_decided: bool = True
+    nearby: NearbyOrder | None = None
 
     def __repr__(self) -> str:
         return f"SymplecticProof({self.verdict}: {cut(str(self.reason))})"

@@ -11,6 +11,7 @@ from typing import Any
 
 from verify.errors import InputError
 from verify.files import text_of
+from verify.formats import unique
 
 MOST_CELLS = 8 * 2**20  # or commas and brackets, each about an object of Python's
 _MOST_OPEN = 2**21
@@ -28,7 +29,7 @@ def json_of(content: bytes, name: str) -> Any:
     try:
         return json.loads(
             text,
-            object_pairs_hook=_unique,
+            object_pairs_hook=unique,
             parse_float=_no_float,
             parse_constant=_no_float,
         )
@@ -38,13 +39,6 @@ def json_of(content: bytes, name: str) -> Any:
         raise
     except ValueError as error:  # JSONDecodeError is one, and so is an integer of too many digits
         raise InputError("file", name, f"is not JSON: {error}") from None
-
-
-def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    found = dict(pairs)
-    if len(found) < len(pairs):
-        raise ValueError("a key stands twice")
-    return found
 
 
 def _no_float(text: str) -> None:

@@ -51,7 +51,7 @@ def conditions_for(
 @conditions_for.register
 def _(every_h: Splitting, kinetic: Kinetic | None = None, times: Times = None) -> TimedConditions:
     own = times or every_h.times or (None,) * len(every_h.parts)
-    return TimedSplitting(every_h.parts, tuple(own), kinetic or Kinetic.GENERAL)
+    return TimedSplitting(every_h.parts, tuple(own), kinetic or Kinetic.GENERAL, every_h.nearby)
 
 
 @conditions_for.register

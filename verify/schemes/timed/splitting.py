@@ -16,7 +16,7 @@ count (`verify.schemes.timed.quadratic`): 2, 2, 4, 6, 12, 20, 39, 67 for p²/(2m
 23, 45, 93, 182 for p²/(2m(t)).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import ClassVar
 
@@ -27,7 +27,7 @@ from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
 from verify.schemes.conditions import Condition
 from verify.schemes.residue import condition_of
-from verify.schemes.splitting_conditions import LETTERS, MOST_ORDER, Part, Splitting
+from verify.schemes.splitting_conditions import LETTERS, MOST_ORDER, Nearby, Part, Splitting
 from verify.schemes.timed.clocks import Times, right_clocks
 from verify.schemes.timed.equations import equations_of
 from verify.schemes.timed.kinetic import Kinetic
@@ -41,6 +41,7 @@ class TimedSplitting:
     """Kicks p − a h V_q(q, t + s h) and drifts q + a h T_p(p, t + s h), for every V and every T of
     a class.
 
+    `nearby`: as of `Splitting`, where the clocks are right.
     `times`: s of each part, None for the right one; ValueError unless there are as many as parts.
     It is a `verify.schemes.conditions.ByConditions`.
     """
@@ -48,6 +49,7 @@ class TimedSplitting:
     parts: tuple[Part, ...]
     times: Times
     kinetic: Kinetic = Kinetic.GENERAL
+    nearby: Nearby | None = field(default=None, compare=False, repr=False)
     separable: ClassVar[bool] = True
     most_order: ClassVar[int] = MOST_ORDER
 

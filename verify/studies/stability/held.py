@@ -13,9 +13,8 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.run import run as run_of
 from verify.studies.stability.exact_motion import ExactMotion, exact_motion
 from verify.studies.stability.frequency import frequency, frequency_in_degrees
-from verify.studies.stability.run_in_degrees import RunInDegrees
 from verify.studies.stability.run_motion import RunMotion, float64
-from verify.studies.stability.trail import Followed, Run, State, follow
+from verify.studies.stability.trail import Followed, Run, RunInDegrees, State, follow
 from verify.studies.stability.verdict_in_degrees import MotionInDegrees, judge_in_degrees
 from verify.studies.stability.verdict_on_run import Judgement, judge
 

@@ -20,7 +20,7 @@ from verify.prose import Prose, prose
 from verify.scenes.results.stability import LargestStepResult, MapCell, StabilityMapResult
 from verify.studies.stability.exact_motion import ExactMotion
 from verify.studies.stability.held import Within, held
-from verify.studies.stability.linear import linear_stability
+from verify.studies.stability.nearby_linear import linear_stability
 
 _FINER = Fraction(1001, 1000)  # how near the largest step is found
 _LADDER = Fraction(119, 100)  # about 2^(1/4), between the step sizes that are looked at first

@@ -14,6 +14,7 @@ isolating the real roots of integer polynomials.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from decimal import Decimal
 from fractions import Fraction
 from typing import Protocol
 
@@ -21,9 +22,9 @@ import flint
 import sympy
 
 from verify.algebra.symbols import H_STEP
+from verify.arithmetic.exact import known_text
 from verify.errors import InputError
-from verify.hamiltonians import systems
-from verify.schemes import get
+from verify.prose import Prose
 from verify.schemes.step_map import StepMap
 from verify.studies.stability.matrix_product import product, ring_polynomial
 from verify.studies.stability.positive_roots import PositiveRoot, positive_roots
@@ -35,46 +36,64 @@ Y = sympy.Symbol("y", positive=True)
 class LinearStability:
     """`interval`: the Y of (0, Y), 0 where there is none, ∞ where there is no end.
 
-    Y is a formula where it is written with square roots, else a certain root of a polynomial.
-    `delta_j`: det M − 1 as a function of y.
+    Y is a formula where it is written with square roots, else a certain root of a polynomial; or a
+    number, where the scheme's coefficients are (`verify.studies.stability.nearby_linear`).
+    `delta_j`: det M − 1 as a function of y. `gaps`: a y in each that was passed over.
     """
 
     scheme: str
-    interval: sympy.Expr | PositiveRoot
+    interval: "sympy.Expr | PositiveRoot | NearbyLimit"
     delta_j: sympy.Expr
+    gaps: tuple[Fraction, ...] = ()
 
     @property
     def exact(self) -> str:
         """As a formula, or as a certain root of a polynomial."""
         if isinstance(self.interval, PositiveRoot):
             return self.interval.written(Y.name)
+        if isinstance(self.interval, NearbyLimit):
+            return ""
         return "infinite" if self.interval is sympy.oo else str(self.interval)
 
+    @property
+    def note(self) -> Prose:
+        """Of which coefficients it is, where those of the scheme are printed."""
+        return self.interval.said if isinstance(self.interval, NearbyLimit) else Prose()
+
     def decimal(self, digits: int = 30) -> str:
-        """Rounded to so many significant digits."""
-        if isinstance(self.interval, PositiveRoot):
+        """Rounded to so many significant digits, those that are known."""
+        if isinstance(self.interval, PositiveRoot | NearbyLimit):
             return self.interval.decimal(digits)
         if self.interval in (sympy.oo, 0):
             return self.exact
         return str(self.interval.evalf(digits))
 
 
-def linear_stability(name: str) -> LinearStability:
-    """The stability interval of the scheme of that name in hω.
+@dataclass(frozen=True)
+class NearbyLimit:
+    """What the digits of printed coefficients tell of the interval's end, and what is said of it;
+    `radius` is an estimate."""
 
-    Raises InputError for a scheme that has no closed form on the harmonic oscillator.
+    value: Fraction
+    radius: Fraction
+    said: Prose
+
+    def decimal(self, digits: int) -> str:
+        """The digits that are known, so many at most."""
+        return format(Decimal(known_text(self.value, self.radius, digits)), "f")
+
+
+def of_map(name: str, step: StepMap, narrow: Fraction = Fraction(0)) -> LinearStability:
+    """The stability interval in y of a step map of H = (p² + q²)/2, with h for y; with `narrow`,
+    gaps that are less wide, in parts of y, are passed over.
+
+    Raises InputError where it has no closed form there.
     """
-    hamiltonian = systems.get("harmonic").hamiltonian({"omega": 1})
-    step = get(name).step_map(hamiltonian)
-    return of_map(name, step)
+    found = _of_product(name, step, narrow) if step.of_parts else None
+    return found or _of_closed_form(name, step)
 
 
-def of_map(name: str, step: StepMap) -> LinearStability:
-    """The same for a step map of H = (p² + q²)/2, with h for y."""
-    return (_of_product(name, step) if step.of_parts else None) or _of_closed_form(name, step)
-
-
-def _of_product(name: str, step: StepMap) -> LinearStability | None:
+def _of_product(name: str, step: StepMap, narrow: Fraction) -> LinearStability | None:
     """By the matrices of the parts; None where they have no product (`matrix_product`)."""
     found = product(step)
     if found is None:
@@ -89,9 +108,9 @@ def _of_product(name: str, step: StepMap) -> LinearStability | None:
         return None
     shears = vanish[0] and (vanish[1] or vanish[2])
     moves = any(ring.vanishes(x) is not True for x in (b, c))
-    interval = sympy.S.Zero if shears and moves else _interval(known)
+    interval, gaps = (sympy.S.Zero, ()) if shears and moves else _interval(known, narrow)
     delta_j = ring.expression(more).subs(H_STEP, Y)
-    return LinearStability(name, interval, sympy.factor(delta_j))
+    return LinearStability(name, interval, sympy.factor(delta_j), gaps)
 
 
 def _of_closed_form(name: str, step: StepMap) -> LinearStability:
@@ -101,7 +120,7 @@ def _of_closed_form(name: str, step: StepMap) -> LinearStability:
     a, b, c, e = entries
     det, trace = (sympy.cancel(x) for x in (a * e - b * c, a + e))
     conditions = [_polynomial(x) for x in (1 - det, 1 + det - trace, 1 + det + trace)]
-    interval = _interval([_SympyPolynomial(f) for f in conditions if not f.is_zero])
+    interval, _ = _interval([_SympyPolynomial(f) for f in conditions if not f.is_zero])
     if det == 1 and trace in (2, -2) and any(sympy.cancel(x) != 0 for x in (b, c)):
         interval = sympy.S.Zero
     return LinearStability(name, interval, sympy.factor(det - 1))
@@ -140,12 +159,20 @@ def _polynomial(x: sympy.Expr) -> sympy.Poly:
     return sympy.Poly(sympy.expand(above * below), Y, extension=True)
 
 
-def _interval(conditions: Sequence[_Condition]) -> sympy.Expr | PositiveRoot:
-    """The greatest Y such that all of them are ≥ 0 on (0, Y)."""
-    left: sympy.Expr | PositiveRoot = sympy.S.Zero
-    above = Fraction(0)  # the end of what encloses `left`
+def _interval(
+    conditions: Sequence[_Condition], narrow: Fraction = Fraction(0)
+) -> tuple[sympy.Expr | PositiveRoot, tuple[Fraction, ...]]:
+    """The greatest Y such that all of them are ≥ 0 on (0, Y), and a y in each gap passed over."""
+    left: PositiveRoot | None = None
+    above, gaps = Fraction(0), list[Fraction]()  # the end of what encloses `left`
     for root, (low, high) in positive_roots(f.over_integers for f in conditions):
-        if any(f.is_negative((above + low) / 2) for f in conditions):
-            return left
-        left, above = root.closed_form() or root, high
-    return left if any(f.is_negative(above + 1) for f in conditions) else sympy.oo
+        middle = (above + low) / 2
+        if any(f.is_negative(middle) for f in conditions):
+            if left is None or low - above >= narrow * low:
+                break
+            gaps.append(middle)
+        left, above = root, high
+    else:
+        if not any(f.is_negative(above + 1) for f in conditions):
+            return sympy.oo, tuple(gaps)
+    return sympy.S.Zero if left is None else left.closed_form() or left, tuple(gaps)

@@ -26,7 +26,8 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import check_start
 from verify.schemes import get
 from verify.schemes.degrees import check_takes
-from verify.studies.stability.linear import LinearStability, linear_stability
+from verify.studies.stability.linear import LinearStability, NearbyLimit
+from verify.studies.stability.nearby_linear import linear_stability
 from verify.studies.stability.positive_roots import PositiveRoot, positive_roots
 from verify.studies.stability.step_matrix import stays_bounded, step_matrix
 
@@ -82,17 +83,24 @@ class LinearInDegrees:
             return None
         if self.interval.exact in ("0", "infinite"):
             return self.interval.exact
-        y, omega = (Fraction(x.decimal(2 * _DIGITS)) for x in (self.interval, self.frequencies[-1]))
-        limit = y / omega
-        shown, _ = known_digits(limit, 4 * limit / 10 ** (2 * _DIGITS), _DIGITS)
-        return shown
+        return self._limit(self.interval)[0]
+
+    def _limit(self, interval: LinearStability) -> tuple[str, str]:
+        """The end of the steps, and its bound."""
+        end, omega = interval.interval, Fraction(self.frequencies[-1].decimal(2 * _DIGITS))
+        if isinstance(end, NearbyLimit):
+            y, error = end.value, end.radius
+        else:
+            y, error = Fraction(interval.decimal(2 * _DIGITS)), Fraction(0)
+        bound = 4 * y / 10 ** (2 * _DIGITS) + error
+        return known_digits(y / omega, bound / omega, _DIGITS)
 
     def allows(self, h: Fraction) -> bool:
         """Whether every h ω is certainly within the interval."""
-        limit = self.step_size
-        if limit in (None, "infinite"):
-            return limit == "infinite"
-        return h < Fraction(limit) * (1 - Fraction(1, 10 ** (_DIGITS - 1)))
+        if self.interval is None or self.step_size in ("0", "infinite"):
+            return self.step_size == "infinite"
+        limit, bound = map(Fraction, self._limit(self.interval))
+        return h < limit * (1 - Fraction(1, 10 ** (_DIGITS - 1))) - 2 * bound
 
     @property
     def step_size_exact(self) -> str:
@@ -100,7 +108,7 @@ class LinearInDegrees:
         if self.interval is None or self.step_size in ("0", "infinite"):
             return ""
         y, omega = self.interval.interval, self.frequencies[-1].closed
-        if isinstance(y, PositiveRoot) or omega is None:
+        if isinstance(y, PositiveRoot | NearbyLimit) or omega is None:
             return ""
         return str(sympy.radsimp(y / omega))
 

@@ -8,9 +8,8 @@ from verify.prose import Number, Prose, prose
 from verify.scenes.results.stability import StabilityResult
 from verify.studies.stability.frequency import frequency
 from verify.studies.stability.limits import linear_limit, shortened
-from verify.studies.stability.run_in_degrees import RunInDegrees
 from verify.studies.stability.run_motion import RunMotion
-from verify.studies.stability.trail import Run
+from verify.studies.stability.trail import Run, RunInDegrees
 from verify.studies.stability.verdict_in_degrees import MotionInDegrees, judge_in_degrees
 from verify.studies.stability.verdict_on_run import Judgement, judge
 

@@ -34,7 +34,6 @@ class StabilityTask(_FromATime):
     result = StabilityResult
     imports = (
         "verify.studies.stability.results",
-        "verify.studies.stability.run_in_degrees",
         "verify.studies.stability.trail",
     )
     kind: Literal["stability"] = "stability"
@@ -47,8 +46,7 @@ class StabilityTask(_FromATime):
 
     def compute(self, keeper: Keeper) -> StabilityResult:
         from verify.studies.stability.results import result_in_degrees, run_result
-        from verify.studies.stability.run_in_degrees import RunInDegrees
-        from verify.studies.stability.trail import Run
+        from verify.studies.stability.trail import Run, RunInDegrees
 
         exact, t0 = self.exact_hamiltonian(), self.t0 or Fraction(0)
         of = exact, self.scheme, self.step_size

@@ -29,11 +29,11 @@ from verify.studies.stability.exact_motion import (
     exact_motion,
     moved,
 )
-from verify.studies.stability.run_in_degrees import RunInDegrees
 from verify.studies.stability.run_motion import float64
 from verify.studies.stability.trail import (
     MOST_INTERPRETED,
     Point,
+    RunInDegrees,
     Trail,
     first_apart,
     first_step,

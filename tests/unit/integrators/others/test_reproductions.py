@@ -2,7 +2,6 @@
 
 import io
 from contextlib import redirect_stdout
-from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -10,7 +9,7 @@ import pytest
 from verify.integrators.others import reproductions
 from verify.integrators.others.claims import claims_of
 from verify.integrators.others.libraries import literature
-from verify.integrators.tables.splittings.table import PrintedTable, judge_order
+from verify.schemes.printed.splitting_table import PrintedTable, judge_order
 from verify.verdict import Verdict
 
 TABLES = {integrator.name: integrator for integrator in literature.integrators()}
@@ -58,7 +57,7 @@ def test_quotients_in_a_table_stay_exact() -> None:
     """With floats in it, no residue would be below 10⁻¹⁶."""
     own = TABLES["McLachlan SS5"].method
     assert isinstance(own, PrintedTable)
-    off = replace(own, numbers={**own.numbers, "w2": "0.6254664284676700459"})
+    off = own.read(own.printed.with_number("w2", "0.6254664284676700459"))
     found = judge_order(off, 4)
     assert found.digits is False
     assert found.nearest is not None

@@ -326,3 +326,109 @@ def test_long_quotients_may_stand_for_irrational_numbers() -> None:
     assert found["order"].verdict in (Verdict.ENCLOSED, Verdict.MEASURED), found["order"].evidence
     wrong = {**table, "b": [near[1], "2744310/9369319"]}
     assert claims(wrong)["order"].verdict is Verdict.REFUTED
+
+
+def test_wrong_digits_of_a_lower_order_are_told_beside_the_order() -> None:
+    """Σ w is off by 7e-11, of 18 digits: the weights have no order at all as they stand."""
+    outer = "1.351207191959657634"
+    yoshida = {"name": "x", "kind": "composition", "order": 6,
+               "sizes": [outer, "-1.702414383919315268", outer]}  # fmt: skip
+    right = claims(yoshida)["order"].evidence
+    wrong = claims({**yoshida, "sizes": [outer, "-1.702414383849315268", outer]})["order"].evidence
+    assert right.startswith("its order is 4: of h^5")
+    said = "its order is 4, but for wrong digits (of h^1, Σ w = 1 fails by 7.00e-11): of h^5"
+    assert wrong.startswith(said)
+
+
+# -- hints ----------------------------------------------------------------------------------------
+
+FEHLBERG = {
+    "name": "Fehlberg", "kind": "runge-kutta", "order": 5,
+    "a": [[], ["1/4"], ["3/32", "9/32"], ["1932/2197", "-7200/2197", "7296/2197"],
+          ["439/216", "-8", "3680/513", "-845/4104"],
+          ["-8/27", "2", "-3544/2565", "1859/4104", "-11/40"]],
+    "b": ["16/135", "0", "6656/12825", "28561/56430", "-9/50", "2/55"],
+    "c": ["0", "1/4", "3/8", "12/13", "1", "1/2"],
+}  # fmt: skip
+KUTTA = {
+    "name": "Kutta 4", "kind": "runge-kutta", "order": 4,
+    "a": [["0"] * 4, ["1/2", "0", "0", "0"], ["0", "1/2", "0", "0"], ["0", "0", "1", "0"]],
+    "b": ["1/6", "1/3", "1/3", "1/6"], "c": ["0", "1/2", "1/2", "1"],
+}  # fmt: skip
+
+
+def hints(table: dict[str, Any]) -> set[tuple[str, str]]:
+    return {pair for claim in judged(table) for pair in (claim.nearest or {}).items()}
+
+
+@pytest.mark.parametrize(
+    ("table", "row", "column", "wrong"),
+    [(FEHLBERG, 5, 2, "-3554/2565"), (FEHLBERG, 4, 1, "-7"), (KUTTA, 3, 3, "1"),
+     (KUTTA, 2, 1, "1/3")],
+)  # fmt: skip
+def test_one_wrong_entry_is_the_one_hint_of_all_claims(
+    table: dict[str, Any], row: int, column: int, wrong: str
+) -> None:
+    a = [list(each) for each in table["a"]]
+    right, a[row][column] = a[row][column], wrong
+    found = claims({**table, "a": a})
+    assert found["order"].verdict is found["row sums"].verdict is Verdict.REFUTED
+    assert hints({**table, "a": a}) == {(f"a{row + 1}{column + 1}", right)}
+    assert found["row sums"].severity == "wrong order", "it is not the clock's mistake"
+
+
+def test_a_wrong_time_is_still_the_clocks_mistake() -> None:
+    wrong = {**FEHLBERG, "c": [*FEHLBERG["c"][:5], "1/3"]}
+    assert hints(wrong) == {("c6", "1/2")}
+    assert claims(wrong)["row sums"].severity == "wrong clock"
+
+
+@pytest.mark.parametrize("order", [2, None])
+def test_a_hint_that_breaks_another_claim_is_not_given(order: int | None) -> None:
+    """b2 = 0 would make the explicit midpoint rule symplectic, and no method at all."""
+    midpoint = {"name": "x", "kind": "runge-kutta", "symplectic": True,
+                "a": [[], ["1/2"]], "b": ["0", "1"]}  # fmt: skip
+    table = midpoint if order is None else {**midpoint, "order": order}
+    assert claims(table)["symplectic"].verdict is Verdict.REFUTED
+    assert hints(table) == set()
+    assert "alone" not in claims(table)["symplectic"].evidence
+
+
+def test_a_hint_at_a_weight_of_the_embedded_method_is_called_so() -> None:
+    right = RIGHT["Bogacki–Shampine 3(2)"]
+    wrong = {**right, "embedded": [*right["embedded"][:3], "1/7"]}
+    assert {name for name, _ in hints(wrong)} == {"embedded4"}
+
+
+def test_a_splitting_that_begins_and_ends_otherwise_is_not_symmetric() -> None:
+    euler = {"name": "x", "kind": "splitting", "order": 1, "symmetric": True, "first": "kick",
+             "sizes": ["1", "1"]}  # fmt: skip
+    found = claims(euler)["symmetric"]
+    assert found.verdict is Verdict.REFUTED
+    said = "not symmetric: the first part is a kick, and the last one a drift"
+    assert str(found.evidence) == said
+
+
+def test_digits_of_numbers_that_the_order_leaves_free_are_not_judged() -> None:
+    sizes = ["0.123456789", "0.5", "0.753086422", "0.5", "0.123456789"]
+    free = {"name": "x", "kind": "splitting", "order": 2, "first": "kick", "sizes": sizes}
+    found = claims(free)
+    assert (found["order"].verdict, found["digits"].verdict) == (
+        Verdict.ENCLOSED, Verdict.UNDECIDED,
+    )  # fmt: skip
+    assert "free" in found["digits"].evidence
+    assert all("units" not in str(claim.evidence) for claim in found.values())
+    wrong = {**free, "sizes": [*sizes[:2], "0.753086522", *sizes[3:]]}
+    assert claims(wrong)["order"].verdict is Verdict.REFUTED, "of these the sum is not 1"
+
+
+def test_a_table_of_order_8_with_a_wrong_digit_takes_seconds() -> None:
+    """The row sums fail by 1e-9, so that 1,540 conditions with times would be looked at."""
+    a = [list(row) for row in ORDER_8["a"]]
+    assert a[2][1] == "0.0591751709536137"
+    a[2][1] = "0.0591751719536137"
+    begun = time.process_time()
+    found = claims({**ORDER_8, "a": a})
+    assert time.process_time() - begun < 12
+    assert found["row sums"].verdict is Verdict.REFUTED
+    assert found["order in time"].verdict is Verdict.UNDECIDED

@@ -140,7 +140,7 @@ def test_a_trace_is_the_same_function(name: str) -> None:
     assert abs(digits(made[node.number].value) - by_mpmath(x)) < 1e-50
 
 
-@pytest.mark.parametrize("name", set(BY_COMPARISONS) - {"cbrt below 0"})
+@pytest.mark.parametrize("name", sorted(set(BY_COMPARISONS) - {"cbrt below 0"}))
 def test_symbols_are_not_compared(name: str) -> None:
     tape = Tape()
     with pytest.raises(UntraceableError, match="compares"):

@@ -90,6 +90,8 @@ def test_what_is_beyond_its_range_is_refused_quickly(monkeypatch: pytest.MonkeyP
         refused(data | {"order": whole}, "order")
     refused(data | {"leading": [["1", *["p"] * 1000]]}, "factors")
     refused(data | {"parameters": ["d", "\x1b[2J"]}, "no new name")
+    for name in ("p1", "q2", "p10", "p"):  # names of coordinates, of whatever H
+        refused(data | {"parameters": ["d", name]}, f"'{name}' is no new name")
     refused(data | {"scheme": "stormer-verlet"}, "no entry of this name")
     refused({key: x for key, x in data.items() if key != "cofactors"}, "cofactors is missing")
     powers = list(product(range(9), repeat=3))

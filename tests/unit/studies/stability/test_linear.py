@@ -15,7 +15,8 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.step_map import StepMap
 from verify.studies.stability import linear, matrix_product
-from verify.studies.stability.linear import Y, linear_stability, of_map
+from verify.studies.stability.linear import Y, of_map
+from verify.studies.stability.nearby_linear import linear_stability
 
 KNOWN = {
     "lie1": 0, "lie2": 0, "lie3": sympy.sqrt(3), "lie4": 2 * sympy.sqrt(2), "lie5": 0, "lie6": 0,

@@ -11,9 +11,10 @@ from verify.errors import InputError
 from verify.integrators.others.printed_libraries import files
 from verify.integrators.tables import kinds
 from verify.integrators.tables.check import read_tables
-from verify.integrators.tables.entry import Naming, TableEntry
+from verify.integrators.tables.entry import TableEntry
 from verify.integrators.tables.splittings.claims import AlternatingEntry, parts_of
 from verify.scenes.mistakes.values import one_line
+from verify.schemes.printed.naming import Naming
 
 RIGHT = "right"
 

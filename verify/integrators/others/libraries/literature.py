@@ -10,7 +10,8 @@ from typing import Any
 from verify.content import content
 from verify.integrators.others.methods.integrator import ReleasedIntegrator
 from verify.integrators.tables.splittings.claims import alternating, mirrored
-from verify.integrators.tables.splittings.table import PrintedTable
+from verify.schemes.printed.printed_numbers import PrintedNumbers
+from verify.schemes.printed.splitting_table import PrintedTable
 
 TITLE = "printed tables"
 LIBRARY = None
@@ -48,7 +49,7 @@ def table_of(entry: Mapping[str, Any]) -> PrintedTable:
     """The table of one entry of the file."""
     sizes = entry.get("sizes") or mirrored(entry["half"])
     parts = tuple(zip(_names(entry, len(sizes)), sizes, strict=True))
-    return PrintedTable(entry["kind"], parts, entry.get("numbers", {}))
+    return PrintedTable(entry["kind"], parts, PrintedNumbers(entry.get("numbers", {})))
 
 
 def _names(entry: Mapping[str, Any], count: int) -> tuple[str, ...]:
@@ -60,7 +61,9 @@ def _names(entry: Mapping[str, Any], count: int) -> tuple[str, ...]:
 def _script(entry: Mapping[str, Any]) -> str:
     """The step in plain Python, for the pendulum, and the slope of its error."""
     table = table_of(entry)
-    numbers = "\n".join(f"{name} = {value.strip()}" for name, value in table.numbers.items())
+    numbers = "\n".join(
+        f"{name} = {value.strip()}" for name, value in table.printed.numbers.items()
+    )
     parts = ", ".join(f'("{kind}", {size})' for kind, size in table.parts)
     lines = [
         "from math import log2, sin",

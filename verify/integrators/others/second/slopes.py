@@ -14,10 +14,11 @@ from typing import Any
 import mpmath as mp
 import sympy
 
-from verify.integrators.tables.entry import Naming, TableEntry
+from verify.integrators.tables.entry import TableEntry
 from verify.integrators.tables.kinds import additive, composition, partitioned, runge_kutta
 from verify.integrators.tables.splittings.claims import AlternatingEntry, parts_of
 from verify.integrators.tables.tableaux.blocks import Block, block_of
+from verify.schemes.printed.naming import Naming
 
 _DIGITS = 60
 _SIZES = tuple(mp.mpf(1) / 2**k for k in range(4, 8))

@@ -1,23 +1,25 @@
 """Compositions of steps w h of any symmetric method of order 2."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from pydantic import StrictBool
 
 from verify.errors import InputError
-from verify.integrators.tables.entry import Naming
+from verify.integrators.tables.hints import Hints
 from verify.integrators.tables.layout import named_columns
 from verify.integrators.tables.splittings.claims import (
     SizesEntry,
+    consistent,
     mirrored,
     of_order,
     sizes_of,
     symmetric_claims,
 )
-from verify.integrators.tables.splittings.table import PrintedTable
 from verify.integrators.tables.told import WRONG_ORDER, WRONG_WEIGHTS, TableClaim
 from verify.prose import prose
+from verify.schemes.printed.naming import Naming
+from verify.schemes.printed.splitting_table import PrintedTable
 from verify.verdict import Verdict
 
 
@@ -39,12 +41,22 @@ def claims(entry: Entry) -> Iterator[TableClaim]:
         sizes, half = sizes_of(entry)
     named = naming.entries(sizes, "w")
     parts = tuple(("step", size) for size in (mirrored(named) if half else named))
-    table = PrintedTable(entry.kind, parts, naming.numbers)
-    for claim in of_order(entry, table):
+    table = PrintedTable(entry.kind, parts, naming.printed)
+
+    def again(numbers: Mapping[str, str]) -> Iterator[TableClaim]:
+        made = table
+        for name, text in numbers.items():
+            made = made.mended(name, text)
+        yield from (*consistent(entry, made), *of_order(entry, made))
+        if entry.symmetric:
+            yield from symmetric_claims(made)
+
+    hints = Hints(again)
+    for claim in of_order(entry, table, hints):
         of_weights = entry.of_parts and claim.severity == WRONG_ORDER
         yield replace(claim, severity=WRONG_WEIGHTS) if of_weights else claim
     if entry.symplectic:
         said = prose("a composition of symplectic steps is symplectic, whatever their sizes are")
         yield TableClaim("symplectic", "symplectic", Verdict.PROVED, said)
     if entry.symmetric:
-        yield from symmetric_claims(table)
+        yield from symmetric_claims(table, hints)

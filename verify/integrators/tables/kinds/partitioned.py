@@ -4,12 +4,12 @@ from collections.abc import Iterator
 
 from pydantic import StrictBool
 
-from verify.integrators.tables.entry import Naming
 from verify.integrators.tables.tableaux.blocks import Block, blocks_of, embedded_of
 from verify.integrators.tables.tableaux.claims import TableauEntry, of_tableau
 from verify.integrators.tables.tableaux.table import TableauTable
 from verify.integrators.tables.told import TableClaim
 from verify.schemes.coloured_trees import alternating, of_all
+from verify.schemes.printed.naming import Naming
 
 
 class Entry(TableauEntry):

@@ -3,12 +3,13 @@
 from collections.abc import Iterator
 
 from verify.errors import NOT_GIVEN, InputError
-from verify.integrators.tables.entry import Naming, Row
+from verify.integrators.tables.entry import Row
 from verify.integrators.tables.tableaux.blocks import Block, block_of
 from verify.integrators.tables.tableaux.claims import TableauEntry, of_tableau
 from verify.integrators.tables.tableaux.table import TableauTable
 from verify.integrators.tables.told import TableClaim
 from verify.schemes.coloured_trees import of_all
+from verify.schemes.printed.naming import Naming
 
 
 class Entry(TableauEntry):

@@ -7,11 +7,12 @@ q' = q + h p + h² Σ b_bar_i k_i, p' = p + h Σ b_i k_i.
 from collections.abc import Iterator
 
 from verify.errors import NOT_GIVEN, InputError
-from verify.integrators.tables.entry import Naming, Row
+from verify.integrators.tables.entry import Row
 from verify.integrators.tables.tableaux.claims import TableauEntry, of_tableau
 from verify.integrators.tables.tableaux.table import PrintedBlock, TableauTable, square
 from verify.integrators.tables.told import TableClaim
 from verify.schemes.coloured_trees import NYSTROM
+from verify.schemes.printed.naming import Naming
 
 
 class Entry(TableauEntry):

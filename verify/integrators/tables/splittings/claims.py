@@ -1,7 +1,8 @@
 """What tables of splittings and compositions claim, each with its verdict."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import cycle, islice
 from typing import Annotated, Literal
 
@@ -10,12 +11,10 @@ from pydantic import BeforeValidator
 
 from verify.arithmetic.number import E
 from verify.errors import NOT_GIVEN, InputError
-from verify.integrators.tables.asked import Asked, Named
-from verify.integrators.tables.entry import MOST_ENTRIES, Naming, Order, Row, TableEntry
-from verify.integrators.tables.judged import Judged, judge
+from verify.integrators.tables.entry import Order, Row, TableEntry
+from verify.integrators.tables.hints import NONE, Hints
 from verify.integrators.tables.layout import named_columns, one_column
 from verify.integrators.tables.splittings.clocks import TimedTable, judge_clocks, judge_in_time
-from verify.integrators.tables.splittings.table import PrintedTable, judge_order
 from verify.integrators.tables.told import (
     OF_WORDS,
     WRONG_CLOCK,
@@ -26,6 +25,10 @@ from verify.integrators.tables.told import (
     order_claims,
 )
 from verify.prose import prose
+from verify.schemes.printed.asked import Asked, Named
+from verify.schemes.printed.judged import Judged, judge
+from verify.schemes.printed.naming import MOST_ENTRIES, Naming
+from verify.schemes.printed.splitting_table import PrintedTable, judge_order
 from verify.verdict import Verdict
 
 _EXCHANGED = {"kick": "drift", "drift": "kick"}
@@ -81,8 +84,9 @@ def of_alternating(entry: AlternatingEntry) -> Iterator[TableClaim]:
     both = entry.first == "both"
     for first in ("kick", "drift") if both else (kinds[0],):
         own = kinds if first == kinds[0] else tuple(_EXCHANGED[kind] for kind in kinds)
-        table = PrintedTable(entry.kind, tuple(zip(own, sizes, strict=True)), naming.numbers)
-        for claim in _of_table(entry, table, times):
+        table = PrintedTable(entry.kind, tuple(zip(own, sizes, strict=True)), naming.printed)
+        again = partial(_mended, entry, table, times)
+        for claim in _of_table(entry, table, times, Hints(again)):
             yield _named(claim, f", {first} first") if both else claim
 
 
@@ -150,35 +154,62 @@ def alternating(first: str, count: int) -> tuple[str, ...]:
     return tuple(islice(cycle((first, _EXCHANGED[first])), count))
 
 
+def _mended(
+    entry: AlternatingEntry,
+    table: PrintedTable,
+    times: tuple[str | None, ...] | None,
+    numbers: Mapping[str, str],
+) -> Iterator[TableClaim]:
+    """The claims with these numbers, or else parts and times."""
+    for name, text in numbers.items():
+        table = table.mended(name, text)
+        times = times and tuple(
+            text if name == f"time of {table.parts[k][0]} {k + 1}" else time
+            for k, time in enumerate(times)
+        )
+    yield from consistent(entry, table)
+    yield from _of_table(entry, table, times)
+
+
+def consistent(entry: SizesEntry, table: PrintedTable) -> Iterator[TableClaim]:
+    """That it is a scheme at all, which a table claims that claims no order."""
+    if entry.order is None:
+        found = best_reading(table, lambda x: judge_order(x, 1))
+        yield from order_claims("consistent", "order 1", found, 1)
+
+
 def _of_table(
-    entry: AlternatingEntry, table: PrintedTable, times: tuple[str | None, ...] | None
+    entry: AlternatingEntry,
+    table: PrintedTable,
+    times: tuple[str | None, ...] | None,
+    hints: Hints = NONE,
 ) -> Iterator[TableClaim]:
     if times is None and entry.time_dependent is not None:
         raise InputError("times", NOT_GIVEN, "is missing; time_dependent is judged by them")
     order = None
-    for order_claim in of_order(entry, table):
+    for order_claim in of_order(entry, table, hints):
         order = order or order_claim.verdict
         yield order_claim
     if times is not None and entry.order is not None:
         timed = TimedTable(table, times, entry.time_dependent == "T and V")
-        yield from _in_time(timed, entry.order, order is Verdict.REFUTED)
+        yield from _in_time(timed, entry.order, order is Verdict.REFUTED, hints)
     if entry.symplectic:
         evidence = prose(
             "every kick and every drift is symplectic, whatever their coefficients are"
         )
         yield TableClaim("symplectic", "symplectic", Verdict.PROVED, evidence)
     if entry.symmetric:
-        yield from symmetric_claims(table)
+        yield from symmetric_claims(table, hints)
 
 
-def of_order(entry: SizesEntry, table: PrintedTable) -> Iterator[TableClaim]:
+def of_order(entry: SizesEntry, table: PrintedTable, hints: Hints = NONE) -> Iterator[TableClaim]:
     """The claim of its order, and of its digits; InputError where none is claimed."""
     order = entry.order
     if order is None:
         if entry.symmetric or entry.symplectic:
             return
         raise InputError("order", NOT_GIVEN, "is missing; a table is judged by what it claims")
-    found = best_reading(table, lambda x: judge_order(x, order))
+    found = hints.kept(best_reading(table, lambda x: judge_order(x, order)))
     yield from order_claims(
         "order", f"order {order}", found, order, lambda x: _following(table.read(x), order)
     )
@@ -199,12 +230,12 @@ def _following(table: PrintedTable, order: int) -> Asked:
     return Asked(whole.entries, chosen, residues)
 
 
-def _in_time(timed: TimedTable, order: int, refuted: bool) -> Iterator[TableClaim]:
+def _in_time(timed: TimedTable, order: int, refuted: bool, hints: Hints) -> Iterator[TableClaim]:
     """`refuted`: whether the order is without time."""
     what = "T and V depend" if timed.both else "V depends"
     statement = f"order {order}, too, where {what} on time"
-    found = best_reading(timed, lambda x: judge_in_time(x, order))
-    right = best_reading(timed, judge_clocks)
+    right = hints.kept(best_reading(timed, judge_clocks))
+    found = hints.kept(best_reading(timed, lambda x: judge_in_time(x, order)))
     wrong_clock = right.verdict is Verdict.REFUTED or not refuted
     severity = WRONG_CLOCK if wrong_clock else WRONG_ORDER
     claim = next(order_claims("order in time", statement, found, order, severity=severity))
@@ -218,9 +249,9 @@ def _in_time(timed: TimedTable, order: int, refuted: bool) -> Iterator[TableClai
         yield digits
 
 
-def symmetric_claims(table: PrintedTable) -> Iterator[TableClaim]:
+def symmetric_claims(table: PrintedTable, hints: Hints = NONE) -> Iterator[TableClaim]:
     """Whether it is the same read backwards, neighbours of one kind being one part, and none 0."""
-    found = best_reading(table, _judge_symmetric)
+    found = hints.kept(best_reading(table, _judge_symmetric))
     yield from condition_claims("symmetric", "symmetric", "symmetric", found, OF_WORDS)
 
 
@@ -228,8 +259,8 @@ def _judge_symmetric(table: PrintedTable) -> Judged:
     kinds, groups = _merged(table)
     count = len(groups)
     if kinds != kinds[::-1]:
-        name = "the first and the last part are of one kind"
-        return Judged(Verdict.REFUTED, 0, 1, Named(name, 1), read=table.printed)
+        name = f"the first part is a {kinds[0]}, and the last one a {kinds[-1]}"
+        return Judged(Verdict.REFUTED, 0, 0, Named(name, 1), read=table.printed)
     every = [(k, count - 1 - k) for k in range(count // 2)]
     pairs = [
         (i, j)

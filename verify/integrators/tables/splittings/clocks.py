@@ -14,10 +14,10 @@ from typing import Any
 import sympy
 
 from verify.arithmetic.number import E
-from verify.integrators.tables.asked import Asked, Named
-from verify.integrators.tables.judged import Judged, judge
-from verify.integrators.tables.printed_numbers import PrintedNumbers
-from verify.integrators.tables.splittings.table import PrintedTable
+from verify.schemes.printed.asked import Asked, Named
+from verify.schemes.printed.judged import Judged, judge
+from verify.schemes.printed.printed_numbers import PrintedNumbers
+from verify.schemes.printed.splitting_table import PrintedTable
 from verify.schemes.splitting_conditions import LETTERS
 from verify.schemes.timed.equations import TimedEquation, equations_of
 from verify.schemes.timed.kinetic import Kinetic

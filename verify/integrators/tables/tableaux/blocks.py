@@ -5,10 +5,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from verify.errors import NOT_GIVEN, InputError
-from verify.integrators.tables.entry import Naming, Row
+from verify.integrators.tables.entry import Row
 from verify.integrators.tables.layout import layout_of_csv, pasted
 from verify.integrators.tables.tableaux.table import MOST_STAGES, PrintedBlock, Texts, square
 from verify.scenes.frozen import Frozen
+from verify.schemes.printed.naming import Naming
 
 
 class Block(Frozen):

@@ -1,15 +1,13 @@
 """What Runge–Kutta tables of all kinds claim, each with its verdict."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from pydantic import StrictBool
 
 from verify.errors import NOT_GIVEN, InputError
-from verify.integrators.tables.asked import Asked
 from verify.integrators.tables.entry import Order, TableEntry
-from verify.integrators.tables.judged import Judged, judge
-from verify.integrators.tables.printed_numbers import PrintedNumbers
+from verify.integrators.tables.hints import NONE, Hints
 from verify.integrators.tables.tableaux.order import (
     MANY,
     judge_in_time,
@@ -32,6 +30,9 @@ from verify.integrators.tables.told import (
     order_claims,
 )
 from verify.prose import prose
+from verify.schemes.printed.asked import Asked
+from verify.schemes.printed.judged import Judged, judge
+from verify.schemes.printed.printed_numbers import PrintedNumbers
 from verify.verdict import Verdict
 
 
@@ -52,45 +53,64 @@ def of_tableau(
     separable: bool = False,
 ) -> Iterator[TableClaim]:
     """Each claim that the entry makes of its table; InputError where it makes none."""
-    made = list(_claims(entry, table, embedded, separable))
+
+    def again(numbers: Mapping[str, str]) -> Iterator[TableClaim]:
+        own, weights = table, embedded
+        for name, text in numbers.items():
+            own = own.mended(name, text)
+            if weights is not None:
+                other = table.with_weights(weights).mended(name, text)
+                weights = [block.weights for block in other.blocks]
+        if entry.order is None:
+            found = _judged(own, 1)
+            yield from _of_order("consistent", "order 1", own, found, 1)
+        yield from _claims(entry, own, weights, separable)
+
+    made = list(_claims(entry, table, embedded, separable, Hints(again)))
     if not made:
         raise InputError("order", NOT_GIVEN, "is missing; a table is judged by what it claims")
     yield from made
 
 
 def _claims(
-    entry: TableauEntry, table: TableauTable, embedded: Sequence[Texts] | None, separable: bool
+    entry: TableauEntry,
+    table: TableauTable,
+    embedded: Sequence[Texts] | None,
+    separable: bool,
+    hints: Hints = NONE,
 ) -> Iterator[TableClaim]:
-    sums = None
+    sums, claimed = None, entry.row_sums if entry.row_sums is not None else table.timed
     if table.timed:
         sums = best_reading(table, judge_row_sums)
     if entry.order is not None:
-        known = _judged(table, entry.order)
+        known = hints.kept(_judged(table, entry.order))
         yield from _of_order("order", f"order {entry.order}", table, known, entry.order)
-        if sums is not None:
-            yield _in_time(table, entry.order, known, sums)
-    claimed = entry.row_sums if entry.row_sums is not None else table.timed
+        if sums is not None and not (claimed and hints is NONE):  # then the row sums tell
+            yield _in_time(table, entry.order, known, sums, hints)
     if claimed:
         sums = sums or best_reading(table, judge_row_sums)
         if sums.verdict is Verdict.REFUTED and not table.nystrom and sums.misprint is None:
             sums = replace(sums, misprint=wrong_time(table))
+        sums = hints.kept(sums)
+        of_time = sums.misprint is None or sums.misprint.name.startswith("c")
+        severity = WRONG_CLOCK if of_time else WRONG_ORDER
         form = (
             "Σ_j a_ij = c_i^2/2" if table.nystrom else "the times are the row sums, c_i = Σ_j a_ij"
         )
-        yield from condition_claims("row sums", form, "the row sums", sums, WRONG_CLOCK)
+        yield from condition_claims("row sums", form, "the row sums", sums, severity)
     if embedded is not None and entry.embedded_order is not None:
         order, other = entry.embedded_order, table.with_weights(embedded)
         said = f"the embedded weights have order {order}"
-        found = _judged(other, order)
+        found = hints.kept(_judged(other, order))
         yield from _of_order("embedded order", said, other, found, order, WRONG_WEIGHTS)
     if entry.symplectic:
-        found = best_reading(table, lambda x: judge_symplectic(x, separable))
+        found = hints.kept(best_reading(table, lambda x: judge_symplectic(x, separable)))
         yield from condition_claims("symplectic", "symplectic", "symplectic", found, NOT_SYMPLECTIC)
     if entry.symmetric:
-        found = best_reading(table, judge_symmetric)
+        found = hints.kept(best_reading(table, judge_symmetric))
         yield from condition_claims("symmetric", "symmetric", "symmetric", found, OF_WORDS)
     if entry.stage_order is not None:
-        yield from _stage_orders(table, entry.stage_order)
+        yield from _stage_orders(table, entry.stage_order, hints)
 
 
 def _judged(table: TableauTable, order: int) -> Judged:
@@ -112,7 +132,9 @@ def _following(table: TableauTable, order: int) -> Callable[[PrintedNumbers], As
     return lambda numbers: order_asked(table.read(numbers), order + 1, first=order + 1)
 
 
-def _in_time(table: TableauTable, order: int, known: Judged, sums: Judged) -> TableClaim:
+def _in_time(
+    table: TableauTable, order: int, known: Judged, sums: Judged, hints: Hints
+) -> TableClaim:
     """Of the order alone: the digits of a and b are judged without time, and c by the row sums."""
     kind, statement = "order in time", f"order {order}, too, where f depends on time"
     exact = known.verdict is sums.verdict is Verdict.PROVED
@@ -123,12 +145,13 @@ def _in_time(table: TableauTable, order: int, known: Judged, sums: Judged) -> Ta
     if known.verdict is Verdict.REFUTED:
         said = prose("the order fails where f does not depend on time")
         return TableClaim(kind, statement, Verdict.REFUTED, said, severity=WRONG_ORDER)
-    found = best_reading(table, lambda x: judge_in_time(x, order))
+    found = hints.kept(best_reading(table, lambda x: judge_in_time(x, order)))
     return next(order_claims(kind, statement, found, order, severity=WRONG_CLOCK))
 
 
-def _stage_orders(table: TableauTable, order: int) -> Iterator[TableClaim]:
+def _stage_orders(table: TableauTable, order: int, hints: Hints) -> Iterator[TableClaim]:
     found = best_reading(table, lambda x: judge(x.printed, stage_order_asked(x, order), 1))
+    found = hints.kept(found)
     yield from condition_claims(
         "stage order", f"stage order {order}", f"of stage order {order}", found, OF_WORDS
     )

@@ -14,9 +14,6 @@ import sympy
 
 from verify.arithmetic.number import E
 from verify.errors import InputError
-from verify.integrators.tables.asked import Asked, Named, Residues
-from verify.integrators.tables.judged import Judged, judge
-from verify.integrators.tables.misprint import Misprint
 from verify.integrators.tables.tableaux.table import TableauTable
 from verify.integrators.tables.tableaux.tree_weights import Block, dot
 from verify.schemes.coloured_trees import (
@@ -28,12 +25,16 @@ from verify.schemes.coloured_trees import (
     symmetry,
     vertices,
 )
+from verify.schemes.printed.asked import Asked, Named, Residues
+from verify.schemes.printed.judged import Judged, judge
+from verify.schemes.printed.misprint import Misprint
 from verify.verdict import Verdict
 
 _MOST_TREES = 2500
 _HIGHEST = 10
 _MOST_WORK = 3 * 10**8  # products: some minutes
 _WRONG = Fraction(1, 10**9)  # between a time and a row sum: more is no digit
+_MANY_IN_TIME = 300  # conditions on rounded numbers: some seconds
 MANY = 60  # conditions: of fewer a solution is looked for together with that of row sums
 
 
@@ -165,9 +166,13 @@ def judge_in_time(table: TableauTable, order: int) -> Judged:
         if found.verdict is not Verdict.REFUTED:
             return found
     most = most_order(replace(table.grammar, timed=True))
-    timed = judge(table.printed, order_asked(table, min(order, most), timed=True), order)
-    if timed.verdict is Verdict.REFUTED or order <= most:
-        return timed
+    for n in range(1, min(order, most) + 1):  # of a wrong time it is mostly a low order that fails
+        asked = order_asked(table, n, timed=True)
+        if table.printed.units and len(asked.equations) > _MANY_IN_TIME:
+            break
+        timed = judge(table.printed, asked, n)
+        if timed.verdict is Verdict.REFUTED or n == order:
+            return timed
     return replace(timed, verdict=Verdict.UNDECIDED)
 
 

@@ -3,7 +3,7 @@
 Parts are those of a sum of vector fields, or p' and q' of a partitioned method.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -11,9 +11,9 @@ import sympy
 
 from verify.arithmetic.number import E
 from verify.errors import InputError
-from verify.integrators.tables.printed_numbers import PrintedNumbers
 from verify.integrators.tables.tableaux.tree_weights import Block, TreeWeights
 from verify.schemes.coloured_trees import Grammar
+from verify.schemes.printed.printed_numbers import PrintedNumbers
 
 MOST_STAGES = 40
 Texts = tuple[str, ...]
@@ -33,6 +33,7 @@ class PrintedBlock:
 class TableauTable:
     """`blocks`: one for each colour of the grammar. `names`: what stands after A, b and c of each.
     `nystrom`: the second block is of q' = p: see `verify.integrators.tables.tableaux.tree_weights`.
+    `weighing`: what the weights are called.
 
     InputError where the blocks do not fit together.
     """
@@ -42,6 +43,7 @@ class TableauTable:
     printed: PrintedNumbers
     names: tuple[str, ...] = ("",)
     nystrom: bool = False
+    weighing: str = "b"
 
     def __post_init__(self) -> None:
         count = self.stages
@@ -81,19 +83,37 @@ class TableauTable:
     @cached_property
     def labels(self) -> Texts:
         """What the entries are called."""
+        pairs = zip(self._every_label(), self.exprs, strict=True)
         found: list[str] = []
-        for block, name, bar in zip(self.exprs, self.names, self._bars, strict=True):
-            stages = range(self.stages)
-            told = [f"a{name}{_place(i)}{_place(j)}" for i in stages for j in stages]
-            told += [f"b{bar}{name}{_place(i)}" for i in stages]
-            told += [f"c{name}{_place(i)}" for i in stages]
-            pairs = zip(told, _flat(block), strict=False)
-            found += [label for label, x in pairs if x is not None]
+        for told, block in pairs:
+            own = zip(told, _flat(block), strict=False)
+            found += [label for label, x in own if x is not None]
         return tuple(found)
 
-    @property
-    def _bars(self) -> Texts:
-        return ("", "_bar") if self.nystrom else ("",) * len(self.blocks)
+    def _every_label(self) -> Iterator[list[str]]:
+        """Those of each block, of entries that are 0, too, and of times that may not be there."""
+        bars, stages = (
+            ("", "_bar") if self.nystrom else ("",) * len(self.blocks),
+            range(self.stages),
+        )
+        for name, bar in zip(self.names, bars, strict=True):
+            told = [f"a{name}{_place(i)}{_place(j)}" for i in stages for j in stages]
+            told += [f"{self.weighing}{bar}{name}{_place(i)}" for i in stages]
+            yield [*told, *(f"c{name}{_place(i)}" for i in stages)]
+
+    def mended(self, name: str, text: str) -> "TableauTable":
+        """The same with this number, or else entry, written so; as it is where it has none."""
+        if name in self.printed.numbers:
+            return replace(self, printed=self.printed.with_number(name, text))
+        blocks = []
+        for told, block in zip(self._every_label(), self.blocks, strict=True):
+            flat = [*(x for row in block.rows for x in row), *block.weights, *(block.times or ())]
+            made = [text if label == name else x for label, x in zip(told, flat, strict=False)]
+            n = self.stages
+            rows = tuple(tuple(made[n * i : n * i + n]) for i in range(n))
+            times = None if block.times is None else tuple(made[n * n + n :])
+            blocks.append(PrintedBlock(rows, tuple(made[n * n : n * n + n]), times))
+        return replace(self, blocks=tuple(blocks))
 
     def filled(self, entries: Sequence[E]) -> list[Block[E]]:
         """The blocks with these numbers for the entries."""
@@ -120,7 +140,8 @@ class TableauTable:
     def with_weights(self, weights: Sequence[Texts]) -> "TableauTable":
         """The same with other weights in each block, as embedded ones."""
         pairs = zip(self.blocks, weights, strict=True)
-        return replace(self, blocks=tuple(replace(block, weights=own) for block, own in pairs))
+        blocks = tuple(replace(block, weights=own) for block, own in pairs)
+        return replace(self, blocks=blocks, weighing="embedded")
 
 
 def _place(i: int) -> str:

@@ -1,7 +1,9 @@
 """A user's own splitting, by its coefficients: `kick 1/2; drift 1; kick 1/2; order 2`.
 
 Coefficients are exact: decimals and quotients, and what they are made of by `sqrt` and powers, as
-`drift 1/(2 - 2**(1/3))`. `order` is what is claimed of it; without it that is 1.
+`drift 1/(2 - 2**(1/3))`. Those that are printed with eight digits and more stand for numbers near
+them: an order is theirs (`verify.schemes.printed.nearby_order`). `order` is what is claimed of it,
+at least; without it that is 1.
 
 For an H that depends on time a part may have its own, in parts of h from the step's start, as in
 `kick 1/2 at 0; drift 1; kick 1/2 at 1`; where it has none, it is that of `right_times`.
@@ -11,6 +13,7 @@ import sympy
 
 from verify.algebra.formula import parse
 from verify.errors import InputError
+from verify.schemes.printed.nearby_order import nearby_of
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import splitting
 from verify.schemes.splitting_conditions import LETTERS, MOST_ORDER, Part
@@ -31,6 +34,7 @@ def make(name: str) -> Scheme | None:
         raise InputError("scheme", name, _FORM)
     order = _order(name, words.pop()[1]) if words[-1][0] == "order" else 1
     parts, times = zip(*(_part(name, *part) for part in words), strict=True)
+    printed = tuple((kind, text.partition(" at ")[0]) for kind, text in words)
     return splitting(
         "; ".join(" ".join(part.split()) for part in name.split(";") if part.strip()),
         parts,
@@ -38,6 +42,7 @@ def make(name: str) -> Scheme | None:
         symmetric=_palindrome(parts),
         source="the user's coefficients",
         times=times,
+        nearby=nearby_of(printed),
     )
 
 

@@ -7,7 +7,7 @@ With F the residues, J their derivative at the printed numbers x₀, and B a bou
 derivatives (Cauchy's, by a majorant that has all signs plus), F(x) is F(x₀) + J (x − x₀) up to
 B |x − x₀|²/2, the norm being the sum. Where some combination of residues is enclosed away from 0
 over the whole box, no numbers in it satisfy them. That some do is shown in
-`verify.integrators.tables.nearest`.
+`verify.schemes.printed.nearest`.
 
 J is a difference quotient with a step of 2⁻¹⁶⁰, whose error B bounds too. All is done in balls.
 """
@@ -21,8 +21,8 @@ from typing import Protocol
 import flint
 
 from verify.arithmetic.arb import Ball, middle_and_radius, rational_ball
-from verify.integrators.tables.asked import Asked, ball_of, size_of
-from verify.integrators.tables.printed_numbers import entries_at
+from verify.schemes.printed.asked import Asked, ball_of, size_of
+from verify.schemes.printed.printed_numbers import entries_at
 
 _STEP = 160  # the difference quotient's, as a power of 1/2
 RADIUS = Fraction(1, 8)  # of the polydisc of Cauchy's bound

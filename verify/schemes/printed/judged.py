@@ -1,4 +1,4 @@
-"""What the digits of a printed table can say of conditions; see `verify.integrators.tables.nearby`.
+"""What the digits of a printed table can say of conditions; see `verify.schemes.printed.nearby`.
 
 - PROVED or REFUTED by exact algebra where no coefficient is rounded;
 - REFUTED where no numbers within ten units of the last digits satisfy all conditions, and a residue
@@ -19,15 +19,16 @@ from verify.algebra.enclosure import enclose
 from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.arb import in_reach, middle_and_radius
 from verify.arithmetic.flint_precision import working_precision
-from verify.integrators.tables.asked import BITS, Asked, Equation
-from verify.integrators.tables.misprint import Misprint, exact_misprint, misprint
-from verify.integrators.tables.nearby import Nearby
-from verify.integrators.tables.nearest import far, nearest
-from verify.integrators.tables.printed_numbers import PrintedNumbers
+from verify.schemes.printed.asked import BITS, Asked, Equation
+from verify.schemes.printed.misprint import Misprint, exact_misprint, misprint
+from verify.schemes.printed.nearby import Nearby
+from verify.schemes.printed.nearest import far, nearest
+from verify.schemes.printed.printed_numbers import PrintedNumbers
 from verify.verdict import Verdict
 
 WITHIN = 10  # units of the last digit, for the order
 OF_DIGITS = Fraction(1, 10**9)  # a residue below it is of wrong digits, and not of a wrong method
+AS_PRINTED = Fraction(1, 10**30)  # units, within which a solution is what is printed
 _AT_LEAST = Verdict.PROVED, Verdict.ENCLOSED, Verdict.MEASURED
 
 
@@ -36,7 +37,8 @@ class Judged:
     """What was found of conditions of orders up to a claimed one.
 
     `order`: the highest that is not excluded, of those looked at. `failing`: the first condition
-    that excludes more, with its `residue` as printed. `largest`: the largest residue of the claimed
+    that excludes more, with its `residue` as printed; `lower`: one of a lower order, whose residue
+    is of wrong digits. `largest`: the largest residue of the claimed
     order's conditions. `off`: how far the printed number that is farthest from a solution's is from
     it, in units of its last digit, and `nearest` the solution's numbers; None where none is known.
     `shown`: how many conditions are shown to hold there, of `checked`; the others do to 60 digits.
@@ -57,6 +59,7 @@ class Judged:
     misprint: Misprint | None = None
     residues: tuple[tuple[Equation, Fraction], ...] = ()
     read: PrintedNumbers | None = None
+    lower: tuple[Equation, Fraction] | None = None
 
     @property
     def holds(self) -> bool:
@@ -91,7 +94,10 @@ def _of(near: Nearby, order: int, numbers: PrintedNumbers) -> Judged:
     condition = None if failing is None else equations[failing]
     size = Fraction(0) if failing is None else near.at_print[failing]
     residues = tuple(zip(equations, near.at_print, strict=True))
+    first = min(wrong, key=lambda k: equations[k].order, default=None)
     seen = Judged(Verdict.MEASURED, allowed, checked, condition, size, largest, residues=residues)
+    if first is not None and condition is not None and equations[first].order < condition.order:
+        seen = replace(seen, lower=residues[first])
     if allowed < order and largest > OF_DIGITS:
         seen = replace(seen, verdict=Verdict.REFUTED, digits=False)
         if numbers.tentative:
@@ -114,6 +120,8 @@ def _with_nearest(seen: Judged, near: Nearby, own: Sequence[int], order: int, sl
     wrong_digits = off > slack and (allowed < order or near.apart(own, slack))
     one = misprint(near, own) if wrong_digits and off > WITHIN else None
     digits = True if off <= slack else False if wrong_digits else None
+    if off < AS_PRINTED and found.shown < len(near.names):
+        digits = None  # any others of those that are free would do as well
     known = allowed >= order and off <= WITHIN
     verdict = Verdict.ENCLOSED if known or largest <= OF_DIGITS else Verdict.MEASURED
     if off > WITHIN and largest > OF_DIGITS and near.apart(own, WITHIN):

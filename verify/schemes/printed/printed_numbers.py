@@ -119,6 +119,20 @@ class PrintedNumbers:
             self, exact_up_to=_SHORTEST, exact_digits=0, exact_quotients=False, tentative=True
         )
 
+    def with_number(self, name: str, text: str) -> "PrintedNumbers":
+        """The same with one of them printed so, to see whether it holds."""
+        return replace(self, numbers={**self.numbers, name: text}, tentative=True)
+
+    def of_a_method(self) -> list["PrintedNumbers"]:
+        """As those of a method are read that stands alone: what has few digits is exact, and long
+        quotients are where it holds so."""
+        longest = max((_digits(x) for x in self.numbers.values() if unit_of(x)), default=0)
+        first = replace(
+            self, exact_up_to=FIRST, exact_digits=max(FIRST, longest - _FEWER), tentative=True
+        )
+        last = replace(first, exact_up_to=0, exact_digits=FIRST, exact_quotients=False)
+        return [first] if first.units == last.units else [first, last]
+
     def readings(self) -> list["PrintedNumbers"]:
         """The same as they may be read: with more of the decimals exact first."""
         longest = max((_digits(x) for x in self.numbers.values() if unit_of(x)), default=0)

@@ -9,10 +9,11 @@ import flint
 from verify.algebra.formula import symbol
 from verify.arithmetic.arb import Ball, middle_and_radius
 from verify.arithmetic.flint_precision import working_precision
-from verify.integrators.tables.asked import BITS, Asked
-from verify.integrators.tables.nearby import AnyNumbers, Nearby, small
+from verify.schemes.printed.asked import BITS, Asked
+from verify.schemes.printed.nearby import AnyNumbers, Nearby, small
 
 _TURNS = 9
+_FEW = 8  # failing conditions by which one number is looked for; then all are looked at
 _HELD = flint.arb(2) ** -150  # a residue that is 0, where no number is rounded
 _CLOSE, _LARGEST = Fraction(1, 10**40), 10**12  # to a quotient, and its denominator at most
 _MOST = 200  # entries of which one is looked for
@@ -29,33 +30,41 @@ class Misprint:
 
 def misprint(near: Nearby, rows: Sequence[int]) -> Misprint | None:
     """The one number whose change alone would do; None where none or several would."""
-    found = [m for k in range(len(near.names)) if (m := _single(near, k, rows)) is not None]
+    failing = [i for i in rows if not _is_small(near, i, near.value[i])]
+    few, every = failing[:_FEW] or list(rows[:_FEW]), range(len(near.names))
+    found = [m for k in every if (m := _single(near, k, rows, few)) is not None]
     return found[0] if len(found) == 1 else None
 
 
-def _single(near: Nearby, k: int, rows: Sequence[int]) -> Misprint | None:
+def _single(near: Nearby, k: int, rows: Sequence[int], few: Sequence[int]) -> Misprint | None:
     """By Newton's method for one unknown, in the sense of least squares."""
     at, value = list(near.start), near.value
-    largest = max(abs(value[i]) for i in rows)
-    slope = [near.slope[i][k].mid() for i in rows]
+    largest = max(abs(value[i]) for i in few)
+    slope = [near.slope[i][k].mid() for i in few]
     for turn in range(_TURNS):
         if turn:
-            there = near.moved(at, k, rows)
-            slope = [((there[i] - value[i]) / small()).mid() for i in rows]
-        change = _least_squares(slope, [value[i] for i in rows])
+            there = near.moved(at, k, few)
+            slope = [((there[i] - value[i]) / small()).mid() for i in few]
+        change = _least_squares(slope, [value[i] for i in few])
         if change is None:
             return None
         at[k] = (at[k] - change).mid()
-        value = near.residues(at, rows)
-        if turn == 0 and not all(abs(value[i]) < largest for i in rows):
+        value = near.residues(at, few)
+        if turn == 0 and not all(abs(value[i]) < largest for i in few):
             return None  # no change of this number alone brings them down
-    for i in rows:
-        pairs = zip(near.slope[i], near.unit, strict=True)
-        allowed = sum((abs(d) * u for d, u in pairs), _HELD)
-        if not abs(value[i]) < allowed:
-            return None
+    if not all(_is_small(near, i, value[i]) for i in few):
+        return None
+    value = near.residues(at, rows)
+    if not all(_is_small(near, i, value[i]) for i in rows):
+        return None
     name = near.names[k]
     return Misprint(name, near.numbers.numbers[name], middle_and_radius(at[k])[0])
+
+
+def _is_small(near: Nearby, i: int, value: Ball) -> bool:
+    """Whether a residue is what the digits leave of it."""
+    pairs = zip(near.slope[i], near.unit, strict=True)
+    return bool(abs(value) < sum((abs(d) * u for d, u in pairs), _HELD))
 
 
 def _least_squares(slope: Sequence[Ball], value: Sequence[Ball]) -> Ball | None:

@@ -1,6 +1,6 @@
 """Whether exact numbers near those that a table prints satisfy its conditions, and which do.
 
-With P = U Jᵀ(J U Jᵀ)⁻¹, U the squared units (the rest as in `verify.integrators.tables.nearby`),
+With P = U Jᵀ(J U Jᵀ)⁻¹, U the squared units (the rest as in `verify.schemes.printed.nearby`),
 t ↦ t − F(x₀ + P t) may map a ball around −F(x₀) into itself: then, by Brouwer, a solution exists,
 and it is known where.
 
@@ -16,7 +16,7 @@ from fractions import Fraction
 import flint
 
 from verify.arithmetic.arb import Ball, middle_and_radius, rational_ball
-from verify.integrators.tables.nearby import RADIUS, AnyNumbers, Nearby, around
+from verify.schemes.printed.nearby import RADIUS, AnyNumbers, Nearby, around
 
 HELD = Fraction(1, 2**200)
 _TURNS = 40

@@ -3,9 +3,10 @@
 from fractions import Fraction
 
 from verify.arithmetic.exact import decimal
-from verify.integrators.tables.judged import WITHIN, Judged
-from verify.integrators.tables.printed_numbers import PrintedNumbers, rounded_to
 from verify.prose import Prose, count, prose, read_prose
+from verify.schemes.printed.judged import AS_PRINTED, WITHIN, Judged
+from verify.schemes.printed.misprint import Misprint
+from verify.schemes.printed.printed_numbers import PrintedNumbers, rounded_to
 from verify.verdict import Verdict
 
 Details = tuple[tuple[str, ...], ...]
@@ -28,6 +29,8 @@ def of_conditions(found: Judged, what: str) -> Judgement:
         return Verdict.REFUTED, read_prose(_excluded(found, 1)), _moved(found)
     rounded = _none_near(found)
     said = f"not {what}: `{failing.name}` fails by {_short(found.residue)}{rounded}{_alone(found)}"
+    if not found.checked:  # no equation: it is said of the table's form
+        said = f"not {what}: {failing.name}"
     return Verdict.REFUTED, read_prose(said), _moved(found)
 
 
@@ -48,6 +51,8 @@ def _held(found: Judged) -> str:
             f"; of these {found.shown} are shown to hold there, and the others, which depend on "
             "them, to 60 digits"
         )  # fmt: skip
+        if found.off < AS_PRINTED:
+            return f"all {conditions} hold with the numbers as they are printed{rest}"
         return (
             f"exact coefficients that satisfy all {conditions} lie within {_far(found)} of those "
             f"printed to {found.read.digits} decimals, whose residues are up to "
@@ -68,9 +73,13 @@ def _excluded(found: Judged, claimed: int) -> str:
             f"{found.checked} conditions together{far}; residues are up to {_short(found.largest)}"
         )
     assert found.failing is not None  # noqa: S101 - it is what excludes more
+    but = ""
+    if found.lower is not None:
+        lower, by = found.lower[0], _short(found.lower[1])
+        but = f", but for wrong digits (of `h^{lower.order}`, `{lower.name}` fails by {by})"
     said = (
-        f"its order is {found.order}: of `h^{found.failing.order}`, `{found.failing.name}` fails "
-        f"by {_short(found.residue)}{_none_near(found)}"
+        f"its order is {found.order}{but}: of `h^{found.failing.order}`, `{found.failing.name}` "
+        f"fails by {_short(found.residue)}{_none_near(found)}"
     )
     return said + _alone(found)
 
@@ -86,16 +95,25 @@ def _alone(found: Judged) -> str:
     m = found.misprint
     if m is None:
         return ""
-    unit = None if found.read is None else found.read.last_digits.get(m.name)
-    would = str(m.value) if unit is None else rounded_to(m.value, unit)
     return (
         f". One number alone explains it: `{m.name}`, printed `{m.printed.strip()}`, would be "
-        f"`{would}`"
+        f"`{mended_text(found, m)}`"
     )
+
+
+def mended_text(found: Judged, m: Misprint) -> str:
+    """What would be printed in its place, with as many digits."""
+    unit = None if found.read is None else found.read.last_digits.get(m.name)
+    return str(m.value) if unit is None else rounded_to(m.value, unit)
 
 
 def of_digits(found: Judged) -> Judgement:
     """Whether all digits are right to one unit of the last."""
+    if found.digits is None and found.off is not None and found.off < AS_PRINTED:
+        said = (
+            "the conditions hold with the numbers as they are printed, and leave some of them free"
+        )
+        return Verdict.UNDECIDED, prose(said), ()
     if found.digits is None:
         said = "the conditions do not tell all of its digits, or exact ones are not shown to exist"
         return Verdict.UNDECIDED, prose(said), ()

@@ -9,9 +9,6 @@ import sympy
 
 from verify.arithmetic.number import E
 from verify.errors import InputError
-from verify.integrators.tables.asked import Asked, Residues
-from verify.integrators.tables.judged import Judged, judge
-from verify.integrators.tables.printed_numbers import PrintedNumbers, power
 from verify.schemes.free_lie_words import (
     KINDS,
     MOST_ORDER,
@@ -21,6 +18,9 @@ from verify.schemes.free_lie_words import (
     residue,
     step,
 )
+from verify.schemes.printed.asked import Asked, Residues
+from verify.schemes.printed.judged import Judged, judge
+from verify.schemes.printed.printed_numbers import PrintedNumbers, power
 from verify.schemes.splitting_conditions import LETTERS
 
 _ODD = (1, 3, 5, 7, 9)
@@ -35,10 +35,7 @@ class PrintedTable:
 
     kind: str
     parts: tuple[tuple[str, str], ...]
-    numbers: Mapping[str, str]
-    exact_up_to: int = 0
-    exact_digits: int = 0
-    exact_quotients: bool = True
+    printed: PrintedNumbers
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
@@ -48,13 +45,6 @@ class PrintedTable:
         if wrong or not self.parts:
             raise InputError("parts", wrong, f"are {' or '.join(known)}, one at least")
         _ = self.sizes, self.units
-
-    @cached_property
-    def printed(self) -> PrintedNumbers:
-        """The numbers as they are read."""
-        return PrintedNumbers(
-            self.numbers, self.exact_up_to, self.exact_digits, self.exact_quotients
-        )
 
     @cached_property
     def sizes(self) -> tuple[sympy.Expr, ...]:
@@ -87,14 +77,17 @@ class PrintedTable:
         """The highest order that is looked at."""
         return MOST_ORDER[self.kind]
 
+    def mended(self, name: str, text: str) -> "PrintedTable":
+        """The same with this number, or else part, written so; as it is where it has none."""
+        if name in self.printed.numbers:
+            return self.read(self.printed.with_number(name, text))
+        parts = ((kind, text if name == f"{kind} {k + 1}" else size) for k, (kind, size) in
+                 enumerate(self.parts))  # fmt: skip
+        return replace(self, parts=tuple(parts))
+
     def read(self, numbers: PrintedNumbers) -> "PrintedTable":
         """The same with its numbers read so."""
-        return replace(
-            self,
-            exact_up_to=numbers.exact_up_to,
-            exact_digits=numbers.exact_digits,
-            exact_quotients=numbers.exact_quotients,
-        )
+        return replace(self, printed=numbers)
 
     def letters(self, sizes: Sequence[E]) -> list[Mapping[str, E]]:
         """The parts for `verify.schemes.free_lie_words.step`, with these sizes."""

@@ -1,0 +1,126 @@
+"""Sizes with eight digits and more stand for exact ones near them; errors in them are refuted."""
+
+from fractions import Fraction
+
+import pytest
+
+from verify import schemes
+from verify.hamiltonians import systems
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.proof.every import prove_every
+from verify.proof.every_in_time import prove_every_in_time
+from verify.proof.order import prove
+from verify.proof.symplectic.every import prove_every_in_degrees
+from verify.proof.symplectic.order import prove_symplectic
+from verify.schemes.printed.nearby_order import nearby_of
+from verify.verdict import Verdict
+
+ENCLOSED, PROVED, REFUTED = Verdict.ENCLOSED, Verdict.PROVED, Verdict.REFUTED
+KINDS = ("kick", "drift") * 3 + ("kick",)
+DOUBLE = float(1 / (2 - 2 ** (1 / 3)))
+# Half the sizes of Yoshida's scheme: to 8, 12 and 16 digits, and as a program prints its doubles.
+HALVES = [
+    ("0.67560360", "1.35120719", "-0.17560360", "-1.70241438"),
+    ("0.675603595980", "1.351207191960", "-0.175603595980", "-1.702414383919"),
+    ("0.6756035959798289", "1.3512071919596578", "-0.1756035959798288", "-1.7024143839193155"),
+    tuple(repr(x) for x in (DOUBLE / 2, DOUBLE, (1 - DOUBLE) / 2, 1 - 2 * DOUBLE)),
+]
+PENDULUM = systems.get("pendulum").hamiltonian()
+HENON = systems.get("henon-heiles").hamiltonian()
+
+
+def scheme_of(half: tuple[str, ...], order: int = 4) -> str:
+    sizes = (*half, *half[-2::-1])
+    return "; ".join(map(" ".join, zip(KINDS, sizes, strict=True))) + f"; order {order}"
+
+
+@pytest.mark.parametrize("half", HALVES)
+def test_the_order_of_exact_sizes_near_the_printed_ones_is_told_everywhere(
+    half: tuple[str, ...],
+) -> None:
+    name = scheme_of(half)
+    scheme = schemes.get(name)
+    for proof in (
+        prove(scheme.step_map(PENDULUM), scheme),
+        prove_every(name),
+        prove_every_in_time(name),
+        prove_symplectic(HENON, scheme),
+        prove_every_in_degrees(name, 2),
+    ):
+        assert (proof.verdict, proof.convergence_order) == (ENCLOSED, 4), proof
+        assert proof.convergence_decided
+        assert "whose residues are up to" in proof.reason
+        assert prove_every(scheme_of(half, 5)).verdict is REFUTED
+
+
+@pytest.mark.parametrize("half", HALVES[1:])
+@pytest.mark.parametrize("place", [0, 1, 2, 3])
+@pytest.mark.parametrize("digit", [5, 9])
+def test_a_wrong_digit_is_refuted(half: tuple[str, ...], place: int, digit: int) -> None:
+    at = half[place].index(".") + digit
+    other = str((int(half[place][at]) + 5) % 10)
+    wrong = half[place][:at] + other + half[place][at + 1 :]
+    name = scheme_of((*half[:place], wrong, *half[place + 1 :]))
+    scheme = schemes.get(name)
+    assert prove_every(name).verdict is REFUTED
+    assert prove(scheme.step_map(PENDULUM), scheme).verdict is REFUTED
+    assert prove_symplectic(HENON, scheme).verdict is REFUTED
+
+
+def test_short_decimals_and_quotients_are_what_they_are() -> None:
+    assert nearby_of([("kick", "0.5"), ("drift", "1.000001"), ("kick", "1/2")]) is None
+    assert prove_every("kick 0.5; drift 1.000001; kick 1/2; order 2").verdict is REFUTED
+    assert prove_every("kick 0.5; drift 1.00000001; kick 1/2; order 2").verdict is ENCLOSED
+    assert prove_every("kick 0.5; drift 1; kick 1/2; order 2").verdict is PROVED
+
+
+def test_what_holds_exactly_as_it_is_printed_is_proved() -> None:
+    name = "kick 0.123456789; drift 0.5; kick 0.753086422; drift 0.5; kick 0.123456789; order 2"
+    assert prove_every(name).verdict is PROVED
+
+
+def test_a_size_that_is_no_polynomial_in_its_decimals_is_exact() -> None:
+    assert nearby_of([("kick", "1/(2.0000000001)"), ("drift", "1")]) is None
+    assert prove_every("kick 1/(2.0000000001); drift 1; kick 0.5; order 2").verdict is REFUTED
+
+
+def test_one_h_may_have_a_higher_order_than_every_h() -> None:
+    free = Hamiltonian.parse("p**2/2 + q")  # V is linear, so that order 3 needs less
+    scheme = schemes.get("kick 0.50000000; drift 1.00000000; kick 0.50000000; order 2")
+    proof = prove(scheme.step_map(free), scheme)
+    assert (
+        proof.convergence_order
+        == prove(schemes.get("stormer-verlet").step_map(free)).convergence_order
+    )
+
+
+def test_the_nearest_parts_are_right_to_many_digits() -> None:
+    near = schemes.get(scheme_of(HALVES[2])).every_h.nearby(5)
+    gamma = near.parts[1][1]
+    assert abs((2 - 1 / gamma) ** 3 - 2) < Fraction(1, 10**80)
+    assert near.parts[0][0] == "kick"
+    assert near.wrong.order == 5
+
+
+DRIVEN = Hamiltonian.parse("p**2/2 + q**4/4 - q*cos(t)")
+
+
+def test_times_that_are_given_count_where_h_depends_on_time() -> None:
+    """A clock that stands still loses the order there, and changes nothing without time."""
+    half, total, times = HALVES[2], Fraction(0), list[str]()
+    sizes = (*half, *half[-2::-1])
+    for kind, size in zip(KINDS, sizes, strict=True):
+        times.append(f" at {total}" if kind == "kick" else "")
+        total += Fraction(size) if kind == "drift" else 0
+    parts = [f"{kind} {size}" for kind, size in zip(KINDS, sizes, strict=True)]
+    right = "; ".join(map("".join, zip(parts, times, strict=True))) + "; order 4"
+    frozen = "; ".join(x + " at 0" * x.startswith("kick") for x in parts) + "; order 4"
+    for name in (right, frozen):
+        scheme = schemes.get(name)
+        assert prove(scheme.step_map(PENDULUM), scheme).verdict is ENCLOSED
+    found = {name: schemes.get(name) for name in (right, frozen)}
+    verdicts = {
+        name: {prove(x.step_map(DRIVEN), x).verdict, prove_every_in_time(name).verdict}
+        for name, x in found.items()
+    }
+    assert verdicts == {right: {ENCLOSED}, frozen: {REFUTED}}
