@@ -18,7 +18,7 @@ from verify.integrators.tracing.dual import Comparison
 from verify.integrators.user_code.step import StepError
 from verify.integrators.user_code.user_map import UserMap
 
-_LEVELS = 8  # halvings of a difference's width
+_LEVELS = 8  # halvings of a difference's width, at least
 _MOVES = 8  # tiny ones, by which it is seen how far its numbers scatter
 _SPREAD = 2.0  # times the scatter that is seen
 
@@ -72,10 +72,10 @@ class FloatProbe:
         ends = self._ends(moved, place, h)
         seen = []
         for i in range(len(z)):
-            values = [float(end[i] - ends[0][i]) for end in ends]
+            values = [end[i] for end in ends]
             # Third differences of a smooth curve are nothing at such a distance.
             thirds = [
-                abs(d - 3 * c + 3 * b - a)
+                float(abs(d - 3 * c + 3 * b - a))
                 for a, b, c, d in zip(values, values[1:], values[2:], values[3:], strict=False)
             ]
             least = epsilon * float(max(abs(ends[0][i]), abs(z[i])))
@@ -104,7 +104,8 @@ class FloatProbe:
         self, place: Place, h: Fraction, z: list[Fraction], j: int, scatter: list[float]
     ) -> tuple[list["gmpy2.mpfr"], list[float]]:
         """∂z'/∂z_j, and the errors of its entries."""
-        widths = [place.reach[j] / 2**k for k in range(1, _LEVELS + 1)]
+        levels = max(_LEVELS, self.step.numbers.bits // 8)
+        widths = [place.reach[j] / 2**k for k in range(1, levels + 1)]
         tiny = place.reach[j] / 2 ** (self.step.numbers.bits // 3)
         widths += [2 * tiny, tiny]
         states, steps = [], []
@@ -150,7 +151,7 @@ def _best(
     noise = 2 * noises[-1]
     apart = abs(float(tiny - value))
     bent = abs(float(wide[0] - value)) * (noises[0] / noises[-1]) ** 2  # over the tiny width
-    if not coarse and apart <= error + 4 * noise + bent:
+    if not coarse and apart <= error + 4 * (noise + bent):
         return value, error
     agree = abs(float(tiny - twice)) <= 4 * noise
     return (tiny, noise + bent) if agree and not coarse else (value, error + apart)

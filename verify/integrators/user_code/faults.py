@@ -46,7 +46,8 @@ def examined(step: UserMap, places: Sequence[Place]) -> tuple[list[Fault], Calls
             continue
         if step.left <= 0:
             break
-    return [*_as_a_map(step, first), *_elsewhere(step, first), *_with_arrays(step, first)], first
+    faults = _as_a_map(step, first) or _elsewhere(step, first)
+    return [*faults, *_with_arrays(step, first)], first
 
 
 def _elsewhere(step: UserMap, first: Mapping[Place, State]) -> list[Fault]:
