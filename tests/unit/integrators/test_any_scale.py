@@ -1,0 +1,237 @@
+"""Verdicts about users' code in units, shapes and states of their own."""
+
+import math
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import verify
+from tests.helpers.programs import scaled_steps as steps
+from tests.helpers.programs.compilers import library
+from tests.helpers.programs.judged import judged
+from verify.errors import InputError
+from verify.hamiltonians import systems
+from verify.integrators.foreign.called import of_library
+from verify.integrators.measures.survey import Request
+from verify.integrators.results import Claims, Finding
+from verify.integrators.user_code.number_type import DOUBLE
+
+BOTH = Claims(order=2, symplectic=True)
+
+
+# -- units ----------------------------------------------------------------------------------------
+
+
+def test_euler_in_kilometres_and_seconds_is_of_order_1_and_not_symplectic() -> None:
+    found = judged(steps.euler_of_earth, hamiltonian=steps.EARTH)
+    assert (found.verdict, found.convergence_order, found.symplectic) == ("MEASURED", 1, False)
+    assert (
+        judged(steps.euler_of_earth, Claims(order=2), hamiltonian=steps.EARTH).verdict == "REFUTED"
+    )
+    right = judged(steps.verlet_of_earth, BOTH, hamiltonian=steps.EARTH)
+    assert (right.verdict, right.convergence_order, right.symplectic) == ("MEASURED", 2, True)
+
+
+def test_so_it_is_in_c(tmp_path: Path) -> None:
+    path = library(tmp_path, "step.c", steps.EULER_OF_EARTH, "-lm")
+    found = judged(of_library(f"{path}:step", 2, DOUBLE, 60), BOTH, hamiltonian=steps.EARTH)
+    assert (found.verdict, found.convergence_order, found.symplectic) == ("REFUTED", 1, False)
+
+
+@pytest.mark.parametrize("sigma", ["1/1000", "2", "340"])
+def test_a_molecule_of_any_size_is_of_its_order_up_to_the_cutoff(sigma: str) -> None:
+    size = float(Fraction(sigma))
+    exact = systems.get("lennard-jones").hamiltonian({"epsilon": "1", "sigma": sigma})
+    found = judged(steps.molecule(size, 3 * size), BOTH, hamiltonian=exact)
+    assert (found.verdict, found.convergence_order) == ("MEASURED", 2), found.reason
+    assert found.domain[0] == f"q ≤ `{3 * size:.6g}`"
+    wrong = judged(steps.molecule(size * (1 + 1e-6), 50 * size), BOTH, hamiltonian=exact)
+    assert (wrong.verdict, wrong.convergence_order) == ("REFUTED", 0), wrong.reason
+
+
+@pytest.mark.parametrize("rate", [1, 10**6, 10**12])
+def test_the_order_of_a_right_method_on_stiff_h_is_seen(rate: int) -> None:
+    found = judged(steps.stiff(rate), BOTH, hamiltonian=f"p**2/2 + {rate}*q**2/2")
+    assert (found.verdict, found.convergence_order) == ("MEASURED", 2), found.reason
+    wrong = judged(steps.stiff(rate), BOTH, hamiltonian=f"p**2/2 + {rate}*1.0001*q**2/2")
+    assert wrong.verdict == "REFUTED"
+
+
+def test_a_term_that_acts_far_from_0_alone_is_seen() -> None:
+    def step(p: Any, q: Any, h: Any) -> Any:
+        if q > steps.FAR:
+            return p, q
+        p = p - h * (1e-3 * q + 2.0001e-15 * q**3)
+        return p, q + h * p / 5
+
+    right, wrong = "2e-15", "2.0001e-15"
+    for cubic, verdict in ((wrong, "MEASURED"), (right, "REFUTED")):
+        formula = f"p**2/10 + 0.001*q**2/2 + {cubic}*q**4/4"
+        assert judged(step, Claims(order=1), hamiltonian=formula).verdict == verdict
+
+
+# -- what may be ignored --------------------------------------------------------------------------
+
+
+def pull(q: Any) -> Any:
+    return -math.sin(q)
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9, 1e-12])
+def test_a_tolerance_above_the_noise_is_refuted_and_named(tolerance: float) -> None:
+    found = judged(steps.midpoint(pull, tolerance), Claims(symplectic=True))
+    assert found.verdict == "REFUTED"
+    assert "an iteration that stops, at a tolerance of at least" in found.reason
+    assert found.largest is not None
+    assert tolerance / 10 < found.largest < 100 * tolerance
+    allowed = Request(within=Fraction(1000 * tolerance))
+    assert (
+        judged(steps.midpoint(pull, tolerance), Claims(symplectic=True), request=allowed).verdict
+        == "MEASURED"
+    )
+
+
+def test_an_iteration_to_the_noise_is_within_it() -> None:
+    found = judged(steps.midpoint(pull, 1e-15), BOTH)
+    assert (found.verdict, "within the noise of doubles" in found.reason) == ("MEASURED", True)
+
+
+@pytest.mark.parametrize("share", [1e-3, 1e-9, 1e-12])
+def test_a_map_that_loses_area_behind_a_comparison_is_refuted(share: float) -> None:
+    found = verify.check_map(steps.losing(share))
+    assert (found.verdict, found.largest) == ("REFUTED", pytest.approx(share, rel=0.1))
+    assert verify.check_map(steps.losing(share), within=2 * share).verdict == "MEASURED"
+    assert verify.check_map(steps.losing(0.0)).verdict == "MEASURED"
+
+
+def test_rounded_states_are_coarse_in_several_degrees_too() -> None:
+    def step(p: Any, q: Any, h: Any) -> Any:
+        p = p - h / 2 * q
+        q = q + h * p
+        return np.round(p - h / 2 * q, 3), np.round(q, 3)
+
+    found = judged(step, Claims(symplectic=True), hamiltonian="(p1**2 + p2**2 + q1**2 + q2**2)/2")
+    assert found.verdict == "UNDECIDED"
+    assert "its numbers are coarse" in found.reason
+
+
+def test_a_matrix_of_few_digits_is_told_that_a_symplectic_one_is_near() -> None:
+    c, s = math.cos(0.7), math.sin(0.7)
+    turn = np.array([[c + 0.4 * s, 2.3 * s], [-1.16 / 2.3 * s, c - 0.4 * s]])
+    wrong = turn + np.array([[1e-3, 0], [0, 0]])
+    for digits in (6, 9):
+        for matrix, near in ((turn, True), (wrong, False)):
+            few = np.round(matrix, digits)
+
+            def rounded(p: Any, q: Any, matrix: Any = few) -> Any:
+                q, p = matrix @ np.array([q, p])
+                return p, q
+
+            found = verify.check_map(rounded)
+            assert found.verdict == "REFUTED"
+            said = f"within half a unit of the {digits}th digit of its entries"
+            assert any(said in note for note in found.notes) is near
+
+
+# -- shapes ---------------------------------------------------------------------------------------
+
+SHAPES = [
+    steps.words, steps.eps_last, steps.size_first, steps.unknown_names, steps.state_of_q_p,
+    steps.state_of_p_q, steps.by_attributes, steps.annotated,
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("step", SHAPES, ids=lambda f: f.__name__)
+def test_each_shape_is_understood(step: steps.Step) -> None:
+    found = judged(step, BOTH)
+    assert (found.verdict, found.convergence_order) == ("PROVED", 2), found.notes
+
+
+def test_bodies_in_space_have_arrays_of_their_shape() -> None:
+    found = judged(steps.bodies, BOTH, hamiltonian=steps.TWO_BODIES)
+    assert found.verdict.holds
+    assert found.convergence_order == 2
+
+
+def test_what_returns_another_shape_is_told_what_came() -> None:
+    with pytest.raises(InputError, match=r"returns 2 numbers.*wanted: p', q'"):
+        judged(lambda p, q, h: (p[0], q[0]), hamiltonian=steps.TWO_BODIES)
+
+
+# -- other forms ----------------------------------------------------------------------------------
+
+
+def test_velocities_are_refuted_and_told_what_they_are_in_momenta() -> None:
+    def step(x: Any, v: Any, dt: Any) -> Any:
+        v, x = steps.in_velocities(v, x, dt)
+        return x, v
+
+    found = judged(step, BOTH, hamiltonian=steps.UNLIKE)
+    assert found.verdict == "REFUTED"
+    note = "in momenta p = m·v, m = (1, 3), it is of order 2 and symplectic"
+    assert note in found.notes
+    seen = verify.check_map(steps.in_velocities, degrees=2)
+    assert seen.verdict == "REFUTED"
+    assert any("with m = (1, 3)" in note for note in seen.notes)
+    assert not any("m = (" in note for note in verify.check_map(steps.boris, degrees=3).notes)
+
+
+def test_det_j_is_told_of_what_is_not_symplectic() -> None:
+    found = verify.check_map(steps.boris, degrees=3)
+    assert (found.verdict, found.area_preserving) == ("REFUTED", True)
+    assert "det J is 1" in found.reason
+
+
+# -- branches -------------------------------------------------------------------------------------
+
+BRANCHES = {
+    "|q| > 2": lambda p, q: abs(q) > 2,
+    "p > 1": lambda p, q: p > 1,
+    "q < -1": lambda p, q: q < -1,
+    "energy > 1/2": lambda p, q: p * p / 2 + 1 - math.cos(q) > 0.5,
+    "q > 30": lambda p, q: q > 30,
+    "p < -40": lambda p, q: p < -40,
+    "p q > 25": lambda p, q: p * q > 25,
+}
+
+
+@pytest.mark.parametrize("name", BRANCHES)
+def test_a_fault_on_the_other_side_of_a_comparison_is_seen(name: str) -> None:
+    found = judged(steps.faulty(BRANCHES[name]), Claims(symplectic=True))
+    assert found.verdict == "REFUTED", found.notes
+    assert judged(steps.clipped, Claims(symplectic=True)).verdict == "REFUTED"
+
+
+def test_a_cutoff_gives_the_order_its_domain_and_refutes_nothing() -> None:
+    found = judged(steps.cut_off(50.0), BOTH)
+    assert (found.verdict, found.convergence_order) == ("MEASURED", 2)
+    assert found.domain[0] == "q ≤ `50`"
+    assert any("beyond it the code does something else" in note for note in found.notes)
+    there = Request(z=(Fraction(1), Fraction(60)))
+    assert judged(steps.cut_off(50.0), BOTH, request=there).verdict == "REFUTED"
+
+
+def test_what_is_out_of_all_proportion_is_named_and_not_visited() -> None:
+    found = judged(steps.stiff(1), BOTH, hamiltonian="p**2/2 + q**2/2")
+    assert "it compares, and may do something else, where q ≥ 1e+300: not looked at" in found.notes
+
+
+@pytest.mark.parametrize("degrees", [1, 2, 3])
+def test_all_signs_are_looked_at_in_pairs(degrees: int) -> None:
+    def step(p: Any, q: Any, h: Any) -> Any:
+        if np.any(q > steps.FAR):
+            return p, q
+        p = p - h * q
+        return p, q + h * p
+
+    names = "p q" if degrees == 1 else " ".join(f"p{k} q{k}" for k in range(1, degrees + 1))
+    formula = " + ".join(f"{name}**2/2" for name in names.split())
+    found: Finding = judged(step, hamiltonian=formula)
+    states = [place.z for place in found.places]
+    for a in range(2 * degrees):
+        for b in range(a):
+            seen = {(z[a] > 0, z[b] > 0) for z in states}
+            assert len(seen) == 4, (a, b)
