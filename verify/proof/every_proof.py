@@ -52,7 +52,7 @@ class EveryProof:
 
     @property
     def domain(self) -> Domain:
-        """Where it holds, beside where H is smooth."""
+        """Where it holds, beside that H is smooth at every point and time at which it is read."""
         return EVERYWHERE if get(self.scheme).explicit else Domain.of((), SOLVABLE)
 
     @property

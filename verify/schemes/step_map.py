@@ -76,7 +76,7 @@ class StepMap:
     def domain(self) -> Domain:
         """Where the map is smooth: where H is, and is so at the stages, if there are any."""
         words = [SOLVABLE] if self.implicit else []
-        if (self.of_parts or self.implicit) and self.hamiltonian.domain.names & {"p", "q"}:
+        if (self.of_parts or self.implicit) and self.hamiltonian.domain_moves:
             words.append(AT_STAGES)
         return Domain.of((), *words) & self.hamiltonian.domain & self.asked
 
