@@ -53,6 +53,8 @@ from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import Expansion, first_nonzero
+from verify.proof.order import prove
+from verify.proof.potential import Potential, potential_of
 from verify.proof.telescoping import potential_of_lie
 from verify.prose import read_prose
 from verify.schemes import get
@@ -60,6 +62,7 @@ from verify.schemes.methods.taylor.lie import eta_of
 from verify.schemes.step_map import Substep
 
 _MOST_ORDERS = 24
+_FOR_EVERY_H = Potential(True, "by the formula for every H")  # of `lieη` of even η
 Element = tuple[Ring, Poly]
 
 
@@ -75,14 +78,15 @@ class NoLawError(Exception):
 class GrowthLaw:
     """log(1 + Λ) = h^(power−1) [G] + h^power (T ⟨g⟩ + [B_g − ½ X G]) + O(h^(power+1) T).
 
-    `potential` is G, and `leading` X G; both are None where the leading coefficient of ΔJ is not
-    known to telescope, and the law then has no G.
+    `potential` is G, and `leading` X G, of `lieη` of even η; both are None for other schemes, whose
+    law has no G. `telescoping`: whether the leading coefficient is X·G, which it may be there too.
     """
 
     power: int
     g: Element
     potential: Element | None
     leading: Element | None
+    telescoping: Potential
 
 
 @lru_cache(maxsize=64)
@@ -96,19 +100,20 @@ def growth_law(hamiltonian: Hamiltonian, scheme: str) -> GrowthLaw:
         raise InputError(
             "parameter", hamiltonian.symbols[0], "has no value; a growth law needs one"
         )
-    step_map = get(scheme).step_map(hamiltonian)
+    chosen = get(scheme)
+    step_map = chosen.step_map(hamiltonian)
     if step_map.preserves_area:
         raise NoLawError("ΔJ ≡ 0 is proved: Λ is exactly 0")
     step, eta = step_map.flat, eta_of(scheme)
     if eta is None or eta % 2:
-        return _plain_law(step)
+        return _plain_law(step, potential_of(prove(step_map, chosen), chosen))
     ring = step.ring
     potential, leading = potential_of_lie(step.field, eta), step.coefficient(eta + 1)
     g = step.coefficient(eta + 2)
-    return GrowthLaw(eta + 1, (ring, g), (ring, potential), (ring, leading))
+    return GrowthLaw(eta + 1, (ring, g), (ring, potential), (ring, leading), _FOR_EVERY_H)
 
 
-def _plain_law(step: Substep) -> GrowthLaw:
+def _plain_law(step: Substep, telescoping: Potential) -> GrowthLaw:
     """By the first coefficient of ΔJ that does not vanish."""
     if step.degree is None:
         found = first_nonzero(Expansion(step.ring, step.delta_j).coefficient, _MOST_ORDERS + 1)
@@ -121,4 +126,4 @@ def _plain_law(step: Substep) -> GrowthLaw:
         raise NoLawError(f"whether the coefficient of `h^{n}` in ΔJ vanishes is not decided")
     if n < 2:
         raise NoLawError(f"ΔJ begins with `h^{n}`: the map is not consistent with the flow")
-    return GrowthLaw(n - 1, found.element, None, None)
+    return GrowthLaw(n - 1, found.element, None, None, telescoping)
