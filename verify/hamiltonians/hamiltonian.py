@@ -29,6 +29,7 @@ from verify.algebra.ring import Poly
 from verify.algebra.substitution import substitute
 from verify.arithmetic.exact import Exact, rational, text
 from verify.drawable import drawn_by
+from verify.effort import limited
 from verify.errors import InputError
 from verify.hamiltonians.coordinates import PLANE, check_coordinates, coordinates_of
 from verify.hamiltonians.vector_field import VectorField
@@ -213,7 +214,8 @@ class Hamiltonian:
         if self.symbols:
             raise InputError("parameter", self.symbols[0], "has no value; a gradient needs one")
         at, n = [symbol(name) for name in self.coordinates], self.degrees
-        slopes = [self.exact.diff(x) for x in at]
+        with limited("hamiltonian", self.formula, "to differentiate it"):
+            slopes = [self.exact.diff(x) for x in at]
         given, wanted = ((x[0], x[1]) if self.planar else (x[:n], x[n:]) for x in (at, slopes))
         time = (symbol("t"),) if self.time_dependent else ()
         made: Callable[..., tuple[Any, Any]]

@@ -21,6 +21,7 @@ import flint
 import sympy
 
 from verify.algebra.symbols import H_STEP
+from verify.effort import MOST, limited
 from verify.errors import InputError
 from verify.hamiltonians import systems
 from verify.schemes import get
@@ -71,7 +72,8 @@ def linear_stability(name: str) -> LinearStability:
 
 def of_map(name: str, step: StepMap) -> LinearStability:
     """The same for a step map of H = (p² + q²)/2, with h for y."""
-    return (_of_product(name, step) if step.of_parts else None) or _of_closed_form(name, step)
+    with limited("scheme", name, "its linear theory", 10 * MOST):  # `lie99` takes 3
+        return (_of_product(name, step) if step.of_parts else None) or _of_closed_form(name, step)
 
 
 def _of_product(name: str, step: StepMap) -> LinearStability | None:
