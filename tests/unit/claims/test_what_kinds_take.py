@@ -91,5 +91,5 @@ def test_a_kind_takes_an_h_in_time_or_says_that_it_does_not(kind: str, tmp_path:
     if kind not in ("shifted", "no_pattern"):
         assert [claim.kind for claim in load_claims(path).claims] == [kind]
         return
-    with pytest.raises(InputError, match=f"kind={kind}: is of no H that depends on t"):
+    with pytest.raises(InputError, match=f"kind={kind}: is of an H without t, and so of no H"):
         load_claims(path)
