@@ -46,7 +46,8 @@ def scene_for(
         problem = f"is of one degree of freedom; the H that it speaks of has {exact.degrees}"
         raise InputError("kind", claim.kind, problem)
     if exact and claim.autonomous and exact.time_dependent:
-        raise InputError("kind", claim.kind, "is of an H without t, and so of no H that depends on t")
+        problem = "is of an H without t, and so of no H that depends on t"
+        raise InputError("kind", claim.kind, problem)
     return name, scene
 
 
