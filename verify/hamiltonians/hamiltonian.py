@@ -29,7 +29,6 @@ from verify.algebra.ring import Poly
 from verify.algebra.substitution import substitute
 from verify.arithmetic.exact import Exact, rational, text
 from verify.drawable import drawn_by
-from verify.effort import limited
 from verify.errors import InputError
 from verify.hamiltonians.coordinates import PLANE, check_coordinates, coordinates_of
 from verify.hamiltonians.vector_field import VectorField
@@ -214,8 +213,7 @@ class Hamiltonian:
         if self.symbols:
             raise InputError("parameter", self.symbols[0], "has no value; a gradient needs one")
         at, n = [symbol(name) for name in self.coordinates], self.degrees
-        with limited("hamiltonian", self.formula, "to differentiate it"):
-            slopes = [self.exact.diff(x) for x in at]
+        slopes = [self.exact.diff(x) for x in at]
         given, wanted = ((x[0], x[1]) if self.planar else (x[:n], x[n:]) for x in (at, slopes))
         time = (symbol("t"),) if self.time_dependent else ()
         made: Callable[..., tuple[Any, Any]]
