@@ -69,11 +69,13 @@ def _law(law: AverageResult) -> Markup:
 
 def _telescopes(law: AverageResult) -> Markup:
     """What is known of whether the leading coefficient does, as `verify prove` says it."""
+    if law.telescopes is None:
+        return Markup("; whether it telescopes is not decided")
     if not law.telescopes:
-        undecided = "; whether it telescopes is not decided"
-        return Markup(undecided if law.telescopes is None else ", which does not telescope")
-    said = ", which telescopes: it is X·G with G = {}, and ⟨g⟩ is 0 where p and q come back"
-    return Markup(said).format(mathml.formula(law.potential))
+        return Markup(", which does not telescope")
+    return Markup(
+        ", which telescopes: it is X·G with G = {}, and ⟨g⟩ is 0 where p and q come back"
+    ).format(mathml.formula(law.potential))
 
 
 def _finding(laws: Sequence[GrowthLawResult], explains: str) -> Iterator[str]:
