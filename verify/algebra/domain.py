@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
-from itertools import groupby, islice
+from functools import cached_property, lru_cache
+from itertools import groupby
 
 from verify.algebra.embedding import embed
 from verify.algebra.enclosure import Ball, enclose, points
 from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.requirement import Relation, Requirement
 from verify.algebra.ring import Decision, Poly, Ring
+from verify.effort import limited, unless_long
 from verify.errors import InputError
 from verify.late import sympy
 from verify.prose import Formula, Prose, joined, prose
@@ -20,7 +21,6 @@ from verify.prose import Formula, Prose, joined, prose
 _SIGNS = {"!=": "≠", ">=": "≥", ">": ">", "<=": "≤", "<": "<"}
 _REVERSED = {"!=": "!=", ">=": "<=", ">": "<"}
 _PRECISION = 128
-_MOST_NODES = 300  # of an expression whose sign sympy is asked for
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Domain:
     @classmethod
     def of(cls, requirements: Iterable[Requirement], *words: str) -> Domain:
         """The domain in its simplest terms; what always holds is left out."""
-        simple = {r for each in requirements for r in _simplified(*each)}
+        simple = {r for each in requirements for r in _simplified_soon(each)}
         return cls(tuple(_merged(simple)), tuple(dict.fromkeys(words)))
 
     def __and__(self, other: Domain) -> Domain:
@@ -78,9 +78,8 @@ class Domain:
         """The domain with these values put in; InputError where a requirement then fails."""
         if not values or not self.requirements:
             return self
-        put = [
-            Requirement(r.expression.xreplace(dict(values)), r.relation) for r in self.requirements
-        ]
+        with limited("domain", ", ".join(self.texts), "to put a value in"):
+            put = [r._replace(expression=r.expression.xreplace(values)) for r in self.requirements]
         for before, after in zip(self.requirements, put, strict=True):
             if after.expression.is_number and _holds_of_number(after) is False:
                 shown = ", ".join(f"{name} = {value}" for name, value in values.items())
@@ -174,6 +173,12 @@ def _holds_of_number(r: Requirement) -> bool | None:
     return holds(enclose(ring, x, {}, _PRECISION), r.relation)
 
 
+@lru_cache(maxsize=512)
+def _simplified_soon(written: Requirement) -> Iterable[Requirement]:
+    """As it is written where sympy does not end."""
+    return unless_long(lambda: list(_simplified(*written)), [Requirement(*written)])
+
+
 def _simplified(u: sympy.Expr, relation: Relation) -> Iterable[Requirement]:
     """The same condition on simpler expressions; nothing where it always holds."""
     if u.is_number:
@@ -193,7 +198,7 @@ def _unequal(u: sympy.Expr) -> Iterable[Requirement]:
 
 def _signed(u: sympy.Expr, relation: Relation) -> Iterable[Requirement]:
     """That a product is ≥ 0 or > 0, of factors which are defined: a root is ≥ 0."""
-    positive = [f for f in sympy.Mul.make_args(u) if (f.is_number or _small(f)) and f.is_positive]
+    positive = [f for f in sympy.Mul.make_args(u) if f.is_positive]
     rest = sympy.Mul(*(f for f in sympy.Mul.make_args(u) if f not in positive))
     number, rest = rest.as_coeff_Mul()
     rest = (rest.primitive()[1] if rest.is_Add else rest) * sympy.sign(number)
@@ -211,8 +216,6 @@ def _always(u: sympy.Expr, relation: Relation) -> bool:
     """Whether the condition is seen to hold everywhere."""
     from verify.algebra.identities.absolute_values import sign_of  # few formulas have conditions
 
-    if not _small(u):
-        return False
     if relation == "!=":
         return bool(u.is_nonzero) or sign_of(u, strict=True) is not None
     seen = u.is_positive if relation == ">" else u.is_nonnegative
@@ -223,10 +226,6 @@ def _root_of_linear(u: sympy.Expr, symbol: sympy.Symbol) -> list[sympy.Rational]
     slope = u.diff(symbol)
     root = -u.subs(symbol, 0) / slope if slope.is_Rational and slope else None
     return [root] if root is not None and root.is_Rational else []
-
-
-def _small(u: sympy.Expr) -> bool:
-    return next(islice(sympy.preorder_traversal(u), _MOST_NODES, None), None) is None
 
 
 def _merged(requirements: Iterable[Requirement]) -> Iterable[Requirement]:

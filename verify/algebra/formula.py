@@ -23,6 +23,7 @@ from verify.algebra.expressions.monomials import DEEPEST, Monomials, is_of_name
 from verify.algebra.limits import check_power, checked
 from verify.algebra.requirement import Requirement, of_divisor, of_function, of_power
 from verify.arithmetic.exact import rational
+from verify.effort import limited
 from verify.errors import InputError, LimitError
 from verify.late import sympy
 
@@ -40,6 +41,7 @@ _APPLY: dict[type, Callable[[sympy.Expr, sympy.Expr], sympy.Expr]] = {
     ast.Mult: operator.mul,
     ast.Div: operator.truediv,
 }
+_is_zero = operator.attrgetter("is_zero")
 _SHORT = 18  # digits of a number that is surely within the limits
 _DECIMAL = re.compile(r"[0-9.eE+-]+", re.ASCII)
 _PARAMETER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,31}")
@@ -135,6 +137,7 @@ class _Reader:
     def __init__(self, source: str, text: str, line: str, names: frozenset[str] | None) -> None:
         self.source, self.text, self.line, self.names = source, text, line, names
         self.required: list[Requirement] = []
+        self.effort = limited(source, text, "to read it")
 
     def fail(self, problem: str, at: ast.expr | int | None = None) -> InputError:
         return InputError(self.source, self.text, self.placed(problem, at))
@@ -255,7 +258,7 @@ class _Reader:
             value = value * math.prod((x for _, x in factors[1:]), start=factors[0][1])
             return self.finite(-value if minus else value)
         for (op, right), step in zip(factors, reversed(chain), strict=True):
-            if op is ast.Div and right.is_zero:
+            if op is ast.Div and self.apply(_is_zero, right, shown="a divisor in it"):
                 raise self.fail("division by zero", step.right)
             self.required += of_divisor(right) if op is ast.Div else ()
             value = self.apply(_APPLY[op], value, right, shown="a product or quotient in it")
@@ -279,7 +282,7 @@ class _Reader:
         check_power(base, exponent, self.source, self.text)
         if exponent.q != 1 and not base.free_symbols and not within_reach(base):
             raise self.beyond("a root of a constant that is too large, or not defined")
-        if base.is_zero and exponent <= 0:
+        if exponent <= 0 and self.apply(_is_zero, base, shown="a power in it"):
             raise self.fail("division by zero" if exponent < 0 else "0**0 is not defined")
         self.required += of_power(base, exponent)
         return self.finite(self.apply(operator.pow, base, exponent, shown="a power in it"))
@@ -288,10 +291,11 @@ class _Reader:
         self, operation: Callable[..., sympy.Expr], *operands: sympy.Expr, shown: str
     ) -> sympy.Expr:
         """What sympy makes of it; sympy fails on a few, such as roots of enormous numbers."""
-        try:
-            return operation(*operands)
-        except (ArithmeticError, AttributeError, TypeError, ValueError, RecursionError):
-            raise self.beyond(f"{shown} cannot be handled exactly") from None
+        with self.effort:
+            try:
+                return operation(*operands)
+            except (ArithmeticError, AttributeError, TypeError, ValueError, RecursionError):
+                raise self.beyond(f"{shown} cannot be handled exactly") from None
 
     def finite(self, value: sympy.Expr) -> sympy.Expr:
         return checked(value, self.source, self.text)

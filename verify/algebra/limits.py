@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from verify.algebra.expressions.monomials import monomials_of
+from verify.effort import limited, unless_long
 from verify.errors import InputError, LimitError
 from verify.late import sympy
 
@@ -22,7 +23,8 @@ def checked(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
     if any(isinstance(node, sympy.Abs) for node in others):
         from verify.algebra.identities.absolute_values import without_absolute_values
 
-        result = without_absolute_values(result)
+        with limited(source, text, "to see the signs in it"):
+            result = without_absolute_values(result)
         numbers, powers, others = _by_kind(result)
     if any(node in no_numbers() or isinstance(node, sympy.AccumBounds) for node in others):
         raise InputError(source, text, "divides by zero, or is not finite: it is not defined")
@@ -35,7 +37,7 @@ def checked(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
         if power.exp.is_Rational:  # else it is exp(x·log(y)), which sympy writes so
             check_power(power.base, power.exp, source, text)
     logarithms = (node for node in others if isinstance(node, sympy.log))
-    if sympy.I in others or any(f.args[0].is_nonpositive for f in logarithms):
+    if sympy.I in others or any(_is_nonpositive(f.args[0]) for f in logarithms):
         raise InputError(source, text, "is not real, so it is not defined")
     return result
 
@@ -90,10 +92,14 @@ def check_power(base: sympy.Expr, exponent: sympy.Expr, source: str, text: str) 
     """InputError where that rational power is not real, or may be too large for sympy."""
     if abs(exponent.p) > MAX_EXPONENT or exponent.q > MAX_EXPONENT:
         raise LimitError(source, text, f"exponent {exponent} beyond ±{MAX_EXPONENT}")
-    if exponent.q != 1 and base.is_nonpositive and not base.is_zero:
+    if exponent.q != 1 and _is_nonpositive(base) and not base.is_zero:
         raise InputError(source, text, f"is not real, so it is not defined: the root of {base} < 0")
     if exponent.q != 1 and _root_bits(base) * exponent.q > MAX_ROOT_BITS:
         raise LimitError(source, text, "a root of a number in it has too many digits")
+
+
+def _is_nonpositive(x: sympy.Expr) -> bool:
+    return unless_long(lambda: bool(x.is_nonpositive), otherwise=False)
 
 
 def _root_bits(base: sympy.Expr) -> int:

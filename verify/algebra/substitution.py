@@ -11,6 +11,7 @@ from collections.abc import Mapping
 
 from verify.algebra.expressions.constant_size import within_reach
 from verify.algebra.limits import MAX_EXPONENT, check_power, checked
+from verify.effort import limited
 from verify.errors import InputError
 from verify.late import sympy
 
@@ -34,7 +35,9 @@ def substitute(
         except (ArithmeticError, AttributeError, TypeError, RecursionError):  # from within sympy
             raise _problem(shown, f"{node} cannot be handled exactly there") from None
 
-    return checked(build(expression), "parameter", shown)
+    with limited("parameter", shown, "to put it in"):
+        put = build(expression)
+    return checked(put, "parameter", shown)
 
 
 def _problem(shown: str, text: str) -> InputError:

@@ -30,11 +30,12 @@ class Claim(Frozen):
 
     `exact`: decided by algebra alone, so that it costs no run. `on_scene`: it speaks of a scheme
     and a scene. `run_keys`: the keys that say of which runs it speaks, and `one_run` whether it
-    speaks of one only. `autonomous`: whether it speaks of no H that depends on time. `only_here`:
-    why other scenes cannot be asked the same; empty where they can. `warning`: what a reader of the
-    claim may take amiss; empty where nothing is. Formulas in `statement` and
-    `reading` stand between backticks. `reading_of`, `reading` and `standing`: of which statement it
-    is a reading, see `verify.claims.readings`.
+    speaks of one only. `autonomous`: whether it speaks of no H that depends on time; `planar`:
+    whether of an H in one degree of freedom only. `only_here`: why other scenes cannot be asked the
+    same; empty where they can. `warning`: what a reader of the claim may take amiss; empty where
+    nothing is. Formulas in `statement` and `reading` stand between backticks.
+    `reading_of`, `reading` and `standing`: of which statement it is a reading, see
+    `verify.claims.readings`.
     """
 
     exact: ClassVar[bool] = True
@@ -42,6 +43,7 @@ class Claim(Frozen):
     run_keys: ClassVar[tuple[str, ...]] = ()
     one_run: ClassVar[bool] = False
     autonomous: ClassVar[bool] = False
+    planar: ClassVar[bool] = False
     only_here: ClassVar[str] = ""
     warning: ClassVar[str] = ""
 

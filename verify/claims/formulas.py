@@ -38,6 +38,7 @@ from verify.verdict import Verdict
 class FormulaClaim(Claim):
     """The base of the kinds that print formulas of one H."""
 
+    planar = True
     only_here = "a printed formula is that of its own Hamiltonian"
 
     @abstractmethod

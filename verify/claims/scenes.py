@@ -39,12 +39,15 @@ def scene_for(
     runs: Mapping[str, Any],
     named: Callable[[str], Scene],
 ) -> tuple[str, Scene]:
-    """As `_scene_for`, and InputError where the claim speaks of no H that depends on time."""
+    """As `_scene_for`, and InputError where the claim speaks of no such H."""
     name, scene = _scene_for(claim, hamiltonian_keys, runs, named)
-    if claim.autonomous and scene.exact_hamiltonian().time_dependent:
-        raise InputError(
-            "kind", claim.kind, "is of orbits that close, and so of no H that depends on t"
-        )
+    exact = scene.exact_hamiltonian() if claim.autonomous or claim.planar else None
+    if exact and claim.planar and not exact.planar:
+        problem = f"is of one degree of freedom; the H that it speaks of has {exact.degrees}"
+        raise InputError("kind", claim.kind, problem)
+    if exact and claim.autonomous and exact.time_dependent:
+        problem = "is of an H without t, and so of no H that depends on t"
+        raise InputError("kind", claim.kind, problem)
     return name, scene
 
 

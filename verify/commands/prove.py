@@ -251,7 +251,8 @@ def _every_json(proof: "EveryProof", seconds: str) -> dict[str, Any]:
         **picked(proof, "verdict", "reason"),
         "hamiltonian": proof.quantifier,
         **order_json(proof.order),
-        **picked(proof, "scheme", "leading"),
+        **picked(proof, "scheme"),
+        "leading": proof.leading or None,
         "formula": proof.formula or None,
         "delta_j": "0" if proof.area_preserving else None,  # there is no closed form in the jets
         "area_preserving": proof.area_preserving,
@@ -271,7 +272,8 @@ def _print_every(proof: "EveryProof") -> None:
     line("H", proof.quantifier)
     line("scheme", proof.scheme)
     if proof.order is not None:
-        line("leading", f"h^{proof.order} · ({cut(proof.formula or proof.leading)})")
+        leading = cut(proof.formula or proof.leading) or "which is not written out"
+        line("leading", f"h^{proof.order} · ({leading})")
         if proof.formula:
             line("", f"= h^{proof.order} · ({cut(proof.leading)})")
     if proof.telescopes:

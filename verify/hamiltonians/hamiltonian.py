@@ -161,6 +161,11 @@ class Hamiltonian:
         return Domain.of(of_expression(self.exact, smooth=True)) & self.written.replaced(self.put)
 
     @property
+    def domain_moves(self) -> bool:
+        """Whether `domain` speaks of coordinates or of t, so that a step may lead out of it."""
+        return bool(self.domain.names & {*self.coordinates, "t"})
+
+    @property
     def put(self) -> dict[sympy.Symbol, sympy.Rational]:
         """The parameters' values by their symbols."""
         return {symbol(n): sympy.Rational(v.numerator, v.denominator) for n, v in self.values}

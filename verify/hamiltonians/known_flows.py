@@ -16,6 +16,7 @@ from flint import fmpq
 from verify.algebra.embedding import embed
 from verify.algebra.formula import symbol
 from verify.algebra.symbols import P, Q
+from verify.effort import unless_long
 from verify.errors import InputError
 from verify.hamiltonians import potential_motion
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -118,7 +119,7 @@ def _values(terms: sympy.Expr, own: sympy.Expr, names: tuple[str, ...]) -> Value
     """The parameters with which the system may be this sum."""
     wild = {symbol(name): sympy.Wild(name, exclude=[P, Q]) for name in names}
     pattern = _without_constant(sympy.expand(own)).subs(wild)
-    match = _without_constant(terms).match(pattern)
+    match = unless_long(lambda: _without_constant(terms).match(pattern), None)
     if match is None or not all(x.is_Rational for x in match.values()):
         return None
     return {x.name: Fraction(int(value.p), int(value.q)) for x, value in match.items()}

@@ -8,6 +8,7 @@ from functools import lru_cache
 
 from verify.algebra.formula import symbol
 from verify.arithmetic.exact import text
+from verify.effort import unless_long
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.late import sympy
@@ -40,7 +41,9 @@ def is_angle(hamiltonian: Hamiltonian) -> bool:
 def _is_same(hamiltonian: Hamiltonian, name: str, shift: sympy.Expr) -> bool | None:
     """Whether H is the same function with that added to q or t; None where it is not decided."""
     x = symbol(name)
-    moved = sympy.expand(hamiltonian.exact.xreplace({x: x + shift}))
+    moved = unless_long(lambda: sympy.expand(hamiltonian.exact.xreplace({x: x + shift})), None)
+    if moved is None:
+        return None
     field, (change,) = hamiltonian.field(moved - hamiltonian.exact)
     return field.ring.decide(change).zero
 

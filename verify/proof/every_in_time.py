@@ -134,10 +134,14 @@ def _of_stages(scheme: Scheme, timed: ByConditions, least: int) -> EveryProof:
     agreed = found.convergence_order or 0
     if agreed < scheme.order or found.verdict is not Verdict.UNDECIDED:
         return found
-    if prove_every(scheme.name).area_preserving is not False:  # without t, which is one of these
+    without = prove_every(scheme.name)  # t, which are some of these H
+    if without.area_preserving is not False:
         return found
+    order = agreed + 1  # at least: the flow, with which the map agrees, has det ≡ 1
+    exact = without.order == order
     reason = read_prose(
         f"order {scheme.order}: every condition on the coefficients holds exactly; ΔJ is "
-        f"O(`h^{agreed + 1}`), and not 0 for an H without t"
+        f"O(`h^{order}`), and {'that coefficient is ' * exact}not 0 for an H without t"
     )
+    found = replace(found, order=order, leading="") if exact else found
     return replace(found, verdict=Verdict.PROVED, reason=reason, area_preserving=False)

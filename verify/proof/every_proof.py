@@ -20,8 +20,9 @@ class EveryProof:
 
     `order`, `area_preserving`, `convergence_order` as in `verify.proof.order.Proof`, for a generic
     H, and `convergence_decided`: of some H it is no higher; `leading` is the coefficient of
-    h^order, a polynomial in H_p, H_q, H_pp, …, and `formula` what it is in closed form, where that
-    is known. `telescopes`: whether it is X·`potential` for every H, `why` says how that is known.
+    h^order, a polynomial in H_p, H_q, H_pp, …, empty where it is not written out, and `formula`
+    what it is in closed form, where that is known. `telescopes`: whether it is X·`potential` for
+    every H, `why` says how that is known.
     `checked` names the identities that were checked, `conditions` those on the coefficients, of a
     scheme that is given by them. `timed`: for every such H that depends on t, with D = ∂_t + X in
     place of X. `nearby`: of which coefficients it is, where those of the scheme are printed with
@@ -54,7 +55,7 @@ class EveryProof:
 
     @property
     def domain(self) -> Domain:
-        """Where it holds, beside where H is smooth."""
+        """Where it holds, beside that H is smooth at every point and time at which it is read."""
         return EVERYWHERE if get(self.scheme).explicit else Domain.of((), SOLVABLE)
 
     @property

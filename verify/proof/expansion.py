@@ -75,13 +75,15 @@ VANISHES = Leading(None, Decision(True))
 class Expansion:
     """The Taylor coefficients in h, at h = 0, of a ring element.
 
-    `terms`: those that are not 0, where the element is known to be a polynomial in h.
+    `terms`: those that are not 0, where the element is known to be a polynomial in h. Of an element
+    with 1/h in it they are those of hᵐ times it, whose first m must vanish.
     """
 
     def __init__(self, ring: Ring, x: Poly, terms: Mapping[int, Poly] | None = None) -> None:
-        self.ring = ring
-        if terms is None and not h_inside(ring, x):
-            terms = ring.powers(x, "h")
+        self.ring, self.pole = ring, 0
+        if terms is None:
+            self.pole, x = _without_pole(ring, x)
+            terms = None if h_inside(ring, x) else ring.powers(x, "h")
         self.polynomial = terms is not None
         self._powers = terms or {}
         self._derivatives = [x]
@@ -89,10 +91,22 @@ class Expansion:
     @property
     def length(self) -> int:
         """How many coefficients there are to look at."""
-        return max(self._powers, default=0) + 1 if self.polynomial else MOST_ORDERS + 1
+        last = max(self._powers, default=0) - self.pole if self.polynomial else MOST_ORDERS
+        return max(last, 0) + 1
 
     def coefficient(self, n: int) -> tuple[Ring, Poly]:
         """The coefficient of hⁿ, with the ring that it is an element of."""
+        if not self._smooth:
+            text = self.ring.text(self._derivatives[0])
+            raise LimitError("map", f"({text})/h**{self.pole}", "is not smooth in h at h = 0")
+        return self._without_pole(n + self.pole)
+
+    @cached_property
+    def _smooth(self) -> bool:
+        parts = map(self._without_pole, range(self.pole))
+        return all(ring.vanishes(x) is True for ring, x in parts)
+
+    def _without_pole(self, n: int) -> tuple[Ring, Poly]:
         if self.polynomial:
             return self.ring, self._powers.get(n, self.ring.zero)
         if self._quotient is not None:
@@ -110,7 +124,8 @@ class Expansion:
     @cached_property
     def _quotient(self) -> Series | None:
         """All coefficients that are looked at, where x is a quotient of polynomials in h."""
-        return QuotientSeries(self.ring, self.length + 1).of(self._derivatives[0])
+        length = self.length + 1 + self.pole
+        return QuotientSeries(self.ring, length).of(self._derivatives[0])
 
     def leading(self) -> Leading:
         """The first coefficient that is not the zero function, as far as `length` goes."""
@@ -118,6 +133,15 @@ class Expansion:
         if found is None and not self.polynomial:
             return Leading(self.length, Decision(None))
         return found or VANISHES
+
+
+def _without_pole(ring: Ring, x: Poly) -> tuple[int, Poly]:
+    """m and hᵐ x, which has no 1/h in it."""
+    h, gens = ring.variable("h"), ring.context.gens()
+    pole = ring.find("inverse", h)
+    parts = {0: x} if pole is None else ring.split(x, gens.index(pole))
+    most = max(parts, default=0)
+    return most, ring.reduce(sum((c * h ** (most - n) for n, c in parts.items()), ring.zero))
 
 
 def first_nonzero(coefficient: Callable[[int], tuple[Ring, Poly]], length: int) -> Leading | None:

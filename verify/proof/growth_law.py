@@ -52,14 +52,17 @@ from functools import lru_cache
 from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.expansion import Expansion, first_nonzero
+from verify.proof.expansion import MOST_ORDERS
+from verify.proof.order import prove
+from verify.proof.order_proof import Proof
+from verify.proof.potential import Potential, potential_of
 from verify.proof.telescoping import potential_of_lie
 from verify.prose import read_prose
 from verify.schemes import get
 from verify.schemes.methods.taylor.lie import eta_of
-from verify.schemes.step_map import Substep
+from verify.schemes.scheme import Scheme
 
-_MOST_ORDERS = 24
+_FOR_EVERY_H = Potential(True, "by the formula for every H")  # of `lieη` of even η
 Element = tuple[Ring, Poly]
 
 
@@ -75,14 +78,15 @@ class NoLawError(Exception):
 class GrowthLaw:
     """log(1 + Λ) = h^(power−1) [G] + h^power (T ⟨g⟩ + [B_g − ½ X G]) + O(h^(power+1) T).
 
-    `potential` is G, and `leading` X G; both are None where the leading coefficient of ΔJ is not
-    known to telescope, and the law then has no G.
+    `potential` is G, and `leading` X G, of `lieη` of even η; both are None for other schemes, whose
+    law has no G. `telescoping`: whether the leading coefficient is X·G, which it may be there too.
     """
 
     power: int
     g: Element
     potential: Element | None
     leading: Element | None
+    telescoping: Potential
 
 
 @lru_cache(maxsize=64)
@@ -96,29 +100,26 @@ def growth_law(hamiltonian: Hamiltonian, scheme: str) -> GrowthLaw:
         raise InputError(
             "parameter", hamiltonian.symbols[0], "has no value; a growth law needs one"
         )
-    step_map = get(scheme).step_map(hamiltonian)
+    chosen = get(scheme)
+    step_map = chosen.step_map(hamiltonian)
     if step_map.preserves_area:
         raise NoLawError("ΔJ ≡ 0 is proved: Λ is exactly 0")
-    step, eta = step_map.flat, eta_of(scheme)
+    eta = eta_of(scheme)
     if eta is None or eta % 2:
-        return _plain_law(step)
-    ring = step.ring
-    potential, leading = potential_of_lie(step.field, eta), step.coefficient(eta + 1)
-    g = step.coefficient(eta + 2)
-    return GrowthLaw(eta + 1, (ring, g), (ring, potential), (ring, leading))
+        return _plain_law(prove(step_map, chosen), chosen)
+    step = step_map.flat
+    ring, potential = step.ring, potential_of_lie(step.field, eta)
+    g, leading = step.coefficient(eta + 2), step.coefficient(eta + 1)
+    return GrowthLaw(eta + 1, (ring, g), (ring, potential), (ring, leading), _FOR_EVERY_H)
 
 
-def _plain_law(step: Substep) -> GrowthLaw:
+def _plain_law(proof: Proof, scheme: Scheme) -> GrowthLaw:
     """By the first coefficient of ΔJ that does not vanish."""
-    if step.degree is None:
-        found = first_nonzero(Expansion(step.ring, step.delta_j).coefficient, _MOST_ORDERS + 1)
-    else:
-        found = first_nonzero(lambda n: (step.ring, step.coefficient(n)), step.degree + 1)
-    if found is None or found.power is None or found.element is None:
-        raise NoLawError(f"the coefficients of ΔJ vanish up to `h^{_MOST_ORDERS}`")
-    n = found.power
-    if found.decision.zero is None:
+    n, g = proof.first.power, proof.first.element
+    if n is None or g is None:
+        raise NoLawError(f"the coefficients of ΔJ vanish up to `h^{MOST_ORDERS}`")
+    if proof.first.decision.zero is None:
         raise NoLawError(f"whether the coefficient of `h^{n}` in ΔJ vanishes is not decided")
     if n < 2:
         raise NoLawError(f"ΔJ begins with `h^{n}`: the map is not consistent with the flow")
-    return GrowthLaw(n - 1, found.element, None, None)
+    return GrowthLaw(n - 1, g, None, None, potential_of(proof, scheme))

@@ -8,10 +8,10 @@ smooth G, and L is not zero there. None: neither is found. G is looked for by th
 """
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import chain, combinations_with_replacement, islice, product
 
 import sympy
@@ -21,6 +21,7 @@ from verify.algebra.enclosure import enclose, points
 from verify.algebra.linear_combination import combination, may_combine
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.symbols import P, Q
+from verify.effort import unless_long
 from verify.errors import InputError
 from verify.hamiltonians.vector_field import VectorField
 from verify.proof.order_proof import Proof
@@ -101,19 +102,24 @@ def _equilibrium_against(field: VectorField, leading: Poly) -> str | None:
     for p, q in sorted(product(_PLACES, repeat=2), key=lambda at: _PLACES.index(at[0])):
         put = {P: p, Q: q}
         try:
-            if any(sympy.expand(x.subs(put)) != 0 for x in force):
+            if not unless_long(partial(_rests, force, put), otherwise=False):
                 continue
             if p.is_Rational and q.is_Rational:
                 there = _not_zero_at(ring, leading, Fraction(int(p)), Fraction(int(q)))
             else:
                 there = len(leading) <= _MOST_MONOMIALS and _not_zero(
-                    ring.expression(leading).subs(put), ring.variables
+                    unless_long(partial(ring.expression(leading).subs, put), sympy.S.Zero),
+                    ring.variables,
                 )
         except (InputError, ZeroDivisionError):
             continue  # H is not defined there
         if there:
             return f"p = {p}, q = {q}"
     return None
+
+
+def _rests(force: Sequence[sympy.Expr], at: Mapping[sympy.Expr, sympy.Expr]) -> bool:
+    return all(sympy.expand(x.subs(at)) == 0 for x in force)
 
 
 def _not_zero_at(ring: Ring, x: Poly, p: Fraction, q: Fraction) -> bool:

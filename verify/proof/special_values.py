@@ -2,9 +2,11 @@
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 
 import sympy
 
+from verify.effort import unless_long
 from verify.errors import InputError
 from verify.proof.order import prove
 from verify.proof.order_proof import Proof
@@ -27,8 +29,8 @@ def special_values(proof: Proof, scheme: Scheme) -> list[SpecialValue]:
         names = requirement.expression.free_symbols
         if len(names) != 1 or not requirement.expression.is_polynomial(*names):
             continue
-        polynomial = sympy.Poly(requirement.expression, *names)
-        if polynomial.degree() != 1:
+        polynomial = unless_long(partial(sympy.Poly, requirement.expression, *names), None)
+        if polynomial is None or polynomial.degree() != 1:
             continue
         slope, constant = polynomial.all_coeffs()
         if not (slope.is_Rational and constant.is_Rational):

@@ -32,10 +32,10 @@ from verify.runs.estimated import Bounded, Bounds
 from verify.runs.float64 import bounded
 from verify.runs.left_domain import left_domain
 from verify.runs.start import Start
-from verify.scenes.observables import SEVERAL, check_observables, observed
+from verify.scenes.observables import OF_DEFECT, check_observables, observed
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.run import RunResult
-from verify.scenes.values import AUTO, CLOSED_FORM, MAX_DIGITS, MAX_STEPS
+from verify.scenes.values import AUTO, MAX_DIGITS, MAX_STEPS
 from verify.schemes import canonical
 from verify.schemes.degrees.canonical_map import CanonicalMap
 from verify.schemes.step_map import StepMap
@@ -224,9 +224,8 @@ def _series_needs(known: Mapping[str, object], points: int) -> frozenset[str]:
 def proved(step_map: StepMap | CanonicalMap, h: Fraction, steps: int, digits: int) -> Bounded:
     """max |ΔJ|, MSE and Λ with their bounds, where no run is needed for them; S and W too."""
     zero = Fraction(0), Fraction(0)
-    several = isinstance(step_map, CanonicalMap)
     if preserves(step_map):
-        return dict.fromkeys(SEVERAL if several else (*CLOSED_FORM, "lambda_max"), zero)
+        return dict.fromkeys(OF_DEFECT, zero)
     if isinstance(step_map, CanonicalMap) or len(step_map.substeps) > 1:
         return {}
     step = step_map.substeps[0]

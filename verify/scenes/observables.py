@@ -8,7 +8,9 @@ from verify.scenes.values import CLOSED_FORM, OBSERVABLES
 
 # In n degrees of freedom S is no longer ΔJ times Ω.
 OF_FORM = ("symplectic_defect_max", "symplectic_defect")
-SEVERAL = (*OF_FORM, *CLOSED_FORM, "lambda_max")
+# Made of S, or of ΔJ, alone, and 0 after every step where that vanishes.
+OF_DEFECT = (*OF_FORM, *CLOSED_FORM, "lambda_max")
+SEVERAL = OF_DEFECT
 _USUAL = (*OF_FORM, *CLOSED_FORM)
 # By the operations of a step: S has n(2n − 1) entries, det J is a Pfaffian, W is made of products
 # of matrices.

@@ -17,6 +17,7 @@ from typing import TypeAlias
 from verify.algebra.formula import symbol
 from verify.algebra.ring import Poly
 from verify.algebra.series.power_series import Series, at_time
+from verify.effort import limited
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.vector_field import VectorField
@@ -160,7 +161,9 @@ def _at_times(hamiltonian: Hamiltonian, parts: Parts, times: Sequence[sympy.Expr
     """The shears of H(p, q, t), each with H's derivative at its own time."""
     p, q, t, h = map(symbol, "pqth")
     slopes = {"kick": -hamiltonian.exact.diff(q), "drift": hamiltonian.exact.diff(p)}
-    moves = [slopes[kind].subs(t, t + h * at) for (kind, _), at in zip(parts, times, strict=True)]
+    both = zip(parts, times, strict=True)
+    with limited("hamiltonian", str(hamiltonian.expression), "to put the parts' times into it"):
+        moves = [slopes[kind].subs(t, t + h * at) for (kind, _), at in both]
     field, elements = hamiltonian.field(
         *(h * size * move for (_, size), move in zip(parts, moves, strict=True))
     )

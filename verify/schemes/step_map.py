@@ -17,6 +17,7 @@ from verify.algebra.formula import read, symbol
 from verify.algebra.requirement import of_expression
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.power_series import Series
+from verify.effort import MOST, limited
 from verify.errors import InputError, LimitError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.vector_field import VectorField
@@ -76,7 +77,7 @@ class StepMap:
     def domain(self) -> Domain:
         """Where the map is smooth: where H is, and is so at the stages, if there are any."""
         words = [SOLVABLE] if self.implicit else []
-        if (self.of_parts or self.implicit) and self.hamiltonian.domain.names & {"p", "q"}:
+        if (self.of_parts or self.implicit) and self.hamiltonian.domain_moves:
             words.append(AT_STAGES)
         return Domain.of((), *words) & self.hamiltonian.domain & self.asked
 
@@ -137,7 +138,8 @@ class StepMap:
         q1, more = read(q_next, (*names, "p_next"), source="q_next")
         put = {symbol("p_next"): p1}
         written = Domain.of([*asked, *more]).replaced(put)
-        pair = [hamiltonian.put_in(x) for x in (p1, q1.subs(put))]
+        with limited("q_next", q_next, "to put p_next into it"):
+            pair = [hamiltonian.put_in(x) for x in (p1, q1.xreplace(put))]
         made = cls.from_expressions(hamiltonian, *pair)
         return replace(made, asked=made.asked & written.replaced(hamiltonian.put))
 
@@ -147,9 +149,10 @@ class StepMap:
         if self.implicit:
             raise LimitError("map", str(self.hamiltonian.expression), _NOT_WRITTEN)
         p, q = p1, q1 = symbol("p"), symbol("q")
-        for step in self.substeps:
-            put = {p: p1, q: q1}
-            p1, q1 = (step.ring.expression(x).xreplace(put) for x in (step.p_next, step.q_next))
+        with limited("map", str(self.hamiltonian.expression), "to compose its parts", MOST // 4):
+            for step in self.substeps:
+                put = {p: p1, q: q1}
+                p1, q1 = (step.ring.expression(x).xreplace(put) for x in (step.p_next, step.q_next))
         return p1, q1
 
     @property

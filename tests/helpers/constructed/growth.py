@@ -14,6 +14,7 @@ def law(**changes: Any) -> AverageResult:
     own: dict[str, Any] = {
         "hamiltonian": "p**2/2 - cos(q)", "parameters": {}, "scheme": "lie2", "digits": 30,
         "q": "1", "p": "-0.5", "power": 3, "g": "cos(q)**2/4", "potential": "cos(q)/2",
+        "telescopes": True, "by_potential": True,
         "orbit": "libration", "reason": "", "average": value("2.50000e-01"),
         "period": value("6.28318e+00"), "error_kind": "estimated", "error_method": "once more",
         "seconds": 0.1,

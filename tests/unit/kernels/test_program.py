@@ -245,3 +245,14 @@ def test_where_area_is_preserved_nothing_of_delta_j_is_computed() -> None:
     products = [sum(isinstance(n, ast.Mult) for n in ast.walk(ast.parse(k.source)))
                 for k in (made, bare)]  # fmt: skip
     assert products[0] - products[1] <= 2  # lam * dj and dj * dj with dj = 0
+
+
+def test_a_roots_degree_is_no_operand() -> None:
+    """It was taken for one: the root of degree 1 of the results number x and 2."""
+    program = Program()
+    x = program.input("x", static=False)
+    with pytest.raises(TypeError):
+        program.apply("root", x, 2)  # type: ignore[misc]
+    root = program.apply("root", x, degree=2)
+    assert (program.ops[root].args, program.ops[root].degree) == ((x,), 2)
+    assert program.apply("pi") != root

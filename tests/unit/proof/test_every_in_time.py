@@ -8,9 +8,13 @@ from verify import schemes
 from verify.algebra.generator import terms_of
 from verify.algebra.series.jets import JetRing, Jets, Poly
 from verify.algebra.series.timed_jets import TimedJets
+from verify.claims.findings import Findings
+from verify.claims.kinds import models
 from verify.errors import InputError
 from verify.proof import every_in_time
+from verify.proof.certificates.every import of_every
 from verify.proof.every_in_time import prove_every_in_time
+from verify.proof.symplectic.every import prove_every_in_degrees
 from verify.verdict import Verdict
 
 
@@ -142,3 +146,30 @@ def test_other_schemes_are_refused_in_one_line(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(every_in_time, "get", lambda _: for_one)
     with pytest.raises(InputError, match="it cannot be proved for every H in t"):
         prove_every_in_time("rk4")
+
+
+@pytest.mark.parametrize(("scheme", "order"), [("rk4", 5), ("explicit-midpoint", 3)])
+def test_explicit_stages_have_the_order_that_the_prover_in_n_degrees_has(
+    scheme: str, order: int
+) -> None:
+    """By an H without t, of which no higher order is true; the other prover makes S itself."""
+    found, made = prove_every_in_time(scheme), prove_every_in_degrees(scheme, 1, timed=True)
+    assert (found.verdict, found.order, found.leading) == ("PROVED", order, "")
+    assert (made.verdict, made.order, made.volume_order) == ("PROVED", order, order)
+    with pytest.raises(InputError, match="the checker knows"):
+        of_every(found)
+
+
+@pytest.mark.parametrize(
+    ("scheme", "order", "verdict"),
+    [("rk4", 5, "PROVED"), ("rk4", 6, "REFUTED"), ("rk4", 4, "REFUTED"),
+     ("explicit-midpoint", 3, "PROVED"), ("explicit-midpoint", 4, "REFUTED")],
+)  # fmt: skip
+def test_a_claim_of_the_order_of_delta_j_for_every_h_in_time_is_decided(
+    scheme: str, order: int, verdict: str
+) -> None:
+    claim = models()["order"].model_validate(
+        {"id": "c", "kind": "order", "scheme": scheme, "order": order,
+         "every": "hamiltonian in time"}
+    )  # fmt: skip
+    assert claim.judge(Findings({})).verdict == verdict

@@ -15,7 +15,7 @@ class JacobianClaim(FormulaClaim):
 
     kind: Literal["jacobian"]
     entries: tuple[tuple[str, str], tuple[str, str]]
-    """∂p′/∂p, ∂p′/∂q and ∂q′/∂p, ∂q′/∂q."""
+    """∂p′/∂p, ∂p′/∂q and ∂q′/∂p, ∂q′/∂q: p stands before q."""
 
     def formulas(self) -> dict[str, str]:
         return {f"entries.{i}.{j}": self.entries[i][j] for i, j in _CELLS}

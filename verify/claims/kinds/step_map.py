@@ -5,6 +5,7 @@ from typing import Literal
 from verify.algebra.formula import symbol
 from verify.claims.findings import Findings
 from verify.claims.formulas import FormulaClaim, gaps, within
+from verify.effort import limited
 from verify.proof.order import convergence_of
 from verify.prose import Formula, prose
 from verify.scenes.results.claim import ClaimResult
@@ -24,7 +25,8 @@ class StepMapClaim(FormulaClaim):
 
     def judge(self, findings: Findings) -> ClaimResult:
         step_map, read, domain = self.read(findings)
-        q_next = read["q_next"].subs(symbol("p_next"), read["p_next"])
+        with limited("q_next", self.q_next, "to put p_next into it"):
+            q_next = read["q_next"].xreplace({symbol("p_next"): read["p_next"]})
         pairs = [("p′", read["p_next"], step_map.p_next), ("q′", q_next, step_map.q_next)]
         found = gaps(step_map, pairs, domain)
         if any(gap.decision.zero is not True for gap in found):

@@ -13,6 +13,7 @@ from functools import lru_cache
 import sympy
 
 from verify.algebra.formula import symbol
+from verify.effort import MOST, unless_long
 from verify.errors import InputError
 from verify.flows.closed_form import MOST_DIGITS, many_on_grid, until
 from verify.flows.confirmed import METHOD, check_poles, confirmed
@@ -81,7 +82,8 @@ def uncoupled(hamiltonian: Hamiltonian) -> list[tuple[Hamiltonian, tuple[str, ..
     names that these have in H. What is coupled with nothing and does not move is left together."""
     degrees = hamiltonian.degrees
     groups = {k: {k} for k in range(1, degrees + 1)}
-    terms = sympy.Add.make_args(sympy.expand(hamiltonian.exact))
+    exact = hamiltonian.exact
+    terms = sympy.Add.make_args(unless_long(lambda: sympy.expand(exact), exact))
     for term in terms:
         numbers = sorted(_numbers(term, hamiltonian.coordinates))
         together = set[int]().union(*(groups[k] for k in numbers)) if numbers else set[int]()
@@ -125,7 +127,7 @@ def _ellipse(
     hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int
 ) -> SolutionInDegrees | None:
     """Where H is Kepler's and the orbit is bound; None for all else."""
-    mu = _strength(hamiltonian)
+    mu = unless_long(lambda: _strength(hamiltonian), None, MOST)
     if mu is None:
         return None
     q, p = (point["q1"], point["q2"]), (point["p1"], point["p2"])

@@ -203,8 +203,10 @@ class Program:
             self._special[index] = numerator
         return index
 
-    def apply(self, kind: str, *args: int, degree: int = 1) -> int:
-        """A function, `neg`, `inverse` or `root` of earlier results."""
+    def apply(self, kind: str, operand: int | None = None, *, degree: int = 1) -> int:
+        """A function, `neg`, `inverse` or a `root` of this degree, of an earlier result; or π, of
+        none."""
+        args = () if operand is None else (operand,)
         key = kind, degree, args
         found = self._known.get(key)
         if found is not None:

@@ -57,7 +57,7 @@ def of_every(proof: EveryProof) -> Certificate:
     given = by_coefficients(scheme, timed=proof.timed) if proof.area_preserving else None
     if given is not None:
         return data | given
-    if proof.order is None or not isinstance(every_h, BySeries):
+    if proof.order is None or not proof.leading or not isinstance(every_h, BySeries):
         raise InputError("scheme", proof.scheme, NOT_KNOWN)
     most = proof.order
     jets: JetRing

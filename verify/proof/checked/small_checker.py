@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator
 
+from verify.effort import limited
 from verify.errors import InputError
 from verify.proof.certificates.checker import check
 from verify.proof.certificates.established import Established, established
@@ -22,10 +23,10 @@ def marks(proved: Proved) -> Iterator[Prose]:
         return
     for made in proved.certificates:
         try:
-            data = made()
+            with limited("proof", proved.scheme.name, "to certify it"):
+                found = accepted(made())
         except InputError:  # of this proof there is none
             continue
-        found = accepted(data)
         if found is not None:
             yield prose("small checker: ", read_prose(_statement(found)), _leading(found))
         return

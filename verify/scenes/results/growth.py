@@ -9,8 +9,10 @@ from verify.scenes.results.bounded_value import Value
 class AverageResult(OfScheme, WithProse):
     """The growth law of Λ on one orbit: see `verify.proof.growth_law`.
 
-    `power`: ⟨g⟩ stands with h^power T (0: there is no law). `g` and `potential` are formulas;
-    `potential` is empty where the leading coefficient of ΔJ does not telescope. `average` (⟨g⟩) and
+    `power`: ⟨g⟩ stands with h^power T (0: there is no law). `g` and `potential` are formulas.
+    `telescopes`: whether the leading coefficient of ΔJ is X·`potential`, None where that is not
+    decided; `by_potential`: the law is written with it, and g is the next coefficient. Else g is
+    the leading one. `average` (⟨g⟩) and
     `period` are along the exact orbit through (q, p); `average` is None where the orbit is not
     known to be closed, and `reason` says why; `period` is None at an equilibrium too.
     """
@@ -21,6 +23,8 @@ class AverageResult(OfScheme, WithProse):
     power: int
     g: str
     potential: str
+    telescopes: bool | None
+    by_potential: bool
     orbit: Literal["libration", "rotation", "equilibrium", "undecided"]
     reason: Said
     average: Value | None

@@ -7,6 +7,7 @@ import sympy
 from verify.algebra.domain import Domain
 from verify.algebra.formula import read, symbol
 from verify.algebra.requirement import of_expression
+from verify.effort import limited
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -31,8 +32,9 @@ def map_by_formulas(hamiltonian: Hamiltonian, formulas: Mapping[str, str]) -> Ca
     asked = Domain.of(())
     for name, formula in formulas.items():
         found, required = read(formula, names, source=name)
-        asked &= Domain.of(required).replaced(put).replaced(hamiltonian.put)
-        put[symbol(name)] = hamiltonian.put_in(found.subs(put))
+        with limited(name, formula, "to put what stands before into it"):
+            asked &= Domain.of(required).replaced(put).replaced(hamiltonian.put)
+            put[symbol(name)] = hamiltonian.put_in(found.xreplace(put))
         names.append(name)
     exact = [put[symbol(name + _NEXT)] for name in coordinates]
     asked &= Domain.of(r for x in exact for r in of_expression(x, smooth=True))

@@ -52,7 +52,7 @@ class CanonicalMap:
     def domain(self) -> Domain:
         """Where the map is smooth: where H is, and is so at the stages, if there are any."""
         words = [SOLVABLE] if self.implicit else []
-        if self.closed is None and self.hamiltonian.domain.names & {*self.field.names}:
+        if self.closed is None and self.hamiltonian.domain_moves:
             words.append(AT_STAGES)
         return Domain.of((), *words) & self.hamiltonian.domain & self.asked
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import sympy
 
 from verify.algebra.formula import FUNCTIONS
+from verify.effort import MOST, limited
 from verify.errors import InputError, LimitError
 from verify.schemes.export.constants import Constant, Constants
 from verify.schemes.step_map import StepMap, Substep, grouped
@@ -89,14 +90,16 @@ def program_of(
     renamed = _renamed(step_map.hamiltonian.symbols, taken)
     time = ("t",) if step_map.hamiltonian.time_dependent else ()
     variables = ("p", "q", *time, "h")
-    writer = _Writer(step_map, renamed, variables)
+    with limited("map", scheme, "to write it out", 10 * MOST):
+        writer = _Writer(step_map, renamed, variables)
+        functions = {key: getattr(writer, key)() for key in OUTPUTS}
     return Program(
         name=name,
         scheme=scheme,
         hamiltonian=_formula(step_map, renamed),
         variables=variables,
         parameters=tuple(str(x) for x in renamed.values()),
-        functions={key: getattr(writer, key)() for key in OUTPUTS},
+        functions=functions,
         constants=tuple(writer.constants),
         parts=tuple(writer.formulas),
         delta_j=step_map.delta_j.xreplace(renamed) if step_map.has_closed_form else None,

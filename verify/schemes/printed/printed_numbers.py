@@ -20,6 +20,7 @@ import sympy
 from verify.algebra.formula import parse, symbol
 from verify.arithmetic.exact import rational
 from verify.arithmetic.number import E
+from verify.effort import limited
 from verify.errors import InputError
 
 FIRST, LAST = 7, 3  # places up to which a decimal is exact, as it is read first, and last
@@ -101,7 +102,8 @@ class PrintedNumbers:
     def entry(self, text: str, source: str = "sizes") -> sympy.Expr:
         """A formula in the numbers, in the symbols of those that are rounded."""
         found = parse(text, self.numbers, source=source)
-        found = sympy.expand(found.subs(self._exact)) if found.free_symbols else found
+        with limited(source, text, "to expand it"):
+            found = sympy.expand(found.subs(self._exact)) if found.free_symbols else found
         if found.is_Rational:
             _check_size(Fraction(int(found.p), int(found.q)), source, text)
         return found
@@ -239,7 +241,8 @@ def _terms(
         return (((), expression),)
     names = sorted(expression.free_symbols, key=lambda x: x.name)
     try:
-        polynomial = sympy.Poly(expression, *names)
+        with limited("entry", str(expression), "to expand it"):
+            polynomial = sympy.Poly(expression, *names)
     except sympy.PolynomialError:
         problem = "is no polynomial in the numbers that are rounded; give it as one of `numbers`"
         raise InputError("entry", str(expression), problem) from None

@@ -61,6 +61,7 @@ def average_of(
     except (NoLawError, NoFlowError) as error:
         reason = error.said
     period = found.period if found else None
+    potential = (law.potential or law.telescoping.element) if law else None
     at_rest = found is not None and period is None
     return AverageResult(
         **hamiltonian.texts,
@@ -70,7 +71,9 @@ def average_of(
         p=text(start[0]),
         power=law.power if law else 0,
         g=_shown(law.g) if law else "",
-        potential=_shown(law.potential) if law and law.potential else "",
+        potential=_shown(potential) if potential else "",
+        telescopes=law.telescoping.holds if law else None,
+        by_potential=law is not None and law.potential is not None,
         orbit=found.orbit.kind if found else "undecided",
         reason=reason,
         average=Value.of(found.value, found.bound, digits) if found else None,

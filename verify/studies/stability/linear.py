@@ -23,6 +23,7 @@ import sympy
 
 from verify.algebra.symbols import H_STEP
 from verify.arithmetic.exact import known_text
+from verify.effort import MOST, limited
 from verify.errors import InputError
 from verify.prose import Prose
 from verify.schemes.step_map import StepMap
@@ -89,8 +90,9 @@ def of_map(name: str, step: StepMap, narrow: Fraction = Fraction(0)) -> LinearSt
 
     Raises InputError where it has no closed form there.
     """
-    found = _of_product(name, step, narrow) if step.of_parts else None
-    return found or _of_closed_form(name, step)
+    with limited("scheme", name, "its linear theory", 10 * MOST):  # `lie99` takes 3
+        found = _of_product(name, step, narrow) if step.of_parts else None
+        return found or _of_closed_form(name, step)
 
 
 def _of_product(name: str, step: StepMap, narrow: Fraction) -> LinearStability | None:

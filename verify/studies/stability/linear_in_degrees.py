@@ -21,6 +21,7 @@ import sympy
 
 from verify.algebra.formula import symbol
 from verify.arithmetic.exact import known_digits
+from verify.effort import limited
 from verify.errors import NOT_GIVEN, InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import check_start
@@ -195,7 +196,8 @@ def _check_equilibrium(
 
 
 def _value(x: sympy.Expr, at: Mapping[sympy.Symbol, sympy.Rational]) -> sympy.Expr:
-    return sympy.simplify(x.xreplace({z: at[z] for z in x.free_symbols}))
+    with limited("hamiltonian", str(x), "to evaluate this derivative of it"):
+        return sympy.simplify(x.xreplace({z: at[z] for z in x.free_symbols}))
 
 
 def _field_matrix(hessian: flint.fmpq_mat) -> flint.fmpq_mat:

@@ -17,6 +17,7 @@ import sympy
 
 from verify.arithmetic.arb import bounds
 from verify.arithmetic.flint_precision import working_precision
+from verify.effort import unless_long
 
 _BITS = 128
 
@@ -37,8 +38,8 @@ class PositiveRoot:
         terms = sum(c != 0 for c in self.polynomial.coeffs())
         if self.polynomial.degree() > 2 and terms > 2:
             return None
-        roots = self._in(sympy.Dummy()).real_roots()
-        return sorted(x for x in roots if x > 0)[self.which - 1]
+        roots = unless_long(lambda: self._in(sympy.Dummy()).real_roots(), None)
+        return roots and sorted(x for x in roots if x > 0)[self.which - 1]
 
     def decimal(self, digits: int) -> str:
         """Rounded to so many significant digits; it must not be rational."""

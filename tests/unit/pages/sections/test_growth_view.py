@@ -51,7 +51,8 @@ def test_the_law_stands_with_its_orders_and_the_worst_difference_is_told() -> No
 
 
 def test_without_a_potential_the_law_says_that_nothing_telescopes() -> None:
-    text = text_of(page_of(of(prediction("0.01"), power=1, potential="", g="cos(q)")))
+    plain = {"power": 1, "potential": "", "telescopes": False, "by_potential": False}
+    text = text_of(page_of(of(prediction("0.01"), g="cos(q)", **plain)))
     assert "log(1 + Λ) = h (T ⟨g⟩ + [B]) + a remainder" in text
     assert "does not telescope" in text
     assert "[G]" not in text

@@ -34,7 +34,7 @@ class NoPatternClaim(RunClaim):
     """No law in Λ over the initial values."""
 
     only_here = "a pattern is over the initial values of its own scene"
-    autonomous = True
+    autonomous = planar = True
     kind: Literal["no_pattern"]
     within: Annotated[ExactNumber, Field(gt=0, lt=1)]
     """A law that predicts every Λ to this part of it is a pattern."""

@@ -39,6 +39,7 @@ DeltaJ = Callable[[Ball, Ball, Ball], Ball]
 class ShiftedClaim(RunClaim):
     """`again`: claims of the same scene and scheme, each its kind and its keys."""
 
+    autonomous = planar = True
     only_here = "which claims are made again is a matter of their own scene"
     kind: Literal["shifted"]
     again: Annotated[tuple[dict[str, Any], ...], Field(min_length=1, max_length=100)]

@@ -44,6 +44,7 @@ class SolutionErrorClaim(RunClaim):
     `step_size` of the grid alone, where it is given. MEASURED at best: the reach is an estimate.
     """
 
+    planar = True
     only_here = "an error at one time is that of its own runs"
     kind: Literal["solution_error"]
     step_size: StepSize | None = None

@@ -56,15 +56,26 @@ def _law(law: AverageResult) -> Markup:
         return Markup("There is no growth law: {}.").format(prose(law.reason))
     n = law.power
     g = Markup("g = {}").format(mathml.formula(law.g))
-    if not law.potential:
+    if not law.by_potential:
         return Markup(
-            "log(1 + Λ) = {0} (T ⟨g⟩ + [B]) + a remainder, with {1}: the leading coefficient of "
-            "ΔJ does not telescope."
-        ).format(_h(n), g)
+            "log(1 + Λ) = {0} (T ⟨g⟩ + [B]) + a remainder, with {1}, the leading coefficient of "
+            "ΔJ{2}."
+        ).format(_h(n), g, _telescopes(law))
     return Markup(
         "log(1 + Λ) = {0} [G] + {1} (T ⟨g⟩ + [B − ½ X G]) + a remainder, with G = {2}, whose "
         "derivative along the flow is the leading coefficient of ΔJ, and {3}, the next one."
     ).format(_h(n - 1), _h(n), mathml.formula(law.potential), g)
+
+
+def _telescopes(law: AverageResult) -> Markup:
+    """What is known of whether the leading coefficient does, as `verify prove` says it."""
+    if law.telescopes is None:
+        return Markup("; whether it telescopes is not decided")
+    if not law.telescopes:
+        return Markup(", which does not telescope")
+    return Markup(
+        ", which telescopes: it is X·G with G = {}, and ⟨g⟩ is 0 where p and q come back"
+    ).format(mathml.formula(law.potential))
 
 
 def _finding(laws: Sequence[GrowthLawResult], explains: str) -> Iterator[str]:
@@ -174,7 +185,7 @@ def orbits(laws: Sequence[GrowthLawResult]) -> list[GrowthLawResult]:
 
 def _caption(law: AverageResult) -> str:
     drift = ""
-    if law.potential:
+    if law.by_potential:
         drift = (
             f", which for this scheme is O({_h(law.power)} T) of it: there the slope is {law.power}"
         )

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import sympy
 
 from verify.algebra.symbols import P, Q
+from verify.effort import MOST, limited
 from verify.schemes.export.program import Program
 
 SUFFIX = ".tex"
@@ -19,7 +20,9 @@ def written(program: Program) -> str:
     rows = [*_steps(program)]
     if len(program.parts) == 1:
         (pair,) = program.parts
-        matrix = sympy.Matrix(2, 2, [sympy.factor_terms(x.diff(y)) for x in pair for y in (P, Q)])
+        with limited("map", program.scheme, "to write its Jacobian", 10 * MOST):
+            entries = [sympy.factor_terms(x.diff(y)) for x in pair for y in (P, Q)]
+        matrix = sympy.Matrix(2, 2, entries)
         rows.append(rf"J &= {sympy.latex(matrix)}")
     if program.delta_j is not None:
         rows.append(rf"\Delta J &= {sympy.latex(program.delta_j)}")

@@ -15,6 +15,7 @@ from verify.algebra.implicit_unknowns import define, unknowns
 from verify.algebra.ring import Poly
 from verify.algebra.series.power_series import Series, at_point, partials
 from verify.algebra.symbols import H_STEP, P, Q
+from verify.effort import limited
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.vector_field import VectorField
 from verify.schemes.every_hamiltonian import Stage, StageEquations
@@ -42,7 +43,8 @@ def implicit_euler_map(hamiltonian: Hamiltonian) -> StepMap:
         return _by_equations(hamiltonian, field)
     h_p, h_q, h_pq = map(ring.expression, (field.h_p, field.h_q, mixed))
     p_next = P - H_STEP * h_q / (1 + H_STEP * h_pq)
-    q_next = Q + H_STEP * h_p.subs(P, p_next)
+    with limited("hamiltonian", str(hamiltonian.expression), "to compose its stages"):
+        q_next = Q + H_STEP * h_p.subs(P, p_next)
     return StepMap.from_expressions(hamiltonian, p_next, q_next)
 
 
