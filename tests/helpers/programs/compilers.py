@@ -18,12 +18,23 @@ def needed(name: str) -> str:
     return found
 
 
+_COMPILERS = {".c": "gcc", ".cpp": "g++", ".f90": "gfortran"}
+
+
 def library(folder: Path, name: str, source: str, *options: str) -> str:
-    """A shared library of that C or Fortran source, and its path."""
-    path, made = folder / name, folder / f"{Path(name).stem}.so"
+    """A shared library of that C, C++ or Fortran source, and its path."""
+    return _compiled(folder, name, source, ".so", "-shared", "-fPIC", *options)
+
+
+def executable(folder: Path, name: str, source: str, *options: str) -> str:
+    """A program of that source, and its path."""
+    return _compiled(folder, name, source, "", *options)
+
+
+def _compiled(folder: Path, name: str, source: str, suffix: str, *options: str) -> str:
+    path, made = folder / name, folder / f"{Path(name).stem}{suffix}"
     path.write_text(source, encoding="utf-8")
-    compiler = needed("gfortran" if path.suffix == ".f90" else "gcc")
-    command = [compiler, "-O2", "-shared", "-fPIC", str(path), "-o", str(made), *options]
+    command = [needed(_COMPILERS[path.suffix]), "-O2", str(path), "-o", str(made), *options]
     # A Fortran compiler writes the modules of a source where it is started.
     subprocess.run(command, check=True, capture_output=True, cwd=folder)
     return str(made)

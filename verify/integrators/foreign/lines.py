@@ -5,12 +5,14 @@ that is a sum of two doubles both, high and low. `p1 … pn q1 … qn` comes bac
 hexadecimal floats.
 """
 
+import contextlib
 import math
 import re
 from collections.abc import Sequence
 from fractions import Fraction
 
-from verify.integrators.user_code.number_type import DOUBLE_BITS, NumberType
+from verify.integrators.foreign.memory import two_doubles
+from verify.integrators.user_code.number_type import DOUBLE, NumberType
 from verify.integrators.user_code.step import StepError
 from verify.prose import count
 
@@ -21,16 +23,18 @@ _LARGEST_EXPONENT = 20_000
 _SHOWN = 40  # characters of what a program says
 
 
-def line_of(numbers: Sequence[Fraction], kind: NumberType) -> str:
+def line_of(numbers: Sequence[float | Fraction], kind: NumberType) -> str:
     """What a program is given."""
     return " ".join(text for x in numbers for text in _texts(x, kind))
 
 
-def _texts(x: Fraction, kind: NumberType) -> list[str]:
+def _texts(x: float | Fraction, kind: NumberType) -> list[str]:
+    if kind is DOUBLE:
+        return [repr(float(x))]
+    x = Fraction(x)
     if kind.parts > 1:
-        high = float(x)
-        return [repr(high), repr(float(x - Fraction(high)))]
-    return [repr(float(x))] if kind.bits == DOUBLE_BITS else [_decimal(x, kind.digits)]
+        return [*map(repr, two_doubles(x))]
+    return [_decimal(x, kind.digits)]
 
 
 def _decimal(x: Fraction, digits: int) -> str:
@@ -51,40 +55,62 @@ def _decimal(x: Fraction, digits: int) -> str:
     return f"{'-' if x < 0 else ''}{text[0]}.{text[1:]}e{exponent:+d}"
 
 
-def numbers_of(line: str, wanted: int, kind: NumberType) -> list[Fraction]:
-    """What a program gave back, so many numbers of its type.
+def numbers_of(line: str, wanted: int, kind: NumberType) -> Sequence[float | Fraction]:
+    """What a program gave back, so many numbers of its type: floats where these are doubles.
 
     Raises StepError where it is something else.
     """
     words = line.split()
     if len(words) != wanted * kind.parts:
-        told = f"{count(wanted, 'number')} of two doubles" if kind.parts > 1 else str(wanted)
-        raise StepError(f"it answers {_quoted(line)}; wanted: {told}, p' and then q', in a line")
-    found = [number_of(word) for word in words]
+        told = count(wanted, "number") + (" of two doubles" if kind.parts > 1 else "")
+        problem = f"; wanted: {told}, p' and then q', in a line, and nothing else"
+        raise StepError(f"it answers {quoted(line)}{problem}")
+    if kind is DOUBLE:
+        return [_double(word) for word in words]
     if kind.parts == 1:
-        return [kind.rounded(x) for x in found]
-    doubles = [Fraction(float(x)) for x in found]
+        return [kind.rounded(number_of(word)) for word in words]
+    doubles = [Fraction(_double(word)) for word in words]
     return [high + low for high, low in zip(doubles[::2], doubles[1::2], strict=True)]
+
+
+def _double(word: str) -> float:
+    """The nearest double; quickly where Python reads it, as it does most."""
+    with contextlib.suppress(ValueError, OverflowError):
+        x = float.fromhex(word) if "x" in word else float(word)
+        if x - x == 0 and word.isascii() and "_" not in word:
+            return x
+    try:
+        return float(number_of(word))
+    except OverflowError:
+        raise StepError(f"it answers {quoted(word)}, which is no number of its type") from None
 
 
 def number_of(word: str) -> Fraction:
     """One number. Raises StepError for what is none, or is not finite."""
     text = word.lower()
     if _NOT_FINITE.fullmatch(text):
-        raise StepError(f"it answers {_quoted(word)}, which is not finite")
+        raise StepError(f"it answers {quoted(word)}, which is not finite")
     for pattern, base, scale in ((_HEXADECIMAL, 16, 2), (_DECIMAL, 10, 10)):
         found = pattern.fullmatch(text)
         if found and found[2] + found[3]:
             exponent = int(found[4] or 0)
             if len(text) > 200 or abs(exponent) > _LARGEST_EXPONENT:
-                raise StepError(f"it answers {_quoted(word)}, which is no number of its type")
+                raise StepError(f"it answers {quoted(word)}, which is no number of its type")
             places = len(found[3]) * (4 if base == 16 else 1)
             size = int(found[2] + found[3], base) * Fraction(scale) ** (exponent - places)
             return -size if found[1] == "-" else size
-    raise StepError(f"it answers {_quoted(word)}, which is no number")
+    raise StepError(f"it answers {quoted(word)}, which is no number")
 
 
-def _quoted(text: str) -> str:
-    text = "".join(x if x.isprintable() else "?" for x in text.strip())
+def quoted(said: str | bytes) -> str:
+    """What a program says, in a sentence: cut, and without what a terminal acts on."""
+    text = said.decode("utf-8", "replace") if isinstance(said, bytes) else said
+    text = "".join(x if x.isprintable() else " " for x in text.strip())
     short = text if len(text) <= _SHOWN else text[:_SHOWN] + "…"
     return f"“{short}”" if short else "an empty line"
+
+
+def short_line(line: str) -> str:
+    """What a program is given, in a sentence."""
+    text = " ".join(f"{float(x):g}" for x in line.split())
+    return text if len(text) <= 2 * _SHOWN else text[: 2 * _SHOWN] + "…"

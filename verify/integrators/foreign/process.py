@@ -1,83 +1,119 @@
 """A program of others that answers each line with a line, in a process of its own.
 
-It is started with its input and output as pipes, in a session of its own, with limits on processor
-time and memory; what it says on standard error is kept for its last line. A call that does not
-come back is ended, and the program with it; the next call starts it again, a few times.
+It is started with its input and output as pipes, below a guard that ends whatever it leaves behind,
+with limits on processor time and memory; what it says on standard error is kept for its last line.
+A call that does not come back is ended, and the program with it; the next call starts it again, a
+few times.
 """
 
 import contextlib
+import fcntl
 import os
-import resource
 import select
 import signal
+import socket
 import subprocess
+import sys
+import termios
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from io import FileIO
 from pathlib import Path
+from typing import cast
 
 from verify.errors import InputError
+from verify.integrators.foreign import guard
+from verify.integrators.foreign.lines import quoted, short_line
 from verify.integrators.user_code.step import StepError
+from verify.prose import count
 
 MOST_MEMORY = 2 * 2**30  # bytes
 CALL_SECONDS = 5.0  # for one line
-_MOST_STARTS, _MOST_WAITS = 6, 2  # times that it is started, and that it is waited for in vain
+FIRST_SECONDS = 20.0  # for the first one, while it computes: it may compile itself
+_MOST_FAILURES, _MOST_WAITS = 6, 2  # after which it is not started again
+_CALLS_A_FAILURE = 100  # that it has answered: one more is let pass for so many
 _LONGEST = 1 << 16  # bytes of an answer
-_WATCHED = 0.05  # seconds between two looks at its memory
+_WATCHED = 0.05  # seconds between two looks at it
+_STALLED = 0.5  # seconds asleep, after which it is seen to take no more than one line
+_GRACE = 0.1  # seconds, for a line too many after the first answers
+_LAST_SECONDS = 1.0  # for what it says when its input ends
+_MOST_PROCESSES = 100  # that are looked at
 _PAGE = os.sysconf("SC_PAGE_SIZE")
+_ANSWER = "an answer is one line of numbers, and nothing else is printed"
+_FLUSH = "fflush(stdout) in C, std::endl in C++, flush(6) in Fortran, flush=True in Python"
 
 
 @dataclass
 class Program:
     """`words`: the program and its arguments; `called`: what the user calls it. `seconds`: of
-    processor time, at most; `first_seconds`: for its first answer, as of a program that compiles
-    itself. `greeting`: a line that it begins with, once it is ready."""
+    processor time, at most. `greeting`: a line that it begins with, once it is ready. `advice`:
+    what is said where it crashes. `shown`: a line as people read it."""
 
     words: Sequence[str]
     called: str
     seconds: float
-    first_seconds: float = CALL_SECONDS
     greeting: str = ""
-    starts: int = 0
+    advice: str = ""
+    shown: Callable[[str], str] = short_line
+    failures: int = 0
     waits: int = 0
+    calls: int = 0  # that it has answered
     last: str = ""  # what it has done instead of an answer
     answered: bool = False  # since it was started
-    ever: bool = False
+    paced: bool | None = None  # whether it takes a line only after the answer to the one before
     last_words: list[str] = field(default_factory=list)
     _running: "subprocess.Popen[bytes] | None" = None
-    _waiting: bytes = b""
-    _looked: float = 0.0  # when its memory was
+    _control: socket.socket | None = None  # the guard's
+    _waiting: bytes = b""  # what it has said that it was not asked for
+    _looked: float = 0.0  # when it was looked at
 
-    def ask(self, line: str, shown: str = "") -> str:
-        """Its answer to a line, which is `shown` so. Raises StepError for what it does instead."""
-        shown = shown or line
+    def answers(self, lines: Sequence[str]) -> list[str | StepError]:
+        """Its answer to each line, or what it does instead. Many lines are under way at once, where
+        three were seen to be answered by as many, and a line as it was before."""
+        known: list[str | StepError] = []
+        while left := lines[len(known) :]:
+            if self.answered and self.paced is None and len(left) > 1:
+                trial = self._some([left[0], left[1], left[0]])
+                if isinstance(trial[-1], StepError) and len(trial) < 3:
+                    known += trial
+                    continue
+                self.paced = len(trial) < 3 or trial[0] != trial[2]
+            many = self.answered and self.paced is False
+            known += self._some(left if many else left[:1])
+        return known
+
+    def _some(self, lines: Sequence[str]) -> list[str | StepError]:
+        """Answers to the first ones; an error is the last. None where it takes one line at a
+        time."""
+        if self._running is None and self._given_up:
+            times = count(self.failures, "time")
+            return [StepError(f"{self.last}; it has failed {times}, and is not started again")]
+        known: list[str | StepError] = []
         try:
             if self._running is None:
                 self._greeted()
-            own = self._running
-            assert own is not None  # noqa: S101 - it has been started
-            self._must_be_silent(own)
-            self._say(own, line, shown)
-            seconds = CALL_SECONDS if self.answered else self.first_seconds
-            answer = self._answer(own, shown, seconds)
+            self._must_be_silent(0)
+            for answer in self._exchanged(lines, "".join(f"{line}\n" for line in lines)):
+                known.append(answer)
+            if not self.answered or (self.paced is None and len(lines) > 1):
+                self._must_be_silent(_GRACE)
+            self.answered, self.calls = self.answered or bool(known), self.calls + len(known)
         except StepError as error:
-            self.last = self.last if self._given_up else str(error.said)
+            self.failures, self.last = self.failures + 1, str(error.said)
+            known = [*known[: len(lines) - 1], error]
+        except BaseException:  # an alarm: its answer would be taken for that to another line
+            self.close()
             raise
-        self.answered = self.ever = True
-        return answer
-
-    def _say(self, own: "subprocess.Popen[bytes]", line: str, shown: str) -> None:
-        try:
-            assert own.stdin is not None  # noqa: S101 - it is a pipe
-            own.stdin.write(line.encode() + b"\n")
-            own.stdin.flush()
-        except OSError:
-            raise self._ended(own, shown) from None
+        return known
 
     @property
     def _given_up(self) -> bool:
-        return self.starts >= _MOST_STARTS or self.waits >= (_MOST_WAITS if self.ever else 1)
+        most = _MOST_FAILURES + self.calls // _CALLS_A_FAILURE
+        return self.failures >= most or self.waits >= (_MOST_WAITS if self.calls else 1)
+
+    # -- its life ---------------------------------------------------------------------------------
 
     def begin(self) -> None:
         """Starts it. InputError where it does not start, or does not begin with its greeting."""
@@ -88,54 +124,32 @@ class Program:
             raise InputError("integrator", self.called, f"does not load: {said}") from None
 
     def _greeted(self) -> None:
-        own = self._start()
+        self._start()
         if self.greeting:
-            answer = self._answer(own, self.greeting, self.first_seconds)
+            answer = next(self._exchanged([self.greeting], ""))
             if answer != self.greeting:
                 self.close()
-                raise StepError(f"it begins with {_shown(answer.encode())}")
+                raise StepError(f"it begins with {quoted(answer)}")
+            self.answered = True
 
-    def close(self) -> None:
-        """Ends it, with all that it has started."""
-        own, self._running, self._waiting = self._running, None, b""
-        if own is None:
-            return
-        with contextlib.suppress(OSError):
-            os.killpg(own.pid, signal.SIGKILL)
-        own.wait()
-        for pipe in (own.stdin, own.stdout):
-            with contextlib.suppress(OSError):
-                if pipe is not None:
-                    pipe.close()
-
-    # -- its life ---------------------------------------------------------------------------------
-
-    def _start(self) -> "subprocess.Popen[bytes]":
-        if self._given_up:
-            raise StepError(f"{self.last} (it was started {self.starts} times, and is not again)")
-        self.starts += 1
-        try:
+    def _start(self) -> None:
+        ours, its = socket.socketpair()
+        script, seconds = str(Path(guard.__file__).resolve()), str(int(self.seconds) + 30)
+        with its:
             own = subprocess.Popen(  # noqa: S603 - it is what the user asks for
-                list(self.words),
+                [sys.executable, "-I", "-S", script, str(its.fileno()), seconds, *self.words],
+                bufsize=0,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
                 start_new_session=True,
-                preexec_fn=self._limited,
+                pass_fds=[its.fileno()],
             )
-        except (OSError, ValueError) as error:
-            problem = getattr(error, "strerror", None) or str(error)
-            raise InputError("integrator", self.called, f"does not start: {problem}") from None
-        self._running, self._waiting, self.answered = own, b"", False
+        self._running, self._control, self._waiting, self.answered = own, ours, b"", False
         threading.Thread(target=self._listen, args=(own,), daemon=True).start()
-        return own
-
-    def _limited(self) -> None:
-        """In the new process, before the program: a limit of processor time, should we be ended,
-        and no file of its memory where it crashes."""
-        seconds = int(self.seconds) + 30
-        resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        if problem := ours.recv(_LONGEST).decode("utf-8", "replace").strip():
+            self.close()
+            raise InputError("integrator", self.called, f"does not start: {problem}")
 
     def _listen(self, own: "subprocess.Popen[bytes]") -> None:
         """Keeps the last lines of standard error."""
@@ -145,92 +159,157 @@ class Program:
                 lines = chunk.decode("utf-8", "replace").strip().splitlines()
                 self.last_words = [*self.last_words, *lines][-3:]
 
-    # -- one answer -------------------------------------------------------------------------------
+    def close(self) -> None:
+        """Ends it, with all that it has started."""
+        own, self._running, self._waiting = self._running, None, b""
+        if own is None or self._control is None:
+            return
+        self._control.close()  # at which the guard ends all
+        try:
+            own.wait(CALL_SECONDS)
+        except subprocess.TimeoutExpired:
+            with contextlib.suppress(OSError):
+                os.killpg(own.pid, signal.SIGKILL)
+            own.wait()
+        for pipe in (own.stdin, own.stdout):
+            with contextlib.suppress(OSError):
+                if pipe is not None:
+                    pipe.close()
 
-    def _must_be_silent(self, own: "subprocess.Popen[bytes]") -> None:
-        if self._waiting or self._readable(own, 0):
-            chunk = self._waiting or self._read(own)
-            if chunk:
-                self.close()
-                raise StepError(f"it prints what it was not asked for: {_shown(chunk)}")
+    # -- its answers ------------------------------------------------------------------------------
 
-    def _answer(self, own: "subprocess.Popen[bytes]", shown: str, seconds: float) -> str:
-        until, found = time.monotonic() + seconds, b""
-        while b"\n" not in found:
-            left = until - time.monotonic()
-            if left <= 0:
-                self.waits += 1
+    def _exchanged(self, lines: Sequence[str], text: str) -> Iterator[str]:
+        """Answers to the lines, of which `text` is made, as they come. Raises StepError for what it
+        does instead; ends where it sleeps before it has answered many lines."""
+        unsaid, heard, number = memoryview(text.encode()), b"", 0
+        since, slept, whole = time.monotonic(), 0.0, list[bytes]()
+        while number < len(lines):
+            into, out = self._pipes
+            ready, takes, _ = select.select([out], [into] if unsaid else [], [], _WATCHED)
+            if takes:
+                try:
+                    unsaid = unsaid[into.write(unsaid[: select.PIPE_BUF]) :]
+                except OSError:  # it has ended, as its output will tell
+                    unsaid = unsaid[:0]
+            if ready:
+                chunk = out.read(_LONGEST)
+                if not chunk:
+                    raise self._ended(lines[number])
+                *whole, heard = (heard + chunk).split(b"\n")
+                while whole and number < len(lines):
+                    yield whole.pop(0).decode("utf-8", "replace")
+                    number, since, slept = number + 1, time.monotonic(), 0.0
+            elif not takes and self._sleeps:
+                slept += _WATCHED
+            if len(lines) > 1 and slept >= _STALLED:
+                self.paced = True
                 self.close()
-                raise StepError(f"a call of it does not end within {seconds:g} s")
-            if self._takes_too_much(own):
-                self.close()
-                raise StepError(f"it takes more than {MOST_MEMORY / 2**30:g} GiB of memory")
-            if not self._readable(own, min(left, _WATCHED)):
-                continue
-            chunk = self._read(own)
-            if not chunk:
-                raise self._ended(own, shown)
-            found += chunk
-            if len(found) > _LONGEST:
-                self.close()
-                raise StepError(f"it prints more than {_LONGEST} bytes for a line")
-        answer, _, self._waiting = found.partition(b"\n")
-        return answer.decode("utf-8", "replace")
+                return
+            if number < len(lines):
+                self._must_go_on(lines[number], heard, time.monotonic() - since, slept)
+        self._waiting = b"\n".join([*whole, heard])
 
-    def _ended(self, own: "subprocess.Popen[bytes]", shown: str) -> StepError:
-        """It has ended instead of answering."""
+    @property
+    def _pipes(self) -> tuple[FileIO, FileIO]:
+        """The running program's input and output."""
+        assert self._running is not None  # noqa: S101 - it has been started
+        return cast(FileIO, self._running.stdin), cast(FileIO, self._running.stdout)
+
+    def _must_be_silent(self, seconds: float) -> None:
+        """Raises StepError where it says what it was not asked for."""
+        out = self._pipes[1]
+        if not self._waiting and select.select([out], [], [], seconds)[0]:
+            self._waiting = out.read(_LONGEST)
+        if said := self._waiting:
+            self.close()
+            raise StepError(f"it prints {quoted(said)}, which it was not asked for: {_ANSWER}")
+
+    def _must_go_on(self, line: str, heard: bytes, spent: float, slept: float) -> None:
+        """Raises StepError where a call takes too long or too much memory, or prints too much."""
+        problem, now = "", time.monotonic()
+        if len(heard) > _LONGEST:
+            problem = f"it prints more than {_LONGEST} bytes for a line"
+        elif now - self._looked >= _WATCHED:  # a look takes as long as several short calls
+            self._looked = now
+            if sum(map(_resident, self._processes)) > MOST_MEMORY:
+                problem = f"it takes more than {MOST_MEMORY / 2**30:g} GiB of memory"
+        most = CALL_SECONDS if self.answered else FIRST_SECONDS
+        asleep = not self.answered and slept >= CALL_SECONDS
+        if not problem and (spent >= most or asleep):
+            self.waits += 1
+            problem = self._silence(line, heard, min(int(spent), most), asleep)
+        if problem:
+            self.close()
+            raise StepError(problem)
+
+    def _silence(self, line: str, heard: bytes, seconds: float, asleep: bool) -> str:
+        """What it does instead of an answer in time; of the first one, when its input ends, too."""
+        if self.answered:
+            return f"a call of it does not end within {seconds:g} s, asked “{self.shown(line)}”"
+        into, out = self._pipes
+        unread = any(fcntl.ioctl(into, termios.FIONREAD, bytes(4)))
+        into.close()
+        while asleep and select.select([out], [], [], _LAST_SECONDS)[0] and len(heard) < _LONGEST:
+            if not (chunk := out.read(_LONGEST)):
+                break
+            heard += chunk
+        how = f": {_ANSWER}; flush after it, as by {_FLUSH}"
+        if b"\n" in heard:
+            how = f", but {quoted(heard)} when its input ends: it does not flush; write {_FLUSH}"
+        elif heard:
+            how = f": it prints {quoted(heard)} without an end of line"
+        elif unread:
+            how = ": it does not read it"
+        asked = self.shown(line)
+        return f"it gives no answer to its first line, “{asked}”, within {seconds:g} s{how}"
+
+    def _ended(self, line: str) -> StepError:
+        """What is said where it has ended instead of answering."""
+        own = self._running
+        assert own is not None  # noqa: S101 - it has been started
         with contextlib.suppress(subprocess.TimeoutExpired):
-            own.wait(1)
+            own.wait(_LAST_SECONDS)
         status = own.poll()
         time.sleep(_WATCHED)  # for what it has said at last
         self.close()
         said = f": {self.last_words[-1][:80]}" if self.last_words else ""
+        asked = f"“{self.shown(line)}”"
         if status is None:
-            return StepError(f"it closes its output, asked “{shown}”{said}")
+            return StepError(f"it closes its output, asked {asked}{said}")
         if status < 0:
-            name = signal.Signals(-status).name
-            return StepError(f"it crashes with {name}, asked “{shown}”{said}")
-        return StepError(f"it ends with status {status} in place of an answer to “{shown}”{said}")
+            crash = f"it crashes with {signal.Signals(-status).name}, asked {asked}{said}"
+            return StepError(crash + self.advice)
+        if status == 0 and not said:
+            said = "; it is to read and answer lines until its input ends"
+        return StepError(f"it ends with status {status} in place of an answer to {asked}{said}")
 
-    def _readable(self, own: "subprocess.Popen[bytes]", seconds: float) -> bool:
-        assert own.stdout is not None  # noqa: S101 - it is a pipe
-        return bool(select.select([own.stdout], [], [], seconds)[0])
+    # -- its processes ----------------------------------------------------------------------------
 
-    def _read(self, own: "subprocess.Popen[bytes]") -> bytes:
-        assert own.stdout is not None  # noqa: S101 - it is a pipe
-        return os.read(own.stdout.fileno(), _LONGEST)
+    @property
+    def _processes(self) -> list[int]:
+        """It and what it has started: all that is below the guard."""
+        assert self._running is not None  # noqa: S101 - it has been started
+        pids = [self._running.pid]
+        for pid in pids:  # it grows while it is walked
+            for children in Path(f"/proc/{pid}/task").glob("*/children"):
+                pids += map(int, _text(children).split())
+        return pids[1:_MOST_PROCESSES]
 
-    def _takes_too_much(self, own: "subprocess.Popen[bytes]") -> bool:
-        """Looked at now and then: it takes as long as several short calls."""
-        now = time.monotonic()
-        if now - self._looked < _WATCHED:
-            return False
-        self._looked = now
-        return self._memory(own) > MOST_MEMORY
-
-    def _memory(self, own: "subprocess.Popen[bytes]") -> int:
-        """Bytes that it and what it has started hold now, 0 where that is not known."""
-        return sum(map(_resident, _with_children(own.pid)))
-
-
-def _with_children(pid: int) -> list[int]:
-    """The process, and those that it has started."""
-    found = [pid]
-    for each in found:  # it grows while it is walked
-        try:
-            found += map(int, Path(f"/proc/{each}/task/{each}/children").read_text().split())
-        except (OSError, ValueError):
-            continue
-    return found[:100]
+    @property
+    def _sleeps(self) -> bool:
+        """Whether no thread of it computes, or waits for a disk, as far as the system tells."""
+        threads = (x for pid in self._processes for x in Path(f"/proc/{pid}/task").glob("*/stat"))
+        states = {_text(thread).rpartition(") ")[2][:1] for thread in threads}
+        return bool(states) and not states & {"R", "D"}
 
 
 def _resident(pid: int) -> int:
+    """Bytes that the process holds now, 0 where that is not known."""
+    return int((_text(Path(f"/proc/{pid}/statm")).split() or "00")[1]) * _PAGE
+
+
+def _text(path: Path) -> str:
     try:
-        return int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * _PAGE
-    except (OSError, ValueError, IndexError):
-        return 0
-
-
-def _shown(chunk: bytes) -> str:
-    text = chunk.decode("utf-8", "replace").strip()
-    return "“" + "".join(x if x.isprintable() else " " for x in text)[:40] + "”"
+        return path.read_text()
+    except OSError:  # it has ended
+        return ""

@@ -6,8 +6,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from verify.integrators.foreign import host
-from verify.integrators.foreign.called import _hexadecimal
 from verify.integrators.foreign.lines import line_of, number_of, numbers_of
 from verify.integrators.user_code.number_type import (
     DOUBLE,
@@ -39,25 +37,6 @@ def test_a_rounded_number_is_the_nearest_of_its_bits(
     assert kind.rounded(made) == made
     if exact:
         assert abs(made - exact) <= abs(exact) * Fraction(1, 2**kind.bits) + Fraction(1, 2**1074)
-
-
-@given(FLOATS, FLOATS, st.sampled_from([LONG_DOUBLE, FLOAT128]))
-def test_the_host_packs_numbers_as_c_has_them(x: Fraction, y: Fraction, kind: object) -> None:
-    assert isinstance(kind, type(DOUBLE))
-    made = kind.rounded(x + y / 3**40)
-    own = host.Buffers(kind.name, 1)
-    own.p.raw = own.bytes_of(_hexadecimal(made, kind))
-    assert number_of(own.text_of(own.p.raw)) == made
-
-
-def test_the_hosts_long_double_is_that_of_c() -> None:
-    """By ctypes, which knows it, though it gives it to Python as a double."""
-    import ctypes
-
-    own = host.Buffers("long-double", 1)
-    for x in (1.5, -0.1, 3e100, 2.0**-1000):
-        raw = bytes(ctypes.c_longdouble(x))[:10]
-        assert own.bytes_of(_hexadecimal(Fraction(x), LONG_DOUBLE))[:10] == raw
 
 
 @pytest.mark.parametrize(
