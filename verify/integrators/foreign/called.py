@@ -43,6 +43,16 @@ class ForeignFunction:
         program.begin()
         atexit.register(program.close)
 
+    def another(self) -> "ForeignFunction":
+        """The same in a process of its own, which knows nothing of the calls of this one."""
+        old = self.program
+        fresh = Program(old.words, old.called, old.seconds, old.greeting, old.advice, old.shown)
+        return ForeignFunction(fresh, self.kind, self.write, self.read)
+
+    def close(self) -> None:
+        """Ends its process."""
+        self.program.close()
+
     def __call__(self, p: Theirs, q: Theirs, t: Theirs, h: Theirs) -> tuple[Theirs, Theirs]:
         result = self.several([(p, q, t, h)])[0]
         if isinstance(result, StepError):

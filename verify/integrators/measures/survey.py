@@ -12,15 +12,16 @@ from fractions import Fraction
 from verify.arithmetic.exact import decimal
 from verify.errors import InputError
 from verify.flows.extrapolation import NoFlowError
-from verify.integrators.places.place import USER, Place, simple, states
+from verify.integrators.places.place import PATTERN, USER, Place, simple, states
 from verify.integrators.places.units import Field, rate, reaches, units_of
 from verify.integrators.probes.duals import DualProbe
 from verify.integrators.user_code.user_map import UserMap
 
 _FASTEST = 40.0  # times the median of the others' rates
 _MOMENTS = tuple(map(Fraction, ("1/4", "5/7", "1/20", "13/5", "1003/7")))  # in units of t
+_VARIANTS = 4  # of a pattern of signs
 _MOST = {1: 12, 2: 16}
-_OTHERWISE = 10  # places of more degrees of freedom
+_OTHERWISE = 16  # places of more degrees of freedom
 _BENT = 0.1  # of the largest entry of J
 _LARGEST = Fraction(1, 2)  # of the step size, in parts of the time in which the motion changes
 
@@ -57,16 +58,21 @@ def places_of_field(field_: Field, moving: bool, request: Request = NOWHERE) -> 
     """For a step of that H; empty where H has a motion from none of them."""
     units, unit_of_time = units_of(field_)
     units = [request.scale.get(name, x) for name, x in zip(field_.names, units, strict=True)]
-    trials = [(z, "pattern") for z in states(units)]
-    if request.z is not None:
-        trials.insert(0, (request.z, USER))
-    made = []
-    for k, (z, source) in enumerate(trials):
+    pace = unit_of_time if moving else None
+
+    def place(k: int, z: tuple[Fraction, ...], source: str) -> Place | None:
         t = _MOMENTS[k % len(_MOMENTS)] * unit_of_time if moving else Fraction(0)
-        place = _place(field_, z, t, units, unit_of_time if moving else None, source, request)
-        if place is not None:
-            made.append(place)
-    return _calm(made, _MOST.get(field_.degrees, _OTHERWISE))
+        return _place(field_, z, t, units, pace, source, request)
+
+    mine = [place(0, request.z, USER)] if request.z is not None else []
+    made = [place(k, z, PATTERN) for k, z in enumerate(states(units))]
+    least = _least_step([x for x in made if x is not None])
+    for variant in range(1, _VARIANTS):  # where H has no motion there, or too fast a one
+        for k, z in enumerate(states(units, variant)):
+            if not _is_calm(made[k], least):
+                made[k] = place(k, z, PATTERN)
+    calm = [x for x in made if x is not None and _is_calm(x, least)]
+    return [*(x for x in mine if x is not None), *calm[: _MOST.get(field_.degrees, _OTHERWISE)]]
 
 
 def _place(
@@ -96,14 +102,14 @@ def _power(x: float) -> Fraction:
     return Fraction(2) ** math.floor(math.log2(x))
 
 
-def _calm(places: list[Place], most: int) -> list[Place]:
-    """Those whose motion is not faster by far than that of the others; the user's all the same."""
-    steps = sorted(place.step for place in places)
-    if not steps:
-        return []
-    least = float(steps[len(steps) // 2]) / _FASTEST
-    calm = [x for x in places if x.source == USER or float(x.step) >= least]
-    return calm[: most + 1 if calm[0].source == USER else most]
+def _least_step(places: Sequence[Place]) -> float:
+    """Below it a place's motion is faster by far than that of the others."""
+    steps = sorted(float(place.step) for place in places)
+    return steps[len(steps) // 2] / _FASTEST if steps else 0.0
+
+
+def _is_calm(place: Place | None, least: float) -> bool:
+    return place is not None and float(place.step) >= least
 
 
 def places_of_map(names: Sequence[str], unit: Fraction, request: Request = NOWHERE) -> list[Place]:

@@ -67,10 +67,11 @@ def _pairs(row: Sequence[int]) -> set[tuple[int, int, int, int]]:
     return {(a, b, row[a], row[b]) for a, b in combinations(range(len(row)), 2)}
 
 
-def states(units: Sequence[Fraction]) -> list[tuple[Fraction, ...]]:
+def states(units: Sequence[Fraction], variant: int = 0) -> list[tuple[Fraction, ...]]:
     """States z = (p, q) in these units: the patterns of signs, at small and large amplitudes.
 
-    Of one degree of freedom each pattern at three amplitudes, of more each at one.
+    Of one degree of freedom each pattern at three amplitudes, of more each at one. `variant`: the
+    same patterns elsewhere.
     """
     size, half = len(units), len(units) // 2
     patterns = signs(size)
@@ -78,10 +79,13 @@ def states(units: Sequence[Fraction]) -> list[tuple[Fraction, ...]]:
     made = []
     for turn in range(turns):
         for k, pattern in enumerate(patterns):
-            of_q, of_p = _AMPLITUDES[(k + k // 4 + turn) % len(_AMPLITUDES)]
+            of_q, of_p = _AMPLITUDES[(k + k // 4 + turn + variant) % len(_AMPLITUDES)]
             made.append(
                 tuple(
-                    sign * unit * _SHAPE[(j + 3 * k) % len(_SHAPE)] * (of_p if j < half else of_q)
+                    sign
+                    * unit
+                    * _SHAPE[(j + 3 * k + variant) % len(_SHAPE)]
+                    * (of_p if j < half else of_q)
                     for j, (sign, unit) in enumerate(zip(pattern, units, strict=True))
                 )
             )

@@ -2,7 +2,7 @@
 
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from verify.integrators.places.place import Place
 from verify.integrators.user_code.second_process import outcome, outcomes_elsewhere
@@ -52,14 +52,11 @@ def examined(step: UserMap, places: Sequence[Place]) -> tuple[list[Fault], Calls
 
 def _elsewhere(step: UserMap, first: Mapping[Place, State]) -> list[Fault]:
     """Whether it answers the same in a second process, in the reverse order."""
-    if step.foreign or not first:
-        return []
-
-    def call(place: Place) -> State:
-        return at(step, place)
-
-    seconds = min(_SECONDS, step.left / 10)
-    answers = outcomes_elsewhere(call, list(first), seconds)
+    if step.foreign:
+        answers = _answers_of_another(step, list(first))
+    else:
+        seconds = min(_SECONDS, step.left / 10)
+        answers = outcomes_elsewhere(lambda place: at(step, place), list(first), seconds)
     for (place, state), answer in zip(first.items(), answers, strict=True):
         if answer is not None and answer != outcome(lambda known: known, state):
             z = ", ".join(f"{n} = {float(x):g}" for n, x in zip(step.names, place.z, strict=True))
@@ -68,6 +65,15 @@ def _elsewhere(step: UserMap, first: Mapping[Place, State]) -> list[Fault]:
             )
             return [Fault("not a function", said, Verdict.UNDECIDED, ends=True)]
     return []
+
+
+def _answers_of_another(step: UserMap, places: Sequence[Place]) -> list[str | None]:
+    """Those of another process of its program, from the last place to the first."""
+    function = step.function.another()  # type: ignore[attr-defined]
+    other = replace(step, function=function)
+    answers = [outcome(lambda place: at(other, place), place) for place in reversed(places)]
+    function.close()
+    return [*reversed(answers)]
 
 
 def at(step: UserMap, place: Place, part: int = _PARTS[0]) -> State:
