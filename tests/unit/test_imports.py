@@ -70,10 +70,10 @@ BY_NAME = {
     "verify.from_type": {"modules"},  # hypothesis, where it is imported
     "verify.integrators.faults": {"modules"},  # numpy, where it is imported
     "verify.integrators.kept_state": {"modules"},  # numpy as above, and where a function is from
-    "verify.integrators.loading": {"import_module", "modules", "spec_from_file_location",
-                                   "exec_module"},  # the user's code
     "verify.integrators.others.parts": {"import_module"},  # a library that may be broken
     "verify.integrators.others.methods.scripted": {"exec"},  # lines of ours, which are shown
+    "verify.integrators.user_modules": {"import_module", "modules", "spec_from_file_location",
+                                        "exec_module"},  # the user's code
     "verify.arithmetic.number_system": {"exec"},  # kernels
     "verify.arithmetic.systems.float64": {"exec"},  # kernels
 }  # fmt: skip
