@@ -271,11 +271,13 @@ def keepable(folder: Path, option: str = "--keep") -> None:
     there, so that what is kept would make itself unknown.
     """
     from verify.content import is_shipped
+    from verify.files import clear_abandoned
 
     if is_shipped(folder):
         problem = "lies in what verify ships; allowed: any other folder"
         raise InputError(option, str(folder), problem)
     writable(folder, option)
+    clear_abandoned(folder)
 
 
 def writable_later(folder: Path) -> None:
