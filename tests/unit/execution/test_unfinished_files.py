@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from verify.commands.shared.input import keepable
+from verify.commands.shared.destinations import keepable
 from verify.execution.execute import Store
 from verify.execution.executors import Placement, open_place
 from verify.files import clear_unfinished, write_atomically
