@@ -88,7 +88,7 @@ def text_of(content: bytes, name: str) -> str:
         ) from None
 
 
-def check_replaceable(path: Path) -> None:
+def check_replaceable(path: Path, name: str = "file") -> None:
     """InputError where something stands there that is not ours to replace, which stays as it is."""
     try:
         mode = path.lstat().st_mode
@@ -96,9 +96,9 @@ def check_replaceable(path: Path) -> None:
         return
     what = "is a folder" if stat.S_ISDIR(mode) else "is no regular file, and is left as it is"
     if not stat.S_ISREG(mode):
-        raise InputError("file", str(path), "is a link" if stat.S_ISLNK(mode) else what)
+        raise InputError(name, str(path), "is a link" if stat.S_ISLNK(mode) else what)
     if not mode & (stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH):
-        raise InputError("file", str(path), "is read-only")
+        raise InputError(name, str(path), "is read-only")
 
 
 def _by(process: int) -> str:
@@ -125,14 +125,13 @@ def clear_abandoned(folder: Path) -> None:
 
 
 def _is_there(process: int) -> bool:
-    if os.name != "posix":  # elsewhere there is no signal that does nothing
-        return True
     try:
-        os.kill(process, 0)
+        if os.name == "posix":  # elsewhere there is no signal that does nothing
+            os.kill(process, 0)
     except (ProcessLookupError, OverflowError):
         return False
     except OSError:  # it is somebody else's
-        return True
+        pass
     return True
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from tests.end_to_end.test_command_line import here
 from verify.commands import Commands
-from verify.commands.shared.destinations import OUTPUT_FILE, OUTPUT_FOLDER
+from verify.commands.shared.destinations import OUT_FILE, OUT_FOLDER
 from verify.commands.shared.input import PATH
 
 OF = "--system pendulum --scheme lie2"
@@ -65,8 +65,8 @@ def test_every_path_is_read_or_named_here() -> None:
     """So that an option that is new, and writes, is of the kind that is looked at before."""
     every = [x for name, each in Commands().items() for x in params_of(each, name)]
     assert {(name, str(x.name)) for name, x in every if x.type is PATH} == READ
-    files = {x.opts[-1] for _, x in every if x.type is OUTPUT_FILE}
-    folders = {x.opts[-1] for _, x in every if x.type is OUTPUT_FOLDER}
+    files = {x.opts[-1] for _, x in every if x.type is OUT_FILE}
+    folders = {x.opts[-1] for _, x in every if x.type is OUT_FOLDER}
     assert files == set(FILES)
     assert folders == {x if x.startswith("-") else x.lower() for x in FOLDERS}
 

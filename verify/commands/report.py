@@ -12,7 +12,7 @@ import click
 
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering
-from verify.commands.shared.destinations import OUTPUT_FOLDER, check_ours, keepable, writable
+from verify.commands.shared.destinations import OUT_FOLDER, check_ours, keepable, writable
 from verify.commands.shared.input import hamiltonian_of, target
 from verify.commands.shared.one_line import (
     goes_alone,
@@ -42,11 +42,7 @@ _PAGE = "html"
 )
 @start_options
 @click.option(
-    "-o",
-    "--output",
-    type=OUTPUT_FOLDER,
-    metavar="DIR",
-    help="Write it there.  [default: SCENE-report]",
+    "-o", "--output", type=OUT_FOLDER, metavar="DIR", help="Write it.  [default: SCENE-report]"
 )
 @click.option(
     "--format",
@@ -62,7 +58,7 @@ _PAGE = "html"
 )
 @click.option(
     "--findings",
-    type=OUTPUT_FOLDER,
+    type=OUT_FOLDER,
     metavar="DIR",
     help="Of integrators: a note for its maintainers on each mistake that matters, DIR/NAME.md.",
 )

@@ -9,12 +9,7 @@ from verify import arithmetic as number_systems
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering
 from verify.commands.shared.cache import cache_option
-from verify.commands.shared.destinations import (
-    OUTPUT_FILE,
-    OUTPUT_FOLDER,
-    STANDARD_OUTPUT,
-    keepable,
-)
+from verify.commands.shared.destinations import OUT_FILE, OUT_FOLDER, STANDARD_OUTPUT, keepable
 from verify.commands.shared.initial_value import listed, start_options
 from verify.commands.shared.input import scheme_option, with_kept_hamiltonian
 from verify.commands.shared.orbit_file import check_points, write_orbit
@@ -44,7 +39,7 @@ if TYPE_CHECKING:
 @click.option(
     "--csv",
     "table",
-    type=OUTPUT_FILE,
+    type=OUT_FILE,
     metavar="FILE",
     help="Write the states there, t, p, q, H − H₀, ΔJ and Λ; - for standard output, and nothing "
     "else on it.",
@@ -57,7 +52,7 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--keep",
-    type=OUTPUT_FOLDER,
+    type=OUT_FOLDER,
     metavar="DIR",
     help="Keep checkpoints there; the same command goes on from them.",
 )

@@ -106,10 +106,9 @@ class Keeper:
             return None
         content = kept_text(CHECKPOINT, path)
         found = json.loads(content) if content else {}
-        if found.get("label") != label:
+        data: dict[str, Any] | None = found["data"] if found.get("label") == label else None
+        if data is None:
             check_replaceable(path)
-            return None
-        data: dict[str, Any] | None = found["data"]
         return data
 
     def due(self, label: str) -> bool:

@@ -42,8 +42,7 @@ def _free_name(name: str, folder: Path) -> str:
 
 
 def _executed(spec: ModuleSpec | None) -> ModuleType:
-    assert spec is not None  # noqa: S101 - a .py file has a loader
-    assert spec.loader is not None  # noqa: S101
+    assert spec is not None and spec.loader is not None  # noqa: PT018, S101 - a file has one
     module = module_from_spec(spec)
     sys.modules[spec.name] = module  # as pickles and dataclasses in it expect
     try:

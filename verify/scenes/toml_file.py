@@ -4,7 +4,6 @@
 parts is refused before it reads.
 """
 
-import re
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -12,20 +11,9 @@ from typing import Any
 from verify.errors import CONTROL, InputError
 from verify.files import read_text
 from verify.scenes.mistakes.syntax import toml_mistake
+from verify.scenes.toml_lines import MAX_DEPTH, PIECE
 
-_MAX_DEPTH = 12
-_DEEPER = f"is nested deeper than {_MAX_DEPTH}"
-_KEY = r"""(?:[\w-]++|"(?:\\.|[^"\\\n])*+"|'[^'\n]*+')"""
-# A key of too many parts, else what it may not be looked for in, to the end of what is not ended.
-_TOKEN = re.compile(
-    rf"(?P<deep>{_KEY}(?:[ \t]*+\.[ \t]*+{_KEY}){{{_MAX_DEPTH},}}+)"
-    r'|"""(?s:\\.|(?!""")[^\\])*+"{0,5}+'
-    r"|'''(?s:(?!''').)*+'{0,5}+"
-    r'|"(?:\\.|[^"\\\n])*+"?+'
-    r"|'[^'\n]*+'?+"
-    r"|\#[^\n]*+"
-    r"""|[\w-]++|[^\w"'\#-]++"""
-)
+_DEEPER = f"is nested deeper than {MAX_DEPTH}"
 
 
 def read_toml(path: Path) -> dict[str, Any]:
@@ -35,7 +23,7 @@ def read_toml(path: Path) -> dict[str, Any]:
 
 def toml_data(content: str, source: str) -> dict[str, Any]:
     """The text's data. InputError names the source, and what is wrong."""
-    if any(token["deep"] for token in _TOKEN.finditer(content)):
+    if any(token["deep"] for token in PIECE.finditer(content)):
         raise InputError("file", source, _DEEPER)
     try:
         data = tomllib.loads(content, parse_float=str)
@@ -49,7 +37,7 @@ def toml_data(content: str, source: str) -> dict[str, Any]:
 def check_depth(data: Any, name: str, source: str) -> None:
     """InputError, of a source that is called so, where data are nested too deep."""
     level = [data]
-    for _ in range(_MAX_DEPTH):
+    for _ in range(MAX_DEPTH):
         level = [x for v in level if isinstance(v, dict) for x in v.values()] + [
             x for v in level if isinstance(v, list) for x in v
         ]

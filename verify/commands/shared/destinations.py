@@ -13,52 +13,46 @@ from verify.errors import InputError
 STANDARD_OUTPUT = Path("-")
 _KEPT = "kept"  # the folder of what is finished
 # Of a name that ends so a file is meant.
-_OF_FILES = frozenset(
-    [".csv", ".htm", ".html", ".json", ".md", ".pdf", ".png", ".svg", ".toml", ".txt", ".v", ".zip"]
-)
+_OF_FILES = ".csv .htm .html .json .md .pdf .png .svg .toml .txt .v .zip".split()  # noqa: SIM905
 
 
-class _OutputFile(GivenPath):
+class _OutFile(GivenPath):
     """A file that is to be written, in a folder that is there; or -, which an option may take."""
 
     def convert(self, value: Any, param: Any, ctx: Any) -> Any:
         from verify.files import check_replaceable
 
-        path = super().convert(value, param, ctx)
+        path, option = super().convert(value, param, ctx), param.opts[-1]
         if path != STANDARD_OUTPUT:
-            _check_above(path, param.opts[-1])
+            _check_above(path, option)
+            check_replaceable(path, option)
             try:
-                check_replaceable(path)
                 writable(path.parent)
             except InputError as error:
-                raise InputError(param.opts[-1], str(path), error.problem) from None
+                raise InputError(option, str(path), error.problem) from None
         return path
 
 
-class _OutputFolder(GivenPath):
+class _OutFolder(GivenPath):
     """A folder that is to be written into, which is there, or is to be made in one that is."""
 
     def convert(self, value: Any, param: Any, ctx: Any) -> Any:
         path = super().convert(value, param, ctx)
-        option = param.opts[-1] if param.opts[-1].startswith("-") else param.human_readable_name
+        option = param.opts[-1] if param.opts[-1].startswith("-") else param.metavar
         if path.suffix.lower() in _OF_FILES and not path.is_dir():
-            meant = f"is {path.with_suffix('')} meant?"
-            raise InputError(
-                option, str(path), f"names a file; give a folder to write into; {meant}"
-            )
+            problem = f"names a file; give a folder, into which files are written: {path.stem}"
+            raise InputError(option, str(path), problem)
         _check_above(path, option)
         return path
 
 
-OUTPUT_FILE, OUTPUT_FOLDER = _OutputFile(path_type=Path), _OutputFolder(path_type=Path)
+OUT_FILE, OUT_FOLDER = _OutFile(path_type=Path), _OutFolder(path_type=Path)
 
 
-def _check_above(path: Path, option: str) -> None:
-    if not path.parent.exists():
+def _check_above(path: Path, option: str = "--output") -> None:
+    if not path.parent.is_dir():
         problem = f"there is no folder {path.parent}; make it first, or give one that is there"
         raise InputError(option, str(path), problem)
-    if not path.parent.is_dir():
-        raise InputError(option, str(path), f"{path.parent} is no folder; give one that is there")
 
 
 def writable(folder: Path, option: str = "--output") -> None:

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import click
 
 from verify.commands.shared.destinations import STANDARD_OUTPUT
-from verify.errors import InputError
 
 if TYPE_CHECKING:
     from verify.scenes.results.orbit import OrbitTable
@@ -25,7 +24,7 @@ def check_points(points: int | None) -> None:
 
 
 def write_orbit(result: "RunResult", path: Path, points: int | None) -> None:
-    """Writes so many states after the initial one at most; `path`: see `OUTPUT_FILE`.
+    """Writes so many states after the initial one at most; `path`: see `OUT_FILE`.
 
     InputError where the file cannot be written, and where no digits of the states are known.
     """
@@ -39,11 +38,7 @@ def write_orbit(result: "RunResult", path: Path, points: int | None) -> None:
     if path == STANDARD_OUTPUT:
         click.echo(as_csv(table), nl=False)
         return
-    try:
-        write_atomically(path, as_csv(table))
-    except OSError as error:
-        problem = error.strerror or "cannot be written"
-        raise InputError("--csv", str(path), problem) from None
+    write_atomically(path, as_csv(table))
 
 
 def as_csv(table: "OrbitTable") -> str:
