@@ -111,7 +111,9 @@ _NAMES = {
 _MODULES = ("schemes", "systems")
 _WIDTH = max(map(len, _NAMES))
 __all__ = [*_NAMES]
-__doc__ += "\n".join(f"    {name:{_WIDTH}}  {what}" for name, (_, what) in _NAMES.items())
+__doc__ = (__doc__ or "") + "\n".join(  # None by python -OO
+    f"    {name:{_WIDTH}}  {what}" for name, (_, what) in _NAMES.items()
+)
 
 
 def _orbit(*given: Any) -> Any:

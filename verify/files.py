@@ -5,6 +5,8 @@ are read. What is written replaces a regular file or nothing.
 """
 
 import os
+import platform
+import re
 import stat
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
@@ -16,6 +18,7 @@ from verify.errors import InputError
 
 MOST_BYTES = 64 * 2**20
 MOST_TEXT = 4 * 2**20  # of what people write by hand
+_HERE = f"@{platform.node()}"  # of several machines that share a folder
 _MOST_NAMES = 1000  # of a folder, among which one is looked for that may be meant
 
 
@@ -85,7 +88,7 @@ def text_of(content: bytes, name: str) -> str:
         ) from None
 
 
-def check_replaceable(path: Path) -> None:
+def check_replaceable(path: Path, name: str = "file") -> None:
     """InputError where something stands there that is not ours to replace, which stays as it is."""
     try:
         mode = path.lstat().st_mode
@@ -93,9 +96,9 @@ def check_replaceable(path: Path) -> None:
         return
     what = "is a folder" if stat.S_ISDIR(mode) else "is no regular file, and is left as it is"
     if not stat.S_ISREG(mode):
-        raise InputError("file", str(path), "is a link" if stat.S_ISLNK(mode) else what)
+        raise InputError(name, str(path), "is a link" if stat.S_ISLNK(mode) else what)
     if not mode & (stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH):
-        raise InputError("file", str(path), "is read-only")
+        raise InputError(name, str(path), "is read-only")
 
 
 def _by(process: int) -> str:
@@ -111,6 +114,27 @@ def clear_unfinished(folder: Path, processes: Iterable[int]) -> None:
                 path.unlink()
 
 
+def clear_abandoned(folder: Path) -> None:
+    """Removes what processes of this machine that were killed had begun to write there."""
+    here = re.compile(rf"\..+\.of-(\d+)\.[0-9a-f]+{re.escape(_HERE)}")
+    for path in folder.glob(".*"):
+        begun = here.fullmatch(path.name)
+        if begun and not _is_there(int(begun[1])):
+            with suppress(OSError):
+                path.unlink()
+
+
+def _is_there(process: int) -> bool:
+    try:
+        if os.name == "posix":  # elsewhere there is no signal that does nothing
+            os.kill(process, 0)
+    except (ProcessLookupError, OverflowError):
+        return False
+    except OSError:  # it is somebody else's
+        pass
+    return True
+
+
 def write_atomically(path: Path, content: str | bytes) -> None:
     """The whole content or the old one, never a part: written beside it, then renamed.
 
@@ -120,7 +144,7 @@ def write_atomically(path: Path, content: str | bytes) -> None:
     check_replaceable(path)
     raw = content.encode() if isinstance(content, str) else content
     path.parent.mkdir(parents=True, exist_ok=True)
-    name = f".{path.name[:100]}{_by(os.getpid())}{os.urandom(8).hex()}"
+    name = f".{path.name[:100]}{_by(os.getpid())}{os.urandom(8).hex()}{_HERE}"
     temporary = path.with_name(name)  # known before it is made: an interruption may come at once
     try:
         handle = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)

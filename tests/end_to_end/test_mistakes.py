@@ -150,7 +150,7 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "prove --system 'p**2 + q' --scheme lie2": ("system=p**2 + q: ", "goes with --hamiltonian"),
     "prove --system 'harmonic oscillator' --scheme lie2": ("is harmonic meant?",),
     f"prove {PENDULUM} --separable": ("--separable: goes with --every-hamiltonian",),
-    f"prove {PENDULUM} --certificate folder": ("file=folder: is a folder",),
+    f"prove {PENDULUM} --certificate folder": ("--certificate=folder: is a folder",),
     RUN: ("--step-size: is missing; write --step-size H",),
     f"{RUN} --dt 0.1 --steps 10": ("--dt: no such option; write --step-size",),
     f"{RUN} --step_size 0.1": ("--step_size: no such option; write --step-size",),

@@ -62,6 +62,7 @@ def test_a_report_of_a_users_scene_is_a_page_and_its_results(
     capsys: pytest.CaptureFixture[str], scene: str, tmp_path: Path
 ) -> None:
     folder = tmp_path / "out" / "deep"
+    folder.parent.mkdir()
     status, out, err = here(capsys, "report", scene, "-o", str(folder))
     assert (status, err) == (0, "")
     assert "criterion 1" in out

@@ -36,7 +36,8 @@ def progress_of(
         return
     if progress is not None and not isinstance(progress, bool):
         raise InputError("progress", progress, "allowed: True, False, None, or a function")
-    if progress is False or not (progress or in_notebook()):
+    shown = in_notebook() or (progress and sys.stderr is not None)  # None: it is closed
+    if progress is False or not shown:
         yield None
         return
     bar = _bar(label, total)

@@ -41,7 +41,8 @@ from verify.errors import NOT_GIVEN, InputError, LimitError, unknown
 from verify.files import read_text
 from verify.scenes.mistakes.values import one_line
 from verify.scenes.paper_figures import PaperFigure
-from verify.scenes.scene import Scene, load_scene, read_toml, scene_from
+from verify.scenes.scene import Scene, load_scene, scene_from
+from verify.scenes.toml_file import read_toml
 from verify.scenes.toml_lines import Lines, lines_of
 
 _ROOT = ("title", "about", "defaults", "scene", "claim", "figure", "left_out")

@@ -8,7 +8,7 @@ import click
 
 from verify.commands.shared.answer import Answer, answering
 from verify.commands.shared.cache import cache_option
-from verify.commands.shared.input import PATH
+from verify.commands.shared.destinations import OUT_FILE
 from verify.commands.shared.one_line import scenes_of, start_options, with_one_line
 from verify.commands.shared.output import plain_json
 from verify.commands.shared.tasks import cluster_option
@@ -37,7 +37,7 @@ _ERRORS = {
     click.option("--peers", is_flag=True, help="Other libraries' solvers beside them."),
 )
 @start_options
-@click.option("-o", "--output", type=PATH, metavar="FILE.svg", help="Draw it there.")
+@click.option("-o", "--output", type=OUT_FILE, metavar="FILE.svg", help="Draw it there.")
 @cluster_option
 @answering
 @cache_option
@@ -110,11 +110,7 @@ def _draw(result: "WorkPrecisionResult", path: Path) -> None:
     from verify.files import write_atomically
     from verify.pages.figures.work_precision_plots import standalone
 
-    try:
-        write_atomically(path, standalone(result))
-    except OSError as error:
-        problem = error.strerror or "cannot be written"
-        raise InputError("--output", str(path), problem) from None
+    write_atomically(path, standalone(result))
 
 
 # -- how it is shown ------------------------------------------------------------------------------

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from verify.commands.shared.answer import Answer, answering
+from verify.commands.shared.destinations import OUT_FILE, OUT_FOLDER
 from verify.commands.shared.group import Group
 from verify.commands.shared.input import PATH
 
@@ -37,7 +38,7 @@ def check(file: Path) -> Answer:
 
 @certificate.command()
 @click.argument("file", type=PATH, metavar="FILE")
-@click.option("--coq", type=PATH, required=True, metavar="OUT.v", help="Write it there.")
+@click.option("--coq", type=OUT_FILE, required=True, metavar="OUT.v", help="Write it there.")
 @click.option(
     "--beside-theory",
     is_flag=True,
@@ -75,7 +76,7 @@ def export(file: Path, coq: Path, beside_theory: bool) -> Answer:
 
 
 @certificate.command()
-@click.argument("folder", type=PATH, metavar="FOLDER")
+@click.argument("folder", type=OUT_FOLDER, metavar="FOLDER")
 @answering
 def theory(folder: Path) -> Answer:
     """Write the theory that exported certificates stand on to FOLDER, with a _CoqProject."""

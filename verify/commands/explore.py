@@ -8,7 +8,8 @@ import click
 
 from verify.commands.hunt import STEPS, hunt
 from verify.commands.shared.answer import Answer
-from verify.commands.shared.input import FILE, PATH, SCHEME, writable_later
+from verify.commands.shared.destinations import OUT_FOLDER, writable_later
+from verify.commands.shared.input import FILE, SCHEME
 from verify.commands.shared.tasks import kept_tasks, with_tasks
 from verify.errors import InputError
 
@@ -67,7 +68,7 @@ _SEEDS = 2**32
 @click.option(
     "-o",
     "--output",
-    type=PATH,
+    type=OUT_FOLDER,
     default=Path("explored"),
     metavar="DIR",
     help="Where scenes that fail are written, and looked at again first.",

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands.shared.answer import Answer, answering
-from verify.commands.shared.input import PATH, scheme_option, with_hamiltonian
+from verify.commands.shared.destinations import OUT_FILE
+from verify.commands.shared.input import scheme_option, with_hamiltonian
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 @click.option(
     "--name", default="step", show_default=True, metavar="NAME", help="What a step is called."
 )
-@click.option("-o", "--output", type=PATH, metavar="FILE", help="Write it there instead.")
+@click.option("-o", "--output", type=OUT_FILE, metavar="FILE", help="Write it there instead.")
 def export(
     exact: "Hamiltonian", scheme: str, language: str, name: str, output: Path | None
 ) -> Answer:

@@ -10,7 +10,7 @@ import click
 
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer
-from verify.commands.shared.input import check_ours, writable
+from verify.commands.shared.destinations import check_ours, writable
 from verify.commands.shared.tasks import kept_tasks
 
 if TYPE_CHECKING:

@@ -7,6 +7,7 @@ import sys
 
 import click
 
+from verify.arithmetic.compiled import paths
 from verify.commands import Commands
 from verify.commands.shared.group import Group
 from verify.commands.shared.signals import heard_signals
@@ -42,6 +43,8 @@ def cli(context: click.Context) -> None:
     """
     if context.invoked_subcommand is None:
         click.echo(context.get_help())
+    else:
+        paths.forced()  # a way that is none is refused by every command
 
 
 cli.commands = Commands()  # type: ignore[assignment]  # none is ever added

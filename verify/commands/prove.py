@@ -9,7 +9,8 @@ import click
 
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering, picked
-from verify.commands.shared.input import PATH, hamiltonian_of, hamiltonian_options, scheme_option
+from verify.commands.shared.destinations import OUT_FILE
+from verify.commands.shared.input import hamiltonian_of, hamiltonian_options, scheme_option
 from verify.commands.shared.output import agreement, agreement_json, cut, line, order_json
 from verify.errors import NOT_GIVEN, InputError
 
@@ -48,7 +49,7 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--certificate",
-    type=PATH,
+    type=OUT_FILE,
     metavar="FILE",
     help="Write the identities there, for `verify certificate check`; where H has functions other "
     "than sin, cos, exp and quotients, those of the proof for every H.",

@@ -8,8 +8,9 @@ import click
 
 from verify.commands.reference_compare import compare
 from verify.commands.shared.answer import Answer, answering, picked
+from verify.commands.shared.destinations import OUT_FOLDER, writable
 from verify.commands.shared.group import Group
-from verify.commands.shared.input import FILE, PATH, writable
+from verify.commands.shared.input import FILE, PATH
 from verify.commands.shared.tasks import perform, with_placement, with_tasks
 from verify.errors import NOT_GIVEN, InputError, without_controls
 
@@ -34,7 +35,7 @@ reference.add_command(compare)
 @click.option(
     "-o",
     "--output",
-    type=PATH,
+    type=OUT_FOLDER,
     metavar="DIR",
     help="Write them there.  [default: SCENE-reference, or reference-data]",
 )

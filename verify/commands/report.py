@@ -12,14 +12,8 @@ import click
 
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering
-from verify.commands.shared.input import (
-    PATH,
-    check_ours,
-    hamiltonian_of,
-    keepable,
-    target,
-    writable,
-)
+from verify.commands.shared.destinations import OUT_FOLDER, check_ours, keepable, writable
+from verify.commands.shared.input import hamiltonian_of, target
 from verify.commands.shared.one_line import (
     goes_alone,
     line_of,
@@ -48,7 +42,7 @@ _PAGE = "html"
 )
 @start_options
 @click.option(
-    "-o", "--output", type=PATH, metavar="DIR", help="Write it there.  [default: SCENE-report]"
+    "-o", "--output", type=OUT_FOLDER, metavar="DIR", help="Write it.  [default: SCENE-report]"
 )
 @click.option(
     "--format",
@@ -64,7 +58,7 @@ _PAGE = "html"
 )
 @click.option(
     "--findings",
-    type=PATH,
+    type=OUT_FOLDER,
     metavar="DIR",
     help="Of integrators: a note for its maintainers on each mistake that matters, DIR/NAME.md.",
 )

@@ -9,9 +9,10 @@ from verify import arithmetic as number_systems
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering
 from verify.commands.shared.cache import cache_option
+from verify.commands.shared.destinations import OUT_FILE, OUT_FOLDER, STANDARD_OUTPUT, keepable
 from verify.commands.shared.initial_value import listed, start_options
-from verify.commands.shared.input import PATH, keepable, scheme_option, with_kept_hamiltonian
-from verify.commands.shared.orbit_file import STANDARD_OUTPUT, check_orbit_file, write_orbit
+from verify.commands.shared.input import scheme_option, with_kept_hamiltonian
+from verify.commands.shared.orbit_file import check_points, write_orbit
 from verify.errors import InputError
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
 @click.option(
     "--csv",
     "table",
-    type=PATH,
+    type=OUT_FILE,
     metavar="FILE",
     help="Write the states there, t, p, q, H − H₀, ΔJ and Λ; - for standard output, and nothing "
     "else on it.",
@@ -51,7 +52,7 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--keep",
-    type=PATH,
+    type=OUT_FOLDER,
     metavar="DIR",
     help="Keep checkpoints there; the same command goes on from them.",
 )
@@ -71,7 +72,7 @@ def run(exact: "Hamiltonian", scheme: str, **options: Any) -> Answer:
     if points is not None and table is None:
         raise InputError("--points", points, "goes with --csv")
     if table is not None:
-        check_orbit_file(table, points)
+        check_points(points)
     result, note = _result(exact, scheme, **options)
     if table is not None:
         write_orbit(result, table, points)

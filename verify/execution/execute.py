@@ -7,6 +7,7 @@ code is taken for one of this.
 
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from functools import cached_property
 from itertools import chain
 from pathlib import Path
@@ -35,7 +36,7 @@ from verify.execution.keeping import (
 )
 from verify.execution.plan import Plan, given_by
 from verify.execution.task import Task
-from verify.files import clear_unfinished, write_atomically
+from verify.files import check_replaceable, clear_unfinished, write_atomically
 from verify.scenes.frozen import Frozen
 
 OnResult = Callable[[str, Frozen], None]  # called with a task's key and its result
@@ -63,15 +64,19 @@ class Store:
         return self.folder / f"{name}-{fingerprint()}.json" if self.folder else None
 
     def get(self, name: str, task: Task) -> Frozen | None:
-        """The kept result of the task; None where there is none, or a damaged one."""
+        """The kept result of the task; None where there is none, or a damaged one.
+
+        Raises InputError where what is there instead could not be replaced once the task is done.
+        """
         path = self.path(name)
-        if path is None or not path.exists():
+        if path is None:
             return None
         content = kept_text(KEPT, path)
-        try:
+        found = None
+        with suppress(ValidationError):  # sealed, and yet none: do it again
             found = task.result.model_validate_json(content) if content else None
-        except ValidationError:  # sealed, and yet none: do it again
-            return None
+        if found is None:
+            check_replaceable(path)
         self.taken += found is not None
         return found
 

@@ -13,7 +13,7 @@ from typing import Any
 from verify.content import digest_of, shipped_files
 from verify.errors import InputError
 from verify.execution.machine import versions
-from verify.files import read_text, write_atomically
+from verify.files import check_replaceable, read_text, write_atomically
 
 _DRAWING = ("hypothesis",)  # what a seed draws depends on it, and no digit does
 KEPT, CHECKPOINT = "areaproof kept result 2", "areaproof checkpoint 2"  # formats
@@ -97,13 +97,19 @@ class Keeper:
         return self._folder / f"{self._name}-{fingerprint()}-{short}.checkpoint"
 
     def load(self, label: str) -> dict[str, Any] | None:
-        """What was kept under the label; None where that is nothing, damaged, of another format."""
+        """What was kept under the label; None where that is nothing, damaged, of another format.
+
+        Raises InputError where what is there instead could not be replaced.
+        """
         path = self._path(label)
         if path is None:
             return None
         content = kept_text(CHECKPOINT, path)
         found = json.loads(content) if content else {}
-        return found["data"] if found.get("label") == label else None
+        data: dict[str, Any] | None = found["data"] if found.get("label") == label else None
+        if data is None:
+            check_replaceable(path)
+        return data
 
     def due(self, label: str) -> bool:
         """Whether some seconds have passed since the last checkpoint under the label."""

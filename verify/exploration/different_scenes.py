@@ -2,13 +2,13 @@
 
 import re
 from collections.abc import Iterable
-from tomllib import loads
 
 import sympy
 
 from verify.exploration.sample_in_degrees import sample_of
 from verify.scenes.results.exploration import Worst
 from verify.scenes.scene import Scene, scene_from
+from verify.scenes.toml_file import toml_data
 
 _NUMBERS = re.compile(r"(?<![*\w]{2})(?<!\w)[0-9]+")  # but exponents
 _NEAR = 0.1  # of lg of a measure: a quarter more, or less
@@ -16,7 +16,7 @@ _NEAR = 0.1  # of lg of a measure: a quarter more, or less
 
 def scene_of(worst: Worst) -> Scene:
     """The scene that its text is of."""
-    return scene_from(loads(worst.scene, parse_float=str), "scene")
+    return scene_from(toml_data(worst.scene, "scene"), "scene")
 
 
 def by_shape(found: Iterable[Worst]) -> list[Worst]:

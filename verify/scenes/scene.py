@@ -58,7 +58,6 @@
 Numbers are exact: `0.001` in the file is 1/1000.
 """
 
-import tomllib
 from collections.abc import Mapping
 from fractions import Fraction
 from pathlib import Path
@@ -68,13 +67,11 @@ from pydantic import Field, ValidationError, model_validator
 
 from verify import schemes as scheme_catalogue
 from verify.drawable import drawn_by
-from verify.errors import CONTROL, NOT_GIVEN, InputError, without_controls
-from verify.files import read_text
+from verify.errors import NOT_GIVEN, InputError, without_controls
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import point_of
 from verify.scenes.frozen import Frozen, Section
-from verify.scenes.mistakes.syntax import toml_mistake
 from verify.scenes.mistakes.values import one_line
 from verify.scenes.observables import check_observables
 from verify.scenes.orbit_map_section import OrbitMap
@@ -84,6 +81,7 @@ from verify.scenes.run_sections import Grid, SeparationOver, Series
 from verify.scenes.sections import Reference, WorkPrecision
 from verify.scenes.stability_sections import LargestStepOver, Stability, StabilityMap
 from verify.scenes.stroboscopic_section import Stroboscopic
+from verify.scenes.toml_file import check_depth, read_toml, toml_data
 from verify.scenes.values import (
     Number,
     SchemeName,
@@ -91,7 +89,6 @@ from verify.scenes.values import (
 )
 from verify.schemes.degrees import check_takes
 
-_MAX_DEPTH = 12
 _OF_THE_PLANE = ("criteria", "stroboscopic")
 _IDENTITY = ("name", "title", "system", "hamiltonian", "parameters", "t0", "schemes")
 
@@ -235,13 +232,12 @@ def load_scene(path: Path) -> Scene:
 
 def scene_from_toml(content: str, name: str) -> Scene:
     """The scene in a TOML text, which a file of that name held."""
-    return scene_from(_from_toml(content, name), name, default_name=name)
+    return scene_from(toml_data(content, name), name, default_name=name)
 
 
 def scene_from(data: Mapping[str, Any], source: str, default_name: str = "") -> Scene:
     """The scene from a mapping, as TOML gives it."""
-    if not _shallow(data):
-        raise InputError("scene", source, f"is nested deeper than {_MAX_DEPTH}")
+    check_depth(data, "scene", source)
     try:
         scene = Scene.model_validate(dict(data))
     except ValidationError as error:
@@ -249,44 +245,3 @@ def scene_from(data: Mapping[str, Any], source: str, default_name: str = "") -> 
     return (
         scene if scene.name else scene.model_copy(update={"name": without_controls(default_name)})
     )
-
-
-def read_toml(path: Path) -> dict[str, Any]:
-    """The file's content with its decimals kept as text, so that they stay exact."""
-    return _from_toml(read_text(path), str(path))
-
-
-def _from_toml(content: str, source: str) -> dict[str, Any]:
-    try:
-        data = tomllib.loads(content, parse_float=str)
-    except (ValueError, RecursionError) as error:  # TOMLDecodeError is a ValueError
-        raise InputError("file", source, toml_mistake(content, str(error))) from None
-    if not _shallow(data):
-        raise InputError("file", source, f"is nested deeper than {_MAX_DEPTH}")
-    _check_texts(data, source)
-    return data
-
-
-def _check_texts(data: Any, source: str, where: str = "") -> None:
-    """InputError where a key or a text holds a character that a terminal would act on."""
-    if isinstance(data, str):
-        if found := CONTROL.search(data):
-            instead = "write a text with a \\ in it between '…'"
-            problem = f"holds U+{ord(found[0]):04X}, a control character; {instead}"
-            raise InputError(f"{source}: {where}", data, problem)
-    elif isinstance(data, dict):
-        for key, value in data.items():
-            _check_texts(key, source, "a key")
-            _check_texts(value, source, f"{where}.{key}" if where else key)
-    elif isinstance(data, list):
-        for value in data:
-            _check_texts(value, source, where)
-
-
-def _shallow(data: Any) -> bool:
-    level = [data]
-    for _ in range(_MAX_DEPTH):
-        level = [x for v in level if isinstance(v, dict) for x in v.values()] + [
-            x for v in level if isinstance(v, list) for x in v
-        ]
-    return not level

@@ -10,15 +10,19 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-# A string that ends in quotes has up to five in a row at its end.
-_PIECE = re.compile(
-    r'"""(?:\\.|[^\\])*?"{3,5}'
-    r"|'''.*?'{3,5}"
-    r'|"(?:\\.|[^"\\\n])*"'
-    r"|'[^'\n]*'"
-    r"|\#[^\n]*"
-    r"|.",
-    re.DOTALL,
+MAX_DEPTH = 12
+_KEY = r"""(?:[\w-]++|"(?:\\.|[^"\\\n])*+"|'[^'\n]*+')"""
+# A key of too many parts; a text, to the end of the line or the file where it is not ended; a
+# comment; a word. A text that ends in quotes has up to five in a row at its end.
+PIECE = re.compile(
+    rf"(?P<deep>{_KEY}(?:[ \t]*+\.[ \t]*+{_KEY}){{{MAX_DEPTH},}}+)"
+    r'|"""(?s:\\.|(?!""")[^\\])*+"{0,5}+'
+    r"|'''(?s:(?!''').)*+'{0,5}+"
+    r'|"(?:\\.|[^"\\\n])*+"?+'
+    r"|'[^'\n]*+'?+"
+    r"|\#[^\n]*+"
+    r"|[\w-]++"
+    r"|(?s:.)"
 )
 
 
@@ -73,7 +77,7 @@ def _statements(text: str) -> Iterator[tuple[int, str]]:
     """Each header, and each key with its value, with the line that it begins on."""
     line, begun, depth, parts = 1, 1, 0, ""
     header = False
-    for piece in _PIECE.findall(text.replace("\r\n", "\n") + "\n"):
+    for piece in _pieces(text.replace("\r\n", "\n") + "\n"):
         if piece == "\n" and (depth == 0 or header):
             if parts.strip():
                 yield begun, parts.strip()
@@ -87,10 +91,14 @@ def _statements(text: str) -> Iterator[tuple[int, str]]:
         line += piece.count("\n")
 
 
+def _pieces(text: str) -> Iterator[str]:
+    return (piece[0] for piece in PIECE.finditer(text))
+
+
 def _key(statement: str) -> str:
     """What stands before the = of a key with its value."""
     key = ""
-    for piece in _PIECE.findall(statement):
+    for piece in _pieces(statement):
         if piece == "=":
             break
         key += piece

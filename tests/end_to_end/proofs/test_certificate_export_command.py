@@ -69,13 +69,19 @@ def test_the_keys_of_an_export(
     assert all(f"\nTheorem {name} :" in text for name in found["theorems"])
 
 
-@pytest.mark.parametrize("name", ["lie2-a.v", "1.v", "forall.v", "lie2", "lie 2.v", "é.v", ""])
+@pytest.mark.parametrize("name", ["lie2-a.v", "1.v", "forall.v", "lie2", "lie 2.v", "é.v"])
 def test_a_name_that_coqc_does_not_take_is_refused(
     capsys: pytest.CaptureFixture[str], certificate: Path, tmp_path: Path, name: str
 ) -> None:
     before = sorted(tmp_path.iterdir())
     refused(export(capsys, certificate, tmp_path / name), "coq", "lie2.v")
     assert sorted(tmp_path.iterdir()) == before
+
+
+def test_a_folder_is_no_file_to_write(
+    capsys: pytest.CaptureFixture[str], certificate: Path, tmp_path: Path
+) -> None:
+    refused(export(capsys, certificate, tmp_path), "--coq", "is a folder")
 
 
 def test_what_is_refused_or_is_no_certificate_is_not_exported(

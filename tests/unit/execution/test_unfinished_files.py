@@ -1,11 +1,14 @@
 """A process that is ended while it writes leaves nothing half written."""
 
+import multiprocessing
 import os
+import platform
 import time
 from pathlib import Path
 
 import pytest
 
+from verify.commands.shared.destinations import keepable
 from verify.execution.execute import Store
 from verify.execution.executors import Placement, open_place
 from verify.files import clear_unfinished, write_atomically
@@ -43,3 +46,39 @@ def test_what_others_are_writing_is_left(tmp_path: Path) -> None:
         path.write_text("{}")
     clear_unfinished(tmp_path, [12])
     assert {path.name for path in tmp_path.iterdir()} == {other.name, "a.json"}
+
+
+def killed_while_it_writes(path: Path) -> None:
+    """A process that is killed there, as by kill -9, whose parent knows nothing of it."""
+    process = multiprocessing.get_context("fork").Process(target=write_slowly, args=(path,))
+    process.start()
+    until = time.monotonic() + 60
+    while not list(path.parent.glob(f".{path.name}.*")):
+        assert time.monotonic() < until
+        time.sleep(0.01)
+    process.kill()
+    process.join()
+
+
+def test_what_a_killed_process_was_writing_is_cleared_by_the_next_command(tmp_path: Path) -> None:
+    killed_while_it_writes(tmp_path / "result.json")
+    assert [path.name[:13] for path in tmp_path.iterdir()] == [".result.json."]
+    keepable(tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_a_process_is_writing_and_what_is_no_such_file_is_left(tmp_path: Path) -> None:
+    """The control, to which a process of another machine belongs, whatever its number."""
+    killed_while_it_writes(tmp_path / "result.json")
+    (left,) = tmp_path.iterdir()
+    gone = left.name.split(".of-")[1].split(".")[0]
+    names = [
+        left.name.replace(f".of-{gone}.", f".of-{os.getppid()}."),
+        left.name.replace(f"@{platform.node()}", "@elsewhere"),
+        left.name[1:],
+        f".my.of-{gone}.txt",
+    ]
+    for name in names:
+        (tmp_path / name).write_text("{}")
+    keepable(tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} == set(names)

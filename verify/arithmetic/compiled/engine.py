@@ -84,7 +84,7 @@ class NativeFunction:
     @cached_property
     def _no_need_to_compile(self) -> bool:
         """Lanes that are kept from earlier, or asked for, are used for short work too."""
-        return paths.forced() or (self._in_lanes is not None and self._in_lanes.kept)
+        return bool(paths.forced()) or (self._in_lanes is not None and self._in_lanes.kept)
 
     @cached_property
     def one(self) -> "Callable[[Words], Words]":

@@ -10,7 +10,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from verify.arithmetic import processor
 from verify.errors import InputError
 
 if TYPE_CHECKING:
@@ -39,6 +38,8 @@ class Path:
     @property
     def there(self) -> bool:
         """Whether this processor has what it needs."""
+        from verify.arithmetic import processor
+
         return all(processor.features().get(name, False) for name in self.needed)
 
 
@@ -49,9 +50,12 @@ _FASTEST_FIRST = (
 PATHS = {path.name: path for path in (*_FASTEST_FIRST, Path("portable", "Portable"))}
 
 
-def forced() -> bool:
-    """Whether VERIFY_LANES asks for a way."""
-    return bool(os.environ.get(VARIABLE))
+def forced() -> str:
+    """The way that VERIFY_LANES asks for, or empty. Raises InputError where that is unknown."""
+    asked = os.environ.get(VARIABLE, "")
+    if asked and asked not in (*PATHS, OFF):
+        raise InputError(VARIABLE, asked, f"allowed: {', '.join([*PATHS, OFF])}")
+    return asked
 
 
 def chosen() -> Path | None:
@@ -59,13 +63,11 @@ def chosen() -> Path | None:
 
     Raises InputError where VERIFY_LANES asks for what is unknown, or not there.
     """
-    asked = os.environ.get(VARIABLE, "")
+    asked = forced()
     if asked == OFF:
         return None
     if not asked:
         return next((path for path in _FASTEST_FIRST if path.there), None)
-    if asked not in PATHS:
-        raise InputError(VARIABLE, asked, f"allowed: {', '.join([*PATHS, OFF])}")
     if not PATHS[asked].there:
         raise InputError(VARIABLE, asked, "this processor has no such instructions")
     return PATHS[asked]

@@ -51,7 +51,8 @@ def at_bits(bits: int) -> Arithmetic:
     own = made()
 
     def number(value: Fraction) -> Any:
-        return own.div(value.numerator, value.denominator)  # rounded once
+        # Rounded once; own.div of gmpy2 2.2 rounds to the bits of the caller's context.
+        return gmpy2.mpfr(gmpy2.mpq(value), bits, own)
 
     names = ("sin", "cos", "sin_cos", "exp", "log", "sinh", "cosh", "atan", "sqrt")
     with made():

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from verify.scenes.scene import Scene
 
 
-class _GivenPath(click.Path):
+class GivenPath(click.Path):
     """A path; an empty text is none, and not the current folder."""
 
     def convert(self, value: Any, param: Any, ctx: Any) -> Any:
@@ -75,7 +75,7 @@ def _systems() -> Any:
     return systems
 
 
-PATH = _GivenPath(path_type=Path)
+PATH = GivenPath(path_type=Path)
 SCENE = _FileOr(lambda: ("paper", *suites()))
 CLAIMS = _FileOr(lambda: ("paper",))
 FILE = _FileOr(tuple)
@@ -97,7 +97,6 @@ _HAMILTONIAN_OPTIONS = (
         help="A parameter's exact value; repeatable.",
     ),
 )
-_KEPT = "kept"  # the folder of what is finished
 scheme_option = click.option(
     "--scheme",
     type=SCHEME,
@@ -226,61 +225,3 @@ def _suite(name: str) -> "list[Scene]":
     from verify.scenes.scene import load_scene
 
     return [load_scene(path) for path in sorted(content("reports", "suites", name).glob("*.toml"))]
-
-
-def writable(folder: Path, option: str = "--output") -> None:
-    """Makes the folder, and sees that a file can be made in it; InputError where that cannot be."""
-    from tempfile import TemporaryFile
-
-    if folder.exists() and not folder.is_dir():
-        raise InputError(option, str(folder), "File exists, and is no folder; give a folder")
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with TemporaryFile(dir=folder):
-            pass
-    except OSError as error:
-        problem = error.strerror or "cannot be written to"
-        advice = "give a folder that can be written to"
-        raise InputError(option, str(folder), f"{problem}; {advice}") from None
-
-
-def check_ours(folder: Path, own: re.Pattern[str] | None = None, *, advice: str = "") -> None:
-    """InputError where a folder holds files, and not those of an earlier report of ours.
-
-    Ours has a report's data, of whatever version, or nothing but what an interrupted one has kept,
-    and files whose names match `own`.
-    """
-    from verify.formats import names_format
-    from verify.pages.page import DATA
-    from verify.scenes.results.report import FORMAT
-
-    try:
-        names = {path.name for path in folder.iterdir()} - {_KEPT} if folder.exists() else set()
-        foreign = [name for name in sorted(names) if own is None or not own.fullmatch(name)]
-        if foreign and not names_format(folder / DATA, FORMAT):
-            problem = f"holds {foreign[0]!a}, which is not ours; take another folder{advice}"
-            raise InputError("--output", str(folder), problem)
-    except OSError as error:
-        raise InputError("--output", str(folder), error.strerror or "cannot be read") from None
-
-
-def keepable(folder: Path, option: str = "--keep") -> None:
-    """As `writable`, for a folder where results are kept.
-
-    InputError also where it lies in what is shipped: the name of a kept result is made of all files
-    there, so that what is kept would make itself unknown.
-    """
-    from verify.content import is_shipped
-
-    if is_shipped(folder):
-        problem = "lies in what verify ships; allowed: any other folder"
-        raise InputError(option, str(folder), problem)
-    writable(folder, option)
-
-
-def writable_later(folder: Path) -> None:
-    """As `writable` for --output, and leaves no folder that was not there."""
-    made = [path for path in (folder, *folder.parents) if not path.exists()]
-    writable(folder)
-    for path in made:
-        path.rmdir()

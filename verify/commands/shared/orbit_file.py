@@ -7,38 +7,24 @@ from typing import TYPE_CHECKING
 
 import click
 
-from verify.commands.shared.input import writable
-from verify.errors import InputError
+from verify.commands.shared.destinations import STANDARD_OUTPUT
 
 if TYPE_CHECKING:
     from verify.scenes.results.orbit import OrbitTable
     from verify.scenes.results.run import RunResult
 
 
-STANDARD_OUTPUT = Path("-")
-
-
-def check_orbit_file(path: Path, points: int | None) -> None:
-    """InputError before the run where its states could not be written after it: a file that
-    cannot be, and points outside of 1 … 10,000.
-    """
+def check_points(points: int | None) -> None:
+    """InputError, before the run, for a number of states outside of 1 … 10,000."""
     from verify.arithmetic.exact import whole
-    from verify.files import check_replaceable
     from verify.scenes.results.orbit import MOST_POINTS
 
     if points is not None:
         whole("points", points, 1, MOST_POINTS)
-    if path == STANDARD_OUTPUT:
-        return
-    try:
-        check_replaceable(path)
-        writable(path.parent)
-    except InputError as error:
-        raise InputError("--csv", str(path), error.problem) from None
 
 
 def write_orbit(result: "RunResult", path: Path, points: int | None) -> None:
-    """Writes so many states after the initial one at most; `path`: as `check_orbit_file` has seen.
+    """Writes so many states after the initial one at most; `path`: see `OUT_FILE`.
 
     InputError where the file cannot be written, and where no digits of the states are known.
     """
@@ -52,11 +38,7 @@ def write_orbit(result: "RunResult", path: Path, points: int | None) -> None:
     if path == STANDARD_OUTPUT:
         click.echo(as_csv(table), nl=False)
         return
-    try:
-        write_atomically(path, as_csv(table))
-    except OSError as error:
-        problem = error.strerror or "cannot be written"
-        raise InputError("--csv", str(path), problem) from None
+    write_atomically(path, as_csv(table))
 
 
 def as_csv(table: "OrbitTable") -> str:

@@ -1,6 +1,7 @@
 """Standard output and error as the command uses them: text that any terminal may be given."""
 
 import io
+import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -45,11 +46,26 @@ class Printable(io.TextIOBase):
 
 @contextmanager
 def printable_streams() -> Iterator[None]:
-    """Both streams so, while the command runs; one that is closed stays None."""
-    before = sys.stdout, sys.stderr
-    out, err = (stream and Printable(stream) for stream in before)
-    sys.stdout, sys.stderr = out, err
-    try:
-        yield
-    finally:
-        sys.stdout, sys.stderr = before
+    """Makes both streams printable while the command runs; a closed output stays None.
+
+    Where standard input or error is closed, nothing is read, and what is written is dropped.
+    """
+    before = sys.stdin, sys.stdout, sys.stderr
+    _take_closed_numbers()
+    with open(os.devnull, "r+") as nowhere:  # noqa: PTH123
+        sys.stdin, sys.stderr = sys.stdin or nowhere, Printable(sys.stderr or nowhere)
+        sys.stdout = sys.stdout and Printable(sys.stdout)
+        try:
+            yield
+        finally:
+            sys.stdin, sys.stdout, sys.stderr = before
+
+
+def _take_closed_numbers() -> None:
+    """Opens the null device at those of the numbers 0, 1 and 2 that are closed, for good.
+
+    A file opened later would get that number, and what libraries in C and started processes write.
+    """
+    while (handle := os.open(os.devnull, os.O_RDWR)) <= 2:
+        os.set_inheritable(handle, True)
+    os.close(handle)

@@ -10,7 +10,7 @@ import click
 
 from verify.commands.shared.answer import answering
 from verify.commands.shared.cache import cache_option
-from verify.commands.shared.input import PATH, keepable
+from verify.commands.shared.destinations import OUT_FOLDER, keepable
 
 if TYPE_CHECKING:
     from verify.execution.execute import OnResult, Store
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 keep_option = click.option(
     "--keep",
-    type=PATH,
+    type=OUT_FOLDER,
     metavar="DIR",
     help="Keep what is finished there; the same command goes on from it.",
 )

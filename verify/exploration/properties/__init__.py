@@ -6,7 +6,9 @@ plane, and raises what is to be said of it (see `verify.exploration.property`);
 no other samples. Adding a property is adding one file.
 """
 
+import ast
 from functools import cache
+from inspect import getsource
 
 from verify.discovery import Catalogue
 from verify.errors import unknown
@@ -30,6 +32,7 @@ def get(name: str) -> Property:
     if name not in _FILES:
         raise unknown("property", name, names())
     module = _FILES.module(name)
-    sentence = (module.__doc__ or "").strip().splitlines()[0]
+    text = ast.get_docstring(ast.parse(getsource(module)))  # python -OO keeps no __doc__
+    sentence = (text or "").splitlines()[0]
     plane, several = (getattr(module, x, None) for x in ("holds", "holds_in_degrees"))
     return Property(name, sentence, plane, in_degrees=several)

@@ -3,10 +3,7 @@
 `verify check-integrator` and `verify.testing` run the user's code; nothing else in `verify` does.
 """
 
-import importlib
-import importlib.util
 import inspect
-import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -18,6 +15,7 @@ from verify.errors import InputError, is_meant, nearest
 from verify.integrators.user_code.layout import Layout, role_of, shapes
 from verify.integrators.user_code.step import TIME_LIMIT, Theirs, contained, last_line
 from verify.integrators.user_code.user_map import UserMap
+from verify.integrators.user_code.user_modules import from_file, from_folder
 
 _MOST_SECONDS = 86_400
 _LISTED = 8  # functions of a module, in an error
@@ -34,8 +32,8 @@ _WANTED = {
 def load(target: str, called: str = "integrator") -> Callable[..., Theirs]:
     """The function that MODULE:FUNCTION or path/to/file.py:function names. Runs the module.
 
-    The current folder is searched first. `called`: what an error calls it. Raises InputError where
-    it does not import, has no such name, or that is no function.
+    It is looked for in the current folder first. `called`: what an error calls it. Raises
+    InputError where it does not import, has no such name, or that is no function.
     """
     place, _, name = target.rpartition(":")
     if not place or not name:
@@ -72,19 +70,11 @@ def _module(place: str, target: str, called: str) -> ModuleType:
         if path.suffix == ".py":
             if not path.is_file():
                 raise InputError(called, target, f"there is no file {place}")
-            sys.path.insert(0, str(path.parent.resolve()))
-            spec = importlib.util.spec_from_file_location(path.stem, path)
-            assert spec is not None  # noqa: S101 - a .py file has a loader
-            assert spec.loader is not None  # noqa: S101
-            module = importlib.util.module_from_spec(spec)
-            sys.modules[path.stem] = module  # as pickles and dataclasses in it expect
-            spec.loader.exec_module(module)
-            return module
+            return from_file(path)
         if path.is_file() or "/" in place:
             problem = f"{place} is no Python file; write file.py:FUNCTION"
             raise InputError(called, target, problem)
-        sys.path.insert(0, str(Path.cwd()))
-        return importlib.import_module(place)
+        return from_folder(place)
     except (InputError, KeyboardInterrupt):
         raise
     except BaseException as error:  # SystemExit too: it is the user's code

@@ -158,6 +158,41 @@ def test_a_run_that_leaves_between_stops_ends_where_it_does_stop_by_stop(name: s
         assert (1 < len(together.trail) < 100) == (together.done < of.steps) == leaves
 
 
+def assert_is_the_quotient(number: Any, bits: int, value: Fraction) -> None:
+    """Rounded to nearest, to even, as integers alone have it; the value is between 0 and 1."""
+    scale = bits
+    while value * 2**scale < 2 ** (bits - 1):
+        scale += 1
+    assert number.precision == bits
+    assert Fraction(*number.as_integer_ratio()) == Fraction(round(value * 2**scale), 2**scale)
+
+
+@drawn(200)
+@given(
+    st.sampled_from([24, 53, 100, 113, 333, 1000]),
+    st.integers(1, 10**40),
+    st.sampled_from([1, 3, 7, 10**40 + 1]),
+)
+def test_division_rounds_at_the_contexts_precision(bits: int, above: int, more: int) -> None:
+    # gmpy2 2.2.0 to 2.2.2 divided with the precision of the context of whoever asked.
+    value = Fraction(above, above + more)
+    made = mpfr.at_bits(bits)
+    for callers in (gmpy2.context(), gmpy2.context(precision=20, round=gmpy2.RoundUp)):
+        with callers:
+            assert_is_the_quotient(made.number(value), bits, value)
+        with callers, made.context():
+            quotient = gmpy2.mpz(above) / gmpy2.mpz(above + more)
+            assert_is_the_quotient(quotient, bits, value)
+
+
+def test_a_quotient_of_another_precision_is_seen() -> None:
+    third = gmpy2.mpq(1, 3)
+    for planted in (gmpy2.mpfr(third), gmpy2.mpfr(gmpy2.mpfr(third), 100)):
+        with pytest.raises(AssertionError):
+            assert_is_the_quotient(planted, 100, Fraction(1, 3))
+    assert_is_the_quotient(gmpy2.mpfr(third, 100), 100, Fraction(1, 3))
+
+
 def test_a_context_is_its_own_whatever_the_threads_context_is() -> None:
     x = MADE.number(Fraction(1, 3))
     with MADE.context():

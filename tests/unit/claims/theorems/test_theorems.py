@@ -30,7 +30,7 @@ from verify.claims.theorems.criteria_examples import ExampleMap
 from verify.claims.theorems.exact_maps import Areas, Point, value
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.scenes.scene import read_toml
+from verify.scenes.toml_file import read_toml
 from verify.schemes import get
 from verify.verdict import Verdict
 

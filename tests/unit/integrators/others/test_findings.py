@@ -121,7 +121,7 @@ def test_what_is_not_shown_again_is_not_told(
     [
         ('title = "m is of order 1"\n', "", "title"),
         ('"python"', '"cobol"', "language"),
-        ("title =", "title", "no TOML"),
+        ("title =", "title", "not TOML"),
         ('quote = "order 4"', "quote = 4", "quote"),
     ],
 )

@@ -57,6 +57,32 @@ def test_what_is_refuted_is_told_of_in_a_finding_or_is_digits(path: Path) -> Non
     assert len({c.id for c in claims}) == len(claims)
 
 
+WITHDRAWN = "FRK65", "PFRK87"
+
+
+def test_what_upstream_has_mended_is_told_and_is_nobodys_accusation() -> None:
+    (path,) = (path for path in files() if path.stem == "ordinarydiffeq-rk")
+    found = read_tables(path)
+    told = [why for what, why in found.left_out if all(name in what for name in WITHDRAWN)]
+    assert len(told) == 1
+    assert all(number in told[0] for number in ("#4403", "#4404"))
+    own = tuple(pair for pair in found.entries if pair[0].name in (*WITHDRAWN, "SIR54"))
+    claims = {claim.id: claim.verdict for claim in claims_of(replace(found, entries=own))}
+    refuted = [name for name, verdict in claims.items() if verdict is Verdict.REFUTED]
+    assert refuted == ["OrdinaryDiffEq/SIR54/embedded order"], "the control, which is not mended"
+    assert claims["OrdinaryDiffEq/FRK65/order"] is Verdict.MEASURED
+    for name, told_of in descriptions().items():
+        for withdrawn in WITHDRAWN:
+            assert not told_of.tells_of(f"OrdinaryDiffEq/{withdrawn}/embedded order"), name
+
+
+def test_what_upstream_knows_and_where_the_order_ends_is_said_of_sir54() -> None:
+    holds = descriptions()["ordinarydiffeq-sir54-estimate"].holds
+    assert "Upstream knows: OrdinaryDiffEq #4403" in holds
+    assert "of order 5 for a quadratic right-hand side" in holds
+    assert "of order 4 for any other" in holds
+
+
 @pytest.mark.parametrize("name", ["sundials", "ordinarydiffeq", "petsc"])
 def test_a_wrong_clock_is_shown_by_plain_code(name: str) -> None:
     """The slopes of the error of one step end at 2, that of order 1."""

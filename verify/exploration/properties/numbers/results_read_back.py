@@ -1,7 +1,5 @@
 """What is written reads back equal: the scene as TOML, H's formula, the step map's formulas."""
 
-import tomllib
-
 from verify.algebra.enclosure import enclose
 from verify.algebra.expressions.formula_text import to_text
 from verify.arithmetic.arb import shown
@@ -12,6 +10,7 @@ from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.scene import Scene, scene_from
+from verify.scenes.toml_file import toml_data
 from verify.scenes.toml_text import scene_text
 from verify.schemes.step_map import StepMap
 
@@ -29,7 +28,7 @@ def holds(sample: Sample) -> None:
 
 
 def _must_be_same_scene(scene: Scene) -> None:
-    if scene_from(tomllib.loads(scene_text(scene), parse_float=str), "scene") != scene:
+    if scene_from(toml_data(scene_text(scene), "scene"), "scene") != scene:
         raise Violation("the scene's TOML reads back as another scene")
 
 

@@ -4,7 +4,6 @@ One TOML file a finding, `reports/audits/findings/NAME.toml`. Nothing in it is t
 claims must be refuted where it is told, and the tables and programs are run again.
 """
 
-import tomllib
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Annotated, Literal
@@ -12,10 +11,9 @@ from typing import Annotated, Literal
 from pydantic import Field, ValidationError
 
 from verify.content import content
-from verify.errors import InputError
-from verify.files import read_text
 from verify.scenes.frozen import Frozen
 from verify.scenes.mistakes.values import one_line
+from verify.scenes.toml_file import read_toml
 
 Text = Annotated[str, Field(min_length=1, max_length=20000)]
 
@@ -72,9 +70,7 @@ def descriptions() -> dict[str, Description]:
 def read(path: Path) -> Description:
     """One of them. InputError names the file."""
     try:
-        return Description.model_validate(tomllib.loads(read_text(path)))
-    except tomllib.TOMLDecodeError as error:
-        raise InputError("finding", path.name, f"is no TOML: {error}") from None
+        return Description.model_validate(read_toml(path))
     except ValidationError as error:
         found = one_line(error, f"finding {path.stem}", Description)
         raise found from None

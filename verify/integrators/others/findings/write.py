@@ -16,7 +16,7 @@ def write_findings(
     report: Report, folder: Path, on_finding: Callable[[str], None] = lambda _: None
 ) -> tuple[list[Path], dict[str, str]]:
     """The notes that were written, and by name why any was not. Raises what the disk raises."""
-    folder.mkdir(parents=True, exist_ok=True)
+    folder.mkdir(exist_ok=True)
     written: list[Path] = []
     left: dict[str, str] = {}
     for name, described in descriptions().items():

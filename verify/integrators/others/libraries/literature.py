@@ -3,13 +3,14 @@
 The data are in `reports/audits/literature.toml`.
 """
 
-import tomllib
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 from verify.content import content
 from verify.integrators.others.methods.integrator import ReleasedIntegrator
 from verify.integrators.tables.splittings.claims import alternating, mirrored
+from verify.scenes.toml_file import read_toml
 from verify.schemes.printed.printed_numbers import PrintedNumbers
 from verify.schemes.printed.splitting_table import PrintedTable
 
@@ -33,8 +34,7 @@ _KINDS = {
 
 
 def integrators() -> Iterator[ReleasedIntegrator]:
-    text = content("reports", "audits", "literature.toml").read_text(encoding="utf-8")
-    for entry in tomllib.loads(text)["table"]:
+    for entry in read_toml(Path(content("reports", "audits", "literature.toml")))["table"]:
         yield ReleasedIntegrator(
             entry["name"],
             f"its coefficients as exact decimals, {_KINDS[entry['kind']]}; read in {entry['read']}",
