@@ -1,4 +1,4 @@
-"""The campaigns of steps in drawn units and of implicit ones: what they hold to be true is true, and
+"""The campaigns of steps in drawn units and of implicit ones: what they hold to be true is, and
 what they call wrong is wrong. A few of their cases are asked here."""
 
 import random
