@@ -36,8 +36,7 @@ _MOST_FAILURES, _MOST_WAITS = 6, 2  # after which it is not started again
 _CALLS_A_FAILURE = 100  # that it has answered: one more is let pass for so many
 _LONGEST = 1 << 16  # bytes of an answer
 _WATCHED = 0.05  # seconds between two looks at it
-_STALLED = 0.5  # seconds asleep, after which it is seen to take no more than one line
-_GRACE = 0.1  # seconds, for a line too many after the first answers
+_GRACE = 0.1  # seconds, for a line too many after the first answer
 _LAST_SECONDS = 1.0  # for what it says when its input ends
 _MOST_PROCESSES = 100  # that are looked at
 _PAGE = os.sysconf("SC_PAGE_SIZE")
@@ -62,7 +61,6 @@ class Program:
     calls: int = 0  # that it has answered
     last: str = ""  # what it has done instead of an answer
     answered: bool = False  # since it was started
-    paced: bool | None = None  # whether it takes a line only after the answer to the one before
     last_words: list[str] = field(default_factory=list)
     _running: "subprocess.Popen[bytes] | None" = None
     _control: socket.socket | None = None  # the guard's
@@ -70,23 +68,15 @@ class Program:
     _looked: float = 0.0  # when it was looked at
 
     def answers(self, lines: Sequence[str]) -> list[str | StepError]:
-        """Its answer to each line, or what it does instead. Many lines are under way at once, where
-        three were seen to be answered by as many, and a line as it was before."""
+        """Its answer to each line, or what it does instead. Where it is our own host all lines are
+        under way at once; another program may read more than it answers."""
         known: list[str | StepError] = []
         while left := lines[len(known) :]:
-            if self.answered and self.paced is None and len(left) > 1:
-                trial = self._some([left[0], left[1], left[0]])
-                if isinstance(trial[-1], StepError) and len(trial) < 3:
-                    known += trial
-                    continue
-                self.paced = len(trial) < 3 or trial[0] != trial[2]
-            many = self.answered and self.paced is False
-            known += self._some(left if many else left[:1])
+            known += self._some(left if self.greeting else left[:1])
         return known
 
     def _some(self, lines: Sequence[str]) -> list[str | StepError]:
-        """Answers to the first ones; an error is the last. None where it takes one line at a
-        time."""
+        """Answers to the first ones; an error is the last."""
         if self._running is None and self._given_up:
             times = count(self.failures, "time")
             return [StepError(f"{self.last}; it has failed {times}, and is not started again")]
@@ -97,9 +87,10 @@ class Program:
             self._must_be_silent(0)
             for answer in self._exchanged(lines, "".join(f"{line}\n" for line in lines)):
                 known.append(answer)
-            if not self.answered or (self.paced is None and len(lines) > 1):
+                self.calls += 1
+            if not self.answered:
                 self._must_be_silent(_GRACE)
-            self.answered, self.calls = self.answered or bool(known), self.calls + len(known)
+            self.answered = True
         except StepError as error:
             self.failures, self.last = self.failures + 1, str(error.said)
             known = [*known[: len(lines) - 1], error]
@@ -180,7 +171,7 @@ class Program:
 
     def _exchanged(self, lines: Sequence[str], text: str) -> Iterator[str]:
         """Answers to the lines, of which `text` is made, as they come. Raises StepError for what it
-        does instead; ends where it sleeps before it has answered many lines."""
+        does instead."""
         unsaid, heard, number = memoryview(text.encode()), b"", 0
         since, slept, whole = time.monotonic(), 0.0, list[bytes]()
         while number < len(lines):
@@ -201,10 +192,6 @@ class Program:
                     number, since, slept = number + 1, time.monotonic(), 0.0
             elif not takes and self._sleeps:
                 slept += _WATCHED
-            if len(lines) > 1 and slept >= _STALLED:
-                self.paced = True
-                self.close()
-                return
             if number < len(lines):
                 self._must_go_on(lines[number], heard, time.monotonic() - since, slept)
         self._waiting = b"\n".join([*whole, heard])
