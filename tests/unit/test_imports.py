@@ -74,8 +74,8 @@ BY_NAME = {
     "verify.integrators.tracing.purity": {"modules"},  # numpy and others, where they are imported
     "verify.integrators.others.parts": {"import_module"},  # a library that may be broken
     "verify.integrators.others.methods.scripted": {"exec"},  # lines of ours, which are shown
-    "verify.integrators.user_code.user_modules": {"import_module", "modules", "spec_from_file_location",
-                                        "exec_module"},  # the user's code
+    "verify.integrators.user_code.user_modules": {
+        "import_module", "modules", "spec_from_file_location", "exec_module"},  # the user's code
     "verify.arithmetic.number_system": {"exec"},  # kernels
     "verify.arithmetic.systems.float64": {"exec"},  # kernels
 }  # fmt: skip

@@ -24,6 +24,7 @@ from verify.integrators.measures.survey import (
     check_request,
     places_of_field,
     places_of_map,
+    shortened,
     unit_of_map,
 )
 from verify.integrators.places.place import USER, Place
@@ -114,6 +115,8 @@ def check_integrator(
     if not places:
         return Finding(Verdict.UNDECIDED, prose(UNDEFINED), "calls", hamiltonian.degrees)
     notes = settle_layout(callee, places, field)
+    if request.step_size is None:
+        places = shortened(step, places)
     finding = _checked(Trial(step, hamiltonian, places, claims, request))
     return finding.noting(*notes, *_of_time(step))
 
@@ -257,46 +260,67 @@ def _proved(trial: Trial, trace: Trace) -> Finding:
 
 
 def _decided(finding: Finding, trial: Trial, trace: Trace) -> Finding:
-    """What a proof says of Ω, where it says it; else with what is measured of that."""
-    rounded = bool(trace.tape.rounded) and finding.symplectic is False
-    open_ = finding.symplectic is None and finding.verdict is not Verdict.REFUTED
-    volume_open = finding.symplectic is False and finding.area_preserving is None
-    if not (
-        rounded
-        or open_
-        or volume_open
-        or (trial.hamiltonian is None and finding.symplectic is False)
-    ):
+    """What a proof says, where it says it; else with what is measured of that.
+
+    Rounded coefficients stand for others: of a trace that has them no order is proved, and Ω only
+    where it is kept.
+    """
+    rounded, kept = bool(trace.tape.rounded), finding.symplectic
+    of_map = trial.hamiltonian is None
+    open_ = kept is None and finding.verdict is not Verdict.REFUTED
+    volume_open = kept is False and finding.area_preserving is None
+    if of_map and kept:
+        return finding
+    if not (rounded or open_ or volume_open or of_map):
         return finding
     try:
         structure, distances = trial.measure("duals")
     except Exception as error:  # the user's code may raise anything
         return finding.noting(prose("not measured: ", why(error)))
     trial.evidence.take(structure, distances)
-    if trial.hamiltonian is None:
+    if distances is None:
         seen = finding_of_map(trial.step, structure, trial.request)
         if rounded or open_:
             return replace(seen, notes=(*finding.notes, *seen.notes))
         return _refuted_map(finding, seen, structure)
-    assert distances is not None  # noqa: S101 - there is an H
     seen = finding_of_step(trial.step, structure, distances, trial.claims, trial.request)
-    if not rounded and not open_:
-        return replace(finding, area_preserving=structure.volume_kept)
-    reason = (
-        prose(seen.reason, " (", "what algebra says: ", finding.reason, ")")
-        if open_
-        else prose(finding.reason, "; ", seen.reason.partition("; ")[2])
-    )
+    seen = replace(seen, notes=(*finding.notes, *seen.notes))
+    if rounded:
+        return _but_for_rounding(finding, seen)
+    if open_:
+        return _with_series(finding, seen)
+    return replace(finding, area_preserving=structure.volume_kept)
+
+
+def _but_for_rounding(finding: Finding, seen: Finding) -> Finding:
+    """What is measured, with what is proved of Ω."""
+    order, _, defect = seen.reason.partition("; ")
+    exactly = finding.convergence_order
+    said = "but for the rounding of its coefficients"
+    if exactly is not None and exactly != seen.convergence_order:
+        said += f" (taken exactly, they make the order {exactly})"
+    if not finding.symplectic:
+        return replace(seen, reason=prose(order, f", {said}; ", defect))
+    kept = "det J ≡ 1, proved" if finding.degrees == 1 else "S ≡ 0, proved"
+    verdict = seen.verdict
+    if verdict is Verdict.UNDECIDED and seen.order_decided:
+        verdict = Verdict.MEASURED
+    return replace(
+        seen, verdict=verdict, reason=prose(order, f", {said}; ", kept), order=None,
+        symplectic=True, area_preserving=True,
+    )  # fmt: skip
+
+
+def _with_series(finding: Finding, seen: Finding) -> Finding:
+    """What is measured of Ω, with the order and the series of a proof that leaves it open."""
     order = finding.convergence_order if finding.order_decided else seen.convergence_order
     return replace(
         seen,
-        verdict=Verdict.REFUTED if finding.verdict is Verdict.REFUTED else seen.verdict,
-        reason=reason,
+        reason=prose(seen.reason, " (what algebra says: ", finding.reason, ")"),
         convergence_order=order,
         order_decided=finding.order_decided or seen.order_decided,
         leading=finding.leading,
-        area_at_least=finding.area_at_least if open_ or seen.symplectic is not False else None,
-        notes=(*finding.notes, *seen.notes),
+        area_at_least=finding.area_at_least,
     )
 
 

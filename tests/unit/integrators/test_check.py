@@ -31,7 +31,7 @@ RIGHT = [
     (own_steps.lie2, "proof", "PROVED", 2, 3),
     (own_steps.rk4, "proof", "PROVED", 4, 6),
     (own_steps.explicit, "proof", "PROVED", 1, 2),
-    (own_steps.yoshida, "proof", "MEASURED", 4, None),
+    (own_steps.yoshida, "duals", "MEASURED", 4, None),
     (own_steps.vectorised, "proof", "PROVED", 1, None),
     (own_steps.midpoint_until, "duals", "MEASURED", 2, None),
     (own_steps.midpoint_loosely, "duals", "MEASURED", 2, None),

@@ -17,6 +17,7 @@ from verify.integrators.places.units import Field, rate, reaches, units_of
 from verify.integrators.probes.duals import DualProbe
 from verify.integrators.user_code.user_map import UserMap
 
+_SHORT, _FAR = 64, 8.0  # part of a step that is tried, and units that it may go in all
 _FASTEST = 40.0  # times the median of the others' rates
 _MOMENTS = tuple(map(Fraction, ("1/4", "5/7", "1/20", "13/5", "1003/7")))  # in units of t
 _VARIANTS = 4  # of a pattern of signs
@@ -110,6 +111,22 @@ def _least_step(places: Sequence[Place]) -> float:
 
 def _is_calm(place: Place | None, least: float) -> bool:
     return place is not None and float(place.step) >= least
+
+
+def shortened(step: UserMap, places: list[Place]) -> list[Place]:
+    """The places with smaller steps where the user's move the state further than H does."""
+    return [replace(x, step=x.step / _power(max(1.0, _strides(step, x)))) for x in places]
+
+
+def _strides(step: UserMap, place: Place) -> float:
+    """How many units a step goes, as H would go one at most; 1 where that is not known."""
+    h, z = float(place.step / _SHORT), [float(x) for x in place.z]
+    try:
+        end = step.at(z, h, float(place.t))
+    except Exception:  # the user's code may raise anything
+        return 1.0
+    far = max(abs(x - y) / float(u) for x, y, u in zip(end, z, place.units, strict=True))
+    return min(far * _SHORT / _FAR, 1e30) if far == far else 1.0
 
 
 def places_of_map(names: Sequence[str], unit: Fraction, request: Request = NOWHERE) -> list[Place]:

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     import numpy
 
 _SIMPLE = 10_000  # the largest denominator that is read into a float: the chance is 10⁻⁸ a float
+_WHOLE, _EXACT_DIGITS = 2**53, 15  # whole numbers, and digits, that a double has all of
+_LARGEST_SIMPLE = 100
 _DECIMALS = 12  # significant digits of a decimal that is read into a float
 # What numpy and math call a function, and what it is here.
 FUNCTIONS = {
@@ -70,10 +72,10 @@ def reading(value: float) -> Fraction | None:
     `value` is finite.
     """
     simple = Fraction(value).limit_denominator(_SIMPLE)
-    if simple and float(simple) == value:
+    # Among large numbers such a rational is near any float.
+    if simple and abs(value) < _LARGEST_SIMPLE and float(simple) == value:
         return simple
-    shown = Decimal(repr(float(value)))
-    return Fraction(shown) if len(shown.as_tuple().digits) <= _DECIMALS else None
+    return Fraction(repr(float(value))) if _digits(float(value)) <= _DECIMALS else None
 
 
 class Kind(ABC):
@@ -119,13 +121,27 @@ def constant(kind: Kind, value: Any) -> "TracedNumber | None":
     if value - value != 0:
         raise UntraceableError("it computes with infinity or NaN")
     exact = Fraction(value)
-    read = exact if exact.denominator <= _SIMPLE else reading(value)
+    read = exact if _is_written(value, exact) else reading(value)
     if read is None:
         kind.rounded.add(value)
         return kind.rational(exact)
     if read != exact:
         kind.readings[value] = read
     return kind.rational(read)
+
+
+def _is_written(value: float, exact: Fraction) -> bool:
+    """Whether a float is likely to be the number that was written, and no rounded product.
+
+    From 10¹² on a double has few bits after its point, whatever it comes from.
+    """
+    if exact.denominator == 1:
+        return abs(exact) < _WHOLE
+    return exact.denominator <= _SIMPLE and _digits(value) <= _EXACT_DIGITS
+
+
+def _digits(value: float) -> int:
+    return len(Decimal(repr(value)).as_tuple().digits)
 
 
 def _operator(
