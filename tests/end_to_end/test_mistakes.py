@@ -195,8 +195,8 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "check-integrator mine.py:value --system pendulum": ("value is no function but int",),
     "check-integrator mine.py:two --system pendulum": ("two(p, q): wanted: step(p, q, h)",),
     "check-integrator mine.py:step --system pendulum --order two": ("--order=two: ", "1 … 12"),
-    "check-integrator mine.py:step --system pendulum --arguments x,v,dt":
-        ("--arguments=x,v,dt: is no order of p, q and h, such as q,p,h",),
+    "check-integrator mine.py:step --system pendulum --arguments x,v,g":
+        ("--arguments=x,v,g: is no order of p, q and h, such as q,p,h",),
     "report ok.tml -o out": ("file=ok.tml: No such file", "is ok.toml meant?"),
     "report papers -o out": ("SCENE=papers: unknown; is paper meant?",),
     "export --system henon-heiles --scheme lie2": ("takes p and q, one degree of freedom",),

@@ -52,8 +52,11 @@ def examined(step: UserMap, places: Sequence[Place]) -> tuple[list[Fault], Calls
 
 def _elsewhere(step: UserMap, first: Mapping[Place, State]) -> list[Fault]:
     """Whether it answers the same in a second process, in the reverse order."""
-    if step.foreign:
-        answers = _answers_of_another(step, list(first))
+    another = getattr(step.function, "another", None)
+    if another is not None:
+        answers = _answers_of(replace(step, function=another()), list(first))
+    elif step.foreign:
+        return []  # a library that is driven from here: it may not be forked
     else:
         seconds = min(_SECONDS, step.left / 10)
         answers = outcomes_elsewhere(lambda place: at(step, place), list(first), seconds)
@@ -67,12 +70,10 @@ def _elsewhere(step: UserMap, first: Mapping[Place, State]) -> list[Fault]:
     return []
 
 
-def _answers_of_another(step: UserMap, places: Sequence[Place]) -> list[str | None]:
-    """Those of another process of its program, from the last place to the first."""
-    function = step.function.another()  # type: ignore[attr-defined]
-    other = replace(step, function=function)
-    answers = [outcome(lambda place: at(other, place), place) for place in reversed(places)]
-    function.close()
+def _answers_of(step: UserMap, places: Sequence[Place]) -> list[str | None]:
+    """Those of a fresh process of its program, from the last place to the first."""
+    answers = [outcome(lambda place: at(step, place), place) for place in reversed(places)]
+    step.function.close()  # type: ignore[attr-defined]
     return [*reversed(answers)]
 
 
