@@ -19,6 +19,7 @@ from verify.prose import Number, Prose, joined, prose, read_prose
 from verify.verdict import Verdict
 
 _ENOUGH = 4  # slopes of a place that has not settled, with which it counts
+_STILL = 1e-3  # units that the flow goes, with which an error would hardly show
 _PRECISE = 3  # decimals of a number that is shown
 
 
@@ -153,6 +154,8 @@ def _numbers(step: UserMap) -> str:
 def _order(distances: Distances, sides: Sides, claims: Claims) -> _Order:
     places = distances.places
     if all(x.exact for x in places):
+        if max(x.moved for x in places) < _STILL:
+            return _Order(None, False, "its steps are too short for an error to show")
         return _Order(None, True, "the map is the exact flow to its last digits", exact=True)
     resolved = [x for x in places if x.power is not None]
     loose = [x for x in places if not x.exact and x.power is None]

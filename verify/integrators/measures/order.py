@@ -6,7 +6,7 @@ is counted where it is beyond the noise of the numbers that the code computes in
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
 
@@ -30,7 +30,8 @@ _COARSE = (
 )
 LADDERS = {"duals": tuple(map(Fraction, _FINE)), "floats": tuple(map(Fraction, _COARSE))}
 _DIGITS, _MORE = 50, 4  # of the exact flow for dual numbers; and more than a step's own have
-_COEFFICIENTS = 2.0**-46  # of a step's length: what rounded coefficients do to it
+_COEFFICIENTS = 2.0**-52  # of a step's length: what a rounded coefficient does to it
+_OF_MANY = 2.0**9  # times that, what many of them may do
 _PLACES = {1: 7}  # at which it is looked
 _OTHERWISE = 4
 _FEWEST_IN_TAIL = 5  # slopes of a lower power that floats alone show
@@ -62,6 +63,7 @@ class PlaceOrder:
     slopes: tuple[float, ...] = ()
     rows: tuple[tuple[float, float, float], ...] = ()  # of that component, as they stand
     unseen: float = 0.0  # an error of the step, in parts of it, that would not show
+    moved: float = 0.0  # how far the flow goes with the largest step, in units
 
 
 @dataclass(frozen=True)
@@ -149,7 +151,7 @@ def _at(
     """All components at one place."""
     size, begun = len(place.z), probe.begin(place)
     rows: list[list[tuple[float, float, float]]] = [[] for _ in range(size)]
-    counts, quiet, unseen, lost = list[int](), 0, float("inf"), ""
+    counts, quiet, unseen, lost, farthest = list[int](), 0, float("inf"), "", 0.0
     for part in parts:
         h = place.step / part
         try:
@@ -163,6 +165,7 @@ def _at(
         for k in range(size):
             rows[k].append((float(h), errors[k], noise[k]))
         counts.append(count)
+        farthest = max(farthest, moved)
         if moved:
             scaled = zip(errors, noise, place.units, strict=True)
             unseen = min(unseen, max((e + 10 * n) / float(u) for e, n, u in scaled) / moved)
@@ -171,7 +174,8 @@ def _at(
             break
     if len(rows[0]) < _QUIET:
         raise StepError(lost or "it fails for most step sizes")
-    return _judged(step, place, rows, counts, probe.how, unseen)
+    judged = _judged(step, place, rows, counts, probe.how, unseen)
+    return replace(judged, moved=farthest)
 
 
 def _row(
@@ -211,7 +215,7 @@ def _judged(
         unit = float(place.units[k])
         power, run, tail = _settled(slopes, rows[k], counts, how, unit)
         judged.append(
-            PlaceOrder(place, power, False, step.names[k], run, tail, _shown(rows[k]),
+            PlaceOrder(place, power, False, step.names[k], run, tail, _shown(rows[k], how),
                        tuple(rows[k]), unseen)
         )  # fmt: skip
     settled = [x for x in judged if x.power is not None]
@@ -251,6 +255,8 @@ def _settled(
             continue
         at = [k for k, row in enumerate(rows) if run.last <= row[0] <= run.first]
         error = rows[at[0]][1] / unit
+        if how == "duals" and rows[at[0]][1] <= _OF_MANY * rows[at[0]][2]:
+            break
         if how == "duals":
             real = not iterates or len({counts[k] for k in at}) > 1
         else:
@@ -261,16 +267,20 @@ def _settled(
             tail = tail or Tail(run.power, rows[at[0]][0], error)
     if slopes.unsettled and chosen is slopes.runs[-1]:
         end = next(k for k, row in enumerate(rows) if row[0] == chosen.last)
-        error = rows[min(end + 1, len(rows) - 1)][1] / unit
+        after = rows[min(end + 1, len(rows) - 1)]
+        error = after[1] / unit
+        if how == "duals" and after[1] <= _OF_MANY * after[2]:
+            return chosen.power, chosen, tail
         if (how == "duals" and not iterates) or (how == "floats" and error > _TOLERANCE):
             return None, None, None
         tail = tail or Tail(None, rows[end][0], error)
     return chosen.power, chosen, tail
 
 
-def _shown(rows: Sequence[tuple[float, float, float]]) -> tuple[float, ...]:
-    """The slopes between neighbours beyond their noise."""
-    clear = [(h, e) for h, e, n in rows if e > 10 * n]
+def _shown(rows: Sequence[tuple[float, float, float]], how: str) -> tuple[float, ...]:
+    """The slopes between neighbours beyond their noise, and what rounded coefficients may do."""
+    most = _OF_MANY if how == "duals" else 10
+    clear = [(h, e) for h, e, n in rows if e > most * n]
     return tuple(
         math.log(a / b) / math.log(h / g) for (h, a), (g, b) in pairwise(clear) if a > 0 and b > 0
     )

@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from itertools import pairwise
+from typing import Any
 
 from verify.flows.degrees.extrapolation import FlowInDegrees
 from verify.flows.extrapolation import NoFlowError
@@ -16,7 +17,7 @@ from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.places.place import simple
 
-_DIGITS = 20
+_DIGITS, _TIME = 20, 0.25
 _OCTAVES = range(-44, 45)  # of lengths that are looked at
 _DEPARTS, _PLATEAU = 0.3, 0.1  # of a power of the coordinates
 _ASIDE = (1.0, 0.61, 1.43)  # parts of a state, for others beside it
@@ -33,13 +34,27 @@ class Field:
         self.timed = hamiltonian.time_dependent
         self._flow = FlowInDegrees(canonical_field(hamiltonian)[0], _DIGITS)
 
-    def __call__(self, z: Vector, t: float = 0.25) -> list[float] | None:
+    def _slopes(self, z: Vector, t: float) -> list[Any] | None:
         try:
             state = [self._flow.number(Fraction(x)) for x in (*z, *((t,) if self.timed else ()))]
-            slopes = [float(x) for x in self._flow.slope(tuple(state))]
+            return list(self._flow.slope(tuple(state)))
         except (NoFlowError, ValueError, OverflowError):
             return None
-        return slopes if all(map(math.isfinite, slopes)) else None
+
+    def __call__(self, z: Vector, t: float = _TIME) -> list[float] | None:
+        slopes = self._slopes(z, t)
+        if slopes is None or not all(map(math.isfinite, map(float, slopes))):
+            return None
+        return [float(x) for x in slopes]
+
+    def change(self, base: Vector, t: float, moved: Vector, later: float) -> float | None:
+        """How far f(moved, later) is from f(base, t), where floats would cancel."""
+        one, two = self._slopes(base, t), self._slopes(moved, later)
+        if one is None or two is None:
+            return None
+        with self._flow.arithmetic.context():
+            apart = [float(x - y) for x, y in zip(two, one, strict=True)]
+        return math.hypot(*apart) if all(map(math.isfinite, apart)) else None
 
     def jacobian(self, z: Vector, t: float, reach: Vector) -> list[list[float]]:
         """∂f/∂z by columns, by central differences of many digits. Raises NoFlowError."""
@@ -70,11 +85,15 @@ def _lengths(field: Field) -> list[float]:
     n = field.degrees
     direction = [_DIRECTION[k % len(_DIRECTION)] * (1 + k // len(_DIRECTION)) for k in range(n)]
 
-    rest = field([0.0] * (2 * n)) or [0.0] * (2 * n)  # a constant force is of no size
+    still = [0.0] * (2 * n)
+    at_rest = field(still) is not None  # then a constant force is of no size
 
     def force(s: float) -> float | None:
-        slopes = field([0.0] * n + [s * x for x in direction])
-        return None if slopes is None else math.dist(slopes[:n], rest[:n])
+        moved = [0.0] * n + [s * x for x in direction]
+        if at_rest:
+            return field.change(still, _TIME, moved, _TIME)
+        slopes = field(moved)
+        return None if slopes is None else math.hypot(*slopes[:n])
 
     common = _crossover(force) or 1.0
     base = [0.0] * n + [common * x for x in direction]
@@ -90,15 +109,11 @@ def _lengths(field: Field) -> list[float]:
 
 def _response(field: Field, base: Vector, j: int) -> Callable[[float], float | None]:
     """How far the forces change as one coordinate moves."""
-    still = field(base)
 
     def change(s: float) -> float | None:
         moved = list(base)
         moved[j] += s
-        slopes = field(moved)
-        if slopes is None or still is None:
-            return None
-        return math.dist(slopes, still)
+        return field.change(base, _TIME, moved, _TIME)
 
     return change
 
@@ -165,15 +180,7 @@ def _duration(field: Field, units: Vector) -> float:
     """Over which the field changes otherwise than by a line in t; 1 where it does not."""
     if not field.timed:
         return 1.0
-    still = field(units, 0.125)
-
-    def change(s: float) -> float | None:
-        slopes = field(units, 0.125 + s)
-        if slopes is None or still is None:
-            return None
-        return math.dist(slopes, still)
-
-    return _crossover(change) or 1.0
+    return _crossover(lambda s: field.change(units, 0.125, units, 0.125 + s)) or 1.0
 
 
 # -- at one place ---------------------------------------------------------------------------------

@@ -135,9 +135,8 @@ def _is_written(value: float, exact: Fraction) -> bool:
 
     From 10¹² on a double has few bits after its point, whatever it comes from.
     """
-    if exact.denominator == 1:
-        return abs(exact) < _WHOLE
-    return exact.denominator <= _SIMPLE and _digits(value) <= _EXACT_DIGITS
+    plain = exact.denominator <= _SIMPLE and abs(exact) < _WHOLE
+    return plain and _digits(value) <= _EXACT_DIGITS
 
 
 def _digits(value: float) -> int:
