@@ -160,6 +160,9 @@ def _order(distances: Distances, sides: Sides, claims: Claims) -> _Order:
     resolved = [x for x in places if x.power is not None]
     loose = [x for x in places if not x.exact and x.power is None]
     loose = [x for x in loose if len(resolved) < 2 or _counts(x, resolved)]
+    few = len(loose) < max(2, len(places) / 4)  # at one place terms may cancel as h falls
+    if few and len(resolved) >= 2 and not any(x.place.source == USER for x in loose):
+        loose = []
     if not resolved:
         return _Order(None, False, f"its error follows no power of h{_slopes_said(loose)}")
     usual = Counter(x.power or 0 for x in resolved if x.place.source != SIDE) or Counter(
