@@ -155,7 +155,16 @@ def _checked(trial: Trial) -> Finding:
     finding = finding.noting(*_otherwise(finding, trial))
     if trial.hamiltonian is None:
         return _of_map(finding, trial)
-    return with_claims(finding, trial.claims, trial.evidence)
+    finding = with_claims(finding, trial.claims, trial.evidence)
+    return finding.noting(*_elsewhere(finding, trial.request))
+
+
+def _elsewhere(finding: Finding, request: Request) -> list[str]:
+    """What is said where a verdict rests on another place than the user's."""
+    example = finding.counterexample
+    if request.z is None or example is None or tuple(example.z.values()) == request.z:
+        return []
+    return ["it is shown at another place than the one that you gave"]
 
 
 def _otherwise(finding: Finding, trial: Trial) -> list[str]:
@@ -361,7 +370,7 @@ def _measured(trial: Trial, notes: list[Prose]) -> Finding:
     step = trial.step
     kept = 0.0 if step.foreign else _KEPT * max(step.left, 0)
     for how in step.ways:
-        step.left += -kept if how == "duals" else kept
+        step.hold_back(kept if how == "duals" else -kept)
         try:
             structure, distances = trial.measure(how)
             trial.evidence.take(structure, distances)

@@ -1,6 +1,7 @@
 """Verdicts about users' code in units, shapes and states of their own."""
 
 import math
+import time
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -235,3 +236,62 @@ def test_all_signs_are_looked_at_in_pairs(degrees: int) -> None:
         for b in range(a):
             seen = {(z[a] > 0, z[b] > 0) for z in states}
             assert len(seen) == 4, (a, b)
+
+
+# -- limits and requests --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("limit", [1.0, 3.0])
+def test_the_time_limit_holds_for_all_that_is_done(limit: float) -> None:
+    def step(p: Any, q: Any, h: Any) -> Any:
+        for _ in range(100):
+            p, q = steps.bodies(p, q, h / 100)
+        return p, q
+
+    begun = time.perf_counter()
+    found = judged(step, BOTH, limit, steps.TWO_BODIES)
+    assert time.perf_counter() - begun < 2 * limit + 2
+    assert found.verdict in ("MEASURED", "UNDECIDED")
+
+
+def test_a_verdict_that_rests_on_another_place_says_so() -> None:
+    mine = Request(z=(Fraction(1, 4), Fraction(1, 3)), step_size=Fraction(1, 100))
+    fault = steps.faulty(lambda p, q: q > 2)
+    found = judged(fault, Claims(symplectic=True), request=mine)
+    note = "it is shown at another place than the one that you gave"
+    assert (found.verdict, note in found.notes) == ("REFUTED", True)
+    assert found.places[0].z == mine.z
+    assert all(place.step == mine.step_size for place in found.places)
+    there = Request(z=(Fraction(0), Fraction(5, 2)))
+    assert note not in judged(fault, Claims(symplectic=True), request=there).notes
+
+
+def test_sizes_that_are_given_are_those_of_the_places() -> None:
+    scale = {"p": Fraction(1, 1000), "q": Fraction(50)}
+    found = judged(steps.stiff(1), hamiltonian="p**2/2 + q**2/2", request=Request(scale=scale))
+    assert {place.units for place in found.places} == {(scale["p"], scale["q"])}
+
+
+@pytest.mark.parametrize(
+    "request_",
+    [Request(z=(Fraction(0), Fraction(10) ** 200)), Request(scale={"q": Fraction(10) ** 200}),
+     Request(step_size=Fraction(1, 10**200)), Request(z=(Fraction(0), Fraction(0)))],
+)  # fmt: skip
+def test_what_floats_cannot_hold_and_where_h_is_singular_is_bad_input(request_: Request) -> None:
+    with pytest.raises(InputError):
+        judged(steps.molecule(1.0, 9.0), hamiltonian="p**2/2 + 4/q**12 - 4/q**6", request=request_)
+
+
+def test_a_float_in_large_units_is_no_exact_coefficient() -> None:
+    """25430.5·1.19591234567e15 as a float is another number, and the order is not refuted by it."""
+    strength = 25430.5 * 1.19591234567e15
+
+    def step(p: Any, q: Any, h: Any) -> Any:
+        p = p - h * strength * q / 7.3
+        return p, q + h * p
+
+    formula = "p**2/2 + 25430.5*1.19591234567e15*q**2/14.6"
+    found = judged(step, Claims(order=1, symplectic=True), hamiltonian=formula)
+    assert found.verdict == "MEASURED"
+    wrong = formula.replace("1.19591234567", "1.19591234568")
+    assert judged(step, Claims(order=1), hamiltonian=wrong).verdict == "REFUTED"

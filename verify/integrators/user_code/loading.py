@@ -135,7 +135,7 @@ def callee_from(
         Layout(x.roles, x.halves, x.shape, x.kind, places, signature.record) for x in layouts
     ]
     used = {name: x for name, x in values.items() if name in signature.takes}
-    step = UserMap(function, layouts[0], names, used, left=time_limit)
+    step = UserMap(function, layouts[0], names, used, limit=time_limit)
     several = len({(x.roles, x.halves) for x in layouts}) > 1
     return Callee(step, tuple(layouts), named and not several, signature.shown(len(orders[0])))
 
