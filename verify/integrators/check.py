@@ -238,18 +238,22 @@ def _no_step(trial: Trial, faults: Sequence[Fault]) -> Finding:
 
 def _examine(trial: Trial, provable: bool) -> Finding:
     step, notes = trial.step, list[Prose]()
-    if provable and not step.foreign:
-        try:
-            most = _MOST_PROOF if step.degrees < 3 else _MOST_OF_MANY
-            with within(min(most, max(step.left, 0.1) * _PROOF), "its proof takes too long"):
-                trace = trace_of(step)
-                _must_be_pure(trace)
+    if step.foreign:
+        return _measured(trial, notes)
+    try:
+        most = _MOST_PROOF if step.degrees < 3 else _MOST_OF_MANY
+        with within(min(most, max(step.left, 0.1) * _PROOF), "its proof takes too long"):
+            trace = trace_of(step)
+            _must_be_pure(trace)
+            if provable:
                 trace_must_agree(step, trace.roots, trial.places)
                 finding = _proved(trial, trace)
-            finding = _decided(finding, trial, trace)
-            return finding.noting(*_clock(trial, trace, finding.convergence_order))
-        except Exception as error:  # the user's code may raise anything
-            notes.append(prose("no proof: ", why(error)))
+        if not provable:
+            return _measured(trial, notes)
+        finding = _decided(finding, trial, trace)
+        return finding.noting(*_clock(trial, trace, finding.convergence_order))
+    except Exception as error:  # the user's code may raise anything
+        notes.append(prose("no proof: ", why(error)))
     return _measured(trial, notes)
 
 
