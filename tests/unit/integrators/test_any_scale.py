@@ -295,3 +295,21 @@ def test_a_float_in_large_units_is_no_exact_coefficient() -> None:
     assert found.verdict == "MEASURED"
     wrong = formula.replace("1.19591234567", "1.19591234568")
     assert judged(step, Claims(order=1), hamiltonian=wrong).verdict == "REFUTED"
+
+
+def test_where_h_has_no_length_the_users_place_has_one() -> None:
+    orbit = tuple(map(Fraction, ("0", "15/2", "7000", "0")))
+    mine = Request(z=orbit, step_size=Fraction(10))
+    found = judged(steps.verlet_of_earth, BOTH, hamiltonian=steps.EARTH, request=mine)
+    assert (found.verdict, found.convergence_order) == ("MEASURED", 2)
+    assert {place.units[2] for place in found.places} == {Fraction(5000)}
+    assert (found.places[0].z, found.places[0].step) == (orbit, 10)
+    assert all(place.step <= 10 for place in found.places)
+
+
+def test_a_map_takes_h_as_a_parameter() -> None:
+    def turn(p: Any, q: Any, h: Any) -> Any:
+        p = p - h * np.sin(q)
+        return p, q + h * p
+
+    assert verify.check_map(turn, parameters={"h": "1/10"}).verdict == "PROVED"
