@@ -6,10 +6,12 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+import mpmath
 import numpy as np
 import pytest
 
 import verify
+from tests.end_to_end.test_command_line import here
 from tests.helpers.programs import scaled_steps as steps
 from tests.helpers.programs.compilers import library
 from tests.helpers.programs.judged import judged
@@ -295,3 +297,78 @@ def test_a_float_in_large_units_is_no_exact_coefficient() -> None:
     assert found.verdict == "MEASURED"
     wrong = formula.replace("1.19591234567", "1.19591234568")
     assert judged(step, Claims(order=1), hamiltonian=wrong).verdict == "REFUTED"
+
+
+def test_where_h_has_no_length_the_users_place_has_one() -> None:
+    orbit = tuple(map(Fraction, ("0", "15/2", "7000", "0")))
+    mine = Request(z=orbit, step_size=Fraction(10))
+    found = judged(steps.verlet_of_earth, BOTH, hamiltonian=steps.EARTH, request=mine)
+    assert (found.verdict, found.convergence_order) == ("MEASURED", 2)
+    assert {place.units[2] for place in found.places} == {Fraction(5000)}
+    assert (found.places[0].z, found.places[0].step) == (orbit, 10)
+    assert all(place.step <= 10 for place in found.places)
+
+
+def test_a_map_takes_h_as_a_parameter() -> None:
+    def turn(p: Any, q: Any, h: Any) -> Any:
+        p = p - h * np.sin(q)
+        return p, q + h * p
+
+    assert verify.check_map(turn, parameters={"h": "1/10"}).verdict == "PROVED"
+
+
+# -- implicit, and long ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-8])
+def test_a_generalised_leapfrog_is_refuted_by_its_tolerance(tolerance: float) -> None:
+    step = steps.generalised_leapfrog(tolerance)
+    found = judged(step, Claims(symplectic=True), hamiltonian=steps.RIEMANNIAN)
+    assert found.verdict == "REFUTED"
+    assert found.counterexample is not None
+    said = float(found.counterexample.found.split()[0])
+    at = [float(x) for x in (*found.counterexample.z.values(), found.counterexample.h or 0)]
+    with mpmath.workdps(60):
+        p, q, h = map(mpmath.mpf, at)
+        w = mpmath.mpf(10) ** -25
+
+        def moved(i: int, sign: int) -> Any:
+            z = [p + sign * w * (i == 0), q + sign * w * (i == 1)]
+            return steps.generalised_leapfrog(tolerance)(*z, h)
+
+        columns = [
+            [(a - b) / (2 * w) for a, b in zip(moved(i, 1), moved(i, -1), strict=True)]
+            for i in (0, 1)
+        ]
+        (a, b), (c, d) = columns
+        truth = float(a * d - b * c - 1)
+    assert said == pytest.approx(truth, rel=1e-6)
+
+
+def test_a_doubled_phase_space_is_measured_where_algebra_leaves_it_open() -> None:
+    def half(p: Any, q: Any, h: Any) -> Any:
+        z = steps.doubled([*p, *q], h)
+        return z[:2], z[2:]
+
+    found = judged(half, BOTH, hamiltonian=steps.DOUBLED)
+    assert (found.verdict.holds, found.convergence_order, found.symplectic) == (True, 2, True)
+    assert verify.check_map(steps.doubled, degrees=2, parameters={"h": "1/10"}).verdict.holds
+
+
+@pytest.mark.left_to_ci
+def test_a_star_and_light_planets_are_judged_in_their_units() -> None:
+    found = judged(steps.planets(), BOTH, hamiltonian=steps.STAR)
+    assert (found.verdict, found.convergence_order, found.symplectic) == ("MEASURED", 2, True)
+    wrong = judged(steps.planets(1.001), Claims(order=2), hamiltonian=steps.STAR)
+    assert wrong.verdict == "REFUTED"  # of the force between the planets alone
+
+
+def test_what_is_refuted_in_c_is_printed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = library(tmp_path, "step.c", steps.FAST_KEPLER, "-lm")
+    formula = "(p1**2 + p2**2)/2 - 100/sqrt(q1**2 + q2**2)"
+    for more in ((), ("--json",)):
+        typed = ("check-integrator", f"{path}:step", "--symplectic", "--hamiltonian", formula)
+        status, out, _ = here(capsys, *typed, *more)
+        assert (status, "REFUTED" in out) == (1, True)

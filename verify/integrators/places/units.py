@@ -73,15 +73,15 @@ class Field:
         return columns
 
 
-def units_of(field: Field) -> tuple[list[Fraction], Fraction]:
-    """A unit of each coordinate, p1 … qn, and of t."""
-    lengths = _lengths(field)
+def units_of(field: Field, usual: float = 1.0) -> tuple[list[Fraction], Fraction]:
+    """A unit of each coordinate, p1 … qn, and of t; `usual`: a length, where H has none."""
+    lengths = _lengths(field, usual)
     momenta = _momenta(field, lengths)
     return [simple(x) for x in (*momenta, *lengths)], simple(_duration(field, [*momenta, *lengths]))
 
 
-def _lengths(field: Field) -> list[float]:
-    """Of each q: where its forces turn from one power to another; else 1."""
+def _lengths(field: Field, usual: float) -> list[float]:
+    """Of each q: where its forces turn from one power to another; else the usual one."""
     n = field.degrees
     direction = [_DIRECTION[k % len(_DIRECTION)] * (1 + k // len(_DIRECTION)) for k in range(n)]
 
@@ -95,7 +95,7 @@ def _lengths(field: Field) -> list[float]:
         slopes = field(moved)
         return None if slopes is None else math.hypot(*slopes[:n])
 
-    common = _crossover(force) or 1.0
+    common = _crossover(force) or usual
     base = [0.0] * n + [common * x for x in direction]
     lengths = [common] * n
     for k in range(n):
