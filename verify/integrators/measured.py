@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from verify.arithmetic.exact import plain
-from verify.integrators.measures.order import ENOUGH, Distances, PlaceOrder
+from verify.integrators.measures.order import Distances, PlaceOrder
 from verify.integrators.measures.sides import Sides
+from verify.integrators.measures.slopes import ENOUGH
 from verify.integrators.measures.structure import REFUTES, Structure
 from verify.integrators.measures.survey import Request
 from verify.integrators.places.place import SIDE, USER, Place

@@ -4,17 +4,24 @@ The order is that of the worst component at the worst place, where its slope has
 is counted where it is beyond the noise of the numbers that the code computes in.
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import pairwise
 
 from verify.flows.degrees.extrapolation import FlowInDegrees
 from verify.flows.extrapolation import NoFlowError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.measures.slopes import Run, Slopes, slopes_of
+from verify.integrators.measures.slopes import (
+    ABOVE,
+    ENOUGH,
+    Run,
+    Slopes,
+    clear_slopes,
+    limit_of,
+    on_their_way,
+    slopes_of,
+)
 from verify.integrators.places.place import SIDE, USER, Place, spread
 from verify.integrators.places.wrapped import Periods, unwrapped, wrapped
 from verify.integrators.probes.duals import DualProbe
@@ -38,7 +45,6 @@ _PLACES = {1: 7}  # at which it is looked
 _OTHERWISE = 4
 _FEWEST_IN_TAIL = 5  # slopes of a lower power that floats alone show
 _TOLERANCE = 1e-7  # in units: below it such a power may be what the tolerance of a loop leaves
-ENOUGH = 4  # slopes of what has not settled, with which it counts
 _QUIET = 3  # step sizes in the noise, after which none is looked at
 Probe = DualProbe | FloatProbe
 
@@ -231,10 +237,10 @@ def _judged(
     for k, slopes in seen:
         unit = float(place.units[k])
         power, run, tail = _settled(slopes, rows[k], counts, how, unit)
-        shown = _shown(rows[k], below[k], how)
+        shown = clear_slopes(rows[k], below[k], _OF_MANY if how == "duals" else ABOVE)
         judged.append(
             PlaceOrder(place, power, False, step.names[k], run, tail,
-                       tuple(x for _, x in shown), tuple(rows[k]), unseen, _limit(shown))
+                       tuple(x for _, x in shown), tuple(rows[k]), unseen, limit_of(shown))
         )  # fmt: skip
     settled = [x for x in judged if x.power is not None]
     loose = [x for x in judged if x.power is None]
@@ -296,7 +302,7 @@ def _settled(
         else:
             tail = tail or Tail(run.power, rows[at[0]][0], error)
     if slopes.unsettled and chosen is slopes.runs[-1]:
-        if _on_their_way(slopes.unsettled, chosen.power):
+        if on_their_way(slopes.unsettled, chosen.power):
             return None, None, None
         end = next(k for k, row in enumerate(rows) if row[0] == chosen.last)
         after = rows[min(end + 1, len(rows) - 1)]
@@ -307,37 +313,3 @@ def _settled(
             return None, None, None
         tail = tail or Tail(None, rows[end][0], error)
     return chosen.power, chosen, tail
-
-
-def _on_their_way(slopes: Sequence[float], power: int) -> bool:
-    """Whether they rise steadily to another power, as those of what a loop leaves do not."""
-    last = slopes[-_QUIET:]
-    steady = len(last) == _QUIET and all(a < b for a, b in pairwise(last))
-    return steady and last[-1] > power - 1
-
-
-def _shown(
-    rows: Sequence[tuple[float, float, float]], below: Sequence[bool], how: str
-) -> list[tuple[float, float]]:
-    """The logarithm of h and the slope between neighbours beyond their noise, and what rounded
-    coefficients may do, below the step size at which the error last changes its sign."""
-    most = _OF_MANY if how == "duals" else 10
-    clear = [(h, e, sign) for (h, e, n), sign in zip(rows, below, strict=True) if e > most * n]
-    turns = [k for k, (one, two) in enumerate(pairwise(clear), start=1) if one[2] != two[2]]
-    return [
-        (math.log(h * g) / 2, math.log(a / b) / math.log(h / g))
-        for (h, a, _), (g, b, _) in pairwise(clear[turns[-1] if turns else 0 :])
-    ]
-
-
-def _limit(slopes: Sequence[tuple[float, float]]) -> float:
-    """To which they tend.
-
-    Of a hʳ (1 − x), x = h/c, the slope is r − x/(1 − x), and rises by x/(1 − x)² as log h falls:
-    more and more slowly.
-    """
-    if len(slopes) < ENOUGH:
-        return slopes[-1][1] if slopes else 0.0
-    rises = [(b - a) / (x - y) for (x, a), (y, b) in pairwise(slopes[-3:])]
-    steady = 0 < rises[1] <= rises[0]
-    return slopes[-1][1] + ((math.sqrt(1 + 4 * rises[1]) - 1) / 2 if steady else 0.0)

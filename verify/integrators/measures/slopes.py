@@ -7,7 +7,8 @@ from itertools import pairwise
 
 _WITHIN = 0.2  # of a whole power
 _FEWEST = 3  # neighbouring slopes that agree
-_ABOVE = 10  # times its noise an error must be
+ENOUGH = 4  # slopes of what has not settled, with which it counts
+ABOVE = 10  # times its noise an error must be
 
 
 @dataclass(frozen=True)
@@ -68,10 +69,46 @@ def _end(runs: Sequence[Run], rows: Sequence[Row], pairs: Sequence[float | None]
 
 
 def _clear(row: Row) -> bool:
-    return row[1] > _ABOVE * row[2] and row[1] > 0
+    return row[1] > ABOVE * row[2] and row[1] > 0
 
 
 def _slope(one: Row, two: Row) -> float | None:
     if not (_clear(one) and _clear(two)):
         return None
     return math.log(one[1] / two[1]) / math.log(one[0] / two[0])
+
+
+def clear_slopes(
+    rows: Sequence[Row], below: Sequence[bool], most: float
+) -> list[tuple[float, float]]:
+    """log h and the slope, between neighbours that are beyond their noise `most` times.
+
+    `below`: whether an error is negative. Only the step sizes below those are taken at which that
+    last changes: there terms cancel.
+    """
+    clear = [(h, e, sign) for (h, e, n), sign in zip(rows, below, strict=True) if e > most * n]
+    turns = [k for k, (one, two) in enumerate(pairwise(clear), start=1) if one[2] != two[2]]
+    return [
+        (math.log(h * g) / 2, math.log(a / b) / math.log(h / g))
+        for (h, a, _), (g, b, _) in pairwise(clear[turns[-1] if turns else 0 :])
+    ]
+
+
+def limit_of(slopes: Sequence[tuple[float, float]]) -> float:
+    """To which they tend.
+
+    Of a hʳ (1 − x), x = h/c, the slope is r − x/(1 − x), and rises by x/(1 − x)² as log h falls:
+    more and more slowly.
+    """
+    if len(slopes) < ENOUGH:
+        return slopes[-1][1] if slopes else 0.0
+    rises = [(b - a) / (x - y) for (x, a), (y, b) in pairwise(slopes[-_FEWEST:])]
+    steady = 0 < rises[1] <= rises[0]
+    return slopes[-1][1] + ((math.sqrt(1 + 4 * rises[1]) - 1) / 2 if steady else 0.0)
+
+
+def on_their_way(slopes: Sequence[float], power: int) -> bool:
+    """Whether they rise steadily to another power, as those of what a loop leaves do not."""
+    last = slopes[-_FEWEST:]
+    steady = len(last) == _FEWEST and all(a < b for a, b in pairwise(last))
+    return steady and last[-1] > power - 1

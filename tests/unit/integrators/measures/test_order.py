@@ -31,6 +31,9 @@ class TestAComponentThatHasNotSettled:
     def test_leaves_an_order_as_it_is_where_its_terms_cancel(self, at):
         assert judged(lambda h: h**6 / 30 * (1 - h / at), settled).power == 6
 
+    def test_leaves_an_order_as_it_is_where_little_is_seen_of_it_beside_others(self):
+        assert judged(lambda h: h**6 / 300 * (1 - h / 0.15), settled).power == 6
+
     @pytest.mark.parametrize("power", [2, 4, 5])
     @pytest.mark.parametrize("at", [0.14, 0.2, 0.4, 0.7])
     def test_leaves_an_order_open_where_it_rises_to_a_lower_power(self, power, at):
@@ -42,7 +45,7 @@ class TestAComponentThatHasNotSettled:
 
     def test_is_not_of_the_power_that_it_passes_as_its_slopes_rise(self):
         # Slopes of nearly 6 from 0.27 to 0.4, on the way to 7.
-        power = judged(lambda h: h**7 * math.exp(-3 * h) / 30, lambda h: h**8).power
+        power = judged(lambda h: h**7 * math.exp(-3 * h) / 3e4, lambda h: h**8 / 1e3).power
         assert power != 6
 
     def test_is_what_a_loop_leaves_where_its_slopes_do_not_rise_steadily(self):
