@@ -17,12 +17,11 @@ The step is proved where its code lets symbols through, and else measured; see
 from collections.abc import Callable
 from typing import Any
 
-from verify.arithmetic.exact import rational
+from verify.calls.check import request_of
 from verify.calls.given import hamiltonian_from
 from verify.errors import InputError, unknown
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.check import check_integrator
-from verify.integrators.measures.survey import Request
 from verify.integrators.results import MOST_CLAIMED, Claims, Finding
 from verify.integrators.user_code.loading import callee_from
 from verify.integrators.user_code.step import TIME_LIMIT
@@ -41,8 +40,9 @@ def assert_area_preserving(
     `step(p, q, h)` returns p' and q', numbers or arrays of one entry; where its arguments are named
     q, p, h or x, v, dt it gets and returns them so. `hamiltonian`: a Hamiltonian, a formula such as
     "p**2/2 - cos(q)", or the name of a known system. `options`: `parameters`, a mapping of names to
-    exact values; `arguments`, such as "q,p,h"; `p` and `q`, an initial value to look at beside
-    others; `time_limit`, seconds for all calls.
+    exact values; `arguments`, such as "q,p,h"; `p` and `q`, a state to look at first; `step_size`,
+    the largest that is looked at; `within`, a defect that is allowed; `time_limit`, seconds for
+    all.
 
     The message has the counterexample: initial value, h, det J − 1 as found. What is not decided
     fails too, and the message says UNDECIDED. Returns what was found, with its verdict: PROVED, or
@@ -84,23 +84,20 @@ def _asserted(
     step: StepFunction, hamiltonian: Hamiltonian | str, claims: Claims, options: dict[str, Any]
 ) -> Finding:
     __tracebackhide__ = True
-    known = {"parameters", "arguments", "p", "q", "time_limit"}
+    known = {"parameters", "arguments", "p", "q", "step_size", "within", "time_limit"}
     for name in options:
         if name not in known:
             raise unknown(name, options[name], sorted(known))
     if not callable(step):
         raise InputError("step", step, "is no function")
     exact = hamiltonian_from(hamiltonian, options.get("parameters"))
-    p, q = options.get("p"), options.get("q")
-    if (p is None) != (q is None):
-        raise InputError("p, q", p if p is not None else q, "give both or none")
-    start = None if p is None or q is None else (rational(p, "p"), rational(q, "q"))
+    where = {name: options.get(name) for name in ("p", "q", "step_size", "within")}
     limit = options.get("time_limit", TIME_LIMIT)
     callee = callee_from(
         step, exact.coordinates, arguments=options.get("arguments"),
         parameters=dict(exact.values), time_limit=limit,
     )  # fmt: skip
-    found = check_integrator(callee, exact, claims, Request(z=start))
+    found = check_integrator(callee, exact, claims, request_of(exact, **where))
     if not found.verdict.holds:
         raise AssertionError(_message(found))
     return found

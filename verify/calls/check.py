@@ -1,10 +1,11 @@
 """`verify.check`: a step function of one's own, or any scheme, held to what it claims."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from typing import Any
 
-from verify.arithmetic.exact import Exact, rational, whole
+from verify.arithmetic.exact import Exact, positive, rational, whole
 from verify.calls.given import (
     GivenParameters,
     GivenScheme,
@@ -14,6 +15,7 @@ from verify.calls.given import (
     step_map_from,
 )
 from verify.errors import InputError
+from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.check import check_integrator
 from verify.integrators.measures.survey import Request
 from verify.integrators.results import MOST_CLAIMED, Claims, Finding
@@ -32,8 +34,10 @@ def check(
     order: int | None = None,
     area_preserving: bool = False,
     arguments: str | None = None,
-    p: Exact | None = None,
-    q: Exact | None = None,
+    p: Exact | Sequence[Exact] | None = None,
+    q: Exact | Sequence[Exact] | None = None,
+    step_size: Exact | None = None,
+    within: Exact | None = None,
     time_limit: float = TIME_LIMIT,
 ) -> Finding | Proof:
     """Whether a step is a scheme for H and what it preserves: proved, else measured.
@@ -47,7 +51,9 @@ def check(
     order: the order of convergence that is claimed of it, at least; a scheme's own where left out.
     area_preserving: whether det J ≡ 1 is claimed of it.
     arguments: such as "q,p,h", where the function's arguments are not named so.
-    p, q: an initial value to look at beside others; `time_limit`: seconds for all calls.
+    p, q: a state to look at first, numbers or, in n degrees of freedom, lists of n; `step_size`:
+        the largest that is looked at; `within`: a defect that is allowed.
+    time_limit: seconds for all that is done.
 
     Returns a Finding of a function, with its `verdict` and `reason`; a Proof of a scheme. Raises
     InputError, one line.
@@ -67,15 +73,41 @@ def check(
         if isinstance(found, Scheme) and order is None and not area_preserving:
             return prove(step_map, found)
         return prove(step_map, _claiming(found, order, area_preserving))
-    if (p is None) != (q is None):
-        raise InputError("p, q", p if p is not None else q, "give both or none")
-    start = None if p is None or q is None else (rational(p, "p"), rational(q, "q"))
     callee = callee_from(
         step, exact.coordinates, arguments=arguments, parameters=dict(exact.values),
         time_limit=time_limit,
     )  # fmt: skip
     claims = Claims(order=order, area_preserving=area_preserving)
-    return check_integrator(callee, exact, claims, Request(z=start))
+    return check_integrator(callee, exact, claims, request_of(exact, p, q, step_size, within))
+
+
+def request_of(
+    exact: Hamiltonian,
+    p: Exact | Sequence[Exact] | None,
+    q: Exact | Sequence[Exact] | None,
+    step_size: Exact | None = None,
+    within: Exact | None = None,
+) -> Request:
+    """Where to look, as a caller says it. Raises InputError."""
+    if (p is None) != (q is None):
+        raise InputError("p, q", p if p is not None else q, "give both or none")
+    z: list[Fraction] = []
+    for name, given in (("p", p), ("q", q)):
+        numbers: list[Any] = [] if given is None else _listed(given)
+        if given is not None and len(numbers) != exact.degrees:
+            problem = f"has {len(numbers)} numbers; allowed: {exact.degrees}"
+            raise InputError(name, given, problem)
+        z += [rational(x, name) for x in numbers]
+    return Request(
+        z=tuple(z) or None,
+        step_size=None if step_size is None else positive(step_size, "step_size"),
+        within=None if within is None else positive(within, "within"),
+    )
+
+
+def _listed(given: Any) -> list[Any]:
+    several = hasattr(given, "__len__") and not isinstance(given, str)
+    return list(given) if several else [given]
 
 
 def _claiming(found: Any, order: int | None, area_preserving: bool) -> Scheme | None:

@@ -27,7 +27,10 @@ from verify.prose import prose
 from verify.schemes.degrees.canonical_map import CanonicalMap, State
 from verify.verdict import Verdict
 
-_MOST_WRITTEN = 3000  # operations of z' as trees, of which a closed form is tried
+_MOST_WRITTEN, _MOST_OF_MAP = (
+    3000,
+    4000,
+)  # operations of z' as trees, of which a closed form is tried
 _MOST_TERMS = 2000
 _MOST = 8  # orders that are looked at but for rounding
 
@@ -157,8 +160,8 @@ def _closed(trace: Trace, names: tuple[str, ...]) -> tuple[Ring, list[Poly]]:
     """The map as elements of a ring."""
     nodes = in_order(*trace.roots)
     size = sizes(nodes)
-    if sum(size[root.number] for root in trace.roots) > _MOST_WRITTEN:
-        raise StepError(f"written out it has more than {_MOST_WRITTEN} operations")
+    if sum(size[root.number] for root in trace.roots) > _MOST_OF_MAP:
+        raise StepError(f"written out it has more than {_MOST_OF_MAP} operations")
     made = expressions(nodes, {})
     exact = [checked(made[root.number], "map", "its closed form") for root in trace.roots]
     return embed(exact, names, _MOST_TERMS)

@@ -234,3 +234,102 @@ def cut_off(distance: float) -> Step:
         return p + h / 2 * force(q), q
 
     return step
+
+
+# -- implicit, and long ---------------------------------------------------------------------------
+
+RIEMANNIAN = "p**2/(2*(1 + q**2)) + log(1 + q**2)/2 + q**2/2"
+
+
+def generalised_leapfrog(tolerance: float) -> Step:
+    """Of an H whose mass depends on q, both half-steps by loops that end at the tolerance."""
+
+    def slope(p: Any, q: Any) -> Any:
+        mass = 1 + q * q
+        return -p * p * q / mass**2 + q / mass + q
+
+    def solved(advance: Callable[[Any], Any], x: Any) -> Any:
+        for _ in range(100):
+            new = advance(x)
+            done = abs(new - x) < tolerance
+            x = new
+            if done:
+                break
+        return x
+
+    def step(p: Any, q: Any, h: Any) -> Any:
+        half = solved(lambda x: p - h / 2 * slope(x, q), p)
+        end = solved(lambda x: q + h / 2 * (half / (1 + q * q) + half / (1 + x * x)), q)
+        return half - h / 2 * slope(half, end), end
+
+    return step
+
+
+DOUBLED = (
+    "(q1**2 + 1)*(p2**2 + 1)/2 + (q2**2 + 1)*(p1**2 + 1)/2 + 20*((q1 - q2)**2 + (p1 - p2)**2)/2"
+)
+
+
+def doubled(z: Any, h: Any) -> Any:
+    """Two copies of a phase space, bound to each other by a rotation with ω = 20."""
+    p, q = z[:2], z[2:]
+    c, s = math.cos(40 * h), math.sin(40 * h)
+
+    def first(p: Any, q: Any) -> Any:
+        a, b = q[0], p[1]
+        return [p[0] - h / 2 * a * (b * b + 1), b], [a, q[1] + h / 2 * b * (a * a + 1)]
+
+    def second(p: Any, q: Any) -> Any:
+        a, b = p[0], q[1]
+        return [a, p[1] - h / 2 * b * (a * a + 1)], [q[0] + h / 2 * a * (b * b + 1), b]
+
+    p, q = second(*first(p, q))
+    dp, dq = p[0] - p[1], q[0] - q[1]
+    tp, tq = c * dp - s * dq, c * dq + s * dp
+    mp, mq = p[0] + p[1], q[0] + q[1]
+    p, q = [(mp + tp) / 2, (mp - tp) / 2], [(mq + tq) / 2, (mq - tq) / 2]
+    p, q = first(*second(p, q))
+    return [*p, *q]
+
+
+STAR = (
+    "(p1**2 + p2**2)/0.002 + (p3**2 + p4**2)/0.001 + ((p1 + p3)**2 + (p2 + p4)**2)/2"
+    " - 0.001/sqrt(q1**2 + q2**2) - 0.0005/sqrt(q3**2 + q4**2)"
+    " - 0.0000005/sqrt((q1 - q3)**2 + (q2 - q4)**2)"
+)
+
+
+def planets(strength: float = 1.0) -> Step:
+    """A star and two light planets, in democratic heliocentric coordinates."""
+    one, two = 1e-3, 5e-4
+
+    def force(q: Any) -> Any:
+        a, b = (q[0] ** 2 + q[1] ** 2) ** 1.5, (q[2] ** 2 + q[3] ** 2) ** 1.5
+        x, y = q[0] - q[2], q[1] - q[3]
+        k = strength * one * two / (x * x + y * y) ** 1.5
+        return np.array([-one * q[0] / a - k * x, -one * q[1] / a - k * y,
+                         -two * q[2] / b + k * x, -two * q[3] / b + k * y])  # fmt: skip
+
+    def jump(p: Any) -> Any:
+        x, y = p[0] + p[2], p[1] + p[3]
+        return np.array([x, y, x, y])
+
+    def step(p: Any, q: Any, h: Any) -> Any:
+        q = q + h / 2 * jump(p)
+        p = p + h / 2 * force(q)
+        q = q + h * p / np.array([one, one, two, two])
+        p = p + h / 2 * force(q)
+        return p, q + h / 2 * jump(p)
+
+    return step
+
+
+FAST_KEPLER = """
+#include <math.h>
+void step(int n, double t, double h, double *p, double *q)
+{
+    double r = pow(q[0]*q[0] + q[1]*q[1], 1.5), a = -100*q[0]/r, b = -100*q[1]/r;
+    q[0] += h*p[0]; q[1] += h*p[1];
+    p[0] += h*a; p[1] += h*b;
+}
+"""

@@ -1,14 +1,17 @@
 """Verdicts about users' code in units, shapes and states of their own."""
 
 import math
+import time
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+import mpmath
 import numpy as np
 import pytest
 
 import verify
+from tests.end_to_end.test_command_line import here
 from tests.helpers.programs import scaled_steps as steps
 from tests.helpers.programs.compilers import library
 from tests.helpers.programs.judged import judged
@@ -254,3 +257,137 @@ def test_all_signs_are_looked_at_in_pairs(degrees: int) -> None:
         for b in range(a):
             seen = {(z[a] > 0, z[b] > 0) for z in states}
             assert len(seen) == 4, (a, b)
+
+
+# -- limits and requests --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("limit", [1.0, 3.0])
+def test_the_time_limit_holds_for_all_that_is_done(limit: float) -> None:
+    def step(p: Any, q: Any, h: Any) -> Any:
+        for _ in range(100):
+            p, q = steps.bodies(p, q, h / 100)
+        return p, q
+
+    begun = time.perf_counter()
+    found = judged(step, BOTH, limit, steps.TWO_BODIES)
+    assert time.perf_counter() - begun < 2 * limit + 2
+    assert found.verdict in ("MEASURED", "UNDECIDED")
+
+
+def test_a_verdict_that_rests_on_another_place_says_so() -> None:
+    mine = Request(z=(Fraction(1, 4), Fraction(1, 3)), step_size=Fraction(1, 100))
+    fault = steps.faulty(lambda p, q: q > 2)
+    found = judged(fault, Claims(symplectic=True), request=mine)
+    note = "it is shown at another place than the one that you gave"
+    assert (found.verdict, note in found.notes) == ("REFUTED", True)
+    assert found.places[0].z == mine.z
+    assert all(place.step == mine.step_size for place in found.places)
+    there = Request(z=(Fraction(0), Fraction(5, 2)))
+    assert note not in judged(fault, Claims(symplectic=True), request=there).notes
+
+
+def test_sizes_that_are_given_are_those_of_the_places() -> None:
+    scale = {"p": Fraction(1, 1000), "q": Fraction(50)}
+    found = judged(steps.stiff(1), hamiltonian="p**2/2 + q**2/2", request=Request(scale=scale))
+    assert {place.units for place in found.places} == {(scale["p"], scale["q"])}
+
+
+@pytest.mark.parametrize(
+    "request_",
+    [Request(z=(Fraction(0), Fraction(10) ** 200)), Request(scale={"q": Fraction(10) ** 200}),
+     Request(step_size=Fraction(1, 10**200)), Request(z=(Fraction(0), Fraction(0)))],
+)  # fmt: skip
+def test_what_floats_cannot_hold_and_where_h_is_singular_is_bad_input(request_: Request) -> None:
+    with pytest.raises(InputError):
+        judged(steps.molecule(1.0, 9.0), hamiltonian="p**2/2 + 4/q**12 - 4/q**6", request=request_)
+
+
+def test_a_float_in_large_units_is_no_exact_coefficient() -> None:
+    """25430.5·1.19591234567e15 as a float is another number, and the order is not refuted by it."""
+    strength = 25430.5 * 1.19591234567e15
+
+    def step(p: Any, q: Any, h: Any) -> Any:
+        p = p - h * strength * q / 7.3
+        return p, q + h * p
+
+    formula = "p**2/2 + 25430.5*1.19591234567e15*q**2/14.6"
+    found = judged(step, Claims(order=1, symplectic=True), hamiltonian=formula)
+    assert found.verdict == "MEASURED"
+    wrong = formula.replace("1.19591234567", "1.19591234568")
+    assert judged(step, Claims(order=1), hamiltonian=wrong).verdict == "REFUTED"
+
+
+def test_where_h_has_no_length_the_users_place_has_one() -> None:
+    orbit = tuple(map(Fraction, ("0", "15/2", "7000", "0")))
+    mine = Request(z=orbit, step_size=Fraction(10))
+    found = judged(steps.verlet_of_earth, BOTH, hamiltonian=steps.EARTH, request=mine)
+    assert (found.verdict, found.convergence_order) == ("MEASURED", 2)
+    assert {place.units[2] for place in found.places} == {Fraction(5000)}
+    assert (found.places[0].z, found.places[0].step) == (orbit, 10)
+    assert all(place.step <= 10 for place in found.places)
+
+
+def test_a_map_takes_h_as_a_parameter() -> None:
+    def turn(p: Any, q: Any, h: Any) -> Any:
+        p = p - h * np.sin(q)
+        return p, q + h * p
+
+    assert verify.check_map(turn, parameters={"h": "1/10"}).verdict == "PROVED"
+
+
+# -- implicit, and long ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-8])
+def test_a_generalised_leapfrog_is_refuted_by_its_tolerance(tolerance: float) -> None:
+    step = steps.generalised_leapfrog(tolerance)
+    found = judged(step, Claims(symplectic=True), hamiltonian=steps.RIEMANNIAN)
+    assert found.verdict == "REFUTED"
+    assert found.counterexample is not None
+    said = float(found.counterexample.found.split()[0])
+    at = [float(x) for x in (*found.counterexample.z.values(), found.counterexample.h or 0)]
+    with mpmath.workdps(60):
+        p, q, h = map(mpmath.mpf, at)
+        w = mpmath.mpf(10) ** -25
+
+        def moved(i: int, sign: int) -> Any:
+            z = [p + sign * w * (i == 0), q + sign * w * (i == 1)]
+            return steps.generalised_leapfrog(tolerance)(*z, h)
+
+        columns = [
+            [(a - b) / (2 * w) for a, b in zip(moved(i, 1), moved(i, -1), strict=True)]
+            for i in (0, 1)
+        ]
+        (a, b), (c, d) = columns
+        truth = float(a * d - b * c - 1)
+    assert said == pytest.approx(truth, rel=1e-6)
+
+
+def test_a_doubled_phase_space_is_measured_where_algebra_leaves_it_open() -> None:
+    def half(p: Any, q: Any, h: Any) -> Any:
+        z = steps.doubled([*p, *q], h)
+        return z[:2], z[2:]
+
+    found = judged(half, BOTH, hamiltonian=steps.DOUBLED)
+    assert (found.verdict.holds, found.convergence_order, found.symplectic) == (True, 2, True)
+    assert verify.check_map(steps.doubled, degrees=2, parameters={"h": "1/10"}).verdict.holds
+
+
+@pytest.mark.left_to_ci
+def test_a_star_and_light_planets_are_judged_in_their_units() -> None:
+    found = judged(steps.planets(), BOTH, hamiltonian=steps.STAR)
+    assert (found.verdict, found.convergence_order, found.symplectic) == ("MEASURED", 2, True)
+    wrong = judged(steps.planets(1.001), Claims(order=2), hamiltonian=steps.STAR)
+    assert wrong.verdict == "REFUTED"  # of the force between the planets alone
+
+
+def test_what_is_refuted_in_c_is_printed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = library(tmp_path, "step.c", steps.FAST_KEPLER, "-lm")
+    formula = "(p1**2 + p2**2)/2 - 100/sqrt(q1**2 + q2**2)"
+    for more in ((), ("--json",)):
+        typed = ("check-integrator", f"{path}:step", "--symplectic", "--hamiltonian", formula)
+        status, out, _ = here(capsys, *typed, *more)
+        assert (status, "REFUTED" in out) == (1, True)

@@ -16,6 +16,7 @@ from verify.commands.checks.looking import (
 from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering, picked
 from verify.commands.shared.input import time_limit_option, with_hamiltonian
+from verify.commands.shared.progress import clock
 from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
@@ -106,7 +107,8 @@ def check_integrator(
     called = command or target or ""
     callee = _callee(target, command, number_type, arguments, exact, time_limit)
     claims = Claims(order, area_order, area_preserving, symplectic)
-    finding = check(callee, exact, claims, request)
+    with clock(called):
+        finding = check(callee, exact, claims, request)
     seconds = f"{time.perf_counter() - begun:.6f}"
     return Answer(
         lambda: _json(exact, called, finding, seconds),

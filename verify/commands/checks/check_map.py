@@ -14,6 +14,7 @@ from verify.commands.checks.looking import (
 )
 from verify.commands.shared.answer import Answer, answering, picked
 from verify.commands.shared.input import time_limit_option, values_of
+from verify.commands.shared.progress import clock
 
 if TYPE_CHECKING:
     from verify.integrators.results import Finding
@@ -78,7 +79,8 @@ def check_map(
         load(target, "map"), names, stepped=False, arguments=arguments, parameters=parameters,
         strict=True, time_limit=time_limit,
     )  # fmt: skip
-    finding = check(callee, request)
+    with clock(target):
+        finding = check(callee, request)
     seconds = f"{time.perf_counter() - begun:.6f}"
     return Answer(
         lambda: _json(target, names, finding, seconds),

@@ -1,6 +1,8 @@
 """A progress bar on standard error, and only on a terminal."""
 
 import sys
+import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -52,3 +54,29 @@ def counting_bar(label: str, total: int, unit: str = "steps") -> Iterator[Callab
             last = done
 
         yield tell
+
+
+@contextmanager
+def clock(label: str, after: float = 2.0) -> Iterator[None]:
+    """A line on a terminal that says how long it has taken, from `after` seconds on."""
+    if not sys.stderr.isatty():
+        yield
+        return
+    ended, begun = threading.Event(), time.monotonic()
+    stream = getattr(sys.stderr, "stream", sys.stderr)  # which takes what moves its cursor
+
+    def tell() -> None:
+        wait = after
+        while not ended.wait(wait):
+            print(f"\r{label} … {time.monotonic() - begun:.0f} s", end="", file=stream, flush=True)
+            wait = 1.0
+
+    thread = threading.Thread(target=tell, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        thread.join()
+        if time.monotonic() - begun > after:
+            print("\r\x1b[K", end="", file=stream, flush=True)

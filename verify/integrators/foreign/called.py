@@ -147,5 +147,5 @@ def _step(function: ForeignFunction, kind: NumberType, seconds: float, degrees: 
         _ORDER, shape=() if degrees == 1 else (degrees,), kind="list" if degrees > 1 else "array"
     )
     return UserMap(
-        function, layout, coordinates_in(degrees), left=seconds, numbers=kind, foreign=True
+        function, layout, coordinates_in(degrees), limit=seconds, numbers=kind, foreign=True
     )

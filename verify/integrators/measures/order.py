@@ -19,11 +19,13 @@ from verify.integrators.places.place import SIDE, USER, Place, spread
 from verify.integrators.places.wrapped import Periods, unwrapped, wrapped
 from verify.integrators.probes.duals import DualProbe
 from verify.integrators.probes.floats import FloatProbe
-from verify.integrators.user_code.step import StepError, why
+from verify.integrators.user_code.step import StepError, why, within
 from verify.integrators.user_code.user_map import UserMap
 
 SPACED = tuple(Fraction(2) ** k for k in range(9))  # parts of a place's largest step
-_FINE = tuple(2**k for k in (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 15, 18, 22, 27, 33, 40, 48))
+_FINE = tuple(
+    2**k for k in (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 15, 18, 22, 26, 30, 34, 38, 42, 46, 50)
+)
 _COARSE = (
     *(Fraction(2**k, x) for k in range(2, 11) for x in (4, 3)),
     *(2**k for k in range(9, 27)),
@@ -91,7 +93,8 @@ def distances_of(
     made, lost = list[PlaceOrder](), list[str]()
     for place in chosen:
         try:
-            made.append(_at(step, probe, flow, place, parts))
+            with within(max(step.left, 0.1), "the exact flow takes too long"):
+                made.append(_at(step, probe, flow, place, parts))
         except Exception as error:  # the user's code may raise anything
             lost.append(f"{why(error)}{step.place([float(x) for x in place.z], float(place.step))}")
         if step.left <= 0:

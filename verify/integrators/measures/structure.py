@@ -62,14 +62,10 @@ class Structure:
     def kept(self, within: Fraction | None = None) -> bool | None:
         """Whether S is 0 up to the noise, or up to what is allowed; None where that is open."""
         if within is not None:
-            allowed = float(within)
-            if any(x.defect - x.blur > allowed for x in self.readings):
+            allowed, readings = float(within), self.readings
+            if any(x.defect - x.blur > allowed for x in readings):
                 return False
-            return (
-                True
-                if all(x.defect <= allowed + x.blur and x.blur <= allowed for x in self.readings)
-                else None
-            )
+            return all(max(x.defect - x.blur, x.blur) <= allowed for x in readings) or None
         beyond = self.worst.beyond
         if beyond > REFUTES:
             return False
@@ -87,7 +83,8 @@ class Structure:
     def power(self) -> int | None:
         """Of h, by which S falls where that has settled; None where none is seen."""
         each = [slopes_of(rows) for rows in self.rows]
-        powers = [x.runs[0].power for x in each if x.runs]
+        last = 0 if self.iterates else -1  # below a loop's first stretch it is its tolerance
+        powers = [x.runs[last].power for x in each if x.runs]
         clear = [x for x in each if x.seen]
         return min(powers) if powers and len(powers) == len(clear) and not self.jumps else None
 

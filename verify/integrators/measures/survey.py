@@ -57,13 +57,14 @@ def check_request(names: Sequence[str], request: Request) -> None:
 
 def places_of_field(field_: Field, moving: bool, request: Request = NOWHERE) -> list[Place]:
     """For a step of that H; empty where H has a motion from none of them."""
-    units, unit_of_time = units_of(field_)
+    far = max((float(abs(x)) for x in (request.z or ())[field_.degrees :]), default=0.0)
+    units, unit_of_time = units_of(field_, far or 1.0)
     units = [request.scale.get(name, x) for name, x in zip(field_.names, units, strict=True)]
     pace = unit_of_time if moving else None
 
     def place(k: int, z: tuple[Fraction, ...], source: str) -> Place | None:
         t = _MOMENTS[k % len(_MOMENTS)] * unit_of_time if moving else Fraction(0)
-        return _place(field_, z, t, units, pace, source, request)
+        return _place(field_, z, t, units, pace, source)
 
     mine = [place(0, request.z, USER)] if request.z is not None else []
     made = [place(k, z, PATTERN) for k, z in enumerate(states(units))]
@@ -73,12 +74,24 @@ def places_of_field(field_: Field, moving: bool, request: Request = NOWHERE) -> 
             if not _is_calm(made[k], least):
                 made[k] = place(k, z, PATTERN)
     calm = [x for x in made if x is not None and _is_calm(x, least)]
-    return [*(x for x in mine if x is not None), *calm[: _MOST.get(field_.degrees, _OTHERWISE)]]
+    chosen = calm[: _MOST.get(field_.degrees, _OTHERWISE)]
+    return _stepped([*(x for x in mine if x is not None), *chosen], request.step_size)
+
+
+def _stepped(places: list[Place], size: Fraction | None) -> list[Place]:
+    """The places with the user's step size: as it is at his place, or at all where he names none;
+    where he does it is the largest one elsewhere."""
+    if size is None:
+        return places
+    mine = any(x.source == USER for x in places)
+    return [
+        replace(x, step=min(x.step, size) if mine and x.source != USER else size) for x in places
+    ]
 
 
 def _place(
     field_: Field, z: tuple[Fraction, ...], t: Fraction, units: Sequence[Fraction],
-    unit_of_time: Fraction | None, source: str, request: Request,
+    unit_of_time: Fraction | None, source: str,
 ) -> Place | None:  # fmt: skip
     at, when = [float(x) for x in z], float(t)
     local = [
@@ -93,8 +106,6 @@ def _place(
     if unit_of_time is not None:
         speed = max(speed, 0.5 / float(unit_of_time))
     step = _LARGEST / _power(speed) if speed > 0 and math.isfinite(speed) else _LARGEST
-    if request.step_size is not None:
-        step = request.step_size
     return Place(z, t, tuple(units), tuple(_power(x) for x in reach), step, source)
 
 

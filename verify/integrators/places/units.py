@@ -73,21 +73,21 @@ class Field:
         return columns
 
 
-def units_of(field: Field) -> tuple[list[Fraction], Fraction]:
-    """A unit of each coordinate, p1 … qn, and of t."""
+def units_of(field: Field, usual: float = 1.0) -> tuple[list[Fraction], Fraction]:
+    """A unit of each coordinate, p1 … qn, and of t; `usual`: a length, where H has none."""
     n = field.degrees
-    lengths, momenta = _sizes(field, n), None
+    lengths, momenta = _sizes(field, n, usual), None
     if lengths is None:
         momenta = _sizes(field, 0)
     if momenta is None:
-        lengths = lengths or [1.0] * n
+        lengths = lengths or [usual] * n
         momenta = _partners(field, lengths, n)
     else:  # as of a relativistic body on a spring
         lengths = _partners(field, momenta, 0)
     return [simple(x) for x in (*momenta, *lengths)], simple(_duration(field, [*momenta, *lengths]))
 
 
-def _sizes(field: Field, first: int) -> list[float] | None:
+def _sizes(field: Field, first: int, usual: float = 1.0) -> list[float] | None:
     """Of each q, or p, from the `first` coordinate on: where what it makes turns from one power to
     another; None where nothing does."""
     n = field.degrees
@@ -103,7 +103,7 @@ def _sizes(field: Field, first: int) -> list[float] | None:
         return None if slopes is None else math.hypot(*_others(slopes, first))
 
     common = _crossover(change)
-    scale = common or 1.0
+    scale = common or usual
     base = _put(first, [scale * x for x in direction])
     sizes, seen = [scale] * n, common is not None
     for k in range(n):

@@ -8,7 +8,7 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.tracing.number import UntraceableError
 from verify.integrators.tracing.readings import NoReadingsError, Read, Readings
-from verify.integrators.tracing.rounded_order import rounded_orders
+from verify.integrators.tracing.rounded_order import rounded_order
 from verify.integrators.tracing.step_map import traced_map
 from verify.integrators.tracing.trace import Node, in_order
 from verify.proof.order import convergence_of
@@ -50,7 +50,7 @@ def _order(hamiltonian: Hamiltonian, p_next: Node, q_next: Node) -> int | None:
     found = convergence_of(traced.step_map).order
     if found is None or traced.series is None:
         return found
-    rounded = rounded_orders(*traced.series).convergence
+    rounded = rounded_order(*traced.series)
     return found if rounded is None else max(found, rounded)
 
 

@@ -135,7 +135,7 @@ def callee_from(
         Layout(x.roles, x.halves, x.shape, x.kind, places, signature.record) for x in layouts
     ]
     used = {name: x for name, x in values.items() if name in signature.takes}
-    step = UserMap(function, layouts[0], names, used, left=time_limit)
+    step = UserMap(function, layouts[0], names, used, limit=time_limit)
     several = len({(x.roles, x.halves) for x in layouts}) > 1
     return Callee(step, tuple(layouts), named and not several, signature.shown(len(orders[0])))
 
@@ -165,11 +165,9 @@ class _Signature:
                 raise InputError("parameter", name, f"is no argument of {self.text}")
         places = [x for x in named if x.kind in _POSITIONAL]
         self.variadic = not named or any(x.kind is x.VAR_POSITIONAL for x in named)
-        # A parameter of H that stands where a coordinate does is no coordinate.
-        self.places = [
-            x for x in places if x.name not in values or role_of(x.name) in ("p", "q", "h")
-        ]
-        self.places = [x for k, x in enumerate(places) if x in self.places]
+        # A parameter of H that is called as a coordinate is one all the same; a map's is not.
+        roles = ("p", "q", "h") if stepped else ()
+        self.places = [x for x in places if x.name not in values or role_of(x.name) in roles]
         self.needed = [x for x in self.places if x.default is x.empty]
         self.takes = {x.name for x in named if x.name in values and x not in self.places[:4]}
         keywords = [x for x in named if x.kind is x.KEYWORD_ONLY and x.default is x.empty]

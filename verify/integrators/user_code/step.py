@@ -61,7 +61,8 @@ def contained() -> Iterator[None]:
 class Limited(Protocol):
     """Code whose calls have so many seconds left."""
 
-    left: float
+    @property
+    def left(self) -> float: ...
 
 
 @contextlib.contextmanager
@@ -69,14 +70,11 @@ def limited(owner: Limited, too_long: str = "a call of it does not end") -> Iter
     """Around every call of a user's code: what it prints, what it raises, and how long it takes."""
     if owner.left <= 0:
         raise StepError("its calls took all the time that there is")
-    begun = time.perf_counter()
     try:
         with contained(), within(owner.left, f"{too_long} within {owner.left:.3g} s"):
             yield
     except SystemExit:
         raise StepError("it calls sys.exit, or os._exit") from None
-    finally:
-        owner.left -= time.perf_counter() - begun
 
 
 @contextlib.contextmanager

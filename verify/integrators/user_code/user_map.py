@@ -5,6 +5,7 @@ floats, in numbers of ours, or in those of another program.
 """
 
 import math
+import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -20,24 +21,37 @@ Exactly = tuple[Fraction, ...]
 @dataclass
 class UserMap:
     """`names`: of the coordinates, p and q or p1 … pn, q1 … qn. `parameters`: further arguments by
-    their names. `left`: seconds left for its calls. `moving`: whether H depends on time; else its
-    t is 0. `numbers`: the type that it computes in. `foreign`: it is of another language, so that
-    numbers alone go in. `periods`: of each coordinate, where it is seen to reduce them so.
-    `masses`: where its p are velocities, what makes momenta of them. `coarseness`: by how much z'
-    is seen to jump, in parts of its size, where its numbers are coarser than their type.
+    their names. `limit`: seconds for all that is done with it, which end at `until`, a moment of
+    time.monotonic. `moving`: whether H depends on time; else its t is 0. `numbers`: the type that
+    it computes in. `foreign`: it is of another language, so that numbers alone go in. `periods`: of
+    each coordinate, where it is seen to reduce them so. `masses`: where its p are velocities, what
+    makes momenta of them. `coarseness`: by how much z' is seen to jump, in parts of its size, where
+    its numbers are coarser than their type.
     """
 
     function: Callable[..., Theirs]
     layout: Layout
     names: tuple[str, ...]
     parameters: Mapping[str, Fraction] = field(default_factory=dict)
-    left: float = TIME_LIMIT
+    limit: float = TIME_LIMIT
+    until: float | None = None
     moving: bool = False
     numbers: NumberType = DOUBLE
     foreign: bool = False
     periods: tuple[Fraction, ...] = ()
     masses: tuple[Fraction, ...] = ()
     coarseness: float = 0.0
+
+    @property
+    def left(self) -> float:
+        """Seconds that are left."""
+        if self.until is None:
+            self.until = time.monotonic() + self.limit
+        return self.until - time.monotonic()
+
+    def hold_back(self, seconds: float) -> None:
+        """Keeps seconds for later; gives them back where they are less than 0."""
+        self.until = time.monotonic() + self.left - seconds
 
     @property
     def degrees(self) -> int:

@@ -5,7 +5,7 @@ from fractions import Fraction
 from functools import lru_cache
 
 from verify.errors import InputError
-from verify.integrators.check import Trial
+from verify.integrators.examination import Trial
 from verify.integrators.measured import finding_of_step
 from verify.integrators.measures.order import Distances
 from verify.integrators.measures.still_clock import measured_mistakes
