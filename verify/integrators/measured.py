@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from verify.arithmetic.exact import plain
-from verify.integrators.measures.order import Distances, PlaceOrder
+from verify.integrators.measures.order import ENOUGH, Distances, PlaceOrder
 from verify.integrators.measures.sides import Sides
 from verify.integrators.measures.structure import REFUTES, Structure
 from verify.integrators.measures.survey import Request
@@ -18,7 +18,6 @@ from verify.integrators.user_code.user_map import UserMap
 from verify.prose import Number, Prose, joined, prose, read_prose
 from verify.verdict import Verdict
 
-_ENOUGH = 4  # slopes of a place that has not settled, with which it counts
 _STILL = 1e-3  # units that the flow goes, with which an error would hardly show
 _PRECISE = 3  # decimals of a number that is shown
 
@@ -159,7 +158,7 @@ def _order(distances: Distances, sides: Sides, claims: Claims) -> _Order:
         return _Order(None, True, "the map is the exact flow to its last digits", exact=True)
     resolved = [x for x in places if x.power is not None]
     loose = [x for x in places if not x.exact and x.power is None]
-    loose = [x for x in loose if len(resolved) < 2 or _counts(x, resolved)]
+    loose = [x for x in loose if not resolved or _counts(x, resolved)]
     few = len(loose) < max(2, len(places) / 4)  # at one place terms may cancel as h falls
     if few and len(resolved) >= 2 and not any(x.place.source == USER for x in loose):
         loose = []
@@ -205,14 +204,13 @@ def _order(distances: Distances, sides: Sides, claims: Claims) -> _Order:
 def _counts(loose: PlaceOrder, resolved: Sequence[PlaceOrder]) -> bool:
     """Whether a place that has not settled may have a lower order than the others.
 
-    It has not where its slopes stay above theirs; and where a loop ends at a tolerance it tells
-    nothing.
+    Where a loop ends at a tolerance it tells nothing; beside a single other place it always may,
+    unless its slopes show that it does not.
     """
+    if len(resolved) < 2 and len(loose.slopes) < ENOUGH:
+        return True
     least = min(x.power or 0 for x in resolved)
-    if len(loose.slopes) < _ENOUGH or any(x.tail for x in resolved):
-        return False
-    before, last = loose.slopes[-2:]
-    return last < least - (0.5 if last >= before else 0.2)  # one that rises is on its way
+    return loose.may_fall_below(least) and not any(x.tail for x in resolved)
 
 
 def _order_said(order: int, lowest: PlaceOrder) -> str:

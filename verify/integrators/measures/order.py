@@ -38,6 +38,7 @@ _PLACES = {1: 7}  # at which it is looked
 _OTHERWISE = 4
 _FEWEST_IN_TAIL = 5  # slopes of a lower power that floats alone show
 _TOLERANCE = 1e-7  # in units: below it such a power may be what the tolerance of a loop leaves
+ENOUGH = 4  # slopes of what has not settled, with which it counts
 _QUIET = 3  # step sizes in the noise, after which none is looked at
 Probe = DualProbe | FloatProbe
 
@@ -54,7 +55,8 @@ class Tail:
 @dataclass(frozen=True)
 class PlaceOrder:
     """At one place: `power` of h by which the worst component's error falls; None where that has
-    not settled, or, `exact`, where none is seen. `slopes`: those that are seen, for people."""
+    not settled, or, `exact`, where none is seen. `slopes`: those that are seen below the last
+    step size at which terms cancel."""
 
     place: Place
     power: int | None
@@ -65,7 +67,16 @@ class PlaceOrder:
     slopes: tuple[float, ...] = ()
     rows: tuple[tuple[float, float, float], ...] = ()  # of that component, as they stand
     unseen: float = 0.0  # an error of the step, in parts of it, that would not show
+    limit: float = 0.0  # to which the slopes tend
     moved: float = 0.0  # how far the flow goes with the largest step, in units
+
+    def may_fall_below(self, power: int) -> bool:
+        """Whether its slopes, which have not settled, may come to less than that power: not where
+        they stay above it, or rise to it. A few do not tell."""
+        if len(self.slopes) < ENOUGH:
+            return False
+        before, last = self.slopes[-2:]
+        return self.limit < power - (0.5 if last >= before else 0.2)
 
 
 @dataclass(frozen=True)
@@ -154,6 +165,7 @@ def _at(
     """All components at one place."""
     size, begun = len(place.z), probe.begin(place)
     rows: list[list[tuple[float, float, float]]] = [[] for _ in range(size)]
+    below: list[list[bool]] = [[] for _ in range(size)]
     counts, quiet, unseen, lost, farthest = list[int](), 0, float("inf"), "", 0.0
     for part in parts:
         h = place.step / part
@@ -166,18 +178,20 @@ def _at(
             continue
         errors, noise, moved = _row(step, probe, place, h, begun, ended, exact)
         for k in range(size):
-            rows[k].append((float(h), errors[k], noise[k]))
+            rows[k].append((float(h), abs(errors[k]), noise[k]))
+            below[k].append(errors[k] < 0)
         counts.append(count)
         farthest = max(farthest, moved)
         if moved:
             scaled = zip(errors, noise, place.units, strict=True)
-            unseen = min(unseen, max((e + 10 * n) / float(u) for e, n, u in scaled) / moved)
-        quiet = quiet + 1 if all(e <= 10 * n for e, n in zip(errors, noise, strict=True)) else 0
+            unseen = min(unseen, max((abs(e) + 10 * n) / float(u) for e, n, u in scaled) / moved)
+        still = all(abs(e) <= 10 * n for e, n in zip(errors, noise, strict=True))
+        quiet = quiet + 1 if still else 0
         if quiet >= _QUIET or step.left <= 0:
             break
     if len(rows[0]) < _QUIET:
         raise StepError(lost or "it fails for most step sizes")
-    judged = _judged(step, place, rows, counts, probe.how, unseen)
+    judged = _judged(step, place, rows, below, counts, probe.how, unseen)
     return replace(judged, moved=farthest)
 
 
@@ -188,7 +202,7 @@ def _row(
     """Errors and noise of the components, and how far the flow goes in units of the place."""
     periods = step.periods or (Fraction(0),) * len(exact)
     here = list(map(unwrapped, ended, exact, periods))
-    errors = [float(abs(x - y)) for x, y in zip(here, exact, strict=True)]
+    errors = [float(x - y) for x, y in zip(here, exact, strict=True)]
     ways = [float(abs(y - z)) for y, z in zip(exact, begun, strict=True)]
     units = [float(u) for u in place.units]
     moved = max(way / unit for way, unit in zip(ways, units, strict=True))
@@ -206,7 +220,7 @@ def _row(
 
 def _judged(
     step: UserMap, place: Place, rows: list[list[tuple[float, float, float]]],
-    counts: Sequence[int], how: str, unseen: float,
+    below: list[list[bool]], counts: Sequence[int], how: str, unseen: float,
 ) -> PlaceOrder:  # fmt: skip
     """By the component whose error falls most slowly."""
     each = [(k, slopes_of(r)) for k, r in enumerate(rows)]
@@ -217,24 +231,37 @@ def _judged(
     for k, slopes in seen:
         unit = float(place.units[k])
         power, run, tail = _settled(slopes, rows[k], counts, how, unit)
+        shown = _shown(rows[k], below[k], how)
         judged.append(
-            PlaceOrder(place, power, False, step.names[k], run, tail, _shown(rows[k], how),
-                       tuple(rows[k]), unseen)
+            PlaceOrder(place, power, False, step.names[k], run, tail,
+                       tuple(x for _, x in shown), tuple(rows[k]), unseen, _limit(shown))
         )  # fmt: skip
     settled = [x for x in judged if x.power is not None]
     loose = [x for x in judged if x.power is None]
     if settled:
         lowest = min(settled, key=lambda x: x.power or 0)
         # What has not settled may be lower, unless it is small beside what has.
-        return lowest if not _hides(loose, lowest) else loose[0]
+        return lowest if not _hides(step, loose, lowest) else loose[0]
     return max(loose, key=lambda x: len(x.slopes))
 
 
-def _hides(loose: Sequence[PlaceOrder], lowest: PlaceOrder) -> bool:
-    """Whether a component that has not settled is seen over as many step sizes as one needs."""
-    if lowest.power is not None and lowest.power <= 1:
-        return False
-    return any(len(x.slopes) >= 4 for x in loose)
+def _hides(step: UserMap, loose: Sequence[PlaceOrder], lowest: PlaceOrder) -> bool:
+    """Whether a component that has not settled may be of a lower power.
+
+    One whose slopes are few is not where its errors are smaller on the stretch that has settled.
+    """
+    power, run = lowest.power or 0, lowest.run
+
+    def sizes(x: PlaceOrder) -> list[float]:
+        unit = float(x.place.units[step.names.index(x.component)])
+        return [e / unit for h, e, _ in x.rows if run is None or run.last <= h <= run.first]
+
+    def may_be(x: PlaceOrder) -> bool:
+        if len(x.slopes) >= ENOUGH:
+            return x.may_fall_below(power)
+        return any(a > b for a, b in zip(sizes(x), sizes(lowest), strict=True))
+
+    return power > 1 and any(map(may_be, loose))
 
 
 def _settled(
@@ -269,6 +296,8 @@ def _settled(
         else:
             tail = tail or Tail(run.power, rows[at[0]][0], error)
     if slopes.unsettled and chosen is slopes.runs[-1]:
+        if _on_their_way(slopes.unsettled, chosen.power):
+            return None, None, None
         end = next(k for k, row in enumerate(rows) if row[0] == chosen.last)
         after = rows[min(end + 1, len(rows) - 1)]
         error = after[1] / unit
@@ -280,10 +309,35 @@ def _settled(
     return chosen.power, chosen, tail
 
 
-def _shown(rows: Sequence[tuple[float, float, float]], how: str) -> tuple[float, ...]:
-    """The slopes between neighbours beyond their noise, and what rounded coefficients may do."""
+def _on_their_way(slopes: Sequence[float], power: int) -> bool:
+    """Whether they rise steadily to another power, as those of what a loop leaves do not."""
+    last = slopes[-_QUIET:]
+    steady = len(last) == _QUIET and all(a < b for a, b in pairwise(last))
+    return steady and last[-1] > power - 1
+
+
+def _shown(
+    rows: Sequence[tuple[float, float, float]], below: Sequence[bool], how: str
+) -> list[tuple[float, float]]:
+    """The logarithm of h and the slope between neighbours beyond their noise, and what rounded
+    coefficients may do, below the step size at which the error last changes its sign."""
     most = _OF_MANY if how == "duals" else 10
-    clear = [(h, e) for h, e, n in rows if e > most * n]
-    return tuple(
-        math.log(a / b) / math.log(h / g) for (h, a), (g, b) in pairwise(clear) if a > 0 and b > 0
-    )
+    clear = [(h, e, sign) for (h, e, n), sign in zip(rows, below, strict=True) if e > most * n]
+    turns = [k for k, (one, two) in enumerate(pairwise(clear), start=1) if one[2] != two[2]]
+    return [
+        (math.log(h * g) / 2, math.log(a / b) / math.log(h / g))
+        for (h, a, _), (g, b, _) in pairwise(clear[turns[-1] if turns else 0 :])
+    ]
+
+
+def _limit(slopes: Sequence[tuple[float, float]]) -> float:
+    """To which they tend.
+
+    Of a hʳ (1 − x), x = h/c, the slope is r − x/(1 − x), and rises by x/(1 − x)² as log h falls:
+    more and more slowly.
+    """
+    if len(slopes) < ENOUGH:
+        return slopes[-1][1] if slopes else 0.0
+    rises = [(b - a) / (x - y) for (x, a), (y, b) in pairwise(slopes[-3:])]
+    steady = 0 < rises[1] <= rises[0]
+    return slopes[-1][1] + ((math.sqrt(1 + 4 * rises[1]) - 1) / 2 if steady else 0.0)
