@@ -20,7 +20,8 @@ from tests.campaigns.stepping.systems import InUnits
 
 DIGITS = 60
 _STAGES, _ENOUGH = 6, 45  # of Gauss's method; digits to which its stages are iterated
-_STEPS = (Fraction(1, 2**10), Fraction(1, 2**11)), (Fraction(1, 2**15), Fraction(1, 2**16))
+_HALVINGS = 15, 12, 10, 9, 8, 7, 6, 5, 4  # of the larger of two step sizes
+_ROUNDED = 2.0**-49  # of a step's length: what coefficients in doubles do to it
 _STEP = Fraction(1, 32)  # at which the structure is looked at
 _KEPT = 1e-25  # and what is left of it where it is kept
 _CLEAR = 0.15  # off a whole number, which a slope may be
@@ -151,17 +152,20 @@ def _gauss() -> tuple[Vector, list[Vector], Vector]:
 
 
 def _order(step: Flow, flow: Flow, place: Vector) -> int:
+    """By the least step sizes at which rounded coefficients do not count."""
     t, unclear = mpmath.mpf(_TIME.numerator) / _TIME.denominator, 0.0
-    for sizes in _STEPS:
+    for halvings in _HALVINGS:
         apart = []
-        for size in sizes:
-            h = mpmath.mpf(size.numerator) / size.denominator
+        for h in (mpmath.ldexp(1, -halvings), mpmath.ldexp(1, -halvings - 1)):
             ends = zip(step(place, h, t), flow(place, h, t), strict=True)
             apart.append(max(abs(x - y) for x, y in ends))
-        slope = float(mpmath.log(apart[0] / apart[1], 2))
-        if abs(slope - round(slope)) < _CLEAR:
-            return round(slope) - 1
-        unclear = slope
+            if apart[-1] < _ROUNDED * h:
+                break
+        else:
+            slope = float(mpmath.log(apart[0] / apart[1], 2))
+            if abs(slope - round(slope)) < _CLEAR:
+                return round(slope) - 1
+            unclear = slope
     raise UnclearError(f"the error falls with h^{unclear:.3f}")
 
 

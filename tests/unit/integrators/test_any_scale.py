@@ -17,8 +17,10 @@ from tests.helpers.programs.compilers import library
 from tests.helpers.programs.judged import judged
 from verify.errors import InputError
 from verify.hamiltonians import systems
+from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.foreign.called import of_library
-from verify.integrators.measures.survey import Request
+from verify.integrators.measures.survey import Request, places_of_field
+from verify.integrators.places.units import Field
 from verify.integrators.results import Claims, Finding
 from verify.integrators.user_code.number_type import DOUBLE
 
@@ -61,6 +63,23 @@ def test_the_order_of_a_right_method_on_stiff_h_is_seen(rate: int) -> None:
     assert (found.verdict, found.convergence_order) == ("MEASURED", 2), found.reason
     wrong = judged(steps.stiff(rate), BOTH, hamiltonian=f"p**2/2 + {rate}*1.0001*q**2/2")
     assert wrong.verdict == "REFUTED"
+
+
+@pytest.mark.parametrize("speed", [1e-5, 1.0, 1e4])
+def test_a_body_near_the_speed_of_light_has_a_unit_of_p_and_one_of_q_by_it(speed: float) -> None:
+    def step(p: Any, q: Any, h: Any) -> Any:
+        p = p - h / 2 * 2 * q
+        q = q + h * speed * p / (speed**2 + p**2) ** 0.5
+        return p - h / 2 * 2 * q, q
+
+    energy = f"{speed}*sqrt({speed}**2 + p**2) + q**2"
+    found = judged(step, BOTH, hamiltonian=energy)
+    assert found.convergence_order == 2, found.reason
+    assert found.symplectic
+    places = places_of_field(Field(Hamiltonian.parse(energy)), moving=False)
+    assert max(abs(x.z[0]) for x in places) < 10 * speed
+    wrong = judged(step, BOTH, hamiltonian=energy.replace("+ q**2", "+ 1.001*q**2"))
+    assert (wrong.verdict, wrong.convergence_order) == ("REFUTED", 0)
 
 
 def test_a_term_that_acts_far_from_0_alone_is_seen() -> None:

@@ -57,6 +57,11 @@ def test_mistakes_by_hand_have_the_order_that_theory_says() -> None:
     assert (clock.order, clock.symplectic) == (1, True)
 
 
+def test_rounded_coefficients_hide_no_order_at_tiny_steps() -> None:
+    case = case_of(134, 100)
+    assert (case.method.name, case.truth.order) == ("forest-ruth", 4)
+
+
 @pytest.mark.parametrize("kind", MISTAKES)
 def test_a_planted_mistake_breaks_what_is_claimed(kind: str) -> None:
     case = spoilt_one("x", random.Random(3), kind)  # noqa: S311

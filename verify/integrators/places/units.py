@@ -75,36 +75,60 @@ class Field:
 
 def units_of(field: Field, usual: float = 1.0) -> tuple[list[Fraction], Fraction]:
     """A unit of each coordinate, p1 … qn, and of t; `usual`: a length, where H has none."""
-    lengths = _lengths(field, usual)
-    momenta = _momenta(field, lengths)
+    n = field.degrees
+    lengths, momenta = _sizes(field, n, usual), None
+    if lengths is None:
+        momenta = _sizes(field, 0)
+    if momenta is None:
+        lengths = lengths or [usual] * n
+        momenta = _partners(field, lengths, n)
+    else:  # as of a relativistic body on a spring
+        lengths = _partners(field, momenta, 0)
     return [simple(x) for x in (*momenta, *lengths)], simple(_duration(field, [*momenta, *lengths]))
 
 
-def _lengths(field: Field, usual: float) -> list[float]:
-    """Of each q: where its forces turn from one power to another; else the usual one."""
+def _sizes(field: Field, first: int, usual: float = 1.0) -> list[float] | None:
+    """Of each q, or p, from the `first` coordinate on: where what it makes turns from one power to
+    another; None where nothing does."""
     n = field.degrees
-    direction = [_DIRECTION[k % len(_DIRECTION)] * (1 + k // len(_DIRECTION)) for k in range(n)]
-
+    direction = _direction(n)
     still = [0.0] * (2 * n)
     at_rest = field(still) is not None  # then a constant force is of no size
 
-    def force(s: float) -> float | None:
-        moved = [0.0] * n + [s * x for x in direction]
+    def change(s: float) -> float | None:
+        moved = _put(first, [s * x for x in direction])
         if at_rest:
             return field.change(still, _TIME, moved, _TIME)
         slopes = field(moved)
-        return None if slopes is None else math.hypot(*slopes[:n])
+        return None if slopes is None else math.hypot(*_others(slopes, first))
 
-    common = _crossover(force) or usual
-    base = [0.0] * n + [common * x for x in direction]
-    lengths = [common] * n
+    common = _crossover(change)
+    scale = common or usual
+    base = _put(first, [scale * x for x in direction])
+    sizes, seen = [scale] * n, common is not None
     for k in range(n):
         # At several states, as a force may be still at one of them.
-        each = [_crossover(_response(field, [x * y for x in base], n + k)) for y in _ASIDE]
+        each = [_crossover(_response(field, [x * y for x in base], first + k)) for y in _ASIDE]
         alone = [x for x in each if x is not None]
-        if alone and not 1 / _APART < max(alone) / common < _APART:
-            lengths[k] = max(alone)
-    return lengths
+        seen = seen or bool(alone)
+        if alone and not 1 / _APART < max(alone) / scale < _APART:
+            sizes[k] = max(alone)
+    return sizes if seen else None
+
+
+def _direction(n: int) -> list[float]:
+    return [_DIRECTION[k % len(_DIRECTION)] * (1 + k // len(_DIRECTION)) for k in range(n)]
+
+
+def _put(first: int, half: Sequence[float]) -> list[float]:
+    """A state whose other half is 0."""
+    zeros = [0.0] * len(half)
+    return [*zeros, *half] if first else [*half, *zeros]
+
+
+def _others(slopes: Sequence[float], first: int) -> Sequence[float]:
+    """What the coordinates from `first` on make of the other half."""
+    return slopes[: len(slopes) // 2] if first else slopes[len(slopes) // 2 :]
 
 
 def _response(field: Field, base: Vector, j: int) -> Callable[[float], float | None]:
@@ -141,31 +165,34 @@ def _crossover(size: Callable[[float], float | None]) -> float | None:
     return None
 
 
-def _momenta(field: Field, lengths: Vector) -> list[float]:
-    """Of each p: that whose kinetic energy is the work of its force over its length."""
+def _partners(field: Field, sizes: Vector, first: int) -> list[float]:
+    """Of each p, that whose kinetic energy is the work of its force over its length; or so of q."""
     n = field.degrees
-    base = [0.0] * n + [x * y for x, y in zip(lengths, _DIRECTION * (1 + n // 10), strict=False)]
-    work = [min(each, default=0.0) for each in zip(*_works(field, base, lengths), strict=True)]
+    base = _put(first, [x * y for x, y in zip(sizes, _direction(n), strict=True)])
+    work = [min(each, default=0.0) for each in zip(*_works(field, base, sizes, first), strict=True)]
     mean = sum(work) / max(len(work), 1) or 1.0
-    return [_momentum(field, base, k, work[k] if work and work[k] else mean) for k in range(n)]
+    return [_partner(field, base, n - first + k, work[k] or mean) for k in range(n)]
 
 
-def _works(field: Field, base: Vector, lengths: Vector) -> list[list[float]]:
+def _works(field: Field, base: Vector, sizes: Vector, first: int) -> list[list[float]]:
     """Of each force over its length, at states beside one another, as one may lie in a core."""
-    n = len(lengths)
     states = [field([x * y for x in base]) for y in _ASIDE]
-    works = [[abs(z[k]) * lengths[k] for k in range(n)] for z in states if z is not None]
-    return works or [[0.0] * n]
+    works = [
+        [abs(slope) * size for slope, size in zip(_others(z, first), sizes, strict=True)]
+        for z in states
+        if z is not None
+    ]
+    return works or [[0.0] * len(sizes)]
 
 
-def _momentum(field: Field, base: Vector, k: int, work: float) -> float:
+def _partner(field: Field, base: Vector, j: int, work: float) -> float:
     n = field.degrees
 
-    def energy(p: float) -> float:
+    def energy(x: float) -> float:
         moved = list(base)
-        moved[k] = p
+        moved[j] = x
         slopes = field(moved)
-        return math.inf if slopes is None else abs(p * slopes[n + k])
+        return math.inf if slopes is None else abs(x * slopes[(j + n) % (2 * n)])
 
     low, high = -200.0, 200.0  # of its binary logarithm
     if not energy(2.0**high) > work > energy(2.0**low):
