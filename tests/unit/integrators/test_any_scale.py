@@ -82,6 +82,41 @@ def test_a_body_near_the_speed_of_light_has_a_unit_of_p_and_one_of_q_by_it(speed
     assert (wrong.verdict, wrong.convergence_order) == ("REFUTED", 0)
 
 
+IN_C = """
+#include <math.h>
+static double F(double q, double t) {{ return {force}; }}
+static double V(double p) {{ return {velocity}; }}
+void step(int n, double t, double h, double *p, double *q)
+{{
+    p[0] += h/2*F(q[0], t); q[0] += h*V(p[0]); p[0] += h/2*F(q[0], t + h);
+}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("energy", "force", "velocity", "right", "wrong"),
+    [
+        ("p**2/2 + 1e-12*cos(1e6*q) + q**4/4", "1e-6*sin(1e6*q) - {}*q*q*q", "p", "1", "1.01"),
+        ("p**2/2 + q**2/2 + q**4/4 + 1e-24*q**6/6", "-q - q*q*q - {}*pow(q, 5)", "p",
+         "1e-24", "1.01e-24"),
+        ("p**2/2 + exp(50*q) + exp(-0.01*q)", "-50*exp(50*q) + {}*exp(-0.01*q)", "p",
+         "0.01", "0.0101"),
+        ("p**2/2 - cos(q) + 0.3*q*cos(t/100000)", "-sin(q) - 0.3*cos(t/{})", "p", "1e5", "2e5"),
+        ("3e8*sqrt(p**2 + 2.73e-22**2) + 1e-9*q**2", "-2e-9*q", "p*3e8/hypot(p, {})",
+         "2.73e-22", "2.74e-22"),
+    ],
+    ids=["ripples", "far", "slow", "clock", "fast"],
+)  # fmt: skip
+def test_every_scale_of_h_is_looked_at(
+    tmp_path: Path, energy: str, force: str, velocity: str, right: str, wrong: str
+) -> None:
+    for number, verdict in ((right, "MEASURED"), (wrong, "REFUTED")):
+        texts = {"force": force.format(number), "velocity": velocity.format(number)}
+        path = library(tmp_path, f"{verdict}.c", IN_C.format(**texts), "-lm")
+        function = of_library(f"{path}:step", 1, DOUBLE, 60)
+        assert judged(function, BOTH, hamiltonian=energy).verdict == verdict
+
+
 def test_a_term_that_acts_far_from_0_alone_is_seen() -> None:
     def step(p: Any, q: Any, h: Any) -> Any:
         if q > steps.FAR:

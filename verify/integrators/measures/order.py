@@ -128,10 +128,12 @@ def flow_of(hamiltonian: Hamiltonian, probe: Probe) -> FlowInDegrees:
 
 
 def _chosen(places: Sequence[Place], most: int) -> list[Place]:
-    """The user's, those on sides of their own, and others from all amplitudes."""
-    needed = [x for x in places if x.source in (USER, SIDE)]
-    others = [x for x in places if x not in needed]
-    return [*needed, *spread(others, most)]
+    """The user's, those on sides of their own, and others from all amplitudes of each scale."""
+    chosen = [x for x in places if x.source in (USER, SIDE)]
+    others = [x for x in places if x not in chosen]
+    for units in dict.fromkeys(x.units for x in others):
+        chosen += spread([x for x in others if x.units == units], most)
+    return chosen
 
 
 def _periods(

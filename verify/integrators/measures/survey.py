@@ -5,14 +5,14 @@ on top of each other, are left out.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from verify.arithmetic.exact import decimal
 from verify.errors import InputError
 from verify.flows.extrapolation import NoFlowError
-from verify.integrators.places.place import PATTERN, USER, Place, simple, states
+from verify.integrators.places.place import PATTERN, USER, Place, simple, spread, states
 from verify.integrators.places.units import Field, rate, reaches, units_of
 from verify.integrators.probes.duals import DualProbe
 from verify.integrators.user_code.user_map import UserMap
@@ -23,6 +23,7 @@ _MOMENTS = tuple(map(Fraction, ("1/4", "5/7", "1/20", "13/5", "1003/7")))  # in 
 _VARIANTS = 4  # of a pattern of signs
 _MOST = {1: 12, 2: 16}
 _OTHERWISE = 16  # places of more degrees of freedom
+_ELSEWHERE = 4  # places of another scale of H
 _BENT = 0.1  # of the largest entry of J
 _LARGEST = Fraction(1, 2)  # of the step size, in parts of the time in which the motion changes
 
@@ -56,26 +57,40 @@ def check_request(names: Sequence[str], request: Request) -> None:
 
 
 def places_of_field(field_: Field, moving: bool, request: Request = NOWHERE) -> list[Place]:
-    """For a step of that H; empty where H has a motion from none of them."""
+    """For a step of that H; empty where H has a motion from none of them.
+
+    Most are in the first scale of H, a few in each that lies far from it.
+    """
     far = max((float(abs(x)) for x in (request.z or ())[field_.degrees :]), default=0.0)
-    units, unit_of_time = units_of(field_, far or 1.0)
-    units = [request.scale.get(name, x) for name, x in zip(field_.names, units, strict=True)]
+    scales, unit_of_time = units_of(field_, far or 1.0)
     pace = unit_of_time if moving else None
 
-    def place(k: int, z: tuple[Fraction, ...], source: str) -> Place | None:
+    def place(
+        k: int, z: tuple[Fraction, ...], units: Sequence[Fraction], source: str = PATTERN
+    ) -> Place | None:
         t = _MOMENTS[k % len(_MOMENTS)] * unit_of_time if moving else Fraction(0)
         return _place(field_, z, t, units, pace, source)
 
-    mine = [place(0, request.z, USER)] if request.z is not None else []
-    made = [place(k, z, PATTERN) for k, z in enumerate(states(units))]
+    chosen = list[Place | None]()
+    for k, scale in enumerate(scales[:1] if request.scale else scales):
+        units = [request.scale.get(name, x) for name, x in zip(field_.names, scale, strict=True)]
+        if k == 0 and request.z is not None:
+            chosen.append(place(0, request.z, units, USER))
+        calm = _calm(place, units)
+        most = _MOST.get(field_.degrees, _OTHERWISE)
+        chosen += spread(calm, _ELSEWHERE) if k else calm[:most]
+    return _stepped([x for x in chosen if x is not None], request.step_size)
+
+
+def _calm(make: Callable[..., Place | None], units: Sequence[Fraction]) -> list[Place]:
+    """The patterns in these units, none of them of a motion that is faster by far."""
+    made = [make(k, z, units) for k, z in enumerate(states(units))]
     least = _least_step([x for x in made if x is not None])
     for variant in range(1, _VARIANTS):  # where H has no motion there, or too fast a one
         for k, z in enumerate(states(units, variant)):
             if not _is_calm(made[k], least):
-                made[k] = place(k, z, PATTERN)
-    calm = [x for x in made if x is not None and _is_calm(x, least)]
-    chosen = calm[: _MOST.get(field_.degrees, _OTHERWISE)]
-    return _stepped([*(x for x in mine if x is not None), *chosen], request.step_size)
+                made[k] = make(k, z, units)
+    return [x for x in made if x is not None and _is_calm(x, least)]
 
 
 def _stepped(places: list[Place], size: Fraction | None) -> list[Place]:

@@ -11,6 +11,8 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
+import gmpy2
+
 from verify.flows.degrees.extrapolation import FlowInDegrees
 from verify.flows.extrapolation import NoFlowError
 from verify.hamiltonians.canonical_field import canonical_field
@@ -18,10 +20,13 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.places.place import simple
 
 _DIGITS, _TIME = 20, 0.25
-_OCTAVES = range(-44, 45)  # of lengths that are looked at
+# Of lengths that are looked at: the far ones, as of atoms in SI units, at every fourth.
+_OCTAVES = *range(-140, -44, 4), *range(-44, 45), *range(48, 141, 4)
 _DEPARTS, _PLATEAU = 0.3, 0.1  # of a power of the coordinates
 _ASIDE = (1.0, 0.61, 1.43)  # parts of a state, for others beside it
-_APART = 30  # times another coordinate's length, one counts for itself
+_APART = 30  # times another coordinate's length, or another scale, one counts for itself
+_RIPPLE = 8  # times the slope over a length that at its middle is none of the same bend
+_LONG, _MOST_SCALES = 6, 3  # slopes of a power that is seen beyond the first; and scales in all
 _DIRECTION = (1.0, -1.27, 0.78, 1.13, -0.87, 0.69, -1.41, 0.93, 1.31, -0.74)
 Vector = Sequence[float]
 
@@ -47,14 +52,23 @@ class Field:
             return None
         return [float(x) for x in slopes]
 
-    def change(self, base: Vector, t: float, moved: Vector, later: float) -> float | None:
-        """How far f(moved, later) is from f(base, t), where floats would cancel."""
-        one, two = self._slopes(base, t), self._slopes(moved, later)
-        if one is None or two is None:
+    def octave(
+        self, z: Vector, t: float, base: Vector | None = None, then: float = 0.0, half: int = -1
+    ) -> float | None:
+        """The binary logarithm of how large f(z, t) is, or how far from f(base, then), in the half
+        that is counted, of both; no float overflows, or cancels."""
+        slopes = self._slopes(z, t)
+        less = [0] * len(z) if base is None else self._slopes(base, then)
+        if slopes is None or less is None:
             return None
-        with self._flow.arithmetic.context():
-            apart = [float(x - y) for x, y in zip(two, one, strict=True)]
-        return math.hypot(*apart) if all(map(math.isfinite, apart)) else None
+        n = self.degrees
+        part = slice(None) if half < 0 else slice(half * n, half * n + n)
+        try:
+            with self._flow.arithmetic.context():
+                total = sum((x - y) ** 2 for x, y in [*zip(slopes, less, strict=True)][part])
+                return float(gmpy2.log2(total)) / 2 if total else -math.inf
+        except ArithmeticError:
+            return None
 
     def jacobian(self, z: Vector, t: float, reach: Vector) -> list[list[float]]:
         """∂f/∂z by columns, by central differences of many digits. Raises NoFlowError."""
@@ -73,47 +87,58 @@ class Field:
         return columns
 
 
-def units_of(field: Field, usual: float = 1.0) -> tuple[list[Fraction], Fraction]:
-    """A unit of each coordinate, p1 … qn, and of t; `usual`: a length, where H has none."""
-    n = field.degrees
-    lengths, momenta = _sizes(field, n, usual), None
-    if lengths is None:
-        momenta = _sizes(field, 0)
-    if momenta is None:
-        lengths = lengths or [usual] * n
-        momenta = _partners(field, lengths, n)
-    else:  # as of a relativistic body on a spring
-        lengths = _partners(field, momenta, 0)
-    return [simple(x) for x in (*momenta, *lengths)], simple(_duration(field, [*momenta, *lengths]))
+def units_of(field: Field, usual: float = 1.0) -> tuple[list[list[Fraction]], Fraction]:
+    """Units of the coordinates, p1 … qn, for each scale that H has, and one of t.
+
+    `usual`: a length, where H has none.
+    """
+    n, made = field.degrees, list[list[float]]()
+    for lengths in _sizes(field, n, usual):
+        made.append([*_partners(field, lengths, n), *lengths])
+    for momenta in [] if made else _sizes(field, 0):  # as of a relativistic body on a spring
+        made.append([*momenta, *_partners(field, momenta, 0)])
+    lengths = [usual] * n
+    made = made or [[*_partners(field, lengths, n), *lengths]]
+    return [[simple(x) for x in each] for each in made], simple(_duration(field, made[0]))
 
 
-def _sizes(field: Field, first: int, usual: float = 1.0) -> list[float] | None:
+def _sizes(field: Field, first: int, usual: float = 1.0) -> list[list[float]]:
     """Of each q, or p, from the `first` coordinate on: where what it makes turns from one power to
-    another; None where nothing does."""
+    another; one list for each scale, none where nothing does."""
     n = field.degrees
-    direction = _direction(n)
     still = [0.0] * (2 * n)
     at_rest = field(still) is not None  # then a constant force is of no size
 
-    def change(s: float) -> float | None:
-        moved = _put(first, [s * x for x in direction])
+    def size(s: float) -> float | None:
+        moved = _put(first, [s * x for x in _direction(n)])
         if at_rest:
-            return field.change(still, _TIME, moved, _TIME)
-        slopes = field(moved)
-        return None if slopes is None else math.hypot(*_others(slopes, first))
+            return field.octave(moved, _TIME, still, _TIME)
+        return field.octave(moved, _TIME, half=0 if first else 1)
 
-    common = _crossover(change)
-    scale = common or usual
-    base = _put(first, [scale * x for x in direction])
-    sizes, seen = [scale] * n, common is not None
+    turns = [*_turns(size), *_turns(lambda s: size(-s))]
+    scales = turns[:1]
+    for x in turns[1:]:
+        if all(not 1 / _APART < x / y < _APART for y in scales):
+            scales.append(x)
+    nearest = scales[0] if scales else usual
+    sizes = _each(field, first, nearest)
+    if not scales and all(x == usual for x in sizes):
+        return []
+    return [[x * (scale / nearest) for x in sizes] for scale in scales[:_MOST_SCALES] or [usual]]
+
+
+def _each(field: Field, first: int, scale: float) -> list[float]:
+    """The size of each, near that scale: it, or one of its own."""
+    n = field.degrees
+    base = _put(first, [scale * x for x in _direction(n)])
+    sizes = [scale] * n
     for k in range(n):
         # At several states, as a force may be still at one of them.
-        each = [_crossover(_response(field, [x * y for x in base], first + k)) for y in _ASIDE]
-        alone = [x for x in each if x is not None]
-        seen = seen or bool(alone)
+        each = [_turns(_response(field, [x * y for x in base], first + k))[:1] for y in _ASIDE]
+        alone = [x for turns in each for x in turns]
         if alone and not 1 / _APART < max(alone) / scale < _APART:
             sizes[k] = max(alone)
-    return sizes if seen else None
+    return sizes
 
 
 def _direction(n: int) -> list[float]:
@@ -134,35 +159,44 @@ def _others(slopes: Sequence[float], first: int) -> Sequence[float]:
 def _response(field: Field, base: Vector, j: int) -> Callable[[float], float | None]:
     """How far the forces change as one coordinate moves."""
 
-    def change(s: float) -> float | None:
+    def size(s: float) -> float | None:
         moved = list(base)
         moved[j] += s
-        return field.change(base, _TIME, moved, _TIME)
+        return field.octave(moved, _TIME, base, _TIME)
 
-    return change
+    return size
 
 
-def _crossover(size: Callable[[float], float | None]) -> float | None:
-    """Where a size first turns from one power of s to another; None where it does not."""
+def _turns(size: Callable[[float], float | None]) -> list[float]:
+    """Where a size, by its binary logarithm, turns from one power of s to another: the first such
+    place, and those beyond at which a power of a long stretch ends or begins."""
     values = [size(2.0**k) for k in _OCTAVES]
     powers = [
-        math.log2(b / a) if a and b and math.isfinite(a) and math.isfinite(b) else None
-        for a, b in pairwise(values)
+        (b - a) / (_OCTAVES[k + 1] - _OCTAVES[k])
+        if a is not None and b is not None and math.isfinite(b - a)
+        else None
+        for k, (a, b) in enumerate(pairwise(values))
     ]
     begun: float | None = None
+    made = list[float]()
     first = next((k for k, x in enumerate(values) if x is not None), 0)
     if first:
-        return math.ldexp(1.5, _OCTAVES[first])  # it is not defined nearer to 0
+        made.append(math.ldexp(1.5, _OCTAVES[first]))  # it is not defined nearer to 0
     for k in range(2, len(powers)):
-        three = powers[k - 2 : k + 1]
-        steady = [x for x in three if x is not None]
-        if len(steady) == 3 and max(steady) - min(steady) < _PLATEAU and begun is None:
-            begun = steady[0]
-        elif begun is not None and powers[k] is None:
-            return math.ldexp(1.0, _OCTAVES[k - 1])  # it is not defined beyond
-        elif begun is not None and abs((powers[k] or 0.0) - begun) > _DEPARTS:
-            return math.ldexp(1.5, _OCTAVES[k])
-    return None
+        fewest = _LONG if made else 3
+        steady = [x for x in powers[max(0, k + 1 - fewest) : k + 1] if x is not None]
+        if begun is None:
+            if len(steady) == fewest and max(steady) - min(steady) < _PLATEAU:
+                begun = steady[0]
+                if made:
+                    made.append(math.ldexp(1.0, _OCTAVES[k + 1 - fewest]))
+        elif powers[k] is None:
+            made.append(math.ldexp(1.0, _OCTAVES[k - 1]))  # it is not defined beyond
+            begun = None
+        elif abs((powers[k] or 0.0) - begun) > _DEPARTS:
+            made.append(math.ldexp(1.5, _OCTAVES[k]))
+            begun = None
+    return made
 
 
 def _partners(field: Field, sizes: Vector, first: int) -> list[float]:
@@ -204,10 +238,13 @@ def _partner(field: Field, base: Vector, j: int, work: float) -> float:
 
 
 def _duration(field: Field, units: Vector) -> float:
-    """Over which the field changes otherwise than by a line in t; 1 where it does not."""
+    """Over which the field changes otherwise than by a power of t, from 0 on or where it is
+    defined; 1 where it does not."""
     if not field.timed:
         return 1.0
-    return _crossover(lambda s: field.change(units, 0.125, units, 0.125 + s)) or 1.0
+    begin = 0.0 if field(units, 0.0) is not None else 0.125
+    turns = _turns(lambda s: field.octave(units, begin + s, units, begin))
+    return turns[0] if turns else 1.0
 
 
 # -- at one place ---------------------------------------------------------------------------------
@@ -218,10 +255,13 @@ def reaches(field: Field, z: Vector, t: float, units: Vector) -> list[float]:
     still = field(z, t)
     if still is None:
         raise NoFlowError("H is not defined there")
-    return [_reach(field, z, t, j, still, units[j]) for j in range(len(z))]
+    steep = field.jacobian(z, t, units)
+    return [_reach(field, z, t, j, still, units[j], steep[j]) for j in range(len(z))]
 
 
-def _reach(field: Field, z: Vector, t: float, j: int, still: Vector, unit: float) -> float:
+def _reach(
+    field: Field, z: Vector, t: float, j: int, still: Vector, unit: float, steep: Vector
+) -> float:
     length = unit
     for _ in range(20):
         ends = []
@@ -234,7 +274,12 @@ def _reach(field: Field, z: Vector, t: float, j: int, still: Vector, unit: float
             bend = max(
                 abs(a - 2 * c + b) / (abs(a - b) + abs(c) * 1e-3 + 1e-300) for a, b, c in pairs
             )
-            if bend < 1 or all(abs(a - 2 * c + b) <= 0.5 * abs(c) for a, b, c in pairs):
+            ripples = any(
+                2 * length * abs(slope) > _RIPPLE * (abs(a - b) + 1e-12 * abs(c))
+                for slope, (a, b, c) in zip(steep, pairs, strict=True)
+            )
+            calm = all(abs(a - 2 * c + b) <= 0.5 * abs(c) for a, b, c in pairs)
+            if not ripples and (bend < 1 or calm):
                 return length
         length /= 4
     return length
