@@ -117,6 +117,18 @@ def test_every_scale_of_h_is_looked_at(
         assert judged(function, BOTH, hamiltonian=energy).verdict == verdict
 
 
+@pytest.mark.parametrize(("factor", "verdict"), [("3e-7", "REFUTED"), ("1e-8", "MEASURED")])
+def test_a_constant_that_is_wrong_in_its_seventh_digit_is_none_that_was_rounded(
+    tmp_path: Path, factor: str, verdict: str
+) -> None:
+    source = IN_C.format(force=f"-sin(q)*(1 + {factor})", velocity="p")
+    function = of_library(f"{library(tmp_path, 'step.c', source, '-lm')}:step", 1, DOUBLE, 60)
+    found = judged(function, BOTH)
+    assert found.verdict == verdict, found.reason
+    noted = any("h^1 only, as the rounding of a coefficient" in str(x) for x in found.notes)
+    assert noted == (verdict == "MEASURED")
+
+
 def test_a_term_that_acts_far_from_0_alone_is_seen() -> None:
     def step(p: Any, q: Any, h: Any) -> Any:
         if q > steps.FAR:
