@@ -195,9 +195,11 @@ def _order(distances: Distances, sides: Sides, claims: Claims) -> _Order:
         tail = max(tails, key=lambda x: x.tail.error if x.tail else 0.0).tail
         assert tail is not None  # noqa: S101 - they all have one
         law = "follows no power" if tail.power is None else f"shrinks as `h^{tail.power}` only"
+        rounded = "the rounding of a coefficient leaves it"  # in its eighth digit, say
+        iterated = "an iteration that stops at a tolerance leaves it"
         notes.append(
             f"for h below `{tail.h:.1e}`, where its error is `{tail.error:.1e}`, that {law}, as "
-            "an iteration that stops at a tolerance leaves it"
+            f"{rounded if tail.power == 1 else iterated}"
         )
     return _Order(order, decided, said, domain, tuple(notes))
 

@@ -54,15 +54,17 @@ class Answer:
         """The counterexample, or the largest defect that is named, and its noise."""
         said, example = self.said, self.said.get("counterexample") or {}
         place = {name: example[name] for name in ("p", "q", "h", "t") if name in example}
-        size = _size(example.get("found")) if example.get("quantity", "").startswith("Δ") else None
-        if size is None:
-            size = _size(said.get("delta_j_max"))
-        return Defect(size, _size(said.get("probe_error")), place)
+        of_area = str(example.get("quantity", "")).startswith(("Δ", "det J"))
+        size, _, noise = str(example.get("found", "") if of_area else "").partition("±")
+        if not size:
+            size, noise = said.get("delta_j_max"), said.get("probe_error")
+        return Defect(_size(size), _size(noise), place)
 
 
 @dataclass(frozen=True)
 class Defect:
-    """|ΔJ| as the answer names it, with the noise that it names, and where: p, q, h by name."""
+    """|ΔJ| as the answer names it, with the noise that it names, and where: p, q, h by name. The
+    noise is that of the counterexample, and else the largest of all places."""
 
     size: float | None
     noise: float | None

@@ -20,7 +20,7 @@ from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.foreign.called import of_library
 from verify.integrators.measures.survey import Request, places_of_field
-from verify.integrators.places.units import Field
+from verify.integrators.places.units import Field, units_of
 from verify.integrators.results import Claims, Finding
 from verify.integrators.user_code.number_type import DOUBLE
 
@@ -115,6 +115,29 @@ def test_every_scale_of_h_is_looked_at(
         path = library(tmp_path, f"{verdict}.c", IN_C.format(**texts), "-lm")
         function = of_library(f"{path}:step", 1, DOUBLE, 60)
         assert judged(function, BOTH, hamiltonian=energy).verdict == verdict
+
+
+@pytest.mark.parametrize(
+    "energy",
+    ["p**2/2 - cos(q)", "p**2/2 + exp(q) - q", "p**2/2 + 4*(q**-12 - q**-6)", "p**2/2 + exp(-q**2)",
+     "p**2/2 + (1 - exp(-q))**2", "p**2/2 + q**2/2 + q**4/4", "p**2/2 - exp(-q)/q"],
+)  # fmt: skip
+def test_where_numbers_end_or_a_force_dies_out_is_no_scale_of_its_own(energy: str) -> None:
+    scales, _ = units_of(Field(Hamiltonian.parse(energy)))
+    assert len(scales) == 1
+    assert all(1 / 10 <= x <= 10 for x in scales[0])
+
+
+@pytest.mark.parametrize(("factor", "verdict"), [("3e-7", "REFUTED"), ("1e-8", "MEASURED")])
+def test_a_constant_that_is_wrong_in_its_seventh_digit_is_none_that_was_rounded(
+    tmp_path: Path, factor: str, verdict: str
+) -> None:
+    source = IN_C.format(force=f"-sin(q)*(1 + {factor})", velocity="p")
+    function = of_library(f"{library(tmp_path, 'step.c', source, '-lm')}:step", 1, DOUBLE, 60)
+    found = judged(function, BOTH)
+    assert found.verdict == verdict, found.reason
+    noted = any("h^1 only, as the rounding of a coefficient" in str(x) for x in found.notes)
+    assert noted == (verdict == "MEASURED")
 
 
 def test_a_term_that_acts_far_from_0_alone_is_seen() -> None:

@@ -137,6 +137,21 @@ def test_what_is_said_of_a_defect_is_judged(
     assert JudgedImplicit(step, said, delta, "").outcome == outcome
 
 
+@pytest.mark.parametrize(("noise", "outcome"), [("1e-12", "in the noise"), ("1e-15", "unknown")])
+def test_a_solver_in_floats_whose_defect_is_not_clear_is_in_the_noise_or_not_known(
+    noise: str, outcome: str
+) -> None:
+    step = Implicit("midpoint", "scipy", 8, "pendulum")
+    said = answer("MEASURED", 0, delta_j_max="1e-15", probe_error=noise)
+    assert JudgedImplicit(step, said, None, "", most=1e-13).outcome == outcome
+
+
+def test_the_noise_of_a_counterexample_is_that_of_its_place() -> None:
+    example = {"quantity": "det J − 1", "found": "1.5e-08 ± 8.9e-15", "p": "1", "h": "1/8"}
+    defect = answer("REFUTED", 1, probe_error="1e-9", counterexample=example).defect
+    assert (defect.size, defect.noise) == (1.5e-8, 8.9e-15)
+
+
 def test_the_place_and_size_of_a_counterexample_are_read(tmp_path: Path) -> None:
     """Of today's answer; its keys are read in `asked.py` alone."""
     path = tmp_path / "euler.py"

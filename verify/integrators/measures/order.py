@@ -45,6 +45,10 @@ _PLACES = {1: 7}  # at which it is looked
 _OTHERWISE = 4
 _FEWEST_IN_TAIL = 5  # slopes of a lower power that floats alone show
 _TOLERANCE = 1e-7  # in units: below it such a power may be what the tolerance of a loop leaves
+_FEW_DIGITS = (
+    5e-8,
+    0.5,
+)  # of a step's length, beyond coefficients of eight digits, and no standstill
 _QUIET = 3  # step sizes in the noise, after which none is looked at
 Probe = DualProbe | FloatProbe
 
@@ -174,7 +178,7 @@ def _at(
     size, begun = len(place.z), probe.begin(place)
     rows: list[list[tuple[float, float, float]]] = [[] for _ in range(size)]
     below: list[list[bool]] = [[] for _ in range(size)]
-    counts, quiet, unseen, lost, farthest = list[int](), 0, float("inf"), "", 0.0
+    counts, ways, quiet, unseen, lost = list[int](), list[float](), 0, float("inf"), ""
     for part in parts:
         h = place.step / part
         try:
@@ -189,7 +193,7 @@ def _at(
             rows[k].append((float(h), abs(errors[k]), noise[k]))
             below[k].append(errors[k] < 0)
         counts.append(count)
-        farthest = max(farthest, moved)
+        ways.append(moved)
         if moved:
             scaled = zip(errors, noise, place.units, strict=True)
             unseen = min(unseen, max((abs(e) + 10 * n) / float(u) for e, n, u in scaled) / moved)
@@ -199,8 +203,8 @@ def _at(
             break
     if len(rows[0]) < _QUIET:
         raise StepError(lost or "it fails for most step sizes")
-    judged = _judged(step, place, rows, below, counts, probe.how, unseen)
-    return replace(judged, moved=farthest)
+    judged = _judged(step, place, rows, below, counts, ways, probe.how, unseen)
+    return replace(judged, moved=max(ways))
 
 
 def _row(
@@ -228,7 +232,7 @@ def _row(
 
 def _judged(
     step: UserMap, place: Place, rows: list[list[tuple[float, float, float]]],
-    below: list[list[bool]], counts: Sequence[int], how: str, unseen: float,
+    below: list[list[bool]], counts: Sequence[int], ways: Sequence[float], how: str, unseen: float,
 ) -> PlaceOrder:  # fmt: skip
     """By the component whose error falls most slowly."""
     each = [(k, slopes_of(r)) for k, r in enumerate(rows)]
@@ -238,7 +242,7 @@ def _judged(
     judged = []
     for k, slopes in seen:
         unit = float(place.units[k])
-        power, run, tail = _settled(slopes, rows[k], counts, how, unit)
+        power, run, tail = _settled(slopes, rows[k], counts, ways, how, unit)
         shown = clear_slopes(rows[k], below[k], _OF_MANY if how == "duals" else ABOVE)
         judged.append(
             PlaceOrder(place, power, False, step.names[k], run, tail,
@@ -273,13 +277,14 @@ def _hides(step: UserMap, loose: Sequence[PlaceOrder], lowest: PlaceOrder) -> bo
 
 
 def _settled(
-    slopes: Slopes, rows: Sequence[tuple[float, float, float]], counts: Sequence[int], how: str,
-    unit: float,
+    slopes: Slopes, rows: Sequence[tuple[float, float, float]], counts: Sequence[int],
+    ways: Sequence[float], how: str, unit: float,
 ) -> tuple[int | None, Run | None, Tail | None]:  # fmt: skip
     """The power that holds, its stretch, and what a loop leaves below it.
 
     Where the number of comparisons changes with h, a loop ends at a tolerance: a lower power below
-    is then what it leaves, unless it goes on through such changes as no tolerance does.
+    is then what it leaves, unless it goes on through such changes as no tolerance does, or is a
+    part of the way itself, as of a wrong constant.
     """
     if not slopes.runs:
         return None, None, None
@@ -298,7 +303,9 @@ def _settled(
         if how == "duals":
             real = not iterates or len({counts[k] for k in at}) > 1
         else:
-            real = run.count >= _FEWEST_IN_TAIL and error > _TOLERANCE
+            least, most = (x * ways[at[0]] for x in _FEW_DIGITS)
+            constant = run.power == 1 and least < error < most  # a loop has gone round once
+            real = run.count >= _FEWEST_IN_TAIL and (error > _TOLERANCE or constant)
         if real:
             chosen, tail = run, None
         else:

@@ -191,7 +191,8 @@ def _turns(size: Callable[[float], float | None]) -> list[float]:
                 if made:
                     made.append(math.ldexp(1.0, _OCTAVES[k + 1 - fewest]))
         elif powers[k] is None:
-            made.append(math.ldexp(1.0, _OCTAVES[k - 1]))  # it is not defined beyond
+            if not made:  # it is not defined beyond; later numbers have come to their end
+                made.append(math.ldexp(1.0, _OCTAVES[k - 1]))
             begun = None
         elif abs((powers[k] or 0.0) - begun) > _DEPARTS:
             made.append(math.ldexp(1.5, _OCTAVES[k]))

@@ -19,7 +19,7 @@ def judged(*errors):
     step = SimpleNamespace(names=("p", "q"))
     rows = [[(h, abs(e(h)), 1e-16) for h in STEPS] for e in errors]
     below = [[e(h) < 0 for h in STEPS] for e in errors]
-    return _judged(step, PLACE, rows, below, [0] * len(STEPS), "floats", 0.0)
+    return _judged(step, PLACE, rows, below, [0] * len(STEPS), STEPS, "floats", 0.0)
 
 
 def settled(h):
