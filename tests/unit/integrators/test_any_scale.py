@@ -140,6 +140,54 @@ def test_a_constant_that_is_wrong_in_its_seventh_digit_is_none_that_was_rounded(
     assert noted == (verdict == "MEASURED")
 
 
+def test_where_a_loop_does_one_turn_less_no_order_is_seen() -> None:
+    def slopes(p: Any, q: Any) -> Any:
+        return [-q[0] - 2 * q[0] * q[1], -q[1] - q[0] ** 2 + q[1] ** 2, *p]
+
+    def step(p: Any, q: Any, h: Any) -> Any:
+        z = [*p, *q]
+        end = z
+        for _ in range(60):
+            middle = [(x + y) / 2 for x, y in zip(z, end, strict=True)]
+            new = [x + h * y for x, y in zip(z, slopes(middle[:2], middle[2:]), strict=True)]
+            moved = max(abs(x - y) for x, y in zip(new, end, strict=True))
+            end = new
+            if moved < 1e-8:
+                break
+        return end[:2], end[2:]
+
+    energy = "(p1**2 + p2**2)/2 + (q1**2 + q2**2)/2 + q1**2*q2 - q2**3/3"
+    found = judged(step, Claims(order=2), hamiltonian=energy)
+    assert (found.verdict, found.convergence_order) == ("MEASURED", 2), found.reason
+
+
+CHAIN = """
+void step(int n, double t, double h, double *p, double *q)
+{
+    double m[3] = {2, 3, 5};
+    for (int turn = 0; turn < 2; turn++) {
+        for (int i = 0; i < 3; i++) {
+            double left = i ? q[i - 1] : 0, right = i < 2 ? q[i + 1] : 0;
+            p[i] -= h/2*(2*q[i] - left - right + q[i]*q[i]*q[i])/m[i];
+        }
+        if (!turn) for (int i = 0; i < 3; i++) q[i] += h*p[i];
+    }
+}
+"""
+
+
+def test_velocities_of_three_bodies_in_c_are_named(tmp_path: Path) -> None:
+    path = library(tmp_path, "chain.c", CHAIN, "-lm")
+    energy = (
+        "p1**2/4 + p2**2/6 + p3**2/10 + (q1**2 + (q2 - q1)**2 + (q3 - q2)**2 + q3**2)/2"
+        " + (q1**4 + q2**4 + q3**4)/4"
+    )
+    found = judged(of_library(f"{path}:step", 3, DOUBLE, 60), BOTH, hamiltonian=energy)
+    assert found.verdict == "REFUTED"
+    note = "in momenta p = m·v, m = (2, 3, 5), it is of order 2 and symplectic"
+    assert note in map(str, found.notes)
+
+
 def test_a_term_that_acts_far_from_0_alone_is_seen() -> None:
     def step(p: Any, q: Any, h: Any) -> Any:
         if q > steps.FAR:

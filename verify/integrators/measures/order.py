@@ -289,6 +289,10 @@ def _settled(
     if not slopes.runs:
         return None, None, None
     chosen, tail = slopes.runs[0], None
+    begin = next(k for k, row in enumerate(rows) if row[0] == chosen.first)
+    if begin and counts[begin] < counts[begin - 1] and rows[begin][1] > rows[begin - 1][1]:
+        # A loop does one turn less: what it leaves is all that has settled.
+        return None, None, Tail(chosen.power, chosen.first, rows[begin][1] / unit)
     iterates = len(set(counts)) > 1
     for run in slopes.runs[1:]:
         if run.power > chosen.power and tail is None:

@@ -109,7 +109,7 @@ class UserMap:
     ) -> list[list[Fraction]]:
         """z' of each z as the numbers of its type that they are. Raises StepError, as `at`."""
         several = getattr(self.function, "several", None)
-        if several is not None:
+        if several is not None and not self.masses:
             return self._together(several, states, h, t)
         return [self._of_its_type(z, h, t) for z in states]
 
