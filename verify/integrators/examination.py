@@ -12,9 +12,9 @@ from functools import cached_property
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.claims import Evidence
 from verify.integrators.measured import finding_of_map, finding_of_step
-from verify.integrators.measures.order import Distances, distances_of
+from verify.integrators.measures.order import Distances, Probe, distances_of
 from verify.integrators.measures.still_clock import measured_mistakes
-from verify.integrators.measures.structure import Probe, Structure, structure_of
+from verify.integrators.measures.structure import Structure, structure_of
 from verify.integrators.measures.survey import (
     NOWHERE,
     Request,

@@ -190,10 +190,9 @@ def _order(distances: Distances, sides: Sides, claims: Claims) -> _Order:
     said = _order_said(order, lowest)
     if not decided:
         said += _slopes_said(loose)
-    tails = [x for x in resolved if x.tail is not None]
+    tails = [x.tail for x in resolved if x.tail is not None]
     if tails:
-        tail = max(tails, key=lambda x: x.tail.error if x.tail else 0.0).tail
-        assert tail is not None  # noqa: S101 - they all have one
+        tail = max(tails, key=lambda x: x.error)
         law = "follows no power" if tail.power is None else f"shrinks as `h^{tail.power}` only"
         rounded = "the rounding of a coefficient leaves it"  # in its eighth digit, say
         iterated = "an iteration that stops at a tolerance leaves it"
@@ -278,16 +277,14 @@ def _plain(x: Fraction) -> str:
     return Number(f"{float(x):.{_PRECISE}g}")
 
 
+def _floats(step: UserMap) -> str:
+    return "floats" if step.numbers is DOUBLE else step.numbers.declared_as
+
+
 def _places_noted(step: UserMap, structure: Structure) -> list[str]:
     places = list(dict.fromkeys(x.place for x in structure.readings))
-    kind = (
-        "measured with dual numbers"
-        if structure.how == "duals"
-        else f"measured in {_numbers(step)}"
-    )
-    if structure.how == "floats" and step.numbers is DOUBLE:
-        kind = "measured in floats"
-    notes = [f"{kind} at {where_seen(step, places)}, and nowhere else"]
+    kind = "with dual numbers" if structure.how == "duals" else f"in {_floats(step)}"
+    notes = [f"measured {kind} at {where_seen(step, places)}, and nowhere else"]
     if structure.blind:
         each = [
             ", ".join(f"{name} = `{x}`" for name, x in zip(step.names, r.place.z, strict=True))
@@ -321,7 +318,7 @@ def _unseen_noted(step: UserMap, distances: Distances) -> list[str]:
     if distances.how != "floats":
         return []
     unseen = max(x.unseen for x in distances.places)
-    numbers = "floats" if step.numbers is DOUBLE else step.numbers.declared_as
     return [
-        f"in {numbers}: an error of p' − p or q' − q below about `{unseen:.0e}` of them is not seen"
+        f"in {_floats(step)}: an error of p' − p or q' − q below about `{unseen:.0e}` of them "
+        "is not seen"
     ]

@@ -15,6 +15,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.measures.slopes import (
     ABOVE,
     ENOUGH,
+    Row,
     Run,
     Slopes,
     clear_slopes,
@@ -45,10 +46,7 @@ _PLACES = {1: 7}  # at which it is looked
 _OTHERWISE = 4
 _FEWEST_IN_TAIL = 5  # slopes of a lower power that floats alone show
 _TOLERANCE = 1e-7  # in units: below it such a power may be what the tolerance of a loop leaves
-_FEW_DIGITS = (
-    5e-8,
-    0.5,
-)  # of a step's length, beyond coefficients of eight digits, and no standstill
+_FEW_DIGITS = 5e-8, 0.5  # of a step's length: beyond eight digits, and no standstill
 _QUIET = 3  # step sizes in the noise, after which none is looked at
 Probe = DualProbe | FloatProbe
 
@@ -75,7 +73,7 @@ class PlaceOrder:
     run: Run | None = None
     tail: Tail | None = None
     slopes: tuple[float, ...] = ()
-    rows: tuple[tuple[float, float, float], ...] = ()  # of that component, as they stand
+    rows: tuple[Row, ...] = ()  # of that component, as they stand
     unseen: float = 0.0  # an error of the step, in parts of it, that would not show
     limit: float = 0.0  # to which the slopes tend
     moved: float = 0.0  # how far the flow goes with the largest step, in units
@@ -176,7 +174,7 @@ def _at(
 ) -> PlaceOrder:
     """All components at one place."""
     size, begun = len(place.z), probe.begin(place)
-    rows: list[list[tuple[float, float, float]]] = [[] for _ in range(size)]
+    rows: list[list[Row]] = [[] for _ in range(size)]
     below: list[list[bool]] = [[] for _ in range(size)]
     counts, ways, quiet, unseen, lost = list[int](), list[float](), 0, float("inf"), ""
     for part in parts:
@@ -231,7 +229,7 @@ def _row(
 
 
 def _judged(
-    step: UserMap, place: Place, rows: list[list[tuple[float, float, float]]],
+    step: UserMap, place: Place, rows: list[list[Row]],
     below: list[list[bool]], counts: Sequence[int], ways: Sequence[float], how: str, unseen: float,
 ) -> PlaceOrder:  # fmt: skip
     """By the component whose error falls most slowly."""
@@ -277,7 +275,7 @@ def _hides(step: UserMap, loose: Sequence[PlaceOrder], lowest: PlaceOrder) -> bo
 
 
 def _settled(
-    slopes: Slopes, rows: Sequence[tuple[float, float, float]], counts: Sequence[int],
+    slopes: Slopes, rows: Sequence[Row], counts: Sequence[int],
     ways: Sequence[float], how: str, unit: float,
 ) -> tuple[int | None, Run | None, Tail | None]:  # fmt: skip
     """The power that holds, its stretch, and what a loop leaves below it.

@@ -9,12 +9,11 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import pairwise
 
-from verify.integrators.measures.order import SPACED
+from verify.integrators.measures.order import SPACED, Probe
 from verify.integrators.measures.sides import Sides, other_sides
 from verify.integrators.measures.slopes import Row, slopes_of
 from verify.integrators.places.place import USER, Place, spread
 from verify.integrators.probes.duals import DualProbe
-from verify.integrators.probes.floats import FloatProbe
 from verify.integrators.probes.reading import Reading
 from verify.integrators.user_code.step import StepError, why
 from verify.integrators.user_code.user_map import UserMap
@@ -26,7 +25,6 @@ _SHARP = 1e-7  # the least that a probe has to see for a map to be said to keep 
 _SIZES = 1, 8  # parts of a place's largest step
 _LADDER = 3  # places at which S is followed as h falls
 _RISES = 1.5  # times the defect of a larger step: no power of h does so
-Probe = DualProbe | FloatProbe
 
 
 @dataclass(frozen=True)
