@@ -18,6 +18,9 @@ from verify.prose import Prose, prose
 
 Theirs: TypeAlias = Any  # what a user's code takes, holds or returns: it may be anything
 TIME_LIMIT = 60.0  # seconds for all of the user's code
+# Python drops what is raised within a finalizer or a callback of its garbage collector, and a bare
+# `except:` of the user's catches it: the alarm rings again after so many seconds.
+_AGAIN = 1.0
 
 
 class StepError(Exception):
@@ -98,12 +101,13 @@ def within(seconds: float, problem: str) -> Iterator[None]:
     if before is None:
         yield
         return
-    signal.setitimer(signal.ITIMER_REAL, seconds)
+    signal.setitimer(signal.ITIMER_REAL, seconds, _AGAIN)
     begun = time.perf_counter()
     try:
         yield
         done = True
     except _OverTimeError as raised:
+        done = True
         if raised is not error:
             raise
         raise StepError(problem) from None
@@ -112,7 +116,7 @@ def within(seconds: float, problem: str) -> Iterator[None]:
         signal.signal(signal.SIGALRM, before)
         if outer:
             spent = time.perf_counter() - begun
-            signal.setitimer(signal.ITIMER_REAL, max(outer - spent, 1e-3))
+            signal.setitimer(signal.ITIMER_REAL, max(outer - spent, 1e-3), _AGAIN)
 
 
 def single(x: Theirs) -> Theirs:
