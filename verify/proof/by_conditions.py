@@ -45,12 +45,9 @@ def prove_by_conditions(scheme: Scheme, every_h: ByConditions, least: int = 0) -
 
 
 def nearby_order(every_h: object, least: int) -> NearbyOrder | None:
-    """Of exact coefficients near printed ones, as far as `agreed_order`; None where none is, or
-    where clocks are not the right ones."""
+    """Of exact coefficients near printed ones, as far as `agreed_order`; None where none is."""
     nearby: Callable[[int], NearbyOrder | None] | None = getattr(every_h, "nearby", None)
     if nearby is None or not isinstance(every_h, ByConditions):
-        return None
-    if not getattr(every_h, "clocks_are_right", True):
         return None
     return nearby(min(least + _MORE, every_h.most_order))
 

@@ -113,7 +113,7 @@ def _why(eta: int, holds: bool) -> Prose:
 
 def _of_splitting(scheme: Scheme, every_h: Splitting, least: int) -> EveryProof:
     times = every_h.times or (None,) * len(every_h.parts)
-    timed = TimedSplitting(every_h.parts, times, nearby=every_h.nearby)
+    timed = TimedSplitting(every_h.parts, times, nearby=every_h.nearby_at(times))
     found = prove_by_conditions(scheme, timed, least)
     named = mistakes_of_splitting(timed) if found.verdict is Verdict.REFUTED else []
     reason = prose(found.reason, f"; it is {'; '.join(named)}") if named else found.reason

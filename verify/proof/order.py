@@ -16,6 +16,7 @@ from verify.algebra.ring import Decision, Poly, Ring
 from verify.algebra.series.power_series import delta_j
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.vector_field import VectorField
+from verify.late import sympy
 from verify.proof.by_conditions import nearby_order, told_nearby
 from verify.proof.expansion import MOST_ORDERS, VANISHES, Expansion, Leading, first_nonzero
 from verify.proof.order_proof import Proof
@@ -218,7 +219,12 @@ def nearby_convergence(
     found = Convergence(near.order, False)
     if near.parts:
         nearest = splitting(
-            scheme.name, near.parts, order=near.order, symmetric=False, source=scheme.source
+            scheme.name,
+            near.parts,
+            order=near.order,
+            symmetric=False,
+            source=scheme.source,
+            times=tuple(None if x is None else sympy.sympify(x) for x in near.times),
         )
         exact = of(nearest)
         found = exact if exact.order is None or exact.order >= near.order else found

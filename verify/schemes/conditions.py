@@ -29,7 +29,8 @@ class NearbyOrder:
 
     `said`: how near they are, and the residues that the digits leave. `wrong`: a condition of the
     next order that none near them satisfy; None where that is not decided. `parts`: the nearest, to
-    some 90 digits; none where they are not known.
+    some 90 digits; none where they are not known. `times`: those of the nearest, None where it is
+    the right one; none where all are.
     """
 
     order: int
@@ -37,6 +38,7 @@ class NearbyOrder:
     said: Prose
     wrong: Condition | None
     parts: tuple[tuple[str, Fraction], ...]
+    times: tuple[Fraction | None, ...] = ()
 
 
 @runtime_checkable

@@ -38,11 +38,12 @@ def splitting(
     source: str,
     times: Times = (),
     nearby: Nearby | None = None,
+    nearby_in_time: Nearby | None = None,
 ) -> Scheme:
     """The scheme that kicks and drifts by these parts of h in turn; every one preserves area.
 
-    `times`: that of each part, in parts of h; left out, the two clocks' own. `nearby`: see
-    `verify.schemes.splitting_conditions.Splitting`.
+    `times`: that of each part, in parts of h; left out, the two clocks' own. `nearby`,
+    `nearby_in_time`: see `verify.schemes.splitting_conditions.Splitting`.
     """
     own = times if any(x is not None for x in times) else ()
     return Scheme(
@@ -53,7 +54,9 @@ def splitting(
         symmetric=symmetric,
         source=source,
         build=lambda hamiltonian: shears(hamiltonian, name, parts, times),
-        every_h=Splitting(tuple(parts), times=own, nearby=nearby),
+        every_h=Splitting(
+            tuple(parts), times=tuple(own), nearby=nearby, nearby_in_time=nearby_in_time
+        ),
     )
 
 

@@ -58,20 +58,27 @@ class Splitting:
     The sizes that are given are rational or algebraic numbers; those of `parts` are sympy's.
     `times`: of an H that depends on time, when each
     part is made, in parts of h from the step's start, where that is given. `nearby`: of sizes that
-    are printed decimals, the order that exact ones near them have. It is a
-    `verify.schemes.conditions.ByConditions`.
+    are printed decimals, the order that exact ones near them have; `nearby_in_time`: of sizes or
+    `times` that are. It is a `verify.schemes.conditions.ByConditions`.
     """
 
     given: tuple[Part, ...]
     separable: bool = True
     times: tuple[sympy.Expr | None, ...] = ()
     nearby: Nearby | None = field(default=None, compare=False, repr=False)
+    nearby_in_time: Nearby | None = field(default=None, compare=False, repr=False)
     most_order: ClassVar[int] = MOST_ORDER  # the highest of which there are conditions
 
     @cached_property
     def parts(self) -> Parts:
         """The parts, each with its size as an expression."""
         return expressed(self.given)
+
+    def nearby_at(self, times: Sequence[sympy.Expr | None]) -> Nearby | None:
+        """That of the parts at these times, None for the right ones."""
+        if all(time is None for time in times):
+            return self.nearby
+        return self.nearby_in_time if tuple(times) == self.times else None
 
     @property
     def evaluations(self) -> dict[str, int]:

@@ -1,13 +1,16 @@
-"""The order of a splitting whose sizes are printed with eight digits and more: that of exact ones
-near them, as `verify.schemes.printed.judged` says.
+"""The order of a splitting whose sizes or times are printed with eight digits and more: that of
+exact ones near them, as `verify.schemes.printed.judged` says.
 
 Taken exactly, Yoshida's 1.3512071919596578 makes a map of order 0.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from typing import TypeAlias
+
+import sympy
 
 from verify.arithmetic.arb import middle_and_radius, rational_ball
 from verify.arithmetic.exact import decimal
@@ -19,36 +22,41 @@ from verify.schemes.printed.judged import WITHIN, Judged
 from verify.schemes.printed.naming import Naming
 from verify.schemes.printed.printed_numbers import entries_at
 from verify.schemes.printed.sentences import of_printed
-from verify.schemes.printed.splitting_table import PrintedTable, judge_order
+from verify.schemes.printed.splitting_table import PrintedTable
+from verify.schemes.printed.timed_table import TimedTable, judge_in_time
 
+WrittenPart: TypeAlias = tuple[str, str, str | None]  # "kick" or "drift", its size, and its time
 _DIGITS = 12  # of a residue
 
 
-def nearby_of(parts: Sequence[tuple[str, str]]) -> "PrintedSizes | None":
-    """What finds the order of kicks and drifts with these sizes, as they are written; None where
-    they stand for nothing but themselves."""
+def nearby_of(parts: Sequence[WrittenPart]) -> "PrintedParts | None":
+    """What finds the order of kicks and drifts with these sizes and times, None for the right time;
+    None where they stand for nothing but themselves."""
     naming = Naming({})
     try:
-        sizes = naming.entries((size for _, size in parts), "size")
-        named = tuple((kind, size) for (kind, _), size in zip(parts, sizes, strict=True))
-        plain = PrintedTable("splitting", named, naming.printed)
+        sizes = naming.entries((size for _, size, _ in parts), "size")
+        texts = enumerate(time for _, _, time in parts)
+        times = tuple(None if x is None else naming.entry(x, f"time_{k + 1}") for k, x in texts)
+        named = tuple((kind, size) for (kind, *_), size in zip(parts, sizes, strict=True))
+        plain = TimedTable(PrintedTable("splitting", named, naming.printed), times, both=True)
         tables = [plain.read(numbers) for numbers in naming.printed.of_a_method()]
-        rounded = tuple(table for table in tables if table.units)
+        rounded = tuple(table for table in tables if table.printed.units)
         for table in rounded:
-            parts_at(table, table.values)
-    except InputError:  # sizes beyond all coefficients, or no polynomials in the decimals
+            parts_at(table.table, table.printed.values)
+            times_at(table, table.printed.values)
+    except InputError:  # numbers beyond all coefficients, or no polynomials in the decimals
         return None
-    return PrintedSizes(rounded) if rounded else None
+    return PrintedParts(rounded) if rounded else None
 
 
 @dataclass(frozen=True)
-class PrintedSizes:
-    """`tables`: one for each way in which the sizes may be read, that taken first before others."""
+class PrintedParts:
+    """`tables`: one for each way in which the numbers may be read, the first before others."""
 
-    tables: tuple[PrintedTable, ...]
+    tables: tuple[TimedTable, ...]
 
     def __call__(self, most: int) -> NearbyOrder | None:
-        """The highest order up to `most` that exact sizes near these have."""
+        """The highest order up to `most` that exact numbers near these have."""
         if most not in self._known:
             self._known[most] = _highest(self.tables, most)
         return self._known[most]
@@ -58,11 +66,11 @@ class PrintedSizes:
         return {}
 
 
-def _highest(tables: Sequence[PrintedTable], most: int) -> NearbyOrder | None:
-    best: tuple[int, PrintedTable, Judged] | None = None
+def _highest(tables: Sequence[TimedTable], most: int) -> NearbyOrder | None:
+    best: tuple[int, TimedTable, Judged] | None = None
     wrong = None
-    for order in range(1, min(most, tables[0].most_order) + 1):
-        judged = [(table, judge_order(table, order)) for table in tables]
+    for order in range(1, min(most, tables[0].table.most_order) + 1):
+        judged = [(table, judge_in_time(table, order)) for table in tables]
         near = next((pair for pair in judged if _is_near(pair[1])), None)
         if near is None:
             wrong = _wrong(judged[-1][1], order)
@@ -72,8 +80,10 @@ def _highest(tables: Sequence[PrintedTable], most: int) -> NearbyOrder | None:
         return None
     order, table, found = best
     verdict, said, _ = of_printed(found, order)
-    parts = () if found.nearest is None else parts_at(table, found.nearest)
-    return NearbyOrder(order, verdict, said, wrong, parts)
+    if found.nearest is None:
+        return NearbyOrder(order, verdict, said, wrong, ())
+    parts, times = parts_at(table.table, found.nearest), times_at(table, found.nearest)
+    return NearbyOrder(order, verdict, said, wrong, parts, times)
 
 
 def _is_near(found: Judged) -> bool:
@@ -94,7 +104,21 @@ def parts_at(
     table: PrintedTable, numbers: Mapping[str, Fraction]
 ) -> tuple[tuple[str, Fraction], ...]:
     """The parts with these numbers, to some 90 digits."""
-    with working_precision(BITS):
-        at = {name: rational_ball(numbers[name]) for name in table.units}
-        sizes = [middle_and_radius(x)[0] for x in entries_at(table.sizes, at, ball_of)]
+    sizes = _values(table.sizes, table.units, numbers)
     return tuple((kind, size) for (kind, _), size in zip(table.parts, sizes, strict=True))
+
+
+def times_at(timed: TimedTable, numbers: Mapping[str, Fraction]) -> tuple[Fraction | None, ...]:
+    """The times of the parts with these numbers, None for the right one."""
+    entries = timed.entries[len(timed.kinds) :]
+    values = _values(entries, timed.printed.units, numbers)
+    times = dict(zip(timed.judged, values, strict=True))
+    return tuple(times.get(k) for k in range(len(timed.kinds)))
+
+
+def _values(
+    entries: Sequence[sympy.Expr], names: Iterable[str], numbers: Mapping[str, Fraction]
+) -> list[Fraction]:
+    with working_precision(BITS):
+        at = {name: rational_ball(numbers[name]) for name in names}
+        return [middle_and_radius(x)[0] for x in entries_at(entries, at, ball_of)]

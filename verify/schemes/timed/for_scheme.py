@@ -51,7 +51,8 @@ def conditions_for(
 @conditions_for.register
 def _(every_h: Splitting, kinetic: Kinetic | None = None, times: Times = None) -> TimedConditions:
     own = times or every_h.times or (None,) * len(every_h.parts)
-    return TimedSplitting(every_h.parts, tuple(own), kinetic or Kinetic.GENERAL, every_h.nearby)
+    near = every_h.nearby_at(own)
+    return TimedSplitting(every_h.parts, tuple(own), kinetic or Kinetic.GENERAL, near)
 
 
 @conditions_for.register

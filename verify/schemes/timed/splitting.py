@@ -41,8 +41,8 @@ class TimedSplitting:
     """Kicks p − a h V_q(q, t + s h) and drifts q + a h T_p(p, t + s h), for every V and every T of
     a class.
 
-    `nearby`: as of `Splitting`, where the clocks are right.
     `times`: s of each part, None for the right one; ValueError unless there are as many as parts.
+    `nearby`: of sizes or times that are printed decimals, the order that exact ones near them have.
     It is a `verify.schemes.conditions.ByConditions`.
     """
 

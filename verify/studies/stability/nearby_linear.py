@@ -23,7 +23,7 @@ from verify.schemes import get
 from verify.schemes.printed.asked import BITS, Asked, Named
 from verify.schemes.printed.judged import WITHIN
 from verify.schemes.printed.nearby import AnyNumbers, Nearby
-from verify.schemes.printed.nearby_order import PrintedSizes, parts_at
+from verify.schemes.printed.nearby_order import PrintedParts, parts_at
 from verify.schemes.printed.nearest import Nearest, nearest
 from verify.schemes.printed.splitting_table import PrintedTable
 from verify.schemes.scheme import Scheme
@@ -45,10 +45,11 @@ def linear_stability(name: str) -> LinearStability:
     scheme = get(name)
     found = _of_scheme(scheme)
     sizes = getattr(scheme.every_h, "nearby", None)
-    if not isinstance(sizes, PrintedSizes) or found.interval in (sympy.oo, 0):
+    if not isinstance(sizes, PrintedParts) or found.interval in (sympy.oo, 0):
         return found
-    limits = (_limit(scheme, found, sizes, table) for table in sizes.tables)
-    first = sizes.tables[0]
+    tables = [timed.table for timed in sizes.tables]
+    limits = (_limit(scheme, found, sizes, table) for table in tables)
+    first = tables[0]
     limit = next(filter(None, limits), None) or _known(first, first.values, _LEFT, Fraction(0))
     return found if limit is None else replace(found, interval=limit)
 
@@ -59,7 +60,7 @@ def _of_scheme(scheme: Scheme, narrow: Fraction = Fraction(0)) -> LinearStabilit
 
 
 def _limit(
-    scheme: Scheme, printed: LinearStability, sizes: PrintedSizes, table: PrintedTable
+    scheme: Scheme, printed: LinearStability, sizes: PrintedParts, table: PrintedTable
 ) -> NearbyLimit | None:
     """The end for exact coefficients; None where none near the printed ones close the gaps."""
     near, gaps = sizes(scheme.order + _BEYOND), _of_scheme(scheme, _NARROW).gaps

@@ -15,7 +15,8 @@ from verify.proof.symplectic.order import prove_symplectic
 from verify.schemes.printed.nearby_order import nearby_of
 from verify.verdict import Verdict
 
-ENCLOSED, PROVED, REFUTED = Verdict.ENCLOSED, Verdict.PROVED, Verdict.REFUTED
+ENCLOSED, MEASURED = Verdict.ENCLOSED, Verdict.MEASURED
+PROVED, REFUTED = Verdict.PROVED, Verdict.REFUTED
 KINDS = ("kick", "drift") * 3 + ("kick",)
 DOUBLE = float(1 / (2 - 2 ** (1 / 3)))
 # Half the sizes of Yoshida's scheme: to 8, 12 and 16 digits, and as a program prints its doubles.
@@ -68,7 +69,8 @@ def test_a_wrong_digit_is_refuted(half: tuple[str, ...], place: int, digit: int)
 
 
 def test_short_decimals_and_quotients_are_what_they_are() -> None:
-    assert nearby_of([("kick", "0.5"), ("drift", "1.000001"), ("kick", "1/2")]) is None
+    short = [("kick", "0.5", None), ("drift", "1.000001", None), ("kick", "1/2", None)]
+    assert nearby_of(short) is None
     assert prove_every("kick 0.5; drift 1.000001; kick 1/2; order 2").verdict is REFUTED
     assert prove_every("kick 0.5; drift 1.00000001; kick 1/2; order 2").verdict is ENCLOSED
     assert prove_every("kick 0.5; drift 1; kick 1/2; order 2").verdict is PROVED
@@ -80,7 +82,7 @@ def test_what_holds_exactly_as_it_is_printed_is_proved() -> None:
 
 
 def test_a_size_that_is_no_polynomial_in_its_decimals_is_exact() -> None:
-    assert nearby_of([("kick", "1/(2.0000000001)"), ("drift", "1")]) is None
+    assert nearby_of([("kick", "1/(2.0000000001)", None), ("drift", "1", None)]) is None
     assert prove_every("kick 1/(2.0000000001); drift 1; kick 0.5; order 2").verdict is REFUTED
 
 
@@ -124,3 +126,40 @@ def test_times_that_are_given_count_where_h_depends_on_time() -> None:
         for name, x in found.items()
     }
     assert verdicts == {right: {ENCLOSED}, frozen: {REFUTED}}
+
+
+# Its kicks read the force when the drifts before them have been made, to 16 digits.
+GAUSS = "drift 0.2113248654051871; kick 1/2{}; drift 0.5773502691896258; kick 1/2{}; "
+GAUSS += "drift 0.2113248654051871; order 2"
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "verdict"),
+    [
+        ("", "", PROVED),  # their sums hold exactly
+        (" at 0.2113248654051871", " at 0.7886751345948129", PROVED),
+        (" at 0.21132487", " at 0.78867513", PROVED),
+        (" at 0.21132487", " at 0.78867514", ENCLOSED),  # fewer digits than the sizes have
+        (" at 0.2113248654051871", " at 0.7886751345948126", ENCLOSED),
+        (" at 0.2113248654051871", " at 0.7886761345948129", REFUTED),
+        (" at 0.2113248654051871", " at 0.7986751345948129", REFUTED),
+        (" at 0", " at 0.7886751345948129", REFUTED),
+    ],
+)
+def test_times_with_many_digits_stand_for_those_near_them(
+    first: str, second: str, verdict: Verdict
+) -> None:
+    name = GAUSS.format(first, second)
+    scheme = schemes.get(name)
+    proofs = prove(scheme.step_map(DRIVEN), scheme), prove_every_in_time(name)
+    assert {proof.verdict for proof in proofs} == {verdict}
+    orders = {proof.convergence_order for proof in proofs}
+    assert orders == ({1} if verdict is REFUTED else {2})
+
+
+@pytest.mark.parametrize(
+    ("time", "verdict"), [("0.50000000", PROVED), ("0.50000001", MEASURED), ("0.50000101", REFUTED)]
+)
+def test_a_time_alone_may_be_printed_with_many_digits(time: str, verdict: Verdict) -> None:
+    name = f"drift 1/2; kick 1 at {time}; drift 1/2; order 2"
+    assert prove_every_in_time(name).verdict is verdict

@@ -14,7 +14,6 @@ from verify.errors import NOT_GIVEN, InputError
 from verify.integrators.tables.entry import Order, Row, TableEntry
 from verify.integrators.tables.hints import NONE, Hints
 from verify.integrators.tables.layout import named_columns, one_column
-from verify.integrators.tables.splittings.clocks import TimedTable, judge_clocks, judge_in_time
 from verify.integrators.tables.told import (
     OF_WORDS,
     WRONG_CLOCK,
@@ -29,6 +28,7 @@ from verify.schemes.printed.asked import Asked, Named
 from verify.schemes.printed.judged import Judged, judge
 from verify.schemes.printed.naming import MOST_ENTRIES, Naming
 from verify.schemes.printed.splitting_table import PrintedTable, judge_order
+from verify.schemes.printed.timed_table import TimedTable, judge_clocks, judge_in_time
 from verify.verdict import Verdict
 
 _EXCHANGED = {"kick": "drift", "drift": "kick"}

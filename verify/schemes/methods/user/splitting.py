@@ -9,13 +9,11 @@ For an H that depends on time a part may have its own, in parts of h from the st
 `kick 1/2 at 0; drift 1; kick 1/2 at 1`; where it has none, it is that of `right_times`.
 """
 
-import sympy
-
 from verify.algebra.formula import parse
 from verify.errors import InputError
 from verify.schemes.printed.nearby_order import nearby_of
 from verify.schemes.scheme import Scheme
-from verify.schemes.splitting import splitting
+from verify.schemes.splitting import right_times, splitting
 from verify.schemes.splitting_conditions import LETTERS, MOST_ORDER, Part
 
 EXAMPLES = ()  # its names are the users' own
@@ -33,8 +31,17 @@ def make(name: str) -> Scheme | None:
     if any(len(part) < 2 for part in words) or len(words) > _MOST_PARTS:
         raise InputError("scheme", name, _FORM)
     order = _order(name, words.pop()[1]) if words[-1][0] == "order" else 1
-    parts, times = zip(*(_part(name, *part) for part in words), strict=True)
-    printed = tuple((kind, text.partition(" at ")[0]) for kind, text in words)
+    written = [_part(name, *part) for part in words]
+    parts = tuple((kind, parse(size, (), source=kind)) for kind, size, _ in written)
+    times = tuple(
+        None if time is None else parse(time, (), source=f"{kind} at") for kind, _, time in written
+    )
+    # A time that is exactly the right one stays so, whatever its size's digits stand for.
+    not_right = [x != right for x, right in zip(times, right_times(parts), strict=True)]
+    at_times = [
+        (kind, size, time if keep else None)
+        for (kind, size, time), keep in zip(written, not_right, strict=True)
+    ]
     return splitting(
         "; ".join(" ".join(part.split()) for part in name.split(";") if part.strip()),
         parts,
@@ -42,7 +49,8 @@ def make(name: str) -> Scheme | None:
         symmetric=_palindrome(parts),
         source="the user's coefficients",
         times=times,
-        nearby=nearby_of(printed),
+        nearby=nearby_of([(kind, size, None) for kind, size, _ in written]),
+        nearby_in_time=nearby_of(at_times),
     )
 
 
@@ -55,15 +63,14 @@ def _order(name: str, text: str) -> int:
     return order
 
 
-def _part(name: str, kind: str, text: str) -> tuple[Part, sympy.Expr | None]:
-    """The part and its time, None where that is not given."""
+def _part(name: str, kind: str, text: str) -> tuple[str, str, str | None]:
+    """The part's kind, its size and its time as they are written, None where no time is."""
     if kind not in LETTERS:
         raise InputError("scheme", name, f"{kind}: unknown; {_FORM}")
     if "," in text:
         raise InputError("scheme", name, f"a , parts nothing; {_FORM}")
     size, at, time = text.partition(" at ")
-    given = parse(time, (), source=f"{kind} at") if at else None
-    return (kind, parse(size, (), source=kind)), given
+    return kind, size, time if at else None
 
 
 def _palindrome(parts: tuple[Part, ...]) -> bool:

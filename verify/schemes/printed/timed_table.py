@@ -17,7 +17,7 @@ from verify.arithmetic.number import E
 from verify.schemes.printed.asked import Asked, Named
 from verify.schemes.printed.judged import Judged, judge
 from verify.schemes.printed.printed_numbers import PrintedNumbers
-from verify.schemes.printed.splitting_table import PrintedTable
+from verify.schemes.printed.splitting_table import PrintedTable, judge_order
 from verify.schemes.splitting_conditions import LETTERS
 from verify.schemes.timed.equations import TimedEquation, equations_of
 from verify.schemes.timed.kinetic import Kinetic
@@ -88,7 +88,12 @@ def judge_clocks(timed: TimedTable) -> Judged:
 
 
 def judge_in_time(timed: TimedTable, order: int) -> Judged:
-    """Whether it can have the order for the class of T, with the times as they are printed."""
+    """Whether it can have the order for the class of T, with the times as they are printed.
+
+    InputError where it cannot be looked at so far.
+    """
+    if not timed.judged and timed.kinetic is not Kinetic.MASS:
+        return judge_order(timed.table, order)
     right = judge_clocks(timed).verdict is not Verdict.REFUTED
     if right and timed.kinetic is not Kinetic.MASS:
         plain = timed.table.asked(order)
