@@ -46,6 +46,7 @@ def modified_of(step_map: StepMap, scheme: Scheme | None, order: int) -> Modifie
         consistent=_same(ring, vectors[0], (-source.h_q, source.h_p)),
         area=_area(step_map, terms),
         where=step_map.domain,
+        timed=step_map.hamiltonian.time_dependent,
     )
     return judged(found, scheme)
 

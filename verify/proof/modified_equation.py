@@ -10,6 +10,7 @@ from verify.algebra.ring import Poly, Ring
 from verify.algebra.symbols import H_STEP
 from verify.errors import InputError
 from verify.notebook import aligned_latex, cut, html_table, short_latex
+from verify.proof.by_conditions import nearby_of_scheme, told_nearby
 from verify.prose import Prose, prose, read_prose
 from verify.schemes.scheme import Scheme
 from verify.verdict import Verdict
@@ -48,7 +49,8 @@ class ModifiedEquation:
 
     `hamiltonian`: H as a formula, or for which H it holds. `consistent`: whether the first term is
     that of H. `area`: whether the first divergence that is not 0 is the leading coefficient of ΔJ,
-    which is made another way; None where one of them is not known. `verdict` is REFUTED where the
+    which is made another way; None where one of them is not known. `timed`: whether H depends on
+    time. `verdict` is REFUTED where the
     scheme claims another order, or det J ≡ 1 and a term is not Hamiltonian; `reason` is one line.
     """
 
@@ -59,6 +61,7 @@ class ModifiedEquation:
     consistent: bool | None
     area: bool | None
     where: Domain
+    timed: bool = False
     verdict: Verdict = Verdict.UNDECIDED
     reason: Prose = NOTHING
 
@@ -66,6 +69,13 @@ class ModifiedEquation:
     def first_not_hamiltonian(self) -> Term | None:
         """The first term whose divergence is shown not to vanish."""
         return next((x for x in self.terms if x.is_hamiltonian is False), None)
+
+    @property
+    def agreed(self) -> int:
+        """The power of h up to which the map is shown to be the exact flow."""
+        if not self.consistent:
+            return 0
+        return next((x.power for x in self.terms[1:] if not x.vanishes), len(self.terms))
 
     @property
     def known(self) -> tuple[Term, ...]:
@@ -136,22 +146,31 @@ def _times_power(n: int, text: str) -> str:
 
 def judged(found: ModifiedEquation, scheme: Scheme | None) -> ModifiedEquation:
     """The same with its verdict: what is shown, held against what the scheme claims."""
-    verdict, reason = _verdict(found, scheme)
-    return replace(found, verdict=verdict, reason=reason)
+    near = nearby_of_scheme(scheme, found.timed) if scheme else None
+    if near is None or near.order <= found.agreed:
+        verdict, reason = _verdict(found, scheme, found.agreed)
+        return replace(found, verdict=verdict, reason=reason)
+    verdict, reason = _verdict(found, scheme, near.order)
+    if verdict is Verdict.PROVED:
+        verdict = near.verdict
+    said = prose(reason, "; the terms are of the printed coefficients; ", told_nearby(near))
+    return replace(found, verdict=verdict, reason=said)
 
 
-def _verdict(found: ModifiedEquation, scheme: Scheme | None) -> tuple[Verdict, Prose]:
+def _verdict(found: ModifiedEquation, scheme: Scheme | None, agreed: int) -> tuple[Verdict, Prose]:
+    """`agreed`: up to which power of h the map is the exact flow, to what its digits leave."""
     first, order = found.first_not_hamiltonian, found.order
     if found.area is False:
         return Verdict.UNDECIDED, prose(
             "the terms and the leading term of ΔJ contradict each other: an error of ours"
         )
-    if found.consistent is None:
+    if found.consistent is None and agreed < 1:
         return Verdict.UNDECIDED, prose("whether the first term is that of H is not decided")
-    if not found.consistent:
+    if not found.consistent and agreed < 1:
         return Verdict.REFUTED, prose("not a scheme for this H: the first term is not that of H")
     if scheme is not None:
-        missed = next((x for x in found.terms[1 : scheme.order] if not x.vanishes), None)
+        later = found.terms[max(agreed, 1) : scheme.order]
+        missed = next((x for x in later if not x.vanishes), None)
         if missed is not None and missed.vanishes is None:
             said = f"whether the term of `h^{missed.power}` is 0 is not decided"
             return Verdict.UNDECIDED, read_prose(said)

@@ -41,7 +41,7 @@ def modified_for_every(name: str, order: int, separable: bool = False) -> Modifi
         raise InputError("scheme", name, problem)
     separable = separable or every_h.separable
     series = _series_of(every_h)
-    if series is None and isinstance(every_h, Splitting):
+    if isinstance(every_h, Splitting) and series is None:
         terms = terms_of_splitting(every_h, order)
         area = all(c.holds is True for c in every_h.area_conditions())
         consistent = terms[0].hamiltonian == "H"
@@ -65,9 +65,10 @@ def modified_for_every(name: str, order: int, separable: bool = False) -> Modifi
 
 
 def _series_of(every_h: BySeries | ByConditions) -> BySeries | None:
-    if isinstance(every_h, BySeries):
-        return every_h
-    return every_h.stages if isinstance(every_h, Splitting) else None
+    if isinstance(every_h, Splitting):
+        # Of printed sizes the first term is H but for their digits: a T + b V, no function of H.
+        return every_h.stages if every_h.nearby is None else None
+    return every_h if isinstance(every_h, BySeries) else None
 
 
 def _taylor(

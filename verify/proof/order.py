@@ -17,7 +17,7 @@ from verify.algebra.series.power_series import delta_j
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.vector_field import VectorField
 from verify.late import sympy
-from verify.proof.by_conditions import nearby_order, told_nearby
+from verify.proof.by_conditions import nearby_of_scheme, told_nearby
 from verify.proof.expansion import MOST_ORDERS, VANISHES, Expansion, Leading, first_nonzero
 from verify.proof.order_proof import Proof
 from verify.proof.parameters import almost_all, not_zero_for
@@ -25,9 +25,7 @@ from verify.prose import Formula, Prose, prose, read_prose
 from verify.schemes.conditions import Condition, NearbyOrder
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import splitting
-from verify.schemes.splitting_conditions import Splitting
 from verify.schemes.step_map import Expanded, StepMap, Substep
-from verify.schemes.timed.for_scheme import conditions_for
 from verify.verdict import Verdict
 
 _Coefficient = Callable[[str, int], tuple[VectorField, Ring, Poly]]
@@ -210,11 +208,8 @@ def nearby_convergence(
 ) -> tuple[Convergence, NearbyOrder | None]:
     """The order of exact coefficients near those that a scheme prints, where it is higher than that
     of these; `of` finds that of a scheme whose coefficients are right to `RESIDUE` and better."""
-    if scheme is None or scheme.every_h is None:
-        return printed, None
-    timed = hamiltonian.time_dependent and isinstance(scheme.every_h, Splitting)
-    near = nearby_order(conditions_for(scheme.every_h) if timed else scheme.every_h, scheme.order)
-    if near is None or printed.order is None or near.order <= printed.order:
+    near = nearby_of_scheme(scheme, hamiltonian.time_dependent) if scheme else None
+    if scheme is None or near is None or printed.order is None or near.order <= printed.order:
         return printed, None
     found = Convergence(near.order, False)
     if near.parts:

@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import pytest
 
-from verify import schemes
+from verify import modified_hamiltonian, schemes
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.every import prove_every
@@ -163,3 +163,19 @@ def test_times_with_many_digits_stand_for_those_near_them(
 def test_a_time_alone_may_be_printed_with_many_digits(time: str, verdict: Verdict) -> None:
     name = f"drift 1/2; kick 1 at {time}; drift 1/2; order 2"
     assert prove_every_in_time(name).verdict is verdict
+
+
+@pytest.mark.parametrize("system", ["pendulum", None])
+@pytest.mark.parametrize("half", HALVES)
+def test_a_modified_hamiltonian_is_that_of_a_scheme_whose_digits_leave_residues(
+    system: str | None, half: tuple[str, ...]
+) -> None:
+    equation = modified_hamiltonian(scheme_of(half), system, 4)
+    assert equation.verdict is ENCLOSED
+    assert "order 4 of exact coefficients near the printed ones" in equation.reason
+    assert equation.reach == 4
+    assert modified_hamiltonian(scheme_of(half, 5), system, 4).verdict is REFUTED
+    wrong = (half[0], half[1].replace("1.351", "1.361"), *half[2:])
+    refuted = modified_hamiltonian(scheme_of(wrong), system, 4)
+    assert refuted.verdict is REFUTED
+    assert "near" not in refuted.reason
