@@ -1,5 +1,6 @@
 """Claims that say an order in h, and what is proved of such an order."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Self
 
 from pydantic import Field
@@ -14,7 +15,8 @@ from verify.claims.proved_order import ProvedOrder, told_of
 from verify.claims.quantified import QuantifiedClaim
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import MOST_ORDERS
-from verify.proof.order import convergence_of_scheme, leading_of
+from verify.proof.order import convergence_of_scheme, leading_of, nearby_defect_of
+from verify.proof.printed_formulas import told_defect
 from verify.prose import Formula, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.schemes import get
@@ -64,8 +66,10 @@ def delta_j_of(claim: Claim, findings: Findings) -> ProvedOrder:
     """The order of ΔJ of the claim's scheme for its scene's H, in any number of degrees."""
     hamiltonian = findings.scene_of(claim).exact_hamiltonian()
     if hamiltonian.planar:
-        return delta_j_order(step_map_of(hamiltonian, claim.scheme))
-    return volume_order(hamiltonian, claim.scheme)
+        known = delta_j_order(step_map_of(hamiltonian, claim.scheme))
+    else:
+        known = volume_order(hamiltonian, claim.scheme)
+    return _with_printed(known, claim.scheme, hamiltonian, "ΔJ")
 
 
 def defect_of(claim: Claim, findings: Findings) -> ProvedOrder:
@@ -73,7 +77,27 @@ def defect_of(claim: Claim, findings: Findings) -> ProvedOrder:
     hamiltonian = findings.scene_of(claim).exact_hamiltonian()
     if hamiltonian.planar:
         return delta_j_of(claim, findings)
-    return defect_order(hamiltonian, claim.scheme)
+    known = defect_order(hamiltonian, claim.scheme)
+    return _with_printed(known, claim.scheme, hamiltonian, "S")
+
+
+def _with_printed(
+    known: ProvedOrder, scheme: str, hamiltonian: Hamiltonian, form: str
+) -> ProvedOrder:
+    """The same, of exact coefficients where a term is what the digits of printed ones leave."""
+    power = known.least if known.exact else None
+    near = nearby_defect_of(get(scheme), hamiltonian, power)
+    if near is None:
+        return known
+    exact = near.wrong is not None
+    return replace(
+        known,
+        least=near.order + 1,
+        exact=exact,
+        vanishes=False if exact else None,
+        evidence=prose(known.evidence, "; ", told_defect(near, form)),
+        held=near.verdict,
+    )
 
 
 def flow_of(claim: Claim, findings: Findings) -> ProvedOrder:

@@ -105,7 +105,8 @@ class CanonicalField(Flow):
 def canonical_field(
     hamiltonian: Hamiltonian, *others: sympy.Expr
 ) -> tuple[CanonicalField, list[Poly]]:
-    """The field of `exact`, and other expressions as elements of its ring. Raises InputError."""
+    """The field of `exact`, and other expressions as elements of its ring, in which each symbol
+    that H does not have is a variable too. Raises InputError."""
     if others:
         return _made(hamiltonian, others)
     return _made_once(hamiltonian), []
@@ -117,6 +118,8 @@ def _made(
     time = ("t",) if hamiltonian.time_dependent else ()
     names = hamiltonian.coordinates
     variables = (*names, "h", *time, *hamiltonian.symbols)
+    symbols = {x.name for other in others for x in other.free_symbols}
+    variables = (*variables, *sorted(symbols.difference(variables)))
     ring, (energy, *elements) = embed([hamiltonian.exact, *others], variables)
     return CanonicalField(ring, names, energy), elements
 

@@ -10,8 +10,6 @@ from verify.proof.every_proof import EveryProof
 from verify.prose import Formula, Number, Prose, prose
 from verify.schemes.conditions import ByConditions, Condition, NearbyOrder
 from verify.schemes.scheme import Scheme
-from verify.schemes.splitting_conditions import Splitting
-from verify.schemes.timed.for_scheme import conditions_for
 from verify.verdict import Verdict
 
 _MORE = 2  # orders beyond the claimed one that are looked at
@@ -52,13 +50,6 @@ def nearby_order(every_h: object, least: int) -> NearbyOrder | None:
     if nearby is None or not isinstance(every_h, ByConditions):
         return None
     return nearby(min(least + _MORE, every_h.most_order))
-
-
-def nearby_of_scheme(scheme: Scheme, timed: bool) -> NearbyOrder | None:
-    """The same of a scheme, for H that depend on time or do not."""
-    every_h = scheme.every_h
-    at_times = timed and isinstance(every_h, Splitting)
-    return nearby_order(conditions_for(every_h) if at_times else every_h, scheme.order)
 
 
 def told_nearby(near: NearbyOrder) -> Prose:

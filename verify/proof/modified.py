@@ -17,7 +17,7 @@ from verify.proof.expansion import MOST_ORDERS, Expansion, Leading
 from verify.proof.hamiltonian_of_field import hamiltonian_of
 from verify.proof.modified_equation import ModifiedEquation, Term, judged
 from verify.proof.modified_field import Vector, divergence, modified_field
-from verify.proof.order import leading_of
+from verify.proof.order import leading_of, nearby_of_scheme
 from verify.schemes.scheme import Scheme
 from verify.schemes.step_map import StepMap
 
@@ -46,9 +46,9 @@ def modified_of(step_map: StepMap, scheme: Scheme | None, order: int) -> Modifie
         consistent=_same(ring, vectors[0], (-source.h_q, source.h_p)),
         area=_area(step_map, terms),
         where=step_map.domain,
-        timed=step_map.hamiltonian.time_dependent,
     )
-    return judged(found, scheme)
+    near = nearby_of_scheme(scheme, step_map.hamiltonian) if scheme else None
+    return judged(found, scheme, near)
 
 
 def _series(step_map: StepMap, most: int) -> tuple[VectorField, Sequence[Poly], Sequence[Poly]]:

@@ -10,8 +10,9 @@ from verify.algebra.ring import Poly, Ring
 from verify.algebra.symbols import H_STEP
 from verify.errors import InputError
 from verify.notebook import aligned_latex, cut, html_table, short_latex
-from verify.proof.by_conditions import nearby_of_scheme, told_nearby
+from verify.proof.by_conditions import told_nearby
 from verify.prose import Prose, prose, read_prose
+from verify.schemes.conditions import NearbyOrder
 from verify.schemes.scheme import Scheme
 from verify.verdict import Verdict
 
@@ -49,8 +50,7 @@ class ModifiedEquation:
 
     `hamiltonian`: H as a formula, or for which H it holds. `consistent`: whether the first term is
     that of H. `area`: whether the first divergence that is not 0 is the leading coefficient of ΔJ,
-    which is made another way; None where one of them is not known. `timed`: whether H depends on
-    time. `verdict` is REFUTED where the
+    which is made another way; None where one of them is not known. `verdict` is REFUTED where the
     scheme claims another order, or det J ≡ 1 and a term is not Hamiltonian; `reason` is one line.
     """
 
@@ -61,7 +61,6 @@ class ModifiedEquation:
     consistent: bool | None
     area: bool | None
     where: Domain
-    timed: bool = False
     verdict: Verdict = Verdict.UNDECIDED
     reason: Prose = NOTHING
 
@@ -144,9 +143,11 @@ def _times_power(n: int, text: str) -> str:
 # -- the verdict ----------------------------------------------------------------------------------
 
 
-def judged(found: ModifiedEquation, scheme: Scheme | None) -> ModifiedEquation:
-    """The same with its verdict: what is shown, held against what the scheme claims."""
-    near = nearby_of_scheme(scheme, found.timed) if scheme else None
+def judged(
+    found: ModifiedEquation, scheme: Scheme | None, near: NearbyOrder | None = None
+) -> ModifiedEquation:
+    """The same with its verdict: what is shown, held against what the scheme claims; `near`: the
+    order of exact coefficients near those that it prints."""
     if near is None or near.order <= found.agreed:
         verdict, reason = _verdict(found, scheme, found.agreed)
         return replace(found, verdict=verdict, reason=reason)

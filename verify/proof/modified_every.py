@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.series.jets import Jets, Series, shown
 from verify.errors import InputError
+from verify.proof.by_conditions import nearby_order
 from verify.proof.hamiltonian_of_field import hamiltonian_in_jets
 from verify.proof.modified_equation import ModifiedEquation, Term, judged
 from verify.proof.modified_field import Vector, divergence, modified_field
@@ -61,7 +62,7 @@ def modified_for_every(name: str, order: int, separable: bool = False) -> Modifi
         area=area,
         where=EVERYWHERE if scheme.explicit else Domain.of((), SOLVABLE),
     )
-    return judged(found, scheme)
+    return judged(found, scheme, nearby_order(every_h, scheme.order))
 
 
 def _series_of(every_h: BySeries | ByConditions) -> BySeries | None:

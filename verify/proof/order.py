@@ -17,15 +17,18 @@ from verify.algebra.series.power_series import delta_j
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.vector_field import VectorField
 from verify.late import sympy
-from verify.proof.by_conditions import nearby_of_scheme, told_nearby
+from verify.proof.by_conditions import nearby_order, told_nearby
 from verify.proof.expansion import MOST_ORDERS, VANISHES, Expansion, Leading, first_nonzero
 from verify.proof.order_proof import Proof
 from verify.proof.parameters import almost_all, not_zero_for
+from verify.proof.printed_formulas import nearby_defect, nearby_of_formulas, told_defect
 from verify.prose import Formula, Prose, prose, read_prose
 from verify.schemes.conditions import Condition, NearbyOrder
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import splitting
+from verify.schemes.splitting_conditions import Splitting
 from verify.schemes.step_map import Expanded, StepMap, Substep
+from verify.schemes.timed.for_scheme import conditions_for
 from verify.verdict import Verdict
 
 _Coefficient = Callable[[str, int], tuple[VectorField, Ring, Poly]]
@@ -50,6 +53,9 @@ def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
         reason = prose(reason, ", where ", leading.domain.prose)
     if near is not None and verdict is Verdict.PROVED:
         verdict, reason = near.verdict, prose(reason, "; ", told_nearby(near))
+    without = nearby_defect_of(scheme, step_map.hamiltonian, leading.power)
+    if without is not None:
+        reason = prose(reason, "; ", told_defect(without, "ΔJ"))
     return Proof(
         verdict=verdict,
         reason=reason,
@@ -208,10 +214,11 @@ def nearby_convergence(
 ) -> tuple[Convergence, NearbyOrder | None]:
     """The order of exact coefficients near those that a scheme prints, where it is higher than that
     of these; `of` finds that of a scheme whose coefficients are right to `RESIDUE` and better."""
-    near = nearby_of_scheme(scheme, hamiltonian.time_dependent) if scheme else None
+    near = nearby_of_scheme(scheme, hamiltonian) if scheme else None
     if scheme is None or near is None or printed.order is None or near.order <= printed.order:
         return printed, None
-    found = Convergence(near.order, False)
+    # What none near the printed ones satisfy is of this H where the scheme is known for one alone.
+    found = Convergence(near.order, scheme.every_h is None and near.wrong is not None)
     if near.parts:
         nearest = splitting(
             scheme.name,
@@ -224,6 +231,27 @@ def nearby_convergence(
         exact = of(nearest)
         found = exact if exact.order is None or exact.order >= near.order else found
     return found, near
+
+
+def nearby_of_scheme(scheme: Scheme, hamiltonian: Hamiltonian) -> NearbyOrder | None:
+    """The order of exact coefficients near those that the scheme prints; None where it prints none,
+    or none near them make a scheme."""
+    if scheme.formulas:
+        return nearby_of_formulas(tuple(scheme.formulas.items()), hamiltonian)
+    every_h = scheme.every_h
+    timed = hamiltonian.time_dependent and isinstance(every_h, Splitting)
+    return nearby_order(conditions_for(every_h) if timed else every_h, scheme.order)
+
+
+def nearby_defect_of(
+    scheme: Scheme | None, hamiltonian: Hamiltonian, power: int | None
+) -> NearbyOrder | None:
+    """Where the term of h^power in ΔJ, or S, is what the digits of a user's formulas leave: up to
+    which power there is none with exact coefficients near them."""
+    if scheme is None or not scheme.formulas or power is None:
+        return None
+    near = nearby_defect(tuple(scheme.formulas.items()), hamiltonian)
+    return near if near is not None and near.order >= power else None
 
 
 def _of_scheme(hamiltonian: Hamiltonian, scheme: Scheme) -> Convergence:

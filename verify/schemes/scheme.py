@@ -20,8 +20,8 @@ class Scheme:
     that the scheme takes. `explicit`: no equation is solved. `symmetric`: claimed that the step of
     −h undoes that of h. `source`: where it is defined.
     `build` raises InputError for an H that the scheme does not take. `every_h`: the scheme as it is
-    for every H; None where it is known for one H at a time. `formulas`: those of a user's own map
-    in n degrees of freedom, by what they give: p1_next, ….
+    for every H; None where it is known for one H at a time. `formulas`: those of a user's own map,
+    by what they give: p_next and q_next, or p1_next, ….
     """
 
     name: str

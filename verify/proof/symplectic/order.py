@@ -13,8 +13,9 @@ from verify.algebra.ring import Decision, Poly, Ring
 from verify.hamiltonians.canonical_field import CanonicalField
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import told_nearby
-from verify.proof.order import Convergence, is_residue, nearby_convergence
+from verify.proof.order import Convergence, is_residue, nearby_convergence, nearby_defect_of
 from verify.proof.parameters import not_zero_for
+from verify.proof.printed_formulas import told_defect
 from verify.proof.symplectic import closed_form
 from verify.proof.symplectic.defect import DefectSeries, series_of
 from verify.proof.symplectic.proof import SymplecticProof
@@ -82,6 +83,9 @@ def prove_map(
     verdict, reason = _verdict(claimed, convergence, defect, most)
     if near is not None and verdict is Verdict.PROVED:
         verdict, reason = near.verdict, prose(reason, "; ", told_nearby(near))
+    without = nearby_defect_of(scheme, step.hamiltonian, defect.power)
+    if without is not None:
+        reason = prose(reason, "; ", told_defect(without, "S"))
     found = _Rest(step, series, defect, most)
     return SymplecticProof(
         verdict=verdict,

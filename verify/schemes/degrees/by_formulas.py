@@ -1,6 +1,6 @@
 """A user's own map in n degrees of freedom: `p1_next = …; p2_next = …; q1_next = …; …`."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 import sympy
 
@@ -16,18 +16,20 @@ from verify.schemes.degrees.canonical_map import CanonicalMap
 _NEXT = "_next"
 
 
-def map_by_formulas(hamiltonian: Hamiltonian, formulas: Mapping[str, str]) -> CanonicalMap:
+def map_by_formulas(
+    hamiltonian: Hamiltonian, formulas: Mapping[str, str], numbers: Collection[str] = ()
+) -> CanonicalMap:
     """The map that has a formula for each coordinate, by its name with `_next`.
 
     A formula may use the coordinates, h, H's parameters, t where H has it, and what was defined
-    before it. Raises InputError.
+    before it, and the names of `numbers`. Raises InputError.
     """
     coordinates = hamiltonian.coordinates
     if sorted(formulas) != sorted(name + _NEXT for name in coordinates):
         needed = ", ".join(name + _NEXT for name in coordinates)
         raise InputError("scheme", "; ".join(formulas), f"H needs {needed}, once each")
     time = ("t",) if hamiltonian.time_dependent else ()
-    names = [*coordinates, "h", *time, *hamiltonian.parameters]
+    names = [*coordinates, "h", *time, *hamiltonian.parameters, *numbers]
     put: dict[sympy.Symbol, sympy.Expr] = {}
     asked = Domain.of(())
     for name, formula in formulas.items():

@@ -4,11 +4,11 @@ exact ones near them, as `verify.schemes.printed.judged` says.
 Taken exactly, Yoshida's 1.3512071919596578 makes a map of order 0.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar
 
 import sympy
 
@@ -25,6 +25,7 @@ from verify.schemes.printed.sentences import of_printed
 from verify.schemes.printed.splitting_table import PrintedTable
 from verify.schemes.printed.timed_table import TimedTable, judge_in_time
 
+T = TypeVar("T")
 WrittenPart: TypeAlias = tuple[str, str, str | None]  # "kick" or "drift", its size, and its time
 _DIGITS = 12  # of a residue
 
@@ -67,26 +68,34 @@ class PrintedParts:
 
 
 def _highest(tables: Sequence[TimedTable], most: int) -> NearbyOrder | None:
-    best: tuple[int, TimedTable, Judged] | None = None
-    wrong = None
-    for order in range(1, min(most, tables[0].table.most_order) + 1):
-        judged = [(table, judge_in_time(table, order)) for table in tables]
-        near = next((pair for pair in judged if _is_near(pair[1])), None)
-        if near is None:
-            wrong = _wrong(judged[-1][1], order)
-            break
-        best = order, *near
+    best, failing = highest(tables, min(most, tables[0].table.most_order), judge_in_time)
     if best is None:
         return None
     order, table, found = best
     verdict, said, _ = of_printed(found, order)
+    wrong = None if failing is None else _wrong(failing, order + 1)
     if found.nearest is None:
         return NearbyOrder(order, verdict, said, wrong, ())
     parts, times = parts_at(table.table, found.nearest), times_at(table, found.nearest)
     return NearbyOrder(order, verdict, said, wrong, parts, times)
 
 
-def _is_near(found: Judged) -> bool:
+def highest(
+    readings: Sequence[T], most: int, judge: Callable[[T, int], Judged]
+) -> tuple[tuple[int, T, Judged] | None, Judged | None]:
+    """The highest order up to `most` that numbers near the printed ones have, with the reading and
+    what was judged of it, None where there is none; and what was judged of the next order."""
+    best: tuple[int, T, Judged] | None = None
+    for order in range(1, most + 1):
+        judged = [(reading, judge(reading, order)) for reading in readings]
+        near = next((pair for pair in judged if is_near(pair[1])), None)
+        if near is None:
+            return best, judged[-1][1]
+        best = order, *near
+    return best, None
+
+
+def is_near(found: Judged) -> bool:
     """Whether it is the digits that leave what residues there are."""
     return found.holds and (
         found.digits is not False or (found.off is not None and found.off <= WITHIN)

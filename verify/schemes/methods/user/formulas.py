@@ -38,6 +38,7 @@ def make(name: str) -> Scheme | None:
         symmetric=False,
         source="the user's formulas",
         build=lambda hamiltonian: StepMap.from_formulas(hamiltonian, p_next, q_next),
+        formulas=formulas,
     )
 
 

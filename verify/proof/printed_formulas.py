@@ -1,0 +1,220 @@
+"""A user's formulas with decimals of eight digits and more, which stand for numbers near them.
+
+`p_next = p - 0.20833333333333*h**3*q; …`, taken exactly, loses its order by what the digits leave.
+So each such decimal becomes a variable. What of hⁿ in z' differs from the exact flow is then a
+polynomial in these, for each monomial of what else stands there; where exact numbers near the
+printed ones make all of them 0, as `verify.schemes.printed.judged` says, the map has the order with
+them. That none near them do so is said where a ball that holds the difference at a point for all
+numbers within ten units of the last digits leaves 0 out.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache, partial
+from itertools import islice
+from typing import TypeAlias
+
+import sympy
+
+from verify.algebra.enclosure import enclose_over, points
+from verify.algebra.generator import terms_of
+from verify.algebra.ring import Poly, Ring
+from verify.arithmetic.arb import Ball, around, middle_and_radius, rational_ball
+from verify.arithmetic.exact import decimal, rational
+from verify.arithmetic.flint_precision import working_precision
+from verify.arithmetic.number import E
+from verify.effort import limited
+from verify.errors import InputError, LimitError
+from verify.hamiltonians.canonical_field import CanonicalField
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.proof.symplectic.defect import DefectSeries, series_of
+from verify.prose import Formula, Prose, prose
+from verify.schemes.conditions import Condition, NearbyOrder
+from verify.schemes.degrees.by_formulas import map_by_formulas
+from verify.schemes.printed.asked import BITS, Asked, Named
+from verify.schemes.printed.judged import WITHIN, Judged, judge
+from verify.schemes.printed.naming import Naming
+from verify.schemes.printed.nearby_order import highest
+from verify.schemes.printed.printed_numbers import PrintedNumbers, power
+from verify.schemes.printed.sentences import of_printed
+
+_MOST_NUMBERS, _MOST_CONDITIONS, _MOST_ORDER = 24, 600, 8
+_POINTS = 8
+_DIGITS = 12  # of a residue
+
+Elements: TypeAlias = tuple[Ring, list[Poly]]
+Polynomial: TypeAlias = tuple[tuple[Fraction, tuple[int, ...]], ...]  # coefficients and exponents
+
+
+Formulas: TypeAlias = tuple[tuple[str, str], ...]  # p_next, q_next and what they are
+
+
+@lru_cache(maxsize=16)
+def nearby_of_formulas(formulas: Formulas, hamiltonian: Hamiltonian) -> NearbyOrder | None:
+    """The highest order that the map has with exact numbers near those printed in its formulas;
+    None where they print none, or none near them is seen to make it a scheme."""
+    return _looked_for(formulas, hamiltonian, _PrintedMap.differences)
+
+
+@lru_cache(maxsize=16)
+def nearby_defect(formulas: Formulas, hamiltonian: Hamiltonian) -> NearbyOrder | None:
+    """The same of S = JᵀΩJ − Ω: up to which power of h it has no term with such numbers."""
+    return _looked_for(formulas, hamiltonian, _PrintedMap.defects)
+
+
+def told_defect(near: NearbyOrder, form: str) -> Prose:
+    """Of which coefficients ΔJ or S has no term; `form`: which of them it is."""
+    power = Formula(f"h^{near.order}")
+    return prose(
+        f"{form} has no term up to ", power, " with exact coefficients near the printed ones: ",
+        near.said,
+    )  # fmt: skip
+
+
+def _looked_for(
+    formulas: Formulas, hamiltonian: Hamiltonian, elements: "Callable[[_PrintedMap, int], Elements]"
+) -> NearbyOrder | None:
+    try:
+        with limited("scheme", formulas, "to look for exact numbers near the printed ones"):
+            printed = _printed(dict(formulas), hamiltonian)
+            return None if printed is None else printed.order(partial(elements, printed))
+    except InputError:  # no polynomial in its decimals, or too long
+        return None
+
+
+def _printed(formulas: Mapping[str, str], hamiltonian: Hamiltonian) -> "_PrintedMap | None":
+    naming, label = Naming({}), "number"
+    while any(name.startswith(label) for name in hamiltonian.parameters):
+        label += "_"
+    named = {
+        left: naming.entry(right, f"{label}{k}") for k, (left, right) in enumerate(formulas.items())
+    }
+    # What H has too is a parameter, and exact.
+    parameters = {abs(x) for x in hamiltonian.exact.atoms(sympy.Rational)}
+    numbers = {name: _exact_or_printed(text, parameters) for name, text in naming.numbers.items()}
+    readings = [x for x in PrintedNumbers(numbers).of_a_method() if x.units]
+    if not readings or len(numbers) > _MOST_NUMBERS:
+        return None
+    series = series_of(map_by_formulas(hamiltonian, named, tuple(numbers)), 2)
+    return _PrintedMap(series, tuple(numbers), tuple(readings))
+
+
+def _exact_or_printed(text: str, parameters: set[sympy.Rational]) -> str:
+    if "/" in text:
+        return text
+    value = rational(text)
+    return str(value) if abs(sympy.sympify(value)) in parameters else text
+
+
+@dataclass(frozen=True)
+class _PrintedMap:
+    """`series` over a ring in which the printed numbers are variables, called `names`; `readings`:
+    the ways in which they may be read, that taken first before others."""
+
+    series: DefectSeries[CanonicalField]
+    names: tuple[str, ...]
+    readings: tuple[PrintedNumbers, ...]
+
+    def order(self, elements: Callable[[int], Elements]) -> NearbyOrder | None:
+        """Up to which power of h the elements are 0 with numbers near the printed ones."""
+        conditions = _Conditions(self.names, elements)
+        best, _ = highest(self.readings, _MOST_ORDER, conditions.judge)
+        if best is None:
+            return None
+        order, numbers, found = best
+        verdict, said, _ = of_printed(found, order)
+        beyond = self._excluded(order + 1, numbers, elements) if order < _MOST_ORDER else None
+        return NearbyOrder(order, verdict, said, beyond, ())
+
+    def differences(self, n: int) -> Elements:
+        """Of hⁿ in z', from the exact flow."""
+        coefficient, flow = self.series.coefficient(n), self.series.flow
+        pairs = zip(coefficient, flow.term(n), strict=True)
+        return flow.ring, [flow.ring.reduce(x - y) for x, y in pairs]
+
+    def defects(self, n: int) -> Elements:
+        """Of hⁿ in S."""
+        form = self.series.form(n)
+        return self.series.flow.ring, list(form.entries.values())
+
+    def _excluded(
+        self, n: int, numbers: PrintedNumbers, elements: Callable[[int], Elements]
+    ) -> Condition | None:
+        """One of hⁿ that is not 0 whatever numbers near the printed ones are taken, shown at a
+        point; None where none is seen."""
+        ring, looked_at = elements(n)
+        others = [name for name in ring.variables if name not in self.names]
+        for point in islice(points(others), _POINTS):
+            with working_precision(BITS):
+                at = {name: rational_ball(value) for name, value in point.items()}
+                box = at | self._box(numbers)
+                for x in looked_at:
+                    found = enclose_over(ring, x, box)
+                    if found is not None and not found.contains(0):
+                        size = decimal(middle_and_radius(found)[0], _DIGITS)
+                        return Condition(f"the coefficient of h^{n} = 0", n, size, False)
+        return None
+
+    def _box(self, numbers: PrintedNumbers) -> dict[str, Ball]:
+        """All values near the printed ones, in balls."""
+        exact = {name: rational(numbers.numbers[name], name) for name in self.names}
+        radius = {name: WITHIN * unit for name, unit in numbers.units.items()}
+        return {name: around(x, radius.get(name, Fraction(0))) for name, x in exact.items()}
+
+
+class _Conditions:
+    """What has to be 0 of each power of h: polynomials in the printed numbers."""
+
+    def __init__(self, names: tuple[str, ...], elements: Callable[[int], Elements]) -> None:
+        self.names, self.elements = names, elements
+        self._made: list[list[Polynomial]] = []
+
+    def judge(self, numbers: PrintedNumbers, order: int) -> Judged:
+        """Whether numbers near the printed ones make all of them 0 up to h^order."""
+        while len(self._made) <= order:
+            self._made.append(self._of_power(len(self._made)))
+        rows = [(n, x) for n, made in enumerate(self._made[: order + 1]) for x in made]
+        if len(rows) > _MOST_CONDITIONS:
+            raise LimitError("scheme", len(rows), "are more conditions than are looked at")
+        equations = tuple(Named(f"{k + 1}. term of h^{n}", max(n, 1))
+                          for k, (n, _) in enumerate(rows))  # fmt: skip
+        entries = tuple(numbers.entry(name) for name in self.names)
+        residues = partial(_residues, [x for _, x in rows])
+        return judge(numbers, Asked(entries, equations, residues), order)
+
+    def _of_power(self, n: int) -> list[Polynomial]:
+        ring, elements = self.elements(n)
+        return [x for element in elements for x in _by_monomials(ring, element, self.names)]
+
+
+def _by_monomials(ring: Ring, x: Poly, names: Sequence[str]) -> list[Polynomial]:
+    """The coefficient of each monomial of all else, as a polynomial in the names; LimitError where
+    a function of one of them stands in it."""
+    places = [ring.places.get(name) for name in names]  # None of one that it does not hold
+    for name, place in zip(names, places, strict=True):
+        if place is not None and ring.diff(x, name) != ring.reduce(x.derivative(place)):
+            raise LimitError("scheme", name, "stands within a function")
+    found: dict[tuple[int, ...], list[tuple[Fraction, tuple[int, ...]]]] = {}
+    for monomial, number in terms_of(x):
+        powers = tuple(0 if place is None else monomial[place] for place in places)
+        others = tuple(0 if k in places else e for k, e in enumerate(monomial))
+        found.setdefault(others, []).append((Fraction(int(number.p), int(number.q)), powers))
+    return [tuple(terms) for terms in found.values()]
+
+
+def _residues(
+    rows: Sequence[Polynomial], entries: Sequence[E], one: E, bound: bool = False
+) -> list[E]:
+    return [_value(row, entries, one, bound) for row in rows]
+
+
+def _value(row: Polynomial, entries: Sequence[E], one: E, bound: bool) -> E:
+    total = one * 0
+    for number, powers in row:
+        size = abs(number) if bound else number
+        term = one * size.numerator / size.denominator
+        for x, n in zip(entries, powers, strict=True):
+            term = term * power(x, n) if n else term
+        total = total + term
+    return total
