@@ -8,6 +8,7 @@ them. That none near them do so is said where a ball that holds the difference a
 numbers within ten units of the last digits leaves 0 out.
 """
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -39,14 +40,13 @@ from verify.schemes.printed.nearby_order import highest
 from verify.schemes.printed.printed_numbers import PrintedNumbers, power
 from verify.schemes.printed.sentences import of_printed
 
-_MOST_NUMBERS, _MOST_CONDITIONS, _MOST_ORDER = 24, 600, 8
+_MOST_NUMBERS, _MOST_CONDITIONS = 24, 600
+MOST_ORDER = 8  # that is looked at where no other is asked for
 _POINTS = 8
 _DIGITS = 12  # of a residue
 
 Elements: TypeAlias = tuple[Ring, list[Poly]]
 Polynomial: TypeAlias = tuple[tuple[Fraction, tuple[int, ...]], ...]  # coefficients and exponents
-
-
 Formulas: TypeAlias = tuple[tuple[str, str], ...]  # p_next, q_next and what they are
 
 
@@ -58,9 +58,22 @@ def nearby_of_formulas(formulas: Formulas, hamiltonian: Hamiltonian) -> NearbyOr
 
 
 @lru_cache(maxsize=16)
-def nearby_defect(formulas: Formulas, hamiltonian: Hamiltonian) -> NearbyOrder | None:
-    """The same of S = JᵀΩJ − Ω: up to which power of h it has no term with such numbers."""
-    return _looked_for(formulas, hamiltonian, _PrintedMap.defects)
+def nearby_defect(
+    formulas: Formulas, hamiltonian: Hamiltonian, most: int = MOST_ORDER
+) -> NearbyOrder | None:
+    """The same of S = JᵀΩJ − Ω: up to which power of h, `most` at most, it has no term with such
+    numbers."""
+    return _looked_for(formulas, hamiltonian, _PrintedMap.defects, most)
+
+
+def moved_by_units(formulas: Formulas, hamiltonian: Hamiltonian) -> list[Formulas]:
+    """The formulas with one printed number after the other moved by a unit of its last digit."""
+    read = _read(dict(formulas), hamiltonian)
+    if not read.readings:
+        return []
+    first = read.readings[0]
+    values = {name: rational(text, name) for name, text in read.numbers.items() if "/" not in text}
+    return [read.at({name: values[name] + unit}) for name, unit in first.units.items()]
 
 
 def told_defect(near: NearbyOrder, form: str) -> Prose:
@@ -73,17 +86,41 @@ def told_defect(near: NearbyOrder, form: str) -> Prose:
 
 
 def _looked_for(
-    formulas: Formulas, hamiltonian: Hamiltonian, elements: "Callable[[_PrintedMap, int], Elements]"
+    formulas: Formulas,
+    hamiltonian: Hamiltonian,
+    elements: "Callable[[_PrintedMap, int], Elements]",
+    most: int = MOST_ORDER,
 ) -> NearbyOrder | None:
     try:
         with limited("scheme", formulas, "to look for exact numbers near the printed ones"):
-            printed = _printed(dict(formulas), hamiltonian)
-            return None if printed is None else printed.order(partial(elements, printed))
+            read = _read(dict(formulas), hamiltonian)
+            if not read.readings or len(read.numbers) > _MOST_NUMBERS:
+                return None
+            named = map_by_formulas(hamiltonian, read.named, tuple(read.numbers))
+            printed = _PrintedMap(series_of(named, 2), tuple(read.numbers), read.readings)
+            return printed.order(partial(elements, printed), most)
     except InputError:  # no polynomial in its decimals, or too long
         return None
 
 
-def _printed(formulas: Mapping[str, str], hamiltonian: Hamiltonian) -> "_PrintedMap | None":
+@dataclass(frozen=True)
+class _ReadFormulas:
+    """`named`: the formulas with a name for each long decimal, `numbers` these as they are printed;
+    `readings`: the ways in which they may be read, the first before others; none without any."""
+
+    named: Mapping[str, str]
+    numbers: Mapping[str, str]
+    readings: tuple[PrintedNumbers, ...]
+
+    def at(self, values: Mapping[str, Fraction]) -> Formulas:
+        """The formulas with these values, and the other numbers as they are printed."""
+        texts = {**self.numbers, **{name: str(x) for name, x in values.items()}}
+        pattern = re.compile(rf"\b({'|'.join(map(re.escape, texts))})\b")
+        written = {x: pattern.sub(lambda m: f"({texts[m[0]]})", y) for x, y in self.named.items()}
+        return tuple(written.items())
+
+
+def _read(formulas: Mapping[str, str], hamiltonian: Hamiltonian) -> _ReadFormulas:
     naming, label = Naming({}), "number"
     while any(name.startswith(label) for name in hamiltonian.parameters):
         label += "_"
@@ -93,11 +130,8 @@ def _printed(formulas: Mapping[str, str], hamiltonian: Hamiltonian) -> "_Printed
     # What H has too is a parameter, and exact.
     parameters = {abs(x) for x in hamiltonian.exact.atoms(sympy.Rational)}
     numbers = {name: _exact_or_printed(text, parameters) for name, text in naming.numbers.items()}
-    readings = [x for x in PrintedNumbers(numbers).of_a_method() if x.units]
-    if not readings or len(numbers) > _MOST_NUMBERS:
-        return None
-    series = series_of(map_by_formulas(hamiltonian, named, tuple(numbers)), 2)
-    return _PrintedMap(series, tuple(numbers), tuple(readings))
+    readings = tuple(x for x in PrintedNumbers(numbers).of_a_method() if x.units)
+    return _ReadFormulas(named, numbers, readings)
 
 
 def _exact_or_printed(text: str, parameters: set[sympy.Rational]) -> str:
@@ -116,15 +150,16 @@ class _PrintedMap:
     names: tuple[str, ...]
     readings: tuple[PrintedNumbers, ...]
 
-    def order(self, elements: Callable[[int], Elements]) -> NearbyOrder | None:
-        """Up to which power of h the elements are 0 with numbers near the printed ones."""
+    def order(self, elements: Callable[[int], Elements], most: int) -> NearbyOrder | None:
+        """Up to which power of h, `most` at most, the elements are 0 with numbers near the printed
+        ones."""
         conditions = _Conditions(self.names, elements)
-        best, _ = highest(self.readings, _MOST_ORDER, conditions.judge)
+        best, _ = highest(self.readings, most, conditions.judge)
         if best is None:
             return None
         order, numbers, found = best
         verdict, said, _ = of_printed(found, order)
-        beyond = self._excluded(order + 1, numbers, elements) if order < _MOST_ORDER else None
+        beyond = self._excluded(order + 1, numbers, elements) if order < most else None
         return NearbyOrder(order, verdict, said, beyond, ())
 
     def differences(self, n: int) -> Elements:

@@ -84,15 +84,18 @@ class NearbyLimit:
         return format(Decimal(known_text(self.value, self.radius, digits)), "f")
 
 
-def of_map(name: str, step: StepMap, narrow: Fraction = Fraction(0)) -> LinearStability:
+def of_map(
+    name: str, step: StepMap, narrow: Fraction = Fraction(0), keeps_area: bool = False
+) -> LinearStability:
     """The stability interval in y of a step map of H = (p² + q²)/2, with h for y; with `narrow`,
-    gaps that are less wide, in parts of y, are passed over.
+    gaps that are less wide, in parts of y, are passed over; with `keeps_area`, det M is taken to
+    be 1 but for what digits leave.
 
     Raises InputError where it has no closed form there.
     """
     with limited("scheme", name, "its linear theory", 10 * MOST):  # `lie99` takes 3
         found = _of_product(name, step, narrow) if step.of_parts else None
-        return found or _of_closed_form(name, step)
+        return found or _of_closed_form(name, step, narrow, keeps_area)
 
 
 def _of_product(name: str, step: StepMap, narrow: Fraction) -> LinearStability | None:
@@ -115,14 +118,17 @@ def _of_product(name: str, step: StepMap, narrow: Fraction) -> LinearStability |
     return LinearStability(name, interval, sympy.factor(delta_j), gaps)
 
 
-def _of_closed_form(name: str, step: StepMap) -> LinearStability:
+def _of_closed_form(
+    name: str, step: StepMap, narrow: Fraction, keeps_area: bool
+) -> LinearStability:
     entries = [sympy.together(x.subs(H_STEP, Y)) for x in step.jacobian]
     if any(x.free_symbols - {Y} for x in entries):
         raise InputError("scheme", name, "is not linear on the harmonic oscillator")
     a, b, c, e = entries
     det, trace = (sympy.cancel(x) for x in (a * e - b * c, a + e))
-    conditions = [_polynomial(x) for x in (1 - det, 1 + det - trace, 1 + det + trace)]
-    interval, _ = _interval([_SympyPolynomial(f) for f in conditions if not f.is_zero])
+    of_area = () if keeps_area else (1 - det,)
+    conditions = [_polynomial(x) for x in (*of_area, 1 + det - trace, 1 + det + trace)]
+    interval, _ = _interval([_SympyPolynomial(f) for f in conditions if not f.is_zero], narrow)
     if det == 1 and trace in (2, -2) and any(sympy.cancel(x) != 0 for x in (b, c)):
         interval = sympy.S.Zero
     return LinearStability(name, interval, sympy.factor(det - 1))

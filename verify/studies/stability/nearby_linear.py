@@ -18,6 +18,8 @@ from verify.arithmetic.exact import decimal
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number import E
 from verify.hamiltonians import systems
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.proof.printed_formulas import moved_by_units, nearby_defect
 from verify.prose import Number, Prose, prose
 from verify.schemes import get
 from verify.schemes.printed.asked import BITS, Asked, Named
@@ -28,6 +30,7 @@ from verify.schemes.printed.nearest import Nearest, nearest
 from verify.schemes.printed.splitting_table import PrintedTable
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import splitting
+from verify.schemes.step_map import StepMap
 from verify.studies.stability.linear import LinearStability, NearbyLimit, of_map
 
 _NARROW = Fraction(1, 1000)  # a gap that is looked at; whether it closes is asked
@@ -44,6 +47,8 @@ def linear_stability(name: str) -> LinearStability:
     """
     scheme = get(name)
     found = _of_scheme(scheme)
+    if scheme.formulas:
+        return _of_formulas(scheme, found)
     sizes = getattr(scheme.every_h, "nearby", None)
     if not isinstance(sizes, PrintedParts) or found.interval in (sympy.oo, 0):
         return found
@@ -54,9 +59,37 @@ def linear_stability(name: str) -> LinearStability:
     return found if limit is None else replace(found, interval=limit)
 
 
+def _oscillator() -> Hamiltonian:
+    return systems.get("harmonic").hamiltonian({"omega": 1})
+
+
 def _of_scheme(scheme: Scheme, narrow: Fraction = Fraction(0)) -> LinearStability:
-    hamiltonian = systems.get("harmonic").hamiltonian({"omega": 1})
-    return of_map(scheme.name, scheme.step_map(hamiltonian), narrow)
+    return of_map(scheme.name, scheme.step_map(_oscillator()), narrow)
+
+
+def _of_formulas(scheme: Scheme, found: LinearStability) -> LinearStability:
+    """To the digits that the decimals in a user's formulas leave, where exact ones near them make
+    det M = 1."""
+    oscillator, formulas = _oscillator(), tuple(scheme.formulas.items())
+    moved, degree = moved_by_units(formulas, oscillator), scheme.step_map(oscillator).flat.degree
+    if not moved or not degree:
+        return found
+    near = nearby_defect(formulas, oscillator, degree)
+    if near is None or near.order < degree:
+        return found
+    ends = [_end_of_formulas(dict(each)) for each in (formulas, *moved)]
+    values = [x for x in ends if x is not None]
+    if len(values) < len(ends):
+        return found
+    radius = sum((abs(x - values[0]) for x in values), Fraction(1, 10 ** (_DIGITS - 2)))
+    said = _LEFT if found.delta_j == 0 else prose("det M = 1 for ", near.said)
+    return replace(found, interval=NearbyLimit(values[0], radius, said))
+
+
+def _end_of_formulas(formulas: Mapping[str, str]) -> Fraction | None:
+    step = StepMap.from_formulas(_oscillator(), formulas["p_next"], formulas["q_next"])
+    found = of_map("printed", step, _NARROW, keeps_area=True)
+    return None if found.interval in (sympy.oo, 0) else Fraction(found.decimal(_DIGITS))
 
 
 def _limit(

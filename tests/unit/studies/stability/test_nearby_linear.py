@@ -64,3 +64,26 @@ def test_at_an_equilibrium_the_largest_step_is_that_of_exact_coefficients() -> N
 def test_a_limit_is_told_of_an_order_beyond_which_no_condition_is_known() -> None:
     verlet = "kick 0.50000000; drift 1.00000000; kick 0.50000000; order 8"
     assert abs(Fraction(linear_stability(verlet).decimal()) - 2) < Fraction(1, 10**6)
+
+
+# Störmer–Verlet, whose halves differ by what the digits leave.
+HALVES = "p_next = p - {a}*h*q - {b}*h*(q + h*p - {c}*h**2*q); q_next = q + h*p - {c}*h**2*q"
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "c"),
+    [
+        ("0.50000000001", "0.49999999999", "1/2"),
+        ("0.49999999999", "0.50000000001", "1/2"),
+        ("0.50000000001", "0.49999999999", "0.5000000001"),
+    ],
+)
+def test_a_limit_of_formulas_is_that_of_exact_numbers_near_them(a: str, b: str, c: str) -> None:
+    found = linear_stability(HALVES.format(a=a, b=b, c=c))
+    assert abs(Fraction(found.decimal(12)) - 2) < Fraction(1, 10**8)
+    assert "det M = 1 for exact coefficients" in str(found.note)
+
+
+@pytest.mark.parametrize("a", ["0.50000010001", "0.501"])
+def test_a_wrong_digit_of_formulas_leaves_no_stable_step(a: str) -> None:
+    assert linear_stability(HALVES.format(a=a, b="0.49999999999", c="1/2")).interval == 0
