@@ -82,7 +82,11 @@ def _of_formulas(scheme: Scheme, found: LinearStability) -> LinearStability:
     if len(values) < len(ends):
         return found
     radius = sum((abs(x - values[0]) for x in values), Fraction(1, 10 ** (_DIGITS - 2)))
-    said = _LEFT if found.delta_j == 0 else prose("det M = 1 for ", near.said)
+    said = (
+        _LEFT
+        if found.delta_j == 0
+        else prose("det M = 1 with exact numbers near the printed ones: ", near.said)
+    )
     return replace(found, interval=NearbyLimit(values[0], radius, said))
 
 
