@@ -30,9 +30,8 @@ class Entry(SizesEntry):
     of_parts: StrictBool = False
 
 
-def claims(entry: Entry) -> Iterator[TableClaim]:
-    """Of the order, of digits, symplectic, symmetric."""
-    naming = Naming(entry.numbers)
+def weights_of(entry: Entry, naming: Naming) -> tuple[str, ...]:
+    """The w of all steps, in names for their decimals."""
     if entry.csv is not None:
         if entry.sizes is not None or entry.half is not None:
             raise InputError("csv", entry.csv, "stands alone: leave out sizes and half")
@@ -40,7 +39,13 @@ def claims(entry: Entry) -> Iterator[TableClaim]:
     else:
         sizes, half = sizes_of(entry)
     named = naming.entries(sizes, "w")
-    parts = tuple(("step", size) for size in (mirrored(named) if half else named))
+    return mirrored(named) if half else named
+
+
+def claims(entry: Entry) -> Iterator[TableClaim]:
+    """Of the order, of digits, symplectic, symmetric."""
+    naming = Naming(entry.numbers)
+    parts = tuple(("step", size) for size in weights_of(entry, naming))
     table = PrintedTable(entry.kind, parts, naming.printed)
 
     def again(numbers: Mapping[str, str]) -> Iterator[TableClaim]:

@@ -83,20 +83,13 @@ def _padded(weights: Sequence[str], stages: int) -> tuple[str, ...]:
     return (*weights, *["0"] * (stages - len(weights)))
 
 
-def blocks_of(
-    given: Sequence[Block], naming: Naming, names: Sequence[str], folder: Path
-) -> list[NamedBlock]:
-    """Those of all parts."""
-    return [block_of(x, naming, name, folder) for x, name in zip(given, names, strict=True)]
-
-
 def embedded_of(own: Sequence[NamedBlock], order: int | None) -> tuple[Texts, ...] | None:
     """The embedded weights, where every part has them. InputError where some have, or where an
     order of them is claimed and there are none."""
-    found = [x.embedded for x in own]
-    known = tuple(x for x in found if x is not None)
-    if len(known) == len(found):
+    known = tuple(x.embedded for x in own if x.embedded is not None)
+    if len(known) == len(own):
         return known
     if known or order is not None:
-        raise InputError("embedded", NOT_GIVEN, "is missing in a part")
+        alone = "is missing; embedded_order is that of its weights"
+        raise InputError("embedded", NOT_GIVEN, alone if len(own) == 1 else "is missing in a part")
     return None

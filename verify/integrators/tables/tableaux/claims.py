@@ -8,6 +8,7 @@ from pydantic import StrictBool
 from verify.errors import NOT_GIVEN, InputError
 from verify.integrators.tables.entry import Order, TableEntry
 from verify.integrators.tables.hints import NONE, Hints
+from verify.integrators.tables.tableaux.blocks import Block, block_of, embedded_of
 from verify.integrators.tables.tableaux.order import (
     MANY,
     judge_in_time,
@@ -30,8 +31,10 @@ from verify.integrators.tables.told import (
     order_claims,
 )
 from verify.prose import prose
+from verify.schemes.coloured_trees import Grammar
 from verify.schemes.printed.asked import Asked
 from verify.schemes.printed.judged import Judged, judge
+from verify.schemes.printed.naming import Naming
 from verify.schemes.printed.printed_numbers import PrintedNumbers
 from verify.verdict import Verdict
 
@@ -44,6 +47,26 @@ class TableauEntry(TableEntry):
     embedded_order: Order | None = None
     stage_order: Order | None = None
     row_sums: StrictBool | None = None
+
+
+class BlocksEntry(TableauEntry):
+    """Of parts that have a tableau each."""
+
+    @property
+    def blocks(self) -> tuple[Block, ...]:
+        """The tableaux as they are written."""
+        raise NotImplementedError
+
+
+def of_blocks(
+    entry: BlocksEntry, names: tuple[str, ...], grammar: Grammar, separable: bool = False
+) -> Iterator[TableClaim]:
+    """Each claim that the entry makes of its parts, of these names. InputError as `of_tableau`."""
+    naming = Naming(entry.numbers)
+    pairs = zip(entry.blocks, names, strict=True)
+    own = [block_of(block, naming, name, entry.folder) for block, name in pairs]
+    table = TableauTable(tuple(x.printed for x in own), grammar, naming.printed, names)
+    yield from of_tableau(entry, table, embedded_of(own, entry.embedded_order), separable)
 
 
 def of_tableau(
