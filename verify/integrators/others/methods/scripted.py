@@ -1,7 +1,8 @@
 """A step of someone else's library by the few lines that drive it: what is shown is what is run."""
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import Any
 
 from verify.integrators.others.methods.integrator import FloatStep, Map, ReleasedIntegrator
@@ -51,7 +52,7 @@ class Driven:
     body: str
     said: str
 
-    def script(self, problem: Problem, method: str) -> Script:
+    def script(self, problem: Problem, method: str) -> str:
         """The lines for one problem and one method."""
         begin = [] if problem.timed else ["t = 0.0"]
         inside = [*begin, *self.body.strip().splitlines(), _END[problem.degrees]]
@@ -65,7 +66,23 @@ class Driven:
             f"def step({problem.arguments}):",
             *(f"    {line}".rstrip().replace("{method}", method) for line in inside),
         ]
-        return Script("\n".join(lines) + "\n")
+        return "\n".join(lines) + "\n"
+
+
+def by_script(
+    name: str,
+    driven: str,
+    source: str,
+    hamiltonian: str,
+    text: str,
+    order: int | None,
+    symplectic: bool | None = None,
+    points: Sequence[tuple[Fraction, ...]] = (),
+    ladder: Sequence[Fraction] = (),
+) -> ReleasedIntegrator:
+    """The integrator whose step the lines of `text` define, which are what is shown of it."""
+    step = FloatStep(hamiltonian, Script(text).step, tuple(points), tuple(ladder))
+    return ReleasedIntegrator(name, driven, source, step, order, symplectic, text)
 
 
 def scripted(
@@ -79,21 +96,21 @@ def scripted(
 ) -> Iterator[ReleasedIntegrator]:
     """One for each problem."""
     for problem in problems:
-        script = driven.script(problem, method)
-        second = driven.script(AGAIN[problem], method)
-        yield ReleasedIntegrator(
-            f"{name}{problem.tag}",
-            f"{driven.said}, for {problem.said}",
-            source,
-            _step(problem, script, order or 0),
-            order,
-            symplectic if problem is not DRIVEN else None,
-            script.text,
-            _step(AGAIN[problem], second, order or 0),
-        )
+        first, second = (
+            by_script(
+                f"{name}{each.tag}", f"{driven.said}, for {each.said}", source, each.hamiltonian,
+                driven.script(each, method), order, symplectic if each is not DRIVEN else None,
+                *_where(each, order or 0),
+            )
+            for each in (problem, AGAIN[problem])
+        )  # fmt: skip
+        yield replace(first, again=second.method)
 
 
-def _step(problem: Problem, script: Script, order: int) -> FloatStep:
+def _where(
+    problem: Problem, order: int
+) -> tuple[Sequence[tuple[Fraction, ...]], Sequence[Fraction]]:
+    """Points and steps with which an order is seen."""
     high = order >= _HIGH
     points = (AWAY if high else POINTS[:2]) if problem.degrees == 1 else ()
-    return FloatStep(problem.hamiltonian, script.step, points, LONG if high else USUAL)
+    return points, LONG if high else USUAL
