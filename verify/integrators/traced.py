@@ -1,5 +1,6 @@
 """From a user's map, called with symbols, to what is proved of it."""
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
@@ -7,32 +8,28 @@ from functools import partial
 from verify.algebra.embedding import embed
 from verify.algebra.limits import checked
 from verify.algebra.ring import Poly, Ring
+from verify.arithmetic.exact import text
 from verify.errors import InputError
-from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.results import Finding
 from verify.integrators.tracing.domain import domain_of
 from verify.integrators.tracing.functions import copied
-from verify.integrators.tracing.readings_of_floats import readings
 from verify.integrators.tracing.series import TracedSeries
 from verify.integrators.tracing.step_map import traced_map
-from verify.integrators.tracing.trace import Node, Tape, expressions, in_order, sizes
+from verify.integrators.tracing.trace import Node, Tape, written
 from verify.integrators.user_code.step import StepError, lifted
 from verify.integrators.user_code.user_map import UserMap
 from verify.proof.expansion import MOST_ORDERS
 from verify.proof.order import prove
 from verify.proof.symplectic import closed_form
 from verify.proof.symplectic.order import Claimed, prove_map
-from verify.prose import prose
-from verify.schemes.degrees.canonical_map import CanonicalMap, State
+from verify.prose import Prose, prose, read_prose
+from verify.schemes.degrees.canonical_map import CanonicalMap
 from verify.verdict import Verdict
 
-_MOST_WRITTEN, _MOST_OF_MAP = (
-    3000,
-    4000,
-)  # operations of z' as trees, of which a closed form is tried
+_MOST_WRITTEN, _MOST_OF_MAP = 3000, 4000  # operations of which a closed form is tried
 _MOST_TERMS = 2000
-_MOST = 8  # orders that are looked at but for rounding
 
 
 @dataclass(frozen=True)
@@ -53,6 +50,19 @@ def trace_of(step: UserMap) -> Trace:
     after = step.call(copied(step.function, tape), symbols, size, clock, tape.rational)
     tape.check()
     return Trace(tape, tuple(x.node for x in lifted(symbols[0], after)))
+
+
+def _notes(tape: Tape) -> list[Prose]:
+    """What the floats in a user's code were read as, and what else was taken for granted."""
+    notes = [prose("h > 0 is taken for granted")] if tape.positive else []
+    if tape.readings:
+        shown = ", ".join(f"`{x!r}` as `{text(v)}`" for x, v in sorted(tape.readings.items()))
+        told = f"floats are read as the exact numbers that they are written for: {shown}"
+        notes.append(read_prose(told))
+    if tape.rounded:
+        shown = ", ".join(f"`{x!r}`" for x in sorted(tape.rounded))
+        notes.append(read_prose(f"floats taken by their exact binary values: {shown}"))
+    return notes
 
 
 # -- a step in the plane --------------------------------------------------------------------------
@@ -77,7 +87,7 @@ def proved_in_plane(trace: Trace, hamiltonian: Hamiltonian) -> Finding:
         delta_j=proof.step_map.delta_j_text,
         proof=proof,
         domain=(proof.domain & domain_of(tape)).texts,
-    ).noting(f"traced with symbols; the map {traced.how}", *readings(tape))
+    ).noting(f"traced with symbols; the map {traced.how}", *_notes(tape))
 
 
 # -- a step in several degrees of freedom ---------------------------------------------------------
@@ -100,29 +110,19 @@ def proved_in_degrees(trace: Trace, hamiltonian: Hamiltonian) -> Finding:
         entry=proof.entry,
         leading=proof.leading_text,
         domain=(proof.domain & domain_of(trace.tape)).texts,
-        notes=(prose("traced with symbols"), *readings(trace.tape)),
+        notes=(prose("traced with symbols"), *_notes(trace.tape)),
     )
 
 
 def _canonical(roots: list[Node], hamiltonian: Hamiltonian) -> CanonicalMap:
-    series = TracedSeries(roots, partial(canonical_field, hamiltonian))
-
-    def expand(most: int) -> tuple[CanonicalField, State]:
-        return series(most)
-
-    nodes = in_order(*roots)
-    size = sizes(nodes)
-    field, _ = canonical_field(hamiltonian)
-    if sum(size[root.number] for root in roots) <= _MOST_WRITTEN:
-        made = expressions(nodes, {})
-        try:
-            exact = [checked(made[root.number], "step", "its closed form") for root in roots]
-            field, closed = canonical_field(hamiltonian, *exact)
-        except InputError:
-            pass
-        else:
+    expand = TracedSeries(roots, partial(canonical_field, hamiltonian))
+    exact = written(roots, _MOST_WRITTEN)
+    with suppress(InputError):
+        if exact is not None:
+            smooth = [checked(x, "step", "its closed form") for x in exact]
+            field, closed = canonical_field(hamiltonian, *smooth)
             return CanonicalMap(hamiltonian, field, closed=tuple(closed), expand=expand)
-    return CanonicalMap(hamiltonian, field, expand=expand)
+    return CanonicalMap(hamiltonian, canonical_field(hamiltonian)[0], expand=expand)
 
 
 # -- a map without an H ---------------------------------------------------------------------------
@@ -136,7 +136,7 @@ def proved_of_map(trace: Trace, names: tuple[str, ...]) -> Finding:
     where = domain_of(trace.tape)
     base = Finding(
         Verdict.UNDECIDED, prose("whether S vanishes is not decided"), "proof", len(names) // 2,
-        domain=where.texts, notes=(prose("traced with symbols"), *readings(trace.tape)),
+        domain=where.texts, notes=(prose("traced with symbols"), *_notes(trace.tape)),
     )  # fmt: skip
     if decision.zero is True:
         said = prose("S is the zero form: the map is symplectic")
@@ -158,10 +158,7 @@ def proved_of_map(trace: Trace, names: tuple[str, ...]) -> Finding:
 
 def _closed(trace: Trace, names: tuple[str, ...]) -> tuple[Ring, list[Poly]]:
     """The map as elements of a ring."""
-    nodes = in_order(*trace.roots)
-    size = sizes(nodes)
-    if sum(size[root.number] for root in trace.roots) > _MOST_OF_MAP:
+    exact = written(trace.roots, _MOST_OF_MAP)
+    if exact is None:
         raise StepError(f"written out it has more than {_MOST_OF_MAP} operations")
-    made = expressions(nodes, {})
-    exact = [checked(made[root.number], "map", "its closed form") for root in trace.roots]
-    return embed(exact, names, _MOST_TERMS)
+    return embed([checked(x, "map", "its closed form") for x in exact], names, _MOST_TERMS)

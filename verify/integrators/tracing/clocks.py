@@ -4,13 +4,14 @@ With t held still at a moment s of the step, H(p, q, s) is autonomous. A step th
 at one moment is a scheme for that H of an order that it may not have for the motion in time.
 """
 
+from collections.abc import Sequence
 from fractions import Fraction
 
 from verify.algebra.formula import symbol
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.tracing.misread import misread
-from verify.integrators.tracing.trace import Node, expressions, in_order, sizes
+from verify.integrators.tracing.trace import Node, written
 from verify.proof.order import convergence_of
 from verify.schemes.step_map import StepMap
 
@@ -19,28 +20,25 @@ MOMENTS = {"t": Fraction(0), "t + h": Fraction(1), "t + h/2": Fraction(1, 2)}  #
 _STILL = symbol("still")
 
 
-def clock_mistakes(
-    hamiltonian: Hamiltonian, p_next: Node, q_next: Node, order: int | None
-) -> list[str]:
-    """One sentence, where the step has a higher order than `order` with the force held still, or
-    with H read at other times."""
+def clock_mistakes(hamiltonian: Hamiltonian, roots: Sequence[Node], order: int | None) -> list[str]:
+    """One sentence, where the step of these p' and q' has a higher order than `order` with the
+    force held still, or with H read at other times."""
     if order is None or not hamiltonian.time_dependent or "still" in hamiltonian.parameters:
         return []
+    p_next, q_next = roots
     still = _still(hamiltonian, p_next, q_next, order)
     return still or misread(hamiltonian, p_next, q_next, order)
 
 
 def _still(hamiltonian: Hamiltonian, p_next: Node, q_next: Node, order: int) -> list[str]:
-    nodes = in_order(p_next, q_next)
-    size = sizes(nodes)
-    if size[p_next.number] + size[q_next.number] > _MOST_WRITTEN:
-        return []
     t, h = symbol("t"), symbol("h")
     still = Hamiltonian(hamiltonian.exact.subs(t, _STILL))
     for words, part in MOMENTS.items():
-        made = expressions(nodes, {"t": _STILL - part * h})
+        made = written((p_next, q_next), _MOST_WRITTEN, {"t": _STILL - part * h})
+        if made is None:
+            return []
         try:
-            step = StepMap.from_expressions(still, made[p_next.number], made[q_next.number])
+            step = StepMap.from_expressions(still, *made)
             found = convergence_of(step).order
         except InputError:  # too long, or not smooth
             continue

@@ -7,7 +7,7 @@ import sympy
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.formula import symbol
 from verify.algebra.requirement import Requirement, of_divisor, of_function, of_power
-from verify.integrators.tracing.trace import Node, Tape, expressions, in_order, sizes
+from verify.integrators.tracing.trace import Node, Tape, written
 
 _MOST_WRITTEN = 100  # operations of what is divided by, or of which a root is taken
 _NOT_WRITTEN = "the function divides by no 0, and takes no root or logarithm of what is negative"
@@ -22,11 +22,11 @@ def domain_of(tape: Tape) -> Domain:
         operand = node.inputs[-1] if node.inputs else None
         if operand is None or not _asks(node):
             continue
-        inside = in_order(operand)
-        if sizes(inside)[operand.number] > _MOST_WRITTEN:
+        inside = written([operand], _MOST_WRITTEN)
+        if inside is None:
             words.append(_NOT_WRITTEN)
-            continue
-        found += _asked(node, expressions(inside, {})[operand.number])
+        else:
+            found += _asked(node, inside[0])
     return Domain.of(found, *words) if found or words else EVERYWHERE
 
 

@@ -1,22 +1,25 @@
 """Which mistake the times of a traced step's readings look like; and what order it has without."""
 
+import math
 from collections.abc import Sequence
 from fractions import Fraction
 
 from verify.algebra.ring import Ring
+from verify.algebra.series.power_series import Series
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.vector_field import VectorField
 from verify.integrators.tracing.number import UntraceableError
 from verify.integrators.tracing.readings import NoReadingsError, Read, Readings
-from verify.integrators.tracing.rounded_order import rounded_order
 from verify.integrators.tracing.step_map import traced_map
 from verify.integrators.tracing.trace import Node, in_order
-from verify.proof.order import convergence_of
+from verify.proof.order import convergence_of, size_of
 from verify.schemes.timed.mistakes import Reading, name_of
 
 _MOST_NODES = 2000
 _SAME = Fraction(1, 2**40)  # two times whose parts are added in floats
 _MOST_TOLD = 4
+_ROUNDING = Fraction(1, 2**44)
 _SIMPLE = 1000  # the largest denominator that is shown
 
 
@@ -50,8 +53,28 @@ def _order(hamiltonian: Hamiltonian, p_next: Node, q_next: Node) -> int | None:
     found = convergence_of(traced.step_map).order
     if found is None or traced.series is None:
         return found
-    rounded = rounded_order(*traced.series)
+    rounded = _rounded_order(*traced.series)
     return found if rounded is None else max(found, rounded)
+
+
+def _rounded_order(field: VectorField, p: Series, q: Series) -> int | None:
+    """Up to which power of h it agrees with the flow, with residues below 2⁻⁴⁴ of the coefficients
+    taken for 0; None where it does in all that are looked at.
+
+    Yoshida's 1.3512071919596578 is not 1/(2 − 2^(1/3)): taken by its exact value it gives a map of
+    order 0, whose first Taylor coefficients miss those of the flow by 10⁻¹⁶. Such residues are told
+    from errors by their size beside the coefficients that they are residues of.
+    """
+    scale = Fraction(0)
+    for n in range(p.most + 1):
+        gap = Fraction(0)
+        for series, name in ((p, "p"), (q, "q")):
+            x, y = series.coefficients[n], field.power(name, n) / math.factorial(n)
+            gap = max(gap, size_of(field.ring.reduce(x - y)))
+            scale = max(scale, size_of(x), size_of(y))
+        if gap > _ROUNDING * scale:
+            return n - 1
+    return None
 
 
 def _alike(reads: Sequence[Read]) -> list[Read]:

@@ -54,7 +54,7 @@ def settle_layout(callee: Callee, places: Sequence[Place], field: Field | None) 
     else:
         best = trials[0]
         step.layout = best.layout
-    return [*callee.notes, *_understood(callee, step, best)]
+    return _understood(callee, step, best)
 
 
 def _understood(callee: Callee, step: UserMap, best: _Trial) -> list[str]:

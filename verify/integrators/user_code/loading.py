@@ -5,7 +5,7 @@
 
 import inspect
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import permutations
 from pathlib import Path
@@ -98,7 +98,6 @@ class Callee:
     layouts: tuple[Layout, ...]
     named: bool = True
     arguments: tuple[str, ...] = ()
-    notes: list[str] = field(default_factory=list)
 
 
 def callee_from(

@@ -15,7 +15,6 @@ from verify.integrators.user_code.number_type import DOUBLE, NumberType
 from verify.integrators.user_code.step import TIME_LIMIT, StepError, Theirs, limited, real
 
 State = tuple[float, ...]
-Exactly = tuple[Fraction, ...]
 
 
 @dataclass
