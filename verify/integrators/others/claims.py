@@ -25,15 +25,8 @@ from verify.integrators.others.methods.tabled import FloatTable, tabled
 from verify.integrators.others.second.look import Look, at_claim, at_step, at_table, looked_at_again
 from verify.integrators.results import Finding
 from verify.integrators.tables import kinds
-from verify.integrators.tables.cost import severity_of
-from verify.integrators.tables.told import (
-    NOT_SYMPLECTIC,
-    OF_WORDS,
-    WRONG_CLOCK,
-    WRONG_ORDER,
-    WRONG_WEIGHTS,
-    TableClaim,
-)
+from verify.integrators.tables.cost import Severity, severity_of
+from verify.integrators.tables.told import TableClaim
 from verify.prose import Formula, Number, Prose, joined, prose, read_prose
 from verify.scenes.results.claim import ClaimResult
 from verify.schemes.printed.sentences import of_digits, of_printed
@@ -109,7 +102,7 @@ def separate(claims: Iterable[TableClaim]) -> Iterator[TableClaim]:
     wrong = False
     for claim in claims:
         follows = claim.kind in _FOLLOWING or (
-            claim.kind == "order in time" and claim.severity == WRONG_ORDER
+            claim.kind == "order in time" and claim.severity == Severity.WRONG_ORDER
         )
         if not (wrong and follows and claim.verdict is Verdict.REFUTED):
             yield claim
@@ -126,7 +119,7 @@ def _claims(method: object, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
 def _(method: Compared, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
     verdict, told, details = method.compare()
     judged = verdict, prose(told), details
-    yield method.kind, method.statement, judged, integrator.reproduction, OF_WORDS
+    yield method.kind, method.statement, judged, integrator.reproduction, Severity.OF_WORDS
 
 
 @_claims.register
@@ -135,11 +128,11 @@ def _(method: PrintedTable, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
     assert order is not None  # noqa: S101 - of printed tables it is always claimed
     found = judge_order(method, order)
     said = of_printed(found, order)
-    yield "order", f"order {order}", said, integrator.reproduction, WRONG_ORDER
+    yield "order", f"order {order}", said, integrator.reproduction, Severity.WRONG_ORDER
     if found.verdict is not Verdict.REFUTED and method.units:
         code = reproductions.of_digits(method, found.nearest, order)
         exact = "every digit is right, to one unit of the last"
-        severity = severity_of(found, WRONG_ORDER) or OF_WORDS
+        severity = severity_of(found, Severity.WRONG_ORDER) or Severity.OF_WORDS
         yield "digits", exact, of_digits(found), code, severity
 
 
@@ -159,13 +152,13 @@ def _(method: ExactTableau, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
         wrong = order.order < claimed and not rounded
         repaired = repair(table, claimed) if wrong else NONE
         said = of_tableau(claimed, order, symplecticity(table, rounded), rounded, repaired)
-        severity = WRONG_WEIGHTS if "embedded" in integrator.name else WRONG_ORDER
+        severity = Severity.WRONG_WEIGHTS if "embedded" in integrator.name else Severity.WRONG_ORDER
         yield "order", f"order {claimed}", said, integrator.reproduction, severity
     if integrator.area_preserving:
         area = symplecticity(table, rounded)
         verdict = {True: Verdict.PROVED, False: Verdict.REFUTED, None: Verdict.UNDECIDED}
         judged = verdict[area.holds], area.said, ()
-        yield "area", _SYMPLECTIC, judged, integrator.reproduction, NOT_SYMPLECTIC
+        yield "area", _SYMPLECTIC, judged, integrator.reproduction, Severity.NOT_SYMPLECTIC
 
 
 @_claims.register
@@ -177,13 +170,19 @@ def _(method: FloatStep, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
         said = of_measured_order(order, finding(method), area)
         statement = f"order {order}, too, {_IN_TIME}" if timed else f"order {order}"
         script = reproductions.of_order(code, point, order, timed)
-        yield "order", statement, said, script, WRONG_CLOCK if timed else WRONG_ORDER
+        yield (
+            "order",
+            statement,
+            said,
+            script,
+            Severity.WRONG_CLOCK if timed else Severity.WRONG_ORDER,
+        )
     elif timed:
         script = reproductions.of_time(code, point)
         yield "in time", _UNSAID, of_unsaid(finding(method)), script, ""
     if area:
         said = of_measured_area(finding(method))
-        yield "area", _SYMPLECTIC, said, reproductions.of_area(code, point), NOT_SYMPLECTIC
+        yield "area", _SYMPLECTIC, said, reproductions.of_area(code, point), Severity.NOT_SYMPLECTIC
 
 
 # -- tableaux -------------------------------------------------------------------------------------

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 from verify.execution.provenance import provenance
 from verify.integrators.others.parts import Found, look_at_each
-from verify.integrators.tables.told import SEVERITIES
+from verify.integrators.tables.cost import Severity
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.report import Report
 from verify.verdict import Verdict
@@ -49,7 +49,7 @@ def _preface(parts: Sequence[Found], claims: Sequence[ClaimResult]) -> Iterator[
     wrong = [c for c in claims if c.verdict is Verdict.REFUTED]
     counts = Counter(c.severity or "not told" for c in wrong)
     if counts:
-        ordered = [x for x in (*SEVERITIES, "not told") if x in counts]
+        ordered = [x for x in (*Severity, "not told") if x in counts]
         yield (
             f"Of {len(claims)} claims {len(wrong)} are refuted: "
             + ", ".join(f"{counts[kind]} of {kind}" for kind in ordered) + "."

@@ -9,6 +9,7 @@ size at which r h^k is as large as what the method truncates, they are what is s
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from enum import StrEnum
 from fractions import Fraction
 
 import flint
@@ -21,9 +22,20 @@ from verify.schemes.printed.judged import Judged
 from verify.schemes.printed.printed_numbers import entries_at
 from verify.verdict import Verdict
 
-DIGITS_SEEN, DIGITS_BELOW = "digits that a double notices", "digits below that"
 _FAR = 1e9  # ulps: more is another number
 DOUBLE = Fraction(1, 2**53)  # of a double, half an ulp of 1
+
+
+class Severity(StrEnum):
+    """What kind of mistake it is, the gravest first."""
+
+    WRONG_ORDER = "wrong order"
+    NOT_SYMPLECTIC = "not symplectic as claimed"
+    WRONG_CLOCK = "wrong clock"
+    WRONG_WEIGHTS = "embedded or step weights"
+    DIGITS_SEEN = "digits that a double notices"
+    DIGITS_BELOW = "digits below that"
+    OF_WORDS = "documentation"
 
 
 @dataclass(frozen=True)
@@ -142,11 +154,11 @@ def _said(
     return read_prose("; ".join(parts))
 
 
-def severity_of(found: Judged, refuted_as: str) -> str | None:
+def severity_of(found: Judged, refuted_as: Severity) -> Severity | None:
     """What kind of mistake it is; `refuted_as`: where it is more than digits."""
     if found.verdict is Verdict.REFUTED:
         return refuted_as
     if found.digits is not False:
         return None
     cost = cost_of(found, None)
-    return DIGITS_BELOW if cost and cost.double is False else DIGITS_SEEN
+    return Severity.DIGITS_BELOW if cost and cost.double is False else Severity.DIGITS_SEEN

@@ -1,40 +1,26 @@
-"""What is told of one claim of a table, and the claims that orders and digits make."""
+"""What is told of one claim of a table, the claims that orders and digits make, and hints."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Protocol, Self, TypeVar
 
 from verify.errors import InputError
-from verify.integrators.tables.cost import (
-    DIGITS_BELOW,
-    DIGITS_SEEN,
-    Cost,
-    cost_of,
-    exact_numbers,
-    severity_of,
-)
+from verify.integrators.tables.cost import Cost, Severity, cost_of, exact_numbers, severity_of
 from verify.prose import Prose
 from verify.schemes.printed.asked import Asked
 from verify.schemes.printed.judged import Judged
+from verify.schemes.printed.misprint import Misprint
 from verify.schemes.printed.printed_numbers import PrintedNumbers, rounded_to
-from verify.schemes.printed.sentences import Details, of_conditions, of_digits, of_printed
+from verify.schemes.printed.sentences import (
+    Details,
+    mended_text,
+    of_conditions,
+    of_digits,
+    of_printed,
+)
 from verify.verdict import Verdict
 
-WRONG_ORDER = "wrong order"
-NOT_SYMPLECTIC = "not symplectic as claimed"
-WRONG_CLOCK = "wrong clock"
-WRONG_WEIGHTS = "embedded or step weights"
-OF_WORDS = "documentation"
-SEVERITIES = (
-    WRONG_ORDER,
-    NOT_SYMPLECTIC,
-    WRONG_CLOCK,
-    WRONG_WEIGHTS,
-    DIGITS_SEEN,
-    DIGITS_BELOW,
-    OF_WORDS,
-)  # the gravest first
 _DIGITS = "every digit is right, to one unit of the last"
 
 
@@ -48,7 +34,7 @@ class TableClaim:
     verdict: Verdict
     evidence: Prose
     details: Details = ()
-    severity: str | None = None
+    severity: Severity | None = None
     nearest: dict[str, str] | None = None
     cost: Cost | None = None
 
@@ -90,7 +76,7 @@ def order_claims(
     found: Judged,
     order: int,
     following: "Callable[[PrintedNumbers], Asked] | None" = None,
-    severity: str = WRONG_ORDER,
+    severity: Severity = Severity.WRONG_ORDER,
 ) -> Iterator[TableClaim]:
     """The claim of an order, and where it holds and numbers are rounded that of their digits."""
     verdict, evidence, details = of_printed(found, order)
@@ -111,7 +97,7 @@ def order_claims(
 
 
 def condition_claims(
-    kind: str, statement: str, what: str, found: Judged, severity: str
+    kind: str, statement: str, what: str, found: Judged, severity: Severity
 ) -> Iterator[TableClaim]:
     """A claim of conditions that are of no order; and of their digits, where these are wrong."""
     verdict, evidence, details = of_conditions(found, what)
@@ -126,7 +112,7 @@ def condition_claims(
 
 
 def _digits_claim(
-    kind: str, statement: str, found: Judged, severity: str, cost: Cost | None
+    kind: str, statement: str, found: Judged, severity: Severity, cost: Cost | None
 ) -> TableClaim:
     """`severity` and `cost` are told where digits are wrong."""
     claim = TableClaim(kind, statement, *of_digits(found))
@@ -146,3 +132,44 @@ def nearest_texts(found: Judged) -> dict[str, str] | None:
         name: rounded_to(x, units[name] / 10**6).replace("−", "-") if name in units else str(x)
         for name, x in numbers.items()
     }
+
+
+# -- hints ----------------------------------------------------------------------------------------
+
+
+class Hints:
+    """At what would be right in one table: told only where all that it claims holds with them.
+
+    `again`: its claims with these numbers in place of printed ones."""
+
+    def __init__(self, again: Callable[[Mapping[str, str]], Iterable[TableClaim]] | None) -> None:
+        self._again = again
+        self.one: Misprint | None = None
+
+    def kept(self, found: Judged) -> Judged:
+        """What was found, with the hint that explains all claims, and without one that does not."""
+        refuted = found.verdict is Verdict.REFUTED
+        if self._again is None or not (refuted or found.digits is False):
+            return found
+        if self.one is not None:
+            return replace(found, misprint=self.one)
+        m = found.misprint
+        if m is not None:
+            if self._holds({m.name: mended_text(found, m)}):
+                self.one = m
+                return found
+            found = replace(found, misprint=None)
+        if not refuted or found.nearest is None:
+            return found
+        if self._holds(nearest_texts(found) or {}):
+            return found
+        return replace(found, nearest=None, off=None)
+
+    def _holds(self, numbers: Mapping[str, str]) -> bool:
+        assert self._again is not None  # noqa: S101 - the caller has looked
+        made = self._again({name: text.replace("−", "-") for name, text in numbers.items()})
+        # Other numbers may have wrong digits.
+        return all(x.verdict is not Verdict.REFUTED or x.kind.endswith("digits") for x in made)
+
+
+NO_HINTS = Hints(None)

@@ -8,12 +8,16 @@ from verify.integrators.others.methods.integrator import FloatStep, ReleasedInte
 from verify.integrators.others.methods.measured import FAILURES, finding
 from verify.integrators.others.second.convergence import order_of_step
 from verify.integrators.others.second.slopes import Slopes, slopes_of
+from verify.integrators.tables.cost import Severity
 from verify.integrators.tables.entry import TableEntry
-from verify.integrators.tables.told import WRONG_CLOCK, WRONG_ORDER, WRONG_WEIGHTS
 from verify.prose import Prose, prose
 from verify.verdict import Verdict
 
-OF_ORDERS = (WRONG_ORDER, WRONG_CLOCK, WRONG_WEIGHTS)  # severities of which a step's slopes tell
+OF_ORDERS = (
+    Severity.WRONG_ORDER,
+    Severity.WRONG_CLOCK,
+    Severity.WRONG_WEIGHTS,
+)  # severities of which a step's slopes tell
 _FIRST = ", {} first"
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pydantic import StrictBool
 
 from verify.errors import InputError
-from verify.integrators.tables.hints import Hints
+from verify.integrators.tables.cost import Severity
 from verify.integrators.tables.layout import named_columns
 from verify.integrators.tables.splittings.claims import (
     SizesEntry,
@@ -16,7 +16,7 @@ from verify.integrators.tables.splittings.claims import (
     sizes_of,
     symmetric_claims,
 )
-from verify.integrators.tables.told import WRONG_ORDER, WRONG_WEIGHTS, TableClaim
+from verify.integrators.tables.told import Hints, TableClaim
 from verify.prose import prose
 from verify.schemes.printed.naming import Naming
 from verify.schemes.printed.splitting_table import PrintedTable
@@ -58,8 +58,8 @@ def claims(entry: Entry) -> Iterator[TableClaim]:
 
     hints = Hints(again)
     for claim in of_order(entry, table, hints):
-        of_weights = entry.of_parts and claim.severity == WRONG_ORDER
-        yield replace(claim, severity=WRONG_WEIGHTS) if of_weights else claim
+        of_weights = entry.of_parts and claim.severity == Severity.WRONG_ORDER
+        yield replace(claim, severity=Severity.WRONG_WEIGHTS) if of_weights else claim
     if entry.symplectic:
         said = prose("a composition of symplectic steps is symplectic, whatever their sizes are")
         yield TableClaim("symplectic", "symplectic", Verdict.PROVED, said)

@@ -11,14 +11,13 @@ from pydantic import BeforeValidator
 
 from verify.arithmetic.number import E
 from verify.errors import NOT_GIVEN, InputError
+from verify.integrators.tables.cost import Severity
 from verify.integrators.tables.entry import Order, Row, TableEntry
-from verify.integrators.tables.hints import NONE, Hints
 from verify.integrators.tables.layout import named_columns, one_column
 from verify.integrators.tables.splittings.clocks import TimedTable, judge_clocks, judge_in_time
 from verify.integrators.tables.told import (
-    OF_WORDS,
-    WRONG_CLOCK,
-    WRONG_ORDER,
+    NO_HINTS,
+    Hints,
     TableClaim,
     best_reading,
     condition_claims,
@@ -182,7 +181,7 @@ def _of_table(
     entry: AlternatingEntry,
     table: PrintedTable,
     times: tuple[str | None, ...] | None,
-    hints: Hints = NONE,
+    hints: Hints = NO_HINTS,
 ) -> Iterator[TableClaim]:
     if times is None and entry.time_dependent is not None:
         raise InputError("times", NOT_GIVEN, "is missing; time_dependent is judged by them")
@@ -202,7 +201,9 @@ def _of_table(
         yield from symmetric_claims(table, hints)
 
 
-def of_order(entry: SizesEntry, table: PrintedTable, hints: Hints = NONE) -> Iterator[TableClaim]:
+def of_order(
+    entry: SizesEntry, table: PrintedTable, hints: Hints = NO_HINTS
+) -> Iterator[TableClaim]:
     """The claim of its order, and of its digits; InputError where none is claimed."""
     order = entry.order
     if order is None:
@@ -237,7 +238,7 @@ def _in_time(timed: TimedTable, order: int, refuted: bool, hints: Hints) -> Iter
     right = hints.kept(best_reading(timed, judge_clocks))
     found = hints.kept(best_reading(timed, lambda x: judge_in_time(x, order)))
     wrong_clock = right.verdict is Verdict.REFUTED or not refuted
-    severity = WRONG_CLOCK if wrong_clock else WRONG_ORDER
+    severity = Severity.WRONG_CLOCK if wrong_clock else Severity.WRONG_ORDER
     claim = next(order_claims("order in time", statement, found, order, severity=severity))
     if claim.verdict is right.verdict is Verdict.REFUTED:
         clocks = next(condition_claims("clock", "", "the right clock", right, severity))
@@ -249,10 +250,10 @@ def _in_time(timed: TimedTable, order: int, refuted: bool, hints: Hints) -> Iter
         yield digits
 
 
-def symmetric_claims(table: PrintedTable, hints: Hints = NONE) -> Iterator[TableClaim]:
+def symmetric_claims(table: PrintedTable, hints: Hints = NO_HINTS) -> Iterator[TableClaim]:
     """Whether it is the same read backwards, neighbours of one kind being one part, and none 0."""
     found = hints.kept(best_reading(table, _judge_symmetric))
-    yield from condition_claims("symmetric", "symmetric", "symmetric", found, OF_WORDS)
+    yield from condition_claims("symmetric", "symmetric", "symmetric", found, Severity.OF_WORDS)
 
 
 def _judge_symmetric(table: PrintedTable) -> Judged:

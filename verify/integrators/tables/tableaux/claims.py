@@ -6,8 +6,8 @@ from dataclasses import replace
 from pydantic import StrictBool
 
 from verify.errors import NOT_GIVEN, InputError
+from verify.integrators.tables.cost import Severity
 from verify.integrators.tables.entry import Order, TableEntry
-from verify.integrators.tables.hints import NONE, Hints
 from verify.integrators.tables.tableaux.blocks import Block, block_of, embedded_of
 from verify.integrators.tables.tableaux.order import (
     MANY,
@@ -20,11 +20,8 @@ from verify.integrators.tables.tableaux.order import (
 from verify.integrators.tables.tableaux.symmetry import judge_symmetric, judge_symplectic
 from verify.integrators.tables.tableaux.table import TableauTable, Texts
 from verify.integrators.tables.told import (
-    NOT_SYMPLECTIC,
-    OF_WORDS,
-    WRONG_CLOCK,
-    WRONG_ORDER,
-    WRONG_WEIGHTS,
+    NO_HINTS,
+    Hints,
     TableClaim,
     best_reading,
     condition_claims,
@@ -100,7 +97,7 @@ def _claims(
     table: TableauTable,
     embedded: Sequence[Texts] | None,
     separable: bool,
-    hints: Hints = NONE,
+    hints: Hints = NO_HINTS,
 ) -> Iterator[TableClaim]:
     sums, claimed = None, entry.row_sums if entry.row_sums is not None else table.timed
     if table.timed:
@@ -108,7 +105,7 @@ def _claims(
     if entry.order is not None:
         known = hints.kept(_judged(table, entry.order))
         yield from _of_order("order", f"order {entry.order}", table, known, entry.order)
-        if sums is not None and not (claimed and hints is NONE):  # then the row sums tell
+        if sums is not None and not (claimed and hints is NO_HINTS):  # then the row sums tell
             yield _in_time(table, entry.order, known, sums, hints)
     if claimed:
         sums = sums or best_reading(table, judge_row_sums)
@@ -116,7 +113,7 @@ def _claims(
             sums = replace(sums, misprint=wrong_time(table))
         sums = hints.kept(sums)
         of_time = sums.misprint is None or sums.misprint.name.startswith("c")
-        severity = WRONG_CLOCK if of_time else WRONG_ORDER
+        severity = Severity.WRONG_CLOCK if of_time else Severity.WRONG_ORDER
         form = (
             "Σ_j a_ij = c_i^2/2" if table.nystrom else "the times are the row sums, c_i = Σ_j a_ij"
         )
@@ -125,13 +122,15 @@ def _claims(
         order, other = entry.embedded_order, table.with_weights(embedded)
         said = f"the embedded weights have order {order}"
         found = hints.kept(_judged(other, order))
-        yield from _of_order("embedded order", said, other, found, order, WRONG_WEIGHTS)
+        yield from _of_order("embedded order", said, other, found, order, Severity.WRONG_WEIGHTS)
     if entry.symplectic:
         found = hints.kept(best_reading(table, lambda x: judge_symplectic(x, separable)))
-        yield from condition_claims("symplectic", "symplectic", "symplectic", found, NOT_SYMPLECTIC)
+        yield from condition_claims(
+            "symplectic", "symplectic", "symplectic", found, Severity.NOT_SYMPLECTIC
+        )
     if entry.symmetric:
         found = hints.kept(best_reading(table, judge_symmetric))
-        yield from condition_claims("symmetric", "symmetric", "symmetric", found, OF_WORDS)
+        yield from condition_claims("symmetric", "symmetric", "symmetric", found, Severity.OF_WORDS)
     if entry.stage_order is not None:
         yield from _stage_orders(table, entry.stage_order, hints)
 
@@ -146,7 +145,7 @@ def _of_order(
     table: TableauTable,
     found: Judged,
     order: int,
-    severity: str = WRONG_ORDER,
+    severity: Severity = Severity.WRONG_ORDER,
 ) -> Iterator[TableClaim]:
     yield from order_claims(kind, statement, found, order, _following(table, order), severity)
 
@@ -167,14 +166,14 @@ def _in_time(
         return TableClaim(kind, statement, verdict, said)
     if known.verdict is Verdict.REFUTED:
         said = prose("the order fails where f does not depend on time")
-        return TableClaim(kind, statement, Verdict.REFUTED, said, severity=WRONG_ORDER)
+        return TableClaim(kind, statement, Verdict.REFUTED, said, severity=Severity.WRONG_ORDER)
     found = hints.kept(best_reading(table, lambda x: judge_in_time(x, order)))
-    return next(order_claims(kind, statement, found, order, severity=WRONG_CLOCK))
+    return next(order_claims(kind, statement, found, order, severity=Severity.WRONG_CLOCK))
 
 
 def _stage_orders(table: TableauTable, order: int, hints: Hints) -> Iterator[TableClaim]:
     found = best_reading(table, lambda x: judge(x.printed, stage_order_asked(x, order), 1))
     found = hints.kept(found)
     yield from condition_claims(
-        "stage order", f"stage order {order}", f"of stage order {order}", found, OF_WORDS
+        "stage order", f"stage order {order}", f"of stage order {order}", found, Severity.OF_WORDS
     )
