@@ -22,8 +22,10 @@ from verify.integrators.user_code.step import StepError, lifted
 from verify.integrators.user_code.user_map import UserMap
 from verify.proof.expansion import MOST_ORDERS
 from verify.proof.order import prove
+from verify.proof.order_proof import Proof
 from verify.proof.symplectic import closed_form
 from verify.proof.symplectic.order import Claimed, prove_map
+from verify.proof.symplectic.proof import SymplecticProof
 from verify.prose import Prose, prose, read_prose
 from verify.schemes.degrees.canonical_map import CanonicalMap
 from verify.verdict import Verdict
@@ -70,24 +72,31 @@ def _notes(tape: Tape) -> list[Prose]:
 
 def proved_in_plane(trace: Trace, hamiltonian: Hamiltonian) -> Finding:
     """By the prover of the plane. Raises InputError where it has no series and no closed form."""
-    tape = trace.tape
     traced = traced_map(hamiltonian, *trace.roots)
     proof = prove(traced.step_map)
-    return Finding(
-        proof.verdict,
-        proof.reason,
-        "proof",
-        order=proof.order,
+    return replace(
+        _of_proof(proof, trace, 1, f"traced with symbols; the map {traced.how}"),
         symplectic=proof.area_preserving,
-        area_preserving=proof.area_preserving,
-        convergence_order=proof.convergence_order,
         order_decided=proof.convergence_decided,
         area_at_least=proof.first.power or MOST_ORDERS + 1,
         leading=proof.first.text,
         delta_j=proof.step_map.delta_j_text,
+    )
+
+
+def _of_proof(proof: Proof | SymplecticProof, trace: Trace, degrees: int, said: str) -> Finding:
+    return Finding(
+        proof.verdict,
+        proof.reason,
+        "proof",
+        degrees,
+        order=proof.order,
         proof=proof,
-        domain=(proof.domain & domain_of(tape)).texts,
-    ).noting(f"traced with symbols; the map {traced.how}", *_notes(tape))
+        area_preserving=proof.area_preserving,
+        convergence_order=proof.convergence_order,
+        domain=(proof.domain & domain_of(trace.tape)).texts,
+        notes=(prose(said), *_notes(trace.tape)),
+    )
 
 
 # -- a step in several degrees of freedom ---------------------------------------------------------
@@ -96,21 +105,12 @@ def proved_in_plane(trace: Trace, hamiltonian: Hamiltonian) -> Finding:
 def proved_in_degrees(trace: Trace, hamiltonian: Hamiltonian) -> Finding:
     """By the prover of n degrees of freedom. Raises InputError where it has no series."""
     proof = prove_map(_canonical(list(trace.roots), hamiltonian), Claimed())
-    return Finding(
-        proof.verdict,
-        proof.reason,
-        "proof",
-        hamiltonian.degrees,
-        order=proof.order,
-        proof=proof,
+    return replace(
+        _of_proof(proof, trace, hamiltonian.degrees, "traced with symbols"),
         symplectic=proof.symplectic,
-        area_preserving=proof.area_preserving,
-        convergence_order=proof.convergence_order,
         order_decided=True,
         entry=proof.entry,
         leading=proof.leading_text,
-        domain=(proof.domain & domain_of(trace.tape)).texts,
-        notes=(prose("traced with symbols"), *_notes(trace.tape)),
     )
 
 

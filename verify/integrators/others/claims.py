@@ -12,7 +12,7 @@ from verify.integrators.others.methods.integrator import (
     ReleasedIntegrator,
 )
 from verify.integrators.others.methods.measured import finding
-from verify.integrators.others.methods.problems import POINTS
+from verify.integrators.others.methods.scripted import POINTS
 from verify.integrators.others.methods.tableau import (
     WRONG,
     Symplecticity,

@@ -8,8 +8,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 
 from verify.integrators.others.methods.integrator import ReleasedIntegrator
-from verify.integrators.others.methods.problems import USUAL
-from verify.integrators.others.methods.scripted import by_script
+from verify.integrators.others.methods.scripted import USUAL, by_script
 
 TITLE = "pyAT"
 LIBRARY = "at"

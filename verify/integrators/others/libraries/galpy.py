@@ -11,8 +11,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 
 from verify.integrators.others.methods.integrator import FINE, Point, ReleasedIntegrator
-from verify.integrators.others.methods.problems import LONG, USUAL
-from verify.integrators.others.methods.scripted import by_script
+from verify.integrators.others.methods.scripted import LONG, USUAL, by_script
 
 TITLE = "galpy"
 LIBRARY = "galpy"

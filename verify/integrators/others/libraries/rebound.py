@@ -13,8 +13,7 @@ from fractions import Fraction
 from typing import Any
 
 from verify.integrators.others.methods.integrator import FINE, Point, ReleasedIntegrator
-from verify.integrators.others.methods.problems import USUAL
-from verify.integrators.others.methods.scripted import by_script
+from verify.integrators.others.methods.scripted import USUAL, by_script
 
 TITLE = "rebound"
 LIBRARY = "rebound"

@@ -19,8 +19,7 @@ from verify.integrators.others.methods.integrator import (
     Point,
     ReleasedIntegrator,
 )
-from verify.integrators.others.methods.problems import HENON_HEILES
-from verify.integrators.others.methods.scripted import Driven, by_script, scripted
+from verify.integrators.others.methods.scripted import HENON_HEILES, Driven, by_script, scripted
 from verify.integrators.others.methods.tabled import full, quotient
 from verify.schemes.implicit_tableau import ImplicitTableau
 

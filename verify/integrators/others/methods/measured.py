@@ -10,7 +10,7 @@ from verify.integrators.measures.order import Distances
 from verify.integrators.measures.still_clock import measured_mistakes
 from verify.integrators.measures.survey import NOWHERE, places_of_field
 from verify.integrators.others.methods.integrator import FloatStep
-from verify.integrators.others.methods.problems import POINTS
+from verify.integrators.others.methods.scripted import POINTS
 from verify.integrators.places.place import Place
 from verify.integrators.places.units import Field
 from verify.integrators.probes.floats import FloatProbe

@@ -2,28 +2,20 @@
 
 from collections.abc import Iterator
 
-from verify.integrators.tables.entry import Row
 from verify.integrators.tables.tableaux.blocks import Block
 from verify.integrators.tables.tableaux.claims import BlocksEntry, of_blocks
 from verify.integrators.tables.told import TableClaim
 from verify.schemes.coloured_trees import of_all
 
 
-class Entry(BlocksEntry):
+class Entry(Block, BlocksEntry):
     """`a`: rows of the full matrix, or of an explicit one up to the diagonal; or all as `tableau`,
     pasted, or in a `csv` file. `c` is judged where it is printed: as row sums, unless `row_sums` is
     false, and by the order for a force that depends on time."""
 
-    a: tuple[Row, ...] | None = None
-    b: Row | None = None
-    c: Row | None = None
-    embedded: Row | None = None
-    tableau: str | None = None
-
     @property
     def blocks(self) -> tuple[Block, ...]:
-        return (Block(a=self.a, b=self.b, c=self.c, embedded=self.embedded,
-                      tableau=self.tableau, csv=self.csv),)  # fmt: skip
+        return (self,)
 
 
 def claims(entry: Entry) -> Iterator[TableClaim]:
