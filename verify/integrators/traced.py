@@ -5,15 +5,19 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 
+import sympy
+
+from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.embedding import embed
+from verify.algebra.formula import symbol
 from verify.algebra.limits import checked
+from verify.algebra.requirement import Requirement, of_divisor, of_function, of_power
 from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.exact import text
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.results import Finding
-from verify.integrators.tracing.domain import domain_of
 from verify.integrators.tracing.functions import copied
 from verify.integrators.tracing.series import TracedSeries
 from verify.integrators.tracing.step_map import traced_map
@@ -32,6 +36,8 @@ from verify.verdict import Verdict
 
 _MOST_WRITTEN, _MOST_OF_MAP = 3000, 4000  # operations of which a closed form is tried
 _MOST_TERMS = 2000
+_MOST_INSIDE = 100  # operations of what is divided by, or of which a root is taken
+_NOT_WRITTEN = "the function divides by no 0, and takes no root or logarithm of what is negative"
 
 
 @dataclass(frozen=True)
@@ -162,3 +168,41 @@ def _closed(trace: Trace, names: tuple[str, ...]) -> tuple[Ring, list[Poly]]:
     if exact is None:
         raise StepError(f"written out it has more than {_MOST_OF_MAP} operations")
     return embed([checked(x, "map", "its closed form") for x in exact], names, _MOST_TERMS)
+
+
+# -- where it is defined --------------------------------------------------------------------------
+
+
+def domain_of(tape: Tape) -> Domain:
+    """What all operations on the tape ask for, those that cancelled in the end, too."""
+    found, words = list[Requirement](), list[str]()
+    if tape.positive:
+        found.append(Requirement(symbol("h"), ">"))
+    for node in tape.nodes:
+        operand = node.inputs[-1] if node.inputs else None
+        if operand is None or not _asks(node):
+            continue
+        inside = written([operand], _MOST_INSIDE)
+        if inside is None:
+            words.append(_NOT_WRITTEN)
+        else:
+            found += _asked(node, inside[0])
+    return Domain.of(found, *words) if found or words else EVERYWHERE
+
+
+def _asks(node: Node) -> bool:
+    power = node.operation == "power" and (node.value < 0 or node.value.denominator > 1)
+    return power or node.operation in ("divide", "log", "tan", "sqrt")
+
+
+def _asked(node: Node, operand: sympy.Expr) -> list[Requirement]:
+    """Of a smooth map: no root is taken of 0."""
+    match node.operation:
+        case "divide":
+            return of_divisor(operand)
+        case "power" | "sqrt":
+            exponent = sympy.Rational(node.value or Fraction(1, 2))
+            asked = of_power(operand, exponent)
+            return [Requirement(r.expression, ">") if exponent.q > 1 else r for r in asked]
+        case name:
+            return of_function(name, operand)

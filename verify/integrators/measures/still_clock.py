@@ -14,8 +14,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.measures.order import LADDERS, Probe, flow_of, goal
 from verify.integrators.measures.slopes import Row, slopes_of
 from verify.integrators.places.place import Place
-from verify.integrators.tracing.clocks import MOMENTS, stands_still
-from verify.integrators.tracing.misread import moment
+from verify.integrators.tracing.clocks import MOMENTS, moment, stands_still
 
 _PLACES, _MEANS = 2, 5
 _SIZES = {"duals": slice(4, 12), "floats": slice(3, 17)}  # of a ladder, as a flow is made for each

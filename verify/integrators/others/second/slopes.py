@@ -17,8 +17,7 @@ import sympy
 from verify.integrators.tables.entry import TableEntry
 from verify.integrators.tables.kinds import composition
 from verify.integrators.tables.splittings.claims import AlternatingEntry, parts_of
-from verify.integrators.tables.tableaux.blocks import block_of
-from verify.integrators.tables.tableaux.claims import BlocksEntry
+from verify.integrators.tables.tableaux.claims import BlocksEntry, block_of
 from verify.schemes.printed.naming import Naming
 
 _DIGITS = 60

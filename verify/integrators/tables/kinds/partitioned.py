@@ -4,8 +4,7 @@ from collections.abc import Iterator
 
 from pydantic import StrictBool
 
-from verify.integrators.tables.tableaux.blocks import Block
-from verify.integrators.tables.tableaux.claims import BlocksEntry, of_blocks
+from verify.integrators.tables.tableaux.claims import Block, BlocksEntry, of_blocks
 from verify.integrators.tables.told import TableClaim
 from verify.schemes.coloured_trees import alternating, of_all
 
