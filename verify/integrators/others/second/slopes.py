@@ -192,7 +192,7 @@ def _(entry: BlocksEntry, embedded: bool) -> tuple[Step, Naming]:
     naming, blocks = Naming(entry.numbers), []
     for number, given in enumerate(entry.blocks):
         own = block_of(given, naming, f"_{number}" if number else "", entry.folder)
-        rows = [_numbers(naming, row) for row in own.printed.rows]
+        rows = [_numbers(naming, row) for row in own.printed.matrix]
         weights = own.embedded if embedded and own.embedded else own.printed.weights
         times = own.printed.times
         nodes = [sum(row) for row in rows] if times is None else _numbers(naming, times)

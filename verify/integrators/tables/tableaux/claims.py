@@ -19,13 +19,8 @@ from verify.integrators.tables.tableaux.order import (
     wrong_time,
 )
 from verify.integrators.tables.tableaux.symmetry import judge_symmetric, judge_symplectic
-from verify.integrators.tables.tableaux.table import (
-    MOST_STAGES,
-    PrintedBlock,
-    TableauTable,
-    Texts,
-    square,
-)
+from verify.integrators.tables.tableaux.table import MOST_STAGES, TableauTable, Texts, square
+from verify.integrators.tables.tableaux.tree_weights import Tableau
 from verify.integrators.tables.told import (
     NO_HINTS,
     Hints,
@@ -59,7 +54,7 @@ class Block(Frozen):
 class NamedBlock:
     """With names for its decimals."""
 
-    printed: PrintedBlock
+    printed: Tableau[str]
     embedded: Texts | None
 
 
@@ -85,7 +80,7 @@ def block_of(given: Block, naming: Naming, name: str, folder: Path) -> NamedBloc
             problem = f"has {stages} weights, as b; write 0 for one that it leaves out"
             raise InputError(f"embedded{name}", len(given.embedded), problem)
         embedded = naming.entries(given.embedded, f"embedded{name}")
-    return NamedBlock(PrintedBlock(named, weights, times), embedded)
+    return NamedBlock(Tableau(named, weights, times), embedded)
 
 
 def _filled(times: Sequence[str], stages: int) -> Sequence[str]:

@@ -22,7 +22,7 @@ from typing import Any
 from verify.arithmetic.number import E
 from verify.integrators.tables.tableaux.order import zero_or
 from verify.integrators.tables.tableaux.table import TableauTable
-from verify.integrators.tables.tableaux.tree_weights import Block, TreeWeights, Vector
+from verify.integrators.tables.tableaux.tree_weights import Block, Tableau, TreeWeights, Vector
 from verify.schemes.coloured_trees import Grammar, Tree, all_trees, product_text, trees, vertices
 from verify.schemes.printed.asked import Asked, Named
 from verify.schemes.printed.judged import Judged, judge
@@ -56,11 +56,12 @@ def _by_two(table: TableauTable, enough: Asked, needed: Asked) -> Judged:
     return replace(found, verdict=Verdict.UNDECIDED)
 
 
-def _dense(block: Block[E], one: E) -> tuple[list[list[E]], list[E], list[E]]:
+def _dense(
+    block: Block[E], one: E
+) -> tuple[tuple[tuple[E, ...], ...], tuple[E, ...], tuple[E, ...]]:
     """a, b and c with all their zeros; of c none where there are no times."""
-    matrix = [[zero_or(x, one) for x in row] for row in block.matrix]
-    weights = [zero_or(x, one) for x in block.weights]
-    return matrix, weights, [zero_or(x, one) for x in block.times or ()]
+    full = block.mapped(lambda x, _: zero_or(x, one))
+    return full.matrix, full.weights, full.times or ()
 
 
 def _asked(
@@ -265,7 +266,7 @@ def _twice(block: Block[E], minus: int) -> Block[E]:
     b, none = block.weights, (None,) * len(block.weights)
     upper = [(*row, *none) for row in block.matrix]
     lower = [(*b, *_times(minus, row)) for row in block.matrix]
-    return Block((*upper, *lower), (*b, *_times(minus, b)))
+    return Tableau((*upper, *lower), (*b, *_times(minus, b)))
 
 
 def _twice_nystrom(blocks: Sequence[Block[E]], one: E, minus: int) -> list[Block[E]]:
@@ -279,8 +280,8 @@ def _twice_nystrom(blocks: Sequence[Block[E]], one: E, minus: int) -> list[Block
     ]
     clock = (*c, *(one + t * minus for t in c))
     moved = tuple(x + y * minus for x, y in zip(bar, b, strict=True))
-    own = Block((*upper, *lower), (*moved, *bar), clock)
-    return [Block(own.matrix, (*b, *_times(minus, tuple(b))), clock), own]
+    own = Tableau((*upper, *lower), (*moved, *bar), clock)
+    return [Tableau(own.matrix, (*b, *_times(minus, tuple(b))), clock), own]
 
 
 def _times(sign: int, x: Vector[E]) -> Vector[E]:
