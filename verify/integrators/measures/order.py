@@ -119,7 +119,7 @@ def distances_of(
             with within(max(step.left, 0.1), "the exact flow takes too long"):
                 made.append(_at(step, probe, flow, place, parts))
         except Exception as error:  # the user's code may raise anything
-            lost.append(f"{why(error)}{step.place([float(x) for x in place.z], float(place.step))}")
+            lost.append(f"{why(error)}{step.place(place.z, place.step)}")
         if step.left <= 0:
             break
     if not made:

@@ -138,8 +138,7 @@ def _read(
                 readings.append(probe.reading(place, place.step / part))
                 sides.note(place, place.step / part, probe.comparisons)
             except Exception as error:  # the user's code may raise anything
-                where = probe.step.place([float(x) for x in place.z], float(place.step / part))
-                lost.append(f"{why(error)}{where}")
+                lost.append(f"{why(error)}{probe.step.place(place.z, place.step / part)}")
 
 
 def _farthest(step: UserMap, places: Sequence[Place]) -> dict[str, float]:

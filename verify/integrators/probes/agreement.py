@@ -99,7 +99,7 @@ def _around(place: Place) -> list[Place]:
 
 def _floats(step: UserMap, place: Place, h: Fraction) -> State | None:
     try:
-        return step.at([float(x) for x in place.z], float(h), float(place.t))
+        return step.at_place(place, h)
     except Exception:  # it fails there; other places may do
         return None
 
