@@ -148,8 +148,8 @@ def _size(x: float) -> str:
     return plain(Fraction(x), 2) if 1e-3 <= x < 1e3 else f"`{x:.1e}`"
 
 
-def _numbers(step: UserMap) -> str:
-    return "doubles" if step.numbers is DOUBLE else step.numbers.declared_as
+def _numbers(step: UserMap, doubles: str = "doubles") -> str:
+    return doubles if step.numbers is DOUBLE else step.numbers.declared_as
 
 
 # -- the order ------------------------------------------------------------------------------------
@@ -281,13 +281,9 @@ def _plain(x: Fraction) -> str:
     return Number(f"{float(x):.{_PRECISE}g}")
 
 
-def _floats(step: UserMap) -> str:
-    return "floats" if step.numbers is DOUBLE else step.numbers.declared_as
-
-
 def _places_noted(step: UserMap, structure: Structure) -> list[str]:
     places = list(dict.fromkeys(x.place for x in structure.readings))
-    kind = "with dual numbers" if structure.how == "duals" else f"in {_floats(step)}"
+    kind = "with dual numbers" if structure.how == "duals" else f"in {_numbers(step, 'floats')}"
     notes = [f"measured {kind} at {where_seen(step, places)}, and nowhere else"]
     if structure.blind:
         each = [
@@ -323,6 +319,6 @@ def _unseen_noted(step: UserMap, distances: Distances) -> list[str]:
         return []
     unseen = max(x.unseen for x in distances.places)
     return [
-        f"in {_floats(step)}: an error of p' − p or q' − q below about `{unseen:.0e}` of them "
-        "is not seen"
+        f"in {_numbers(step, 'floats')}: an error of p' − p or q' − q below about `{unseen:.0e}` "
+        "of them is not seen"
     ]

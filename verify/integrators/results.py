@@ -45,16 +45,6 @@ class Counterexample:
     t: Fraction | None = None
 
     @property
-    def p(self) -> Fraction:
-        """That of the plane."""
-        return self.z["p"]
-
-    @property
-    def q(self) -> Fraction:
-        """That of the plane."""
-        return self.z["q"]
-
-    @property
     def place(self) -> str:
         """Where it is, as text."""
         named = [f"{name} = {x}" for name, x in self.z.items()]

@@ -43,7 +43,7 @@ class Cost:
     """`double`: whether a double can tell; None where that is not known. `ulps`: by how many ulps
     the number that is farthest off differs from the nearest exact one. `order`: what it has, in
     place of `claimed`. `error_constant`: as printed, and of the nearest exact numbers. `below`: the
-    step size below which wrong digits are what is seen. `said`: a sentence."""
+    step size below which wrong digits are what is seen."""
 
     double: bool | None
     claimed: int | None
@@ -52,7 +52,22 @@ class Cost:
     error_constant: float | None
     nearest_error_constant: float | None
     below: float | None
-    said: Prose
+
+    @property
+    def said(self) -> Prose:
+        """A sentence."""
+        parts = []
+        if self.order is not None and self.claimed is not None:
+            parts.append(f"the order: {self.order} in place of {self.claimed}")
+        if self.double is False:
+            parts.append("nothing that a double can tell")
+        elif self.double and self.ulps is not None and self.ulps < _FAR:
+            parts.append(
+                f"a double can tell: the number farthest off is `{self.ulps:.2g}` ulps from its own"
+            )
+        if self.below is not None and self.double:
+            parts.append(f"below h = `{self.below:.1e}` it is wrong digits that make the error")
+        return read_prose("; ".join(parts))
 
 
 def cost_of(found: Judged, claimed: int | None, following: Asked | None = None) -> Cost | None:
@@ -73,8 +88,7 @@ def cost_of(found: Judged, claimed: int | None, following: Asked | None = None) 
     if following is not None and not refuted:
         printed, nearest = _constants(found, following)
         below = _below(found, claimed, printed)
-    said = _said(double, ulps, order, claimed, below)
-    return Cost(double, claimed, order, ulps, printed, nearest, below, said)
+    return Cost(double, claimed, order, ulps, printed, nearest, below)
 
 
 def exact_numbers(found: Judged) -> dict[str, Fraction]:
@@ -131,27 +145,6 @@ def _below(found: Judged, claimed: int | None, constant: float | None) -> float 
         if e.order <= claimed and r
     ]
     return max(sizes, default=None)
-
-
-def _said(
-    double: bool | None,
-    ulps: float | None,
-    order: int | None,
-    claimed: int | None,
-    below: float | None,
-) -> Prose:
-    parts = []
-    if order is not None and claimed is not None:
-        parts.append(f"the order: {order} in place of {claimed}")
-    if double is False:
-        parts.append("nothing that a double can tell")
-    elif double and ulps is not None and ulps < _FAR:
-        parts.append(
-            f"a double can tell: the number farthest off is `{ulps:.2g}` ulps from its own"
-        )
-    if below is not None and double:
-        parts.append(f"below h = `{below:.1e}` it is wrong digits that make the error")
-    return read_prose("; ".join(parts))
 
 
 def severity_of(found: Judged, refuted_as: Severity) -> Severity | None:

@@ -1,6 +1,7 @@
 """What is told of one claim of a table, the claims that orders and digits make, and hints."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Protocol, Self, TypeVar
@@ -79,47 +80,43 @@ def order_claims(
     severity: Severity = Severity.WRONG_ORDER,
 ) -> Iterator[TableClaim]:
     """The claim of an order, and where it holds and numbers are rounded that of their digits."""
-    verdict, evidence, details = of_printed(found, order)
     after = None
     if following is not None and found.digits is False and found.read is not None:
-        try:
+        with suppress(InputError):  # beyond the orders that are looked at
             after = following(found.read)
-        except InputError:  # beyond the orders that are looked at
-            after = None
-    if verdict is Verdict.REFUTED:
-        yield TableClaim(kind, statement, verdict, evidence, details, severity,
-                         nearest_texts(found), cost_of(found, order, after))  # fmt: skip
-        return
-    yield TableClaim(kind, statement, verdict, evidence, details)
-    if found.read is not None and found.read.units:
+    cost = cost_of(found, order, after)
+    claim = _told(TableClaim(kind, statement, *of_printed(found, order)), found, severity, cost)
+    yield claim
+    if claim.verdict is not Verdict.REFUTED and found.read is not None and found.read.units:
         name = "digits" if kind == "order" else f"{kind} digits"
-        yield _digits_claim(name, _DIGITS, found, severity, cost_of(found, order, after))
+        yield _of_digits(name, _DIGITS, found, severity, cost)
 
 
 def condition_claims(
     kind: str, statement: str, what: str, found: Judged, severity: Severity
 ) -> Iterator[TableClaim]:
     """A claim of conditions that are of no order; and of their digits, where these are wrong."""
-    verdict, evidence, details = of_conditions(found, what)
-    claim = TableClaim(kind, statement, verdict, evidence, details)
     cost = cost_of(found, None) if exact_numbers(found) else None
-    if verdict is Verdict.REFUTED:
-        yield replace(claim, severity=severity, nearest=nearest_texts(found), cost=cost)
-        return
+    claim = _told(TableClaim(kind, statement, *of_conditions(found, what)), found, severity, cost)
     yield claim
-    if found.digits is False:
-        yield _digits_claim(f"{kind} digits", f"{statement}: {_DIGITS}", found, severity, cost)
+    if claim.verdict is not Verdict.REFUTED and found.digits is False:
+        yield _of_digits(f"{kind} digits", f"{statement}: {_DIGITS}", found, severity, cost)
 
 
-def _digits_claim(
+def _of_digits(
     kind: str, statement: str, found: Judged, severity: Severity, cost: Cost | None
 ) -> TableClaim:
-    """`severity` and `cost` are told where digits are wrong."""
     claim = TableClaim(kind, statement, *of_digits(found))
+    return _told(claim, found, severity_of(found, severity), cost)
+
+
+def _told(
+    claim: TableClaim, found: Judged, severity: Severity | None, cost: Cost | None
+) -> TableClaim:
+    """The claim, where it is refuted with what kind of mistake that is, and what would be right."""
     if claim.verdict is not Verdict.REFUTED:
         return claim
-    own = severity_of(found, severity)
-    return replace(claim, severity=own, nearest=nearest_texts(found), cost=cost)
+    return replace(claim, severity=severity, nearest=nearest_texts(found), cost=cost)
 
 
 def nearest_texts(found: Judged) -> dict[str, str] | None:
