@@ -1,7 +1,8 @@
 """Compositions of steps w h of any symmetric method of order 2."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
 from pydantic import StrictBool
 
@@ -10,17 +11,14 @@ from verify.integrators.tables.cost import Severity
 from verify.integrators.tables.layout import named_columns
 from verify.integrators.tables.splittings.claims import (
     SizesEntry,
-    consistent,
+    mended,
     mirrored,
-    of_order,
+    of_table,
     sizes_of,
-    symmetric_claims,
 )
 from verify.integrators.tables.told import Hints, TableClaim
-from verify.prose import prose
 from verify.schemes.printed.naming import Naming
 from verify.schemes.printed.splitting_table import PrintedTable
-from verify.verdict import Verdict
 
 
 class Entry(SizesEntry):
@@ -47,21 +45,6 @@ def claims(entry: Entry) -> Iterator[TableClaim]:
     naming = Naming(entry.numbers)
     parts = tuple(("step", size) for size in weights_of(entry, naming))
     table = PrintedTable(entry.kind, parts, naming.printed)
-
-    def again(numbers: Mapping[str, str]) -> Iterator[TableClaim]:
-        made = table
-        for name, text in numbers.items():
-            made = made.mended(name, text)
-        yield from (*consistent(entry, made), *of_order(entry, made))
-        if entry.symmetric:
-            yield from symmetric_claims(made)
-
-    hints = Hints(again)
-    for claim in of_order(entry, table, hints):
+    for claim in of_table(entry, table, hints=Hints(partial(mended, entry, table, None))):
         of_weights = entry.of_parts and claim.severity == Severity.WRONG_ORDER
         yield replace(claim, severity=Severity.WRONG_WEIGHTS) if of_weights else claim
-    if entry.symplectic:
-        said = prose("a composition of symplectic steps is symplectic, whatever their sizes are")
-        yield TableClaim("symplectic", "symplectic", Verdict.PROVED, said)
-    if entry.symmetric:
-        yield from symmetric_claims(table, hints)
