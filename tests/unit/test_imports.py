@@ -72,7 +72,7 @@ BY_NAME = {
     "verify.integrators.user_code.kept_state": {"modules"},  # numpy, and where a function is from
     "verify.integrators.tracing.functions": {"builtins", "__import__"},  # what the user's code does
     "verify.integrators.tracing.purity": {"modules"},  # numpy and others, where they are imported
-    "verify.integrators.others.parts": {"import_module"},  # a library that may be broken
+    "verify.integrators.others.report": {"import_module"},  # a library that may be broken
     "verify.integrators.others.methods.scripted": {"exec"},  # lines of ours, which are shown
     "verify.integrators.user_code.user_modules": {
         "import_module", "modules", "spec_from_file_location", "exec_module"},  # the user's code

@@ -198,7 +198,7 @@ def _integrators(
 
 def _findings(made: "Report", folder: Path) -> list[Path]:
     """The notes that were written; why any was not goes to standard error."""
-    from verify.integrators.others.findings.write import write_findings
+    from verify.integrators.others.findings.markdown import write_findings
 
     writable(folder)
     written, left = write_findings(made, folder, _tell)

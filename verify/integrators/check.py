@@ -12,8 +12,8 @@ from fractions import Fraction
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.claims import counterexample, of_reading, with_claims
-from verify.integrators.examination import Trial, examine
-from verify.integrators.measured import finding_of_step
+from verify.integrators.examination import examine
+from verify.integrators.measured import finding_of
 from verify.integrators.measures.other_forms import digits_noted, masses_noted, masses_of
 from verify.integrators.measures.survey import (
     NOWHERE,
@@ -27,6 +27,7 @@ from verify.integrators.measures.survey import (
 from verify.integrators.places.place import USER
 from verify.integrators.places.units import Field
 from verify.integrators.results import NOTHING, Claims, Finding
+from verify.integrators.trial import Trial
 from verify.integrators.user_code.calling import settle_layout
 from verify.integrators.user_code.faults import Fault, changed_since, examined
 from verify.integrators.user_code.loading import Callee
@@ -97,7 +98,7 @@ def _checked(trial: Trial) -> Finding:
     finding = finding.noting(*_otherwise(finding, trial))
     if trial.hamiltonian is None:
         return _of_map(finding, trial)
-    finding = with_claims(finding, trial.claims, trial.evidence)
+    finding = with_claims(finding, trial)
     return finding.noting(*_elsewhere(finding, trial.request))
 
 
@@ -113,18 +114,15 @@ def _otherwise(finding: Finding, trial: Trial) -> list[str]:
     """What a map that is refuted may be all the same."""
     step = trial.step
     if trial.hamiltonian is None:
-        structure, _ = trial.evidence.measured if finding.symplectic is False else (None, None)
-        if structure is None:
-            return []
-        return [*digits_noted(structure.readings), *masses_noted(structure.readings, step.names)]
+        measured = trial.evidence if finding.symplectic is False else None
+        readings = measured[0].readings if measured else ()
+        return [*digits_noted(readings), *masses_noted(readings, step.names)] if readings else []
     masses = masses_of(trial.hamiltonian)
     if finding.verdict is not Verdict.REFUTED or not masses or step.masses or step.left <= 0:
         return []
-    other = Trial(replace(step, masses=masses), trial.hamiltonian, trial.places, trial.claims)
+    other = replace(trial, step=replace(step, masses=masses), claims=NOTHING)
     try:
-        structure, distances = other.measure(step.ways[0])
-        assert distances is not None  # noqa: S101 - there is an H
-        seen = finding_of_step(other.step, structure, distances, NOTHING, trial.request)
+        seen = finding_of(other, *other.measure(step.ways[0]))
     except Exception:  # the user's code may raise anything
         return []
     if not seen.scheme:
@@ -138,13 +136,11 @@ def _of_map(finding: Finding, trial: Trial) -> Finding:
     """A map is asked whether it is symplectic, by whoever gives it."""
     if finding.symplectic is not False or finding.counterexample is not None:
         return finding
-    if finding.against is not None:
-        example = of_reading(trial.step, finding.against, "that it is symplectic")
-        return replace(finding, counterexample=example)
-    return replace(
-        finding,
-        counterexample=counterexample("that it is symplectic", trial.claims, trial.evidence),
+    claim, against = "that it is symplectic", finding.against
+    seen = (
+        counterexample(claim, trial) if against is None else of_reading(trial.step, against, claim)
     )
+    return replace(finding, counterexample=seen)
 
 
 def _but_for(faults: Sequence[Fault], finding: Finding) -> Finding:

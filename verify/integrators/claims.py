@@ -1,17 +1,17 @@
 """What a user claims of his step, held against what was seen, with a counterexample."""
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
-from functools import cached_property
 from itertools import pairwise
 
-from verify.integrators.measures.order import Distances, PlaceOrder
-from verify.integrators.measures.structure import REFUTES, Structure
+from verify.integrators.measures.order import PlaceOrder
+from verify.integrators.measures.structure import REFUTES
 from verify.integrators.places.place import Place
 from verify.integrators.probes.reading import Reading
-from verify.integrators.results import NOTHING, Claims, Counterexample, Finding, judged
+from verify.integrators.results import NOTHING, Counterexample, Finding, judged
+from verify.integrators.trial import Trial
 from verify.integrators.user_code.user_map import UserMap
 from verify.prose import Prose, joined, prose
 from verify.verdict import Verdict
@@ -21,34 +21,17 @@ _PLAINLY = 0.8  # of what is lacking at most
 _SHOWN = {"proof": Verdict.PROVED, "duals": Verdict.MEASURED, "floats": Verdict.MEASURED}
 
 
-@dataclass
-class Evidence:
-    """Where a claim may be seen to fail: what was measured, or is when it is asked for."""
-
-    step: UserMap
-    measure: Callable[[], tuple[Structure | None, Distances | None]]
-
-    def take(self, structure: Structure, distances: Distances | None) -> None:
-        """What has been measured already."""
-        self.measure = lambda: (structure, distances)
-
-    @cached_property
-    def measured(self) -> tuple[Structure | None, Distances | None]:
-        """S at places, and the distance from the exact flow; None where there is none."""
-        return self.measure()
-
-
-def with_claims(finding: Finding, claims: Claims, evidence: Evidence) -> Finding:
+def with_claims(finding: Finding, trial: Trial) -> Finding:
     """REFUTED where a claim is, with the counterexample; UNDECIDED where one is not decided.
 
     Where all that is claimed is shown, and that it is a scheme, what else is not decided does not
     count.
     """
-    told = judged(claims, finding)
+    told = judged(trial.claims, finding)
     failed = [claim for claim in told if claim[1] is not True]
     false = [claim for claim in failed if claim[1] is False]
     if not failed and finding.verdict is not Verdict.REFUTED:
-        waits = finding.verdict is Verdict.UNDECIDED and claims != NOTHING
+        waits = finding.verdict is Verdict.UNDECIDED and trial.claims != NOTHING
         return (
             replace(finding, verdict=_SHOWN[finding.how]) if waits and finding.scheme else finding
         )
@@ -66,7 +49,7 @@ def with_claims(finding: Finding, claims: Claims, evidence: Evidence) -> Finding
         finding = replace(finding, verdict=Verdict.REFUTED, reason=reason)
     else:
         name = prose("order 1")
-    return replace(finding, counterexample=counterexample(str(name), claims, evidence))
+    return replace(finding, counterexample=counterexample(str(name), trial))
 
 
 def _but_for_area(finding: Finding, held: Sequence[Prose]) -> Finding:
@@ -81,20 +64,20 @@ def _but_for_area(finding: Finding, held: Sequence[Prose]) -> Finding:
     return replace(finding, reason=reason)
 
 
-def counterexample(name: str, claims: Claims, evidence: Evidence) -> Counterexample | None:
+def counterexample(name: str, trial: Trial) -> Counterexample | None:
     """Where the claim of that name is seen to fail; None where it is seen nowhere."""
-    (structure, distances), step = evidence.measured, evidence.step
+    (structure, distances), step = trial.evidence or (None, None), trial.step
     if name in ("det J ≡ 1", "that it is symplectic"):
         if structure is None or structure.worst.beyond <= REFUTES:
             return None
         clear = [x for x in structure.readings if x.beyond > REFUTES]
         return of_reading(step, max(clear, key=lambda x: x.defect), name)
     if name.startswith("ΔJ"):
-        power = claims.area_order or 1
+        power = trial.claims.area_order or 1
         ladders = zip(structure.ladder, structure.rows, strict=True) if structure else ()
         each = [_too_slow(step, place, list(rows), power, "|det J − 1|") for place, rows in ladders]
         return next((x for x in each if x is not None), None)
-    power = (claims.order or 1) + 1
+    power = (trial.claims.order or 1) + 1
     failing = sorted(
         (x for x in (distances.places if distances else ()) if x.rows),
         key=lambda x: x.power if x.power is not None else 99,

@@ -4,26 +4,17 @@ Where its code lets symbols through its map is proved, and what algebra leaves o
 else all is, with dual numbers where they go through, or with floats.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from fractions import Fraction
-from functools import cached_property
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.claims import Evidence
-from verify.integrators.measured import finding_of_map, finding_of_step
-from verify.integrators.measures.order import Distances, Probe, distances_of
+from verify.integrators.measured import finding_of
+from verify.integrators.measures.order import probe_of
 from verify.integrators.measures.still_clock import measured_mistakes
-from verify.integrators.measures.structure import Structure, structure_of
-from verify.integrators.measures.survey import (
-    NOWHERE,
-    Request,
-)
-from verify.integrators.places.place import Place
-from verify.integrators.probes.agreement import must_agree, trace_must_agree
-from verify.integrators.probes.duals import DualProbe
-from verify.integrators.probes.floats import FloatProbe
-from verify.integrators.results import NOTHING, Claims, Finding
+from verify.integrators.measures.structure import Structure
+from verify.integrators.probes.agreement import trace_must_agree
+from verify.integrators.results import Finding
 from verify.integrators.traced import (
     Trace,
     proved_in_degrees,
@@ -32,8 +23,8 @@ from verify.integrators.traced import (
     trace_of,
 )
 from verify.integrators.tracing.clocks import clock_mistakes
+from verify.integrators.trial import Trial
 from verify.integrators.user_code.step import StepError, why, within
-from verify.integrators.user_code.user_map import UserMap
 from verify.prose import Prose, joined, prose
 from verify.verdict import Verdict
 
@@ -41,45 +32,6 @@ _PROOF, _CLOCK_SECONDS = 1 / 3, 10.0  # of the time that is left; seconds
 _LISTED = 3  # of what is not pure
 _MOST_PROOF, _MOST_OF_MANY = 20.0, 6.0  # seconds; and of three degrees of freedom and more
 _KEPT = 0.4  # of the time that is left, for floats after dual numbers, which are slow
-
-
-@dataclass
-class Trial:
-    """A user's step or map, the H that it is for, and the places at which it is tried."""
-
-    step: UserMap
-    hamiltonian: Hamiltonian | None
-    places: list[Place]
-    claims: Claims = NOTHING
-    request: Request = NOWHERE
-
-    def measure(
-        self, how: str, ladder: Sequence[Fraction] = ()
-    ) -> "tuple[Structure, Distances | None]":
-        """What is measured by dual numbers or by floats. Raises StepError, and what the user's code
-        raises."""
-        probe: Probe = DualProbe(self.step) if how == "duals" else FloatProbe(self.step)
-        if isinstance(probe, DualProbe):
-            must_agree(probe, self.places)
-        if self.hamiltonian is None:
-            return structure_of(self.step, probe, self.places), None
-        structure = structure_of(self.step, probe, self.places)
-        places = list(dict.fromkeys(x.place for x in structure.readings))
-        return structure, distances_of(self.step, probe, self.hamiltonian, places, ladder)
-
-    @cached_property
-    def evidence(self) -> Evidence:
-        """Where a claim may be seen to fail."""
-
-        def either() -> tuple[Structure | None, Distances | None]:
-            for how in self.step.ways:
-                try:
-                    return self.measure(how)
-                except Exception:  # noqa: S112 - the user's code may raise anything
-                    continue
-            return None, None
-
-        return Evidence(self.step, either)
 
 
 def examine(trial: Trial, provable: bool) -> Finding:
@@ -97,7 +49,8 @@ def examine(trial: Trial, provable: bool) -> Finding:
         if not provable:
             return _measured(trial, notes)
         finding = _decided(finding, trial, trace)
-        return finding.noting(*_clock(trial, trace, finding.convergence_order))
+        order = finding.convergence_order
+        return finding.noting(*_clock(trial, lambda h: clock_mistakes(h, trace.roots, order)))
     except Exception as error:  # the user's code may raise anything
         notes.append(prose("no proof: ", why(error)))
     return _measured(trial, notes)
@@ -136,14 +89,10 @@ def _decided(finding: Finding, trial: Trial, trace: Trace) -> Finding:
         structure, distances = trial.measure("duals")
     except Exception as error:  # the user's code may raise anything
         return finding.noting(prose("not measured: ", why(error)))
-    trial.evidence.take(structure, distances)
-    if distances is None:
-        seen = finding_of_map(trial.step, structure, trial.request)
-        if rounded or open_:
-            return replace(seen, notes=(*finding.notes, *seen.notes))
-        return _refuted_map(finding, seen, structure)
-    seen = finding_of_step(trial.step, structure, distances, trial.claims, trial.request)
-    seen = replace(seen, notes=(*finding.notes, *seen.notes))
+    alone = finding_of(trial, structure, distances)
+    seen = replace(alone, notes=(*finding.notes, *alone.notes))
+    if of_map:
+        return seen if rounded or open_ else _refuted_map(finding, seen, structure)
     if rounded:
         return _but_for_rounding(finding, seen)
     if open_:
@@ -189,8 +138,7 @@ def _refuted_map(finding: Finding, seen: Finding, structure: Structure) -> Findi
     if volume is None:
         volume = structure.volume_kept
     if seen.symplectic is not False:
-        # Algebra says it is not 0; it is too small for doubles to show.
-        return replace(seen, notes=(*finding.notes, *seen.notes))
+        return seen  # algebra says it is not 0; it is too small for doubles to show
     kept = (
         "; det J ≡ 1 all the same"
         if volume and finding.area_preserving
@@ -205,14 +153,14 @@ def _refuted_map(finding: Finding, seen: Finding, structure: Structure) -> Findi
                    places=seen.places)  # fmt: skip
 
 
-def _clock(trial: Trial, trace: Trace, order: int | None) -> list[str]:
-    """Which mistake its clock looks like; a proof stands without where that takes too long."""
+def _clock(trial: Trial, mistakes: Callable[[Hamiltonian], list[str]]) -> list[str]:
+    """Which mistake its clock looks like; nothing where that is not seen in time."""
     if trial.hamiltonian is None or not trial.step.moving or trial.step.degrees > 1:
         return []
     try:
         with within(_CLOCK_SECONDS, "its clock takes too long"):
-            return clock_mistakes(trial.hamiltonian, trace.roots[0], trace.roots[1], order)
-    except Exception:  # no more is known then
+            return mistakes(trial.hamiltonian)
+    except Exception:  # the user's code may raise anything
         return []
 
 
@@ -222,29 +170,15 @@ def _measured(trial: Trial, notes: list[Prose]) -> Finding:
     for how in step.ways:
         step.hold_back(kept if how == "duals" else -kept)
         try:
-            structure, distances = trial.measure(how)
-            trial.evidence.take(structure, distances)
-            if distances is None:
-                finding = finding_of_map(step, structure, trial.request)
-            else:
-                finding = finding_of_step(step, structure, distances, trial.claims, trial.request)
+            finding = finding_of(trial, *trial.measure(how))
             finding = replace(finding, notes=(*notes, *finding.notes))
-            return finding.noting(*_still(trial, how, finding))
+            return finding.noting(*_clock(trial, partial(_still, trial, how, finding)))
         except Exception as error:  # as above
             notes.append(prose(f"not measured with {how}: ", why(error)))
     neither = prose("it can be neither traced nor measured")
     return Finding(Verdict.UNDECIDED, neither, "calls", step.degrees).noting(*notes)
 
 
-def _still(trial: Trial, how: str, finding: Finding) -> list[str]:
-    """Which mistake its clock looks like; nothing where that cannot be measured in time."""
-    if trial.hamiltonian is None or not trial.step.moving or trial.step.degrees > 1:
-        return []
-    try:
-        with within(_CLOCK_SECONDS, "its clock takes too long"):
-            probe: Probe = DualProbe(trial.step) if how == "duals" else FloatProbe(trial.step)
-            return measured_mistakes(
-                probe, trial.hamiltonian, trial.places, finding.convergence_order
-            )
-    except Exception:  # the user's code may raise anything
-        return []
+def _still(trial: Trial, how: str, finding: Finding, hamiltonian: Hamiltonian) -> list[str]:
+    probe = probe_of(trial.step, how)
+    return measured_mistakes(probe, hamiltonian, trial.places, finding.convergence_order)

@@ -14,6 +14,7 @@ from verify.integrators.measures.survey import Request
 from verify.integrators.places.place import SIDE, USER, Place
 from verify.integrators.places.wrapped import periods_told
 from verify.integrators.results import Claims, Finding
+from verify.integrators.trial import Trial
 from verify.integrators.user_code.number_type import DOUBLE
 from verify.integrators.user_code.user_map import UserMap
 from verify.prose import Number, Prose, joined, prose, read_prose
@@ -36,33 +37,36 @@ class _Order:
     exact: bool = False
 
 
-def finding_of_map(step: UserMap, structure: Structure, request: Request) -> Finding:
-    """Whether a map without an H is symplectic where it was looked at."""
-    kept = structure.kept(request.within)
-    said = _structure_said(step, structure, kept, request)
+def finding_of(trial: Trial, structure: Structure, distances: Distances | None) -> Finding:
+    """Its order, and whether it keeps Ω, where it was looked at; of a map the latter alone."""
+    step, kept = trial.step, structure.kept(trial.request.within)
+    said = _structure_said(step, structure, kept, trial.request)
+    made = (
+        _of_map(step, structure, kept, said)
+        if distances is None
+        else _of_step(trial, structure, distances, kept, said)
+    )
+    return _consistent(made.noting(*map(read_prose, _sides_noted(structure))))
+
+
+def _of_map(step: UserMap, structure: Structure, kept: bool | None, said: str) -> Finding:
     verdict = {True: Verdict.MEASURED, False: Verdict.REFUTED, None: Verdict.UNDECIDED}[kept]
     if kept is False:
         volume = "; det J is 1 all the same" if structure.volume_kept else ""
-        entry = _entry(step, structure)
-        said = f"it is not symplectic: the entry {entry} of S is not 0{volume}"
-    finding = _base(step, structure, verdict, read_prose(said), kept)
-    notes = [*_places_noted(step, structure), *_sides_noted(structure)]
-    return finding.noting(*map(read_prose, notes))
+        said = f"it is not symplectic: the entry {_entry(step, structure)} of S is not 0{volume}"
+    return _base(step, structure, verdict, said, kept)
 
 
-def finding_of_step(
-    step: UserMap, structure: Structure, distances: Distances, claims: Claims, request: Request
+def _of_step(
+    trial: Trial, structure: Structure, distances: Distances, kept: bool | None, said: str
 ) -> Finding:
-    """Its order, and whether it keeps Ω, where it was looked at."""
-    kept = structure.kept(request.within)
-    order = _order(distances, structure.sides, claims)
-    said = _structure_said(step, structure, kept, request)
+    step, order = trial.step, _order(distances, structure.sides, trial.claims)
     verdict, told = Verdict.MEASURED, order.said
     if order.order is not None and order.decided and order.order < 1:
         verdict, told = Verdict.REFUTED, f"not a scheme for this H: {told}"
     elif kept is None or not order.decided:
         verdict = Verdict.UNDECIDED
-    finding = _base(step, structure, verdict, read_prose(f"{told}; {said}"), kept)
+    finding = _base(step, structure, verdict, f"{told}; {said}", kept)
     finding = replace(
         finding,
         order=None if kept else structure.power,
@@ -70,28 +74,28 @@ def finding_of_step(
         order_decided=order.decided,
         domain=(*order.domain, *finding.domain),
     )
-    notes = [*_places_noted(step, structure), *periods_told(step.names, distances.periods)]
-    notes += [*order.notes, *_unseen_noted(step, distances), *_sides_noted(structure)]
-    return _consistent(finding.noting(*map(read_prose, notes)))
+    notes = periods_told(step.names, distances.periods)
+    return finding.noting(*map(read_prose, [*notes, *order.notes, *_unseen_noted(step, distances)]))
 
 
 def _base(
-    step: UserMap, structure: Structure, verdict: Verdict, reason: Prose, kept: bool | None
+    step: UserMap, structure: Structure, verdict: Verdict, said: str, kept: bool | None
 ) -> Finding:
     reading = structure.largest
     places = tuple(dict.fromkeys(x.place for x in structure.readings))
     return Finding(
         verdict,
-        reason,
+        read_prose(said),
         structure.how,
         step.degrees,
         symplectic=kept,
         area_preserving=kept if step.degrees == 1 else True if kept else structure.volume_kept,
-        largest=structure.largest.defect,
+        largest=reading.defect,
         probe_error=structure.noise,
         against=reading,
         entry=_entry(step, structure) if kept is False else "",
         domain=(str(where_seen(step, places)),),
+        notes=tuple(map(read_prose, _places_noted(step, structure))),
         places=places,
     )
 
@@ -144,8 +148,8 @@ def _size(x: float) -> str:
     return plain(Fraction(x), 2) if 1e-3 <= x < 1e3 else f"`{x:.1e}`"
 
 
-def _numbers(step: UserMap) -> str:
-    return "doubles" if step.numbers is DOUBLE else step.numbers.declared_as
+def _numbers(step: UserMap, doubles: str = "doubles") -> str:
+    return doubles if step.numbers is DOUBLE else step.numbers.declared_as
 
 
 # -- the order ------------------------------------------------------------------------------------
@@ -277,13 +281,9 @@ def _plain(x: Fraction) -> str:
     return Number(f"{float(x):.{_PRECISE}g}")
 
 
-def _floats(step: UserMap) -> str:
-    return "floats" if step.numbers is DOUBLE else step.numbers.declared_as
-
-
 def _places_noted(step: UserMap, structure: Structure) -> list[str]:
     places = list(dict.fromkeys(x.place for x in structure.readings))
-    kind = "with dual numbers" if structure.how == "duals" else f"in {_floats(step)}"
+    kind = "with dual numbers" if structure.how == "duals" else f"in {_numbers(step, 'floats')}"
     notes = [f"measured {kind} at {where_seen(step, places)}, and nowhere else"]
     if structure.blind:
         each = [
@@ -319,6 +319,6 @@ def _unseen_noted(step: UserMap, distances: Distances) -> list[str]:
         return []
     unseen = max(x.unseen for x in distances.places)
     return [
-        f"in {_floats(step)}: an error of p' − p or q' − q below about `{unseen:.0e}` of them "
-        "is not seen"
+        f"in {_numbers(step, 'floats')}: an error of p' − p or q' − q below about `{unseen:.0e}` "
+        "of them is not seen"
     ]

@@ -1,6 +1,5 @@
 """What is known of a user's step or map, and what is claimed of it."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
@@ -44,16 +43,6 @@ class Counterexample:
     found: str
     expected: str
     t: Fraction | None = None
-
-    @property
-    def p(self) -> Fraction:
-        """That of the plane."""
-        return self.z["p"]
-
-    @property
-    def q(self) -> Fraction:
-        """That of the plane."""
-        return self.z["q"]
 
     @property
     def place(self) -> str:
@@ -103,7 +92,6 @@ class Finding:
     faults: tuple[str, ...] = ()
     counterexample: Counterexample | None = None
     places: tuple[Place, ...] = field(default=(), repr=False)
-    sharp: float | None = None  # a defect that would have been seen
 
     def __repr__(self) -> str:
         return f"Finding({self.verdict}: {self.reason})"
@@ -202,6 +190,3 @@ def potential_of_finding(finding: Finding) -> Potential:
         build=lambda _: proof.step_map,
     )
     return potential_of(proof, alone)
-
-
-Names = Sequence[str]

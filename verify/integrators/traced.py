@@ -1,38 +1,43 @@
 """From a user's map, called with symbols, to what is proved of it."""
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 
+import sympy
+
+from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.embedding import embed
+from verify.algebra.formula import symbol
 from verify.algebra.limits import checked
+from verify.algebra.requirement import Requirement, of_divisor, of_function, of_power
 from verify.algebra.ring import Poly, Ring
+from verify.arithmetic.exact import text
 from verify.errors import InputError
-from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.results import Finding
-from verify.integrators.tracing.domain import domain_of
 from verify.integrators.tracing.functions import copied
-from verify.integrators.tracing.readings_of_floats import readings
 from verify.integrators.tracing.series import TracedSeries
 from verify.integrators.tracing.step_map import traced_map
-from verify.integrators.tracing.trace import Node, Tape, expressions, in_order, sizes
+from verify.integrators.tracing.trace import Node, Tape, written
 from verify.integrators.user_code.step import StepError, lifted
 from verify.integrators.user_code.user_map import UserMap
 from verify.proof.expansion import MOST_ORDERS
 from verify.proof.order import prove
+from verify.proof.order_proof import Proof
 from verify.proof.symplectic import closed_form
 from verify.proof.symplectic.order import Claimed, prove_map
-from verify.prose import prose
-from verify.schemes.degrees.canonical_map import CanonicalMap, State
+from verify.proof.symplectic.proof import SymplecticProof
+from verify.prose import Prose, prose, read_prose
+from verify.schemes.degrees.canonical_map import CanonicalMap
 from verify.verdict import Verdict
 
-_MOST_WRITTEN, _MOST_OF_MAP = (
-    3000,
-    4000,
-)  # operations of z' as trees, of which a closed form is tried
+_MOST_WRITTEN, _MOST_OF_MAP = 3000, 4000  # operations of which a closed form is tried
 _MOST_TERMS = 2000
-_MOST = 8  # orders that are looked at but for rounding
+_MOST_INSIDE = 100  # operations of what is divided by, or of which a root is taken
+_NOT_WRITTEN = "the function divides by no 0, and takes no root or logarithm of what is negative"
 
 
 @dataclass(frozen=True)
@@ -55,29 +60,49 @@ def trace_of(step: UserMap) -> Trace:
     return Trace(tape, tuple(x.node for x in lifted(symbols[0], after)))
 
 
+def _notes(tape: Tape) -> list[Prose]:
+    """What the floats in a user's code were read as, and what else was taken for granted."""
+    notes = [prose("h > 0 is taken for granted")] if tape.positive else []
+    if tape.readings:
+        shown = ", ".join(f"`{x!r}` as `{text(v)}`" for x, v in sorted(tape.readings.items()))
+        told = f"floats are read as the exact numbers that they are written for: {shown}"
+        notes.append(read_prose(told))
+    if tape.rounded:
+        shown = ", ".join(f"`{x!r}`" for x in sorted(tape.rounded))
+        notes.append(read_prose(f"floats taken by their exact binary values: {shown}"))
+    return notes
+
+
 # -- a step in the plane --------------------------------------------------------------------------
 
 
 def proved_in_plane(trace: Trace, hamiltonian: Hamiltonian) -> Finding:
     """By the prover of the plane. Raises InputError where it has no series and no closed form."""
-    tape = trace.tape
     traced = traced_map(hamiltonian, *trace.roots)
     proof = prove(traced.step_map)
-    return Finding(
-        proof.verdict,
-        proof.reason,
-        "proof",
-        order=proof.order,
+    return replace(
+        _of_proof(proof, trace, 1, f"traced with symbols; the map {traced.how}"),
         symplectic=proof.area_preserving,
-        area_preserving=proof.area_preserving,
-        convergence_order=proof.convergence_order,
         order_decided=proof.convergence_decided,
         area_at_least=proof.first.power or MOST_ORDERS + 1,
         leading=proof.first.text,
         delta_j=proof.step_map.delta_j_text,
+    )
+
+
+def _of_proof(proof: Proof | SymplecticProof, trace: Trace, degrees: int, said: str) -> Finding:
+    return Finding(
+        proof.verdict,
+        proof.reason,
+        "proof",
+        degrees,
+        order=proof.order,
         proof=proof,
-        domain=(proof.domain & domain_of(tape)).texts,
-    ).noting(f"traced with symbols; the map {traced.how}", *readings(tape))
+        area_preserving=proof.area_preserving,
+        convergence_order=proof.convergence_order,
+        domain=(proof.domain & domain_of(trace.tape)).texts,
+        notes=(prose(said), *_notes(trace.tape)),
+    )
 
 
 # -- a step in several degrees of freedom ---------------------------------------------------------
@@ -86,43 +111,24 @@ def proved_in_plane(trace: Trace, hamiltonian: Hamiltonian) -> Finding:
 def proved_in_degrees(trace: Trace, hamiltonian: Hamiltonian) -> Finding:
     """By the prover of n degrees of freedom. Raises InputError where it has no series."""
     proof = prove_map(_canonical(list(trace.roots), hamiltonian), Claimed())
-    return Finding(
-        proof.verdict,
-        proof.reason,
-        "proof",
-        hamiltonian.degrees,
-        order=proof.order,
-        proof=proof,
+    return replace(
+        _of_proof(proof, trace, hamiltonian.degrees, "traced with symbols"),
         symplectic=proof.symplectic,
-        area_preserving=proof.area_preserving,
-        convergence_order=proof.convergence_order,
         order_decided=True,
         entry=proof.entry,
         leading=proof.leading_text,
-        domain=(proof.domain & domain_of(trace.tape)).texts,
-        notes=(prose("traced with symbols"), *readings(trace.tape)),
     )
 
 
 def _canonical(roots: list[Node], hamiltonian: Hamiltonian) -> CanonicalMap:
-    series = TracedSeries(roots, partial(canonical_field, hamiltonian))
-
-    def expand(most: int) -> tuple[CanonicalField, State]:
-        return series(most)
-
-    nodes = in_order(*roots)
-    size = sizes(nodes)
-    field, _ = canonical_field(hamiltonian)
-    if sum(size[root.number] for root in roots) <= _MOST_WRITTEN:
-        made = expressions(nodes, {})
-        try:
-            exact = [checked(made[root.number], "step", "its closed form") for root in roots]
-            field, closed = canonical_field(hamiltonian, *exact)
-        except InputError:
-            pass
-        else:
+    expand = TracedSeries(roots, partial(canonical_field, hamiltonian))
+    exact = written(roots, _MOST_WRITTEN)
+    with suppress(InputError):
+        if exact is not None:
+            smooth = [checked(x, "step", "its closed form") for x in exact]
+            field, closed = canonical_field(hamiltonian, *smooth)
             return CanonicalMap(hamiltonian, field, closed=tuple(closed), expand=expand)
-    return CanonicalMap(hamiltonian, field, expand=expand)
+    return CanonicalMap(hamiltonian, canonical_field(hamiltonian)[0], expand=expand)
 
 
 # -- a map without an H ---------------------------------------------------------------------------
@@ -136,7 +142,7 @@ def proved_of_map(trace: Trace, names: tuple[str, ...]) -> Finding:
     where = domain_of(trace.tape)
     base = Finding(
         Verdict.UNDECIDED, prose("whether S vanishes is not decided"), "proof", len(names) // 2,
-        domain=where.texts, notes=(prose("traced with symbols"), *readings(trace.tape)),
+        domain=where.texts, notes=(prose("traced with symbols"), *_notes(trace.tape)),
     )  # fmt: skip
     if decision.zero is True:
         said = prose("S is the zero form: the map is symplectic")
@@ -158,10 +164,45 @@ def proved_of_map(trace: Trace, names: tuple[str, ...]) -> Finding:
 
 def _closed(trace: Trace, names: tuple[str, ...]) -> tuple[Ring, list[Poly]]:
     """The map as elements of a ring."""
-    nodes = in_order(*trace.roots)
-    size = sizes(nodes)
-    if sum(size[root.number] for root in trace.roots) > _MOST_OF_MAP:
+    exact = written(trace.roots, _MOST_OF_MAP)
+    if exact is None:
         raise StepError(f"written out it has more than {_MOST_OF_MAP} operations")
-    made = expressions(nodes, {})
-    exact = [checked(made[root.number], "map", "its closed form") for root in trace.roots]
-    return embed(exact, names, _MOST_TERMS)
+    return embed([checked(x, "map", "its closed form") for x in exact], names, _MOST_TERMS)
+
+
+# -- where it is defined --------------------------------------------------------------------------
+
+
+def domain_of(tape: Tape) -> Domain:
+    """What all operations on the tape ask for, those that cancelled in the end, too."""
+    found, words = list[Requirement](), list[str]()
+    if tape.positive:
+        found.append(Requirement(symbol("h"), ">"))
+    for node in tape.nodes:
+        operand = node.inputs[-1] if node.inputs else None
+        if operand is None or not _asks(node):
+            continue
+        inside = written([operand], _MOST_INSIDE)
+        if inside is None:
+            words.append(_NOT_WRITTEN)
+        else:
+            found += _asked(node, inside[0])
+    return Domain.of(found, *words) if found or words else EVERYWHERE
+
+
+def _asks(node: Node) -> bool:
+    power = node.operation == "power" and (node.value < 0 or node.value.denominator > 1)
+    return power or node.operation in ("divide", "log", "tan", "sqrt")
+
+
+def _asked(node: Node, operand: sympy.Expr) -> list[Requirement]:
+    """Of a smooth map: no root is taken of 0."""
+    match node.operation:
+        case "divide":
+            return of_divisor(operand)
+        case "power" | "sqrt":
+            exponent = sympy.Rational(node.value or Fraction(1, 2))
+            asked = of_power(operand, exponent)
+            return [Requirement(r.expression, ">") if exponent.q > 1 else r for r in asked]
+        case name:
+            return of_function(name, operand)

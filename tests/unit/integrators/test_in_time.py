@@ -225,10 +225,10 @@ def test_a_refuted_clock_has_a_counterexample_with_its_time() -> None:
     assert example is not None
     assert f"t = {example.t}" in str(example)
     gap = float(example.found)
-    at = [float(x) for x in (example.p, example.q, example.t, example.h)]
+    at = [float(x) for x in (*example.z.values(), example.t, example.h)]
     flow = Flow(Hamiltonian.parse(DRIVEN).field()[0], 20)
     end = flow.advance(
-        tuple(map(flow.number, (example.p, example.q, example.t))), flow.number(example.h)
+        tuple(map(flow.number, (*example.z.values(), example.t))), flow.number(example.h)
     )
     made = verlet_at(0, 0)(*at)
     k = "pq".index(example.quantity.partition("distance of ")[2][0])

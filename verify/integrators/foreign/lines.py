@@ -6,13 +6,12 @@ hexadecimal floats.
 """
 
 import contextlib
-import math
 import re
 from collections.abc import Sequence
+from decimal import Context, Decimal
 from fractions import Fraction
 
-from verify.integrators.foreign.memory import two_doubles
-from verify.integrators.user_code.number_type import DOUBLE, NumberType
+from verify.integrators.user_code.number_type import DOUBLE, NumberType, two_doubles
 from verify.integrators.user_code.step import StepError
 from verify.prose import count
 
@@ -41,18 +40,8 @@ def _decimal(x: Fraction, digits: int) -> str:
     """With so many significant digits."""
     if x == 0:
         return "0.0"
-    size = abs(x)
-    exponent = math.floor(math.log10(size.numerator) - math.log10(size.denominator))
-    # A logarithm may be rounded to the next whole number.
-    while size >= Fraction(10) ** (exponent + 1):
-        exponent += 1
-    while size < Fraction(10) ** exponent:
-        exponent -= 1
-    scaled = round(size / Fraction(10) ** (exponent - digits + 1))
-    if scaled == 10**digits:
-        exponent, scaled = exponent + 1, scaled // 10
-    text = str(scaled)
-    return f"{'-' if x < 0 else ''}{text[0]}.{text[1:]}e{exponent:+d}"
+    rounded = Context(digits).divide(Decimal(x.numerator), Decimal(x.denominator))
+    return f"{rounded:.{digits - 1}e}"
 
 
 def numbers_of(line: str, wanted: int, kind: NumberType) -> Sequence[float | Fraction]:

@@ -4,7 +4,7 @@ from array import array
 from collections.abc import Sequence
 from fractions import Fraction
 
-from verify.integrators.user_code.number_type import DOUBLE, LONG_DOUBLE, NumberType
+from verify.integrators.user_code.number_type import DOUBLE, LONG_DOUBLE, NumberType, two_doubles
 from verify.integrators.user_code.step import StepError
 
 _SIZE = 16  # bytes of a long double, and of a __float128
@@ -33,12 +33,6 @@ def read_digits(line: str, wanted: int, kind: NumberType) -> Sequence[float | Fr
     if kind is DOUBLE:
         return doubles.tolist()
     return [Fraction(x) + Fraction(y) for x, y in zip(doubles[::2], doubles[1::2], strict=True)]
-
-
-def two_doubles(x: Fraction) -> tuple[float, float]:
-    """The nearest double, and that of the rest."""
-    high = float(x)
-    return high, float(x - Fraction(high))
 
 
 def _not_finite(text: str) -> StepError:

@@ -51,6 +51,11 @@ _QUIET = 3  # step sizes in the noise, after which none is looked at
 Probe = DualProbe | FloatProbe
 
 
+def probe_of(step: UserMap, how: str) -> Probe:
+    """The one of "duals", or of "floats"."""
+    return DualProbe(step) if how == "duals" else FloatProbe(step)
+
+
 @dataclass(frozen=True)
 class Tail:
     """A lower power, from `h` down, where the error is `error` in units of the place."""
@@ -94,7 +99,6 @@ class Distances:
     how: str
     places: tuple[PlaceOrder, ...]
     periods: Periods = ()
-    lost: tuple[str, ...] = ()
 
 
 def distances_of(
@@ -115,12 +119,12 @@ def distances_of(
             with within(max(step.left, 0.1), "the exact flow takes too long"):
                 made.append(_at(step, probe, flow, place, parts))
         except Exception as error:  # the user's code may raise anything
-            lost.append(f"{why(error)}{step.place([float(x) for x in place.z], float(place.step))}")
+            lost.append(f"{why(error)}{step.place(place.z, place.step)}")
         if step.left <= 0:
             break
     if not made:
         raise StepError(lost[0] if lost else "it has no exact solution from any of the places")
-    return Distances(probe.how, tuple(made), step.periods, tuple(lost))
+    return Distances(probe.how, tuple(made), step.periods)
 
 
 def flow_of(hamiltonian: Hamiltonian, probe: Probe) -> FlowInDegrees:

@@ -32,11 +32,6 @@ class Slopes:
     seen: bool
     unsettled: tuple[float, ...] = ()
 
-    @property
-    def power(self) -> int | None:
-        """That of the smallest step sizes; None where none has settled."""
-        return self.runs[-1].power if self.runs and not self.unsettled else None
-
 
 Row = tuple[float, float, float]  # h, the error there, its noise
 

@@ -19,7 +19,6 @@ from verify.integrators.user_code.step import StepError, why
 from verify.integrators.user_code.user_map import UserMap
 
 REFUTES = 4.0  # times its noise that an entry is where it is not 0
-_HOLDS = REFUTES  # and at most where nothing is seen
 _BLIND = 1e-3  # noise beside entries of Ω, which are 1, with which nothing is seen at a place
 _SHARP = 1e-7  # the least that a probe has to see for a map to be said to keep anything
 _SIZES = 1, 8  # parts of a place's largest step
@@ -64,18 +63,18 @@ class Structure:
             if any(x.defect - x.blur > allowed for x in readings):
                 return False
             return all(max(x.defect - x.blur, x.blur) <= allowed for x in readings) or None
-        beyond = self.worst.beyond
-        if beyond > REFUTES:
-            return False
-        return True if beyond <= _HOLDS and self.noise <= _SHARP else None
+        return self._vanishes(self.worst.beyond)
 
     @property
     def volume_kept(self) -> bool | None:
         """The same of det J."""
-        beyond = max(abs(x.volume) / x.volume_noise for x in self.readings)
+        return self._vanishes(max(abs(x.volume) / x.volume_noise for x in self.readings))
+
+    def _vanishes(self, beyond: float) -> bool | None:
+        """Whether what is so many times its noise is 0; None where less would not be seen."""
         if beyond > REFUTES:
             return False
-        return True if beyond <= _HOLDS and self.noise <= _SHARP else None
+        return True if beyond <= REFUTES and self.noise <= _SHARP else None
 
     @property
     def power(self) -> int | None:
@@ -139,8 +138,7 @@ def _read(
                 readings.append(probe.reading(place, place.step / part))
                 sides.note(place, place.step / part, probe.comparisons)
             except Exception as error:  # the user's code may raise anything
-                where = probe.step.place([float(x) for x in place.z], float(place.step / part))
-                lost.append(f"{why(error)}{where}")
+                lost.append(f"{why(error)}{probe.step.place(place.z, place.step / part)}")
 
 
 def _farthest(step: UserMap, places: Sequence[Place]) -> dict[str, float]:

@@ -146,12 +146,12 @@ def shortened(step: UserMap, places: list[Place]) -> list[Place]:
 
 def _strides(step: UserMap, place: Place) -> float:
     """How many units a step goes, as H would go one at most; 1 where that is not known."""
-    h, z = float(place.step / _SHORT), [float(x) for x in place.z]
     try:
-        end = step.at(z, h, float(place.t))
+        end = step.at_place(place, place.step / _SHORT)
     except Exception:  # the user's code may raise anything
         return 1.0
-    far = max(abs(x - y) / float(u) for x, y, u in zip(end, z, place.units, strict=True))
+    pairs = zip(end, map(float, place.z), place.units, strict=True)
+    far = max(abs(x - y) / float(u) for x, y, u in pairs)
     return min(far * _SHORT / _FAR, 1e30) if far == far else 1.0
 
 

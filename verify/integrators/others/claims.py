@@ -1,6 +1,6 @@
 """The claims that are made for an integrator of others, each with its verdict and evidence."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from fractions import Fraction
 from functools import partial, singledispatch
 
@@ -12,7 +12,7 @@ from verify.integrators.others.methods.integrator import (
     ReleasedIntegrator,
 )
 from verify.integrators.others.methods.measured import finding
-from verify.integrators.others.methods.problems import POINTS
+from verify.integrators.others.methods.scripted import POINTS
 from verify.integrators.others.methods.tableau import (
     WRONG,
     Symplecticity,
@@ -25,22 +25,14 @@ from verify.integrators.others.methods.tabled import FloatTable, tabled
 from verify.integrators.others.second.look import Look, at_claim, at_step, at_table, looked_at_again
 from verify.integrators.results import Finding
 from verify.integrators.tables import kinds
-from verify.integrators.tables.cost import severity_of
-from verify.integrators.tables.told import (
-    NOT_SYMPLECTIC,
-    OF_WORDS,
-    WRONG_CLOCK,
-    WRONG_ORDER,
-    WRONG_WEIGHTS,
-    TableClaim,
-)
+from verify.integrators.tables.cost import Severity, severity_of
+from verify.integrators.tables.told import TableClaim
 from verify.prose import Formula, Number, Prose, joined, prose, read_prose
 from verify.scenes.results.claim import ClaimResult
-from verify.schemes.printed.sentences import of_digits, of_printed
+from verify.schemes.printed.sentences import Judgement, of_digits, of_printed
 from verify.schemes.printed.splitting_table import PrintedTable, judge_order
 from verify.verdict import Verdict
 
-_Judgement = tuple[Verdict, Prose, tuple[tuple[str, ...], ...]]
 NONE = Prose()
 _PLACES = ((Fraction(1, 5), Fraction(-1, 4), Fraction(3, 10), Fraction(1, 7)),)  # p, then q
 _NOT_CLAIMED = "Nothing is claimed of symplecticity"
@@ -49,59 +41,43 @@ _IN_TIME = "where the force depends on time"
 _UNSAID = f"its order {_IN_TIME}, of which nothing is said"
 _FOLLOWING = ("row sums", "symmetric", "stage order")
 _ALWAYS_TOLD = ("agreement", "in time")  # with its reproduction, whatever is found
-# Its kind, the statement, its reproduction, and what kind of mistake it is where it is refuted.
-_Claim = tuple[str, str, _Judgement, str, str]
+# What is claimed, its reproduction, and a second look, where there are means that share no code.
+_Claim = tuple[TableClaim, str, Callable[[], Look | None]]
 
 
 def claims_of(integrator: ReleasedIntegrator, section: str, prefix: str) -> Iterator[ClaimResult]:
     """One claim for the order and one for symplecticity, where they are made; of a printed table
     one for the order and one for its digits. `prefix` begins the ids."""
-    for kind, statement, judgement, code, severity in _claims(integrator.method, integrator):
-        verdict, evidence, details = judgement
-        look = partial(second_look, integrator.method, integrator, kind)
-        verdict, evidence = looked_at_again(verdict, evidence, severity, look)
-        told = verdict in (Verdict.REFUTED, Verdict.UNDECIDED) or kind in _ALWAYS_TOLD
-        yield ClaimResult(
-            id=f"{prefix}/{integrator.name}/{kind}",
-            kind=kind,
-            source=integrator.name,
-            section=section,
-            statement=prose(f"{statement} ({integrator.source})"),
-            scene="",
-            verdict=verdict,
-            evidence=prose(evidence, f". Driven: {integrator.driven}"),
-            details=tuple(tuple(map(prose, row)) for row in details),
-            reproduction=code if told else "",
-            severity=severity if verdict is Verdict.REFUTED else "",
-        )
+    for claim, code, look in _claims(integrator.method, integrator):
+        ending = f". Driven: {integrator.driven}"
+        made = result_of(claim, prefix, integrator.name, section, integrator.source, ending, look)
+        told = made.verdict in (Verdict.REFUTED, Verdict.UNDECIDED) or claim.kind in _ALWAYS_TOLD
+        yield made.model_copy(update={"reproduction": code if told else ""})
 
 
-@singledispatch
-def second_look(method: object, integrator: ReleasedIntegrator, kind: str) -> Look | None:
-    """By other means, which share no code; None where there are none."""
+def result_of(
+    claim: TableClaim, prefix: str, name: str, section: str, source: str, ending: str,
+    look: Callable[[], Look | None],
+) -> ClaimResult:  # fmt: skip
+    """The claim as it stands after a second look. `ending`: of its evidence, in plain words."""
+    severity = claim.severity or ""
+    verdict, evidence = looked_at_again(claim.verdict, claim.evidence, severity, look)
+    return ClaimResult(
+        id=f"{prefix}/{name}/{claim.kind}",
+        kind=claim.kind,
+        source=name,
+        section=section,
+        statement=prose(f"{claim.statement} ({source})"),
+        scene="",
+        verdict=verdict,
+        evidence=prose(evidence, ending),
+        details=tuple(tuple(map(prose, row)) for row in claim.details),
+        severity=severity if verdict is Verdict.REFUTED else "",
+    )
+
+
+def _no_look() -> None:
     return None
-
-
-@second_look.register
-def _(method: FloatTable, integrator: ReleasedIntegrator, kind: str) -> Look | None:
-    return at_claim(method.entry, kind)
-
-
-@second_look.register
-def _(method: FloatStep, integrator: ReleasedIntegrator, kind: str) -> Look | None:
-    return None if integrator.order is None else at_step(integrator, integrator.order)
-
-
-@second_look.register
-def _(method: ExactTableau, integrator: ReleasedIntegrator, kind: str) -> Look | None:
-    if integrator.order is None:
-        return None
-    table = method.tableau
-    entry = tabled(
-        integrator.name, "runge-kutta", "", "", order=integrator.order,
-        a=[[str(x) for x in row] for row in table.rows], b=[str(x) for x in table.weights],
-    ).method.entry  # fmt: skip
-    return at_table(entry, kind, integrator.order, exact=not method.rounded)
 
 
 def separate(claims: Iterable[TableClaim]) -> Iterator[TableClaim]:
@@ -109,7 +85,7 @@ def separate(claims: Iterable[TableClaim]) -> Iterator[TableClaim]:
     wrong = False
     for claim in claims:
         follows = claim.kind in _FOLLOWING or (
-            claim.kind == "order in time" and claim.severity == WRONG_ORDER
+            claim.kind == "order in time" and claim.severity == Severity.WRONG_ORDER
         )
         if not (wrong and follows and claim.verdict is Verdict.REFUTED):
             yield claim
@@ -125,8 +101,9 @@ def _claims(method: object, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
 @_claims.register
 def _(method: Compared, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
     verdict, told, details = method.compare()
-    judged = verdict, prose(told), details
-    yield method.kind, method.statement, judged, integrator.reproduction, OF_WORDS
+    said, severity = prose(told), Severity.OF_WORDS
+    claim = TableClaim(method.kind, method.statement, verdict, said, details, severity)
+    yield claim, integrator.reproduction, _no_look
 
 
 @_claims.register
@@ -135,20 +112,20 @@ def _(method: PrintedTable, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
     assert order is not None  # noqa: S101 - of printed tables it is always claimed
     found = judge_order(method, order)
     said = of_printed(found, order)
-    yield "order", f"order {order}", said, integrator.reproduction, WRONG_ORDER
+    claim = TableClaim("order", f"order {order}", *said, Severity.WRONG_ORDER)
+    yield claim, integrator.reproduction, _no_look
     if found.verdict is not Verdict.REFUTED and method.units:
         code = reproductions.of_digits(method, found.nearest, order)
         exact = "every digit is right, to one unit of the last"
-        severity = severity_of(found, WRONG_ORDER) or OF_WORDS
-        yield "digits", exact, of_digits(found), code, severity
+        severity = severity_of(found, Severity.WRONG_ORDER) or Severity.OF_WORDS
+        yield TableClaim("digits", exact, *of_digits(found), severity), code, _no_look
 
 
 @_claims.register
 def _(method: FloatTable, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
-    for found in separate(kinds.get(method.entry.kind).claims(method.entry)):
-        if not found.kind.endswith("digits"):  # of floats nothing is claimed of them
-            judged = found.verdict, found.evidence, found.details
-            yield found.kind, found.statement, judged, integrator.reproduction, found.severity or ""
+    for claim in separate(kinds.get(method.entry.kind).claims(method.entry)):
+        if not claim.kind.endswith("digits"):  # of floats nothing is claimed of them
+            yield claim, integrator.reproduction, partial(at_claim, method.entry, claim.kind)
 
 
 @_claims.register
@@ -159,13 +136,25 @@ def _(method: ExactTableau, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
         wrong = order.order < claimed and not rounded
         repaired = repair(table, claimed) if wrong else NONE
         said = of_tableau(claimed, order, symplecticity(table, rounded), rounded, repaired)
-        severity = WRONG_WEIGHTS if "embedded" in integrator.name else WRONG_ORDER
-        yield "order", f"order {claimed}", said, integrator.reproduction, severity
+        embedded = "embedded" in integrator.name
+        severity = Severity.WRONG_WEIGHTS if embedded else Severity.WRONG_ORDER
+        claim = TableClaim("order", f"order {claimed}", *said, severity)
+        yield claim, integrator.reproduction, partial(_at_tableau, method, integrator.name, claimed)
     if integrator.area_preserving:
         area = symplecticity(table, rounded)
         verdict = {True: Verdict.PROVED, False: Verdict.REFUTED, None: Verdict.UNDECIDED}
-        judged = verdict[area.holds], area.said, ()
-        yield "area", _SYMPLECTIC, judged, integrator.reproduction, NOT_SYMPLECTIC
+        severity = Severity.NOT_SYMPLECTIC
+        claim = TableClaim("area", _SYMPLECTIC, verdict[area.holds], area.said, (), severity)
+        yield claim, integrator.reproduction, _no_look
+
+
+def _at_tableau(method: ExactTableau, name: str, claimed: int) -> Look:
+    table = method.tableau
+    entry = tabled(
+        name, "runge-kutta", "", "", order=claimed,
+        a=[[str(x) for x in row] for row in table.rows], b=[str(x) for x in table.weights],
+    ).method.entry  # fmt: skip
+    return at_table(entry, "order", claimed, exact=not method.rounded)
 
 
 @_claims.register
@@ -174,16 +163,19 @@ def _(method: FloatStep, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
     order, area, code = integrator.order, integrator.area_preserving, integrator.reproduction
     timed = method.exact.time_dependent
     if order is not None:
-        said = of_measured_order(order, finding(method), area)
         statement = f"order {order}, too, {_IN_TIME}" if timed else f"order {order}"
+        severity = Severity.WRONG_CLOCK if timed else Severity.WRONG_ORDER
+        said = of_measured_order(order, finding(method), area)
+        claim = TableClaim("order", statement, *said, severity)
         script = reproductions.of_order(code, point, order, timed)
-        yield "order", statement, said, script, WRONG_CLOCK if timed else WRONG_ORDER
+        yield claim, script, partial(at_step, integrator, order)
     elif timed:
-        script = reproductions.of_time(code, point)
-        yield "in time", _UNSAID, of_unsaid(finding(method)), script, ""
+        claim = TableClaim("in time", _UNSAID, *of_unsaid(finding(method)))
+        yield claim, reproductions.of_time(code, point), _no_look
     if area:
         said = of_measured_area(finding(method))
-        yield "area", _SYMPLECTIC, said, reproductions.of_area(code, point), NOT_SYMPLECTIC
+        claim = TableClaim("area", _SYMPLECTIC, *said, Severity.NOT_SYMPLECTIC)
+        yield claim, reproductions.of_area(code, point), _no_look
 
 
 # -- tableaux -------------------------------------------------------------------------------------
@@ -191,7 +183,7 @@ def _(method: FloatStep, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
 
 def of_tableau(
     claimed: int, found: TableauOrder, area: Symplecticity, rounded: bool, repaired: Prose = NONE
-) -> _Judgement:
+) -> Judgement:
     """Of exact coefficients by proof; of floats up to their rounding."""
     of_next = prose("; of ", Formula(f"h^{found.order + 1}"), ", ", Formula(found.next))
     by = prose(" fails by ", Number(f"{found.residue:.3g}"))
@@ -224,7 +216,7 @@ def of_tableau(
 # -- floats ---------------------------------------------------------------------------------------
 
 
-def of_measured_order(claimed: int, found: Finding, area_claimed: bool | None) -> _Judgement:
+def of_measured_order(claimed: int, found: Finding, area_claimed: bool | None) -> Judgement:
     """A measured order against the claimed one; what is not known refutes nothing."""
     order, known = found.convergence_order, found.order_decided
     beside = ""
@@ -241,7 +233,7 @@ def of_measured_order(claimed: int, found: Finding, area_claimed: bool | None) -
     return Verdict.UNDECIDED, prose(found.reason, notes), ()
 
 
-def of_unsaid(found: Finding) -> _Judgement:
+def of_unsaid(found: Finding) -> Judgement:
     """What is measured where nothing is claimed: it refutes nothing, whatever it is."""
     verdict = Verdict.MEASURED if found.order_decided else Verdict.UNDECIDED
     return verdict, found.reason, ()
@@ -253,7 +245,7 @@ def _capital(note: Prose) -> Prose:
     return prose(f"{first[0].upper()}{first[1:]}" if type(first) is str else first, *rest)
 
 
-def of_measured_area(found: Finding) -> _Judgement:
+def of_measured_area(found: Finding) -> Judgement:
     """An area defect above the probe's own error refutes; none that is seen is MEASURED."""
     error = "unknown" if found.probe_error is None else f"`{found.probe_error:.1e}`"
     if found.area_preserving:

@@ -10,13 +10,12 @@ from itertools import groupby
 from pathlib import Path
 
 from verify.content import content
-from verify.integrators.others.claims import separate
+from verify.integrators.others.claims import result_of, separate
 from verify.integrators.others.reproductions import of_clock
-from verify.integrators.others.second.look import at_claim, looked_at_again
+from verify.integrators.others.second.look import at_claim
 from verify.integrators.tables.check import TableFile
 from verify.integrators.tables.entry import TableEntry
 from verify.integrators.tables.told import TableClaim
-from verify.prose import prose
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
@@ -39,19 +38,9 @@ def claims_of(found: TableFile) -> Iterator[ClaimResult]:
 
 def _claim(title: str, entry: TableEntry, claim: TableClaim) -> ClaimResult:
     cost = f". It costs {claim.cost.said}" if claim.cost and claim.cost.said else ""
-    look = partial(at_claim, entry, claim.kind)
-    verdict, evidence = looked_at_again(claim.verdict, claim.evidence, claim.severity or "", look)
-    refuted = verdict is Verdict.REFUTED
-    return ClaimResult(
-        id=f"{title.split()[0]}/{entry.name}/{claim.kind}",
-        kind=claim.kind,
-        source=entry.name,
-        section=f"{title}, printed tables",
-        statement=prose(f"{claim.statement} ({entry.source})"),
-        scene="",
-        verdict=verdict,
-        evidence=prose(evidence, cost, f". Read in {entry.read}"),
-        details=tuple(tuple(map(prose, row)) for row in claim.details),
-        severity=(claim.severity or "") if refuted else "",
-        reproduction=of_clock(entry) if refuted else "",
-    )
+    made = result_of(
+        claim, title.split()[0], entry.name, f"{title}, printed tables", entry.source,
+        f"{cost}. Read in {entry.read}", partial(at_claim, entry, claim.kind),
+    )  # fmt: skip
+    refuted = made.verdict is Verdict.REFUTED
+    return made.model_copy(update={"reproduction": of_clock(entry) if refuted else ""})

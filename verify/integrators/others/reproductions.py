@@ -57,28 +57,18 @@ for name, numbers in ({shown}):
 _ORDER = """
 
 
-def error(h):  # of one step, against 64 steps of h / 64
-    x, y = step({p}, {q}, h), ({p}, {q})
-    for _ in range(64):
-        y = step(*y, h / 64)
+def error(h{begin}):  # of one step, against 64 steps of h / 64
+    x, y = step({p}, {q}, {at}h), ({p}, {q})
+    for {turn} in range(64):
+        y = step(*y, {moment}h / 64)
     return {distance}
 
 
 # the error of one step is O(h^r), r = order + 1{claimed}
-print([(h, math.log2(error(h) / error(h / 2))) for h in (1.0, 0.5, 0.25)])"""
-
-_ORDER_IN_TIME = """
-
-
-def error(h, t=0.75):  # of one step, against 64 steps of h / 64
-    x, y = step({p}, {q}, t, h), ({p}, {q})
-    for k in range(64):
-        y = step(*y, t + k * h / 64, h / 64)
-    return {distance}
-
-
-# the error of one step is O(h^r), r = order + 1{claimed}
-print([(h, math.log2(error(h) / error(h / 2))) for h in (0.5, 0.25, 0.125)])"""
+print([(h, math.log2(error(h) / error(h / 2))) for h in ({sizes})])"""
+_STILL = {"begin": "", "at": "", "turn": "_", "moment": "", "sizes": "1.0, 0.5, 0.25"}
+_IN_TIME = {"begin": ", t=0.75", "at": "t, ", "turn": "k", "moment": "t + k * h / 64, ",
+            "sizes": "0.5, 0.25, 0.125"}  # fmt: skip
 
 _AREA = """
 
@@ -170,8 +160,8 @@ def _exact(size: str) -> str:
 
 def of_order(code: str, point: Point, order: int, timed: bool = False) -> str:
     """`code`, which defines step(p, q, h), or step(p, q, t, h), and the slopes of its error."""
-    slopes = _ORDER_IN_TIME if timed else _ORDER
-    return _with(code, slopes.format(**_start(point), claimed=f"; claimed: order {order}"))
+    clock, claimed = _IN_TIME if timed else _STILL, f"; claimed: order {order}"
+    return _with(code, _ORDER.format(**_start(point), **clock, claimed=claimed))
 
 
 def _start(point: Point) -> dict[str, str]:
@@ -189,7 +179,7 @@ def _start(point: Point) -> dict[str, str]:
 
 def of_time(code: str, point: Point) -> str:
     """The same of step(p, q, t, h) where no order is claimed."""
-    return _with(code, _ORDER_IN_TIME.format(**_start(point), claimed=""))
+    return _with(code, _ORDER.format(**_start(point), **_IN_TIME, claimed=""))
 
 
 def of_area(code: str, point: Point) -> str:
@@ -222,8 +212,7 @@ def step(p, q, t, h):  # H = (1 + cos(t)/4) (p**4/4 + p**2/2) - (1 + cos(2*t)/2)
             q += a * h * (1 + math.cos(t + s * h) / 4) * (p + p**3)
     return p, q
 """
-    point = Fraction(1, 3), Fraction(3, 5)
-    return _with(code, _ORDER_IN_TIME.format(**_start(point), claimed=""))
+    return of_time(code, (Fraction(1, 3), Fraction(3, 5)))
 
 
 def _with(code: str, tail: str) -> str:

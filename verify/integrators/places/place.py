@@ -107,10 +107,5 @@ def simple(x: float) -> Fraction:
     """
     if not 1e-300 < x < 1e300:
         return Fraction(1)
-    exponent = len(f"{int(x)}") - 1 if x >= 1 else -_zeros(x)
-    scale = Fraction(10) ** exponent
+    scale = Fraction(10) ** int(f"{x:e}".partition("e")[2])
     return min((scale * k for k in (1, 2, 5, 10)), key=lambda u: abs(float(u) / x - 1))
-
-
-def _zeros(x: float) -> int:
-    return -int(f"{x:e}".partition("e")[2])

@@ -2,14 +2,15 @@
 
 import math
 import random
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
+import gmpy2
+
 from verify.integrators.places.place import Place
 from verify.integrators.probes.duals import DualProbe
-from verify.integrators.probes.rounding_noise import rounding_noise
-from verify.integrators.tracing.dual import Dual, Duals
+from verify.integrators.tracing.dual import SLOPES, Dual, Duals
 from verify.integrators.tracing.number import UntraceableError
 from verify.integrators.tracing.trace import Node, in_order, replayed, through
 from verify.integrators.user_code.user_map import State, UserMap
@@ -21,6 +22,9 @@ _ROUNDED, _BEYOND = 2.0**-46, 8  # what is allowed at least, and times the bound
 _SCATTERED = 20  # further places around each, up to a quarter of a unit away
 _ENDS_ELSEWHERE = 1e-6  # where values are compared, as a loop's tolerance may with duals
 _LOOSEST = 0.1  # a bound that a loop may end at
+_EPSILON = 2.0**-52
+Rounded = tuple[float, float]  # a value, and a bound of its error to first order
+Bounded = tuple[list[Fraction], list[float]]  # z', and how far it may be from the floats' end
 
 
 def must_agree(probe: DualProbe, places: Sequence[Place]) -> None:
@@ -28,44 +32,46 @@ def must_agree(probe: DualProbe, places: Sequence[Place]) -> None:
 
     So it is where the code keeps a state, or takes another branch with floats.
     """
-    step, compared = probe.step, 0
-    for place, h in _calls(places):
-        rounded = place.rounded(lambda x: Fraction(float(x)))
-        mine = _floats(step, rounded, h)
-        if mine is None:
-            continue
-        theirs = probe.end(rounded, h)
-        compared += 1
-        near = _AGREES
+
+    def theirs(place: Place, h: Fraction, mine: State) -> Bounded:
+        ended, near = probe.end(place, h), _AGREES
         if probe.opaque:
             limits = [abs(float(x.limit)) for x in probe.comparisons if x.limit]
             near = max([_ENDS_ELSEWHERE, *(4 * x for x in limits if x < _LOOSEST)])
-        sizes = [float(u) + abs(x) for u, x in zip(place.units, mine, strict=True)]
-        gaps = zip(mine, theirs, sizes, strict=True)
-        if any(abs(Fraction(x) - y) > near * size for x, y, size in gaps):
-            raise _parting(step, rounded, h)
-    if not compared:
-        raise UntraceableError("it fails at every place that is tried")
+        units = map(float, place.units)
+        return ended, [near * (u + abs(x)) for u, x in zip(units, mine, strict=True)]
+
+    _must_agree(probe.step, places, theirs)
 
 
 def trace_must_agree(step: UserMap, roots: Sequence[Node], places: Sequence[Place]) -> None:
     """As `must_agree`, for a trace, at many places, and as near as rounding lets it be."""
-    nodes, kind, compared = in_order(*roots), Duals(), 0
-    wide = [*places, *(x for place in places[:6] for x in _around(place))]
+    nodes, kind = in_order(*roots), Duals()
+
+    def theirs(place: Place, h: Fraction, mine: State) -> Bounded | None:
+        start = dict(zip(step.names, place.z, strict=True))
+        start |= {"h": Fraction(float(h)), "t": Fraction(float(place.t))}
+        ended = _replayed(kind, nodes, roots, start)
+        return None if ended is None else (ended, _allowed(nodes, roots, start, mine, place))
+
     with kind.running():
-        for place, h in _calls(wide):
-            rounded = place.rounded(lambda x: Fraction(float(x)))
-            mine = _floats(step, rounded, h)
-            if mine is None:
-                continue
-            start = dict(zip(step.names, rounded.z, strict=True))
-            start |= {"h": Fraction(float(h)), "t": Fraction(float(place.t))}
-            theirs = _replayed(kind, nodes, roots, start)
-            if theirs is None:
-                continue
+        _must_agree(step, [*places, *(x for place in places[:6] for x in _around(place))], theirs)
+
+
+def _must_agree(
+    step: UserMap, places: Sequence[Place],
+    theirs: Callable[[Place, Fraction, State], Bounded | None],
+) -> None:  # fmt: skip
+    """`theirs`: what is made of a call with floats, and how far it may be from what these end at;
+    None where it is not known."""
+    compared = 0
+    for place, h in _calls(places):
+        rounded = place.rounded(lambda x: Fraction(float(x)))
+        mine = _floats(step, rounded, h)
+        bounded = None if mine is None else theirs(rounded, h, mine)
+        if mine is not None and bounded is not None:
             compared += 1
-            allowed = _allowed(nodes, roots, start, mine, place)
-            if any(abs(x - y) > most for x, y, most in zip(mine, theirs, allowed, strict=True)):
+            if any(abs(Fraction(x) - y) > z for x, y, z in zip(mine, *bounded, strict=True)):
                 raise _parting(step, rounded, h)
     if not compared:
         raise UntraceableError("it fails at every place that is tried")
@@ -93,7 +99,7 @@ def _around(place: Place) -> list[Place]:
 
 def _floats(step: UserMap, place: Place, h: Fraction) -> State | None:
     try:
-        return step.at([float(x) for x in place.z], float(h), float(place.t))
+        return step.at_place(place, h)
     except Exception:  # it fails there; other places may do
         return None
 
@@ -115,7 +121,7 @@ def _allowed(
     place: Place,
 ) -> list[float]:  # fmt: skip
     try:
-        noise = rounding_noise(nodes, {name: float(x) for name, x in start.items()})
+        noise = _rounding_noise(nodes, {name: float(x) for name, x in start.items()})
     except (ArithmeticError, ValueError):  # beyond what floats can do
         return [math.inf] * len(mine)
     return [
@@ -128,3 +134,53 @@ def _parting(step: UserMap, place: Place, h: Fraction) -> UntraceableError:
     where = ", ".join(f"{name} = `{x}`" for name, x in zip(step.names, place.z, strict=True))
     size = f", h = `{h}`" if step.stepped else ""
     return UntraceableError(read_prose(f"with floats it does something else, at {where}{size}"))
+
+
+# -- what rounding alone may make ------------------------------------------------------------------
+
+
+def _rounding_noise(nodes: Sequence[Node], start: dict[str, float]) -> dict[int, float]:
+    """A bound of each node's error where each operation is rounded, by the nodes' numbers.
+
+    `start`: the coordinates, h and t by name. Raises ArithmeticError or ValueError where floats do
+    not reach.
+    """
+
+    def rounded(node: Node, x: list[Rounded]) -> Rounded:
+        value, inherited = _made(node, x, start)
+        if not math.isfinite(value):
+            raise OverflowError
+        own = 0.0 if node.operation == "symbol" else 4 * _EPSILON * abs(value)
+        return value, inherited + own
+
+    return {number: error for number, (_, error) in through(nodes, rounded).items()}
+
+
+def _made(node: Node, x: list[Rounded], start: dict[str, float]) -> Rounded:
+    """Its value, and the error that its inputs' errors make."""
+    match node.operation:
+        case "symbol":
+            return start[node.value], 0.0
+        case "number":
+            return float(node.value), 0.0
+        case "pi":
+            return math.pi, 0.0
+        case "power":
+            (a, e), n = x[0], float(node.value)
+            value = float(a**n)
+            # x·x·…, by which whole powers may be made, is rounded n times.
+            return value, abs(n * a ** (n - 1)) * e + abs(n * value) * _EPSILON
+        case "add" | "subtract" as name:
+            (a, e), (b, f) = x
+            return a + b if name == "add" else a - b, e + f
+        case "multiply":
+            (a, e), (b, f) = x
+            return a * b, abs(a) * f + abs(b) * e
+        case "divide":
+            (a, e), (b, f) = x
+            return a / b, (e + abs(a / b) * f) / abs(b)
+        case name:
+            a, e = x[0]
+            value = getattr(math, name)(a)
+            slope = SLOPES[name](gmpy2.mpfr(a), gmpy2.mpfr(value))
+            return value, abs(float(slope)) * e

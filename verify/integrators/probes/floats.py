@@ -27,7 +27,6 @@ class FloatProbe:
     """The map at numbers as its users call it."""
 
     how = "floats"
-    opaque = True  # nothing is seen of what it does inside
     comparisons: Sequence[Comparison] = ()
 
     def __init__(self, step: UserMap) -> None:

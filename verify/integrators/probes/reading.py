@@ -8,11 +8,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations
+from math import prod
 from typing import TYPE_CHECKING, TypeAlias
 
 import gmpy2
 
 from verify.integrators.places.place import Place
+from verify.integrators.tracing.linear_algebra import eliminated
 
 if TYPE_CHECKING:
     Real: TypeAlias = gmpy2.mpfr
@@ -104,32 +106,14 @@ def _volume(
     """det J − 1, and its noise by the entries of the inverse (Jacobi's formula)."""
     scale = [gmpy2.mpfr(float(x)) for x in units]
     rows = [[x * scale[j] / scale[i] for j, x in enumerate(row)] for i, row in enumerate(jacobian)]
-    inverse, determinant = _inverse(rows)
-    if inverse is None:
+    size, one = len(rows), gmpy2.mpfr(1)
+    wide = [[*row, *(one * (i == k) for i in range(size))] for k, row in enumerate(rows)]
+    determinant = eliminated(wide, abs) * prod((row[k] for k, row in enumerate(wide)), start=one)
+    if not determinant or not gmpy2.is_finite(determinant):  # a pivot is 0
         return -1.0, max(map(max, errors), default=0.0)
     blur = sum(
-        abs(float(inverse[j][i])) * errors[i][j] * float(scale[j] / scale[i])
-        for i in range(len(rows))
-        for j in range(len(rows))
+        abs(float(row[size + i] / row[j])) * errors[i][j] * float(scale[j] / scale[i])
+        for i in range(size)
+        for j, row in enumerate(wide)
     )
     return float(determinant - 1), abs(float(determinant)) * blur
-
-
-def _inverse(rows: "list[list[Real]]") -> "tuple[list[list[Real]] | None, Real]":
-    """The inverse, None where there is none, and the determinant: by elimination."""
-    size, determinant = len(rows), gmpy2.mpfr(1)
-    wide = [[*row, *(gmpy2.mpfr(i == k) for i in range(size))] for k, row in enumerate(rows)]
-    for k in range(size):
-        at = max(range(k, size), key=lambda i: abs(wide[i][k]))
-        pivot = wide[at][k]
-        if pivot == 0:
-            return None, gmpy2.mpfr(0)
-        if at != k:
-            wide[k], wide[at], determinant = wide[at], wide[k], -determinant
-        determinant *= pivot
-        wide[k] = [x / pivot for x in wide[k]]
-        for i in range(size):
-            share = wide[i][k]
-            if i != k and share != 0:
-                wide[i] = [x - share * y for x, y in zip(wide[i], wide[k], strict=True)]
-    return [row[size:] for row in wide], determinant

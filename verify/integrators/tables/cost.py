@@ -9,6 +9,7 @@ size at which r h^k is as large as what the method truncates, they are what is s
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from enum import StrEnum
 from fractions import Fraction
 
 import flint
@@ -21,9 +22,20 @@ from verify.schemes.printed.judged import Judged
 from verify.schemes.printed.printed_numbers import entries_at
 from verify.verdict import Verdict
 
-DIGITS_SEEN, DIGITS_BELOW = "digits that a double notices", "digits below that"
 _FAR = 1e9  # ulps: more is another number
 DOUBLE = Fraction(1, 2**53)  # of a double, half an ulp of 1
+
+
+class Severity(StrEnum):
+    """What kind of mistake it is, the gravest first."""
+
+    WRONG_ORDER = "wrong order"
+    NOT_SYMPLECTIC = "not symplectic as claimed"
+    WRONG_CLOCK = "wrong clock"
+    WRONG_WEIGHTS = "embedded or step weights"
+    DIGITS_SEEN = "digits that a double notices"
+    DIGITS_BELOW = "digits below that"
+    OF_WORDS = "documentation"
 
 
 @dataclass(frozen=True)
@@ -31,7 +43,7 @@ class Cost:
     """`double`: whether a double can tell; None where that is not known. `ulps`: by how many ulps
     the number that is farthest off differs from the nearest exact one. `order`: what it has, in
     place of `claimed`. `error_constant`: as printed, and of the nearest exact numbers. `below`: the
-    step size below which wrong digits are what is seen. `said`: a sentence."""
+    step size below which wrong digits are what is seen."""
 
     double: bool | None
     claimed: int | None
@@ -40,7 +52,22 @@ class Cost:
     error_constant: float | None
     nearest_error_constant: float | None
     below: float | None
-    said: Prose
+
+    @property
+    def said(self) -> Prose:
+        """A sentence."""
+        parts = []
+        if self.order is not None and self.claimed is not None:
+            parts.append(f"the order: {self.order} in place of {self.claimed}")
+        if self.double is False:
+            parts.append("nothing that a double can tell")
+        elif self.double and self.ulps is not None and self.ulps < _FAR:
+            parts.append(
+                f"a double can tell: the number farthest off is `{self.ulps:.2g}` ulps from its own"
+            )
+        if self.below is not None and self.double:
+            parts.append(f"below h = `{self.below:.1e}` it is wrong digits that make the error")
+        return read_prose("; ".join(parts))
 
 
 def cost_of(found: Judged, claimed: int | None, following: Asked | None = None) -> Cost | None:
@@ -61,8 +88,7 @@ def cost_of(found: Judged, claimed: int | None, following: Asked | None = None) 
     if following is not None and not refuted:
         printed, nearest = _constants(found, following)
         below = _below(found, claimed, printed)
-    said = _said(double, ulps, order, claimed, below)
-    return Cost(double, claimed, order, ulps, printed, nearest, below, said)
+    return Cost(double, claimed, order, ulps, printed, nearest, below)
 
 
 def exact_numbers(found: Judged) -> dict[str, Fraction]:
@@ -121,32 +147,11 @@ def _below(found: Judged, claimed: int | None, constant: float | None) -> float 
     return max(sizes, default=None)
 
 
-def _said(
-    double: bool | None,
-    ulps: float | None,
-    order: int | None,
-    claimed: int | None,
-    below: float | None,
-) -> Prose:
-    parts = []
-    if order is not None and claimed is not None:
-        parts.append(f"the order: {order} in place of {claimed}")
-    if double is False:
-        parts.append("nothing that a double can tell")
-    elif double and ulps is not None and ulps < _FAR:
-        parts.append(
-            f"a double can tell: the number farthest off is `{ulps:.2g}` ulps from its own"
-        )
-    if below is not None and double:
-        parts.append(f"below h = `{below:.1e}` it is wrong digits that make the error")
-    return read_prose("; ".join(parts))
-
-
-def severity_of(found: Judged, refuted_as: str) -> str | None:
+def severity_of(found: Judged, refuted_as: Severity) -> Severity | None:
     """What kind of mistake it is; `refuted_as`: where it is more than digits."""
     if found.verdict is Verdict.REFUTED:
         return refuted_as
     if found.digits is not False:
         return None
     cost = cost_of(found, None)
-    return DIGITS_BELOW if cost and cost.double is False else DIGITS_SEEN
+    return Severity.DIGITS_BELOW if cost and cost.double is False else Severity.DIGITS_SEEN

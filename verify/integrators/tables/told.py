@@ -1,40 +1,28 @@
-"""What is told of one claim of a table, and the claims that orders and digits make."""
+"""What is told of one claim of a table, the claims that orders and digits make, and hints."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Protocol, Self, TypeVar
 
+from verify.arithmetic.number import E
 from verify.errors import InputError
-from verify.integrators.tables.cost import (
-    DIGITS_BELOW,
-    DIGITS_SEEN,
-    Cost,
-    cost_of,
-    exact_numbers,
-    severity_of,
-)
+from verify.integrators.tables.cost import Cost, Severity, cost_of, exact_numbers, severity_of
 from verify.prose import Prose
 from verify.schemes.printed.asked import Asked
 from verify.schemes.printed.judged import Judged
+from verify.schemes.printed.misprint import Misprint
 from verify.schemes.printed.printed_numbers import PrintedNumbers, rounded_to
-from verify.schemes.printed.sentences import Details, of_conditions, of_digits, of_printed
+from verify.schemes.printed.sentences import (
+    Details,
+    mended_text,
+    of_conditions,
+    of_digits,
+    of_printed,
+)
 from verify.verdict import Verdict
 
-WRONG_ORDER = "wrong order"
-NOT_SYMPLECTIC = "not symplectic as claimed"
-WRONG_CLOCK = "wrong clock"
-WRONG_WEIGHTS = "embedded or step weights"
-OF_WORDS = "documentation"
-SEVERITIES = (
-    WRONG_ORDER,
-    NOT_SYMPLECTIC,
-    WRONG_CLOCK,
-    WRONG_WEIGHTS,
-    DIGITS_SEEN,
-    DIGITS_BELOW,
-    OF_WORDS,
-)  # the gravest first
 _DIGITS = "every digit is right, to one unit of the last"
 
 
@@ -48,7 +36,7 @@ class TableClaim:
     verdict: Verdict
     evidence: Prose
     details: Details = ()
-    severity: str | None = None
+    severity: Severity | None = None
     nearest: dict[str, str] | None = None
     cost: Cost | None = None
 
@@ -84,56 +72,65 @@ def best_reading(table: T, found: Callable[[T], Judged]) -> Judged:
     return told
 
 
+def both(first: Asked, second: Asked) -> Asked:
+    """The conditions of both, the first ones on the first of the second's entries."""
+    count = len(first.entries)
+
+    def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
+        return [
+            *first.residues(entries[:count], one, bound), *second.residues(entries, one, bound)
+        ]  # fmt: skip
+
+    equations = (*first.equations, *second.equations)
+    return replace(second, equations=equations, residues=residues, by_form=first.by_form)
+
+
 def order_claims(
     kind: str,
     statement: str,
     found: Judged,
     order: int,
     following: "Callable[[PrintedNumbers], Asked] | None" = None,
-    severity: str = WRONG_ORDER,
+    severity: Severity = Severity.WRONG_ORDER,
 ) -> Iterator[TableClaim]:
     """The claim of an order, and where it holds and numbers are rounded that of their digits."""
-    verdict, evidence, details = of_printed(found, order)
     after = None
     if following is not None and found.digits is False and found.read is not None:
-        try:
+        with suppress(InputError):  # beyond the orders that are looked at
             after = following(found.read)
-        except InputError:  # beyond the orders that are looked at
-            after = None
-    if verdict is Verdict.REFUTED:
-        yield TableClaim(kind, statement, verdict, evidence, details, severity,
-                         nearest_texts(found), cost_of(found, order, after))  # fmt: skip
-        return
-    yield TableClaim(kind, statement, verdict, evidence, details)
-    if found.read is not None and found.read.units:
+    cost = cost_of(found, order, after)
+    claim = _told(TableClaim(kind, statement, *of_printed(found, order)), found, severity, cost)
+    yield claim
+    if claim.verdict is not Verdict.REFUTED and found.read is not None and found.read.units:
         name = "digits" if kind == "order" else f"{kind} digits"
-        yield _digits_claim(name, _DIGITS, found, severity, cost_of(found, order, after))
+        yield _of_digits(name, _DIGITS, found, severity, cost)
 
 
 def condition_claims(
-    kind: str, statement: str, what: str, found: Judged, severity: str
+    kind: str, statement: str, what: str, found: Judged, severity: Severity
 ) -> Iterator[TableClaim]:
     """A claim of conditions that are of no order; and of their digits, where these are wrong."""
-    verdict, evidence, details = of_conditions(found, what)
-    claim = TableClaim(kind, statement, verdict, evidence, details)
     cost = cost_of(found, None) if exact_numbers(found) else None
-    if verdict is Verdict.REFUTED:
-        yield replace(claim, severity=severity, nearest=nearest_texts(found), cost=cost)
-        return
+    claim = _told(TableClaim(kind, statement, *of_conditions(found, what)), found, severity, cost)
     yield claim
-    if found.digits is False:
-        yield _digits_claim(f"{kind} digits", f"{statement}: {_DIGITS}", found, severity, cost)
+    if claim.verdict is not Verdict.REFUTED and found.digits is False:
+        yield _of_digits(f"{kind} digits", f"{statement}: {_DIGITS}", found, severity, cost)
 
 
-def _digits_claim(
-    kind: str, statement: str, found: Judged, severity: str, cost: Cost | None
+def _of_digits(
+    kind: str, statement: str, found: Judged, severity: Severity, cost: Cost | None
 ) -> TableClaim:
-    """`severity` and `cost` are told where digits are wrong."""
     claim = TableClaim(kind, statement, *of_digits(found))
+    return _told(claim, found, severity_of(found, severity), cost)
+
+
+def _told(
+    claim: TableClaim, found: Judged, severity: Severity | None, cost: Cost | None
+) -> TableClaim:
+    """The claim, where it is refuted with what kind of mistake that is, and what would be right."""
     if claim.verdict is not Verdict.REFUTED:
         return claim
-    own = severity_of(found, severity)
-    return replace(claim, severity=own, nearest=nearest_texts(found), cost=cost)
+    return replace(claim, severity=severity, nearest=nearest_texts(found), cost=cost)
 
 
 def nearest_texts(found: Judged) -> dict[str, str] | None:
@@ -146,3 +143,44 @@ def nearest_texts(found: Judged) -> dict[str, str] | None:
         name: rounded_to(x, units[name] / 10**6).replace("−", "-") if name in units else str(x)
         for name, x in numbers.items()
     }
+
+
+# -- hints ----------------------------------------------------------------------------------------
+
+
+class Hints:
+    """At what would be right in one table: told only where all that it claims holds with them.
+
+    `again`: its claims with these numbers in place of printed ones."""
+
+    def __init__(self, again: Callable[[Mapping[str, str]], Iterable[TableClaim]] | None) -> None:
+        self._again = again
+        self.one: Misprint | None = None
+
+    def kept(self, found: Judged) -> Judged:
+        """What was found, with the hint that explains all claims, and without one that does not."""
+        refuted = found.verdict is Verdict.REFUTED
+        if self._again is None or not (refuted or found.digits is False):
+            return found
+        if self.one is not None:
+            return replace(found, misprint=self.one)
+        m = found.misprint
+        if m is not None:
+            if self._holds({m.name: mended_text(found, m)}):
+                self.one = m
+                return found
+            found = replace(found, misprint=None)
+        if not refuted or found.nearest is None:
+            return found
+        if self._holds(nearest_texts(found) or {}):
+            return found
+        return replace(found, nearest=None, off=None)
+
+    def _holds(self, numbers: Mapping[str, str]) -> bool:
+        assert self._again is not None  # noqa: S101 - the caller has looked
+        made = self._again({name: text.replace("−", "-") for name, text in numbers.items()})
+        # Other numbers may have wrong digits.
+        return all(x.verdict is not Verdict.REFUTED or x.kind.endswith("digits") for x in made)
+
+
+NO_HINTS = Hints(None)

@@ -5,6 +5,7 @@ Each is written once, for numbers of any kind; what it asks of its argument is w
 
 from collections.abc import Callable
 from fractions import Fraction
+from operator import methodcaller
 from typing import Any
 
 _HALF, _THIRD = Fraction(1, 2), Fraction(1, 3)
@@ -60,7 +61,10 @@ def hypot(*x: Any) -> Any:
     return _root(sum(each * each for each in x))
 
 
+FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh", "atan")
 OF_ONE: dict[str, Callable[[Any], Any]] = {
+    **{name: methodcaller("applied", name) for name in FUNCTIONS},
+    "arctan": methodcaller("applied", "atan"),
     "arcsin": _arcsin,
     "arccos": lambda x: x.kind.pi() / 2 - _arcsin(x),
     "arcsinh": lambda x: _log(x + _root(x * x + 1)),

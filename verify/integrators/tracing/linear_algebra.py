@@ -1,5 +1,7 @@
 """numpy's `solve`, `inv` and `det` for arrays of our numbers, which LAPACK does not take."""
 
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from verify.integrators.tracing.number import Kind, constant
@@ -32,20 +34,26 @@ def det(kind: Kind, matrix: Any) -> Any:
 
 
 def _eliminated(kind: Kind, matrix: Any, right: Any) -> tuple[list[list[Any]], int]:
-    """A diagonal matrix, with what stands to the right of it, by Gauss; and the sign of det."""
-    rows: list[list[Any]] = [
-        [constant(kind, x) for x in (*a, *b)] for a, b in zip(matrix, right, strict=True)
-    ]
+    """`eliminated` of our numbers."""
+    rows = [[constant(kind, x) for x in (*a, *b)] for a, b in zip(matrix, right, strict=True)]
+    return rows, eliminated(rows, partial(_size, kind))
+
+
+def eliminated(rows: list[list[Any]], size: Callable[[Any], Any]) -> int:
+    """Makes the left of the rows a diagonal matrix, by Gauss; returns the sign of its determinant.
+
+    Pivots are the largest of their columns, by that size.
+    """
     sign = 1
     for k in range(len(rows)):
-        pivot = max(range(k, len(rows)), key=lambda i: _size(kind, rows[i][k]))
+        pivot = max(range(k, len(rows)), key=lambda i: size(rows[i][k]))
         if pivot != k:
             rows[k], rows[pivot], sign = rows[pivot], rows[k], -sign
         for i, row in enumerate(rows):
             if i != k:
                 factor = row[k] / rows[k][k]
                 rows[i] = [x - factor * y for x, y in zip(row, rows[k], strict=True)]
-    return rows, sign
+    return sign
 
 
 def _size(kind: Kind, x: Any) -> Any:

@@ -5,26 +5,33 @@ neither p nor q. A sum is {leaf: coefficient}, a leaf the number of a node that 
 multiple; `ONE` is that of a sum's part without a node.
 """
 
-from collections.abc import Sequence
+import operator
+from collections.abc import Callable, Sequence
 from fractions import Fraction
-from typing import Any
+from typing import Any, TypeVar
 
 import sympy
 
 from verify.integrators.tracing.trace import Node, expressions, through
 
 ONE = -1
+T = TypeVar("T")
 Monomial = tuple[tuple[int, int], ...]
 Scalar = dict[Monomial, Fraction]
 Linear = dict[Any, Scalar]
 _MOST_TERMS = 400  # of a coefficient, beyond which a node is taken as it is
 
 
-def added(x: Linear, y: Linear) -> Linear:
+def _merged(x: dict[Any, T], y: dict[Any, T], plus: Callable[[T, T], T], zero: T) -> dict[Any, T]:
+    """Sums of what the two have under each key, but for those that are nothing."""
     total = dict(x)
-    for leaf, coefficient in y.items():
-        total[leaf] = _sum(total.get(leaf, {}), coefficient)
-    return {leaf: c for leaf, c in total.items() if c}
+    for key, value in y.items():
+        total[key] = plus(total.get(key, zero), value)
+    return {key: value for key, value in total.items() if value}
+
+
+def added(x: Linear, y: Linear) -> Linear:
+    return _merged(x, y, _sum, {})
 
 
 def scaled(x: Linear, factor: Scalar) -> Linear:
@@ -33,10 +40,7 @@ def scaled(x: Linear, factor: Scalar) -> Linear:
 
 
 def _sum(x: Scalar, y: Scalar) -> Scalar:
-    total = dict(x)
-    for monomial, value in y.items():
-        total[monomial] = total.get(monomial, Fraction(0)) + value
-    return {monomial: value for monomial, value in total.items() if value}
+    return _merged(x, y, operator.add, Fraction(0))
 
 
 def product(x: Scalar, y: Scalar) -> Scalar:

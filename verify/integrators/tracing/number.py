@@ -25,12 +25,6 @@ _SIMPLE = 10_000  # the largest denominator that is read into a float: the chanc
 _WHOLE, _EXACT_DIGITS = 2**53, 15  # whole numbers, and digits, that a double has all of
 _LARGEST_SIMPLE = 100
 _DECIMALS = 12  # significant digits of a decimal that is read into a float
-# What numpy and math call a function, and what it is here.
-FUNCTIONS = {
-    **{name: name for name in ("sin", "cos", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh")},
-    "arctan": "atan",
-    "atan": "atan",
-}
 OPERATORS: dict[str, Callable[..., Any]] = {
     "add": operator.add,
     "subtract": operator.sub,
@@ -55,11 +49,6 @@ OPERATORS: dict[str, Callable[..., Any]] = {
     "isnan": lambda x: not x.isfinite(),
     **derived.OF_TWO,
 }
-
-
-def is_function(name: str) -> bool:
-    """Whether numpy or `math` calls a function of one number so, and it is one here."""
-    return name in FUNCTIONS or name in derived.OF_ONE
 
 
 class UntraceableError(TypeError):
@@ -179,7 +168,7 @@ class TracedNumber(ABC):
 
     @abstractmethod
     def applied(self, name: str) -> "TracedNumber":
-        """The function of `FUNCTIONS` at it."""
+        """The function of `derived.FUNCTIONS` at it."""
 
     @abstractmethod
     def raised(self, exponent: Fraction) -> "TracedNumber": ...
@@ -195,13 +184,6 @@ class TracedNumber(ABC):
             self.refuse("it takes the angle of what is no number")
         angle: TracedNumber = derived.arctan2(self, lifted)
         return angle
-
-    def function(self, name: str) -> "TracedNumber":
-        """What numpy or `math` calls so, of it."""
-        if name in FUNCTIONS:
-            return self.applied(FUNCTIONS[name])
-        made: TracedNumber = derived.OF_ONE[name](self)
-        return made
 
     def compared(self, other: Any) -> int:
         """−1, 0 or 1."""
@@ -310,8 +292,8 @@ class TracedNumber(ABC):
 
     def __getattr__(self, name: str) -> "Callable[..., TracedNumber]":
         """`sin`, `arctan`, …: what numpy calls of the objects in an array."""
-        if is_function(name):
-            return lambda: self.function(name)
+        if name in derived.OF_ONE:
+            return lambda: derived.OF_ONE[name](self)
         if name in derived.OF_TWO:
             return lambda other: OPERATORS[name](self, constant(self.kind, other))
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
@@ -326,8 +308,8 @@ class TracedNumber(ABC):
         lifted = [constant(self.kind, x) for x in inputs]
         if None in [x if x is None else 0 for x in lifted]:
             self.refuse(f"it gives numpy's {ufunc.__name__} what is no number")
-        if is_function(ufunc.__name__):
-            return self.function(ufunc.__name__)
+        if ufunc.__name__ in derived.OF_ONE:
+            return derived.OF_ONE[ufunc.__name__](*lifted)
         if ufunc.__name__ in OPERATORS:
             return OPERATORS[ufunc.__name__](*lifted)
         self.refuse(f"it calls numpy's {ufunc.__name__}")

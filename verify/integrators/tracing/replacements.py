@@ -7,13 +7,7 @@ from functools import partial
 from typing import Any
 
 from verify.integrators.tracing import derived, linear_algebra
-from verify.integrators.tracing.number import (
-    OPERATORS,
-    Kind,
-    TracedNumber,
-    constant,
-    is_function,
-)
+from verify.integrators.tracing.number import OPERATORS, Kind, TracedNumber, constant
 
 _PLAIN = int | float | Fraction
 _FLOATS = ("float", "float64", "double")
@@ -38,10 +32,8 @@ def replacement(kind: Kind, called: str, x: Any) -> Any:
     if name in ("pi", "e", "tau"):
         pi = kind.pi()
         return {"pi": pi, "tau": 2 * pi, "e": kind.rational(Fraction(1)).applied("exp")}[name]
-    if is_function(name):
-        return _applied(kind, lambda own: own.function(name), x, plain=name not in _COUNTS)
-    if name in derived.OF_TWO or (home == "math" and name == "pow"):
-        return _applied(kind, OPERATORS.get(name, operator.pow), x, plain=name not in _COUNTS)
+    if name in _OF_NUMBERS or (home == "math" and name == "pow"):
+        return _applied(kind, _OF_NUMBERS.get(name, operator.pow), x, plain=name not in _COUNTS)
     if name in (*_FILLED, *_TYPED):
         return _of_objects(x, untold=name in _FILLED)
     if home == "math":
@@ -49,6 +41,9 @@ def replacement(kind: Kind, called: str, x: Any) -> Any:
     if name in _OF_NUMPY:
         return _guarded(_OF_NUMPY[name], x)
     return x
+
+
+_OF_NUMBERS: dict[str, Callable[..., Any]] = {**derived.OF_ONE, **derived.OF_TWO}
 
 
 class _FloatType(type):
@@ -127,11 +122,9 @@ def _isclose(x: Any, y: Any, *, rel_tol: float = 1e-9, abs_tol: float = 0.0) -> 
 
 
 _OTHERS: dict[str, Callable[..., Any]] = {
+    **{name: OPERATORS[name] for name in ("fabs", "isnan", "isfinite")},
+    "isinf": OPERATORS["isnan"],
     "isclose": _isclose,
-    "fabs": operator.abs,
-    "isnan": lambda x: not x.isfinite(),
-    "isinf": lambda x: not x.isfinite(),
-    "isfinite": lambda x: x.isfinite(),
     "fsum": sum,
     "dist": lambda p, q: derived.hypot(*(x - y for x, y in zip(p, q, strict=True))),
 }

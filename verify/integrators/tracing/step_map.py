@@ -11,7 +11,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.vector_field import VectorField
 from verify.integrators.tracing.series import TracedSeries
 from verify.integrators.tracing.shears import shears_of
-from verify.integrators.tracing.trace import Node, expressions, in_order, sizes
+from verify.integrators.tracing.trace import Node, written
 from verify.schemes.step_map import Expanded, StepMap, Substep
 
 _MOST_WRITTEN = 3000  # operations of p' and q' as trees, of which a closed form is tried
@@ -77,14 +77,12 @@ def _series(
 
 
 def _closed(hamiltonian: Hamiltonian, p_next: Node, q_next: Node) -> Substep | None:
-    nodes = in_order(p_next, q_next)
-    size = sizes(nodes)
-    if size[p_next.number] + size[q_next.number] > _MOST_WRITTEN:
+    pair = written((p_next, q_next), _MOST_WRITTEN)
+    if pair is None:
         return None
-    made = expressions(nodes, {})
     try:
-        pair = [checked(made[x.number], "step", "its closed form") for x in (p_next, q_next)]
-        field, (p, q) = hamiltonian.field(*pair, most_terms=_MOST_TERMS)
+        smooth = [checked(x, "step", "its closed form") for x in pair]
+        field, (p, q) = hamiltonian.field(*smooth, most_terms=_MOST_TERMS)
     except InputError:
         return None
     step = Substep(field, p, q)

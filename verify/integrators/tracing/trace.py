@@ -3,7 +3,7 @@
 `Tape` makes the symbols p, q, h and holds the nodes; numbers are folded as they come, exactly.
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, TypeVar
@@ -214,3 +214,15 @@ def _expression(node: Node, inputs: list[Any], put: Mapping[str, sympy.Expr]) ->
 def sizes(nodes: Iterable[Node]) -> dict[int, int]:
     """How many operations each node is, where nothing is written once; see `through`."""
     return through(nodes, lambda _, inputs: 1 + sum(inputs))
+
+
+def written(
+    roots: Sequence[Node], most: int, put: Mapping[str, sympy.Expr] | None = None
+) -> list[sympy.Expr] | None:
+    """The roots as expressions; None where they are more operations than that, all together."""
+    nodes = in_order(*roots)
+    size = sizes(nodes)
+    if sum(size[root.number] for root in roots) > most:
+        return None
+    made = expressions(nodes, put or {})
+    return [made[root.number] for root in roots]

@@ -54,7 +54,7 @@ def settle_layout(callee: Callee, places: Sequence[Place], field: Field | None) 
     else:
         best = trials[0]
         step.layout = best.layout
-    return [*callee.notes, *_understood(callee, step, best)]
+    return _understood(callee, step, best)
 
 
 def _understood(callee: Callee, step: UserMap, best: _Trial) -> list[str]:
@@ -94,10 +94,9 @@ def no_state(step: UserMap, error: Exception, place: Place) -> InputError:
     name = getattr(step.function, "__name__", None) or getattr(
         getattr(step.function, "program", None), "called", "the program"
     )
-    z, h = [float(x) for x in place.z], float(place.step / 8)
     if isinstance(error, StepError):
         return InputError(kind, name, str(error.said))
-    said = f"raises {last_line(error)}{step.place(z, h)}"
+    said = f"raises {last_line(error)}{step.place(place.z, place.step / 8)}"
     n = step.degrees
     if n > 1:
         said += f"; it was given p and q as arrays of {n} numbers, and in other shapes"

@@ -3,6 +3,7 @@
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 
 from verify.integrators.places.place import Place
 from verify.integrators.user_code.second_process import outcome, outcomes_elsewhere
@@ -62,10 +63,8 @@ def _elsewhere(step: UserMap, first: Mapping[Place, State]) -> list[Fault]:
         answers = outcomes_elsewhere(lambda place: at(step, place), list(first), seconds)
     for (place, state), answer in zip(first.items(), answers, strict=True):
         if answer is not None and answer != outcome(lambda known: known, state):
-            z = ", ".join(f"{n} = {float(x):g}" for n, x in zip(step.names, place.z, strict=True))
-            said = (
-                f"in a second process, in another order of calls, it returns another result at {z}"
-            )
+            called = "in a second process, in another order of calls"
+            said = f"{called}, it returns another result at {step.state(place.z)}"
             return [Fault("not a function", said, Verdict.UNDECIDED, ends=True)]
     return []
 
@@ -79,7 +78,7 @@ def _answers_of(step: UserMap, places: Sequence[Place]) -> list[str | None]:
 
 def at(step: UserMap, place: Place, part: int = _PARTS[0]) -> State:
     """The state after a small step, as floats."""
-    return step.at([float(x) for x in place.z], float(place.step / part), float(place.t))
+    return step.at_place(place, place.step / part)
 
 
 def changed_since(step: UserMap, first: Mapping[Place, State]) -> list[Fault]:
@@ -90,15 +89,16 @@ def changed_since(step: UserMap, first: Mapping[Place, State]) -> list[Fault]:
         except Exception:  # noqa: S112 - a cache may hold numbers of ours
             continue
         if after != before:
-            return [not_a_function(step, [float(x) for x in place.z], before, after)]
+            return [not_a_function(step, place.z, before, after)]
     return []
 
 
-def not_a_function(step: UserMap, z: Sequence[float], before: State, after: State) -> Fault:
+def not_a_function(
+    step: UserMap, z: Sequence[float | Fraction], before: State, after: State
+) -> Fault:
     """It returned one and then the other: no claim is refuted, since none can be held to it."""
     pair = prose(_shown(before), " and then ", _shown(after))
-    shown = ", ".join(f"{name} = {x:g}" for name, x in zip(step.names, z, strict=True))
-    text = prose("it is not deterministic: it returns ", pair, f" at {shown}")
+    text = prose("it is not deterministic: it returns ", pair, f" at {step.state(z)}")
     return Fault("not a function", text, Verdict.UNDECIDED, ends=True)
 
 
@@ -123,7 +123,7 @@ def _as_a_map(step: UserMap, first: Mapping[Place, State]) -> list[Fault]:
                 )
             ]
         if after != before:
-            return [not_a_function(step, [float(x) for x in place.z], before, after)]
+            return [not_a_function(step, place.z, before, after)]
     if not step.stepped or not first:
         return []
     if all(tuple(map(float, place.z)) == after for place, after in first.items()):

@@ -5,7 +5,7 @@
 
 import inspect
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import permutations
 from pathlib import Path
@@ -20,9 +20,7 @@ from verify.integrators.user_code.user_modules import from_file, from_folder
 _MOST_SECONDS = 86_400
 _LISTED = 8  # functions of a module, in an error
 _POSITIONAL = inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD
-_STEPS = {4: "pqth", 3: "pqh", 2: "zh"}  # roles of so many arguments
-_WITH_T = {3: "zth"}
-_MAPS = {2: "pq", 1: "z"}
+_ROLES = {True: ("pqth", "pqh", "zth", "zh"), False: ("pq", "z")}  # of a step, and of a map
 _WANTED = {
     True: "wanted: step(p, q, h) or step(p, q, t, h), which returns p', q', or step(z, h), z'",
     False: "wanted: map(p, q), which returns p', q', or map(z), which returns z'",
@@ -98,7 +96,6 @@ class Callee:
     layouts: tuple[Layout, ...]
     named: bool = True
     arguments: tuple[str, ...] = ()
-    notes: list[str] = field(default_factory=list)
 
 
 def callee_from(
@@ -189,23 +186,20 @@ class _Signature:
         if self.variadic and not self.needed:
             return [tuple("pqh" if self.stepped else "pq")], True
         roles = [role_of(x.name) for x in self.places]
-        counts = _STEPS if self.stepped else _MAPS
-        for count in counts:
-            wanted = [counts[count], *([_WITH_T[3]] if count == 3 and self.stepped else [])]
-            if sorted(roles[:count]) in map(sorted, wanted) and len(self.needed) <= count:
-                return [tuple(roles[:count])], True
+        for wanted in _ROLES[self.stepped]:
+            told = roles[: len(wanted)]
+            if sorted(told) == sorted(wanted) and len(self.needed) <= len(wanted):
+                return [tuple(told)], True
+        counts = {len(x): x for x in reversed(_ROLES[self.stepped])}  # where both fit, with p and q
         count = len(self.needed)
         if count not in counts:
-            count = next((n for n in counts if count <= n <= len(self.places)), 0)
-        told = set(roles[:count]) - {""}
-        both, all_told = {"p", "q"} <= told, {"p", "q", "h"} <= told
+            count = max((n for n in counts if count <= n <= len(self.places)), default=0)
+        named = set(roles[:count]) - {""}
+        both, all_told = {"p", "q"} <= named, {"p", "q", "h"} <= named
         if not count or (self.stepped and ((count == 2 and both) or (count == 4 and all_told))):
             raise self.wrong()
-        return list(_filled(roles[:count], counts[count])), self._plain(count)
-
-    def _plain(self, count: int) -> bool:
-        """Whether the order is the only one, as of a map, to which p and q are alike."""
-        return not self.stepped or count == 1
+        # To a map p and q are alike.
+        return list(_filled(roles[:count], counts[count])), not self.stepped or count == 1
 
 
 def _filled(roles: Sequence[str], wanted: str) -> Iterator[tuple[str, ...]]:
@@ -251,8 +245,7 @@ def _order(
             return tuple(words), ()
         return ("z",), tuple(map(words.index, names))
     roles = [role_of(word) for word in words]
-    counts = [*(_STEPS if stepped else _MAPS).values(), *(_WITH_T.values() if stepped else ())]
-    if sorted(roles) not in map(sorted, counts):
+    if sorted(roles) not in map(sorted, _ROLES[stepped]):
         listed = ", ".join(names)
         problem = "is no order of p, q and h, such as q,p,h, nor of p, q, t and h"
         raise InputError(

@@ -3,6 +3,9 @@
 from dataclasses import dataclass
 from fractions import Fraction
 
+import gmpy2
+
+from verify.arithmetic.exact import fraction
 from verify.errors import unknown
 
 
@@ -29,29 +32,22 @@ class NumberType:
         """Between 1 and the next number."""
         return 2.0 ** (1 - self.bits)
 
-    @property
-    def width(self) -> float:
-        """Of a central difference of the sixth order whose error and rounding are alike."""
-        return 2.0 ** -(self.bits // 7)
-
     def rounded(self, x: Fraction) -> Fraction:
         """The nearest number of the type, but for its range."""
         if self.parts > 1:
-            high = Fraction(float(x))
-            return high + Fraction(float(x - high))
-        if x == 0 or self.bits == DOUBLE_BITS:
+            return sum(map(Fraction, two_doubles(x)), Fraction(0))
+        if self is DOUBLE:
             return Fraction(float(x))
-        exponent = abs(x.numerator).bit_length() - x.denominator.bit_length()
-        unit = Fraction(2) ** (exponent - self.bits)
-        while abs(x) >= unit * 2**self.bits:
-            unit *= 2
-        while abs(x) < unit * 2 ** (self.bits - 1):
-            unit /= 2
-        return round(x / unit) * unit
+        return fraction(gmpy2.mpfr(gmpy2.mpq(x), self.bits))
 
 
-DOUBLE_BITS = 53
-DOUBLE = NumberType("double", DOUBLE_BITS, "double", 17)
+def two_doubles(x: Fraction) -> tuple[float, float]:
+    """The nearest double, and that of the rest."""
+    high = float(x)
+    return high, float(x - Fraction(high))
+
+
+DOUBLE = NumberType("double", 53, "double", 17)
 LONG_DOUBLE = NumberType("long-double", 64, "long double", 21)
 FLOAT128 = NumberType("float128", 113, "__float128", 36)
 DOUBLE_DOUBLE = NumberType("double-double", 106, "double", 33, parts=2)

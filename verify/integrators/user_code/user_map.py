@@ -10,12 +10,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
+from verify.integrators.places.place import Place
 from verify.integrators.user_code.layout import Layout, OfNumber
 from verify.integrators.user_code.number_type import DOUBLE, NumberType
 from verify.integrators.user_code.step import TIME_LIMIT, StepError, Theirs, limited, real
 
 State = tuple[float, ...]
-Exactly = tuple[Fraction, ...]
 
 
 @dataclass
@@ -131,7 +131,14 @@ class UserMap:
                 raise answer
         return [[Fraction(x) for half in answer for x in half] for answer in answers]
 
-    def place(self, z: Sequence[float], h: float) -> str:
+    def at_place(self, place: Place, h: Fraction) -> State:
+        """z' as floats of a step from there; as `at`."""
+        return self.at([float(x) for x in place.z], float(h), float(place.t))
+
+    def state(self, z: Sequence[float | Fraction]) -> str:
+        """A state as text, for what is said of it."""
+        return ", ".join(f"{name} = {float(x):g}" for name, x in zip(self.names, z, strict=True))
+
+    def place(self, z: Sequence[float | Fraction], h: float | Fraction) -> str:
         """A state and a step size as text, for what is said of a call."""
-        shown = ", ".join(f"{name} = {float(x):g}" for name, x in zip(self.names, z, strict=True))
-        return f" at {shown}" + (f", h = {float(h):g}" if self.stepped else "")
+        return f" at {self.state(z)}" + (f", h = {float(h):g}" if self.stepped else "")

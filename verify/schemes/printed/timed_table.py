@@ -14,6 +14,7 @@ from typing import Any
 import sympy
 
 from verify.arithmetic.number import E
+from verify.integrators.tables.told import both
 from verify.schemes.printed.asked import Asked, Named
 from verify.schemes.printed.judged import Judged, judge
 from verify.schemes.printed.printed_numbers import PrintedNumbers
@@ -97,7 +98,7 @@ def judge_in_time(timed: TimedTable, order: int) -> Judged:
     right = judge_clocks(timed).verdict is not Verdict.REFUTED
     if right and timed.kinetic is not Kinetic.MASS:
         plain = timed.table.asked(order)
-        found = judge(timed.printed, _with_clocks(timed, plain), order)
+        found = judge(timed.printed, both(plain, _right_asked(timed)), order)
         if found.verdict is not Verdict.REFUTED:
             return found
     most = min(order, _MOST_ORDER)
@@ -134,17 +135,6 @@ def _sum_before(timed: TimedTable, sizes: Sequence[E], k: int, one: E) -> E:
         if kind != timed.kinds[k]:
             total = total + size
     return total
-
-
-def _with_clocks(timed: TimedTable, plain: Asked) -> Asked:
-    right = _right_asked(timed)
-
-    def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
-        sizes = entries[: len(timed.kinds)]
-        return [*plain.residues(sizes, one, bound), *right.residues(entries, one, bound)]
-
-    equations = (*plain.equations, *right.equations)
-    return Asked(timed.entries, equations, residues, plain.by_form, labels=timed.labels)
 
 
 # -- words with time ------------------------------------------------------------------------------

@@ -10,10 +10,9 @@ from tests.paths import ROOT
 from verify.errors import InputError
 from verify.integrators.others import libraries as others
 from verify.integrators.others.findings.changes import changed, entry_of
-from verify.integrators.others.findings.confirmed import NotConfirmedError, _shown, confirm
+from verify.integrators.others.findings.confirmed import NotConfirmedError, _shown, confirm, run
 from verify.integrators.others.findings.described import Changed, Description, descriptions, read
 from verify.integrators.others.findings.markdown import note
-from verify.integrators.others.findings.programs import run
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
@@ -153,9 +152,9 @@ def test_changes_are_made_in_a_copy() -> None:
 
 
 def test_a_program_that_does_not_end_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
-    from verify.integrators.others.findings import programs
+    from verify.integrators.others.findings import confirmed
 
-    monkeypatch.setattr(programs, "_SECONDS", 0.5)
+    monkeypatch.setattr(confirmed, "_SECONDS", 0.5)
     assert "does not end" in run("while True:\n    pass\n").failed
 
 

@@ -10,7 +10,8 @@ import pytest
 
 from tests.paths import ROOT
 from verify.integrators.others import libraries as others
-from verify.integrators.others import parts, printed_libraries
+from verify.integrators.others import printed_libraries
+from verify.integrators.others import report as others_report
 from verify.integrators.others.claims import claims_of
 from verify.integrators.others.libraries.nodepy import _order_method, claimed
 from verify.integrators.others.methods.integrator import Compared, FloatStep, ReleasedIntegrator
@@ -103,7 +104,7 @@ def test_a_library_that_fails_is_named_with_its_error_and_does_not_end_the_repor
     one = [x for x in tables.integrators() if x.name == "Ruth 3"]
     monkeypatch.setattr(tables, "integrators", lambda: one)
     monkeypatch.setattr(others.get("scipy"), "integrators", made)
-    monkeypatch.setattr(parts, "import_module", lambda name: None)
+    monkeypatch.setattr(others_report, "import_module", lambda name: None)
     report = make_integrators_report("verify report integrators")
     left_out = dict(report.left_out)
     assert said.items() <= left_out.items()

@@ -12,7 +12,7 @@ from tests.helpers.tables.by_series import gap
 from verify.integrators.others.findings.described import descriptions
 from verify.integrators.others.printed_libraries import claims_of, files
 from verify.integrators.tables.check import read_tables
-from verify.integrators.tables.told import SEVERITIES
+from verify.integrators.tables.cost import Severity
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
@@ -50,7 +50,7 @@ def test_what_is_refuted_is_told_of_in_a_finding_or_is_digits(path: Path) -> Non
     told = descriptions().values()
     for claim in claims:
         if claim.verdict is Verdict.REFUTED:
-            assert claim.severity in SEVERITIES
+            assert claim.severity in tuple(Severity)
             assert "digits" in claim.severity or any(x.tells_of(claim.id) for x in told), claim.id
         else:
             assert not claim.severity

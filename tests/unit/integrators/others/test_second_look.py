@@ -8,8 +8,7 @@ import pytest
 
 from verify.integrators.others.claims import claims_of
 from verify.integrators.others.methods.integrator import FloatStep, ReleasedIntegrator
-from verify.integrators.others.methods.problems import AGAIN, EACH, Problem
-from verify.integrators.others.methods.scripted import Driven, scripted
+from verify.integrators.others.methods.scripted import AGAIN, EACH, Driven, Problem, scripted
 from verify.integrators.others.methods.tabled import tabled, text
 from verify.integrators.others.printed_libraries import files
 from verify.integrators.others.second.look import at_step, at_table

@@ -10,7 +10,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from verify.integrators.tracing.domain import domain_of
+from verify.integrators.traced import domain_of
 from verify.integrators.tracing.dual import Duals
 from verify.integrators.tracing.functions import copied
 from verify.integrators.tracing.number import Kind, UntraceableError

@@ -1,18 +1,34 @@
 """A described mistake, with all that is measured of it; or why it is not told."""
 
+import re
+import subprocess
+import sys
+import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from verify.errors import InputError
 from verify.integrators.others.findings.changes import changed, entry_of
 from verify.integrators.others.findings.described import Changed, Description
-from verify.integrators.others.findings.programs import Ran, run
 from verify.integrators.others.second.look import at_table, claimed_of
 from verify.integrators.others.second.slopes import Slopes
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
+_SECONDS = 300.0
+_ORDER = re.compile(r"^order on (.+): (-?\d+\.\d+)$", re.MULTILINE)
 _WITHIN = 0.3  # of the order that a program prints
+
+
+@dataclass(frozen=True)
+class Ran:
+    """What a program printed, and the orders that it names, by problem; `failed`: why it did not
+    end well."""
+
+    printed: str
+    orders: dict[str, float]
+    failed: str = ""
 
 
 @dataclass(frozen=True)
@@ -93,3 +109,27 @@ def _compare(made: Ran, mended: Ran | None) -> None:
         before = made.orders.get(problem)
         if before is None or order < before + 1 - _WITHIN:
             raise NotConfirmedError(f"the mend does not raise the order on {problem}")
+
+
+# -- a program in Python, where its library is installed ------------------------------------------
+
+
+def run(program: str) -> Ran:
+    """Runs the lines; nothing that it does is let through but what it prints."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "program.py"
+        path.write_text(program, encoding="utf-8")
+        try:
+            done = subprocess.run(  # noqa: S603 - the program is ours, beside the descriptions
+                [sys.executable, str(path)],
+                capture_output=True,
+                text=True,
+                timeout=_SECONDS,
+                cwd=folder,
+                check=False,
+            )
+        except subprocess.TimeoutExpired:
+            return Ran("", {}, f"does not end within {_SECONDS:.0f} s")
+    found = {name: float(order) for name, order in _ORDER.findall(done.stdout)}
+    last = done.stderr.strip().splitlines()[-1:] if done.returncode else []
+    return Ran(done.stdout.strip(), found, " ".join(last))

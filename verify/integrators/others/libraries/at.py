@@ -7,9 +7,8 @@ of exact drifts. V is that of a quadrupole and a sextupole.
 from collections.abc import Iterator
 from fractions import Fraction
 
-from verify.integrators.others.methods.integrator import FloatStep, ReleasedIntegrator
-from verify.integrators.others.methods.problems import USUAL
-from verify.integrators.others.methods.scripted import Script
+from verify.integrators.others.methods.integrator import ReleasedIntegrator
+from verify.integrators.others.methods.scripted import USUAL, by_script
 
 TITLE = "pyAT"
 LIBRARY = "at"
@@ -37,6 +36,7 @@ _SPACE = {"put": "z[[0, 2]], z[[1, 3]] = q, p", "got": "z[[1, 3]], z[[0, 2]]"}
 _FIELD = "q**2/3 + q**3/6"
 _FIELDS = "q1**2/3 - q2**2/3 + q1**3/6 - q1*q2**2/2"
 _BENT = ", BendingAngle=h / 2, EntranceAngle=0.0, ExitAngle=0.0"
+_DRIVEN = "one element of length h with NumIntSteps = 1, a quadrupole and a sextupole"
 _SAID = "its name, and the documentation of its pass methods: a symplectic integrator of order 4"
 _SYSTEMS = {
     "StrMPoleSymplectic4Pass": ("p**2/2", "p1**2/2 + p2**2/2", ""),
@@ -52,16 +52,6 @@ def integrators() -> Iterator[ReleasedIntegrator]:
             ("", f"{plane} + {_FIELD}", _PLANE),
             (", two degrees", f"{space} + {_FIELDS}", _SPACE),
         ):
-            text = _SCRIPT.replace("{method}", method).replace("{more}", more)
-            for name, lines in ends.items():
-                text = text.replace("{" + name + "}", lines)
+            text = _SCRIPT.format(method=method, more=more, **ends)
             points = _SLOW if ends is _PLANE else ()
-            yield ReleasedIntegrator(
-                f"{method}{tag}",
-                "one element of length h with NumIntSteps = 1, a quadrupole and a sextupole",
-                _SAID,
-                FloatStep(formula, Script(text).step, points, USUAL),
-                4,
-                True,
-                text,
-            )
+            yield by_script(f"{method}{tag}", _DRIVEN, _SAID, formula, text, 4, True, points, USUAL)

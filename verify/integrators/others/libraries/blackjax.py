@@ -4,8 +4,7 @@ it says nothing."""
 from collections.abc import Iterator
 
 from verify.integrators.others.methods.integrator import ReleasedIntegrator
-from verify.integrators.others.methods.problems import HENON_HEILES, TWO_WAVES
-from verify.integrators.others.methods.scripted import Driven, scripted
+from verify.integrators.others.methods.scripted import HENON_HEILES, TWO_WAVES, Driven, scripted
 
 TITLE = "blackjax"
 LIBRARY = "blackjax"

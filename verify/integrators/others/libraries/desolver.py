@@ -5,8 +5,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from verify.integrators.others.methods.integrator import ReleasedIntegrator
-from verify.integrators.others.methods.problems import HENON_HEILES, TWO_WAVES
-from verify.integrators.others.methods.scripted import Driven, scripted
+from verify.integrators.others.methods.scripted import HENON_HEILES, TWO_WAVES, Driven, scripted
 from verify.integrators.others.methods.tabled import tabled
 
 TITLE = "desolver"

@@ -5,8 +5,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from verify.integrators.others.methods.integrator import ReleasedIntegrator
-from verify.integrators.others.methods.problems import EACH
-from verify.integrators.others.methods.scripted import Driven, scripted
+from verify.integrators.others.methods.scripted import EACH, Driven, scripted
 from verify.integrators.others.methods.tabled import full, tabled
 
 TITLE = "diffrax"

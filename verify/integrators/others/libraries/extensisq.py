@@ -4,8 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from verify.integrators.others.methods.integrator import ReleasedIntegrator
-from verify.integrators.others.methods.problems import DRIVEN, HENON_HEILES
-from verify.integrators.others.methods.scripted import Driven, scripted
+from verify.integrators.others.methods.scripted import DRIVEN, HENON_HEILES, Driven, scripted
 from verify.integrators.others.methods.tabled import full, tabled
 
 TITLE = "extensisq"

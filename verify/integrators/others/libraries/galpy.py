@@ -9,17 +9,9 @@ freedom, as long as it does not pass the centre: H = v²/2 + A(t) log(x² + 1/4)
 
 from collections.abc import Iterator
 from fractions import Fraction
-from functools import partial
 
-from verify.integrators.others.methods.integrator import (
-    FINE,
-    FloatStep,
-    Map,
-    Point,
-    ReleasedIntegrator,
-)
-from verify.integrators.others.methods.problems import LONG, USUAL
-from verify.integrators.others.methods.scripted import Script
+from verify.integrators.others.methods.integrator import FINE, Point, ReleasedIntegrator
+from verify.integrators.others.methods.scripted import LONG, USUAL, by_script
 
 TITLE = "galpy"
 LIBRARY = "galpy"
@@ -63,83 +55,7 @@ def step(p, q, h):
         o.integrate(np.array([0.0, h]), pot, method="{method}", dt=h, progressbar=False)
     return np.array([o.vx(h), o.vy(h)]), np.array([o.x(h), o.y(h)])
 """
-_SOURCE = "the documentation of galpy.orbit.Orbit.integrate"
-
-
-def integrators() -> Iterator[ReleasedIntegrator]:
-    for name, order in _ORDERS.items():
-        where = (_POINTS, FINE) if order > 4 else ()
-        yield ReleasedIntegrator(
-            name,
-            "Orbit([q, p]).integrate([0, h], KGPotential, dt=h), one step",
-            _SOURCE,
-            FloatStep(_HAMILTONIAN, partial(_step, name), *where),
-            order,
-            None if name.startswith("rk") else True,
-            _script(name),
-        )
-
-    for name, order in _ORDERS.items():
-        text = _IN_THE_PLANE.replace("{method}", name)
-        yield ReleasedIntegrator(
-            f"{name}, two degrees",
-            "Orbit in the plane, its R, v_R, v_T, φ from x and y, integrate([0, h], …, dt=h)",
-            _SOURCE,
-            FloatStep(_HALO, Script(text).step, (), LONG if order > 4 else USUAL),
-            order,
-            None if name.startswith("rk") else True,
-            text,
-        )
-    for name, order in _ORDERS.items():
-        yield ReleasedIntegrator(
-            f"{name}, driven",
-            "Orbit([q, p, 0, 0]).integrate([t, t + h], …, dt=h), one step in the plane, along its "
-            "axis, with the amplitude exp(−(t − 1/2)²/2)",
-            f"{_SOURCE}, and of GaussianAmplitudeWrapperPotential",
-            FloatStep(_DRIVEN, partial(_in_time, name), _AHEAD, _STEPS[order]),
-            order,
-            None,
-            _script_in_time(name),
-        )
-
-
-def _step(name: str) -> Map:
-    import numpy as np
-    from galpy.orbit import Orbit
-    from galpy.potential import KGPotential
-
-    potential = KGPotential(amp=1.0, K=1.0, F=0.25, D=1.0)
-
-    def step(p: float, q: float, h: float) -> tuple[float, float]:
-        orbit = Orbit([q, p])
-        orbit.integrate(np.array([0.0, h]), potential, method=name, dt=h, progressbar=False)
-        return float(orbit.vx(h)), float(orbit.x(h))
-
-    return step
-
-
-def _in_time(name: str) -> Map:
-    import warnings
-
-    import numpy as np
-    from galpy.orbit import Orbit
-    from galpy.potential import GaussianAmplitudeWrapperPotential, LogarithmicHaloPotential
-
-    halo = LogarithmicHaloPotential(amp=2.0, q=1.0, core=0.5).toPlanar()
-    potential = GaussianAmplitudeWrapperPotential(pot=halo, to=0.5, sigma=1.0)
-
-    def step(p: float, q: float, t: float, h: float) -> tuple[float, float]:
-        orbit = Orbit([q, p, 0.0, 0.0])
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # it says of each orbit that C is used
-            orbit.integrate(np.array([t, t + h]), potential, method=name, dt=h, progressbar=False)
-        return float(orbit.vx(t + h)), float(orbit.x(t + h))
-
-    return step
-
-
-def _script(name: str) -> str:
-    return f"""\
+_ON_A_LINE = """\
 import numpy as np
 from galpy.orbit import Orbit
 from galpy.potential import KGPotential
@@ -149,13 +65,10 @@ pot = KGPotential(amp=1.0, K=1.0, F=0.25, D=1.0)
 
 def step(p, q, h):
     o = Orbit([q, p])
-    o.integrate(np.array([0.0, h]), pot, method={name!r}, dt=h, progressbar=False)
+    o.integrate(np.array([0.0, h]), pot, method='{method}', dt=h, progressbar=False)
     return float(o.vx(h)), float(o.x(h))
 """
-
-
-def _script_in_time(name: str) -> str:
-    return f"""\
+_IN_TIME = """\
 import numpy as np
 from galpy.orbit import Orbit
 from galpy.potential import GaussianAmplitudeWrapperPotential, LogarithmicHaloPotential
@@ -166,6 +79,31 @@ pot = GaussianAmplitudeWrapperPotential(pot=halo, to=0.5, sigma=1.0)
 
 def step(p, q, t, h):
     o = Orbit([q, p, 0.0, 0.0])
-    o.integrate(np.array([t, t + h]), pot, method={name!r}, dt=h, progressbar=False)
+    o.integrate(np.array([t, t + h]), pot, method='{method}', dt=h, progressbar=False)
     return float(o.vx(t + h)), float(o.x(t + h))
 """
+_SOURCE = "the documentation of galpy.orbit.Orbit.integrate"
+_WHERE = {2: ((), ()), 4: ((), ()), 6: (_POINTS, FINE)}  # points, and steps, by the order
+_WHERE_IN_THE_PLANE = {2: ((), USUAL), 4: ((), USUAL), 6: ((), LONG)}
+_WHERE_IN_TIME = {order: (_AHEAD, sizes) for order, sizes in _STEPS.items()}
+_EACH = (
+    ("", "Orbit([q, p]).integrate([0, h], KGPotential, dt=h), one step", _SOURCE, _HAMILTONIAN,
+     _ON_A_LINE, _WHERE),
+    (", two degrees",
+     "Orbit in the plane, its R, v_R, v_T, φ from x and y, integrate([0, h], …, dt=h)", _SOURCE,
+     _HALO, _IN_THE_PLANE, _WHERE_IN_THE_PLANE),
+    (", driven",
+     "Orbit([q, p, 0, 0]).integrate([t, t + h], …, dt=h), one step in the plane, along its axis, "
+     "with the amplitude exp(−(t − 1/2)²/2)",
+     f"{_SOURCE}, and of GaussianAmplitudeWrapperPotential", _DRIVEN, _IN_TIME, _WHERE_IN_TIME),
+)  # fmt: skip
+
+
+def integrators() -> Iterator[ReleasedIntegrator]:
+    for tag, driven, source, formula, lines, where in _EACH:
+        for name, order in _ORDERS.items():
+            text = lines.replace("{method}", name)
+            symplectic = None if name.startswith("rk") or tag == ", driven" else True
+            yield by_script(
+                f"{name}{tag}", driven, source, formula, text, order, symplectic, *where[order]
+            )

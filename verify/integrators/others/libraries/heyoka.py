@@ -13,13 +13,8 @@ from typing import Any
 from verify.algebra.enclosure import enclosed
 from verify.arithmetic.arb import middle_and_radius
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.integrators.others.methods.integrator import (
-    Compared,
-    FloatStep,
-    Map,
-    ReleasedIntegrator,
-)
-from verify.integrators.others.methods.scripted import Script
+from verify.integrators.others.methods.integrator import Compared, ReleasedIntegrator
+from verify.integrators.others.methods.scripted import by_script
 from verify.verdict import Verdict
 
 TITLE = "heyoka"
@@ -31,6 +26,38 @@ _DRIVEN = "taylor_adaptive with tol = exp(3 − 2η) and step(max_delta_t = h)"
 _SLOW = "p**2/32 - cos(q)/16"
 _SLOWLY_DRIVEN = "p**2/32 - cos(q)/16 - q*cos(t/4)/16"
 _SLOW_IN_SPACE = "p1**2/32 + p2**2/32 - cos(q1)/16 - cos(q1 - q2)/16"
+_ON_A_LINE = """\
+import math
+import heyoka as hy
+
+p, q = hy.make_vars("p", "q")
+t = hy.taylor_adaptive([(p, -hy.sin(q) / 16), (q, p / 16)], [0.0, 0.0], tol=math.exp(3 - 2 * {eta}))
+assert t.order == {eta}
+
+
+def step(p, q, h):
+    t.time, t.state[:] = 0.0, (p, q)
+    _, taken = t.step(max_delta_t=h)
+    assert taken == h
+    return tuple(t.state)
+"""
+_IN_TIME = """\
+import math
+import heyoka as hy
+
+p, q = hy.make_vars("p", "q")
+drive = hy.cos(hy.time / 4)
+equations = [(p, (drive - hy.sin(q)) / 16), (q, p / 16)]
+y = hy.taylor_adaptive(equations, [0.0, 0.0], tol=math.exp(3 - 2 * {eta}))
+assert y.order == {eta}
+
+
+def step(p, q, t, h):
+    y.time, y.state[:] = t, (p, q)
+    _, taken = y.step(max_delta_t=h)
+    assert taken == h
+    return tuple(y.state)
+"""
 _IN_SPACE = """\
 import math
 
@@ -63,33 +90,15 @@ _ALLOWED = 2  # units: one rounding of z', and a few dozen in the increment, eac
 
 
 def integrators() -> Iterator[ReleasedIntegrator]:
-    for eta in _ORDERS:
-        yield ReleasedIntegrator(
-            f"Taylor, order {eta}",
-            _DRIVEN,
-            _SOURCE,
-            FloatStep(_SLOW, lambda eta=eta: _step(eta)),  # type: ignore[misc]
-            eta,
-            reproduction=_script(eta),
-        )
-    for eta in _ORDERS:
-        yield ReleasedIntegrator(
-            f"Taylor, order {eta}, driven",
-            f"{_DRIVEN}, with heyoka.time in the equations",
-            "the documentation of heyoka.py, Non-autonomous systems",
-            FloatStep(_SLOWLY_DRIVEN, lambda eta=eta: _in_time(eta)),  # type: ignore[misc]
-            eta,
-            reproduction=_script_in_time(eta),
-        )
-    for eta in _ORDERS:
-        yield ReleasedIntegrator(
-            f"Taylor, order {eta}, two degrees",
-            _DRIVEN,
-            _SOURCE,
-            FloatStep(_SLOW_IN_SPACE, Script(_IN_SPACE.format(eta=eta)).step),
-            eta,
-            reproduction=_IN_SPACE.format(eta=eta),
-        )
+    for tag, more, source, formula, text in (
+        ("", "", _SOURCE, _SLOW, _ON_A_LINE),
+        (", driven", ", with heyoka.time in the equations",
+         "the documentation of heyoka.py, Non-autonomous systems", _SLOWLY_DRIVEN, _IN_TIME),
+        (", two degrees", "", _SOURCE, _SLOW_IN_SPACE, _IN_SPACE),
+    ):  # fmt: skip
+        for eta in _ORDERS:
+            name, driven = f"Taylor, order {eta}{tag}", f"{_DRIVEN}{more}"
+            yield by_script(name, driven, source, formula, text.format(eta=eta), eta)
     yield ReleasedIntegrator(
         "Taylor and lieη",
         f"{_DRIVEN}, with the variational equations",
@@ -98,52 +107,21 @@ def integrators() -> Iterator[ReleasedIntegrator]:
     )
 
 
-def _integrator(formula: str, eta: int, variational: bool) -> Any:
+def _integrator(formula: str, eta: int) -> Any:
+    """A Taylor integrator of the system's variational equations."""
     import heyoka as hy
 
     p, q = hy.make_vars("p", "q")
     h = {
-        _SLOW: lambda: p**2 / 32 - hy.cos(q) / 16,
         _SYSTEMS["pendulum"]: lambda: p**2 / 2 - hy.cos(q),
         _SYSTEMS["not separable"]: lambda: p**2 / 2 + q**2 / 2 + p**2 * q / 4 + p * q**3 / 8,
     }[formula]()
     equations: Any = [(p, -hy.diff(h, q)), (q, hy.diff(h, p))]
-    if variational:
-        equations = hy.var_ode_sys(equations, hy.var_args.vars, order=1)
-    return _of_order(eta, equations)
-
-
-def _of_order(eta: int, equations: Any) -> Any:
-    import heyoka as hy
-
-    found = hy.taylor_adaptive(equations, [0.5, 0.5], tol=math.exp(3 - 2 * eta))
+    varied = hy.var_ode_sys(equations, hy.var_args.vars, order=1)
+    found = hy.taylor_adaptive(varied, [0.5, 0.5], tol=math.exp(3 - 2 * eta))
     if found.order != eta:
         raise RuntimeError(f"heyoka took order {found.order}")
     return found
-
-
-def _moved(taylor: Any, p: float, q: float, t: float, h: float) -> tuple[float, float]:
-    """By one step of size h, from t on."""
-    taylor.time = t
-    taylor.state[:] = (p, q)
-    _, taken = taylor.step(max_delta_t=h)
-    if taken != h:
-        raise RuntimeError("heyoka took a shorter step")
-    return float(taylor.state[0]), float(taylor.state[1])
-
-
-def _step(eta: int) -> Map:
-    taylor = _integrator(_SLOW, eta, variational=False)
-    return lambda p, q, h: _moved(taylor, p, q, 0.0, h)
-
-
-def _in_time(eta: int) -> Map:
-    import heyoka as hy
-
-    p, q = hy.make_vars("p", "q")
-    equations: Any = [(p, (hy.cos(hy.time / 4) - hy.sin(q)) / 16), (q, p / 16)]
-    taylor = _of_order(eta, equations)
-    return lambda p, q, t, h: _moved(taylor, p, q, t, h)
 
 
 def _agreement() -> tuple[Verdict, str, tuple[tuple[str, ...], ...]]:
@@ -175,7 +153,7 @@ def _distance(formula: str, eta: int) -> tuple[float, float]:
     """The largest differences of the state and of the Jacobian, in units of rounding."""
     from verify.schemes import get
 
-    taylor = _integrator(formula, eta, variational=True)
+    taylor = _integrator(formula, eta)
     (own,) = get(f"lie{eta}").step_map(Hamiltonian.parse(formula)).substeps
     found = [0.0, 0.0]
     for p, q in _POINTS:
@@ -190,37 +168,3 @@ def _distance(formula: str, eta: int) -> tuple[float, float]:
             units = float(gap) / (_UNIT * max(1.0, abs(float(middle))))
             found[k >= 2] = max(found[k >= 2], units)
     return found[0], found[1]
-
-
-def _script(eta: int) -> str:
-    return f"""\
-import math
-import heyoka as hy
-
-p, q = hy.make_vars("p", "q")
-t = hy.taylor_adaptive([(p, -hy.sin(q) / 16), (q, p / 16)], [0.0, 0.0], tol=math.exp(3 - 2 * {eta}))
-
-
-def step(p, q, h):
-    t.time, t.state[:] = 0.0, (p, q)
-    t.step(max_delta_t=h)
-    return tuple(t.state)
-"""
-
-
-def _script_in_time(eta: int) -> str:
-    return f"""\
-import math
-import heyoka as hy
-
-p, q = hy.make_vars("p", "q")
-drive = hy.cos(hy.time / 4)
-equations = [(p, (drive - hy.sin(q)) / 16), (q, p / 16)]
-y = hy.taylor_adaptive(equations, [0.0, 0.0], tol=math.exp(3 - 2 * {eta}))
-
-
-def step(p, q, t, h):
-    y.time, y.state[:] = t, (p, q)
-    y.step(max_delta_t=h)
-    return tuple(y.state)
-"""

@@ -18,10 +18,9 @@ import sympy
 from verify.integrators.others.methods.integrator import (
     Compared,
     ExactTableau,
-    FloatStep,
-    Map,
     ReleasedIntegrator,
 )
+from verify.integrators.others.methods.scripted import by_script
 from verify.integrators.others.methods.tableau import order_of
 from verify.schemes.implicit_tableau import ImplicitTableau
 from verify.verdict import Verdict
@@ -74,13 +73,13 @@ def integrators() -> Iterator[ReleasedIntegrator]:
         ),
         reproduction=_NODES_SCRIPT,
     )
-    yield ReleasedIntegrator(
+    yield by_script(
         "RK44 as a step, driven",
         "rk.loadRKM('RK44') called with an IVP from t to t + h and dt = h",
         "its documentation: it solves u' = f(t, u)",
-        FloatStep(_DRIVEN, _step),
+        _DRIVEN,
+        _STEP,
         4,
-        reproduction=_STEP_SCRIPT,
     )
     yield ReleasedIntegrator(
         "order()",
@@ -170,25 +169,6 @@ def _nodes() -> tuple[Verdict, str, tuple[tuple[str, ...], ...]]:
     return Verdict.PROVED, f"exactly, for all {len(methods)} methods", ()
 
 
-def _step() -> Map:
-    import numpy as np
-    from nodepy import ivp
-
-    method = _loaded()["RK44"]
-
-    def field(t: float, u: Any) -> Any:
-        return np.array([np.cos(t) / 4 - np.sin(u[1]), u[0]])
-
-    def step(p: float, q: float, t: float, h: float) -> tuple[float, float]:
-        one = ivp.IVP(f=field, u0=np.array([p, q]), T=t + h)
-        times, states = method(one, t0=t, dt=h)
-        if len(times) != 2 or times[-1] != t + h:
-            raise RuntimeError("it took another step")
-        return float(states[-1][0]), float(states[-1][1])
-
-    return step
-
-
 def _check_order_method() -> tuple[Verdict, str, tuple[tuple[str, ...], ...]]:
     rows = [("method", "order() returns", "proved or measured")]
     wrong, coarse = [], []
@@ -246,7 +226,7 @@ from nodepy import rk
 for key, m in rk.loadRKM().items():
     print(key, max(abs(float(x)) for x in m.A.sum(axis=1) - m.c))
 """
-_STEP_SCRIPT = """\
+_STEP = """\
 import numpy as np
 from nodepy import ivp, rk
 
@@ -255,7 +235,9 @@ m = rk.loadRKM("RK44")
 
 def step(p, q, t, h):
     f = lambda s, u: np.array([np.cos(s) / 4 - np.sin(u[1]), u[0]])
-    return m(ivp.IVP(f=f, u0=np.array([p, q]), T=t + h), t0=t, dt=h)[1][-1]
+    times, states = m(ivp.IVP(f=f, u0=np.array([p, q]), T=t + h), t0=t, dt=h)
+    assert len(times) == 2 and times[-1] == t + h
+    return states[-1]
 """
 _ORDER_SCRIPT = """\
 from nodepy import rk

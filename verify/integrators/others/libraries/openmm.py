@@ -7,8 +7,13 @@ symplectic, and its order is not that of its positions.
 from collections.abc import Iterator
 
 from verify.integrators.others.methods.integrator import ReleasedIntegrator
-from verify.integrators.others.methods.problems import HENON_HEILES, TWO_WAVES, Problem
-from verify.integrators.others.methods.scripted import Driven, scripted
+from verify.integrators.others.methods.scripted import (
+    HENON_HEILES,
+    TWO_WAVES,
+    Driven,
+    Problem,
+    scripted,
+)
 
 TITLE = "OpenMM"
 LIBRARY = "openmm"

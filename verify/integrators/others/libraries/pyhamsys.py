@@ -9,8 +9,13 @@ import itertools
 from collections.abc import Iterator
 
 from verify.integrators.others.methods.integrator import ReleasedIntegrator
-from verify.integrators.others.methods.problems import EACH, HENON_HEILES, TWO_WAVES
-from verify.integrators.others.methods.scripted import Driven, scripted
+from verify.integrators.others.methods.scripted import (
+    EACH,
+    HENON_HEILES,
+    TWO_WAVES,
+    Driven,
+    scripted,
+)
 from verify.integrators.others.methods.tabled import tabled, text
 
 TITLE = "pyhamsys"

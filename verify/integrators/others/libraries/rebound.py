@@ -7,22 +7,13 @@ star has mass 1, H = p²/2 − 1/q, and for the latter −q/4 is an additional f
 An additional force may read the simulation's time; of one that does the documentation says nothing.
 """
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import partial
 from typing import Any
 
-from verify.integrators.others.methods.integrator import (
-    FINE,
-    FloatStep,
-    Map,
-    Point,
-    ReleasedIntegrator,
-)
-from verify.integrators.others.methods.problems import USUAL
-from verify.integrators.others.methods.scripted import Script
+from verify.integrators.others.methods.integrator import FINE, Point, ReleasedIntegrator
+from verify.integrators.others.methods.scripted import USUAL, by_script
 
 TITLE = "rebound"
 LIBRARY = "rebound"
@@ -138,15 +129,12 @@ def _in_space() -> Iterator[ReleasedIntegrator]:
             push = ""
         text = text.replace("{settings}", setting + softening + push)
         formula = _SOFT_IN_SPACE if softened else _NEAR if name == "eos" else _PUSHED
-        yield ReleasedIntegrator(
-            f"{name.upper()}{', ' if settings else ''}{settings.replace(' = ', ' ')}, two degrees",
+        title = f"{name.upper()}{', ' if settings else ''}{settings.replace(' = ', ' ')}"
+        yield by_script(
+            f"{title}, two degrees",
             "one step of dt = h: a massless particle before a star of mass 8, in the plane",
-            _SOURCE,
-            FloatStep(formula, Script(text).step, (), USUAL),
-            order,
-            True,
-            text,
-        )
+            _SOURCE, formula, text, order, True, (), USUAL,
+        )  # fmt: skip
 
 
 def _with_forces() -> Iterator[tuple[Any, ...]]:
@@ -173,7 +161,9 @@ def _in_time() -> Iterator[ReleasedIntegrator]:
 def _driven(problem: _Problem, *given: Any) -> ReleasedIntegrator:
     """The same with a force that depends on time, of whose order nothing is said."""
     made = _integrator(problem.in_time, *given)
-    return replace(made, name=f"{made.name}, driven", order=None, area_preserving=None)
+    shown = "\n".join((made.reproduction, *_TIMES))
+    return replace(made, name=f"{made.name}, driven", order=None, area_preserving=None,
+                   reproduction=shown)  # fmt: skip
 
 
 def _integrator(
@@ -185,53 +175,8 @@ def _integrator(
         points, ladder = (_ONE if problem.softening else _AWAY[:1]), FINE
     elif order == 6 and problem is _FREE:
         points, ladder = _AWAY[3:], tuple(h for h in FINE if h < Fraction(7, 8))
-    return ReleasedIntegrator(
-        name,
-        f"one step of dt = h: {problem.said}",
-        _SOURCE,
-        FloatStep(
-            problem.hamiltonian, lambda: _step(problem, integrator, settings), points, ladder
-        ),
-        order,
-        True,
-        _script(problem, integrator, settings),
-    )
-
-
-def _step(problem: _Problem, integrator: str, settings: tuple[str, ...]) -> Map:
-    import rebound
-
-    def step(p: float, q: float, *t_and_h: float) -> tuple[float, float]:
-        *time, h = t_and_h
-        simulation = rebound.Simulation()
-        simulation.add(m=problem.mass)
-        simulation.add(m=0.0, x=q, vx=p)
-        simulation.N_active = 1
-        simulation.integrator = integrator
-        for setting in settings:
-            name, _, value = setting.partition(" = ")
-            setattr(simulation.integrator, name, value.strip("'") if "'" in value else int(value))
-        simulation.softening = problem.softening
-        if problem.driven:
-            simulation.t = time[0]
-        if problem.forced or problem.driven:
-            simulation.additional_forces = partial(_push, problem)
-        simulation.dt = h
-        simulation.steps(1)
-        simulation.synchronize()
-        star, particle = simulation.particles
-        return particle.vx - star.vx, particle.x - star.x
-
-    return step
-
-
-def _push(problem: _Problem, reference: Any) -> None:
-    """The additional force."""
-    particle = reference.contents.particles[1]
-    if problem.forced:
-        particle.ax -= particle.x / 4
-    if problem.driven:
-        particle.ax += math.cos(1.2 * reference.contents.t) / 4
+    text, driven = _script(problem, integrator, settings), f"one step of dt = h: {problem.said}"
+    return by_script(name, driven, _SOURCE, problem.hamiltonian, text, order, True, points, ladder)
 
 
 def _script(problem: _Problem, integrator: str, settings: tuple[str, ...]) -> str:
@@ -263,6 +208,5 @@ def _script(problem: _Problem, integrator: str, settings: tuple[str, ...]) -> st
         "    s.synchronize()",
         "    a, b = s.particles",
         "    return b.vx - a.vx, b.x - a.x",
-        *(_TIMES if problem.driven else ()),
     ]
     return "\n".join(lines)

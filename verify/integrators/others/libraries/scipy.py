@@ -7,7 +7,6 @@ the solver: by the function it calls itself, with Newton's method run to roundin
 
 from collections.abc import Iterator
 from fractions import Fraction
-from functools import partial
 from typing import Any
 
 import sympy
@@ -20,8 +19,7 @@ from verify.integrators.others.methods.integrator import (
     Point,
     ReleasedIntegrator,
 )
-from verify.integrators.others.methods.problems import HENON_HEILES
-from verify.integrators.others.methods.scripted import Driven, scripted
+from verify.integrators.others.methods.scripted import HENON_HEILES, Driven, by_script, scripted
 from verify.integrators.others.methods.tabled import full, quotient
 from verify.schemes.implicit_tableau import ImplicitTableau
 
@@ -58,30 +56,44 @@ q, p = np.split(s.y, 2)
 """,
     "a single step of the solver, first_step = h, tolerances that accept any step",
 )
+_ON_A_LINE = """\
+import numpy as np
+from scipy.integrate import {method}
+
+
+def step(p, q, h):
+    f = lambda t, z: np.array([-np.sin(z[1]), z[0]])
+    s = {method}(f, 0.0, [p, q], h, first_step=h, max_step=h, rtol=1e6, atol=1e6)
+    s.step()
+    assert s.t == h
+    return s.y
+"""
+_IN_TIME = """\
+import numpy as np
+from scipy.integrate import {method}
+
+
+def step(p, q, t, h):
+    f = lambda s, z: np.array([np.cos(s) / 4 - np.sin(z[1]), z[0]])
+    s = {method}(f, t, [p, q], t + h, first_step=h, max_step=2 * h, rtol=1e6, atol=1e6)
+    s.step()
+    assert s.t == t + h
+    return s.y
+"""
 _LOOSE = "a single step of scipy.integrate.{}, first_step = h, tolerances that accept any step"
 
 
 def integrators() -> Iterator[ReleasedIntegrator]:
-    for name, order in (("RK23", 3), ("RK45", 5)):
-        yield ReleasedIntegrator(
-            f"{name}, as a step",
-            _LOOSE.format(name),
-            _SOURCE.format(name),
-            FloatStep(_PENDULUM, partial(_step, name), *((_POINTS, FINE) if order > 4 else ())),
-            order,
-            None,
-            _script(name),
-        )
-    for name, order in (("RK23", 3), ("RK45", 5)):
-        yield ReleasedIntegrator(
-            f"{name}, as a step, driven",
-            _LOOSE.format(name),
-            f"{_SOURCE.format(name)}: y' = f(t, y)",
-            FloatStep(_DRIVEN, partial(_in_time, name), *((_POINTS, FINE) if order > 4 else ())),
-            order,
-            None,
-            _script_in_time(name),
-        )
+    for tag, more, formula, lines in (
+        ("", "", _PENDULUM, _ON_A_LINE), (", driven", ": y' = f(t, y)", _DRIVEN, _IN_TIME),
+    ):  # fmt: skip
+        for name, order in (("RK23", 3), ("RK45", 5)):
+            source, text = f"{_SOURCE.format(name)}{more}", lines.replace("{method}", name)
+            where = (_POINTS, FINE) if order > 4 else ()
+            yield by_script(
+                f"{name}, as a step{tag}", _LOOSE.format(name), source, formula, text, order, None,
+                *where,
+            )  # fmt: skip
     for name, order in (("RK23", 3), ("RK45", 5)):
         said, title = _SOURCE.format(name), f"{name}, as a step"
         yield from scripted(title, _IN_SPACE, name, said, order, None, (HENON_HEILES,))
@@ -119,40 +131,10 @@ def _field(_: float, z: Any) -> Any:
     return np.array([-np.sin(z[1]), z[0]])
 
 
-def _step(name: str) -> Map:
-    from scipy import integrate
-
-    solver = getattr(integrate, name)
-
-    def step(p: float, q: float, h: float) -> tuple[float, float]:
-        one = solver(_field, 0.0, [p, q], h, first_step=h, max_step=h, rtol=1e6, atol=1e6)
-        one.step()
-        if one.t != h:
-            raise RuntimeError("it took a shorter step")
-        return float(one.y[0]), float(one.y[1])
-
-    return step
-
-
 def _driven(t: float, z: Any) -> Any:
     import numpy as np
 
     return np.array([np.cos(t) / 4 - np.sin(z[1]), z[0]])
-
-
-def _in_time(name: str) -> Map:
-    from scipy import integrate
-
-    solver = getattr(integrate, name)
-
-    def step(p: float, q: float, t: float, h: float) -> tuple[float, float]:
-        one = solver(_driven, t, [p, q], t + h, first_step=h, max_step=2 * h, rtol=1e6, atol=1e6)
-        one.step()
-        if one.t != t + h:
-            raise RuntimeError("it took a shorter step")
-        return float(one.y[0]), float(one.y[1])
-
-    return step
 
 
 def _without_time(step: Map) -> Map:
@@ -231,31 +213,3 @@ def _radau_tableau() -> ImplicitTableau:
     # The weights are the last row, as the last node is 1.
     rows = [[sympy.radsimp(sympy.integrate(b, (x, 0, c))) for b in basis] for c in nodes]
     return ImplicitTableau.of(rows, rows[-1])
-
-
-def _script(name: str) -> str:
-    return f"""\
-import numpy as np
-from scipy.integrate import {name}
-
-
-def step(p, q, h):
-    f = lambda t, z: np.array([-np.sin(z[1]), z[0]])
-    s = {name}(f, 0.0, [p, q], h, first_step=h, max_step=h, rtol=1e6, atol=1e6)
-    s.step()
-    return s.y
-"""
-
-
-def _script_in_time(name: str) -> str:
-    return f"""\
-import numpy as np
-from scipy.integrate import {name}
-
-
-def step(p, q, t, h):
-    f = lambda s, z: np.array([np.cos(s) / 4 - np.sin(z[1]), z[0]])
-    s = {name}(f, t, [p, q], t + h, first_step=h, max_step=2 * h, rtol=1e6, atol=1e6)
-    s.step()
-    return s.y
-"""

@@ -5,17 +5,17 @@ from fractions import Fraction
 from functools import lru_cache
 
 from verify.errors import InputError
-from verify.integrators.examination import Trial
-from verify.integrators.measured import finding_of_step
+from verify.integrators.measured import finding_of
 from verify.integrators.measures.order import Distances
 from verify.integrators.measures.still_clock import measured_mistakes
 from verify.integrators.measures.survey import NOWHERE, places_of_field
 from verify.integrators.others.methods.integrator import FloatStep
-from verify.integrators.others.methods.problems import POINTS
+from verify.integrators.others.methods.scripted import POINTS
 from verify.integrators.places.place import Place
 from verify.integrators.places.units import Field
 from verify.integrators.probes.floats import FloatProbe
-from verify.integrators.results import NOTHING, Finding
+from verify.integrators.results import Finding
+from verify.integrators.trial import Trial
 from verify.integrators.user_code.faults import examined
 from verify.integrators.user_code.loading import callee_from
 from verify.integrators.user_code.step import StepError, last_line
@@ -75,7 +75,7 @@ def finding(method: FloatStep) -> Finding:
             step.at([float(x) for x in trial.places[0].z], 0.125, float(trial.places[0].t))
         structure, distances = trial.measure("floats", [1 / h for h in method.ladder])
         assert distances is not None  # noqa: S101 - there is an H
-        made = finding_of_step(step, structure, distances, NOTHING, NOWHERE)
+        made = finding_of(trial, structure, distances)
         run = _stretch(distances, made.convergence_order)
         if run is not None and run[0] < _SPAN * run[1]:
             return _undecided(made, *run)

@@ -34,7 +34,6 @@ from verify.schemes.tree_conditions import (
 
 ROUNDING = Fraction(1, 10**13)  # a residue below it is that of rounded coefficients
 WRONG = Fraction(1, 10**9)  # one above it is not, of 15 digits
-_MOST_SIMPLE = 40
 _MOST_PAIR = 8  # vertices of two trees together
 
 

@@ -15,9 +15,9 @@ import mpmath as mp
 import sympy
 
 from verify.integrators.tables.entry import TableEntry
-from verify.integrators.tables.kinds import additive, composition, partitioned, runge_kutta
+from verify.integrators.tables.kinds import composition
 from verify.integrators.tables.splittings.claims import AlternatingEntry, parts_of
-from verify.integrators.tables.tableaux.blocks import Block, block_of
+from verify.integrators.tables.tableaux.claims import BlocksEntry, block_of
 from verify.schemes.printed.naming import Naming
 
 _DIGITS = 60
@@ -173,10 +173,7 @@ def _(entry: AlternatingEntry, embedded: bool) -> tuple[Step, Naming]:
 @_step.register
 def _(entry: composition.Entry, embedded: bool) -> tuple[Step, Naming]:
     naming = Naming(entry.numbers)
-    half = entry.half is not None
-    sizes = [*(entry.sizes or entry.half or ())]
-    named = naming.entries([*sizes, *sizes[-2::-1]] if half else sizes, "w")
-    weights = _numbers(naming, named)
+    weights = _numbers(naming, composition.weights_of(entry, naming))
 
     def step(system: System, t: Any, p: Any, q: Any, h: Any) -> Vector:
         for w in weights:
@@ -190,29 +187,12 @@ def _(entry: composition.Entry, embedded: bool) -> tuple[Step, Naming]:
 
 
 @_step.register
-def _(entry: runge_kutta.Entry, embedded: bool) -> tuple[Step, Naming]:
-    block = Block(a=entry.a, b=entry.b, c=entry.c, embedded=entry.embedded,
-                  tableau=entry.tableau, csv=entry.csv)  # fmt: skip
-    return _of_blocks(entry, (block,), embedded)
-
-
-@_step.register
-def _(entry: additive.Entry, embedded: bool) -> tuple[Step, Naming]:
-    return _of_blocks(entry, entry.parts, embedded)
-
-
-@_step.register
-def _(entry: partitioned.Entry, embedded: bool) -> tuple[Step, Naming]:
-    return _of_blocks(entry, (entry.p, entry.q), embedded)
-
-
-def _of_blocks(entry: TableEntry, given: Sequence[Block], embedded: bool) -> tuple[Step, Naming]:
+def _(entry: BlocksEntry, embedded: bool) -> tuple[Step, Naming]:
     """z' = f_1 + f_2 + …: of one part all of the field; of two the kicks and the drifts."""
-    naming = Naming(entry.numbers)
-    named = [block_of(x, naming, f"_{k}" if k else "", entry.folder) for k, x in enumerate(given)]
-    blocks = []
-    for own in named:
-        rows = [_numbers(naming, row) for row in own.printed.rows]
+    naming, blocks = Naming(entry.numbers), []
+    for number, given in enumerate(entry.blocks):
+        own = block_of(given, naming, f"_{number}" if number else "", entry.folder)
+        rows = [_numbers(naming, row) for row in own.printed.matrix]
         weights = own.embedded if embedded and own.embedded else own.printed.weights
         times = own.printed.times
         nodes = [sum(row) for row in rows] if times is None else _numbers(naming, times)

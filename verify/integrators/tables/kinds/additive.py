@@ -5,24 +5,22 @@ from typing import Annotated
 
 from pydantic import Field
 
-from verify.integrators.tables.tableaux.blocks import Block, blocks_of, embedded_of
-from verify.integrators.tables.tableaux.claims import TableauEntry, of_tableau
-from verify.integrators.tables.tableaux.table import TableauTable
+from verify.integrators.tables.tableaux.claims import Block, BlocksEntry, of_blocks
 from verify.integrators.tables.told import TableClaim
 from verify.schemes.coloured_trees import of_all
-from verify.schemes.printed.naming import Naming
 
 
-class Entry(TableauEntry):
+class Entry(BlocksEntry):
     """`parts`: of each f_k `a`, `b`, and `c` and `embedded` where they are printed."""
 
     parts: Annotated[tuple[Block, ...], Field(min_length=2, max_length=4)]
 
+    @property
+    def blocks(self) -> tuple[Block, ...]:
+        return self.parts
+
 
 def claims(entry: Entry) -> Iterator[TableClaim]:
     """As of a Runge–Kutta method, with the conditions that couple the parts."""
-    naming = Naming(entry.numbers)
-    names = tuple(f"_{k + 1}" for k in range(len(entry.parts)))
-    own = blocks_of(entry.parts, naming, names, entry.folder)
-    table = TableauTable(tuple(x.printed for x in own), of_all(len(own)), naming.printed, names)
-    yield from of_tableau(entry, table, embedded_of(own, entry.embedded_order))
+    count = len(entry.parts)
+    yield from of_blocks(entry, tuple(f"_{k + 1}" for k in range(count)), of_all(count))

@@ -1,26 +1,24 @@
 """Compositions of steps w h of any symmetric method of order 2."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
 from pydantic import StrictBool
 
 from verify.errors import InputError
-from verify.integrators.tables.hints import Hints
+from verify.integrators.tables.cost import Severity
 from verify.integrators.tables.layout import named_columns
 from verify.integrators.tables.splittings.claims import (
     SizesEntry,
-    consistent,
+    mended,
     mirrored,
-    of_order,
+    of_table,
     sizes_of,
-    symmetric_claims,
 )
-from verify.integrators.tables.told import WRONG_ORDER, WRONG_WEIGHTS, TableClaim
-from verify.prose import prose
+from verify.integrators.tables.told import Hints, TableClaim
 from verify.schemes.printed.naming import Naming
 from verify.schemes.printed.splitting_table import PrintedTable
-from verify.verdict import Verdict
 
 
 class Entry(SizesEntry):
@@ -30,9 +28,8 @@ class Entry(SizesEntry):
     of_parts: StrictBool = False
 
 
-def claims(entry: Entry) -> Iterator[TableClaim]:
-    """Of the order, of digits, symplectic, symmetric."""
-    naming = Naming(entry.numbers)
+def weights_of(entry: Entry, naming: Naming) -> tuple[str, ...]:
+    """The w of all steps, in names for their decimals."""
     if entry.csv is not None:
         if entry.sizes is not None or entry.half is not None:
             raise InputError("csv", entry.csv, "stands alone: leave out sizes and half")
@@ -40,23 +37,14 @@ def claims(entry: Entry) -> Iterator[TableClaim]:
     else:
         sizes, half = sizes_of(entry)
     named = naming.entries(sizes, "w")
-    parts = tuple(("step", size) for size in (mirrored(named) if half else named))
+    return mirrored(named) if half else named
+
+
+def claims(entry: Entry) -> Iterator[TableClaim]:
+    """Of the order, of digits, symplectic, symmetric."""
+    naming = Naming(entry.numbers)
+    parts = tuple(("step", size) for size in weights_of(entry, naming))
     table = PrintedTable(entry.kind, parts, naming.printed)
-
-    def again(numbers: Mapping[str, str]) -> Iterator[TableClaim]:
-        made = table
-        for name, text in numbers.items():
-            made = made.mended(name, text)
-        yield from (*consistent(entry, made), *of_order(entry, made))
-        if entry.symmetric:
-            yield from symmetric_claims(made)
-
-    hints = Hints(again)
-    for claim in of_order(entry, table, hints):
-        of_weights = entry.of_parts and claim.severity == WRONG_ORDER
-        yield replace(claim, severity=WRONG_WEIGHTS) if of_weights else claim
-    if entry.symplectic:
-        said = prose("a composition of symplectic steps is symplectic, whatever their sizes are")
-        yield TableClaim("symplectic", "symplectic", Verdict.PROVED, said)
-    if entry.symmetric:
-        yield from symmetric_claims(table, hints)
+    for claim in of_table(entry, table, hints=Hints(partial(mended, entry, table, None))):
+        of_weights = entry.of_parts and claim.severity == Severity.WRONG_ORDER
+        yield replace(claim, severity=Severity.WRONG_WEIGHTS) if of_weights else claim

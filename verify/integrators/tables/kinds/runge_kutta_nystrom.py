@@ -9,7 +9,8 @@ from collections.abc import Iterator
 from verify.errors import NOT_GIVEN, InputError
 from verify.integrators.tables.entry import Row
 from verify.integrators.tables.tableaux.claims import TableauEntry, of_tableau
-from verify.integrators.tables.tableaux.table import PrintedBlock, TableauTable, square
+from verify.integrators.tables.tableaux.table import TableauTable, square
+from verify.integrators.tables.tableaux.tree_weights import Tableau
 from verify.integrators.tables.told import TableClaim
 from verify.schemes.coloured_trees import NYSTROM
 from verify.schemes.printed.naming import Naming
@@ -33,7 +34,7 @@ def claims(entry: Entry) -> Iterator[TableClaim]:
     rows = tuple(naming.entries(row, f"a{k + 1}_") for k, row in enumerate(square(entry.a, stages)))
     b, bar = naming.entries(entry.b, "b"), naming.entries(entry.b_bar, "b_bar")
     zeros = (("0",) * stages,) * stages
-    blocks = PrintedBlock(zeros, b), PrintedBlock(rows, bar, naming.entries(entry.c, "c"))
+    blocks = Tableau(zeros, b), Tableau(rows, bar, naming.entries(entry.c, "c"))
     embedded = None
     if (entry.embedded is None) != (entry.embedded_bar is None):
         problem = "goes with the other: embedded is of p, as b, and embedded_bar of q, as b_bar"

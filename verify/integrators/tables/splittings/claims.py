@@ -11,13 +11,12 @@ from pydantic import BeforeValidator
 
 from verify.arithmetic.number import E
 from verify.errors import NOT_GIVEN, InputError
+from verify.integrators.tables.cost import Severity
 from verify.integrators.tables.entry import Order, Row, TableEntry
-from verify.integrators.tables.hints import NONE, Hints
 from verify.integrators.tables.layout import named_columns, one_column
 from verify.integrators.tables.told import (
-    OF_WORDS,
-    WRONG_CLOCK,
-    WRONG_ORDER,
+    NO_HINTS,
+    Hints,
     TableClaim,
     best_reading,
     condition_claims,
@@ -32,6 +31,8 @@ from verify.schemes.printed.timed_table import TimedTable, judge_clocks, judge_i
 from verify.verdict import Verdict
 
 _EXCHANGED = {"kick": "drift", "drift": "kick"}
+_OF_KICKS = "every kick and every drift is symplectic, whatever their coefficients are"
+_OF_STEPS = "a composition of symplectic steps is symplectic, whatever their sizes are"
 
 
 def _listed(given: object) -> object:
@@ -85,8 +86,8 @@ def of_alternating(entry: AlternatingEntry) -> Iterator[TableClaim]:
     for first in ("kick", "drift") if both else (kinds[0],):
         own = kinds if first == kinds[0] else tuple(_EXCHANGED[kind] for kind in kinds)
         table = PrintedTable(entry.kind, tuple(zip(own, sizes, strict=True)), naming.printed)
-        again = partial(_mended, entry, table, times)
-        for claim in _of_table(entry, table, times, Hints(again)):
+        again = partial(mended, entry, table, times)
+        for claim in of_table(entry, table, times, Hints(again)):
             yield _named(claim, f", {first} first") if both else claim
 
 
@@ -154,55 +155,52 @@ def alternating(first: str, count: int) -> tuple[str, ...]:
     return tuple(islice(cycle((first, _EXCHANGED[first])), count))
 
 
-def _mended(
-    entry: AlternatingEntry,
+def mended(
+    entry: SizesEntry,
     table: PrintedTable,
     times: tuple[str | None, ...] | None,
     numbers: Mapping[str, str],
 ) -> Iterator[TableClaim]:
-    """The claims with these numbers, or else parts and times."""
+    """The claims with these numbers, or else parts and times; that it is a scheme at all, too,
+    which a table claims that claims no order."""
     for name, text in numbers.items():
         table = table.mended(name, text)
         times = times and tuple(
             text if name == f"time of {table.parts[k][0]} {k + 1}" else time
             for k, time in enumerate(times)
         )
-    yield from consistent(entry, table)
-    yield from _of_table(entry, table, times)
-
-
-def consistent(entry: SizesEntry, table: PrintedTable) -> Iterator[TableClaim]:
-    """That it is a scheme at all, which a table claims that claims no order."""
     if entry.order is None:
         found = best_reading(table, lambda x: judge_order(x, 1))
         yield from order_claims("consistent", "order 1", found, 1)
+    yield from of_table(entry, table, times)
 
 
-def _of_table(
-    entry: AlternatingEntry,
+def of_table(
+    entry: SizesEntry,
     table: PrintedTable,
-    times: tuple[str | None, ...] | None,
-    hints: Hints = NONE,
+    times: tuple[str | None, ...] | None = None,
+    hints: Hints = NO_HINTS,
 ) -> Iterator[TableClaim]:
-    if times is None and entry.time_dependent is not None:
+    """Each claim that the entry makes of its parts."""
+    depends = entry.time_dependent if isinstance(entry, AlternatingEntry) else None
+    if times is None and depends is not None:
         raise InputError("times", NOT_GIVEN, "is missing; time_dependent is judged by them")
     order = None
-    for order_claim in of_order(entry, table, hints):
+    for order_claim in _of_order(entry, table, hints):
         order = order or order_claim.verdict
         yield order_claim
     if times is not None and entry.order is not None:
-        timed = TimedTable(table, times, entry.time_dependent == "T and V")
+        timed = TimedTable(table, times, depends == "T and V")
         yield from _in_time(timed, entry.order, order is Verdict.REFUTED, hints)
     if entry.symplectic:
-        evidence = prose(
-            "every kick and every drift is symplectic, whatever their coefficients are"
-        )
-        yield TableClaim("symplectic", "symplectic", Verdict.PROVED, evidence)
+        said = _OF_KICKS if isinstance(entry, AlternatingEntry) else _OF_STEPS
+        yield TableClaim("symplectic", "symplectic", Verdict.PROVED, prose(said))
     if entry.symmetric:
-        yield from symmetric_claims(table, hints)
+        found = hints.kept(best_reading(table, _judge_symmetric))
+        yield from condition_claims("symmetric", "symmetric", "symmetric", found, Severity.OF_WORDS)
 
 
-def of_order(entry: SizesEntry, table: PrintedTable, hints: Hints = NONE) -> Iterator[TableClaim]:
+def _of_order(entry: SizesEntry, table: PrintedTable, hints: Hints) -> Iterator[TableClaim]:
     """The claim of its order, and of its digits; InputError where none is claimed."""
     order = entry.order
     if order is None:
@@ -237,7 +235,7 @@ def _in_time(timed: TimedTable, order: int, refuted: bool, hints: Hints) -> Iter
     right = hints.kept(best_reading(timed, judge_clocks))
     found = hints.kept(best_reading(timed, lambda x: judge_in_time(x, order)))
     wrong_clock = right.verdict is Verdict.REFUTED or not refuted
-    severity = WRONG_CLOCK if wrong_clock else WRONG_ORDER
+    severity = Severity.WRONG_CLOCK if wrong_clock else Severity.WRONG_ORDER
     claim = next(order_claims("order in time", statement, found, order, severity=severity))
     if claim.verdict is right.verdict is Verdict.REFUTED:
         clocks = next(condition_claims("clock", "", "the right clock", right, severity))
@@ -249,13 +247,8 @@ def _in_time(timed: TimedTable, order: int, refuted: bool, hints: Hints) -> Iter
         yield digits
 
 
-def symmetric_claims(table: PrintedTable, hints: Hints = NONE) -> Iterator[TableClaim]:
-    """Whether it is the same read backwards, neighbours of one kind being one part, and none 0."""
-    found = hints.kept(best_reading(table, _judge_symmetric))
-    yield from condition_claims("symmetric", "symmetric", "symmetric", found, OF_WORDS)
-
-
 def _judge_symmetric(table: PrintedTable) -> Judged:
+    """Whether it is the same read backwards, neighbours of one kind being one part, and none 0."""
     kinds, groups = _merged(table)
     count = len(groups)
     if kinds != kinds[::-1]:

@@ -1,13 +1,15 @@
-"""What Runge–Kutta tables of all kinds claim, each with its verdict."""
+"""Runge–Kutta tables of all kinds: one tableau as a file has it, and what is claimed of them."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 from pydantic import StrictBool
 
 from verify.errors import NOT_GIVEN, InputError
-from verify.integrators.tables.entry import Order, TableEntry
-from verify.integrators.tables.hints import NONE, Hints
+from verify.integrators.tables.cost import Severity
+from verify.integrators.tables.entry import Order, Row, TableEntry
+from verify.integrators.tables.layout import layout_of_csv, pasted
 from verify.integrators.tables.tableaux.order import (
     MANY,
     judge_in_time,
@@ -17,23 +19,110 @@ from verify.integrators.tables.tableaux.order import (
     wrong_time,
 )
 from verify.integrators.tables.tableaux.symmetry import judge_symmetric, judge_symplectic
-from verify.integrators.tables.tableaux.table import TableauTable, Texts
+from verify.integrators.tables.tableaux.table import MOST_STAGES, TableauTable, Texts, square
+from verify.integrators.tables.tableaux.tree_weights import Tableau
 from verify.integrators.tables.told import (
-    NOT_SYMPLECTIC,
-    OF_WORDS,
-    WRONG_CLOCK,
-    WRONG_ORDER,
-    WRONG_WEIGHTS,
+    NO_HINTS,
+    Hints,
     TableClaim,
     best_reading,
     condition_claims,
     order_claims,
 )
 from verify.prose import prose
+from verify.scenes.frozen import Frozen
+from verify.schemes.coloured_trees import Grammar
 from verify.schemes.printed.asked import Asked
 from verify.schemes.printed.judged import Judged, judge
+from verify.schemes.printed.naming import Naming
 from verify.schemes.printed.printed_numbers import PrintedNumbers
 from verify.verdict import Verdict
+
+
+class Block(Frozen):
+    """`tableau`: pasted text, in place of the others; `csv`: the name of a file."""
+
+    a: tuple[Row, ...] | None = None
+    b: Row | None = None
+    c: Row | None = None
+    embedded: Row | None = None
+    tableau: str | None = None
+    csv: str | None = None
+
+
+@dataclass(frozen=True)
+class NamedBlock:
+    """With names for its decimals."""
+
+    printed: Tableau[str]
+    embedded: Texts | None
+
+
+def block_of(given: Block, naming: Naming, name: str, folder: Path) -> NamedBlock:
+    """InputError, of the key that is wrong, where it is no tableau."""
+    given = _laid_out(given, name, folder)
+    if given.a is None or given.b is None:
+        what = "a" if given.a is None else "b"
+        raise InputError(f"{what}{name}", NOT_GIVEN, "is missing; write a and b, or tableau")
+    stages = len(given.b)
+    if not 1 <= stages <= MOST_STAGES:
+        raise InputError(f"b{name}", stages, f"has 1 to {MOST_STAGES} weights")
+    rows = square(given.a, stages, f"a{name}")
+    named = tuple(
+        naming.entries(row, f"a{name}{i + 1}_" if stages > 9 else f"a{name}{i + 1}")
+        for i, row in enumerate(rows)
+    )
+    weights = naming.entries(given.b, f"b{name}")
+    times = None if given.c is None else naming.entries(_filled(given.c, stages), f"c{name}")
+    embedded = None
+    if given.embedded is not None:
+        if len(given.embedded) != stages:
+            problem = f"has {stages} weights, as b; write 0 for one that it leaves out"
+            raise InputError(f"embedded{name}", len(given.embedded), problem)
+        embedded = naming.entries(given.embedded, f"embedded{name}")
+    return NamedBlock(Tableau(named, weights, times), embedded)
+
+
+def _filled(times: Sequence[str], stages: int) -> Sequence[str]:
+    """The times, of which the first, 0, need not be printed."""
+    return ["0", *times] if len(times) == stages - 1 else times
+
+
+def _laid_out(given: Block, name: str, folder: Path) -> Block:
+    if given.tableau is None and given.csv is None:
+        return given
+    others = [given.a, given.b, given.c, given.embedded]
+    if any(x is not None for x in others) or (given.tableau and given.csv):
+        raise InputError(
+            f"tableau{name}", NOT_GIVEN, "stands alone: leave out a, b, c and embedded"
+        )
+    label = f"tableau{name}"
+    own = pasted(given.tableau, label) if given.tableau is not None else (
+        layout_of_csv(folder, given.csv or "")
+    )  # fmt: skip
+    weights, *more = own.weights
+    embedded = _padded(more[0], len(weights)) if more else None
+    rows = tuple(own.rows)
+    return Block(a=rows, b=weights, c=own.times, embedded=embedded)
+
+
+def _padded(weights: Sequence[str], stages: int) -> tuple[str, ...]:
+    return (*weights, *["0"] * (stages - len(weights)))
+
+
+def embedded_of(own: Sequence[NamedBlock], order: int | None) -> tuple[Texts, ...] | None:
+    """The embedded weights, where every part has them. InputError where some have, or where an
+    order of them is claimed and there are none."""
+    known = tuple(x.embedded for x in own if x.embedded is not None)
+    if len(known) == len(own):
+        return known
+    if known or order is not None:
+        alone = "is missing; embedded_order is that of its weights"
+        raise InputError("embedded", NOT_GIVEN, alone if len(own) == 1 else "is missing in a part")
+    return None
+
+
+# -- claims ---------------------------------------------------------------------------------------
 
 
 class TableauEntry(TableEntry):
@@ -44,6 +133,26 @@ class TableauEntry(TableEntry):
     embedded_order: Order | None = None
     stage_order: Order | None = None
     row_sums: StrictBool | None = None
+
+
+class BlocksEntry(TableauEntry):
+    """Of parts that have a tableau each."""
+
+    @property
+    def blocks(self) -> tuple[Block, ...]:
+        """The tableaux as they are written."""
+        raise NotImplementedError
+
+
+def of_blocks(
+    entry: BlocksEntry, names: tuple[str, ...], grammar: Grammar, separable: bool = False
+) -> Iterator[TableClaim]:
+    """Each claim that the entry makes of its parts, of these names. InputError as `of_tableau`."""
+    naming = Naming(entry.numbers)
+    pairs = zip(entry.blocks, names, strict=True)
+    own = [block_of(block, naming, name, entry.folder) for block, name in pairs]
+    table = TableauTable(tuple(x.printed for x in own), grammar, naming.printed, names)
+    yield from of_tableau(entry, table, embedded_of(own, entry.embedded_order), separable)
 
 
 def of_tableau(
@@ -77,7 +186,7 @@ def _claims(
     table: TableauTable,
     embedded: Sequence[Texts] | None,
     separable: bool,
-    hints: Hints = NONE,
+    hints: Hints = NO_HINTS,
 ) -> Iterator[TableClaim]:
     sums, claimed = None, entry.row_sums if entry.row_sums is not None else table.timed
     if table.timed:
@@ -85,7 +194,7 @@ def _claims(
     if entry.order is not None:
         known = hints.kept(_judged(table, entry.order))
         yield from _of_order("order", f"order {entry.order}", table, known, entry.order)
-        if sums is not None and not (claimed and hints is NONE):  # then the row sums tell
+        if sums is not None and not (claimed and hints is NO_HINTS):  # then the row sums tell
             yield _in_time(table, entry.order, known, sums, hints)
     if claimed:
         sums = sums or best_reading(table, judge_row_sums)
@@ -93,7 +202,7 @@ def _claims(
             sums = replace(sums, misprint=wrong_time(table))
         sums = hints.kept(sums)
         of_time = sums.misprint is None or sums.misprint.name.startswith("c")
-        severity = WRONG_CLOCK if of_time else WRONG_ORDER
+        severity = Severity.WRONG_CLOCK if of_time else Severity.WRONG_ORDER
         form = (
             "Σ_j a_ij = c_i^2/2" if table.nystrom else "the times are the row sums, c_i = Σ_j a_ij"
         )
@@ -102,13 +211,15 @@ def _claims(
         order, other = entry.embedded_order, table.with_weights(embedded)
         said = f"the embedded weights have order {order}"
         found = hints.kept(_judged(other, order))
-        yield from _of_order("embedded order", said, other, found, order, WRONG_WEIGHTS)
+        yield from _of_order("embedded order", said, other, found, order, Severity.WRONG_WEIGHTS)
     if entry.symplectic:
         found = hints.kept(best_reading(table, lambda x: judge_symplectic(x, separable)))
-        yield from condition_claims("symplectic", "symplectic", "symplectic", found, NOT_SYMPLECTIC)
+        yield from condition_claims(
+            "symplectic", "symplectic", "symplectic", found, Severity.NOT_SYMPLECTIC
+        )
     if entry.symmetric:
         found = hints.kept(best_reading(table, judge_symmetric))
-        yield from condition_claims("symmetric", "symmetric", "symmetric", found, OF_WORDS)
+        yield from condition_claims("symmetric", "symmetric", "symmetric", found, Severity.OF_WORDS)
     if entry.stage_order is not None:
         yield from _stage_orders(table, entry.stage_order, hints)
 
@@ -123,7 +234,7 @@ def _of_order(
     table: TableauTable,
     found: Judged,
     order: int,
-    severity: str = WRONG_ORDER,
+    severity: Severity = Severity.WRONG_ORDER,
 ) -> Iterator[TableClaim]:
     yield from order_claims(kind, statement, found, order, _following(table, order), severity)
 
@@ -144,14 +255,14 @@ def _in_time(
         return TableClaim(kind, statement, verdict, said)
     if known.verdict is Verdict.REFUTED:
         said = prose("the order fails where f does not depend on time")
-        return TableClaim(kind, statement, Verdict.REFUTED, said, severity=WRONG_ORDER)
+        return TableClaim(kind, statement, Verdict.REFUTED, said, severity=Severity.WRONG_ORDER)
     found = hints.kept(best_reading(table, lambda x: judge_in_time(x, order)))
-    return next(order_claims(kind, statement, found, order, severity=WRONG_CLOCK))
+    return next(order_claims(kind, statement, found, order, severity=Severity.WRONG_CLOCK))
 
 
 def _stage_orders(table: TableauTable, order: int, hints: Hints) -> Iterator[TableClaim]:
     found = best_reading(table, lambda x: judge(x.printed, stage_order_asked(x, order), 1))
     found = hints.kept(found)
     yield from condition_claims(
-        "stage order", f"stage order {order}", f"of stage order {order}", found, OF_WORDS
+        "stage order", f"stage order {order}", f"of stage order {order}", found, Severity.OF_WORDS
     )

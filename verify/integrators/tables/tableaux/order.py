@@ -16,6 +16,7 @@ from verify.arithmetic.number import E
 from verify.errors import InputError
 from verify.integrators.tables.tableaux.table import TableauTable
 from verify.integrators.tables.tableaux.tree_weights import Block, dot
+from verify.integrators.tables.told import both
 from verify.schemes.coloured_trees import (
     Grammar,
     Tree,
@@ -174,16 +175,6 @@ def judge_in_time(table: TableauTable, order: int) -> Judged:
         if timed.verdict is Verdict.REFUTED or n == order:
             return timed
     return replace(timed, verdict=Verdict.UNDECIDED)
-
-
-def both(first: Asked, second: Asked) -> Asked:
-    """The conditions of both, on the same entries."""
-
-    def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
-        return [*first.residues(entries, one, bound), *second.residues(entries, one, bound)]
-
-    equations = (*first.equations, *second.equations)
-    return replace(first, equations=equations, residues=residues, shares=(), some=None)
 
 
 # -- stage order ----------------------------------------------------------------------------------

@@ -22,7 +22,7 @@ from typing import Any
 from verify.arithmetic.number import E
 from verify.integrators.tables.tableaux.order import zero_or
 from verify.integrators.tables.tableaux.table import TableauTable
-from verify.integrators.tables.tableaux.tree_weights import Block, TreeWeights, Vector
+from verify.integrators.tables.tableaux.tree_weights import Block, Tableau, TreeWeights, Vector
 from verify.schemes.coloured_trees import Grammar, Tree, all_trees, product_text, trees, vertices
 from verify.schemes.printed.asked import Asked, Named
 from verify.schemes.printed.judged import Judged, judge
@@ -56,6 +56,14 @@ def _by_two(table: TableauTable, enough: Asked, needed: Asked) -> Judged:
     return replace(found, verdict=Verdict.UNDECIDED)
 
 
+def _dense(
+    block: Block[E], one: E
+) -> tuple[tuple[tuple[E, ...], ...], tuple[E, ...], tuple[E, ...]]:
+    """a, b and c with all their zeros; of c none where there are no times."""
+    full = block.mapped(lambda x, _: zero_or(x, one))
+    return full.matrix, full.weights, full.times or ()
+
+
 def _asked(
     table: TableauTable, names: Sequence[str], gaps: Gaps, labels: tuple[str, ...] = ()
 ) -> Asked:
@@ -85,9 +93,8 @@ def _symplectic(table: TableauTable, separable: bool) -> Asked:
     same = partitioned and not separable
     told += [f"b_p{i + 1} = b_q{i + 1}" for i in stages] if same else []
 
-    def gaps(blocks: Sequence[Block[E]], one: E, _: int) -> Iterator[tuple[E, E]]:
-        a = [[[zero_or(x, one) for x in row] for row in block.matrix] for block in blocks]
-        b = [[zero_or(x, one) for x in block.weights] for block in blocks]
+    def gaps(blocks: Sequence[Block[E]], one: E, minus: int) -> Iterator[tuple[E, E]]:
+        a, b, _ = zip(*(_dense(block, one) for block in blocks), strict=True)
         for k, m, i, j in places:
             yield b[k][i] * a[m][i][j] + b[m][j] * a[k][j][i], b[k][i] * b[m][j]
         if same:
@@ -105,11 +112,8 @@ def _suris(table: TableauTable) -> Asked:
         for i, j in ((i + 1, j + 1) for i, j in places)
     ]
 
-    def gaps(blocks: Sequence[Block[E]], one: E, _: int) -> Iterator[tuple[E, E]]:
-        of_p, of_q = blocks
-        b, bar = ([zero_or(x, one) for x in block.weights] for block in (of_p, of_q))
-        c = [zero_or(x, one) for x in of_q.times or ()]
-        a = [[zero_or(x, one) for x in row] for row in of_q.matrix]
+    def gaps(blocks: Sequence[Block[E]], one: E, minus: int) -> Iterator[tuple[E, E]]:
+        (_, b, _), (a, bar, c) = (_dense(block, one) for block in blocks)
         for x, y, t in zip(bar, b, c, strict=True):
             yield x + y * t, y
         for i, j in places:  # with plus signs on either side
@@ -127,7 +131,7 @@ def _of_pairs(table: TableauTable, separable: bool) -> Asked:
     ]  # fmt: skip
     told += [f"b_p·({product_text(t, table.names)}) = b_q·the same" for _, t in swapped]
 
-    def gaps(blocks: Sequence[Block[E]], one: E, _: int) -> Iterator[tuple[E, E]]:
+    def gaps(blocks: Sequence[Block[E]], one: E, minus: int) -> Iterator[tuple[E, E]]:
         weights = TreeWeights(blocks, one, table.nystrom)
         of = weights.weight
         for u, v in pairs:
@@ -190,25 +194,22 @@ def _reversed(table: TableauTable) -> Asked:
         told += [f"b_{i + 1} = b_{last - i + 1}" for i in stages]
         told += [f"b_bar_{i + 1} + b_bar_{last - i + 1} = b_{i + 1}" for i in stages]
 
-    def gaps(blocks: Sequence[Block[E]], one: E, _: int) -> Iterator[tuple[E, E]]:
+    def gaps(blocks: Sequence[Block[E]], one: E, minus: int) -> Iterator[tuple[E, E]]:
         if table.nystrom:
             yield from _reversed_nystrom(blocks, one)
             return
         for block in blocks:
-            a = [[zero_or(x, one) for x in row] for row in block.matrix]
+            a, b, _ = _dense(block, one)
             for i in stages:
                 for j in stages:
-                    yield a[i][j] + a[last - i][last - j], zero_or(block.weights[j], one)
+                    yield a[i][j] + a[last - i][last - j], b[j]
 
     return _asked(table, told, gaps, table.labels)
 
 
 def _reversed_nystrom(blocks: Sequence[Block[E]], one: E) -> Iterator[tuple[E, E]]:
     """ā_(s+1−i, s+1−j) = b_j (1 − c_i) − b̄_j + ā_ij, and the weights of the step backwards."""
-    of_p, of_q = blocks
-    b, bar = ([zero_or(x, one) for x in block.weights] for block in (of_p, of_q))
-    c = [zero_or(x, one) for x in of_q.times or ()]
-    a = [[zero_or(x, one) for x in row] for row in of_q.matrix]
+    (_, b, _), (a, bar, c) = (_dense(block, one) for block in blocks)
     last, stages = len(b) - 1, range(len(b))
     for i in stages:
         for j in stages:
@@ -265,15 +266,13 @@ def _twice(block: Block[E], minus: int) -> Block[E]:
     b, none = block.weights, (None,) * len(block.weights)
     upper = [(*row, *none) for row in block.matrix]
     lower = [(*b, *_times(minus, row)) for row in block.matrix]
-    return Block((*upper, *lower), (*b, *_times(minus, b)))
+    return Tableau((*upper, *lower), (*b, *_times(minus, b)))
 
 
 def _twice_nystrom(blocks: Sequence[Block[E]], one: E, minus: int) -> list[Block[E]]:
     """The same; at its end q has no h p left, and b̄ is [b̄ − b, b̄]."""
-    of_p, of_q = blocks
-    none = (None,) * len(of_p.weights)
-    b, bar = ([zero_or(x, one) for x in block.weights] for block in (of_p, of_q))
-    c = tuple(zero_or(x, one) for x in of_q.times or ())
+    (_, b, _), (_, bar, c) = (_dense(block, one) for block in blocks)
+    of_q, none = blocks[1], (None,) * len(b)
     upper = [(*row, *none) for row in of_q.matrix]
     lower = [
         (*(x + y * t * minus for x, y in zip(bar, b, strict=True)), *row)
@@ -281,8 +280,8 @@ def _twice_nystrom(blocks: Sequence[Block[E]], one: E, minus: int) -> list[Block
     ]
     clock = (*c, *(one + t * minus for t in c))
     moved = tuple(x + y * minus for x, y in zip(bar, b, strict=True))
-    own = Block((*upper, *lower), (*moved, *bar), clock)
-    return [Block(own.matrix, (*b, *_times(minus, tuple(b))), clock), own]
+    own = Tableau((*upper, *lower), (*moved, *bar), clock)
+    return [Tableau(own.matrix, (*b, *_times(minus, tuple(b))), clock), own]
 
 
 def _times(sign: int, x: Vector[E]) -> Vector[E]:

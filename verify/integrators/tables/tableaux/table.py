@@ -11,22 +11,13 @@ import sympy
 
 from verify.arithmetic.number import E
 from verify.errors import InputError
-from verify.integrators.tables.tableaux.tree_weights import Block, TreeWeights
+from verify.integrators.tables.tableaux.tree_weights import Block, Tableau, TreeWeights
 from verify.schemes.coloured_trees import Grammar
 from verify.schemes.printed.printed_numbers import PrintedNumbers
 
 MOST_STAGES = 40
 Texts = tuple[str, ...]
 Entries = tuple[sympy.Expr, ...]
-
-
-@dataclass(frozen=True)
-class PrintedBlock:
-    """Of one part: rows of a_ij, weights b_i and, where they are printed, times c_i, as texts."""
-
-    rows: tuple[Texts, ...]
-    weights: Texts
-    times: Texts | None = None
 
 
 @dataclass(frozen=True)
@@ -38,7 +29,7 @@ class TableauTable:
     InputError where the blocks do not fit together.
     """
 
-    blocks: tuple[PrintedBlock, ...]
+    blocks: tuple[Tableau[str], ...]
     grammar: Grammar
     printed: PrintedNumbers
     names: tuple[str, ...] = ("",)
@@ -64,31 +55,23 @@ class TableauTable:
     @cached_property
     def exprs(self) -> tuple[Block[sympy.Expr], ...]:
         """The entries in the symbols of the rounded numbers; None where one is 0 by its form."""
-        return tuple(self._block(block) for block in self.blocks)
+        return tuple(block.mapped(self._expression) for block in self.blocks)
 
-    def _block(self, block: PrintedBlock) -> Block[sympy.Expr]:
-        def made(texts: Sequence[str], what: str) -> tuple[sympy.Expr | None, ...]:
-            found = (self.printed.entry(text, what) for text in texts)
-            return tuple(None if x == 0 else x for x in found)
-
-        times = None if block.times is None else made(block.times, "c")
-        rows = tuple(made(row, "a") for row in block.rows)
-        return Block(rows, made(block.weights, "b"), times)
+    def _expression(self, text: str, what: str) -> sympy.Expr | None:
+        made = self.printed.entry(text, what)
+        return None if made == 0 else made
 
     @cached_property
     def entries(self) -> Entries:
         """Those that are not 0, one after the other."""
-        return tuple(x for block in self.exprs for x in _flat(block) if x is not None)
+        return tuple(x for block in self.exprs for x in block.entries if x is not None)
 
     @cached_property
     def labels(self) -> Texts:
         """What the entries are called."""
         pairs = zip(self._every_label(), self.exprs, strict=True)
-        found: list[str] = []
-        for told, block in pairs:
-            own = zip(told, _flat(block), strict=False)
-            found += [label for label, x in own if x is not None]
-        return tuple(found)
+        named = ((a, x) for told, own in pairs for a, x in zip(told, own.entries, strict=False))
+        return tuple(label for label, x in named if x is not None)
 
     def _every_label(self) -> Iterator[list[str]]:
         """Those of each block, of entries that are 0, too, and of times that may not be there."""
@@ -105,29 +88,13 @@ class TableauTable:
         """The same with this number, or else entry, written so; as it is where it has none."""
         if name in self.printed.numbers:
             return replace(self, printed=self.printed.with_number(name, text))
-        blocks = []
-        for told, block in zip(self._every_label(), self.blocks, strict=True):
-            flat = [*(x for row in block.rows for x in row), *block.weights, *(block.times or ())]
-            made = [text if label == name else x for label, x in zip(told, flat, strict=False)]
-            n = self.stages
-            rows = tuple(tuple(made[n * i : n * i + n]) for i in range(n))
-            times = None if block.times is None else tuple(made[n * n + n :])
-            blocks.append(PrintedBlock(rows, tuple(made[n * n : n * n + n]), times))
-        return replace(self, blocks=tuple(blocks))
+        pairs = zip(self._every_label(), self.blocks, strict=True)
+        return replace(self, blocks=tuple(_put(x, told, name, text) for told, x in pairs))
 
     def filled(self, entries: Sequence[E]) -> list[Block[E]]:
         """The blocks with these numbers for the entries."""
         numbers = iter(entries)
-
-        def filled(own: Sequence[sympy.Expr | None]) -> tuple[E | None, ...]:
-            return tuple(None if x is None else next(numbers) for x in own)
-
-        made = []
-        for block in self.exprs:
-            rows = tuple(map(filled, block.matrix))
-            weights = filled(block.weights)
-            made.append(Block(rows, weights, None if block.times is None else filled(block.times)))
-        return made
+        return [x.mapped(lambda y, _: None if y is None else next(numbers)) for x in self.exprs]
 
     def weights(self, entries: Sequence[E], one: E) -> TreeWeights[E]:
         """What these entries put into trees."""
@@ -148,12 +115,13 @@ def _place(i: int) -> str:
     return str(i + 1) if i < 9 else f"_{i + 1}"
 
 
-def _flat(block: Block[sympy.Expr]) -> list[sympy.Expr | None]:
-    rows = [x for row in block.matrix for x in row]
-    return [*rows, *block.weights, *(block.times or ())]
+def _put(block: Tableau[str], labels: Sequence[str], name: str, text: str) -> Tableau[str]:
+    """The block with that text for the entry of that name."""
+    each = iter(labels)
+    return block.mapped(lambda x, _: text if next(each) == name else x)
 
 
-def _check(block: PrintedBlock, count: int, name: str) -> None:
+def _check(block: Tableau[str], count: int, name: str) -> None:
     what = f"b{name}"
     if not 1 <= len(block.weights) <= MOST_STAGES:
         raise InputError(what, len(block.weights), f"has 1 to {MOST_STAGES} weights")
@@ -161,8 +129,8 @@ def _check(block: PrintedBlock, count: int, name: str) -> None:
         raise InputError(
             what, len(block.weights), f"has other weights than the first part's {count}"
         )
-    if len(block.rows) != count or any(len(row) != count for row in block.rows):
-        raise InputError(f"a{name}", len(block.rows), f"has {count} rows, as many as weights")
+    if len(block.matrix) != count or any(len(row) != count for row in block.matrix):
+        raise InputError(f"a{name}", len(block.matrix), f"has {count} rows, as many as weights")
     if block.times is not None and len(block.times) != count:
         raise InputError(f"c{name}", len(block.times), f"has {count} times, as many as weights")
 

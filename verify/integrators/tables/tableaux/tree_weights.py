@@ -7,24 +7,40 @@ Q_i = q + c_i h p + h² Σ ā_ij k_j it is c_i as a leaf, and Σ ā_ij Φ_j with
 Entries that are 0 by their form are None, so that what they would be multiplied with is left out.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Generic
+from typing import Generic, TypeAlias, TypeVar
 
 from verify.arithmetic.number import E
 from verify.schemes.coloured_trees import TIME, Tree, density
 
-Vector = tuple[E | None, ...]
-Matrix = tuple[Vector[E], ...]
+S = TypeVar("S")
+T = TypeVar("T")
+Vector: TypeAlias = tuple[E | None, ...]
 
 
 @dataclass(frozen=True)
-class Block(Generic[E]):
+class Tableau(Generic[T]):
     """Of one colour: a_ij, b_i, and the stages' times c_i, None where there are none."""
 
-    matrix: Matrix[E]
-    weights: Vector[E]
-    times: Vector[E] | None = None
+    matrix: tuple[tuple[T, ...], ...]
+    weights: tuple[T, ...]
+    times: tuple[T, ...] | None = None
+
+    @property
+    def entries(self) -> list[T]:
+        """One after the other: rows, weights, and times that are there."""
+        return [*(x for row in self.matrix for x in row), *self.weights, *(self.times or ())]
+
+    def mapped(self, made: Callable[[T, str], S]) -> "Tableau[S]":
+        """The same with what is made of each entry, of "a", "b" or "c", in that order."""
+        rows = tuple(tuple(made(x, "a") for x in row) for row in self.matrix)
+        weights = tuple(made(x, "b") for x in self.weights)
+        times = None if self.times is None else tuple(made(x, "c") for x in self.times)
+        return Tableau(rows, weights, times)
+
+
+Block: TypeAlias = Tableau[E | None]
 
 
 class TreeWeights(Generic[E]):
