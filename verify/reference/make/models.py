@@ -148,6 +148,11 @@ class Data(Frozen):
     ]
 
     @property
+    def degrees(self) -> int:
+        """n, the degrees of freedom."""
+        return 1
+
+    @property
     def timed(self) -> bool:
         """Whether H depends on time."""
         return any(isinstance(of, _FromTime) for of in (*self.runs, *self.flow))
