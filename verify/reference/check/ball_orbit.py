@@ -15,15 +15,14 @@ from verify.reference.check.textbook import (
     identity,
     product,
 )
-from verify.reference.make.models import Run
-from verify.reference.make.models_in_degrees import RunInDegrees
+from verify.reference.make.models_in_degrees import AnyRun
 
 
 class TooWideError(Exception):
     """A ball too wide to tell."""
 
 
-def orbit_of(known: Field, step: Step, run: Run | RunInDegrees) -> "Orbit":
+def orbit_of(known: Field, step: Step, run: AnyRun) -> "Orbit":
     """The run's, at its start."""
     return (_OrbitOfPlane if known.degrees == 1 else _OrbitOfSeveral)(known, step, run)
 
@@ -31,7 +30,7 @@ def orbit_of(known: Field, step: Step, run: Run | RunInDegrees) -> "Orbit":
 class Orbit:
     """A scheme's orbit in balls, with the product of det J over its steps."""
 
-    def __init__(self, known: Field, step: Step, run: Run | RunInDegrees) -> None:
+    def __init__(self, known: Field, step: Step, run: AnyRun) -> None:
         start, self._size = run.start, Fraction(run.step_size)
         self.known, self.step, self.h = known, step, flint.arb(number(self._size))
         self.z: Vector = [flint.arb(number(start[name])) for name in known.names]
@@ -72,7 +71,7 @@ class Orbit:
 class _OrbitOfPlane(Orbit):
     """One with the sum of the squares of ΔJ."""
 
-    def __init__(self, known: Field, step: Step, run: Run | RunInDegrees) -> None:
+    def __init__(self, known: Field, step: Step, run: AnyRun) -> None:
         super().__init__(known, step, run)
         self.squares = flint.arb(0)
 
@@ -96,7 +95,7 @@ def _delta_j(jacobian: Matrix) -> Number:
 class _OrbitOfSeveral(Orbit):
     """One with the Jacobian of all steps, and the greatest |entry of S| of any of them."""
 
-    def __init__(self, known: Field, step: Step, run: Run | RunInDegrees) -> None:
+    def __init__(self, known: Field, step: Step, run: AnyRun) -> None:
         super().__init__(known, step, run)
         self.largest, self.matrix = flint.arb(0), identity(len(known.names))
 

@@ -33,6 +33,7 @@ from verify.reference.check.recompute import recomputed
 from verify.reference.make.models import DATA_FORMAT, MANIFEST_FORMAT, Data, Manifest
 from verify.reference.make.models_in_degrees import (
     DATA_IN_DEGREES_FORMAT,
+    AnyData,
     DataInDegrees,
     is_of_degrees,
 )
@@ -41,7 +42,6 @@ from verify.reference.make.scene_plan import size_of
 from verify.reference.make.writing import (
     MANIFEST,
     SCHEMAS,
-    AnyData,
     digest,
     json_text,
     listed,

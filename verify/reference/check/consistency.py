@@ -27,11 +27,18 @@ from verify.reference.make.columns import (
     values_of,
 )
 from verify.reference.make.correct_rounding import correctly_rounded
-from verify.reference.make.models import Flow, FlowInTime, Proof, Run, RunInTime
-from verify.reference.make.models_in_degrees import FlowInDegrees, ProofInDegrees, RunInDegrees
+from verify.reference.make.models import FlowInTime, Proof, RunInTime
+from verify.reference.make.models_in_degrees import (
+    AnyData,
+    AnyFlow,
+    AnyRun,
+    FlowInDegrees,
+    ProofInDegrees,
+    RunInDegrees,
+)
 from verify.reference.make.reading import rows_of
 from verify.reference.make.scene_plan import orbit_tasks, proof_tasks, solution_tasks
-from verify.reference.make.writing import AnyData, csv_text
+from verify.reference.make.writing import csv_text
 from verify.scenes.results.reference import Rounded
 from verify.scenes.scene import Scene
 
@@ -93,7 +100,7 @@ def _inputs(data: AnyData, scene: Scene, file: Place) -> None:
                 break
 
 
-def _given(of: Run | Flow | RunInDegrees | FlowInDegrees) -> tuple[Any, ...]:
+def _given(of: AnyRun | AnyFlow) -> tuple[Any, ...]:
     """Its inputs, in the order of a task's."""
     if isinstance(of, RunInDegrees | FlowInDegrees):
         return of.step_size, of.q, of.p, of.t0, of.digits

@@ -34,9 +34,7 @@ from verify.reference.make.columns import (
     AnyOrbitPoint,
     values_of,
 )
-from verify.reference.make.models import Flow, Run
-from verify.reference.make.models_in_degrees import FlowInDegrees, RunInDegrees
-from verify.reference.make.writing import AnyData
+from verify.reference.make.models_in_degrees import AnyData, AnyFlow, AnyRun
 from verify.scenes.results.reference import Rounded
 
 _FIRST_BITS, _MORE_PER_DIGIT, _DOUBLINGS = 320, 4, 5
@@ -62,7 +60,7 @@ def recomputed(data: AnyData, file: str, kind: str, index: int) -> Findings:
     return found
 
 
-def _size(of: Run | Flow | RunInDegrees | FlowInDegrees) -> Fraction:
+def _size(of: AnyRun | AnyFlow) -> Fraction:
     """The greatest |coordinate| at the start."""
     return max(abs(x) for name, x in of.start.items() if name != "t")
 
@@ -70,7 +68,7 @@ def _size(of: Run | Flow | RunInDegrees | FlowInDegrees) -> Fraction:
 # -- a scheme's orbit -----------------------------------------------------------------------------
 
 
-def _run(known: Field, run: Run | RunInDegrees, file: str, found: Findings) -> None:
+def _run(known: Field, run: AnyRun, file: str, found: Findings) -> None:
     step = step_of(run.scheme, known)
     bits = _FIRST_BITS + _MORE_PER_DIGIT * run.digits
     for attempt in range(_DOUBLINGS):
@@ -83,7 +81,7 @@ def _run(known: Field, run: Run | RunInDegrees, file: str, found: Findings) -> N
     last.is_left_out(f"{bits << (_DOUBLINGS - 1)} bits do not tell")
 
 
-def _orbit(known: Field, step: Step, run: Run | RunInDegrees, file: Place, *, final: bool) -> None:
+def _orbit(known: Field, step: Step, run: AnyRun, file: Place, *, final: bool) -> None:
     """Every row of a run; TooWideError where a ball does not tell. `final`: the last try."""
     orbit = orbit_of(known, step, run)
     size = _size(run)
@@ -181,7 +179,7 @@ def _compare_cell(
 # -- the exact flow -------------------------------------------------------------------------------
 
 
-def _flow(known: Field, flow: Flow | FlowInDegrees, file: str, found: Findings) -> None:
+def _flow(known: Field, flow: AnyFlow, file: str, found: Findings) -> None:
     rows = [row for row in flow.rows if row.status != "not followed"]
     for row in flow.rows:
         if row.status == "not followed":
@@ -203,9 +201,7 @@ def _flow(known: Field, flow: Flow | FlowInDegrees, file: str, found: Findings) 
     last.is_left_out("more digits do not tell")
 
 
-def _reached(
-    known: Field, flow: Flow | FlowInDegrees, row: AnyFlowPoint, state: Vector, at: Place
-) -> None:
+def _reached(known: Field, flow: AnyFlow, row: AnyFlowPoint, state: Vector, at: Place) -> None:
     """A row whose time was reached."""
     at.findings.recomputed += 1
     if row.status == "blows up":
@@ -219,7 +215,7 @@ def _reached(
 
 def _not_reached(
     known: Field,
-    flow: Flow | FlowInDegrees,
+    flow: AnyFlow,
     row: AnyFlowPoint,
     why: Exception | None,
     at: Place,

@@ -16,8 +16,7 @@ from verify.reference.check.taylor import Expansion, Number, number
 from verify.reference.check.textbook import Field, Step, defect, flow_series, step_of
 from verify.reference.make.columns import state_columns
 from verify.reference.make.models import Proof
-from verify.reference.make.models_in_degrees import ProofInDegrees
-from verify.reference.make.writing import AnyData
+from verify.reference.make.models_in_degrees import AnyData, AnyProof
 
 Point = Mapping[str, Fraction]
 Powers = Mapping[str, list[Number]]  # coefficients of h⁰ … by an entry's or a coordinate's name
@@ -31,7 +30,7 @@ _MOVES = (  # factors of p and of q, and how much later
 _AREA = ""  # the name of the only entry of S in the plane
 
 
-def proof_again(known: Field, data: AnyData, proof: Proof | ProofInDegrees, file: Place) -> None:
+def proof_again(known: Field, data: AnyData, proof: AnyProof, file: Place) -> None:
     """The powers of h in S and in the map, at points near the initial values.
 
     That a coefficient vanishes for every z is not seen so, but that it does not is.
@@ -53,7 +52,7 @@ def proof_again(known: Field, data: AnyData, proof: Proof | ProofInDegrees, file
 class _Looking:
     """One proof's coefficients at one point after another."""
 
-    def __init__(self, known: Field, proof: Proof | ProofInDegrees, row: Place, most: int) -> None:
+    def __init__(self, known: Field, proof: AnyProof, row: Place, most: int) -> None:
         self.known, self.proof, self.row, self.most = known, proof, row, most
         self.step = step_of(proof.scheme, known)
         entries = {_AREA: proof.leading} if isinstance(proof, Proof) else proof.leading

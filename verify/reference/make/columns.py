@@ -7,6 +7,7 @@ H, and S and W in place of ΔJ.
 from collections.abc import Sequence
 from itertools import count
 
+from verify.hamiltonians.coordinates import coordinates_in
 from verify.reference.make.cells import Row
 from verify.scenes.results.reference import FlowPoint, OrbitPoint, Rounded
 from verify.scenes.results.reference_in_degrees import FlowPointInDegrees, OrbitPointInDegrees
@@ -28,9 +29,7 @@ def start_columns(degrees: int) -> Row:
 
 def state_columns(degrees: int) -> Row:
     """The names of those that hold the state: p first."""
-    if degrees == 1:
-        return "p", "q"
-    return tuple(f"{letter}{k}" for letter in "pq" for k in range(1, degrees + 1))
+    return coordinates_in(degrees)
 
 
 def orbit_columns(degrees: int) -> Row:

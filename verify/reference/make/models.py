@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field
 
 from verify.scenes.frozen import Frozen
-from verify.scenes.results.reference import FlowPoint, OrbitPoint, Rounded
+from verify.scenes.results.reference import FlowPoint, OrbitPoint
 from verify.verdict import Verdict
 
 DataFormat = Literal["areaproof reference data 1"]
@@ -18,17 +18,6 @@ _EXACT = r"^-?[0-9]+(\.[0-9]+|/[0-9]+)?$"
 Exact = Annotated[str, Field(pattern=_EXACT)]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=120)]
 Digest = Annotated[str, Field(pattern=_SHA256)]
-
-
-VALUES = ("p", "q", "delta_j", "mse", "lambda")
-
-
-def values_of(row: OrbitPoint | FlowPoint) -> dict[str, Rounded | None]:
-    """The numbers of a row by the names of their columns; None for one that there is not."""
-    if isinstance(row, FlowPoint):
-        return {"p": row.p, "q": row.q}
-    numbers = row.p, row.q, row.delta_j, row.mse, row.lam
-    return dict(zip(VALUES, numbers, strict=True))
 
 
 class OfScheme(Frozen):

@@ -3,38 +3,20 @@
 As `verify.reference.make.models` in the plane, with q and p as lists, and S in place of ΔJ.
 """
 
-from collections.abc import Sequence
 from fractions import Fraction
 from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
-from verify.reference.make.models import Exact, Name, OfScheme
+from verify.reference.make.models import Data, Exact, Flow, Name, OfScheme, Proof, Run
 from verify.scenes.frozen import Frozen
-from verify.scenes.results.reference import Rounded
 from verify.scenes.results.reference_in_degrees import FlowPointInDegrees, OrbitPointInDegrees
 from verify.verdict import Verdict
 
 DataInDegreesFormat = Literal["areaproof reference data in degrees 1"]
 DATA_IN_DEGREES_FORMAT: DataInDegreesFormat = "areaproof reference data in degrees 1"
-OF_ORBIT = ("energy", "symplectic_defect_max", "symplectic_defect", "lambda")
-AFTER_A_STEP = ("symplectic_defect_max",)  # what there is not for N = 0
-MAY_LACK = ("energy",)
 _HEAD = 100  # bytes of a file, in which its format stands: a key that comes first
 _List = Annotated[tuple[Exact, ...], Field(min_length=2)]
-
-
-def values_in_degrees(
-    row: OrbitPointInDegrees | FlowPointInDegrees, degrees: int
-) -> dict[str, Rounded | None]:
-    """The numbers of a row by the names of their columns; None for one that there is not."""
-    found: dict[str, Rounded | None] = {}
-    for letter, own in (("p", row.p), ("q", row.q)):
-        each: Sequence[Rounded | None] = own or (None,) * degrees
-        found |= {f"{letter}{k}": x for k, x in enumerate(each, start=1)}
-    if isinstance(row, OrbitPointInDegrees):
-        found |= {name: getattr(row, name) for name in OF_ORBIT[:-1]} | {"lambda": row.lam}
-    return found
 
 
 def is_of_degrees(content: bytes) -> bool:
@@ -158,3 +140,9 @@ class DataInDegrees(Frozen):
         """The rows of all tables."""
         rows = [len(run.rows) for run in self.runs] + [len(flow.rows) for flow in self.flow]
         return len(self.proofs) + sum(rows)
+
+
+AnyProof = Proof | ProofInDegrees
+AnyRun = Run | RunInDegrees
+AnyFlow = Flow | FlowInDegrees
+AnyData = Data | DataInDegrees
