@@ -6,15 +6,7 @@ from fractions import Fraction
 import flint
 
 from verify.reference.check.taylor import Number, number
-from verify.reference.check.textbook import (
-    Field,
-    Matrix,
-    Step,
-    Vector,
-    defect,
-    identity,
-    product,
-)
+from verify.reference.check.textbook import Field, Matrix, Step, Vector, defect, identity, product
 from verify.reference.make.models_in_degrees import AnyRun
 
 

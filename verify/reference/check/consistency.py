@@ -27,15 +27,8 @@ from verify.reference.make.columns import (
     values_of,
 )
 from verify.reference.make.correct_rounding import correctly_rounded
-from verify.reference.make.models import FlowInTime, Proof, RunInTime
-from verify.reference.make.models_in_degrees import (
-    AnyData,
-    AnyFlow,
-    AnyRun,
-    FlowInDegrees,
-    ProofInDegrees,
-    RunInDegrees,
-)
+from verify.reference.make.models import Proof
+from verify.reference.make.models_in_degrees import AnyData, AnyFlow, AnyRun, ProofInDegrees
 from verify.reference.make.reading import rows_of
 from verify.reference.make.scene_plan import orbit_tasks, proof_tasks, solution_tasks
 from verify.reference.make.writing import csv_text
@@ -101,11 +94,9 @@ def _inputs(data: AnyData, scene: Scene, file: Place) -> None:
 
 
 def _given(of: AnyRun | AnyFlow) -> tuple[Any, ...]:
-    """Its inputs, in the order of a task's."""
-    if isinstance(of, RunInDegrees | FlowInDegrees):
-        return of.step_size, of.q, of.p, of.t0, of.digits
-    times = (of.t0,) if isinstance(of, RunInTime | FlowInTime) else ()
-    return of.step_size, of.q, of.p, *times, of.digits
+    """Its inputs, in the order of a task's; in the plane t0 only of an H that depends on time."""
+    names = ("step_size", "q", "p", "t0", "digits")
+    return tuple(getattr(of, name) for name in names if hasattr(of, name))
 
 
 def _area_proof(data: AnyData, proof: Proof, row: Place) -> None:

@@ -21,19 +21,8 @@ from verify.reference.check.exact_flow import BlowsUpError, states_at
 from verify.reference.check.recompute_proof import proof_again, shown
 from verify.reference.check.tape import NotReadError
 from verify.reference.check.taylor import Number, number
-from verify.reference.check.textbook import (
-    Field,
-    Step,
-    UnknownSchemeError,
-    Vector,
-    step_of,
-)
-from verify.reference.make.columns import (
-    AFTER_A_STEP,
-    AnyFlowPoint,
-    AnyOrbitPoint,
-    values_of,
-)
+from verify.reference.check.textbook import Field, Step, UnknownSchemeError, Vector, step_of
+from verify.reference.make.columns import AFTER_A_STEP, AnyFlowPoint, AnyOrbitPoint, values_of
 from verify.reference.make.models_in_degrees import AnyData, AnyFlow, AnyRun
 from verify.scenes.results.reference import Rounded
 

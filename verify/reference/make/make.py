@@ -12,18 +12,8 @@ from verify.errors import InputError
 from verify.execution.machine import versions
 from verify.files import MOST_BYTES, read_text, write_atomically
 from verify.formats import names_format
-from verify.reference.make.models import (
-    DATA_FORMAT,
-    MANIFEST_FORMAT,
-    Data,
-    Manifest,
-    SceneFile,
-)
-from verify.reference.make.models_in_degrees import (
-    DATA_IN_DEGREES_FORMAT,
-    AnyData,
-    DataInDegrees,
-)
+from verify.reference.make.models import DATA_FORMAT, MANIFEST_FORMAT, Data, Manifest, SceneFile
+from verify.reference.make.models_in_degrees import DATA_IN_DEGREES_FORMAT, AnyData, DataInDegrees
 from verify.reference.make.scene_plan import orbit_tasks, proof_tasks, size_of, solution_tasks
 from verify.reference.make.writing import (
     MANIFEST,

@@ -11,10 +11,7 @@ from verify.hamiltonians.start import point_of
 from verify.kernels.orbit import Orbit
 from verify.scenes.frozen import Frozen
 from verify.scenes.results.reference import OrbitResult, SolutionResult
-from verify.scenes.results.reference_in_degrees import (
-    OrbitInDegreesResult,
-    SolutionInDegreesResult,
-)
+from verify.scenes.results.reference_in_degrees import OrbitInDegreesResult, SolutionInDegreesResult
 from verify.scenes.values import Coordinates, Number, StepSize
 
 ROW_COST = 1_000_000  # of a row of reference data, however few its steps

@@ -10,12 +10,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from verify.reference.make.cells import Row, cell
-from verify.reference.make.columns import (
-    orbit_columns,
-    start_columns,
-    state_columns,
-    values_of,
-)
+from verify.reference.make.columns import orbit_columns, start_columns, state_columns, values_of
 from verify.reference.make.models import Data, ListedFile, Manifest, Proof
 from verify.reference.make.models_in_degrees import (
     AnyData,
