@@ -131,8 +131,9 @@ def _rows(
             *(cell(getattr(of, name)) for name in (*time, "digits")),
         ]
         for row in of.rows:
-            values = values_of(row, data.degrees).values()
-            cells = (x for v in values for x in ((v.value, v.radius) if v else ("", "")))
+            values = values_of(row, data.degrees)
+            known = (values.get(name) for name in numbers)
+            cells = (x for v in known for x in ((v.value, v.radius) if v else ("", "")))
             yield (*inputs, *(cell(getattr(row, name)) for name in told), *cells)
 
 
