@@ -81,7 +81,7 @@ class _OrbitOfPlane(Orbit):
 
 def _delta_j(jacobian: Matrix) -> Number:
     a, b, c, d = jacobian
-    return a * d - b * c - 1
+    return flint.arb(a * d - b * c - 1)  # of a linear H they are whole numbers
 
 
 class _OrbitOfSeveral(Orbit):
