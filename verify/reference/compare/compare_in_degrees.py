@@ -19,8 +19,8 @@ from verify.reference.compare.compare import Compared, Explained, printings
 from verify.reference.compare.findings import Named, Of, RunFindings, Verdict
 from verify.reference.compare.published_in_degrees import Bounded, RunOfDegrees
 from verify.reference.compare.rows import Row, Theirs
-from verify.reference.make.models_in_degrees import values_in_degrees
-from verify.reference.make.points_in_degrees import OrbitInDegrees, orbit_points
+from verify.reference.make.columns import values_of
+from verify.reference.make.orbit_points import OrbitInDegrees, orbit_points
 
 _DIGITS = 25  # of a run with a mistake
 _MOST_STEPS = 20_000  # of it
@@ -182,7 +182,7 @@ def _late(run: RunOfDegrees, late: int) -> Reading:
         if step + late < 0 or step > _MOST_STEPS:
             return None
         (point,) = orbit_points(orbit, (step + late,), _DIGITS)
-        known = values_in_degrees(point, half).items()
+        known = values_of(point, half).items()
         return {name: (Fraction(x.value), Fraction(x.radius)) for name, x in known if x}
 
     return read

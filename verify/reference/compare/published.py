@@ -18,7 +18,8 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.orbit import Orbit
 from verify.kernels.step.tangent_map import nearest_double
 from verify.reference.compare.published_in_degrees import check_exponents, is_file_of_degrees
-from verify.reference.make.models import DATA_FORMAT, Data, Run, values_of
+from verify.reference.make.columns import values_of
+from verify.reference.make.models import DATA_FORMAT, Data, Run
 from verify.reference.make.reading import json_of
 from verify.reference.make.writing import MANIFEST, SCHEMAS
 from verify.scenes.results.reference import OrbitPoint
@@ -148,5 +149,5 @@ def _runs(folder: Path, name: str) -> Iterator[PublishedRun]:
 def _check_exponents(run: Run, name: str) -> None:
     """InputError for an exponent whose power of ten would fill the memory."""
     for row in run.rows:
-        for known in values_of(row).values():
+        for known in values_of(row, 1).values():
             check_exponents(known, name)

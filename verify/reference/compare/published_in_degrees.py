@@ -15,12 +15,12 @@ from verify.formats import check_format
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import point_of
 from verify.kernels.step.tangent_map import nearest_double
+from verify.reference.make.columns import values_of
 from verify.reference.make.models_in_degrees import (
     DATA_IN_DEGREES_FORMAT,
     DataInDegrees,
     RunInDegrees,
     is_of_degrees,
-    values_in_degrees,
 )
 from verify.reference.make.reading import json_of
 from verify.scenes.results.reference import Rounded
@@ -69,7 +69,7 @@ class RunOfDegrees:
     def numbers(self, step: int) -> dict[str, Bounded]:
         """Those of a row, by their columns' names."""
         degrees = self.hamiltonian.degrees
-        known = values_in_degrees(self.rows[step], degrees).items()
+        known = values_of(self.rows[step], degrees).items()
         return {name: (Fraction(x.value), Fraction(x.radius)) for name, x in known if x}
 
 
@@ -121,6 +121,6 @@ def _runs(path: Path) -> Iterator[RunOfDegrees]:
         for text in (run.step_size, run.t0 or "0"):
             rational(text, path.name)
         for row in run.rows:
-            for known in values_in_degrees(row, hamiltonian.degrees).values():
+            for known in values_of(row, hamiltonian.degrees).values():
                 check_exponents(known, path.name)
         yield RunOfDegrees(data.name, hamiltonian, run)

@@ -11,7 +11,7 @@ from functools import lru_cache
 from verify.arithmetic.number_system import UnsupportedError
 from verify.errors import InputError
 from verify.kernels.orbit import Orbit
-from verify.reference.make.models import values_of
+from verify.reference.make.columns import values_of
 from verify.reference.make.orbit_points import orbit_points
 from verify.scenes.results.reference import OrbitPoint
 
@@ -21,7 +21,7 @@ Bounded = tuple[Fraction, Fraction]  # a value and its radius
 
 def numbers_of(point: OrbitPoint) -> dict[str, Bounded]:
     """The numbers that a point has, by their columns' names."""
-    known = values_of(point).items()
+    known = values_of(point, 1).items()
     return {name: (Fraction(x.value), Fraction(x.radius)) for name, x in known if x}
 
 
@@ -71,7 +71,7 @@ def _run_at(orbit: Orbit, step: int, digits: int) -> OrbitPoint | None:
     if step > _MOST_STEPS:
         return None
     try:
-        point = orbit_points(orbit, steps=(step,), digits=digits).points[0]
+        (point,) = orbit_points(orbit, steps=(step,), digits=digits)
     except (InputError, UnsupportedError, ArithmeticError):
         return None
     return point if point.status == "finished" else None

@@ -22,10 +22,11 @@ from verify.reference.compare.rows import (
     step_of,
 )
 from verify.reference.compare.table import Table, opened
-from verify.reference.make.models import VALUES
+from verify.reference.make.columns import orbit_columns, state_columns
 
 _MOST_KNOWN = 10_000  # of the inputs' texts that are remembered
 _BEGINS = "t0"  # of an H in time; a scene has one, so that it need not be told
+VALUES = (*state_columns(1), *orbit_columns(1))
 COLUMNS = ("scene", *KEYS, _BEGINS, *COUNTED, *VALUES)
 
 

@@ -24,8 +24,7 @@ from verify.reference.compare.rows import (
     step_of,
 )
 from verify.reference.compare.table import Table, opened
-from verify.reference.make.models_in_degrees import OF_ORBIT
-from verify.reference.make.tables_in_degrees import start_columns, state_columns
+from verify.reference.make.columns import orbit_columns, start_columns, state_columns
 
 _STATE = re.compile(r"[pq][1-9][0-9]?")
 
@@ -47,7 +46,7 @@ def read_in_degrees(
     InputError where it cannot be read, or does not tell which run a row is of.
     """
     degrees = max(run.hamiltonian.degrees for run in ours)
-    values = (*state_columns(degrees), *OF_ORBIT)
+    values = (*state_columns(degrees), *orbit_columns(degrees))
     keys = ("scene", "scheme", "step_size", *start_columns(degrees), "t0")
     found, said = Theirs[RunOfDegrees](), _split(given)
     with opened(path) as lines:

@@ -74,6 +74,26 @@ def test_all_that_is_made_is_found_again(name: str) -> None:
     assert bool(left) is (name == "leaves")
 
 
+@pytest.mark.parametrize(
+    ("formula", "q", "p"), [("p + 2*q", "0.3", "0.4"), ("p1 + 2*q2", '["0.3", 1]', '["0.4", 0]')]
+)
+def test_a_linear_h_whose_jacobians_are_whole_numbers_is_found_again(
+    formula: str, q: str, p: str
+) -> None:
+    toml = f"""
+hamiltonian = "{formula}"
+schemes = ["lie1", "rk4", "stormer-verlet"]
+[[reference]]
+step_sizes = ["1/8"]
+initial_values = [{{ q = {q}, p = {p} }}]
+steps = [0, 1, 12]
+"""
+    of = made({"linear": toml})[0]
+    findings = [again(of, kind, index) for kind, index in units(of)]
+    assert not any(each.differences or each.not_recomputed for each in findings)
+    assert sum(each.recomputed for each in findings) == of.count
+
+
 def cells(of: Data, kind: str) -> Iterator[list[Any]]:
     """The places of all printed numbers that are not 0."""
     raw = of.model_dump(mode="json", by_alias=True)
