@@ -14,12 +14,10 @@ import pytest
 from tests.helpers.constructed.reference import made, put, repaired
 from verify.errors import InputError
 from verify.reference.check.check import Checked, check
-from verify.reference.compare.compare import Compared
-from verify.reference.compare.compare_in_degrees import compare_in_degrees
+from verify.reference.compare.compare import Compared, compare
 from verify.reference.compare.findings import Verdict
 from verify.reference.compare.published import load
-from verify.reference.compare.published_in_degrees import load_in_degrees
-from verify.reference.compare.submitted_in_degrees import has_degrees, read_in_degrees
+from verify.reference.compare.submitted import is_of_degrees, read
 from verify.reference.make.writing import OF_DEGREES
 from verify.scenes.scene import scene_from_toml
 
@@ -174,7 +172,8 @@ def test_a_folder_of_both_kinds_is_checked_and_read(folder: Path, tmp_path: Path
     put(tmp_path / "set", made(both), both)
     assert not look(tmp_path / "set", share=0.2).differences
     assert [run.scene for run in load(tmp_path / "set", None).runs()] == ["mine"]
-    assert {run.scene for run in load_in_degrees(tmp_path / "set", None)} == {"heiles"}
+    several = load(tmp_path / "set", None, planar=False)
+    assert {run.scene for run in several.runs()} == {"heiles"}
     path = tmp_path / "set" / "mine.json"
     path.write_bytes((folder / "heiles.json").read_bytes())
     repaired(tmp_path / "set", "mine.json")
@@ -216,9 +215,8 @@ def program(path: Path, *, columns: str = "p1,p2,q1,q2", sign: int = 1, late: in
 
 
 def compared(folder: Path, table: Path, **given: str) -> Compared:
-    ours = load_in_degrees(folder, "heiles")
-    theirs = read_in_degrees(table, ours, {"scheme": "lie2", **given}, {})
-    return compare_in_degrees(ours, theirs)
+    ours = load(folder, "heiles", planar=False)
+    return compare(ours, read(table, ours, {"scheme": "lie2", **given}, {}))
 
 
 def test_a_right_program_differs_by_rounding_alone(folder: Path, tmp_path: Path) -> None:
@@ -253,14 +251,16 @@ def test_a_mistake_is_named(
 
 def test_tables_that_cannot_be_taken_are_refused_in_one_line(folder: Path, tmp_path: Path) -> None:
     table = program(tmp_path / "mine.csv")
-    ours = load_in_degrees(folder, None)
-    assert has_degrees(table, {})
+    ours = load(folder, None, planar=False)
+    assert is_of_degrees(table, {})
     with pytest.raises(InputError, match=r"--scheme.*is wanted"):
-        read_in_degrees(table, [x for x in ours if x.scene == "heiles"], {}, {})
+        read(table, ours, {"scene": "heiles"}, {})
+    with pytest.raises(InputError, match=r"--scene.*is wanted: 2 have such runs: heiles, three"):
+        read(table, ours, {}, {})
     with pytest.raises(InputError, match="has no row of these data"):
         compared(folder, table, step_size="0.07")
     with pytest.raises(InputError, match=r"scene=none: unknown; .*allowed: "):
-        load_in_degrees(folder, "none")
+        read(table, ours, {"scene": "none"}, {})
     table.write_text("step,p1,q1\n1.5,0,0\n")
     with pytest.raises(InputError, match="which is not a whole number"):
         compared(folder, table)
@@ -290,5 +290,5 @@ def test_hostile_data_are_refused_in_one_line(
     change(data["runs"][0])
     (tmp_path / "heiles.json").write_text(json.dumps(data))
     with pytest.raises(InputError, match=problem) as found:
-        load_in_degrees(tmp_path, None)
+        load(tmp_path, None, planar=False)
     assert "\n" not in str(found.value)

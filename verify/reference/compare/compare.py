@@ -15,7 +15,7 @@ from verify.reference.compare.mistakes import of_states
 from verify.reference.compare.published import Published, PublishedRun
 from verify.reference.compare.rows import Row, Theirs
 from verify.reference.compare.scatter import Scatters
-from verify.reference.compare.setting import Points, Setting
+from verify.reference.compare.setting import AnyOrbit, Points, Setting
 from verify.scenes.results.separation import SeparationResult
 from verify.studies.separation.separate import separate
 
@@ -85,7 +85,7 @@ class Compared:
 
 def compare(
     ours: Published,
-    theirs: Theirs[PublishedRun],
+    theirs: Theirs,
     done: Callable[[int, int], None] = lambda *_: None,
 ) -> Compared:
     """Everything of the table that the reference data have; `done` hears of runs, of how many.
@@ -121,32 +121,34 @@ def compare(
 
 
 # Whether its run is never lost; how far, when, where.
-_Off = tuple[bool, Fraction, int, PublishedRun]
+_Off = tuple[bool, Fraction, int, str, Orbit]
 
 
 def _off_by_rounding(judge: Judge, judged: RunFindings) -> Iterator[_Off]:
     of = judged.columns.get("lambda")
     if of is None or of.verdict not in (Verdict.ROUNDING, Verdict.PERHAPS):
         return
+    orbit = judge.ours.orbit
+    if not isinstance(orbit, Orbit):  # there it takes long
+        return
     last = _MOST_SEPARATED if judged.lost_from is None else judged.lost_from - 1
     for (step, name), cell in judge.cells.items():
         if name != "lambda" or not 0 < step <= min(last, _MOST_SEPARATED) or cell.theirs is None:
             continue
         if cell.apart:
-            yield judged.lost_from is None, cell.apart, step, judge.ours
+            yield judged.lost_from is None, cell.apart, step, judged.label, orbit
 
 
 def _separated(off: list[_Off]) -> Separated | None:
     """Of runs that are lost only where there is no other: their separation takes long."""
     if not off:
         return None
-    _, apart, step, run = max(off, key=lambda x: x[:2])
-    orbit = run.orbit
+    _, apart, step, label, orbit = max(off, key=lambda x: x[:2])
     result = separate(
         orbit.hamiltonian, orbit.scheme, q=orbit.q, p=orbit.p,
         step_size=orbit.step_size, steps=step, t0=orbit.t0, digits=_SEPARATED_DIGITS,
     )  # fmt: skip
-    return Separated(run.label, step, apart, result) if result.plain else None
+    return Separated(label, step, apart, result) if result.plain else None
 
 
 def printings(rows: Sequence[Row]) -> dict[str, Printing]:
@@ -173,7 +175,9 @@ class _Search:
         return len(self.known) > before
 
 
-def _orbits(runs: Iterable[PublishedRun], points: Points, names: Container[str]) -> Iterator[Orbit]:
+def _orbits(
+    runs: Iterable[PublishedRun], points: Points, names: Container[str]
+) -> Iterator[AnyOrbit]:
     """What runs with one of these mistakes would be."""
     for run in runs:
         for mistake in of_states(Setting(run.orbit, points)):

@@ -1,16 +1,18 @@
 """Somebody's table of numbers → the rows that the reference data have, too.
 
-Only what is compared is kept, so that memory does not grow with the file (see
+Its columns are those of the reference data's runs, in the plane or in n degrees of freedom. Only
+what is compared is kept, so that memory does not grow with the file (see
 `verify.reference.compare.table`).
 """
 
+import re
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from pathlib import Path
 
 from verify.errors import NOT_GIVEN, InputError
 from verify.kernels.step.tangent_map import nearest_double
-from verify.reference.compare.published import KEYS, Published, PublishedRun
+from verify.reference.compare.published import Published, PublishedRun
 from verify.reference.compare.rows import (
     COUNTED,
     Row,
@@ -22,26 +24,31 @@ from verify.reference.compare.rows import (
     step_of,
 )
 from verify.reference.compare.table import Table, opened
-from verify.reference.make.models import VALUES
 
 _MOST_KNOWN = 10_000  # of the inputs' texts that are remembered
 _BEGINS = "t0"  # of an H in time; a scene has one, so that it need not be told
-COLUMNS = ("scene", *KEYS, _BEGINS, *COUNTED, *VALUES)
+_OF_SEVERAL = re.compile(r"[pq][1-9][0-9]?")
 
 
-def read(
-    path: Path, ours: Published, given: Mapping[str, str], names: Mapping[str, str]
-) -> Theirs[PublishedRun]:
+def is_of_degrees(path: Path, names: Mapping[str, str]) -> bool:
+    """Whether a table has a column p1, q1, …, or is said to call one so."""
+    with opened(path) as lines:
+        return any(_OF_SEVERAL.fullmatch(x) for x in (*lines.header, *names))
+
+
+def read(path: Path, ours: Published, given: Mapping[str, str], names: Mapping[str, str]) -> Theirs:
     """The table's rows that `ours` has.
 
-    `given`: what holds for all rows, by column: scene, and `KEYS`. `names`: what the table calls a
-    column, by ours. InputError where it cannot be read, or does not tell which run a row is of.
+    `given`: what holds for all rows, by column: scene, and the inputs, of which q0 and p0 may be
+    lists. `names`: what the table calls a column, by ours. InputError where it cannot be read, or
+    does not tell which run a row is of.
     """
-    found = Theirs[PublishedRun]()
+    found = Theirs()
+    columns = ("scene", *ours.keys, _BEGINS, *COUNTED, *ours.columns)
     with opened(path) as lines:
-        places = places_of(lines, names, COLUMNS, VALUES, found)
-        keys = _Keys(ours, given, places, lines)
-        texts = [(name, places[name]) for name in VALUES if name in places]
+        places = places_of(lines, names, columns, ours.columns, found)
+        keys = _Keys(ours, _each(given, ours), places, lines)
+        texts = [(name, places[name]) for name in found.columns]
         for row in lines:
             found.rows += 1
             run = keys.run_of(cells_of(lines, row))
@@ -59,6 +66,17 @@ def read(
     return found
 
 
+def _each(given: Mapping[str, str], ours: Published) -> dict[str, str]:
+    """The options by the data's columns: lists of q and p part at their commas."""
+    parted: dict[str, str] = {}
+    for name, text in given.items():
+        if name in ("q0", "p0") and name not in ours.keys:
+            parted |= {f"{name}_{k}": x.strip() for k, x in enumerate(text.split(","), start=1)}
+        else:
+            parted[name] = text
+    return parted
+
+
 class _Keys:
     """Which run and which step a row is of."""
 
@@ -72,7 +90,7 @@ class _Keys:
                 raise InputError(f"--{_option(name)}", given[name], "is a column of the table, too")
         if "scene" in given:
             ours.scene(given["scene"])  # a misspelt one has no rows, and is the reason for none
-        self.named = tuple(n for n in ("scene", *KEYS, _BEGINS) if n in places)
+        self.named = tuple(n for n in ("scene", *ours.keys, _BEGINS) if n in places)
         self.at = tuple(places[name] for name in self.named)
         self._known: dict[tuple[str, ...], PublishedRun | None] = {}
 
@@ -100,38 +118,48 @@ class _Keys:
         scene = inputs.get("scene") or self._scene(inputs)
         if scene is None:
             return None
-        for name in KEYS:
-            if name not in inputs:
-                values = self.ours.values_of(scene, name)
-                if len(values) > 1:
-                    has = f"{scene} has: {', '.join(values[:8])}"
-                    wanted = f"is wanted, as no column of {self.lines.name} is {name}; {has}"
-                    raise InputError(f"--{_option(name)}", NOT_GIVEN, wanted)
-                inputs[name] = values[0]
-        exact = tuple(self._number(inputs[n], n) for n in KEYS[1:])
-        h, q, p = map(nearest_double, exact)
-        run = self.ours.run(scene, (inputs["scheme"], h, q, p), exact)
+        told = {name: inputs[name] for name in self.ours.keys if name in inputs}
+        told |= {name: x for name, x in inputs.items() if name not in ("scene", _BEGINS)}
+        for name in self.ours.keys:
+            only = None if name in told else self._only(scene, name, told)
+            if only is not None:
+                told[name] = only
+        exact = {name: self._number(x, name) for name, x in told.items() if name != "scheme"}
+        doubles = {name: nearest_double(x) for name, x in exact.items()}
+        run = self.ours.run(scene, {"scheme": told["scheme"], **doubles}, exact)
         if run is not None and run.t0 is not None and _BEGINS in inputs:
             begins = self._number(inputs[_BEGINS], _BEGINS)
             if nearest_double(begins) != nearest_double(run.t0):
                 return None
         if run is not None:
-            for name, theirs, mine in zip(KEYS[1:], exact, run.exact, strict=True):
-                if mine != theirs:
-                    self.read_as[name] = theirs, mine
+            for name, theirs in exact.items():
+                if run.exact[name] != theirs:
+                    self.read_as[name] = theirs, run.exact[name]
         return run
+
+    def _only(self, scene: str, name: str, told: Mapping[str, str]) -> str | None:
+        """What the scene's runs have for one of their inputs, if they have it: one text, or one
+        that is left by what is told. InputError where there are several."""
+        values = self.ours.values_of(scene, name)
+        if len(values) > 1:
+            fitting = [x for x in self.ours.scene(scene) if self._fits(x, told)]
+            left = {x.texts[name] for x in fitting}
+            if len(left) != 1:
+                has = f"{scene} has: {', '.join(values[:8])}"
+                wanted = f"is wanted, as no column of {self.lines.name} is {name}; {has}"
+                raise InputError(f"--{_option(name)}", NOT_GIVEN, wanted)
+            return left.pop()
+        return values[0] if values else None
 
     def _scene(self, inputs: dict[str, str]) -> str | None:
         """The one scene that has such runs; InputError where several have."""
         every = sorted(self.ours.by_scene)
         if len(every) == 1:
             return every[0]
-        known = [name for name in KEYS if name in inputs]
-
-        def fits(run: PublishedRun) -> bool:
-            return all(self._is(run, name, inputs[name]) for name in known)
-
-        matching = [scene for scene in every if any(map(fits, self.ours.scene(scene)))]
+        told = {name: inputs[name] for name in self.ours.keys if name in inputs}
+        matching = [
+            scene for scene in every if any(self._fits(x, told) for x in self.ours.scene(scene))
+        ]
         if len(matching) > 1:
             names = ", ".join(matching)
             raise InputError(
@@ -139,15 +167,18 @@ class _Keys:
             )
         return matching[0] if matching else None
 
-    def _is(self, run: PublishedRun, name: str, text: str) -> bool:
-        mine = run.inputs[KEYS.index(name)]
-        if name == "scheme":
-            return mine == text
-        return mine == nearest_double(self._number(text, name))
+    def _fits(self, run: PublishedRun, told: Mapping[str, str]) -> bool:
+        """Whether its inputs are those; a number is that where it is the same double."""
+        for name, text in told.items():
+            theirs = text if name == "scheme" else nearest_double(self._number(text, name))
+            if run.inputs.get(name) != theirs:
+                return False
+        return True
 
     def _number(self, text: str, name: str) -> Fraction:
         return number_of(self.lines, text, name)
 
 
 def _option(name: str) -> str:
-    return {"q0": "q", "p0": "p"}.get(name, name).replace("_", "-")
+    """What says one of the inputs of all rows."""
+    return name[0] if name.startswith(("q0", "p0")) else name.replace("_", "-")
