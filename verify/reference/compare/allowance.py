@@ -7,7 +7,6 @@ products, however small ΔJ is; and so each factor of Λ.
 """
 
 import math
-from dataclasses import dataclass
 from fractions import Fraction
 
 import flint
@@ -16,11 +15,12 @@ from verify.algebra.enclosure import enclose_all
 from verify.arithmetic.arb import around, in_reach, middle_and_radius, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.kernels.step.computation import step_map_of
-from verify.reference.compare.findings import DOUBLE, SINGLE
+from verify.reference.compare.findings import DOUBLE, SINGLE, Spread
 from verify.reference.compare.scatter import Scatters
 from verify.reference.compare.setting import AnyOrbit, Bounded
 
 USUAL, WORST = 8, 16  # times what the copies show, since operations differ
+_NOT_AT_ALL = Spread(0, 0)
 _FEW = 4  # roundings of p and q in a step, a degree of freedom
 _PRODUCTS = 8  # roundings of a determinant
 _BITS = 200
@@ -28,14 +28,6 @@ _UNDERFLOWS = (  # units of roundoff, and what all numbers of that format are lo
     (SINGLE, Fraction(1, 2**126)),
     (DOUBLE, Fraction(1, 2**1022)),
 )
-
-
-@dataclass(frozen=True)
-class Allowed:
-    """How far a number may be off: as it usually is, and at worst."""
-
-    usual: Fraction
-    worst: Fraction
 
 
 class Allowance:
@@ -65,18 +57,18 @@ class Allowance:
             return one * (1 + size)
         return 2 * one * (_root(size) + one)
 
-    def of(self, name: str, step: int, known: dict[str, Bounded]) -> Allowed | None:
+    def of(self, name: str, step: int, known: dict[str, Bounded]) -> Spread | None:
         """What may be with all that earlier steps have left; None where that may be everything."""
         least = self.at_once(name, step, known)
         spreads = self._scatters.at(self.orbit, step)
         if spreads is None:
             return None
-        found = spreads.get(name)
-        usual, worst = (found.usual, found.worst) if found else (0.0, 0.0)
+        moved = spreads.get(name, _NOT_AT_ALL)
         adds_up = name == "lambda" or not self.orbit.hamiltonian.planar
         long = least * (1 + math.isqrt(step)) if adds_up else least
-        return Allowed(
-            least + USUAL * Fraction(usual) * self.unit, long + WORST * Fraction(worst) * self.unit
+        return Spread(
+            least + USUAL * Fraction(moved.usual) * self.unit,
+            long + WORST * Fraction(moved.worst) * self.unit,
         )
 
     def _one(self, step: int, known: dict[str, Bounded]) -> Fraction:

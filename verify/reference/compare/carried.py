@@ -13,7 +13,7 @@ from fractions import Fraction
 
 from verify.arithmetic.systems import float64
 from verify.errors import InputError
-from verify.reference.compare.findings import DOUBLE
+from verify.reference.compare.findings import DOUBLE, Spread, Spreads
 from verify.reference.make.points_in_degrees import OrbitInDegrees
 from verify.runs.run import run
 
@@ -23,17 +23,6 @@ _LARGE = Fraction(1, 1000)  # of the orbit's size: beyond it errors do not just 
 _MOST_STEPS = 20_000
 _OBSERVED = ("symplectic_defect_max", "symplectic_defect", "lambda")
 _ZERO = Fraction(0)
-
-
-@dataclass(frozen=True)
-class Spread:
-    """What a unit of rounding becomes, at most: as it happens, and at worst."""
-
-    usual: float | Fraction
-    worst: float | Fraction
-
-
-Spreads = Mapping[str, Spread]
 
 
 @dataclass(frozen=True)

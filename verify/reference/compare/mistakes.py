@@ -240,12 +240,8 @@ def _named(parts: tuple[Part, ...]) -> str:
 
 def _with(orbit: Orbit, changed: dict[str, Fraction]) -> Orbit:
     """The orbit with other numbers: h, q0, p0, t0 and parameters by their names."""
-    new = dict(changed)
-    own = {"h": "step_size", "q0": "q", "p0": "p", "t0": "t0"}
-    numbers = {own[name]: new.pop(name) for name in changed if name in own}
-    hamiltonian = orbit.hamiltonian.with_values({**dict(orbit.hamiltonian.values), **new})
-    return Orbit(hamiltonian, orbit.scheme, **_numbers(orbit) | numbers)
-
-
-def _numbers(orbit: Orbit) -> dict[str, Fraction]:
-    return {"step_size": orbit.step_size, "q": orbit.q, "p": orbit.p, "t0": orbit.t0}
+    fields = {"h": "step_size", "q0": "q", "p0": "p", "t0": "t0"}
+    numbers: dict[str, Any] = {fields[name]: x for name, x in changed.items() if name in fields}
+    parameters = {name: x for name, x in changed.items() if name not in fields}
+    hamiltonian = orbit.hamiltonian.with_values(dict(orbit.hamiltonian.values) | parameters)
+    return replace(orbit, hamiltonian=hamiltonian, **numbers)

@@ -105,13 +105,6 @@ def places_of(
     return places
 
 
-def cells_of(lines: Table, row: list[str]) -> list[str]:
-    """The row. InputError where it is too short."""
-    if len(row) < lines.width:
-        raise lines.error(f"has {len(row)} cells, and the header {lines.width}")
-    return row
-
-
 def step_of(
     lines: Table, row: list[str], places: Mapping[str, int], t0: Fraction, step_size: str
 ) -> int | None:

@@ -26,7 +26,8 @@ from verify.kernels.clock import clock_inputs
 from verify.kernels.kernel import Kernel, kernel_for
 from verify.kernels.orbit import Orbit
 from verify.kernels.stepping import KernelRun
-from verify.reference.compare.carried import Carried, Spread, Spreads
+from verify.reference.compare.carried import Carried
+from verify.reference.compare.findings import Spread, Spreads
 from verify.reference.compare.setting import AnyOrbit, start_of
 
 _PUSH = 2.0**-42 if WIDE.prec > 60 else 2.0**-32  # numbers have 20 bits and more beside it

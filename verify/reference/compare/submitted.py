@@ -17,7 +17,6 @@ from verify.reference.compare.rows import (
     COUNTED,
     Row,
     Theirs,
-    cells_of,
     number_of,
     places_of,
     printable,
@@ -51,7 +50,7 @@ def read(path: Path, ours: Published, given: Mapping[str, str], names: Mapping[s
         texts = [(name, places[name]) for name in found.columns]
         for row in lines:
             found.rows += 1
-            run = keys.run_of(cells_of(lines, row))
+            run = keys.run_of(row)
             step = run and keys.step_of(row, run)
             if run is None:
                 found.outside += 1
