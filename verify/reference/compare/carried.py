@@ -45,8 +45,6 @@ class Carried:
     def at(self, step: int) -> Spreads | None:
         """After so many steps; None where rounding may have taken every digit of the state, or
         where that is not known."""
-        if step == 0:
-            return {}
         if step not in self._rows:
             self._rows[step] = self._row(step)
         row, names = self._rows[step], self._orbit.hamiltonian.coordinates
@@ -71,10 +69,10 @@ class Carried:
         }
 
     def _row(self, step: int) -> _Row | None:
-        if step > _MOST_STEPS:
-            return None
         start = self._orbit.point
-        middle = self._after(start, step)
+        if step == 0:
+            return _Row(max(map(abs, start.values())), {}, Fraction(1))
+        middle = self._after(start, step) if step <= _MOST_STEPS else None
         if middle is None:
             return None
         size = max(abs(x) for name in start for x in (start[name], middle[name]))
