@@ -164,6 +164,48 @@ def test_what_is_damaged_is_found(damage: str, folder: Path, tmp_path: Path) -> 
     assert look(tmp_path / "set").differences
 
 
+@pytest.mark.parametrize("letter", ["p", "q"])
+@pytest.mark.parametrize("many", [1, 3])
+def test_a_state_of_another_length_is_found(
+    letter: str, many: int, folder: Path, tmp_path: Path
+) -> None:
+    from verify.reference.make.models_in_degrees import DataInDegrees
+
+    data = json.loads((folder / "heiles.json").read_text())
+    row = data["runs"][1]["rows"][2]
+    row[letter] = (row[letter] * 2)[:many]
+    put(tmp_path / "set", [DataInDegrees.model_validate(data)], {"heiles": SCENES["heiles"]})
+    assert {x.column for x in look(tmp_path / "set").differences} >= {"p, q"}
+
+
+LEAVES = """
+hamiltonian = "p1**2/2 + p2**2/2 + q1*log(q1) - q1 + q2**2*q1"
+schemes = ["lie2"]
+[[reference]]
+step_sizes = [1]
+initial_values = [{ q = [0.5, 0.2], p = [-2, 0] }]
+steps = [0, 1, 3, 5]
+digits = 8
+flow = false
+"""
+
+
+def test_an_orbit_that_is_not_defined_any_more_has_left(tmp_path: Path) -> None:
+    """Its energy is null where H is not defined; all rows after are of the step that left."""
+    (data,) = made({"pole": LEAVES})
+    rows = data.runs[0].rows
+    assert [row.status for row in rows] == ["finished", "finished", "left range", "left range"]
+    put(tmp_path / "set", [data], {"pole": LEAVES})
+    found = look(tmp_path / "set")
+    assert not found.differences
+    assert not found.not_recomputed
+    assert found.recomputed == found.rows == 5
+    raw = data.model_dump(mode="json", by_alias=True)
+    raw["runs"][0]["rows"][3]["failed_step"] += 1
+    put(tmp_path / "set", [type(data).model_validate(raw)], {"pole": LEAVES})
+    assert [x.column for x in look(tmp_path / "set").differences] == ["failed_step"]
+
+
 def test_a_folder_of_both_kinds_is_checked_and_read(folder: Path, tmp_path: Path) -> None:
     plane = {"mine": 'hamiltonian = "p**2/2 + q**4"\nschemes = ["lie1"]\n[[reference]]\n'
              'step_sizes = [0.1]\ninitial_values = [{ q = 1, p = 0 }]\nsteps = [0, 2]\n'

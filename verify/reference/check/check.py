@@ -30,10 +30,10 @@ from verify.formats import check_format
 from verify.reference.check import consistency
 from verify.reference.check.difference import Findings, Place
 from verify.reference.check.recompute import recomputed
-from verify.reference.check.recompute_in_degrees import recomputed_in_degrees
 from verify.reference.make.models import DATA_FORMAT, MANIFEST_FORMAT, Data, Manifest
 from verify.reference.make.models_in_degrees import (
     DATA_IN_DEGREES_FORMAT,
+    AnyData,
     DataInDegrees,
     is_of_degrees,
 )
@@ -42,7 +42,6 @@ from verify.reference.make.scene_plan import size_of
 from verify.reference.make.writing import (
     MANIFEST,
     SCHEMAS,
-    AnyData,
     digest,
     json_text,
     listed,
@@ -98,7 +97,7 @@ def check(
     if found.differences:  # what is asked for may not even be known
         return found
     chosen = _affordable(_chosen(units, share, seed), most_steps, found)
-    calls = [FunctionCall(str(k), _again(unit), unit) for k, unit in enumerate(chosen)]
+    calls = [FunctionCall(str(k), recomputed, unit) for k, unit in enumerate(chosen)]
     parts: dict[str, Findings] = {}
     few = where == ANYWHERE and len(calls) < _WORTH_A_POOL
     with open_place(THIS_PROCESS if few else where, [recomputed.__module__]) as place:
@@ -109,11 +108,6 @@ def check(
     for call in calls:  # in the order of the files, whoever was first
         found.add(parts[call.name])
     return found
-
-
-def _again(unit: Unit) -> Callable[..., Findings]:
-    """What computes it again."""
-    return recomputed_in_degrees if isinstance(unit[0], DataInDegrees) else recomputed
 
 
 def _chosen(units: Sequence[Unit], share: float, seed: int) -> list[Unit]:

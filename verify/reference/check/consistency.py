@@ -18,30 +18,21 @@ from verify.errors import InputError
 from verify.files import text_of
 from verify.reference.check.difference import Place
 from verify.reference.make.cells import Row
-from verify.reference.make.correct_rounding import correctly_rounded
-from verify.reference.make.models import (
-    Data,
-    Flow,
-    FlowInTime,
-    Proof,
-    Run,
-    RunInTime,
-    values_of,
-)
-from verify.reference.make.models_in_degrees import (
+from verify.reference.make.columns import (
     AFTER_A_STEP,
     MAY_LACK,
-    DataInDegrees,
-    FlowInDegrees,
-    RunInDegrees,
-    values_in_degrees,
+    AnyFlowPoint,
+    AnyOrbitPoint,
+    state_columns,
+    values_of,
 )
+from verify.reference.make.correct_rounding import correctly_rounded
+from verify.reference.make.models import Proof
+from verify.reference.make.models_in_degrees import AnyData, AnyFlow, AnyRun, ProofInDegrees
 from verify.reference.make.reading import rows_of
 from verify.reference.make.scene_plan import orbit_tasks, proof_tasks, solution_tasks
-from verify.reference.make.tables_in_degrees import state_columns
-from verify.reference.make.writing import AnyData, csv_text
-from verify.scenes.results.reference import FlowPoint, OrbitPoint, Rounded
-from verify.scenes.results.reference_in_degrees import FlowPointInDegrees, OrbitPointInDegrees
+from verify.reference.make.writing import csv_text
+from verify.scenes.results.reference import Rounded
 from verify.scenes.scene import Scene
 
 # A number's text is looked at as a text: as a rational, 1e+999999999 would fill all memory.
@@ -61,17 +52,20 @@ def of_data(data: AnyData, scene: Scene, file: Place) -> None:
     _inputs(data, scene, file)
     if len(file.findings.differences) > before:
         return
-    if isinstance(data, DataInDegrees):
-        rows_in_degrees(data, file)
-        return
     for proof in data.proofs:
-        _proof(data, proof, file.at(f"proof of {proof.scheme}"))
-    tables: tuple[Run | Flow, ...] = (*data.runs, *data.flow)
-    for of in tables:
+        row = file.at(f"proof of {proof.scheme}")
+        if isinstance(proof, Proof):
+            _area_proof(data, proof, row)
+        else:
+            _form_proof(data, proof, row)
+    state = state_columns(data.degrees)
+    for of in (*data.runs, *data.flow):
+        start = {name: of.start[name] for name in state}
         for row in of.rows:
-            start = {name: of.start[name] for name in ("p", "q")}
-            at = file.at(f"{of.label}, step {row.step}")
-            of_row(row, values_of(row), start, of.digits, at)
+            at, values = file.at(f"{of.label}, step {row.step}"), values_of(row, data.degrees)
+            lengths = [x for x in values if x[0] in "pq"]
+            at.must(lengths == list(state), "p, q", ", ".join(state), ", ".join(lengths))
+            _row(row, values, start, of.digits, at)
 
 
 def _inputs(data: AnyData, scene: Scene, file: Place) -> None:
@@ -99,23 +93,42 @@ def _inputs(data: AnyData, scene: Scene, file: Place) -> None:
                 break
 
 
-def _given(of: Run | Flow | RunInDegrees | FlowInDegrees) -> tuple[Any, ...]:
-    """Its inputs, in the order of a task's."""
-    if isinstance(of, RunInDegrees | FlowInDegrees):
-        return of.step_size, of.q, of.p, of.t0, of.digits
-    times = (of.t0,) if isinstance(of, RunInTime | FlowInTime) else ()
-    return of.step_size, of.q, of.p, *times, of.digits
+def _given(of: AnyRun | AnyFlow) -> tuple[Any, ...]:
+    """Its inputs, in the order of a task's; in the plane t0 only of an H that depends on time."""
+    names = ("step_size", "q", "p", "t0", "digits")
+    return tuple(getattr(of, name) for name in names if hasattr(of, name))
 
 
-def _proof(data: Data, proof: Proof, row: Place) -> None:
+def _area_proof(data: AnyData, proof: Proof, row: Place) -> None:
     zero = (proof.order, proof.leading) == (None, "0")
     found = f"order {proof.order}, leading {proof.leading}"
     preserving = proof.area_preserving
     row.must(zero or not preserving, "area_preserving", "no order, and leading 0", found)
     ordered = preserving is not False or proof.order is not None
     row.must(ordered, "order", "a number, since ΔJ is not 0", "null")
-    time = ["t"] if data.timed else []
-    of_formula(proof.leading, ["p", "q", *time, *data.parameters], "leading", row)
+    of_formula(proof.leading, _names(data), "leading", row)
+
+
+def _form_proof(data: AnyData, proof: ProofInDegrees, row: Place) -> None:
+    """The same in several degrees of freedom, of all entries of S."""
+    names = _names(data)
+    keeps = proof.symplectic
+    none = proof.order is None and not proof.leading
+    told = f"order {proof.order}, leading {proof.leading}"
+    row.must(none or not keeps, "symplectic", "no order, and no leading entries", told)
+    row.must(keeps is not False or proof.order is not None, "order", "a number", "null")
+    weaker = not (keeps and proof.area_preserving is False)
+    row.must(weaker, "area_preserving", "true, since S is 0", "false")
+    for entry, formula in proof.leading.items():
+        match = ENTRY.fullmatch(entry)
+        there = match and set(match.groups()) <= set(state_columns(data.degrees))
+        row.must(there, "leading", "entries such as dp1∧dq1", entry)
+        of_formula(formula, names, f"leading {entry}", row)
+
+
+def _names(data: AnyData) -> list[str]:
+    """What a formula of the data may be in."""
+    return [*state_columns(data.degrees), *(["t"] if data.timed else []), *data.parameters]
 
 
 def of_formula(formula: str, names: Sequence[str], column: str, row: Place) -> None:
@@ -131,13 +144,11 @@ def of_formula(formula: str, names: Sequence[str], column: str, row: Place) -> N
     row.must(written, column, tight, formula)
 
 
-_AFTER_A_STEP = ("mse", *AFTER_A_STEP)
-_MAY_LACK = ("delta_j", *MAY_LACK)
 _AT_FIRST = {"lambda": Fraction(0), "symplectic_defect": Fraction(0)}
 
 
-def of_row(
-    row: OrbitPoint | FlowPoint | OrbitPointInDegrees | FlowPointInDegrees,
+def _row(
+    row: AnyOrbitPoint | AnyFlowPoint,
     values: Mapping[str, Rounded | None],
     start: Mapping[str, Fraction],
     digits: int,
@@ -147,51 +158,26 @@ def of_row(
     size = max(map(abs, start.values()))
     finished = row.status == "finished"
     for name, value in values.items():
-        must = finished and not (name in _AFTER_A_STEP and row.step == 0)
+        must = finished and not (name in AFTER_A_STEP and row.step == 0)
         if value is None:
-            at.must(not must or name in _MAY_LACK, name, "a number", "null")
+            at.must(not must or name in MAY_LACK, name, "a number", "null")
         else:
             at.must(must, name, "null", value.value)
             _cell(name, value, digits, size if name in start else Fraction(1), at)
     wanted = "enclosed or estimated" if row.kind is None else "null"
     at.must((row.kind is not None) == finished, "kind", wanted, str(row.kind))
-    if isinstance(row, OrbitPoint | OrbitPointInDegrees):
+    if isinstance(row, AnyOrbitPoint):
         _failed_step(row, at)
     if row.step == 0:  # the initial value
         known = finished and row.kind == "enclosed"
         at.must(known, "status", "finished, enclosed", f"{row.status}, {row.kind}")
-        for name, exact in ({**start} | _AT_FIRST).items():
+        for name, exact in (dict(start) | _AT_FIRST).items():
             value, rounded = values.get(name), correctly_rounded(exact, Fraction(0), digits)
             if value and rounded:
                 at.must(value.value == rounded.value, name, rounded.value, value.value)
 
 
-def rows_in_degrees(data: DataInDegrees, file: Place) -> None:
-    """The same of data in n degrees of freedom."""
-    names = [*state_columns(data.degrees), *(["t"] if data.timed else []), *data.parameters]
-    for proof in data.proofs:
-        row = file.at(f"proof of {proof.scheme}")
-        keeps = proof.symplectic
-        none = proof.order is None and not proof.leading
-        told = f"order {proof.order}, leading {proof.leading}"
-        row.must(none or not keeps, "symplectic", "no order, and no leading entries", told)
-        row.must(keeps is not False or proof.order is not None, "order", "a number", "null")
-        weaker = not (keeps and proof.area_preserving is False)
-        row.must(weaker, "area_preserving", "true, since S is 0", "false")
-        for entry, formula in proof.leading.items():
-            known = ENTRY.fullmatch(entry)
-            there = known and set(known.groups()) <= set(names[: 2 * data.degrees])
-            row.must(there, "leading", "entries such as dp1∧dq1", entry)
-            of_formula(formula, names, f"leading {entry}", row)
-    tables: tuple[RunInDegrees | FlowInDegrees, ...] = (*data.runs, *data.flow)
-    for of in tables:
-        start = {name: x for name, x in of.start.items() if name != "t"}
-        for point in of.rows:
-            at = file.at(f"{of.label}, step {point.step}")
-            of_row(point, values_in_degrees(point, data.degrees), start, of.digits, at)
-
-
-def _failed_step(row: OrbitPoint | OrbitPointInDegrees, at: Place) -> None:
+def _failed_step(row: AnyOrbitPoint, at: Place) -> None:
     left, step = row.status == "left range", row.failed_step
     at.must((step is not None) == left, "failed_step", "a step" if left else "null", str(step))
     within = step is None or 1 <= step <= row.step

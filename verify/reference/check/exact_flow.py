@@ -13,13 +13,12 @@ from typing import Any
 import flint
 
 from verify.arithmetic.exact import short
-from verify.reference.check.taylor import Number, number
-from verify.reference.check.textbook import Field, flow_series, polynomial
+from verify.reference.check.taylor import number
+from verify.reference.check.textbook import Field, Vector, flow_series, polynomials
 
 _MORE = 8  # digits, and orders, of the second integration
 _MOST_STEPS = 5_000
 _BURST, _STOPPED = 40, 60  # |z| above its first size, and steps below the first, in powers of two
-State = tuple[Number, Number]
 
 
 class NoSolutionError(Exception):
@@ -32,10 +31,10 @@ class BlowsUpError(NoSolutionError):
 
 def states_at(
     field: Field, start: Mapping[str, Fraction], times: Sequence[Fraction], digits: int
-) -> tuple[list[State], NoSolutionError | None]:
-    """Balls of (p, q) at the times, which ascend from 0, and why not at all of them, if so.
+) -> tuple[list[Vector], NoSolutionError | None]:
+    """Balls of z at the times, which ascend from 0, and why not at all of them, if so.
 
-    `start`: p, q and, where H depends on it, t.
+    `start`: the coordinates and, where H depends on it, t.
     """
     bits = math.ceil(3.33 * (digits + _MORE)) + 64
     with flint.ctx.workprec(bits):
@@ -45,69 +44,65 @@ def states_at(
         return both, why or also
 
 
-def _around(rough: State, fine: State, digits: int) -> State:
+def _around(rough: Vector, fine: Vector, digits: int) -> Vector:
     apart = max((abs(a - b).upper() for a, b in zip(rough, fine, strict=True)), key=_size)
     scale = max((abs(x).upper() for x in fine), key=_size)
     radius = 4 * apart + scale * flint.arb(10) ** (-digits - 2)
-    p, q = (x.mid() + flint.arb(0, 1) * radius for x in fine)
-    return p, q
+    return [x.mid() + flint.arb(0, 1) * radius for x in fine]
 
 
 def _taylor_solution(
     field: Field, start: Mapping[str, Fraction], times: Sequence[Fraction], digits: int
-) -> tuple[list[State], NoSolutionError | None]:
+) -> tuple[list[Vector], NoSolutionError | None]:
     order = digits + digits // 4 + 10
-    p, q = (flint.arb(number(start[name])) for name in ("p", "q"))
-    first, done, found = largest((p, q)), Fraction(0), []
+    z: Vector = [flint.arb(number(start[name])) for name in field.names]
+    first, done, states = _largest(z), Fraction(0), []
     waiting = list(times)
     shortest: float | None = None
     for _ in range(_MOST_STEPS):
         while waiting and waiting[0] == done:
-            found.append((p, q))
+            states.append(z)
             waiting.pop(0)
         if not waiting:
-            return found, None
+            return states, None
         t = flint.arb(number(start.get("t", Fraction(0)) + done))
-        ps, qs = flow_series(field, p, q, t, order)
-        reach = _reach(ps, qs, digits)
-        if not all(x.is_finite() for x in (*ps, *qs)):
-            return found, NoSolutionError("H is not defined there")
+        zs = flow_series(field, z, t, order)
+        reach = _reach(zs, digits)
+        if not all(x.is_finite() for own in zs for x in own):
+            return states, NoSolutionError("H is not defined there")
         shortest = reach if shortest is None else shortest
-        if largest((p, q)) > first + _BURST and reach < shortest - _STOPPED:
-            return found, BlowsUpError("the solution blows up before")
-        after = done + power_of_two(reach)
+        if _largest(z) > first + _BURST and reach < shortest - _STOPPED:
+            return states, BlowsUpError("the solution blows up before")
+        after = done + _power_of_two(reach)
         while waiting and waiting[0] <= after:
-            at = flint.arb(number(waiting.pop(0) - done))
-            found.append((_sum(ps, at), _sum(qs, at)))
-        h = flint.arb(number(after - done))
-        p, q, done = _sum(ps, h), _sum(qs, h), after
-    return found, NoSolutionError(f"{_MOST_STEPS} steps lead only to t = {short(done)}")
+            states.append(_sum(zs, waiting.pop(0) - done))
+        z, done = _sum(zs, after - done), after
+    return states, NoSolutionError(f"{_MOST_STEPS} steps lead only to t = {short(done)}")
 
 
-def _reach(ps: list[Number], qs: list[Number], digits: int) -> float:
+def _reach(zs: list[Vector], digits: int) -> float:
     """lg₂ of a step whose last terms are 10^−digits of the state, or of its speed where it is 0."""
-    sizes = map(largest, zip(ps, qs, strict=True))
-    scale = next((size for size in sizes if size > -math.inf), 0.0)
-    found = []
-    for k in (len(ps) - 1, len(ps) - 2):
-        last = largest((ps[k], qs[k]))
+    scale = next((size for size in map(_largest, zs) if size > -math.inf), 0.0)
+    reaches = []
+    for k in (len(zs) - 1, len(zs) - 2):
+        last = _largest(zs[k])
         if last > -math.inf:
-            found.append((scale - 3.3219281 * digits - last) / k)
-    return min(found, default=60.0)  # a polynomial in t
+            reaches.append((scale - 3.3219281 * digits - last) / k)
+    return min(reaches, default=60.0)  # a polynomial in t
 
 
-def power_of_two(exponent: float) -> Fraction:
+def _sum(zs: list[Vector], h: Fraction) -> Vector:
+    """The polynomials at h, their rounding forgotten: the other integration tells it."""
+    return [x.mid() for x in polynomials(zs, flint.arb(number(h)))]
+
+
+def _power_of_two(exponent: float) -> Fraction:
     """2^exponent, rounded down a little, with few bits."""
     whole = math.floor(exponent)
     return Fraction(math.floor(1024 * 2 ** (exponent - whole)), 1024) * Fraction(2) ** whole
 
 
-def _sum(coefficients: list[Number], h: Number) -> Number:
-    """The polynomial at h, its rounding forgotten: the other integration tells it."""
-    return polynomial(coefficients, h).mid()
-
-
-def largest(z: Sequence[Any]) -> float:
+def _largest(z: Sequence[Any]) -> float:
     return max(_size(x) for x in z)
 
 

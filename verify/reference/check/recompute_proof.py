@@ -1,9 +1,10 @@
-"""What is proved of a scheme, looked at again: powers of h in det J and in the map, at some points.
+"""What is proved of a scheme, looked at again: powers of h in S and in the map, at some points.
 
-The step is done with power series in h for p, q and the Jacobian: their coefficients are balls.
+The step is done with power series in h for z and the Jacobian: their coefficients are balls. Of
+S = JᵀΩJ − Ω there is one entry in the plane, which is ΔJ.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from fractions import Fraction
 from typing import Any
@@ -12,64 +13,87 @@ import flint
 
 from verify.reference.check.difference import Place
 from verify.reference.check.taylor import Expansion, Number, number
-from verify.reference.check.textbook import Field, Step, flow_series, step_of
-from verify.reference.make.models import Data, Proof
+from verify.reference.check.textbook import Field, Step, defect, flow_series, step_of
+from verify.reference.make.columns import state_columns
+from verify.reference.make.models import Proof
+from verify.reference.make.models_in_degrees import AnyData, AnyProof
 
-MOST_ORDER = 12  # to which a map is looked at that agrees with another
-ANY_ORDER = 100  # beyond which no proof goes
-BITS = 512
+Point = Mapping[str, Fraction]
+Powers = Mapping[str, list[Number]]  # coefficients of h⁰ … by an entry's or a coordinate's name
+_MOST_ORDER, _OF_SEVERAL = 12, 6  # to which an S is looked at that vanishes
+_ANY_ORDER = 100  # beyond which no proof goes
+_BITS = 512
+_MOVES = (  # factors of p and of q, and how much later
+    (Fraction(29, 31), Fraction(17, 16), Fraction(3, 11)),
+    (Fraction(-5, 7), Fraction(1), Fraction(-6, 13)),
+)
+_AREA = ""  # the name of the only entry of S in the plane
 
 
-def proof_again(known: Field, data: Data, proof: Proof, file: Place) -> None:
-    """The powers of h in det J and in the map, at points near the initial values.
+def proof_again(known: Field, data: AnyData, proof: AnyProof, file: Place) -> None:
+    """The powers of h in S and in the map, at points near the initial values.
 
-    That a coefficient vanishes for every p and q is not seen so, but that it does not is.
+    That a coefficient vanishes for every z is not seen so, but that it does not is.
     """
     order, convergence = proof.order, proof.convergence_order
     row = file.at(f"proof of {proof.scheme}")
-    for column, given in (("order", order), ("convergence_order", convergence)):
-        if (given or 0) > ANY_ORDER:
-            row.differs(column, f"at most {ANY_ORDER}", str(given))
+    for column, claimed in (("order", order), ("convergence_order", convergence)):
+        if (claimed or 0) > _ANY_ORDER:
+            row.differs(column, f"at most {_ANY_ORDER}", str(claimed))
             return
-    most = max(MOST_ORDER if order is None else order, (convergence or 0) + 1)
-    looking = _Looking(known, proof, row, most)
-    for p, q, t in _points(data):
-        with flint.ctx.workprec(BITS), length_of_series(most + 1):
-            looking.at(p, q, t)
+    least = _MOST_ORDER if known.degrees == 1 else _OF_SEVERAL
+    looking = _Looking(known, proof, row, max(order or least, (convergence or 0) + 1))
+    for point in _points(data):
+        with flint.ctx.workprec(_BITS), _length_of_series(looking.most + 1):
+            looking.at(point)
     looking.end()
 
 
 class _Looking:
     """One proof's coefficients at one point after another."""
 
-    def __init__(self, known: Field, proof: Proof, row: Place, most: int) -> None:
+    def __init__(self, known: Field, proof: AnyProof, row: Place, most: int) -> None:
         self.known, self.proof, self.row, self.most = known, proof, row, most
-        self.step, self.leading = step_of(proof.scheme, known), known.tape.read(proof.leading)
+        self.step = step_of(proof.scheme, known)
+        entries = {_AREA: proof.leading} if isinstance(proof, Proof) else proof.leading
+        self.leading = {name: known.tape.read(formula) for name, formula in entries.items()}
         self.looked, self.seen = 0, {"order": False, "convergence_order": False}
 
-    def at(self, *point: Fraction) -> None:
-        area, apart, lead = _powers(self.known, self.step, point, self.most, self.leading)
-        if not all(x.is_finite() for x in (*area, *apart, lead)):
+    def at(self, point: Point) -> None:
+        form, apart, leading = _powers(self.known, self.step, point, self.most, self.leading)
+        every = [x for powers in (*form.values(), *apart.values()) for x in powers]
+        if not all(x.is_finite() for x in (*every, *leading.values())):
             return
         self.looked += 1
         order, convergence = self.proof.order, self.proof.convergence_order
-        self._vanish("order", area[: self.most + 1 if order is None else order])
+        self._vanish("order", form, self.most + 1 if order is None else order)
         upto = self.most - 1 if convergence is None else convergence
-        self._vanish("convergence_order", apart[: upto + 1])
+        self._vanish("convergence_order", apart, upto + 1)
         if order is not None:
-            wanted = f"{shown(area[order], 20)} at a point"
-            self.row.must((area[order] - lead).contains(0), "leading", wanted, shown(lead, 20))
-            self.seen["order"] |= not area[order].contains(0)
+            self._leads(form, leading, order)
         if convergence is not None:
-            self.seen["convergence_order"] |= not apart[convergence + 1].contains(0)
+            self.seen["convergence_order"] |= _some(apart, convergence + 1)
 
-    def _vanish(self, column: str, coefficients: list[Number]) -> None:
-        for k, c in enumerate(coefficients):
-            if not c.contains(0):
-                least = k if column == "order" else k - 1
-                wanted = f"{least}, since the coefficient of h^{k} is {shown(c, 12)}"
-                self.row.differs(column, wanted, str(getattr(self.proof, column)))
-                return
+    def _leads(self, form: Powers, leading: Mapping[str, Number], order: int) -> None:
+        self.seen["order"] |= _some(form, order)
+        if not leading:  # too long to be written out
+            return
+        for name, powers in form.items():
+            lead = leading.get(name, flint.arb(0))
+            wanted = f"{shown(powers[order], 20)} at a point"
+            same = (powers[order] - lead).contains(0)
+            self.row.must(same, f"leading {name}".strip(), wanted, shown(lead, 20))
+
+    def _vanish(self, column: str, every: Powers, below: int) -> None:
+        for k in range(below):
+            for name, powers in every.items():
+                if not powers[k].contains(0):
+                    plane = self.known.degrees == 1
+                    what = f"the coefficient of h^{k}" if plane else f"that of h^{k} in {name}"
+                    least = k if column == "order" else k - 1
+                    wanted = f"{least}, since {what} is {shown(powers[k], 12)}"
+                    self.row.differs(column, wanted, str(getattr(self.proof, column)))
+                    return
 
     def end(self) -> None:
         """What was claimed not to vanish, and did wherever it was looked at."""
@@ -78,35 +102,40 @@ class _Looking:
             return
         self.row.findings.recomputed += 1
         for column, seen in self.seen.items():
-            given = getattr(self.proof, column)
+            claimed = getattr(self.proof, column)
             wanted = "more, since that coefficient is 0"
-            self.row.must(seen or given is None, column, wanted, str(given))
+            self.row.must(seen or claimed is None, column, wanted, str(claimed))
+
+
+def _some(every: Powers, k: int) -> bool:
+    """Whether a coefficient of h^k does not vanish."""
+    return any(not powers[k].contains(0) for powers in every.values())
 
 
 def _powers(
-    known: Field, step: Step, point: Sequence[Fraction], most: int, leading: int
-) -> tuple[list[Number], list[Number], Number]:
-    """Coefficients of h⁰ … in det J − 1; in the map less the flow (the larger of two); leading.
-
-    `point`: p, q and t.
-    """
-    x, y, t = (flint.arb(number(z)) for z in point)
+    known: Field, step: Step, point: Point, most: int, leading: Mapping[str, int]
+) -> tuple[Powers, Powers, Mapping[str, Number]]:
+    """Coefficients of h⁰ … in the entries of S, and in the map less the flow; the leading ones."""
+    names = known.names
+    z, t = [flint.arb(number(point[name])) for name in names], flint.arb(number(point["t"]))
     h = flint.arb_series([0, 1], most + 1)
     zero = 0 * h
-    (p_next, q_next), (a, b, c, d) = step(x + zero, y + zero, h, t + zero)
-    ps, qs = flow_series(known, x, y, t, most)
-    value = Expansion(known.tape, [leading])
-    value.begin(x, y, t)
-    area = coefficients_of(a * d - b * c - 1 + zero, most)
-    along = [coefficients_of(z + zero, most) for z in (p_next, q_next)]
-    apart = [
-        max(u - v, w - s, key=lambda ball: not ball.contains(0))
-        for u, v, w, s in zip(along[0], ps, along[1], qs, strict=True)
-    ]
-    return area, apart, value.value(leading)
+    after, jacobian = step([x + zero for x in z], h, t + zero)
+    form = {
+        _AREA if known.degrees == 1 else f"d{names[a]}∧d{names[b]}": _coefficients(x + zero, most)
+        for (a, b), x in defect(jacobian, known.degrees).items()
+    }
+    along = zip(names, after, *[zip(*flow_series(known, z, t, most), strict=True)], strict=True)
+    apart = {
+        name: [u - v for u, v in zip(_coefficients(x + zero, most), series, strict=True)]
+        for name, x, series in along
+    }
+    values = Expansion(known.tape, list(leading.values()))
+    values.begin([*z, t])
+    return form, apart, {name: values.value(x) for name, x in leading.items()}
 
 
-def coefficients_of(series: Any, most: int) -> list[Number]:
+def _coefficients(series: Any, most: int) -> list[Number]:
     return [series[k] for k in range(most + 1)]
 
 
@@ -115,23 +144,23 @@ def shown(ball: Number, digits: int) -> str:
     return str(ball.str(digits + 2, radius=False))
 
 
-def _points(data: Data) -> list[tuple[Fraction, Fraction, Fraction]]:
-    """Points near the initial values, of no pattern, with times; p and q are other than 0."""
-    starts = dict.fromkeys(
-        (run.start["p"], run.start["q"], run.start.get("t", Fraction(0))) for run in data.runs
-    )
-    found = []
-    for p, q, t in list(starts)[:3]:
-        p, q = p or q / 3 or Fraction(2, 3), q or p / 5 or Fraction(4, 5)
-        found += [
-            (p * Fraction(29, 31), q * Fraction(17, 16), t + Fraction(3, 11)),
-            (p * Fraction(-5, 7), q, t - Fraction(6, 13)),
-        ]
-    return found
+def _points(data: AnyData) -> Iterator[Point]:
+    """Points near the initial values, of no pattern, with times; no coordinate is 0."""
+    names = state_columns(data.degrees)
+    pairs = list(zip(names[: data.degrees], names[data.degrees :], strict=True))
+    starts = {tuple(run.start.values()): run.start for run in data.runs}
+    for start in list(starts.values())[:3]:
+        for by_p, by_q, later in _MOVES:
+            point = {"t": start.get("t", Fraction(0)) + later}
+            for k, (p, q) in enumerate(pairs):
+                x, y, more = start[p], start[q], Fraction(k, 40)
+                point[p] = (x or y / 3 or Fraction(2, 3)) * (by_p + more)
+                point[q] = (y or x / 5 or Fraction(4, 5)) * (by_q + more)
+            yield point
 
 
 @contextmanager
-def length_of_series(length: int) -> Iterator[None]:
+def _length_of_series(length: int) -> Iterator[None]:
     """flint's length of power series, set for a while and given back."""
     before, flint.ctx.cap = flint.ctx.cap, length
     try:

@@ -6,7 +6,7 @@ another variable. flint's own functions of series want all coefficients of u at 
 solution each is known only when those before it have gone through H's derivatives.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -15,6 +15,7 @@ import flint
 from verify.reference.check.tape import PAIRS, Tape
 
 Number = Any  # flint.arb or flint.arb_series
+_VARIABLE = "variable"  # its first operand is its place among them
 Work = tuple[int, str, Any, Any]  # node, kind, and two operands: nodes or a factor
 
 
@@ -24,8 +25,8 @@ def number(x: Fraction) -> Any:
 
 
 class Expansion:
-    """The coefficients of some nodes along p(t) and q(t), or the tape's other variables, as far as
-    those have been given, and t.
+    """The coefficients of some nodes along the tape's variables, as far as those have been given,
+    and t.
 
     `constant`: nodes that depend on none of them; they have a first coefficient and no others.
     """
@@ -44,42 +45,37 @@ class Expansion:
                 self.constant.add(x)
             if kind in PAIRS:
                 args.append(tape.node(PAIRS[kind], args[0]))
+            elif kind == "scale":
+                args[0] = number(args[0])
+            elif kind in tape.variables:
+                kind, args = _VARIABLE, [tape.variables.index(kind)]
             self._work.append((x, kind, *[*args, None, None][:2]))
 
-    def begin(self, p: Number, q: Number, t: Number = 0) -> None:
-        """As `begin_at`, of p, q and t."""
-        self.begin_at({"p": p, "q": q, "t": t})
-
-    def begin_at(self, point: Mapping[str, Number]) -> None:
-        """The first coefficients: the nodes' values at a point, in flint's present precision."""
+    def begin(self, point: Sequence[Number]) -> None:
+        """The first coefficients: the nodes' values at a point, its numbers in the order of the
+        tape's variables, in flint's present precision."""
         if self._bits != flint.ctx.prec:
             self._fixed, self._bits = {}, flint.ctx.prec
         c: dict[int, list[Number]] = {}
         for x, kind, a, b in self._work:
             value = self._fixed.get(x)
             if value is None:
-                value = point[kind] if kind in point else _first(kind, a, b, c)
+                value = point[a] if kind == _VARIABLE else _first(kind, a, b, c)
                 if x in self.constant:
                     self._fixed[x] = value
             c[x] = [value]
         self.c, self.count = c, 1
 
-    def more(self, p: Number, q: Number) -> None:
-        """As `more_at`, of p and q."""
-        self.more_at({"p": p, "q": q})
-
-    def more_at(self, point: Mapping[str, Number]) -> None:
-        """The next coefficient of every node, the point's being those of its variables."""
+    def more(self, point: Sequence[Number]) -> None:
+        """The next coefficient of every node, the point's being those of all variables but t."""
         c, k, constant = self.c, self.count, self.constant
         for x, kind, a, b in self._work:
-            if kind in point:
-                c[x].append(point[kind])
-            elif kind == "t":
-                c[x].append(flint.arb(int(k == 1)))
+            if kind == _VARIABLE:
+                c[x].append(point[a] if a < len(point) else flint.arb(int(k == 1)))
             elif x in constant:
                 continue
             elif kind == "scale":
-                c[x].append(c[b][k] * number(a))
+                c[x].append(c[b][k] * a)
             elif kind in ("add", "mul"):
                 c[x].append(_of_two(kind, a, b, c, k, constant))
             else:
@@ -101,7 +97,7 @@ def _first(kind: str, a: Any, b: Any, c: dict[int, list[Number]]) -> Number:
     if kind == "pi":
         return flint.arb.pi()
     if kind == "scale":
-        return c[b][0] * number(a)
+        return c[b][0] * a
     if kind == "power":
         return _power(c[b][0], a)
     u = c[a][0]

@@ -1,25 +1,25 @@
 """One step of a scheme with its Jacobian, from the scheme's definition in the textbook.
 
 All is written for numbers of any kind that has + − * /: flint's balls, and power series of balls in
-h. z' = f(z, t) = (−H_q, H_p), and A = ∂f/∂(p, q). Sources as in `verify.schemes`; the coefficients
-stand here once more. A step begins at t: its stages are at t + c h, c the sum of their row, and of
-a splitting each part is at t + h times what the parts of the other kind before it add up to.
+h. z = (p, q), or (p1 … pn, q1 … qn), z' = f(z, t) = (−∂H/∂q, ∂H/∂p), and A = ∂f/∂z, of which only
+the entries are kept that do not vanish. Sources as in `verify.schemes`; the coefficients stand here
+once more. A step begins at t: its stages are at t + c h, c the sum of their row, and of a splitting
+each part is at t + h times what the parts of the other kind before it add up to.
 """
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from fractions import Fraction
-from typing import Any
+from itertools import combinations
 
 import flint
 
 from verify.reference.check.tape import Tape
 from verify.reference.check.taylor import Expansion, Number, number
 
-State = tuple[Number, Number]
-Matrix = tuple[Number, Number, Number, Number]  # ∂p'/∂p, ∂p'/∂q, ∂q'/∂p, ∂q'/∂q
-Step = Callable[[Number, Number, Number, Number], tuple[State, Matrix]]  # of p, q, h and t
-IDENTITY: Matrix = (1, 0, 0, 1)
+Vector = list[Number]
+Matrix = list[Number]  # its entries, row by row
+Step = Callable[[Vector, Number, Number], tuple[Vector, Matrix]]  # of z, h and t
 _F = Fraction
 
 
@@ -27,35 +27,64 @@ class UnknownSchemeError(ValueError):
     """A scheme, or a scheme for such an H, that is not recomputed here."""
 
 
+class Rows:
+    """Some rows of f, and of A what in them does not vanish: at a point, or along a solution."""
+
+    def __init__(self, tape: Tape, f: dict[int, int], a: Iterable[tuple[int, int, int]]) -> None:
+        """`f`: nodes by their rows; `a`: row, column and node of each entry."""
+        self.f, self.a = list(f.items()), [entry for entry in a if entry[0] in f]
+        self.known = Expansion(tape, [*f.values(), *(x for _, _, x in self.a)])
+
+
 class Field:
     """f and A of one Hamiltonian, from its formula alone."""
 
-    def __init__(self, formula: str, parameters: dict[str, Fraction]) -> None:
-        self.tape = Tape(parameters)
-        self.h = h = self.tape.read(formula)
-        self.h_p, self.h_q = (self.tape.diff(h, name) for name in ("p", "q"))
-        self.h_pp, self.h_pq = (self.tape.diff(self.h_p, name) for name in ("p", "q"))
-        self.h_qq = self.tape.diff(self.h_q, "q")
-        self.separable = self.tape.value(self.h_pq) == 0
-        self.timed = any(self.tape.nodes[x] == ("t",) for x in self.tape.needed(h))
-        self.first = Expansion(self.tape, (self.h_p, self.h_q))
-        self.both = Expansion(self.tape, (self.h_p, self.h_q, self.h_pp, self.h_pq, self.h_qq))
-        self.alone = Expansion(self.tape, (h,))
-        self.of_p = Expansion(self.tape, (self.h_p, self.h_pp))
-        self.of_q = Expansion(self.tape, (self.h_q, self.h_qq))
+    def __init__(self, formula: str, parameters: dict[str, Fraction], degrees: int) -> None:
+        numbers = [""] if degrees == 1 else range(1, degrees + 1)
+        self.names = [f"{letter}{k}" for letter in "pq" for k in numbers]
+        self.degrees, self.tape = degrees, Tape(parameters, (*self.names, "t"))
+        tape = self.tape
+        self.h = h = tape.read(formula)
+        momenta, places = self.names[:degrees], self.names[degrees:]
+        slopes = [tape.scale(-1, tape.diff(h, q)) for q in places]
+        slopes += [tape.diff(h, p) for p in momenta]
+        f = dict(enumerate(slopes))
+        every = [(r, c, tape.diff(x, z)) for r, x in f.items() for c, z in enumerate(self.names)]
+        a = [entry for entry in every if tape.value(entry[2]) != 0]
+        self.separable = all((row < degrees) != (column < degrees) for row, column, _ in a)
+        self.timed = any(tape.nodes[x] == ("t",) for x in tape.needed(h))
+        self.alone = Expansion(tape, [h])
+        self.slopes, self.all = Rows(tape, f, []), Rows(tape, f, a)
+        self.of_q = Rows(tape, {row: f[row] for row in range(degrees)}, a)
+        self.of_p = Rows(tape, {row: f[row] for row in range(degrees, 2 * degrees)}, a)
 
-    def energy(self, p: Number, q: Number) -> Number:
-        """H there, which does not depend on time."""
-        self.alone.begin(p, q)
+    def energy(self, z: Sequence[Number], t: Number) -> Number:
+        """H there."""
+        self.alone.begin([*z, t])
         return self.alone.value(self.h)
 
-    def at(self, p: Number, q: Number, t: Number) -> tuple[State, Matrix]:
-        """f and A there, at t."""
-        known = self.both
-        known.begin(p, q, t)
-        pq = known.value(self.h_pq)
-        a = (-pq, -known.value(self.h_qq), known.value(self.h_pp), pq)
-        return (-known.value(self.h_q), known.value(self.h_p)), a
+
+def identity(size: int) -> Matrix:
+    """The matrix 1."""
+    return [int(k % (size + 1) == 0) for k in range(size**2)]
+
+
+def product(x: Matrix, y: Matrix, size: int) -> Matrix:
+    """x y."""
+    lines = range(size)
+    return [
+        sum((x[r * size + k] * y[k * size + c] for k in lines), 0) for r in lines for c in lines
+    ]
+
+
+def defect(j: Matrix, degrees: int) -> dict[tuple[int, int], Number]:
+    """JᵀΩJ − Ω, Ω = Σ dp_i∧dq_i, above its diagonal; of one degree of freedom det J − 1."""
+    half = 2 * degrees**2  # entries of the rows of all p
+    rows = [(j[k : k + 2 * degrees], j[half + k :]) for k in range(0, half, 2 * degrees)]
+    return {
+        (a, b): sum((p[a] * q[b] - q[a] * p[b] for p, q in rows), -int(b == a + degrees))
+        for a, b in combinations(range(2 * degrees), 2)
+    }
 
 
 def step_of(name: str, field: Field) -> Step:
@@ -76,62 +105,49 @@ def step_of(name: str, field: Field) -> Step:
 # -- the Lie-derivative scheme: the Taylor polynomial of the flow ---------------------------------
 
 
-def flow_series(
-    field: Field, p: Number, q: Number, t: Number, order: int
-) -> tuple[list[Any], list[Any]]:
-    """The Taylor coefficients of p and q from t on, up to that order: (k+1) z_(k+1) = f_k."""
-    ps, qs = [p], [q]
-    for _ in _orders(field, field.first, ps, qs, t, order):
+def flow_series(field: Field, z: Vector, t: Number, order: int) -> list[Vector]:
+    """The Taylor coefficients of z from t on, up to that order: (k+1) z_(k+1) = f_k."""
+    zs = [z]
+    for _ in _orders(field, field.slopes, zs, t, order):
         pass
-    return ps, qs
+    return zs
 
 
-def _orders(
-    field: Field, known: Expansion, ps: list[Number], qs: list[Number], t: Number, order: int
-) -> Iterator[int]:
-    """The orders 0 … order − 1 of `known`; after each, ps and qs have their next coefficient."""
-    p, q = ps[0], qs[0]
-    known.begin(p, q, t)
+def _orders(field: Field, rows: Rows, zs: list[Vector], t: Number, order: int) -> Iterator[int]:
+    """The orders 0 … order − 1 of all `rows`; after each, zs has the next coefficients."""
+    known = rows.known
+    known.begin([*zs[0], t])
     for k in range(order):
         if k > 0:
-            known.more(ps[-1], qs[-1])
-        h_p, h_q = known.coefficient(field.h_p, k), known.coefficient(field.h_q, k)
-        ps.append(0 * p if h_q is None else -h_q / (k + 1))
-        qs.append(0 * q if h_p is None else h_p / (k + 1))
+            known.more(zs[-1])
+        slopes = [known.coefficient(x, k) for _, x in rows.f]
+        pairs = zip(slopes, zs[0], strict=True)
+        zs.append([0 * z if x is None else x / (k + 1) for x, z in pairs])
         yield k
 
 
 def lie(field: Field, eta: int) -> Step:
     """z' = Σ h^k z_k, and J the same sum of the variational equation M' = A M, M_0 = 1."""
-    entries = (field.h_pq, field.h_qq, field.h_pp)
+    size = len(field.names)
+    known, a = field.all.known, field.all.a
 
-    def step(p: Number, q: Number, h: Number, t: Number) -> tuple[State, Matrix]:
-        ps, qs, ms = [p], [q], [IDENTITY]
-        a: list[list[Number | None]] = []
-        for k in _orders(field, field.both, ps, qs, t, eta):
-            a.append([field.both.coefficient(x, k) for x in entries])
-            ms.append(_variation(a, ms, k))
-        z = polynomial(ps, h), polynomial(qs, h)
-        return z, tuple(polynomial([m[i] for m in ms], h) for i in range(4))
+    def step(z: Vector, h: Number, t: Number) -> tuple[Vector, Matrix]:
+        zs, ms, orders = [z], [identity(size)], []
+        for k in _orders(field, field.all, zs, t, eta):
+            entries = ((row, column, known.coefficient(x, k)) for row, column, x in a)
+            orders.append([entry for entry in entries if entry[2] is not None])
+            total: Matrix = [0] * size**2
+            for m, own in zip(reversed(ms), orders, strict=True):  # Σ A_j M_(k−j)
+                _add_product(total, own, m, size)
+            ms.append([x / (k + 1) for x in total])
+        return polynomials(zs, h), polynomials(ms, h)
 
     return step
 
 
-def _variation(a: list[list[Number | None]], ms: list[Matrix], k: int) -> Matrix:
-    """M_(k+1) = (Σ A_j M_(k−j))/(k+1)."""
-    total: list[Number] = [0, 0, 0, 0]
-    for j in range(k + 1):
-        pq, qq, pp = a[j]
-        m = ms[k - j]
-        for i in (0, 1):  # the columns
-            if pq is not None:
-                total[i] -= pq * m[i]
-                total[2 + i] += pq * m[2 + i]
-            if qq is not None:
-                total[i] -= qq * m[2 + i]
-            if pp is not None:
-                total[2 + i] += pp * m[i]
-    return tuple(x / (k + 1) for x in total)
+def polynomials(coefficients: list[Vector], h: Number) -> Vector:
+    """Σ z_k h^k, of vectors."""
+    return [polynomial(own, h) for own in zip(*coefficients, strict=True)]
 
 
 def polynomial(coefficients: Sequence[Number], h: Number) -> Number:
@@ -156,32 +172,42 @@ TABLEAUS: dict[str, tuple[_Rows, tuple[Fraction, ...]]] = {
 
 def runge_kutta(field: Field, rows: _Rows, weights: tuple[Fraction, ...]) -> Step:
     """k_i = f(z + h Σ a_ij k_j), K_i = A(…) (1 + h Σ a_ij K_j), z' = z + h Σ b_i k_i."""
+    size = len(field.names)
+    known, f, a = field.all.known, field.all.f, field.all.a
 
-    def step(p: Number, q: Number, h: Number, t: Number) -> tuple[State, Matrix]:
-        slopes: list[tuple[Number, ...]] = []  # k_i, then K_i row by row
+    def step(z: Vector, h: Number, t: Number) -> tuple[Vector, Matrix]:
+        slopes: list[Vector] = []  # k_i, then K_i row by row
 
-        def lie_derivatives(row: Sequence[Fraction]) -> list[Number]:
-            total: list[Number] = [p, q, *IDENTITY]
+        def moved(row: Sequence[Fraction]) -> Vector:
+            total: Vector = [*z, *identity(size)]
             for b, slope in zip(row, slopes, strict=True):
                 if b:
-                    total = [x + h * (s * number(b)) for x, s in zip(total, slope, strict=True)]
+                    by = h * number(b)
+                    total = [x + by * s for x, s in zip(total, slope, strict=True)]
             return total
 
         for row in rows:
-            at_p, at_q, *m = lie_derivatives(row)
-            f, a = field.at(at_p, at_q, t + h * number(sum(row, _F(0))))
-            slopes.append((*f, *product(a, tuple(m))))
-        z_p, z_q, *j = lie_derivatives(weights)
-        return (z_p, z_q), tuple(j)
+            at = moved(row)
+            known.begin([*at[:size], t + h * number(sum(row, _F(0)))])
+            turned: Matrix = [0] * size**2
+            entries = [(r, c, known.value(x)) for r, c, x in a]
+            _add_product(turned, entries, at[size:], size)
+            slopes.append([*(known.value(x) for _, x in f), *turned])
+        after = moved(weights)
+        return after[:size], after[size:]
 
     return step
 
 
-def product(x: Matrix, y: Matrix) -> Matrix:
-    """x y, of matrices row by row."""
-    a, b, c, d = x
-    e, f, g, h = y
-    return a * e + b * g, a * f + b * h, c * e + d * g, c * f + d * h
+def _add_product(
+    total: Matrix, entries: Iterable[tuple[int, int, Number]], m: Matrix, size: int
+) -> None:
+    """Adds A m, A being given by those of its entries that are not 0."""
+    columns = range(size)
+    for row, column, x in entries:
+        into, out = row * size, column * size
+        for k in columns:
+            total[into + k] += x * m[out + k]
 
 
 # -- compositions of shears -----------------------------------------------------------------------
@@ -208,27 +234,27 @@ SHEARS: dict[str, Callable[[], list[tuple[str, Number]]]] = {
 
 
 def shears(field: Field, parts: Callable[[], list[tuple[str, Number]]]) -> Step:
-    """p ← p − a h V_q(q, s), q ← q + a h T_p(p, s), and J's rows by V_qq and T_pp likewise."""
+    """p ← p − a h ∂V/∂q(q, s), q ← q + a h ∂T/∂p(p, s), and J's rows by A likewise."""
+    size = len(field.names)
+    columns = range(size)
     made: dict[int, list[tuple[str, Number]]] = {}
 
-    def step(p: Number, q: Number, h: Number, t: Number) -> tuple[State, Matrix]:
+    def step(z: Vector, h: Number, t: Number) -> tuple[Vector, Matrix]:
         if flint.ctx.prec not in made:
             made[flint.ctx.prec] = parts()
-        a, b, c, d = IDENTITY
-        reads = {"kick": t, "drift": t}
-        for kind, size in made[flint.ctx.prec]:
-            known = field.of_q if kind == "kick" else field.of_p
-            known.begin(p, q, reads[kind])
-            own = h * size
+        z, j, reads = list(z), identity(size), {"kick": t, "drift": t}
+        for kind, share in made[flint.ctx.prec]:
+            rows = field.of_q if kind == "kick" else field.of_p
+            known = rows.known
+            known.begin([*z, reads[kind]])
+            own = h * share
             reads["drift" if kind == "kick" else "kick"] += own
-            if kind == "kick":
-                bend = own * known.value(field.h_qq)
-                p = p - own * known.value(field.h_q)
-                a, b = a - bend * c, b - bend * d
-            else:
-                bend = own * known.value(field.h_pp)
-                q = q + own * known.value(field.h_p)
-                c, d = c + bend * a, d + bend * b
-        return (p, q), (a, b, c, d)
+            for row, x in rows.f:
+                z[row] += own * known.value(x)
+            for row, column, x in rows.a:  # the rows that are read are not added to
+                bend, into, out = own * known.value(x), row * size, column * size
+                for k in columns:
+                    j[into + k] += bend * j[out + k]
+        return z, j
 
     return step

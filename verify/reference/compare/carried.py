@@ -13,8 +13,9 @@ from fractions import Fraction
 
 from verify.arithmetic.systems import float64
 from verify.errors import InputError
+from verify.hamiltonians.start import point_of
 from verify.reference.compare.findings import DOUBLE, Spread, Spreads
-from verify.reference.make.points_in_degrees import OrbitInDegrees
+from verify.reference.make.orbit_points import OrbitInDegrees
 from verify.runs.run import run
 
 _OFF = Fraction(1, 2**24)  # of the orbit's size: what is carried has 20 digits of bits beside it
@@ -69,7 +70,8 @@ class Carried:
         }
 
     def _row(self, step: int) -> _Row | None:
-        start = self._orbit.point
+        orbit = self._orbit
+        start = point_of(orbit.hamiltonian, orbit.q, orbit.p)
         if step == 0:
             return _Row(max(map(abs, start.values())), {}, Fraction(1))
         middle = self._after(start, step) if step <= _MOST_STEPS else None

@@ -15,7 +15,8 @@ from verify.reference.compare.mistakes import of_states
 from verify.reference.compare.published import Published, PublishedRun
 from verify.reference.compare.rows import Theirs
 from verify.reference.compare.scatter import Scatters
-from verify.reference.compare.setting import AnyOrbit, Points, Setting
+from verify.reference.compare.setting import Points, Setting
+from verify.reference.make.orbit_points import AnyOrbit
 from verify.scenes.results.separation import SeparationResult
 from verify.studies.separation.separate import separate
 

@@ -18,7 +18,7 @@ from verify.reference.compare.overflow import may_overflow
 from verify.reference.compare.published import PublishedRun
 from verify.reference.compare.rows import Row
 from verify.reference.compare.scatter import Scatters
-from verify.reference.compare.setting import Bounded, Points, Setting, numbers_of
+from verify.reference.compare.setting import Bounded, Points, Setting
 
 _DOUBLE_DIGITS = 17  # more than these may be of a more precise number
 _MORE_DIGITS, _LEAST_DIGITS = 8, 25
@@ -47,7 +47,7 @@ class Judge:
         self.right = Setting(ours.orbit, points)
 
     def _cells(self, step: int, row: Row) -> Iterator[tuple[str, Cell]]:
-        known = numbers_of(self.ours.rows[step])
+        known = self.ours.numbers(step)
         for name, text in row.cells.items():
             if name in known and text.strip():
                 yield name, beside(text, known[name], self.how[name], f"line {row.line}, {name}")
@@ -128,7 +128,7 @@ class Judge:
     def known(self, setting: Setting, step: int, unit: Fraction) -> dict[str, Bounded]:
         """The setting's numbers at a row's step, as far as they can be had."""
         if setting == self.right:
-            return numbers_of(self.ours.rows[step])
+            return self.ours.numbers(step)
         known = setting.numbers(step, self.digits(unit))
         wanted = {*self.ours.hamiltonian.coordinates, *self.names}
         return {n: x for n, x in known.items() if n in wanted}

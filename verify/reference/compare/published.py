@@ -18,19 +18,25 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import point_of
 from verify.kernels.orbit import Orbit
 from verify.kernels.step.tangent_map import nearest_double
-from verify.reference.compare.setting import AnyOrbit, AnyPoint, rounded_numbers
-from verify.reference.make.models import DATA_FORMAT, VALUES, Data, Run
+from verify.reference.compare.setting import Bounded, numbers_of
+from verify.reference.make.columns import (
+    AnyOrbitPoint,
+    orbit_columns,
+    start_columns,
+    state_columns,
+    values_of,
+)
+from verify.reference.make.models import DATA_FORMAT, Data, Run
 from verify.reference.make.models_in_degrees import (
     DATA_IN_DEGREES_FORMAT,
-    OF_ORBIT,
     DataInDegrees,
     RunInDegrees,
     is_of_degrees,
 )
-from verify.reference.make.points_in_degrees import OrbitInDegrees
+from verify.reference.make.orbit_points import AnyOrbit, OrbitInDegrees
 from verify.reference.make.reading import json_of
-from verify.reference.make.tables_in_degrees import start_columns, state_columns
 from verify.reference.make.writing import MANIFEST, SCHEMAS
+from verify.scenes.results.reference import Rounded
 
 _HEAD = 200  # bytes of a file
 _EXPONENT_DIGITS = 6
@@ -54,12 +60,9 @@ class PublishedRun:
         """What a run of a scene is told by, by a table's columns: scheme, step_size, and q0 and p0,
         or q0_1 … p0_n."""
         run = self.run
-        if isinstance(run, Run):
-            start = {"q0": run.q, "p0": run.p}
-        else:
-            names = start_columns(self.hamiltonian.degrees)
-            start = dict(zip(names, (*run.q, *run.p), strict=True))
-        return {"scheme": run.scheme, "step_size": run.step_size, **start}
+        start = (run.q, run.p) if isinstance(run, Run) else (*run.q, *run.p)
+        named = zip(start_columns(self.hamiltonian.degrees), start, strict=True)
+        return {"scheme": run.scheme, "step_size": run.step_size, **dict(named)}
 
     @cached_property
     def exact(self) -> dict[str, Fraction]:
@@ -74,9 +77,8 @@ class PublishedRun:
     @property
     def columns(self) -> tuple[str, ...]:
         """Those of its numbers, the state first."""
-        if self.hamiltonian.planar:
-            return VALUES
-        return *state_columns(self.hamiltonian.degrees), *OF_ORBIT
+        degrees = self.hamiltonian.degrees
+        return *state_columns(degrees), *orbit_columns(degrees)
 
     @property
     def label(self) -> str:
@@ -102,9 +104,13 @@ class PublishedRun:
         return None if text is None else rational(text, "t0")
 
     @cached_property
-    def rows(self) -> dict[int, AnyPoint]:
+    def rows(self) -> dict[int, AnyOrbitPoint]:
         """Its rows by step."""
         return {row.step: row for row in self.run.rows}
+
+    def numbers(self, step: int) -> dict[str, Bounded]:
+        """Those of a row, by their columns' names."""
+        return numbers_of(self.rows[step], self.hamiltonian.degrees)
 
 
 class Published:
@@ -189,7 +195,8 @@ def _runs(path: Path, planar: bool) -> Iterator[PublishedRun]:
     for run in data.runs:
         point_of(hamiltonian, run.q, run.p)
         for row in run.rows:
-            _check_exponents(row, name)
+            for number in values_of(row, hamiltonian.degrees).values():
+                _check_exponents(number, name)
         yield PublishedRun(data.name, hamiltonian, run)
 
 
@@ -205,10 +212,9 @@ def _data(path: Path, planar: bool) -> Data | DataInDegrees:
         raise InputError("file", path.name, problem) from None
 
 
-def _check_exponents(row: AnyPoint, name: str) -> None:
+def _check_exponents(number: Rounded | None, name: str) -> None:
     """InputError for an exponent whose power of ten would fill the memory."""
-    for number in rounded_numbers(row).values():
-        for text in (number.value, number.radius):
-            exponent = text.partition("e")[2].lstrip("+-0")
-            if len(exponent) > _EXPONENT_DIGITS:
-                raise InputError("file", name, f"has the number {text[:40]}, beyond all sizes")
+    for text in (number.value, number.radius) if number else ():
+        exponent = text.partition("e")[2].lstrip("+-0")
+        if len(exponent) > _EXPONENT_DIGITS:
+            raise InputError("file", name, f"has the number {text[:40]}, beyond all sizes")

@@ -28,7 +28,8 @@ from verify.kernels.orbit import Orbit
 from verify.kernels.stepping import KernelRun
 from verify.reference.compare.carried import Carried
 from verify.reference.compare.findings import Spread, Spreads
-from verify.reference.compare.setting import AnyOrbit, start_of
+from verify.reference.compare.setting import start_of
+from verify.reference.make.orbit_points import AnyOrbit
 
 _PUSH = 2.0**-42 if WIDE.prec > 60 else 2.0**-32  # numbers have 20 bits and more beside it
 _COPIES = 16  # of each kind

@@ -10,44 +10,30 @@ from functools import lru_cache
 
 from verify.arithmetic.number_system import UnsupportedError
 from verify.errors import InputError
+from verify.hamiltonians.start import point_of
 from verify.kernels.orbit import Orbit
-from verify.reference.make import orbit_points, points_in_degrees
-from verify.reference.make.models import values_of
-from verify.reference.make.models_in_degrees import values_in_degrees
-from verify.reference.make.points_in_degrees import OrbitInDegrees
-from verify.scenes.results.reference import OrbitPoint, Rounded
-from verify.scenes.results.reference_in_degrees import OrbitPointInDegrees
+from verify.reference.make.columns import AnyOrbitPoint, values_of
+from verify.reference.make.orbit_points import AnyOrbit, orbit_points
 
 _MOST_STEPS = 2_000_000  # run; what is farther is not known
 _MOST_STEPS_IN_DEGREES = 20_000
-AnyOrbit = Orbit | OrbitInDegrees
-AnyPoint = OrbitPoint | OrbitPointInDegrees
 Bounded = tuple[Fraction, Fraction]  # a value and its radius
 
 
-def rounded_numbers(point: AnyPoint) -> dict[str, Rounded]:
+def numbers_of(point: AnyOrbitPoint, degrees: int) -> dict[str, Bounded]:
     """The numbers that a point has, by their columns' names."""
-    if isinstance(point, OrbitPoint):
-        known = values_of(point)
-    else:
-        known = values_in_degrees(point, len(point.p or ()))
-    return {name: x for name, x in known.items() if x}
-
-
-def numbers_of(point: AnyPoint) -> dict[str, Bounded]:
-    """The same with their radii, exactly."""
-    each = rounded_numbers(point).items()
-    return {name: (Fraction(x.value), Fraction(x.radius)) for name, x in each}
+    known = values_of(point, degrees).items()
+    return {name: (Fraction(x.value), Fraction(x.radius)) for name, x in known if x}
 
 
 class Points:
     """Orbits after some steps: from the reference data where they have them, else by a run."""
 
-    def __init__(self, known: Mapping[AnyOrbit, tuple[int, Mapping[int, AnyPoint]]]) -> None:
+    def __init__(self, known: Mapping[AnyOrbit, tuple[int, Mapping[int, AnyOrbitPoint]]]) -> None:
         """`known`: of an orbit its digits, and its points by step."""
         self._known = known
 
-    def at(self, orbit: AnyOrbit, step: int, digits: int) -> AnyPoint | None:
+    def at(self, orbit: AnyOrbit, step: int, digits: int) -> AnyOrbitPoint | None:
         """To so many digits and no fewer; None where there is no such state."""
         have, rows = self._known.get(orbit, (0, {}))
         if have >= digits and step in rows:
@@ -77,7 +63,7 @@ class Setting:
         """What row `step` of such a table has; without the state where there is no such."""
         after = step + self.late
         point = None if after < 0 else self.points.at(self.orbit, after, digits)
-        own = numbers_of(point) if point else {}
+        own = numbers_of(point, self.orbit.hamiltonian.degrees) if point else {}
         if self.negated:
             momenta = [n for n in self.orbit.hamiltonian.coordinates if n[0] == "p" and n in own]
             own |= {name: (-own[name][0], own[name][1]) for name in momenta}
@@ -95,21 +81,16 @@ def start_of(orbit: AnyOrbit) -> dict[str, Fraction]:
     """What a kernel's run of it begins with: the state, h and t."""
     if isinstance(orbit, Orbit):
         return orbit.start
-    return {**orbit.point, "h": orbit.step_size, "t": orbit.t0}
+    point = point_of(orbit.hamiltonian, orbit.q, orbit.p)
+    return {**point, "h": orbit.step_size, "t": orbit.t0}
 
 
 @lru_cache(maxsize=4096)
-def _run_at(orbit: AnyOrbit, step: int, digits: int) -> AnyPoint | None:
-    point: AnyPoint
+def _run_at(orbit: AnyOrbit, step: int, digits: int) -> AnyOrbitPoint | None:
+    if step > (_MOST_STEPS if orbit.hamiltonian.planar else _MOST_STEPS_IN_DEGREES):
+        return None
     try:
-        if isinstance(orbit, Orbit):
-            if step > _MOST_STEPS:
-                return None
-            (point,) = orbit_points.orbit_points(orbit, steps=(step,), digits=digits).points
-        else:
-            if step > _MOST_STEPS_IN_DEGREES:
-                return None
-            (point,) = points_in_degrees.orbit_points(orbit, (step,), digits)
+        (point,) = orbit_points(orbit, steps=(step,), digits=digits)
     except (InputError, UnsupportedError, ArithmeticError):
         return None
     return point if point.status == "finished" else None

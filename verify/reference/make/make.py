@@ -12,29 +12,11 @@ from verify.errors import InputError
 from verify.execution.machine import versions
 from verify.files import MOST_BYTES, read_text, write_atomically
 from verify.formats import names_format
-from verify.reference.make.models import (
-    DATA_FORMAT,
-    MANIFEST_FORMAT,
-    Data,
-    Flow,
-    FlowInTime,
-    Manifest,
-    Proof,
-    Run,
-    RunInTime,
-    SceneFile,
-)
-from verify.reference.make.models_in_degrees import (
-    DATA_IN_DEGREES_FORMAT,
-    DataInDegrees,
-    FlowInDegrees,
-    ProofInDegrees,
-    RunInDegrees,
-)
+from verify.reference.make.models import DATA_FORMAT, MANIFEST_FORMAT, Data, Manifest, SceneFile
+from verify.reference.make.models_in_degrees import DATA_IN_DEGREES_FORMAT, AnyData, DataInDegrees
 from verify.reference.make.scene_plan import orbit_tasks, proof_tasks, size_of, solution_tasks
 from verify.reference.make.writing import (
     MANIFEST,
-    AnyData,
     csv_text,
     digest,
     json_text,
@@ -87,51 +69,33 @@ def committed_scenes() -> list[Path]:
 
 def data_of(scene: Scene, results: Mapping[str, Any]) -> AnyData:
     """A scene's data from the results of its tasks, by their keys."""
-    if not scene.exact_hamiltonian().planar:
-        return _in_degrees(scene, results)
-    timed = scene.exact_hamiltonian().time_dependent
-    run, flow = (RunInTime, FlowInTime) if timed else (Run, Flow)
-    return Data(
-        format=DATA_FORMAT,
-        name=scene.name,
-        **scene.exact_hamiltonian().texts,
-        proofs=tuple(
-            Proof(**{name: getattr(results[t.key], name) for name in Proof.model_fields})
-            for t in proof_tasks(scene)
-        ),
-        runs=tuple(
-            run(scheme=t.scheme, **t.inputs, rows=results[t.key].points) for t in orbit_tasks(scene)
-        ),
-        flow=tuple(flow(**t.inputs, rows=results[t.key].points) for t in solution_tasks(scene)),
-    )
-
-
-def _in_degrees(scene: Scene, results: Mapping[str, Any]) -> DataInDegrees:
     exact = scene.exact_hamiltonian()
-
-    def proof(scheme: str, found: ProofResult) -> ProofInDegrees:
-        form = found.form
-        assert form is not None  # noqa: S101 - a proof in n degrees of freedom
-        alike = ("verdict", "area_preserving", "order", "convergence_order")
-        return ProofInDegrees(
-            scheme=scheme, symplectic=form.symplectic, leading=dict(form.entries),
-            **{name: getattr(found, name) for name in alike},
-        )  # fmt: skip
-
-    return DataInDegrees(
-        format=DATA_IN_DEGREES_FORMAT,
-        name=scene.name,
+    content = {
+        "name": scene.name,
         **exact.texts,
-        degrees=exact.degrees,
-        proofs=tuple(proof(t.scheme, results[t.key]) for t in proof_tasks(scene)),
-        runs=tuple(
-            RunInDegrees(scheme=t.scheme, **t.inputs, rows=results[t.key].points)
-            for t in orbit_tasks(scene)
-        ),
-        flow=tuple(
-            FlowInDegrees(**t.inputs, rows=results[t.key].points) for t in solution_tasks(scene)
-        ),
-    )
+        "proofs": [_proof(task.scheme, results[task.key]) for task in proof_tasks(scene)],
+        "runs": [
+            {"scheme": task.scheme, **task.inputs, "rows": results[task.key].points}
+            for task in orbit_tasks(scene)
+        ],
+        "flow": [
+            {**task.inputs, "rows": results[task.key].points} for task in solution_tasks(scene)
+        ],
+    }
+    if exact.planar:
+        return Data.model_validate({"format": DATA_FORMAT, **content})
+    head = {"format": DATA_IN_DEGREES_FORMAT, "degrees": exact.degrees}
+    return DataInDegrees.model_validate({**head, **content})
+
+
+def _proof(scheme: str, result: ProofResult) -> dict[str, Any]:
+    """What a file has of a proof: of all entries of S in several degrees of freedom."""
+    alike = ("verdict", "area_preserving", "order", "convergence_order")
+    content = {"scheme": scheme, **{name: getattr(result, name) for name in alike}}
+    form = result.form
+    if form is None:
+        return {"leading": result.leading, **content}
+    return {"symplectic": form.symplectic, "leading": dict(form.entries), **content}
 
 
 def alone(folder: Path, asked: Sequence[SceneText], *, parquet: bool) -> None:

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field
 
 from verify.scenes.frozen import Frozen
-from verify.scenes.results.reference import FlowPoint, OrbitPoint, Rounded
+from verify.scenes.results.reference import FlowPoint, OrbitPoint
 from verify.verdict import Verdict
 
 DataFormat = Literal["areaproof reference data 1"]
@@ -18,17 +18,44 @@ _EXACT = r"^-?[0-9]+(\.[0-9]+|/[0-9]+)?$"
 Exact = Annotated[str, Field(pattern=_EXACT)]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=120)]
 Digest = Annotated[str, Field(pattern=_SHA256)]
+SceneName = Annotated[Name, Field(description="the scene's name; the files begin with it")]
+Parameters = Annotated[
+    dict[str, Exact], Field(description="each parameter's exact value by its name")
+]
+StepSize = Annotated[Exact, Field(description="the step size h exactly: a decimal or a quotient")]
+Digits = Annotated[int, Field(ge=1, description="significant digits of each number")]
+Proved = Annotated[Verdict, Field(description="PROVED where all of this row is proved")]
+ConvergenceOrder = Annotated[
+    int | None,
+    Field(
+        ge=0,
+        description="one step agrees with the exact flow up to h to this power; null "
+        "where all coefficients that were looked at agree",
+    ),
+]
 
 
-VALUES = ("p", "q", "delta_j", "mse", "lambda")
+class Started(Frozen):
+    """What begins somewhere: `told` is its step size and start, in words."""
+
+    @property
+    def label(self) -> str:
+        """The scheme, or that it is the exact flow, and its inputs."""
+        return f"{getattr(self, 'scheme', 'exact flow')}, {self.told}"
+
+    @property
+    def told(self) -> str:
+        raise NotImplementedError
 
 
-def values_of(row: OrbitPoint | FlowPoint) -> dict[str, Rounded | None]:
-    """The numbers of a row by the names of their columns; None for one that there is not."""
-    if isinstance(row, FlowPoint):
-        return {"p": row.p, "q": row.q}
-    numbers = row.p, row.q, row.delta_j, row.mse, row.lam
-    return dict(zip(VALUES, numbers, strict=True))
+class Tables(Frozen):
+    """What is of one scene: proofs, runs and exact solutions."""
+
+    @property
+    def count(self) -> int:
+        """The rows of all tables."""
+        proofs, runs, flow = (getattr(self, name) for name in ("proofs", "runs", "flow"))
+        return len(proofs) + sum(len(each.rows) for each in (*runs, *flow))
 
 
 class OfScheme(Frozen):
@@ -42,7 +69,7 @@ class OfScheme(Frozen):
 class Proof(OfScheme):
     """What is proved of one scheme for this H, by exact algebra."""
 
-    verdict: Annotated[Verdict, Field(description="PROVED where all of this row is proved")]
+    verdict: Proved
     area_preserving: Annotated[
         bool | None, Field(description="whether ΔJ is 0 for all p, q and h; null: not decided")
     ]
@@ -52,20 +79,14 @@ class Proof(OfScheme):
     leading: Annotated[
         str, Field(description="the leading coefficient of ΔJ, a formula in p and q; 0 if ΔJ is 0")
     ]
-    convergence_order: Annotated[
-        int | None,
-        Field(ge=0, description="one step agrees with the exact flow up to h to this power; null "
-              "where all coefficients that were looked at agree"),
-    ]  # fmt: skip
+    convergence_order: ConvergenceOrder
 
 
-class _FromStart(Frozen):
-    step_size: Annotated[
-        Exact, Field(description="the step size h exactly: a decimal or a quotient")
-    ]
+class _FromStart(Started):
+    step_size: StepSize
     q: Annotated[Exact, Field(description="the initial displacement q exactly")]
     p: Annotated[Exact, Field(description="the initial momentum p exactly")]
-    digits: Annotated[int, Field(ge=1, description="significant digits of each number")]
+    digits: Digits
 
     @property
     def start(self) -> dict[str, Fraction]:
@@ -97,11 +118,6 @@ class Run(_FromStart, OfScheme):
 
     rows: Annotated[tuple[OrbitPoint, ...], Field(description="one a chosen step, ascending")]
 
-    @property
-    def label(self) -> str:
-        """The scheme and its inputs."""
-        return f"{self.scheme}, {self.told}"
-
 
 class RunInTime(_FromTime, Run):
     """The same for an H that depends on time, from a time on."""
@@ -112,23 +128,18 @@ class Flow(_FromStart):
 
     rows: Annotated[tuple[FlowPoint, ...], Field(description="one a chosen step, ascending")]
 
-    @property
-    def label(self) -> str:
-        """The same with "exact flow" for a scheme."""
-        return f"exact flow, {self.told}"
-
 
 class FlowInTime(_FromTime, Flow):
     """The same for an H that depends on time; N·h is the time since the start."""
 
 
-class Data(Frozen):
+class Data(Tables):
     """Reference data of one scene: one Hamiltonian, its schemes, step sizes and initial values."""
 
     model_config = ConfigDict(title="areaproof reference data")
 
     format: Annotated[DataFormat, Field(description="this format")]
-    name: Annotated[Name, Field(description="the scene's name; the files begin with it")]
+    name: SceneName
     hamiltonian: Annotated[
         str,
         Field(
@@ -136,9 +147,7 @@ class Data(Frozen):
             "** is a power"
         ),
     ]
-    parameters: Annotated[
-        dict[str, Exact], Field(description="each parameter's exact value by its name")
-    ]
+    parameters: Parameters
     proofs: Annotated[tuple[Proof, ...], Field(description="one a scheme")]
     runs: Annotated[
         tuple[RunInTime | Run, ...], Field(description="one a scheme, initial value and step size")
@@ -148,15 +157,14 @@ class Data(Frozen):
     ]
 
     @property
+    def degrees(self) -> int:
+        """n, the degrees of freedom."""
+        return 1
+
+    @property
     def timed(self) -> bool:
         """Whether H depends on time."""
         return any(isinstance(of, _FromTime) for of in (*self.runs, *self.flow))
-
-    @property
-    def count(self) -> int:
-        """The rows of all tables."""
-        rows = [len(run.rows) for run in self.runs] + [len(flow.rows) for flow in self.flow]
-        return len(self.proofs) + sum(rows)
 
 
 class SceneFile(Frozen):

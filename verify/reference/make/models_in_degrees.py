@@ -3,38 +3,33 @@
 As `verify.reference.make.models` in the plane, with q and p as lists, and S in place of ΔJ.
 """
 
-from collections.abc import Sequence
 from fractions import Fraction
 from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
-from verify.reference.make.models import Exact, Name, OfScheme
-from verify.scenes.frozen import Frozen
-from verify.scenes.results.reference import Rounded
+from verify.reference.make.models import (
+    ConvergenceOrder,
+    Data,
+    Digits,
+    Exact,
+    Flow,
+    OfScheme,
+    Parameters,
+    Proof,
+    Proved,
+    Run,
+    SceneName,
+    Started,
+    StepSize,
+    Tables,
+)
 from verify.scenes.results.reference_in_degrees import FlowPointInDegrees, OrbitPointInDegrees
-from verify.verdict import Verdict
 
 DataInDegreesFormat = Literal["areaproof reference data in degrees 1"]
 DATA_IN_DEGREES_FORMAT: DataInDegreesFormat = "areaproof reference data in degrees 1"
-OF_ORBIT = ("energy", "symplectic_defect_max", "symplectic_defect", "lambda")
-AFTER_A_STEP = ("symplectic_defect_max",)  # what there is not for N = 0
-MAY_LACK = ("energy",)
 _HEAD = 100  # bytes of a file, in which its format stands: a key that comes first
 _List = Annotated[tuple[Exact, ...], Field(min_length=2)]
-
-
-def values_in_degrees(
-    row: OrbitPointInDegrees | FlowPointInDegrees, degrees: int
-) -> dict[str, Rounded | None]:
-    """The numbers of a row by the names of their columns; None for one that there is not."""
-    found: dict[str, Rounded | None] = {}
-    for letter, own in (("p", row.p), ("q", row.q)):
-        each: Sequence[Rounded | None] = own or (None,) * degrees
-        found |= {f"{letter}{k}": x for k, x in enumerate(each, start=1)}
-    if isinstance(row, OrbitPointInDegrees):
-        found |= {name: getattr(row, name) for name in OF_ORBIT[:-1]} | {"lambda": row.lam}
-    return found
 
 
 def is_of_degrees(content: bytes) -> bool:
@@ -45,7 +40,7 @@ def is_of_degrees(content: bytes) -> bool:
 class ProofInDegrees(OfScheme):
     """What is proved of one scheme for this H, by exact algebra."""
 
-    verdict: Annotated[Verdict, Field(description="PROVED where all of this row is proved")]
+    verdict: Proved
     symplectic: Annotated[
         bool | None, Field(description="whether S is 0 for all z and h; null: not decided")
     ]
@@ -60,24 +55,18 @@ class ProofInDegrees(OfScheme):
         Field(description="the entries of the leading coefficient of S that are not 0, such as "
               "dp1∧dq2, each a formula in z; none where S is 0, or where they are too long"),
     ]  # fmt: skip
-    convergence_order: Annotated[
-        int | None,
-        Field(ge=0, description="one step agrees with the exact flow up to h to this power; null "
-              "where all coefficients that were looked at agree"),
-    ]  # fmt: skip
+    convergence_order: ConvergenceOrder
 
 
-class _FromStart(Frozen):
-    step_size: Annotated[
-        Exact, Field(description="the step size h exactly: a decimal or a quotient")
-    ]
+class _FromStart(Started):
+    step_size: StepSize
     q: Annotated[_List, Field(description="the initial displacements q1 … qn exactly")]
     p: Annotated[_List, Field(description="the initial momenta p1 … pn exactly")]
     t0: Annotated[
         Exact | None,
         Field(description="the time at the start exactly; null where H does not depend on time"),
     ]
-    digits: Annotated[int, Field(ge=1, description="significant digits of each number")]
+    digits: Digits
 
     @property
     def start(self) -> dict[str, Fraction]:
@@ -104,11 +93,6 @@ class RunInDegrees(_FromStart, OfScheme):
         tuple[OrbitPointInDegrees, ...], Field(description="one a chosen step, ascending")
     ]
 
-    @property
-    def label(self) -> str:
-        """The scheme and its inputs."""
-        return f"{self.scheme}, {self.told}"
-
 
 class FlowInDegrees(_FromStart):
     """The exact solution of p' = −∂H/∂q, q' = ∂H/∂p from one initial value, at the times N·h."""
@@ -117,28 +101,21 @@ class FlowInDegrees(_FromStart):
         tuple[FlowPointInDegrees, ...], Field(description="one a chosen step, ascending")
     ]
 
-    @property
-    def label(self) -> str:
-        """The same with "exact flow" for a scheme."""
-        return f"exact flow, {self.told}"
 
-
-class DataInDegrees(Frozen):
+class DataInDegrees(Tables):
     """Reference data of one scene in n degrees of freedom: one H(p1 … pn, q1 … qn), its schemes,
     step sizes and initial values."""
 
     model_config = ConfigDict(title="areaproof reference data in n degrees of freedom")
 
     format: Annotated[DataInDegreesFormat, Field(description="this format")]
-    name: Annotated[Name, Field(description="the scene's name; the files begin with it")]
+    name: SceneName
     hamiltonian: Annotated[
         str,
         Field(description="the formula of H in p1 … pn, q1 … qn, t and the parameters; "
               "** is a power"),
     ]  # fmt: skip
-    parameters: Annotated[
-        dict[str, Exact], Field(description="each parameter's exact value by its name")
-    ]
+    parameters: Parameters
     degrees: Annotated[int, Field(ge=2, description="n, the degrees of freedom")]
     proofs: Annotated[tuple[ProofInDegrees, ...], Field(description="one a scheme")]
     runs: Annotated[
@@ -153,8 +130,8 @@ class DataInDegrees(Frozen):
         """Whether H depends on time."""
         return any(of.t0 is not None for of in (*self.runs, *self.flow))
 
-    @property
-    def count(self) -> int:
-        """The rows of all tables."""
-        rows = [len(run.rows) for run in self.runs] + [len(flow.rows) for flow in self.flow]
-        return len(self.proofs) + sum(rows)
+
+AnyProof = Proof | ProofInDegrees
+AnyRun = Run | RunInDegrees
+AnyFlow = Flow | FlowInDegrees
+AnyData = Data | DataInDegrees

@@ -1,80 +1,94 @@
 """One orbit at chosen steps, and the exact flow at their times, every number correctly rounded.
 
 Each step that is chosen is a run of its own, so that what is known of it is what `verify.runs.run`
-reports, with a rigorous bound wherever one can be had. ΔJ at the state is enclosed by balls over
-all states within that bound. More digits are asked for until all numbers round to one decimal.
+reports, with a rigorous bound wherever one can be had. ΔJ at the state, or H in several degrees of
+freedom, is enclosed by balls over all states within that bound. More digits are asked for until all
+numbers round to one decimal.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from fractions import Fraction
 from types import MappingProxyType
-from typing import Literal
+from typing import Any, Literal
 
 import flint
 
-from verify.algebra.enclosure import enclose_all
+from verify.algebra.enclosure import enclose_all, enclose_over
 from verify.arithmetic.arb import around, in_reach, middle_and_radius, rational_ball
 from verify.arithmetic.exact import text
 from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
+from verify.flows.degrees.solution import SolutionInDegrees, solution_in_degrees
 from verify.flows.extrapolation import NoFlowError
-from verify.flows.solution import Solution, exact_solution, leaves_by_algebra
+from verify.flows.solution import leaves_by_algebra
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.start import point_of
 from verify.kernels.orbit import Orbit
 from verify.kernels.step.computation import step_map_of
+from verify.reference.make.columns import AnyFlowPoint, AnyOrbitPoint, orbit_columns
 from verify.reference.make.correct_rounding import correctly_rounded, near_zero
-from verify.reference.make.models import VALUES
 from verify.runs.run import run
-from verify.scenes.results.reference import (
-    FlowPoint,
-    Kind,
-    OrbitPoint,
-    OrbitResult,
-    Rounded,
-    SolutionResult,
-)
+from verify.scenes.results.reference import FlowPoint, Kind, OrbitPoint, Rounded
+from verify.scenes.results.reference_in_degrees import FlowPointInDegrees, OrbitPointInDegrees
 from verify.scenes.results.run import RunResult
 from verify.scenes.values import AUTO
-from verify.schemes.step_map import StepMap
 
-GUARDS = (10, 25, 60, 150)  # digits beyond those asked for, in turn
-_BITS = 64  # beyond the digits, for the roundings of one step
+_GUARDS = (10, 25, 60, 150)  # digits beyond those asked for, in turn
+_BITS = 64  # beyond the digits, for the roundings of one step, or of H
 _ZERO = Fraction(0), Fraction(0)
+_OF_PLANE = ("mse", "lambda")
+_OF_SEVERAL = ("symplectic_defect_max", "symplectic_defect", "lambda")
 Bounded = tuple[Fraction, Fraction]  # a value and its bound
 
 
-def orbit_points(orbit: Orbit, *, steps: Sequence[int], digits: int) -> OrbitResult:
+@dataclass(frozen=True)
+class OrbitInDegrees:
+    """The iterates of a scheme's step of one size from (q, p), at t0 where H depends on time."""
+
+    hamiltonian: Hamiltonian
+    scheme: str
+    step_size: Fraction
+    q: tuple[Fraction, ...]
+    p: tuple[Fraction, ...]
+    t0: Fraction = Fraction(0)
+
+
+AnyOrbit = Orbit | OrbitInDegrees
+
+
+def orbit_points(orbit: AnyOrbit, steps: Sequence[int], digits: int) -> Iterator[Any]:
     """The orbit after each of these numbers of steps, every number to so many digits."""
-    return OrbitResult(points=tuple(_point(orbit, n, digits) for n in steps))
+    for step in steps:
+        yield _point(orbit, step, digits)
 
 
-def _point(orbit: Orbit, step: int, digits: int) -> OrbitPoint:
-    step_map = step_map_of(orbit.hamiltonian, orbit.scheme)
-    for guard in GUARDS:
-        known = {"p": (orbit.p, Fraction(0)), "q": (orbit.q, Fraction(0)), "lambda": _ZERO}
+def _point(orbit: AnyOrbit, step: int, digits: int) -> AnyOrbitPoint:
+    start = point_of(orbit.hamiltonian, orbit.q, orbit.p)
+    # The first of the observables is of steps done, and the others are 0 at first.
+    observables = _OF_PLANE if orbit.hamiltonian.planar else _OF_SEVERAL
+    for guard in _GUARDS:
+        known = {name: (x, Fraction(0)) for name, x in start.items()}
+        known |= dict.fromkeys(observables[1:], _ZERO)
         kind: Kind = "enclosed"
         if step > 0:
-            found = _run(orbit, step, digits + guard)
-            if found.status == "left range":
-                return _orbit_point(step, "left range", failed_step=found.failed_step)
-            if found.status == "unresolved":
+            after = _run(orbit, step, digits + guard, observables)
+            if after.status == "left range":
+                return _orbit_point(orbit, step, "left range", failed_step=after.failed_step)
+            if after.status == "unresolved":
                 break
-            kind = found.error_kind
-            known = {n: (Fraction(v.value), Fraction(v.bound)) for n, v in found.values.items()}
-        change = delta_j_at(step_map, known, orbit, step, digits + guard)
-        if change is not None:
-            known["delta_j"] = change
-        last = guard == GUARDS[-1]
-        values = {
-            n: _rounded(x, digits, last, _size(orbit.q, orbit.p, n)) for n, x in known.items()
-        }
+            kind = after.error_kind
+            known = {n: (Fraction(v.value), Fraction(v.bound)) for n, v in after.values.items()}
+        known |= _at_state(orbit, step, known, digits + guard)
+        values = _all_rounded(known, start, digits, guard)
         if all(values.values()):
-            return _orbit_point(step, "finished", values, kind=kind)
-    return _orbit_point(step, "unresolved")
+            return _orbit_point(orbit, step, "finished", values, kind=kind)
+    return _orbit_point(orbit, step, "unresolved")
 
 
-def _run(orbit: Orbit, steps: int, digits: int) -> RunResult:
+def _run(orbit: AnyOrbit, steps: int, digits: int, observables: Sequence[str]) -> RunResult:
     return run(
         orbit.hamiltonian,
         orbit.scheme,
@@ -85,97 +99,132 @@ def _run(orbit: Orbit, steps: int, digits: int) -> RunResult:
         steps=steps,
         arithmetic=AUTO,
         digits=digits,
-        observables=("mse", "lambda"),
+        observables=observables,
     )
 
 
-def _size(q: Fraction, p: Fraction, name: str = "p") -> Fraction:
-    """What a number of that name is small against: p and q against the initial value."""
-    return max(abs(p), abs(q)) if name in ("p", "q") else Fraction(1)
-
-
-def _rounded(known: Bounded, digits: int, last: bool, size: Fraction) -> Rounded | None:
-    rounded = correctly_rounded(*known, digits)
-    return rounded or (near_zero(*known, digits, size) if last else None)
+def _all_rounded(
+    known: Mapping[str, Bounded], start: Mapping[str, Fraction], digits: int, guard: int
+) -> dict[str, Rounded | None]:
+    """Each number rounded; with the last guard a 0 too, coordinates against the initial value."""
+    largest = max(map(abs, start.values()))
+    values = {name: correctly_rounded(*x, digits) for name, x in known.items()}
+    if guard == _GUARDS[-1]:
+        for name, x in known.items():
+            size = largest if name in start else Fraction(1)
+            values[name] = values[name] or near_zero(*x, digits, size)
+    return values
 
 
 def _orbit_point(
+    orbit: AnyOrbit,
     step: int,
     status: Literal["finished", "left range", "unresolved"],
     values: Mapping[str, Rounded | None] = MappingProxyType({}),
     kind: Kind | None = None,
     failed_step: int | None = None,
-) -> OrbitPoint:
-    named = {name: values.get(name) for name in VALUES}
-    return OrbitPoint(step=step, status=status, failed_step=failed_step, kind=kind, **named)
+) -> AnyOrbitPoint:
+    model = OrbitPoint if orbit.hamiltonian.planar else OrbitPointInDegrees
+    numbers = _state(orbit.hamiltonian, values)
+    numbers |= {name: values.get(name) for name in orbit_columns(orbit.hamiltonian.degrees)}
+    return model(step=step, status=status, failed_step=failed_step, kind=kind, **numbers)
 
 
-def delta_j_at(
-    step_map: StepMap, known: Mapping[str, Bounded], orbit: Orbit, step: int, digits: int
-) -> Bounded | None:
-    """ΔJ of the orbit's next step after so many, from any state within the bounds of p and q in
-    `known`: its middle and radius.
+def _state(hamiltonian: Hamiltonian, values: Mapping[str, Rounded | None]) -> dict[str, Any]:
+    """p and q of a row: a number each, or a list; None where there are none."""
+    names = hamiltonian.coordinates
+    if hamiltonian.planar or not values:
+        return {letter: values.get(letter) for letter in "pq"}
+    return {letter: tuple(values[x] for x in names if x[0] == letter) for letter in "pq"}
 
-    Rigorous. None where a step is given by equations and does not preserve area by proof, and where
-    it may not be defined there.
+
+def _at_state(
+    orbit: AnyOrbit, step: int, known: Mapping[str, Bounded], digits: int
+) -> dict[str, Bounded]:
+    """ΔJ of the orbit's next step after so many, or H in several degrees of freedom, from any state
+    within the bounds in `known`; nothing where it may not be defined there.
     """
-    if step_map.preserves_area:
-        return _ZERO
-    if step_map.implicit:
-        return None
     with working_precision(4 * digits + _BITS):
-        box = {name: around(*known[name]) for name in ("p", "q")}
-        box |= {"h": rational_ball(orbit.step_size)}
+        box = {name: around(*known[name]) for name in orbit.hamiltonian.coordinates}
         if orbit.hamiltonian.time_dependent:
             box["t"] = rational_ball(orbit.t0 + step * orbit.step_size)
-        total = flint.arb(0)
-        for part in step_map.substeps:
-            own = enclose_all(part.ring, [part.delta_j, part.p_next, part.q_next], box)
-            if own is None:
-                return None
-            change, box["p"], box["q"] = own
-            total = total + change + total * change
-        return middle_and_radius(total) if in_reach(total) else None
+        if isinstance(orbit, Orbit):
+            name, value = "delta_j", _delta_j(orbit, box)
+        else:
+            field, _ = canonical_field(orbit.hamiltonian)
+            name, value = "energy", enclose_over(field.ring, field.energy, box)
+        return {name: middle_and_radius(value)} if value is not None and in_reach(value) else {}
+
+
+def _delta_j(orbit: Orbit, box: dict[str, flint.arb]) -> flint.arb | None:
+    """None, too, where a step is given by equations and does not preserve area by proof."""
+    step_map = step_map_of(orbit.hamiltonian, orbit.scheme)
+    total = flint.arb(0)
+    if step_map.preserves_area:
+        return total
+    if step_map.implicit:
+        return None
+    box["h"] = rational_ball(orbit.step_size)
+    for part in step_map.substeps:
+        enclosed = enclose_all(part.ring, [part.delta_j, part.p_next, part.q_next], box)
+        if enclosed is None:
+            return None
+        change, box["p"], box["q"] = enclosed
+        total = total + change + total * change
+    return total
 
 
 # -- the exact flow ----------------------------------------------------------------------------
 
 
 def solution_points(
-    hamiltonian: Hamiltonian, start: dict[str, Fraction], times: dict[int, Fraction], digits: int
-) -> SolutionResult:
-    """The exact flow from q and p, and t0, in `start`, at these times after it by their N, to so
-    many digits."""
-    points = (_flow_point(hamiltonian, start, *at, digits) for at in times.items())
-    return SolutionResult(points=tuple(points))
+    hamiltonian: Hamiltonian,
+    start: Mapping[str, Fraction],
+    t0: Fraction,
+    times: Mapping[int, Fraction],
+    digits: int,
+) -> Iterator[AnyFlowPoint]:
+    """The exact flow from the coordinates in `start` and t0, at these times after it by their N, to
+    so many digits."""
+    for step, time in times.items():
+        yield _flow_point(hamiltonian, start, t0, step, time, digits)
 
 
 def _flow_point(
-    hamiltonian: Hamiltonian, start: dict[str, Fraction], step: int, time: Fraction, digits: int
-) -> FlowPoint:
+    hamiltonian: Hamiltonian,
+    start: Mapping[str, Fraction],
+    t0: Fraction,
+    step: int,
+    time: Fraction,
+    digits: int,
+) -> AnyFlowPoint:
+    model = FlowPoint if hamiltonian.planar else FlowPointInDegrees
+    row: dict[str, Any] = {"step": step, "time": text(time), "status": "not followed", "kind": None}
     try:
-        for guard in GUARDS:
+        for guard in _GUARDS:
             if step == 0:  # the initial value itself, also where H is not defined
-                at = Solution(start["p"], start["q"], Fraction(0), "the initial value itself")
+                at = SolutionInDegrees(start, Fraction(0), "the initial value itself")
             else:
-                at = exact_solution(hamiltonian, **start, time=time, digits=digits + guard)
-            last = guard == GUARDS[-1]
-            size = _size(start["q"], start["p"])
-            p, q = (_rounded((x, at.bound), digits, last, size) for x in (at.p, at.q))
-            if p and q:
-                kind: Kind = "enclosed" if at.enclosed else "estimated"
-                return FlowPoint(step=step, time=text(time), status="finished", kind=kind, p=p, q=q)
+                at = solution_in_degrees(hamiltonian, start, time, digits + guard, t0)
+            known = {name: (x, at.bound) for name, x in at.point.items()}
+            values = _all_rounded(known, start, digits, guard)
+            if all(values.values()):
+                row["status"], row["kind"] = "finished", "enclosed" if at.enclosed else "estimated"
+                return model(**row, **_state(hamiltonian, values))
     except InputError as error:
         if error.name != "digits":
             raise
     except NoFlowError:
-        with suppress(NoFlowError):  # H may not even be defined at the initial value
-            still = None if hamiltonian.time_dependent else leaves_by_algebra
-            told = still and still(hamiltonian, p=start["p"], q=start["q"], time=time)
-            if told is not None and told.startswith("it blows up"):
-                return _nothing(step, time, "blows up")
-    return _nothing(step, time, "not followed")
+        if _blows_up(hamiltonian, start, time):
+            row["status"] = "blows up"
+    return model(**row, **_state(hamiltonian, {}))
 
 
-def _nothing(step: int, time: Fraction, status: Literal["blows up", "not followed"]) -> FlowPoint:
-    return FlowPoint(step=step, time=text(time), status=status, kind=None, p=None, q=None)
+def _blows_up(hamiltonian: Hamiltonian, start: Mapping[str, Fraction], time: Fraction) -> bool:
+    """Whether algebra says so, which it does in the plane alone."""
+    if not hamiltonian.planar or hamiltonian.time_dependent:
+        return False
+    with suppress(NoFlowError):  # H may not even be defined at the initial value
+        why = leaves_by_algebra(hamiltonian, p=start["p"], q=start["q"], time=time)
+        return why is not None and why.startswith("it blows up")
+    return False

@@ -5,8 +5,12 @@ from itertools import product
 from typing import Any
 
 from verify.execution.plan import Plan
-from verify.reference.make.tasks import OrbitTask, SolutionTask
-from verify.reference.make.tasks_in_degrees import OrbitInDegreesTask, SolutionInDegreesTask
+from verify.reference.make.tasks import (
+    OrbitInDegreesTask,
+    OrbitTask,
+    SolutionInDegreesTask,
+    SolutionTask,
+)
 from verify.scenes.scene import Scene
 from verify.scenes.sections import Reference
 from verify.studies.kinds.proofs import proof_task

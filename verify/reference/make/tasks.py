@@ -6,10 +6,13 @@ from typing import Any, ClassVar, Literal
 from verify.arithmetic import automatic
 from verify.arithmetic.exact import text
 from verify.execution.keeping import Keeper
-from verify.execution.task import HamiltonianTask, InitialValueTask
+from verify.execution.task import HamiltonianTask
+from verify.hamiltonians.start import point_of
 from verify.kernels.orbit import Orbit
+from verify.scenes.frozen import Frozen
 from verify.scenes.results.reference import OrbitResult, SolutionResult
-from verify.scenes.values import Number, StepSize
+from verify.scenes.results.reference_in_degrees import OrbitInDegreesResult, SolutionInDegreesResult
+from verify.scenes.values import Coordinates, Number, StepSize
 
 ROW_COST = 1_000_000  # of a row of reference data, however few its steps
 FLOW_ROW_COST = 10 * ROW_COST
@@ -19,8 +22,8 @@ class AtSteps(HamiltonianTask):
     """What is asked for from an initial value, after each of these numbers of steps."""
 
     imports = ("verify.reference.make.orbit_points",)
-    q: Number
-    p: Number
+    q: Coordinates
+    p: Coordinates
     t0: Number | None = None
     step_size: StepSize
     steps: tuple[int, ...]
@@ -28,49 +31,88 @@ class AtSteps(HamiltonianTask):
 
     @property
     def inputs(self) -> dict[str, Any]:
-        """Step size, initial value, t₀ of an H in time, and digits, as the files have them."""
+        """Step size, initial value, t₀ and digits, as the files have them: in several degrees of
+        freedom they have lists, and a t₀ of every H."""
         exact = {"step_size": self.step_size, "q": self.q, "p": self.p, "t0": self.t0}
-        told = {name: text(x) for name, x in exact.items() if x is not None}
-        return {**told, "digits": self.digits}
+        if isinstance(self.q, Fraction) and self.t0 is None:
+            exact.pop("t0")
+        return {**{name: _texts(x) for name, x in exact.items()}, "digits": self.digits}
 
 
-class OrbitTask(AtSteps, InitialValueTask):
-    """State, ΔJ, MSE and Λ after each of these numbers of steps, correctly rounded."""
+def _texts(x: Fraction | tuple[Fraction, ...] | None) -> str | tuple[str, ...] | None:
+    if x is None:
+        return None
+    return text(x) if isinstance(x, Fraction) else tuple(map(text, x))
 
-    result = OrbitResult
-    numbers: ClassVar[str] = "ΔJ, MSE and Λ"
-    kind: Literal["orbit"] = "orbit"
+
+class OrbitAtSteps(AtSteps):
+    """A scheme's orbit after each of these numbers of steps, correctly rounded."""
+
+    numbers: ClassVar[str]
+    scheme: str
 
     @property
     def cost(self) -> int:
         return ROW_COST * len(self.steps) + automatic()[-1].cost * sum(self.steps)
+
+    def compute(self, keeper: Keeper) -> Frozen:
+        from verify.reference.make.orbit_points import OrbitInDegrees, orbit_points
+
+        exact = self.exact_hamiltonian()
+        start: dict[str, Any] = {"q": self.q, "p": self.p, "t0": self.t0 or Fraction()}
+        kind = Orbit if exact.planar else OrbitInDegrees
+        orbit = kind(exact, self.scheme, self.step_size, **start)
+        points = orbit_points(orbit, self.steps, self.digits)
+        return self.result.model_validate({"points": tuple(points)})
+
+
+class OrbitTask(OrbitAtSteps):
+    """State, ΔJ, MSE and Λ."""
+
+    result = OrbitResult
+    numbers = "ΔJ, MSE and Λ"
+    kind: Literal["orbit"] = "orbit"
 
     @property
     def ensemble(self) -> str | None:
         """Orbits of one scheme's map, whatever the step size and the initial value."""
         return f"{self.kind} {self.scheme} {self.hamiltonian}"
 
-    def compute(self, keeper: Keeper) -> OrbitResult:
-        from verify.reference.make.orbit_points import orbit_points
 
-        exact = self.exact_hamiltonian()
-        orbit = Orbit(exact, self.scheme, self.step_size, self.q, self.p, t0=self.t0 or Fraction())
-        return orbit_points(orbit, steps=self.steps, digits=self.digits)
+class OrbitInDegreesTask(OrbitAtSteps):
+    """State, H, S, W and Λ."""
+
+    result = OrbitInDegreesResult
+    numbers = "H, S, W and Λ"
+    kind: Literal["orbit in degrees"] = "orbit in degrees"
 
 
-class SolutionTask(AtSteps):
+class SolutionAtSteps(AtSteps):
     """The exact flow at the times N·h for each of these N, correctly rounded."""
-
-    result = SolutionResult
-    kind: Literal["solution"] = "solution"
 
     @property
     def cost(self) -> int:
         return FLOW_ROW_COST * len(self.steps)
 
-    def compute(self, keeper: Keeper) -> SolutionResult:
+    def compute(self, keeper: Keeper) -> Frozen:
         from verify.reference.make.orbit_points import solution_points
 
-        start = {"q": self.q, "p": self.p} | ({} if self.t0 is None else {"t0": self.t0})
+        exact, t0 = self.exact_hamiltonian(), self.t0 or Fraction()
+        start = point_of(exact, self.q, self.p)
         times = {n: n * self.step_size for n in self.steps}
-        return solution_points(self.exact_hamiltonian(), start, times, self.digits)
+        points = solution_points(exact, start, t0, times, self.digits)
+        return self.result.model_validate({"points": tuple(points)})
+
+
+class SolutionTask(SolutionAtSteps):
+    """p and q."""
+
+    result = SolutionResult
+    kind: Literal["solution"] = "solution"
+
+
+class SolutionInDegreesTask(SolutionAtSteps):
+    """p1 … pn, q1 … qn."""
+
+    result = SolutionInDegreesResult
+    kind: Literal["solution in degrees"] = "solution in degrees"

@@ -4,28 +4,23 @@ import csv
 import hashlib
 import io
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from pydantic import BaseModel
 
 from verify.reference.make.cells import Row, cell
-from verify.reference.make.models import (
-    VALUES,
-    Data,
-    Flow,
-    ListedFile,
-    Manifest,
-    Proof,
-    Run,
-    values_of,
+from verify.reference.make.columns import orbit_columns, start_columns, state_columns, values_of
+from verify.reference.make.models import Data, ListedFile, Manifest, Proof
+from verify.reference.make.models_in_degrees import (
+    AnyData,
+    AnyFlow,
+    AnyRun,
+    DataInDegrees,
+    ProofInDegrees,
 )
-from verify.reference.make.models_in_degrees import DataInDegrees
-from verify.reference.make.tables_in_degrees import tables_in_degrees
-from verify.scenes.results.reference import FlowPoint, OrbitPoint
 
 MANIFEST = "manifest.json"
-AnyData = Data | DataInDegrees
 OF_DEGREES = "data-in-degrees.schema.json"
 SCHEMAS: dict[str, type[BaseModel]] = {
     "data.schema.json": Data,
@@ -33,8 +28,6 @@ SCHEMAS: dict[str, type[BaseModel]] = {
     OF_DEGREES: DataInDegrees,
 }
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
-_GIVEN: Row = ("step_size", "q", "p", "digits")
-_GIVEN_IN_TIME: Row = ("step_size", "q", "p", "t0", "digits")
 _OF_ORBIT: Row = ("step", "status", "failed_step", "kind")
 _OF_FLOW: Row = ("step", "time", "status", "kind")
 
@@ -77,13 +70,12 @@ def schema_text(name: str) -> str:
 
 def tables(data: AnyData) -> dict[str, list[Row]]:
     """The same as tables of texts, by file name without its ending; the first row names columns."""
-    if isinstance(data, DataInDegrees):
-        return tables_in_degrees(data)
-    given = _GIVEN_IN_TIME if data.timed else _GIVEN
+    state = state_columns(data.degrees)
+    beside = (*state, *orbit_columns(data.degrees))
     return {
         f"{data.name}-proofs": list(_proof_rows(data)),
-        f"{data.name}-runs": list(_rows(data.runs, ("scheme", *given), _OF_ORBIT, VALUES)),
-        f"{data.name}-flow": list(_rows(data.flow, given, _OF_FLOW, ("p", "q"))),
+        f"{data.name}-runs": list(_rows(data, data.runs, ("scheme",), _OF_ORBIT, beside)),
+        f"{data.name}-flow": list(_rows(data, data.flow, (), _OF_FLOW, state)),
     }
 
 
@@ -113,28 +105,35 @@ def csv_text(rows: list[Row]) -> str:
     return out.getvalue()
 
 
-def _proof_rows(data: Data) -> Iterator[Row]:
-    names = tuple(Proof.model_fields)
+def _proof_rows(data: AnyData) -> Iterator[Row]:
+    """An entry of a leading coefficient stands as NAME: FORMULA, entries between semicolons."""
+    names = (Proof if isinstance(data, Data) else ProofInDegrees).model_fields
     yield ("hamiltonian", "parameters", *names)
-    given = "; ".join(f"{name} = {value}" for name, value in data.parameters.items())
+    parameters = "; ".join(f"{name} = {value}" for name, value in data.parameters.items())
     for proof in data.proofs:
-        found = proof.model_dump(mode="json")
-        yield (data.hamiltonian, given, *(cell(found[n]) for n in names))
+        content = proof.model_dump(mode="json")
+        if isinstance(proof, ProofInDegrees):
+            content["leading"] = "; ".join(f"{at}: {x}" for at, x in proof.leading.items())
+        yield (data.hamiltonian, parameters, *(cell(content[name]) for name in names))
 
 
-def _rows(tables: tuple[Run | Flow, ...], given: Row, told: Row, numbers: Row) -> Iterator[Row]:
-    """A row each; `given` are fields of its run or flow, `told` and `numbers` its own."""
+def _rows(
+    data: AnyData, tables: Sequence[AnyRun | AnyFlow], named: Row, told: Row, numbers: Row
+) -> Iterator[Row]:
+    """A row each; `named` are fields of its run or flow, `told` and `numbers` its own."""
+    time: Row = ("t0",) if data.timed else ()
     pairs = (x for name in numbers for x in (name, f"{name}_radius"))
-    yield (*({"q": "q0", "p": "p0"}.get(name, name) for name in given), *told, *pairs)
+    yield (*named, "step_size", *start_columns(data.degrees), *time, "digits", *told, *pairs)
     for of in tables:
-        inputs = [cell(getattr(of, name)) for name in given]
+        inputs = [
+            *(cell(getattr(of, name)) for name in (*named, "step_size")),
+            *(x for own in (of.q, of.p) for x in ((own,) if isinstance(own, str) else own)),
+            *(cell(getattr(of, name)) for name in (*time, "digits")),
+        ]
         for row in of.rows:
-            yield (*inputs, *(cell(getattr(row, name)) for name in told), *_numbers(row))
-
-
-def _numbers(row: OrbitPoint | FlowPoint) -> Row:
-    values = values_of(row).values()
-    return tuple(x for v in values for x in ((v.value, v.radius) if v else ("", "")))
+            values = values_of(row, data.degrees).values()
+            cells = (x for v in values for x in ((v.value, v.radius) if v else ("", "")))
+            yield (*inputs, *(cell(getattr(row, name)) for name in told), *cells)
 
 
 # -- the manifest ---------------------------------------------------------------------------------

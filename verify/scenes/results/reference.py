@@ -13,11 +13,13 @@ _DECIMAL = r"^-?[0-9](\.[0-9]+)?(e[+-][0-9]{2,})?$"
 Decimal = Annotated[str, Field(pattern=_DECIMAL)]
 Kind = Literal["enclosed", "estimated"]
 
-STEP_SAID = "N: how many steps of size h have been done; 0 is the initial value"
-KIND_SAID = (
-    "enclosed: the radii are rigorous bounds; estimated: they hold unless an evaluation with more "
-    "digits errs as the first did"
-)
+KindOrNone = Annotated[
+    Kind | None,
+    Field(
+        description="enclosed: the radii are rigorous bounds; estimated: they hold unless an "
+        "evaluation with more digits errs as the first did; null where there are no values"
+    ),
+]
 _P, _Q = "the momentum p", "the displacement q"
 
 
@@ -35,12 +37,14 @@ class Rounded(Frozen):
     )
 
 
-class OrbitPoint(Frozen):
-    """What is known after `step` steps; the values are None unless `status` is "finished"."""
+class OrbitRow(Frozen):
+    """What is known after `step` steps but for its numbers."""
 
     model_config = ConfigDict(populate_by_name=True)
 
-    step: int = Field(ge=0, description=STEP_SAID)
+    step: int = Field(
+        ge=0, description="N: how many steps of size h have been done; 0 is the initial value"
+    )
     status: Literal["finished", "left range", "unresolved"] = Field(
         description="finished: the values are there; left range: the scheme's orbit has passed "
         "2^4000, or is not defined any more; unresolved: the digits asked for could not be had"
@@ -48,7 +52,12 @@ class OrbitPoint(Frozen):
     failed_step: int | None = Field(
         description="the step that left the range, 1 being the first; else null"
     )
-    kind: Kind | None = Field(description=f"{KIND_SAID}; null where there are no values")
+    kind: KindOrNone
+
+
+class OrbitPoint(OrbitRow):
+    """What is known after `step` steps; the values are None unless `status` is "finished"."""
+
     p: Rounded | None = Field(description=f"{_P} after N steps")
     q: Rounded | None = Field(description=f"{_Q} after N steps")
     delta_j: Rounded | None = Field(
@@ -69,16 +78,21 @@ class OrbitResult(Frozen):
     points: tuple[OrbitPoint, ...]
 
 
-class FlowPoint(Frozen):
-    """The exact solution at the time N·h; p and q are None unless `status` is "finished"."""
+class FlowRow(Frozen):
+    """When a solution is looked at."""
 
     step: int = Field(ge=0, description="N, where the time is N·h")
     time: str = Field(description="the time N·h exactly: a decimal or a quotient")
+
+
+class FlowPoint(FlowRow):
+    """The exact solution at the time N·h; p and q are None unless `status` is "finished"."""
+
     status: Literal["finished", "blows up", "not followed"] = Field(
         description="finished: p and q are there; blows up: the exact solution has left every "
         "bound by then; not followed: it could not be had"
     )
-    kind: Kind | None = Field(description=f"{KIND_SAID}; null where there are no values")
+    kind: KindOrNone
     p: Rounded | None = Field(description=f"{_P} at that time")
     q: Rounded | None = Field(description=f"{_Q} at that time")
 

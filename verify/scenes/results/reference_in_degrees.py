@@ -6,30 +6,19 @@ A description here is what the published JSON Schema says of a key.
 
 from typing import Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
 from verify.scenes.frozen import Frozen
-from verify.scenes.results.reference import KIND_SAID, STEP_SAID, Kind, Rounded
+from verify.scenes.results.reference import FlowRow, KindOrNone, OrbitRow, Rounded
 
 _ENTRIES = "an entry of its matrix in p1 … pn, q1 … qn"
 _EACH_P, _EACH_Q = "the momenta p1 … pn", "the displacements q1 … qn"
 Each = tuple[Rounded, ...] | None
 
 
-class OrbitPointInDegrees(Frozen):
+class OrbitPointInDegrees(OrbitRow):
     """What is known after `step` steps; the values are None unless `status` is "finished"."""
 
-    model_config = ConfigDict(populate_by_name=True)
-
-    step: int = Field(ge=0, description=STEP_SAID)
-    status: Literal["finished", "left range", "unresolved"] = Field(
-        description="finished: the values are there; left range: the scheme's orbit has passed "
-        "2^4000, or is not defined any more; unresolved: the digits asked for could not be had"
-    )
-    failed_step: int | None = Field(
-        description="the step that left the range, 1 being the first; else null"
-    )
-    kind: Kind | None = Field(description=f"{KIND_SAID}; null where there are no values")
     p: Each = Field(description=f"{_EACH_P} after N steps")
     q: Each = Field(description=f"{_EACH_Q} after N steps")
     energy: Rounded | None = Field(
@@ -55,15 +44,13 @@ class OrbitInDegreesResult(Frozen):
     points: tuple[OrbitPointInDegrees, ...]
 
 
-class FlowPointInDegrees(Frozen):
+class FlowPointInDegrees(FlowRow):
     """The exact solution at the time N·h; p and q are None unless `status` is "finished"."""
 
-    step: int = Field(ge=0, description="N, where the time is N·h")
-    time: str = Field(description="the time N·h exactly: a decimal or a quotient")
     status: Literal["finished", "not followed"] = Field(
         description="finished: p and q are there; not followed: they could not be had"
     )
-    kind: Kind | None = Field(description=f"{KIND_SAID}; null where there are no values")
+    kind: KindOrNone
     p: Each = Field(description=f"{_EACH_P} at that time")
     q: Each = Field(description=f"{_EACH_Q} at that time")
 
