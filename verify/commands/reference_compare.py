@@ -74,12 +74,12 @@ def compare(
     from verify.commands.shared.progress import progress_bar
     from verify.reference.compare.compare import compare as compared
     from verify.reference.compare.published import load
-    from verify.reference.compare.submitted import is_of_degrees, read
+    from verify.reference.compare.submitted import has_degrees, read
     from verify.reference.make.make import PUBLISHED
 
     said = {name: x for name, x in {"scene": scene, **given}.items() if x is not None}
     names, folder = _names(columns), data or PUBLISHED
-    ours = load(folder, scene, planar=not is_of_degrees(theirs, names))
+    ours = load(folder, scene, planar=not has_degrees(theirs, names))
     table = read(theirs, ours, said, names)
     with progress_bar("compared", len(table.runs), unit="run") as advance:
         found = compared(ours, table, lambda *_: advance(1))

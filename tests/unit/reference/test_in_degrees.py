@@ -17,7 +17,7 @@ from verify.reference.check.check import Checked, check
 from verify.reference.compare.compare import Compared, compare
 from verify.reference.compare.findings import Verdict
 from verify.reference.compare.published import load
-from verify.reference.compare.submitted import is_of_degrees, read
+from verify.reference.compare.submitted import has_degrees, read
 from verify.reference.make.writing import OF_DEGREES
 from verify.scenes.scene import scene_from_toml
 
@@ -226,7 +226,7 @@ def test_a_folder_of_both_kinds_is_checked_and_read(folder: Path, tmp_path: Path
 
 
 def program(path: Path, *, columns: str = "p1,p2,q1,q2", sign: int = 1, late: int = 0,
-            off: float = 0.0, eta: int = 2) -> Path:  # fmt: skip
+            off: float = 0.0, eta: int = 2, less: float = 1.0) -> Path:  # fmt: skip
     """lie2 for Hénon and Heiles in doubles, with W and Λ from the entries of its Jacobians."""
     h, omega = 0.05, np.zeros((4, 4))
     omega[0, 2] = omega[1, 3] = 1
@@ -237,7 +237,7 @@ def program(path: Path, *, columns: str = "p1,p2,q1,q2", sign: int = 1, late: in
         p1, p2, q1, q2 = z
         energy = (p1**2 + p2**2 + q1**2 + q2**2) / 2 + q1**2 * q2 - q2**3 / 3
         shown = [*(z * [sign, sign, 1, 1] * (1 + off)), energy, largest,
-                 np.abs(m.T @ omega @ m - omega).max(), volume - 1]  # fmt: skip
+                 np.abs(m.T @ omega @ m - omega).max(), volume - less]  # fmt: skip
         cells = [f"{x:.17g}" for x in shown]
         cells[5] = cells[5] if n else ""
         if n >= late:
@@ -270,6 +270,19 @@ def test_a_right_program_differs_by_rounding_alone(folder: Path, tmp_path: Path)
     assert min(x.digits for x in found.columns if x.name[0] in "pq") > 14
 
 
+def test_inputs_are_lists_and_may_be_doubles(folder: Path, tmp_path: Path) -> None:
+    table = program(tmp_path / "mine.csv")
+    ours = load(folder, None, planar=False)
+    theirs = read(
+        table, ours, {"scheme": "lie2", "q0": "0.3, 0.1", "p0": "0,0.3333333333333333"}, {}
+    )
+    assert [run.label for run, _ in theirs.runs.values()] == [
+        "heiles: lie2, h = 0.05, q = (0.3, 0.1), p = (0, 1/3)"
+    ]
+    assert set(theirs.read_as) == {"p0_2"}
+    assert compare(ours, theirs).agrees
+
+
 @pytest.mark.parametrize(
     ("wrong", "mistake"),
     [
@@ -278,6 +291,7 @@ def test_a_right_program_differs_by_rounding_alone(folder: Path, tmp_path: Path)
         ({"sign": -1}, "sign-of-p"),
         ({"late": 1}, "late+1"),
         ({"eta": 1}, "scheme-lie1"),
+        ({"less": 0.0}, "product"),
         ({"off": 1e-11}, None),
     ],
 )
@@ -294,7 +308,7 @@ def test_a_mistake_is_named(
 def test_tables_that_cannot_be_taken_are_refused_in_one_line(folder: Path, tmp_path: Path) -> None:
     table = program(tmp_path / "mine.csv")
     ours = load(folder, None, planar=False)
-    assert is_of_degrees(table, {})
+    assert has_degrees(table, {})
     with pytest.raises(InputError, match=r"--scheme.*is wanted"):
         read(table, ours, {"scene": "heiles"}, {})
     with pytest.raises(InputError, match=r"--scene.*is wanted: 2 have such runs: heiles, three"):
@@ -303,6 +317,13 @@ def test_tables_that_cannot_be_taken_are_refused_in_one_line(folder: Path, tmp_p
         compared(folder, table, step_size="0.07")
     with pytest.raises(InputError, match=r"scene=none: unknown; .*allowed: "):
         read(table, ours, {"scene": "none"}, {})
+    with pytest.raises(InputError, match="has no row of these data"):
+        compared(folder, table, q0="0.3,0.1,0", p0="0,1/3,0")
+    keyed = "\n".join(f"{'lie2' if n else 'scheme'},{x}" for n, x in
+                      enumerate(table.read_text().splitlines()))  # fmt: skip
+    (tmp_path / "keyed.csv").write_text(keyed)
+    with pytest.raises(InputError, match=r"--scheme=lie2: is a column of the table, too"):
+        compared(folder, tmp_path / "keyed.csv")
     table.write_text("step,p1,q1\n1.5,0,0\n")
     with pytest.raises(InputError, match="which is not a whole number"):
         compared(folder, table)

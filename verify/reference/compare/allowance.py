@@ -17,8 +17,7 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.kernels.step.computation import step_map_of
 from verify.reference.compare.findings import DOUBLE, SINGLE, Spread
 from verify.reference.compare.scatter import Scatters
-from verify.reference.compare.setting import Bounded
-from verify.reference.make.orbit_points import AnyOrbit
+from verify.reference.make.orbit_points import AnyOrbit, Bounded
 
 USUAL, WORST = 8, 16  # times what the copies show, since operations differ
 _NOT_AT_ALL = Spread(0, 0)

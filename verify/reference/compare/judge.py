@@ -18,7 +18,8 @@ from verify.reference.compare.overflow import may_overflow
 from verify.reference.compare.published import PublishedRun
 from verify.reference.compare.rows import Row
 from verify.reference.compare.scatter import Scatters
-from verify.reference.compare.setting import Bounded, Points, Setting
+from verify.reference.compare.setting import Points, Setting
+from verify.reference.make.orbit_points import Bounded
 
 _DOUBLE_DIGITS = 17  # more than these may be of a more precise number
 _MORE_DIGITS, _LEAST_DIGITS = 8, 25

@@ -15,8 +15,8 @@ from verify.flows.extrapolation_of_many import arrays
 from verify.kernels.kernel import kernel_for
 from verify.reference.compare.allowance import products
 from verify.reference.compare.scatter import inputs_of, run_of
-from verify.reference.compare.setting import Bounded, start_of
-from verify.reference.make.orbit_points import AnyOrbit
+from verify.reference.compare.setting import start_of
+from verify.reference.make.orbit_points import AnyOrbit, Bounded
 
 _LARGE = Fraction(10) ** 250  # what is summed up or multiplied on the way to it may be larger
 _MOST_STEPS = 20_000  # stepped

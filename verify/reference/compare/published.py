@@ -18,7 +18,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import point_of
 from verify.kernels.orbit import Orbit
 from verify.kernels.step.tangent_map import nearest_double
-from verify.reference.compare.setting import Bounded, numbers_of
+from verify.reference.compare.setting import numbers_of
 from verify.reference.make.columns import (
     AnyOrbitPoint,
     orbit_columns,
@@ -33,7 +33,7 @@ from verify.reference.make.models_in_degrees import (
     RunInDegrees,
     is_of_degrees,
 )
-from verify.reference.make.orbit_points import AnyOrbit, OrbitInDegrees
+from verify.reference.make.orbit_points import AnyOrbit, Bounded, OrbitInDegrees
 from verify.reference.make.reading import json_of
 from verify.reference.make.writing import MANIFEST, SCHEMAS
 from verify.scenes.results.reference import Rounded

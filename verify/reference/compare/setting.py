@@ -13,11 +13,10 @@ from verify.errors import InputError
 from verify.hamiltonians.start import point_of
 from verify.kernels.orbit import Orbit
 from verify.reference.make.columns import AnyOrbitPoint, values_of
-from verify.reference.make.orbit_points import AnyOrbit, orbit_points
+from verify.reference.make.orbit_points import AnyOrbit, Bounded, orbit_points
 
 _MOST_STEPS = 2_000_000  # run; what is farther is not known
 _MOST_STEPS_IN_DEGREES = 20_000
-Bounded = tuple[Fraction, Fraction]  # a value and its radius
 
 
 def numbers_of(point: AnyOrbitPoint, degrees: int) -> dict[str, Bounded]:

@@ -29,7 +29,7 @@ _BEGINS = "t0"  # of an H in time; a scene has one, so that it need not be told
 _OF_SEVERAL = re.compile(r"[pq][1-9][0-9]?")
 
 
-def is_of_degrees(path: Path, names: Mapping[str, str]) -> bool:
+def has_degrees(path: Path, names: Mapping[str, str]) -> bool:
     """Whether a table has a column p1, q1, …, or is said to call one so."""
     with opened(path) as lines:
         return any(_OF_SEVERAL.fullmatch(x) for x in (*lines.header, *names))

@@ -74,6 +74,14 @@ def test_keys_are_columns_or_options(
         table(GOOD, scene="duffing", scheme="lie2", q0="1.5", p0="0")
 
 
+def test_an_input_that_the_others_leave_need_not_be_told(table: Callable[..., Theirs]) -> None:
+    told = {name: x for name, x in GIVEN.items() if name != "p0"}
+    ((run, _),) = table(GOOD, **told | {"q0": "0.1"}).runs.values()
+    assert run.texts["p0"] == "0"
+    with pytest.raises(InputError, match=r"--p: .*no column of theirs.csv is p0; .*has: 0, 1\.5"):
+        table(GOOD, **told)
+
+
 def path_of(folder: Path, content: str) -> Path:
     path = folder / "keyed.csv"
     path.write_text(content)
