@@ -118,10 +118,8 @@ class Published:
 
     def __init__(self, runs: Sequence[PublishedRun]) -> None:
         self.by_scene: dict[str, list[PublishedRun]] = defaultdict(list)
-        self._by_inputs: dict[object, list[PublishedRun]] = defaultdict(list)
         for run in runs:
             self.by_scene[run.scene].append(run)
-            self._by_inputs[_place(run.scene, run.inputs)].append(run)
         widest = max(runs, key=lambda run: run.hamiltonian.degrees)
         self.keys = tuple(widest.texts)  # what a run of a scene is told by
         self.columns = widest.columns
@@ -132,12 +130,9 @@ class Published:
             raise unknown("scene", name, sorted(self.by_scene))
         return self.by_scene[name]
 
-    def run(self, scene: str, inputs: Inputs, exact: Mapping[str, Fraction]) -> PublishedRun | None:
-        """The scene's run of these inputs, or of the same doubles where these tell one."""
-        found = self._by_inputs.get(_place(scene, inputs), [])
-        if len(found) == 1:
-            return found[0]
-        return next((x for x in found if x.exact == exact), None)
+    def fitting(self, scene: str, inputs: Inputs) -> list[PublishedRun]:
+        """The scene's runs that have these inputs."""
+        return [x for x in self.by_scene.get(scene, ()) if inputs.items() <= x.inputs.items()]
 
     def runs(self) -> Iterator[PublishedRun]:
         """All of them."""
@@ -146,10 +141,6 @@ class Published:
     def values_of(self, scene: str, key: str) -> list[str]:
         """What the scene's runs have for one of `keys`, each once."""
         return list(dict.fromkeys(x.texts[key] for x in self.scene(scene) if key in x.texts))
-
-
-def _place(scene: str, inputs: Inputs) -> object:
-    return scene, frozenset(inputs.items())
 
 
 def load(folder: Path, scene: str | None, *, planar: bool = True) -> Published:

@@ -6,13 +6,13 @@ what is compared is kept, so that memory does not grow with the file (see
 """
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
 
 from verify.errors import NOT_GIVEN, InputError
 from verify.kernels.step.tangent_map import nearest_double
-from verify.reference.compare.published import Published, PublishedRun
+from verify.reference.compare.published import Inputs, Published, PublishedRun
 from verify.reference.compare.rows import (
     COUNTED,
     Row,
@@ -114,65 +114,54 @@ class _Keys:
         return step_of(self.lines, row, self.places, run.t0 or Fraction(0), run.run.step_size)
 
     def _find(self, inputs: dict[str, str]) -> PublishedRun | None:
-        scene = inputs.get("scene") or self._scene(inputs)
-        if scene is None:
-            return None
+        """The run of these inputs, or of the same doubles where these tell one."""
         told = {name: inputs[name] for name in self.ours.keys if name in inputs}
         told |= {name: x for name, x in inputs.items() if name not in ("scene", _BEGINS)}
-        for name in self.ours.keys:
-            only = None if name in told else self._only(scene, name, told)
-            if only is not None:
-                told[name] = only
         exact = {name: self._number(x, name) for name, x in told.items() if name != "scheme"}
-        doubles = {name: nearest_double(x) for name, x in exact.items()}
-        run = self.ours.run(scene, {"scheme": told["scheme"], **doubles}, exact)
-        if run is not None and run.t0 is not None and _BEGINS in inputs:
-            begins = self._number(inputs[_BEGINS], _BEGINS)
-            if nearest_double(begins) != nearest_double(run.t0):
-                return None
-        if run is not None:
-            for name, theirs in exact.items():
-                if run.exact[name] != theirs:
-                    self.read_as[name] = theirs, run.exact[name]
+        doubles: Inputs = {**told, **{name: nearest_double(x) for name, x in exact.items()}}
+        scene = inputs.get("scene") or self._scene(doubles)
+        if scene is None:
+            return None
+        fitting = self.ours.fitting(scene, doubles)
+        for name in self.ours.keys:
+            if name not in told:
+                self._check_left(name, scene, fitting)
+        if len(fitting) > 1:
+            fitting = [x for x in fitting if exact.items() <= x.exact.items()]
+        if not fitting or not self._begins(fitting[0], inputs):
+            return None
+        run = fitting[0]
+        for name, theirs in exact.items():
+            if run.exact[name] != theirs:
+                self.read_as[name] = theirs, run.exact[name]
         return run
 
-    def _only(self, scene: str, name: str, told: Mapping[str, str]) -> str | None:
-        """What the scene's runs have for one of their inputs, if they have it: one text, or one
-        that is left by what is told. InputError where there are several."""
+    def _check_left(self, name: str, scene: str, fitting: Sequence[PublishedRun]) -> None:
+        """InputError where an input is not told, and of those of the scene not one is left."""
         values = self.ours.values_of(scene, name)
-        if len(values) > 1:
-            fitting = [x for x in self.ours.scene(scene) if self._fits(x, told)]
-            left = {x.texts[name] for x in fitting}
-            if len(left) != 1:
-                has = f"{scene} has: {', '.join(values[:8])}"
-                wanted = f"is wanted, as no column of {self.lines.name} is {name}; {has}"
-                raise InputError(f"--{_option(name)}", NOT_GIVEN, wanted)
-            return left.pop()
-        return values[0] if values else None
+        if len(values) > 1 and len({x.texts[name] for x in fitting}) != 1:
+            has = f"{scene} has: {', '.join(values[:8])}"
+            wanted = f"is wanted, as no column of {self.lines.name} is {name}; {has}"
+            raise InputError(f"--{_option(name)}", NOT_GIVEN, wanted)
 
-    def _scene(self, inputs: dict[str, str]) -> str | None:
+    def _begins(self, run: PublishedRun, inputs: Mapping[str, str]) -> bool:
+        """Whether it begins at the time that is told, if one is and H depends on time."""
+        if run.t0 is None or _BEGINS not in inputs:
+            return True
+        return nearest_double(self._number(inputs[_BEGINS], _BEGINS)) == nearest_double(run.t0)
+
+    def _scene(self, inputs: Inputs) -> str | None:
         """The one scene that has such runs; InputError where several have."""
         every = sorted(self.ours.by_scene)
         if len(every) == 1:
             return every[0]
-        told = {name: inputs[name] for name in self.ours.keys if name in inputs}
-        matching = [
-            scene for scene in every if any(self._fits(x, told) for x in self.ours.scene(scene))
-        ]
+        matching = [scene for scene in every if self.ours.fitting(scene, inputs)]
         if len(matching) > 1:
             names = ", ".join(matching)
             raise InputError(
                 "--scene", NOT_GIVEN, f"is wanted: {len(matching)} have such runs: {names}"
             )
         return matching[0] if matching else None
-
-    def _fits(self, run: PublishedRun, told: Mapping[str, str]) -> bool:
-        """Whether its inputs are those; a number is that where it is the same double."""
-        for name, text in told.items():
-            theirs = text if name == "scheme" else nearest_double(self._number(text, name))
-            if run.inputs.get(name) != theirs:
-                return False
-        return True
 
     def _number(self, text: str, name: str) -> Fraction:
         return number_of(self.lines, text, name)
