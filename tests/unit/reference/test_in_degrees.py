@@ -18,6 +18,7 @@ from verify.reference.compare.compare import Compared, compare
 from verify.reference.compare.findings import Verdict
 from verify.reference.compare.published import load
 from verify.reference.compare.submitted import has_degrees, read
+from verify.reference.make.make import PUBLISHED
 from verify.reference.make.writing import OF_DEGREES
 from verify.scenes.scene import scene_from_toml
 
@@ -281,6 +282,20 @@ def test_inputs_are_lists_and_may_be_doubles(folder: Path, tmp_path: Path) -> No
     ]
     assert set(theirs.read_as) == {"p0_2"}
     assert compare(ours, theirs).agrees
+
+
+def test_what_is_told_may_leave_one_run(tmp_path: Path) -> None:
+    ours = load(PUBLISHED, "several-henon-heiles", planar=False)
+    table = tmp_path / "mine.csv"
+    table.write_text("step,p1\n0,0.4\n")
+    told = {"scheme": "lie2", "step_size": "0.1", "q0": "0,0.1"}
+    assert list(read(table, ours, told, {}).runs) == [
+        "several-henon-heiles: lie2, h = 0.1, q = (0, 0.1), p = (0.4, 0)"
+    ]
+    with pytest.raises(InputError, match=r"--q: is wanted, .* has: 0.1, -0.1"):
+        read(table, ours, {"scheme": "lie2"}, {})
+    none = read(table, ours, {"step_size": "0.07"}, {})
+    assert (none.outside, none.runs) == (1, {})
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ from verify.reference.make.orbit_points import AnyOrbit, Bounded
 
 USUAL, WORST = 8, 16  # times what the copies show, since operations differ
 _NOT_AT_ALL = Spread(0, 0)
-_FEW = 4  # roundings of p and q in a step, a degree of freedom
+_FEW, _FEW_IN_DEGREES = 4, 8  # roundings of the state in a step
 _PRODUCTS = 8  # roundings of a determinant
 _BITS = 200
 _UNDERFLOWS = (  # units of roundoff, and what all numbers of that format are lost below
@@ -35,7 +35,7 @@ class Allowance:
 
     def __init__(self, orbit: AnyOrbit, unit: Fraction, scatters: Scatters) -> None:
         self.orbit, self.unit, self._scatters = orbit, unit, scatters
-        self._few = _FEW * orbit.hamiltonian.degrees
+        self._few = _FEW if orbit.hamiltonian.planar else _FEW_IN_DEGREES
         self._entries: dict[int, Fraction] = {}
         self._smallest = next((x for of, x in _UNDERFLOWS if unit >= of), Fraction(0))
 

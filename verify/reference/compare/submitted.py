@@ -137,9 +137,11 @@ class _Keys:
         return run
 
     def _check_left(self, name: str, scene: str, fitting: Sequence[PublishedRun]) -> None:
-        """InputError where an input is not told, and of those of the scene not one is left."""
+        """InputError where an input is not told and the scene has several; in n degrees of freedom,
+        where the runs that fit have."""
         values = self.ours.values_of(scene, name)
-        if len(values) > 1 and len({x.texts[name] for x in fitting}) != 1:
+        left = values if self.ours.planar else {x.texts.get(name) for x in fitting}
+        if len(left) > 1:
             has = f"{scene} has: {', '.join(values[:8])}"
             wanted = f"is wanted, as no column of {self.lines.name} is {name}; {has}"
             raise InputError(f"--{_option(name)}", NOT_GIVEN, wanted)
