@@ -68,7 +68,7 @@ def _taylor_solution(
         t = flint.arb(number(start.get("t", Fraction(0)) + done))
         zs = flow_series(field, z, t, order)
         reach = _reach(zs, digits)
-        if not all(x.is_finite() for own in zs for x in own):
+        if not all(x.is_finite() for vector in zs for x in vector):
             return states, NoSolutionError("H is not defined there")
         shortest = reach if shortest is None else shortest
         if _largest(z) > first + _BURST and reach < shortest - _STOPPED:

@@ -41,8 +41,8 @@ def proof_again(known: Field, data: AnyData, proof: AnyProof, file: Place) -> No
         if (claimed or 0) > _ANY_ORDER:
             row.differs(column, f"at most {_ANY_ORDER}", str(claimed))
             return
-    least = _MOST_ORDER if known.degrees == 1 else _OF_SEVERAL
-    looking = _Looking(known, proof, row, max(order or least, (convergence or 0) + 1))
+    unordered = _MOST_ORDER if known.degrees == 1 else _OF_SEVERAL
+    looking = _Looking(known, proof, row, max(order or unordered, (convergence or 0) + 1))
     for point in _points(data):
         with flint.ctx.workprec(_BITS), _length_of_series(looking.most + 1):
             looking.at(point)

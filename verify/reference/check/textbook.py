@@ -33,7 +33,7 @@ class Rows:
     def __init__(self, tape: Tape, f: dict[int, int], a: Iterable[tuple[int, int, int]]) -> None:
         """`f`: nodes by their rows; `a`: row, column and node of each entry."""
         self.f, self.a = list(f.items()), [entry for entry in a if entry[0] in f]
-        self.known = Expansion(tape, [*f.values(), *(x for _, _, x in self.a)])
+        self.expansion = Expansion(tape, [*f.values(), *(x for _, _, x in self.a)])
 
 
 class Field:
@@ -115,7 +115,7 @@ def flow_series(field: Field, z: Vector, t: Number, order: int) -> list[Vector]:
 
 def _orders(field: Field, rows: Rows, zs: list[Vector], t: Number, order: int) -> Iterator[int]:
     """The orders 0 … order − 1 of all `rows`; after each, zs has the next coefficients."""
-    known = rows.known
+    known = rows.expansion
     known.begin([*zs[0], t])
     for k in range(order):
         if k > 0:
@@ -129,7 +129,7 @@ def _orders(field: Field, rows: Rows, zs: list[Vector], t: Number, order: int) -
 def lie(field: Field, eta: int) -> Step:
     """z' = Σ h^k z_k, and J the same sum of the variational equation M' = A M, M_0 = 1."""
     size = len(field.names)
-    known, a = field.all.known, field.all.a
+    known, a = field.all.expansion, field.all.a
 
     def step(z: Vector, h: Number, t: Number) -> tuple[Vector, Matrix]:
         zs, ms, orders = [z], [identity(size)], []
@@ -137,8 +137,8 @@ def lie(field: Field, eta: int) -> Step:
             entries = ((row, column, known.coefficient(x, k)) for row, column, x in a)
             orders.append([entry for entry in entries if entry[2] is not None])
             total: Matrix = [0] * size**2
-            for m, own in zip(reversed(ms), orders, strict=True):  # Σ A_j M_(k−j)
-                _add_product(total, own, m, size)
+            for m, a_j in zip(reversed(ms), orders, strict=True):  # Σ A_j M_(k−j)
+                _add_product(total, a_j, m, size)
             ms.append([x / (k + 1) for x in total])
         return polynomials(zs, h), polynomials(ms, h)
 
@@ -147,7 +147,7 @@ def lie(field: Field, eta: int) -> Step:
 
 def polynomials(coefficients: list[Vector], h: Number) -> Vector:
     """Σ z_k h^k, of vectors."""
-    return [polynomial(own, h) for own in zip(*coefficients, strict=True)]
+    return [polynomial(series, h) for series in zip(*coefficients, strict=True)]
 
 
 def polynomial(coefficients: Sequence[Number], h: Number) -> Number:
@@ -173,7 +173,7 @@ TABLEAUS: dict[str, tuple[_Rows, tuple[Fraction, ...]]] = {
 def runge_kutta(field: Field, rows: _Rows, weights: tuple[Fraction, ...]) -> Step:
     """k_i = f(z + h Σ a_ij k_j), K_i = A(…) (1 + h Σ a_ij K_j), z' = z + h Σ b_i k_i."""
     size = len(field.names)
-    known, f, a = field.all.known, field.all.f, field.all.a
+    known, f, a = field.all.expansion, field.all.f, field.all.a
 
     def step(z: Vector, h: Number, t: Number) -> tuple[Vector, Matrix]:
         slopes: list[Vector] = []  # k_i, then K_i row by row
@@ -245,7 +245,7 @@ def shears(field: Field, parts: Callable[[], list[tuple[str, Number]]]) -> Step:
         z, j, reads = list(z), identity(size), {"kick": t, "drift": t}
         for kind, share in made[flint.ctx.prec]:
             rows = field.of_q if kind == "kick" else field.of_p
-            known = rows.known
+            known = rows.expansion
             known.begin([*z, reads[kind]])
             own = h * share
             reads["drift" if kind == "kick" else "kick"] += own

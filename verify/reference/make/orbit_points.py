@@ -28,7 +28,13 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import point_of
 from verify.kernels.orbit import Orbit
 from verify.kernels.step.computation import step_map_of
-from verify.reference.make.columns import AnyFlowPoint, AnyOrbitPoint, orbit_columns
+from verify.reference.make.columns import (
+    AFTER_A_STEP,
+    MAY_LACK,
+    AnyFlowPoint,
+    AnyOrbitPoint,
+    orbit_columns,
+)
 from verify.reference.make.correct_rounding import correctly_rounded, near_zero
 from verify.runs.run import run
 from verify.scenes.results.reference import FlowPoint, Kind, OrbitPoint, Rounded
@@ -38,9 +44,6 @@ from verify.scenes.values import AUTO
 
 _GUARDS = (10, 25, 60, 150)  # digits beyond those asked for, in turn
 _BITS = 64  # beyond the digits, for the roundings of one step, or of H
-_ZERO = Fraction(0), Fraction(0)
-_OF_PLANE = ("mse", "lambda")
-_OF_SEVERAL = ("symplectic_defect_max", "symplectic_defect", "lambda")
 Bounded = tuple[Fraction, Fraction]  # a value and its bound
 
 
@@ -67,11 +70,12 @@ def orbit_points(orbit: AnyOrbit, steps: Sequence[int], digits: int) -> Iterator
 
 def _point(orbit: AnyOrbit, step: int, digits: int) -> AnyOrbitPoint:
     start = point_of(orbit.hamiltonian, orbit.q, orbit.p)
-    # The first of the observables is of steps done, and the others are 0 at first.
-    observables = _OF_PLANE if orbit.hamiltonian.planar else _OF_SEVERAL
+    beside = orbit_columns(orbit.hamiltonian.degrees)
+    observables = tuple(x for x in beside if x not in MAY_LACK)
+    at_first = [x for x in observables if x not in AFTER_A_STEP]
     for guard in _GUARDS:
         known = {name: (x, Fraction(0)) for name, x in start.items()}
-        known |= dict.fromkeys(observables[1:], _ZERO)
+        known |= dict.fromkeys(at_first, (Fraction(0), Fraction(0)))
         kind: Kind = "enclosed"
         if step > 0:
             after = _run(orbit, step, digits + guard, observables)

@@ -127,7 +127,7 @@ def _rows(
     for of in tables:
         inputs = [
             *(cell(getattr(of, name)) for name in (*named, "step_size")),
-            *(x for own in (of.q, of.p) for x in ((own,) if isinstance(own, str) else own)),
+            *(x for z in (of.q, of.p) for x in ((z,) if isinstance(z, str) else z)),
             *(cell(getattr(of, name)) for name in (*time, "digits")),
         ]
         for row in of.rows:
