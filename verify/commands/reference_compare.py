@@ -73,26 +73,16 @@ def compare(
     """
     from verify.commands.shared.progress import progress_bar
     from verify.reference.compare.compare import compare as compared
-    from verify.reference.compare.compare_in_degrees import compare_in_degrees
     from verify.reference.compare.published import load
-    from verify.reference.compare.published_in_degrees import load_in_degrees
-    from verify.reference.compare.submitted import read
-    from verify.reference.compare.submitted_in_degrees import has_degrees, read_in_degrees
+    from verify.reference.compare.submitted import has_degrees, read
     from verify.reference.make.make import PUBLISHED
 
     said = {name: x for name, x in {"scene": scene, **given}.items() if x is not None}
     names, folder = _names(columns), data or PUBLISHED
-    table: Theirs[Any]
-    if has_degrees(theirs, names):
-        of_degrees = load_in_degrees(folder, scene)
-        table = several = read_in_degrees(theirs, of_degrees, said, names)
-        with progress_bar("compared", len(table.runs), unit="run") as advance:
-            found = compare_in_degrees(of_degrees, several, lambda *_: advance(1))
-    else:
-        ours = load(folder, scene)
-        table = planar = read(theirs, ours, said, names)
-        with progress_bar("compared", len(table.runs), unit="run") as advance:
-            found = compared(ours, planar, lambda *_: advance(1))
+    ours = load(folder, scene, planar=not has_degrees(theirs, names))
+    table = read(theirs, ours, said, names)
+    with progress_bar("compared", len(table.runs), unit="run") as advance:
+        found = compared(ours, table, lambda *_: advance(1))
     return Answer(
         lambda: _as_json(table, found), lambda: _print(table, found), failed=not found.agrees
     )
@@ -113,7 +103,7 @@ def _names(columns: tuple[str, ...]) -> dict[str, str]:
 # -- for programs ---------------------------------------------------------------------------------
 
 
-def _as_json(table: "Theirs[Any]", found: "Compared") -> dict[str, Any]:
+def _as_json(table: "Theirs", found: "Compared") -> dict[str, Any]:
     return {
         **picked(found, "agrees", "rows", "runs"),
         "rows_read": table.rows,
@@ -156,7 +146,7 @@ def _separation_json(x: "Separated") -> dict[str, Any]:
 # -- for people -----------------------------------------------------------------------------------
 
 
-def _print(table: "Theirs[Any]", found: "Compared") -> None:
+def _print(table: "Theirs", found: "Compared") -> None:
     from verify.arithmetic.exact import short
 
     of = f"{_count(found.rows, 'row')} of {_count(found.runs, 'run')} compared"

@@ -14,12 +14,11 @@ import pytest
 from tests.helpers.constructed.reference import made, put, repaired
 from verify.errors import InputError
 from verify.reference.check.check import Checked, check
-from verify.reference.compare.compare import Compared
-from verify.reference.compare.compare_in_degrees import compare_in_degrees
+from verify.reference.compare.compare import Compared, compare
 from verify.reference.compare.findings import Verdict
 from verify.reference.compare.published import load
-from verify.reference.compare.published_in_degrees import load_in_degrees
-from verify.reference.compare.submitted_in_degrees import has_degrees, read_in_degrees
+from verify.reference.compare.submitted import has_degrees, read
+from verify.reference.make.make import PUBLISHED
 from verify.reference.make.writing import OF_DEGREES
 from verify.scenes.scene import scene_from_toml
 
@@ -216,7 +215,8 @@ def test_a_folder_of_both_kinds_is_checked_and_read(folder: Path, tmp_path: Path
     put(tmp_path / "set", made(both), both)
     assert not look(tmp_path / "set", share=0.2).differences
     assert [run.scene for run in load(tmp_path / "set", None).runs()] == ["mine"]
-    assert {run.scene for run in load_in_degrees(tmp_path / "set", None)} == {"heiles"}
+    several = load(tmp_path / "set", None, planar=False)
+    assert {run.scene for run in several.runs()} == {"heiles"}
     path = tmp_path / "set" / "mine.json"
     path.write_bytes((folder / "heiles.json").read_bytes())
     repaired(tmp_path / "set", "mine.json")
@@ -227,7 +227,7 @@ def test_a_folder_of_both_kinds_is_checked_and_read(folder: Path, tmp_path: Path
 
 
 def program(path: Path, *, columns: str = "p1,p2,q1,q2", sign: int = 1, late: int = 0,
-            off: float = 0.0, eta: int = 2) -> Path:  # fmt: skip
+            off: float = 0.0, eta: int = 2, less: float = 1.0) -> Path:  # fmt: skip
     """lie2 for Hénon and Heiles in doubles, with W and Λ from the entries of its Jacobians."""
     h, omega = 0.05, np.zeros((4, 4))
     omega[0, 2] = omega[1, 3] = 1
@@ -238,7 +238,7 @@ def program(path: Path, *, columns: str = "p1,p2,q1,q2", sign: int = 1, late: in
         p1, p2, q1, q2 = z
         energy = (p1**2 + p2**2 + q1**2 + q2**2) / 2 + q1**2 * q2 - q2**3 / 3
         shown = [*(z * [sign, sign, 1, 1] * (1 + off)), energy, largest,
-                 np.abs(m.T @ omega @ m - omega).max(), volume - 1]  # fmt: skip
+                 np.abs(m.T @ omega @ m - omega).max(), volume - less]  # fmt: skip
         cells = [f"{x:.17g}" for x in shown]
         cells[5] = cells[5] if n else ""
         if n >= late:
@@ -258,9 +258,8 @@ def program(path: Path, *, columns: str = "p1,p2,q1,q2", sign: int = 1, late: in
 
 
 def compared(folder: Path, table: Path, **given: str) -> Compared:
-    ours = load_in_degrees(folder, "heiles")
-    theirs = read_in_degrees(table, ours, {"scheme": "lie2", **given}, {})
-    return compare_in_degrees(ours, theirs)
+    ours = load(folder, "heiles", planar=False)
+    return compare(ours, read(table, ours, {"scheme": "lie2", **given}, {}))
 
 
 def test_a_right_program_differs_by_rounding_alone(folder: Path, tmp_path: Path) -> None:
@@ -272,6 +271,33 @@ def test_a_right_program_differs_by_rounding_alone(folder: Path, tmp_path: Path)
     assert min(x.digits for x in found.columns if x.name[0] in "pq") > 14
 
 
+def test_inputs_are_lists_and_may_be_doubles(folder: Path, tmp_path: Path) -> None:
+    table = program(tmp_path / "mine.csv")
+    ours = load(folder, None, planar=False)
+    theirs = read(
+        table, ours, {"scheme": "lie2", "q0": "0.3, 0.1", "p0": "0,0.3333333333333333"}, {}
+    )
+    assert [run.label for run, _ in theirs.runs.values()] == [
+        "heiles: lie2, h = 0.05, q = (0.3, 0.1), p = (0, 1/3)"
+    ]
+    assert set(theirs.read_as) == {"p0_2"}
+    assert compare(ours, theirs).agrees
+
+
+def test_what_is_told_may_leave_one_run(tmp_path: Path) -> None:
+    ours = load(PUBLISHED, "several-henon-heiles", planar=False)
+    table = tmp_path / "mine.csv"
+    table.write_text("step,p1\n0,0.4\n")
+    told = {"scheme": "lie2", "step_size": "0.1", "q0": "0,0.1"}
+    assert list(read(table, ours, told, {}).runs) == [
+        "several-henon-heiles: lie2, h = 0.1, q = (0, 0.1), p = (0.4, 0)"
+    ]
+    with pytest.raises(InputError, match=r"--q: is wanted, .* has: 0.1, -0.1"):
+        read(table, ours, {"scheme": "lie2"}, {})
+    none = read(table, ours, {"step_size": "0.07"}, {})
+    assert (none.outside, none.runs) == (1, {})
+
+
 @pytest.mark.parametrize(
     ("wrong", "mistake"),
     [
@@ -280,6 +306,7 @@ def test_a_right_program_differs_by_rounding_alone(folder: Path, tmp_path: Path)
         ({"sign": -1}, "sign-of-p"),
         ({"late": 1}, "late+1"),
         ({"eta": 1}, "scheme-lie1"),
+        ({"less": 0.0}, "product"),
         ({"off": 1e-11}, None),
     ],
 )
@@ -295,14 +322,23 @@ def test_a_mistake_is_named(
 
 def test_tables_that_cannot_be_taken_are_refused_in_one_line(folder: Path, tmp_path: Path) -> None:
     table = program(tmp_path / "mine.csv")
-    ours = load_in_degrees(folder, None)
+    ours = load(folder, None, planar=False)
     assert has_degrees(table, {})
     with pytest.raises(InputError, match=r"--scheme.*is wanted"):
-        read_in_degrees(table, [x for x in ours if x.scene == "heiles"], {}, {})
+        read(table, ours, {"scene": "heiles"}, {})
+    with pytest.raises(InputError, match=r"--scene.*is wanted: 2 have such runs: heiles, three"):
+        read(table, ours, {}, {})
     with pytest.raises(InputError, match="has no row of these data"):
         compared(folder, table, step_size="0.07")
     with pytest.raises(InputError, match=r"scene=none: unknown; .*allowed: "):
-        load_in_degrees(folder, "none")
+        read(table, ours, {"scene": "none"}, {})
+    with pytest.raises(InputError, match="has no row of these data"):
+        compared(folder, table, q0="0.3,0.1,0", p0="0,1/3,0")
+    keyed = "\n".join(f"{'lie2' if n else 'scheme'},{x}" for n, x in
+                      enumerate(table.read_text().splitlines()))  # fmt: skip
+    (tmp_path / "keyed.csv").write_text(keyed)
+    with pytest.raises(InputError, match=r"--scheme=lie2: is a column of the table, too"):
+        compared(folder, tmp_path / "keyed.csv")
     table.write_text("step,p1,q1\n1.5,0,0\n")
     with pytest.raises(InputError, match="which is not a whole number"):
         compared(folder, table)
@@ -332,5 +368,5 @@ def test_hostile_data_are_refused_in_one_line(
     change(data["runs"][0])
     (tmp_path / "heiles.json").write_text(json.dumps(data))
     with pytest.raises(InputError, match=problem) as found:
-        load_in_degrees(tmp_path, None)
+        load(tmp_path, None, planar=False)
     assert "\n" not in str(found.value)

@@ -1,4 +1,4 @@
-"""What a column of an area error may hold other than ΔJ, MSE or Λ as they are defined here.
+"""What a column may hold other than ΔJ, MSE, Λ, … as they are defined here, beside the state.
 
 Each is another reading of numbers of the same run. Adding one is adding an entry at the end.
 """
@@ -33,10 +33,12 @@ def readings(name: str) -> Iterator[tuple[str, str, Reading]]:
     """For a column, what else it may hold: a name, in words, and how it is had."""
     for late, says in ((1, "later"), (-1, "earlier")):
         yield f"{name}{late:+d}", f"your {name} is that of one step {says}", _shifted(name, late)
-    yield from {"lambda": _LAMBDA, "mse": _MSE, "delta_j": _DELTA_J}[name]
+    yield from _OF_COLUMN.get(name, ())
 
 
 def _shifted(name: str, late: int) -> Reading:
+    """What that column holds so many steps later."""
+
     def read(setting: Setting, digits: int, step: int) -> Foretold | None:
         known = replace(setting, late=setting.late + late).numbers(step, digits).get(name)
         return known and Foretold(*known)
@@ -128,3 +130,13 @@ _DELTA_J: tuple[tuple[str, str, Reading], ...] = (
     ("inverse", "your delta_j is that of the inverse map: 1/det J − 1",
      _changed("delta_j", lambda x, _: 1 / (1 + x) - 1 if x != -1 else None)),
 )  # fmt: skip
+_DEFECT: tuple[tuple[str, str, Reading], ...] = (
+    ("defects", "your symplectic_defect is that of one step, the greatest, and not that of N",
+     _shifted("symplectic_defect_max", 0)),
+)  # fmt: skip
+_OF_COLUMN = {
+    "lambda": _LAMBDA,
+    "mse": _MSE,
+    "delta_j": _DELTA_J,
+    "symplectic_defect": _DEFECT,
+}

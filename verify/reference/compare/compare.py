@@ -1,21 +1,22 @@
 """A table of somebody's numbers against the reference data: what agrees, what parts, and why."""
 
 from collections import Counter
-from collections.abc import Callable, Container, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Container, Iterable, Iterator
+from dataclasses import dataclass
 from fractions import Fraction
 
 from verify.errors import InputError
 from verify.kernels.orbit import Orbit
-from verify.reference.compare.agreement import Printing, printing
+from verify.reference.compare.agreement import printing
 from verify.reference.compare.diagnosis import Diagnosis
 from verify.reference.compare.findings import Named, Of, RunFindings, Verdict
 from verify.reference.compare.judge import Judge
 from verify.reference.compare.mistakes import of_states
 from verify.reference.compare.published import Published, PublishedRun
-from verify.reference.compare.rows import Row, Theirs
+from verify.reference.compare.rows import Theirs
 from verify.reference.compare.scatter import Scatters
 from verify.reference.compare.setting import Points, Setting
+from verify.reference.make.orbit_points import AnyOrbit
 from verify.scenes.results.separation import SeparationResult
 from verify.studies.separation.separate import separate
 
@@ -52,30 +53,20 @@ class Separated:
     result: SeparationResult
 
 
-@dataclass
+@dataclass(frozen=True)
 class Compared:
     """`runs` were compared in so many `rows`. `unexplained`: runs that differ by more than rounding
     and no mistake fits. `lost`: steps from which rounding may have taken every digit, by run;
     `overflows`: the first ones with a number that is not finite where doubles may overflow."""
 
-    rows: int = 0
-    runs: int = 0
-    columns: list[Column] = field(default_factory=list)
-    diagnoses: list[Explained] = field(default_factory=list)
-    unexplained: list[str] = field(default_factory=list)
-    lost: dict[str, int] = field(default_factory=dict)
-    overflows: dict[str, int] = field(default_factory=dict)
-    separated: Separated | None = None
-
-    def take(self, names: Sequence[str], judged: Sequence[RunFindings]) -> None:
-        """Takes up what was found of each run. InputError where no cell could be compared."""
-        if not judged:
-            raise InputError("table", "all cells", "are empty where the data have a number")
-        self.columns = [
-            _column(name, judged) for name in names if any(name in x.columns for x in judged)
-        ]
-        self.unexplained = [x.label for x in judged if x.verdict is Verdict.MORE and not x.mistakes]
-        self.lost = {x.label: x.lost_from for x in judged if x.lost_from is not None}
+    rows: int
+    runs: int
+    columns: list[Column]
+    diagnoses: list[Explained]
+    unexplained: list[str]
+    lost: dict[str, int]
+    overflows: dict[str, int]
+    separated: Separated | None
 
     @property
     def agrees(self) -> bool:
@@ -85,7 +76,7 @@ class Compared:
 
 def compare(
     ours: Published,
-    theirs: Theirs[PublishedRun],
+    theirs: Theirs,
     done: Callable[[int, int], None] = lambda *_: None,
 ) -> Compared:
     """Everything of the table that the reference data have; `done` hears of runs, of how many.
@@ -94,8 +85,7 @@ def compare(
     more than rounding. InputError where the table has no row, or no cell, that the data have.
     """
     kept = theirs.kept()
-    how = printings(kept)
-    found = Compared(rows=len(kept), runs=len(theirs.runs))
+    how = {name: printing(row.cells[name] for row in kept) for name in theirs.columns}
     judged: list[RunFindings] = []
     off: list[_Off] = []  # Λ, by no more than rounding may do
     search = _Search()
@@ -113,45 +103,50 @@ def compare(
             judged.append(each)
             off += _off_by_rounding(judge, each)
         done(count, len(theirs.runs))
-    found.take(theirs.columns, judged)
-    found.diagnoses = _diagnoses(judged)
-    found.overflows = {x.label: x.overflow_from for x in judged if x.overflow_from is not None}
-    found.separated = _separated(off)
-    return found
+    if not judged:
+        raise InputError("table", "all cells", "are empty where the data have a number")
+    compared = {name for x in judged for name in x.columns}
+    return Compared(
+        rows=len(kept),
+        runs=len(theirs.runs),
+        columns=[_column(name, judged) for name in theirs.columns if name in compared],
+        diagnoses=_diagnoses(judged),
+        unexplained=[x.label for x in judged if x.verdict is Verdict.MORE and not x.mistakes],
+        lost={x.label: x.lost_from for x in judged if x.lost_from is not None},
+        overflows={x.label: x.overflow_from for x in judged if x.overflow_from is not None},
+        separated=_separated(off),
+    )
 
 
 # Whether its run is never lost; how far, when, where.
-_Off = tuple[bool, Fraction, int, PublishedRun]
+_Off = tuple[bool, Fraction, int, str, Orbit]
 
 
 def _off_by_rounding(judge: Judge, judged: RunFindings) -> Iterator[_Off]:
     of = judged.columns.get("lambda")
     if of is None or of.verdict not in (Verdict.ROUNDING, Verdict.PERHAPS):
         return
+    orbit = judge.ours.orbit
+    if not isinstance(orbit, Orbit):  # there it takes long
+        return
     last = _MOST_SEPARATED if judged.lost_from is None else judged.lost_from - 1
     for (step, name), cell in judge.cells.items():
         if name != "lambda" or not 0 < step <= min(last, _MOST_SEPARATED) or cell.theirs is None:
             continue
         if cell.apart:
-            yield judged.lost_from is None, cell.apart, step, judge.ours
+            yield judged.lost_from is None, cell.apart, step, judged.label, orbit
 
 
 def _separated(off: list[_Off]) -> Separated | None:
     """Of runs that are lost only where there is no other: their separation takes long."""
     if not off:
         return None
-    _, apart, step, run = max(off, key=lambda x: x[:2])
-    orbit = run.orbit
+    _, apart, step, label, orbit = max(off, key=lambda x: x[:2])
     result = separate(
         orbit.hamiltonian, orbit.scheme, q=orbit.q, p=orbit.p,
         step_size=orbit.step_size, steps=step, t0=orbit.t0, digits=_SEPARATED_DIGITS,
     )  # fmt: skip
-    return Separated(run.label, step, apart, result) if result.plain else None
-
-
-def printings(rows: Sequence[Row]) -> dict[str, Printing]:
-    """How each column is printed."""
-    return {name: printing(row.cells[name] for row in rows) for name in rows[0].cells}
+    return Separated(label, step, apart, result) if result.plain else None
 
 
 class _Search:
@@ -173,7 +168,9 @@ class _Search:
         return len(self.known) > before
 
 
-def _orbits(runs: Iterable[PublishedRun], points: Points, names: Container[str]) -> Iterator[Orbit]:
+def _orbits(
+    runs: Iterable[PublishedRun], points: Points, names: Container[str]
+) -> Iterator[AnyOrbit]:
     """What runs with one of these mistakes would be."""
     for run in runs:
         for mistake in of_states(Setting(run.orbit, points)):

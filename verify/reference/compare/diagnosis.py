@@ -1,12 +1,12 @@
 """Which mistakes fit a run of theirs that rounding does not explain.
 
 One is named where it fits and the right setting is off by many times more; where several fit,
-nothing tells them apart. A mistake of the state is looked for in p and q, where they are given;
-then what is wrong with ΔJ, MSE and Λ, in the one setting that the state has.
+nothing tells them apart. A mistake of the state is looked for in its columns, where they are given;
+then what is wrong with the others, such as Λ, in the one setting that the state has.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
@@ -14,7 +14,7 @@ from functools import partial
 from verify.reference.compare.agreement import chance_of_single, is_single
 from verify.reference.compare.column_meanings import readings
 from verify.reference.compare.findings import DOUBLE, SINGLE, Fit, Named, RunFindings, Verdict
-from verify.reference.compare.judge import AREA, STATE, Judge
+from verify.reference.compare.judge import Judge
 from verify.reference.compare.mistakes import Mistake, of_inputs, of_states, without_synonyms
 from verify.reference.compare.setting import Setting
 
@@ -31,9 +31,9 @@ class Diagnosis:
         self.judge, self.judged, self.only = judge, judged, only
 
     def mistakes(self) -> list[list[Named]]:
-        """Those that fit: of the state, then of each column of the area error."""
+        """Those that fit: of the state, then of each other column."""
         names, right = self.judge.names, self.judge.right
-        states = [n for n in STATE if n in names] or list(names)
+        states = self.judge.state or names
         found, settings = [], [right]
         if self._off(states) or self._finer_than_doubles():
             fitting = without_synonyms(list(self._fitting(states)))
@@ -42,11 +42,11 @@ class Diagnosis:
                 self.judged.unit = SINGLE
             found.append([(x.name, x.says) for x in fitting])
             settings = [x.setting for x in fitting]
-        if len(settings) == 1 and states != list(names):
-            found += [self._of_area(settings[0], n) for n in AREA if n in names]
+        if len(settings) == 1:
+            found += [self._of_column(settings[0], n) for n in names if n not in states]
         return [group for group in found if group]
 
-    def _off(self, names: list[str]) -> bool:
+    def _off(self, names: Sequence[str]) -> bool:
         return any(self.judged.columns[n].verdict >= Verdict.PERHAPS for n in names)
 
     def _finer_than_doubles(self) -> bool:
@@ -54,10 +54,10 @@ class Diagnosis:
         units = self.judge.units()
         return len(units) > 1 and self.judged.unit == units[-1]
 
-    def _is_single(self, names: list[str]) -> bool:
+    def _is_single(self, names: Sequence[str]) -> bool:
         """Whether they worked with single precision."""
         judge = self.judge
-        cells = [cell for (_, n), cell in judge.cells.items() if n in STATE and cell.differs]
+        cells = [cell for (_, n), cell in judge.cells.items() if n in judge.state and cell.differs]
         known = [(x.theirs, x.unit) for x in cells if x.theirs is not None]
         single = all(is_single(*x) for x in known)
         by_chance = math.prod(chance_of_single(*x) for x in known)
@@ -69,7 +69,7 @@ class Diagnosis:
 
     # -- of the state -------------------------------------------------------------------------
 
-    def _fitting(self, names: list[str]) -> Iterator[Mistake]:
+    def _fitting(self, names: Sequence[str]) -> Iterator[Mistake]:
         """In the finest unit roundoff in which one fits, unless the right setting does."""
         judge = self.judge
         for unit in judge.units():
@@ -86,7 +86,7 @@ class Diagnosis:
     def _asked(self, name: str) -> bool:
         return self.only is None or name in self.only
 
-    def _fits(self, setting: Setting, right: Fit, names: list[str], unit: Fraction) -> bool:
+    def _fits(self, setting: Setting, right: Fit, names: Sequence[str], unit: Fraction) -> bool:
         if not self._nearer_by_itself(setting, right, unit):
             return False
         fit = self.judge.fit(setting, names, unit, wholly=False)
@@ -123,9 +123,9 @@ class Diagnosis:
         own = max(fit.apart.get(place, Fraction(0)), least)
         return right.apart[place] >= _FARTHER * own
 
-    # -- of the area error --------------------------------------------------------------------
+    # -- of the other columns -----------------------------------------------------------------
 
-    def _of_area(self, setting: Setting, name: str) -> list[Named]:
+    def _of_column(self, setting: Setting, name: str) -> list[Named]:
         """Other readings of a column that fit, in a setting that does not foretell it."""
         judge, unit = self.judge, self.judged.unit
         if not self._off([name]):

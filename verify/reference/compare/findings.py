@@ -1,5 +1,6 @@
 """What is found of a run of theirs: how each column differs, and which mistakes fit."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum
 from fractions import Fraction
@@ -16,6 +17,17 @@ class Verdict(IntEnum):
     ROUNDING = 2
     PERHAPS = 3  # more than rounding usually does, and less than it may do
     MORE = 4
+
+
+@dataclass(frozen=True)
+class Spread:
+    """How far rounding moves a number, or a unit of it: as it usually does, and at worst."""
+
+    usual: float | Fraction
+    worst: float | Fraction
+
+
+Spreads = Mapping[str, Spread]  # by the number's column
 
 
 @dataclass(frozen=True)

@@ -18,9 +18,9 @@ from verify.reference.compare.overflow import may_overflow
 from verify.reference.compare.published import PublishedRun
 from verify.reference.compare.rows import Row
 from verify.reference.compare.scatter import Scatters
-from verify.reference.compare.setting import Bounded, Points, Setting, numbers_of
+from verify.reference.compare.setting import Points, Setting
+from verify.reference.make.orbit_points import Bounded
 
-STATE, AREA = ("p", "q"), ("delta_j", "mse", "lambda")
 _DOUBLE_DIGITS = 17  # more than these may be of a more precise number
 _MORE_DIGITS, _LEAST_DIGITS = 8, 25
 
@@ -43,11 +43,12 @@ class Judge:
             for name, cell in self._cells(step, rows[step])
         }
         names = {name for _, name in self.cells}
-        self.names = tuple(n for n in (*STATE, *AREA) if n in names)
+        self.names = tuple(n for n in ours.columns if n in names)
+        self.state = tuple(n for n in self.names if n in ours.hamiltonian.coordinates)
         self.right = Setting(ours.orbit, points)
 
     def _cells(self, step: int, row: Row) -> Iterator[tuple[str, Cell]]:
-        known = numbers_of(self.ours.rows[step])
+        known = self.ours.numbers(step)
         for name, text in row.cells.items():
             if name in known and text.strip():
                 yield name, beside(text, known[name], self.how[name], f"line {row.line}, {name}")
@@ -128,9 +129,10 @@ class Judge:
     def known(self, setting: Setting, step: int, unit: Fraction) -> dict[str, Bounded]:
         """The setting's numbers at a row's step, as far as they can be had."""
         if setting == self.right:
-            return numbers_of(self.ours.rows[step])
+            return self.ours.numbers(step)
         known = setting.numbers(step, self.digits(unit))
-        return {n: x for n, x in known.items() if n in STATE or n in self.names}
+        wanted = {*self.ours.hamiltonian.coordinates, *self.names}
+        return {n: x for n, x in known.items() if n in wanted}
 
     def digits(self, unit: Fraction) -> int:
         """Those to which numbers are to be known that are judged with this unit roundoff."""

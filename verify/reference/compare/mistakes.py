@@ -1,7 +1,7 @@
 """What may be wrong with somebody's run: each mistake makes another setting of the right one.
 
-Adding a mistake is adding a line. What may be wrong with an area error alone is in
-`verify.reference.compare.column_meanings`.
+Adding a mistake is adding a line. In n degrees of freedom fewer are tried, as runs take longer.
+What may be wrong with a column beside the state is in `verify.reference.compare.column_meanings`.
 """
 
 from collections.abc import Iterator
@@ -49,6 +49,8 @@ class Mistake:
 def of_inputs(right: Setting) -> Iterator[Mistake]:
     """Inputs that are doubles; no program that works with doubles can be told by them."""
     orbit = right.orbit
+    if not isinstance(orbit, Orbit):
+        return
     exact = {"h": orbit.step_size, "q0": orbit.q, "p0": orbit.p, **dict(orbit.hamiltonian.values)}
     if orbit.hamiltonian.time_dependent:
         exact["t0"] = orbit.t0
@@ -66,23 +68,44 @@ def of_inputs(right: Setting) -> Iterator[Mistake]:
 
 def of_states(right: Setting) -> Iterator[Mistake]:
     """All that can be seen in doubles."""
-    yield from _of_columns(right)
+    if not isinstance(right.orbit, Orbit):
+        yield from _in_degrees(right)
+        return
+    yield from _of_columns(right, right.orbit)
     if right.orbit.hamiltonian.time_dependent:
-        yield from _of_clock(right)
+        yield from _of_clock(right, right.orbit)
     yield from _of_scheme(right)
-    yield from _staggered(right)
-    yield from _of_step(right)
+    yield from _staggered(right, right.orbit)
+    yield from _of_step(right, right.orbit)
 
 
-def _of_columns(right: Setting) -> Iterator[Mistake]:
-    orbit = right.orbit
-    exchanged = replace(orbit, q=orbit.p, p=orbit.q)
+def _in_degrees(right: Setting) -> Iterator[Mistake]:
+    """Of the schemes those that the reference data have, which need not be run."""
+    degrees = range(1, right.orbit.hamiltonian.degrees + 1)
+    pairs = tuple((f"p{k}", f"q{k}") for k in degrees)
+    yield Mistake("swapped", "your columns of p and q are in each other's place",
+                  replace(right, exchanged=pairs))  # fmt: skip
+    for i, j in combinations(degrees, 2):
+        says = f"your degrees of freedom {i} and {j} are in each other's place"
+        pairs = tuple((f"{x}{i}", f"{x}{j}") for x in "pq")
+        yield Mistake(f"degrees-{i}-{j}", says, replace(right, exchanged=pairs))
+    yield Mistake("sign-of-p", "your p has the other sign", replace(right, negated=True))
+    for late, when in ((1, "later"), (-1, "earlier")):
+        says = f"your rows are those of one step {when}"
+        yield Mistake(f"late{late:+d}", says, replace(right, late=late))
+    for other in right.points.of_other_schemes(right.orbit):
+        says = f"your numbers are those of {other.scheme}, and not of {right.orbit.scheme}"
+        yield Mistake(f"scheme-{other.scheme}", says, replace(right, orbit=other))
+
+
+def _of_columns(right: Setting, orbit: Orbit) -> Iterator[Mistake]:
+    exchanged, swap = replace(orbit, q=orbit.p, p=orbit.q), (("p", "q"),)
     backwards = Hamiltonian(-orbit.hamiltonian.expression, orbit.hamiltonian.values)
     changes: tuple[tuple[str, str, dict[str, Any]], ...] = (
-        ("swapped-columns", "your columns p and q are swapped", {"swapped": True}),
+        ("swapped-columns", "your columns p and q are swapped", {"exchanged": swap}),
         ("swapped-start", "your initial p and q are swapped", {"orbit": exchanged}),
         ("swapped-throughout", "p and q are swapped, in your columns and at the start",
-         {"orbit": exchanged, "swapped": True}),
+         {"orbit": exchanged, "exchanged": swap}),
         ("negated-p", "your p has the other sign", {"negated": True}),
         ("negated-start", "your initial p has the other sign",
          {"orbit": replace(orbit, p=-orbit.p)}),
@@ -95,8 +118,7 @@ def _of_columns(right: Setting) -> Iterator[Mistake]:
         yield Mistake(name, says, replace(right, **change))
 
 
-def _of_clock(right: Setting) -> Iterator[Mistake]:
-    orbit = right.orbit
+def _of_clock(right: Setting, orbit: Orbit) -> Iterator[Mistake]:
     for how, says in _CLOCKS.items():
         name = f"{orbit.scheme}, clock {how}"
         with suppress(InputError):  # a scheme of which there is no such clock
@@ -111,8 +133,8 @@ def _of_clock(right: Setting) -> Iterator[Mistake]:
         yield Mistake(name, told, replace(right, orbit=replace(orbit, t0=begin)))
 
 
-def _of_step(right: Setting) -> Iterator[Mistake]:
-    h, values = right.orbit.step_size, right.orbit.hamiltonian.values
+def _of_step(right: Setting, orbit: Orbit) -> Iterator[Mistake]:
+    h, values = orbit.step_size, orbit.hamiltonian.values
     changes = [
         ("half-step", "your h is half what it should be", {"h": h / 2}),
         ("double-step", "your h is twice what it should be", {"h": 2 * h}),
@@ -126,7 +148,7 @@ def _of_step(right: Setting) -> Iterator[Mistake]:
             if other != value:
                 changes.append((f"{what}-{name}", f"your {name} is {short(other)}", {name: other}))
     for name, says, change in changes:
-        yield Mistake(name, says, replace(right, orbit=_with(right.orbit, change)))
+        yield Mistake(name, says, replace(right, orbit=_with(orbit, change)))
 
 
 def _of_scheme(right: Setting) -> Iterator[Mistake]:
@@ -143,12 +165,12 @@ def _of_scheme(right: Setting) -> Iterator[Mistake]:
         )
 
 
-def _staggered(right: Setting) -> Iterator[Mistake]:
+def _staggered(right: Setting, orbit: Orbit) -> Iterator[Mistake]:
     """A leapfrog's p between its q's, or q between its p's, of a splitting a/2; b; a/2.
 
     That is the splitting b; a of a start that is half an a farther, or a; b of one that is behind.
     """
-    generic = schemes.get(right.orbit.scheme).every_h
+    generic = schemes.get(orbit.scheme).every_h
     parts = generic.parts if isinstance(generic, Splitting) else ()
     if len(parts) != _ENDS_AND_MIDDLE or parts[0] != parts[-1]:
         return
@@ -156,11 +178,11 @@ def _staggered(right: Setting) -> Iterator[Mistake]:
     name = "p" if first == "kick" else "q"
     both = ((first, 2 * half), (second, whole))
     for sign, order, says in ((1, both[::-1], "ahead"), (-1, both, "behind")):
-        orbit = replace(right.orbit, scheme=_named(order))
         start = _a_part_on(right, name, _named(both), sign)
         if start is not None:
+            other = replace(orbit, scheme=_named(order))
             yield Mistake(f"half-{name}-{says}", f"your {name} is half a step {says}: leapfrog",
-                          replace(right, orbit=_with(orbit, {f"{name}0": start})))  # fmt: skip
+                          replace(right, orbit=_with(other, {f"{name}0": start})))  # fmt: skip
 
 
 def _a_part_on(right: Setting, name: str, scheme: str, sign: int) -> Fraction | None:
@@ -175,9 +197,9 @@ def without_synonyms(mistakes: list[Mistake]) -> list[Mistake]:
     found: dict[object, Mistake] = {}
     for mistake in mistakes:
         setting, (q, p, h) = mistake.setting, _ELSEWHERE
-        there = replace(setting.orbit, q=q, p=p, step_size=h)
         state = None
-        if mistake.name.startswith(_OF_SCHEME):
+        if mistake.name.startswith(_OF_SCHEME) and isinstance(setting.orbit, Orbit):
+            there = replace(setting.orbit, q=q, p=p, step_size=h)
             known = replace(setting, orbit=there).numbers(1, _SHARP)
             state = (known["p"][0], known["q"][0]) if "p" in known else None
         first = found.setdefault(state or mistake.name, mistake)
@@ -218,12 +240,8 @@ def _named(parts: tuple[Part, ...]) -> str:
 
 def _with(orbit: Orbit, changed: dict[str, Fraction]) -> Orbit:
     """The orbit with other numbers: h, q0, p0, t0 and parameters by their names."""
-    new = dict(changed)
-    own = {"h": "step_size", "q0": "q", "p0": "p", "t0": "t0"}
-    numbers = {own[name]: new.pop(name) for name in changed if name in own}
-    hamiltonian = orbit.hamiltonian.with_values({**dict(orbit.hamiltonian.values), **new})
-    return Orbit(hamiltonian, orbit.scheme, **_numbers(orbit) | numbers)
-
-
-def _numbers(orbit: Orbit) -> dict[str, Fraction]:
-    return {"step_size": orbit.step_size, "q": orbit.q, "p": orbit.p, "t0": orbit.t0}
+    fields = {"h": "step_size", "q0": "q", "p0": "p", "t0": "t0"}
+    numbers: dict[str, Any] = {fields[name]: x for name, x in changed.items() if name in fields}
+    parameters = {name: x for name, x in changed.items() if name not in fields}
+    hamiltonian = orbit.hamiltonian.with_values(dict(orbit.hamiltonian.values) | parameters)
+    return replace(orbit, hamiltonian=hamiltonian, **numbers)

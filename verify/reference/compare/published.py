@@ -1,7 +1,7 @@
 """Reference data → what others' numbers are held against: each run by its scene and its inputs."""
 
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -12,40 +12,73 @@ from pydantic import ValidationError
 
 from verify.arithmetic.exact import rational
 from verify.errors import InputError, unknown
-from verify.files import read_bytes
+from verify.files import opened, read_bytes
 from verify.formats import check_format
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.start import point_of
 from verify.kernels.orbit import Orbit
 from verify.kernels.step.tangent_map import nearest_double
-from verify.reference.compare.published_in_degrees import check_exponents, is_file_of_degrees
-from verify.reference.make.columns import values_of
+from verify.reference.compare.setting import numbers_of
+from verify.reference.make.columns import (
+    AnyOrbitPoint,
+    orbit_columns,
+    start_columns,
+    state_columns,
+    values_of,
+)
 from verify.reference.make.models import DATA_FORMAT, Data, Run
+from verify.reference.make.models_in_degrees import (
+    DATA_IN_DEGREES_FORMAT,
+    DataInDegrees,
+    RunInDegrees,
+    is_of_degrees,
+)
+from verify.reference.make.orbit_points import AnyOrbit, Bounded, OrbitInDegrees
 from verify.reference.make.reading import json_of
 from verify.reference.make.writing import MANIFEST, SCHEMAS
-from verify.scenes.results.reference import OrbitPoint
+from verify.scenes.results.reference import Rounded
 
-KEYS = ("scheme", "step_size", "q0", "p0")  # what a run of a scene is told by
-Inputs = tuple[str, float, float, float]  # scheme, h, q0, p0: the numbers to the nearest double
+_HEAD = 200  # bytes of a file
+_EXPONENT_DIGITS = 6
+_NONE = {  # whether data of the plane are wanted
+    True: "has no reference data; give a folder that `verify reference make` wrote",
+    False: "has no reference data of p1 … pn, q1 … qn, as the table's columns are",
+}
+Inputs = Mapping[str, str | float]  # the scheme, and h and the start to the nearest double
 
 
 @dataclass(frozen=True)
 class PublishedRun:
-    """One run of the reference data."""
+    """One run of the reference data, in the plane or in n degrees of freedom."""
 
     scene: str
     hamiltonian: Hamiltonian
-    run: Run
-
-    @property
-    def inputs(self) -> Inputs:
-        """What it is found by."""
-        h, q, p = map(nearest_double, self.exact)
-        return self.run.scheme, h, q, p
+    run: Run | RunInDegrees
 
     @cached_property
-    def exact(self) -> tuple[Fraction, ...]:
+    def texts(self) -> dict[str, str]:
+        """What a run of a scene is told by, by a table's columns: scheme, step_size, and q0 and p0,
+        or q0_1 … p0_n."""
+        run = self.run
+        start = (run.q, run.p) if isinstance(run, Run) else (*run.q, *run.p)
+        named = zip(start_columns(self.hamiltonian.degrees), start, strict=True)
+        return {"scheme": run.scheme, "step_size": run.step_size, **dict(named)}
+
+    @cached_property
+    def exact(self) -> dict[str, Fraction]:
         """h, q and p at the start."""
-        return tuple(rational(x) for x in (self.run.step_size, self.run.q, self.run.p))
+        return {name: rational(x) for name, x in self.texts.items() if name != "scheme"}
+
+    @cached_property
+    def inputs(self) -> Inputs:
+        """What it is found by."""
+        return {"scheme": self.run.scheme} | {n: nearest_double(x) for n, x in self.exact.items()}
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Those of its numbers, the state first."""
+        degrees = self.hamiltonian.degrees
+        return *state_columns(degrees), *orbit_columns(degrees)
 
     @property
     def label(self) -> str:
@@ -53,31 +86,44 @@ class PublishedRun:
         return f"{self.scene}: {self.run.label}"
 
     @cached_property
-    def orbit(self) -> Orbit:
+    def orbit(self) -> AnyOrbit:
         """What was run."""
-        h, q, p = self.exact
-        return Orbit(self.hamiltonian, self.run.scheme, h, q, p, t0=self.t0 or Fraction(0))
+        h, *start = self.exact.values()
+        scheme, t0 = self.run.scheme, self.t0 or Fraction(0)
+        if isinstance(self.run, Run):
+            return Orbit(self.hamiltonian, scheme, h, *start, t0=t0)
+        half = self.hamiltonian.degrees
+        return OrbitInDegrees(
+            self.hamiltonian, scheme, h, tuple(start[:half]), tuple(start[half:]), t0
+        )
 
     @property
     def t0(self) -> Fraction | None:
         """When it starts, where H depends on time."""
-        return self.run.start.get("t")
+        text = getattr(self.run, "t0", None)
+        return None if text is None else rational(text, "t0")
 
     @cached_property
-    def rows(self) -> dict[int, OrbitPoint]:
+    def rows(self) -> dict[int, AnyOrbitPoint]:
         """Its rows by step."""
         return {row.step: row for row in self.run.rows}
+
+    def numbers(self, step: int) -> dict[str, Bounded]:
+        """Those of a row, by their columns' names."""
+        return numbers_of(self.rows[step], self.hamiltonian.degrees)
 
 
 class Published:
     """The runs of some scenes, found by their inputs."""
 
-    def __init__(self, runs: Iterator[PublishedRun]) -> None:
+    def __init__(self, runs: Sequence[PublishedRun]) -> None:
         self.by_scene: dict[str, list[PublishedRun]] = defaultdict(list)
-        self._by_inputs: dict[tuple[str, Inputs], list[PublishedRun]] = defaultdict(list)
         for run in runs:
             self.by_scene[run.scene].append(run)
-            self._by_inputs[run.scene, run.inputs].append(run)
+        widest = max(runs, key=lambda run: run.hamiltonian.degrees)
+        self.planar = widest.hamiltonian.planar
+        self.keys = tuple(widest.texts)  # what a run of a scene is told by
+        self.columns = widest.columns
 
     def scene(self, name: str) -> list[PublishedRun]:
         """Its runs; InputError for a scene that is not there."""
@@ -85,28 +131,25 @@ class Published:
             raise unknown("scene", name, sorted(self.by_scene))
         return self.by_scene[name]
 
-    def run(self, scene: str, inputs: Inputs, exact: tuple[Fraction, ...]) -> PublishedRun | None:
-        """The scene's run of these inputs, or of the same doubles where these tell one."""
-        found = self._by_inputs.get((scene, inputs), [])
-        if len(found) == 1:
-            return found[0]
-        return next((x for x in found if x.exact == exact), None)
+    def fitting(self, scene: str, inputs: Inputs) -> list[PublishedRun]:
+        """The scene's runs that have these inputs."""
+        return [x for x in self.by_scene.get(scene, ()) if inputs.items() <= x.inputs.items()]
 
     def runs(self) -> Iterator[PublishedRun]:
         """All of them."""
         return chain.from_iterable(self.by_scene.values())
 
     def values_of(self, scene: str, key: str) -> list[str]:
-        """What the scene's runs have for one of `KEYS`, each once."""
-        name = {"q0": "q", "p0": "p"}.get(key, key)
-        return list(dict.fromkeys(getattr(x.run, name) for x in self.scene(scene)))
+        """What the scene's runs have for one of `keys`, each once."""
+        return list(dict.fromkeys(x.texts[key] for x in self.scene(scene) if key in x.texts))
 
 
-def load(folder: Path, scene: str | None) -> Published:
-    """The runs of a folder's scenes, or of one where there is a file of that name.
+def load(folder: Path, scene: str | None, *, planar: bool = True) -> Published:
+    """The runs of a folder's scenes, or of one where there is a file of that name: of those in the
+    plane, or of those in n degrees of freedom.
 
-    InputError for a folder that is not there or has no reference data, and for a file that is of
-    another format, or not as it must be.
+    InputError for a folder that is not there or has no such reference data, and for a file that is
+    of another format, or not as it must be.
 
     >>> from verify.reference.make.make import PUBLISHED
     >>> load(PUBLISHED, "duffing").values_of("duffing", "q0")
@@ -119,35 +162,51 @@ def load(folder: Path, scene: str | None) -> Published:
     names = {path.name for path in folder.glob("*.json")} - {MANIFEST, *SCHEMAS}
     if scene is not None and f"{scene}.json" in names:
         names = {f"{scene}.json"}
-    names = {name for name in names if not is_file_of_degrees(folder / name)}
-    if not names:
-        raise InputError(
-            "--data",
-            str(folder),
-            "has no reference data; give a folder that `verify reference make` wrote",
-        )
-    return Published(run for name in sorted(names) for run in _runs(folder, name))
+    names = {name for name in names if _is_of_degrees(folder / name) is not planar}
+    runs = [run for name in sorted(names) for run in _runs(folder / name, planar)]
+    if not runs:
+        raise InputError("--data", str(folder), _NONE[planar])
+    return Published(runs)
 
 
-def _runs(folder: Path, name: str) -> Iterator[PublishedRun]:
-    raw = check_format(json_of(read_bytes(folder / name), name), DATA_FORMAT, name)
+def _is_of_degrees(path: Path) -> bool:
+    """Whether a file's format is that of data in n degrees of freedom."""
     try:
-        data = Data.model_validate(raw)
-    except ValidationError as error:
-        told = error.errors(include_url=False)[0]
-        where = ".".join(map(str, told["loc"]))
-        raise InputError("file", name, f"is no reference data: {where}: {told['msg']}") from None
+        with opened(path) as file:
+            return is_of_degrees(file.read(_HEAD))
+    except InputError:  # whoever reads it says so
+        return False
+
+
+def _runs(path: Path, planar: bool) -> Iterator[PublishedRun]:
+    data, name = _data(path, planar), path.name
     hamiltonian = Hamiltonian.parse(data.hamiltonian, data.parameters)
     if hamiltonian.time_dependent and not data.timed:
         problem = "is no reference data: its H depends on t, and its runs have no t0"
         raise InputError("file", name, problem)
     for run in data.runs:
-        _check_exponents(run, name)
+        point_of(hamiltonian, run.q, run.p)
+        for row in run.rows:
+            for number in values_of(row, hamiltonian.degrees).values():
+                _check_exponents(number, name)
         yield PublishedRun(data.name, hamiltonian, run)
 
 
-def _check_exponents(run: Run, name: str) -> None:
+def _data(path: Path, planar: bool) -> Data | DataInDegrees:
+    raw = json_of(read_bytes(path), path.name)
+    check_format(raw, DATA_FORMAT if planar else DATA_IN_DEGREES_FORMAT, path.name)
+    try:
+        return (Data if planar else DataInDegrees).model_validate(raw)
+    except ValidationError as error:
+        told = error.errors(include_url=False)[0]
+        where = ".".join(map(str, told["loc"]))
+        problem = f"is no reference data: {where}: {told['msg']}"
+        raise InputError("file", path.name, problem) from None
+
+
+def _check_exponents(number: Rounded | None, name: str) -> None:
     """InputError for an exponent whose power of ten would fill the memory."""
-    for row in run.rows:
-        for known in values_of(row, 1).values():
-            check_exponents(known, name)
+    for text in (number.value, number.radius) if number else ():
+        exponent = text.partition("e")[2].lstrip("+-0")
+        if len(exponent) > _EXPONENT_DIGITS:
+            raise InputError("file", name, f"has the number {text[:40]}, beyond all sizes")

@@ -1,15 +1,15 @@
-"""What a table of somebody's numbers is made of, in the plane and in n degrees of freedom: which
-column is which, a row's numbers, its step, and the rows of each run that are kept.
+"""What a table of somebody's numbers is made of: which column is which, a row's numbers, its step,
+and the rows of each run that are kept.
 """
 
 import re
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Generic, Protocol, TypeVar
 
 from verify.arithmetic.exact import rational
 from verify.errors import InputError, unknown, without_controls
+from verify.reference.compare.published import PublishedRun
 from verify.reference.compare.table import Table
 
 _SHOWN = 60  # characters of a text
@@ -33,18 +33,8 @@ class Row:
     cells: dict[str, str]
 
 
-class OfData(Protocol):
-    """A run of the reference data."""
-
-    @property
-    def label(self) -> str: ...
-
-
-Run = TypeVar("Run", bound=OfData)
-
-
 @dataclass
-class Theirs(Generic[Run]):
+class Theirs:
     """What of a table is in the reference data. `rows`: of the table; `runs`: by run and step.
 
     `other_steps`: rows of runs that the reference data have, though not at that step. `outside`:
@@ -59,10 +49,10 @@ class Theirs(Generic[Run]):
     other_steps: int = 0
     outside: int = 0
     first_outside: str = ""
-    runs: dict[str, tuple[Run, dict[int, Row]]] = field(default_factory=dict)
+    runs: dict[str, tuple[PublishedRun, dict[int, Row]]] = field(default_factory=dict)
     read_as: dict[str, tuple[Fraction, Fraction]] = field(default_factory=dict)
 
-    def keep(self, run: Run, step: int, row: Row, lines: Table) -> None:
+    def keep(self, run: PublishedRun, step: int, row: Row, lines: Table) -> None:
         """Takes up a row; InputError where another one of this step says something else."""
         rows = self.runs.setdefault(run.label, (run, {}))[1]
         before = rows.setdefault(step, row)
@@ -82,7 +72,7 @@ def places_of(
     names: Mapping[str, str],
     known: Collection[str],
     values: Collection[str],
-    found: Theirs[Run],
+    found: Theirs,
 ) -> dict[str, int]:
     """Where each `known` column stands; `names`: what the table calls a column, by ours. `found`
     gets the columns that are `values`, and those that mean nothing."""
@@ -113,13 +103,6 @@ def places_of(
     found.columns = tuple(name for name in values if name in places)
     found.ignored = tuple(ignored)
     return places
-
-
-def cells_of(lines: Table, row: list[str]) -> list[str]:
-    """The row. InputError where it is too short."""
-    if len(row) < lines.width:
-        raise lines.error(f"has {len(row)} cells, and the header {lines.width}")
-    return row
 
 
 def step_of(

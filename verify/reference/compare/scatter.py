@@ -8,10 +8,12 @@ pushed by 10⁸·ε. In half of the copies ξ is drawn for each step anew, as ro
 others it stays what it was at first, the worst that roundings do where they always fall to the same
 side. A program's operations are others than ours, but their results are of the size of p and q or
 smaller.
+
+In n degrees of freedom less is run for it: `verify.reference.compare.carried`.
 """
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
@@ -24,6 +26,10 @@ from verify.kernels.clock import clock_inputs
 from verify.kernels.kernel import Kernel, kernel_for
 from verify.kernels.orbit import Orbit
 from verify.kernels.stepping import KernelRun
+from verify.reference.compare.carried import Carried
+from verify.reference.compare.findings import Spread, Spreads
+from verify.reference.compare.setting import start_of
+from verify.reference.make.orbit_points import AnyOrbit
 
 _PUSH = 2.0**-42 if WIDE.prec > 60 else 2.0**-32  # numbers have 20 bits and more beside it
 _COPIES = 16  # of each kind
@@ -33,17 +39,6 @@ _LARGE = 1e-3  # of a value: beyond it errors do not just add up, and nothing is
 _BLOCK = 64  # steps whose random numbers are drawn at once
 _TOGETHER = 64  # orbits
 _COUNT = "step"  # what a kernel's clock counts by
-
-
-@dataclass(frozen=True)
-class Spread:
-    """What a unit of rounding becomes, at most of the copies: as it happens, and at worst."""
-
-    usual: float
-    worst: float
-
-
-Spreads = Mapping[str, Spread]
 
 
 class Scatter:
@@ -131,7 +126,7 @@ class Scatter:
                 )
                 for n, (usual, worst) in apart.items()
             }
-            finite = np.isfinite([y for x in own.values() for y in (x.usual, x.worst)]).all()
+            finite = all(math.isfinite(y) for x in own.values() for y in (x.usual, x.worst))
             far = max(own[n].worst for n in ("p", "q")) * _PUSH > _LARGE * float(size[k])
             found.append(own if finite and not far else None)
         return found
@@ -142,10 +137,10 @@ class Scatter:
         return apart[:, :_COPIES].max(axis=1), apart.max(axis=1)
 
 
-def run_of(orbit: Orbit) -> KernelRun:
-    """One step of the orbit, with MSE and Λ."""
-    observed = frozenset({"mse", "lambda"})
-    return KernelRun(orbit.hamiltonian, orbit.scheme, orbit.start, 1, observed, 0)
+def run_of(orbit: AnyOrbit) -> KernelRun:
+    """One step of the orbit, with Λ and, in the plane, MSE."""
+    observed = frozenset({"mse", "lambda"} if orbit.hamiltonian.planar else {"lambda"})
+    return KernelRun(orbit.hamiltonian, orbit.scheme, start_of(orbit), 1, observed, 0)
 
 
 def inputs_of(run: KernelRun, kernel: Kernel, arithmetic: Arithmetic) -> list[Fraction]:
@@ -160,25 +155,29 @@ class Scatters:
     """The scatters of a table's orbits, each made when it is first needed, with others of its kind;
     other orbits have one of their own."""
 
-    def __init__(self, orbits: Iterable[Orbit] = (), marks: Sequence[int] = ()) -> None:
+    def __init__(self, orbits: Iterable[AnyOrbit] = (), marks: Sequence[int] = ()) -> None:
+        self._carried: dict[AnyOrbit, Carried] = {}
         self._place: dict[Orbit, tuple[tuple[Orbit, ...], int]] = {}
         self._marks = marks
         self._made: dict[tuple[Orbit, ...], Scatter] = {}
         self.expect(orbits)
 
-    def expect(self, orbits: Iterable[Orbit]) -> None:
+    def expect(self, orbits: Iterable[AnyOrbit]) -> None:
         """They may be asked for, too; so those of a kind that are new step together."""
         kinds: dict[object, list[Orbit]] = {}
         for orbit in dict.fromkeys(orbits):
-            if orbit not in self._place:
+            if isinstance(orbit, Orbit) and orbit not in self._place:
                 kinds.setdefault((orbit.hamiltonian.expression, orbit.scheme), []).append(orbit)
         for kind in kinds.values():
             for first in range(0, len(kind), _TOGETHER):
                 together = tuple(kind[first : first + _TOGETHER])
                 self._place |= {orbit: (together, k) for k, orbit in enumerate(together)}
 
-    def at(self, orbit: Orbit, step: int) -> Spreads | None:
-        """As `Scatter.at`, in any order; of no number where the scheme solves equations."""
+    def at(self, orbit: AnyOrbit, step: int) -> Spreads | None:
+        """As `Scatter.at`, in any order; of no number where the scheme solves equations, unless in
+        n degrees of freedom."""
+        if not isinstance(orbit, Orbit):
+            return self._carried.setdefault(orbit, Carried(orbit)).at(step)
         together, k = self._place.get(orbit, ((orbit,), 0))
         try:
             if together not in self._made:

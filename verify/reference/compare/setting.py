@@ -3,36 +3,36 @@
 Each mistake of `verify.reference.compare.mistakes` makes another setting of the reference data's.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import lru_cache
 
 from verify.arithmetic.number_system import UnsupportedError
 from verify.errors import InputError
+from verify.hamiltonians.start import point_of
 from verify.kernels.orbit import Orbit
-from verify.reference.make.columns import values_of
-from verify.reference.make.orbit_points import orbit_points
-from verify.scenes.results.reference import OrbitPoint
+from verify.reference.make.columns import AnyOrbitPoint, values_of
+from verify.reference.make.orbit_points import AnyOrbit, Bounded, orbit_points
 
 _MOST_STEPS = 2_000_000  # run; what is farther is not known
-Bounded = tuple[Fraction, Fraction]  # a value and its radius
+_MOST_STEPS_IN_DEGREES = 20_000
 
 
-def numbers_of(point: OrbitPoint) -> dict[str, Bounded]:
+def numbers_of(point: AnyOrbitPoint, degrees: int) -> dict[str, Bounded]:
     """The numbers that a point has, by their columns' names."""
-    known = values_of(point, 1).items()
+    known = values_of(point, degrees).items()
     return {name: (Fraction(x.value), Fraction(x.radius)) for name, x in known if x}
 
 
 class Points:
     """Orbits after some steps: from the reference data where they have them, else by a run."""
 
-    def __init__(self, known: Mapping[Orbit, tuple[int, Mapping[int, OrbitPoint]]]) -> None:
+    def __init__(self, known: Mapping[AnyOrbit, tuple[int, Mapping[int, AnyOrbitPoint]]]) -> None:
         """`known`: of an orbit its digits, and its points by step."""
         self._known = known
 
-    def at(self, orbit: Orbit, step: int, digits: int) -> OrbitPoint | None:
+    def at(self, orbit: AnyOrbit, step: int, digits: int) -> AnyOrbitPoint | None:
         """To so many digits and no fewer; None where there is no such state."""
         have, rows = self._known.get(orbit, (0, {}))
         if have >= digits and step in rows:
@@ -40,35 +40,53 @@ class Points:
             return point if point.status == "finished" else None
         return _run_at(orbit, step, digits)
 
+    def of_other_schemes(self, orbit: AnyOrbit) -> Iterator[AnyOrbit]:
+        """Those of the reference data that differ from an orbit in the scheme alone."""
+        for other in self._known:
+            if other != orbit and replace(other, scheme=orbit.scheme) == orbit:
+                yield other
+
 
 @dataclass(frozen=True)
 class Setting:
-    """A run; row N holds what it is after N + `late` steps, the columns perhaps `swapped`, and p
-    perhaps `negated`. `points` knows what it is."""
+    """A run; row N holds what it is after N + `late` steps, some columns perhaps `exchanged` in
+    pairs, and every p perhaps `negated`. `points` knows what it is."""
 
-    orbit: Orbit
+    orbit: AnyOrbit
     points: Points = field(compare=False)
     late: int = 0
-    swapped: bool = False
+    exchanged: tuple[tuple[str, str], ...] = ()
     negated: bool = False
 
     def numbers(self, step: int, digits: int) -> dict[str, Bounded]:
-        """What row `step` of such a table has; without p and q where there is no such state."""
+        """What row `step` of such a table has; without the state where there is no such."""
         after = step + self.late
         point = None if after < 0 else self.points.at(self.orbit, after, digits)
-        own = numbers_of(point) if point else {}
-        if self.negated and "p" in own:
-            own["p"] = -own["p"][0], own["p"][1]
+        own = numbers_of(point, self.orbit.hamiltonian.degrees) if point else {}
+        if self.negated:
+            momenta = [n for n in self.orbit.hamiltonian.coordinates if n[0] == "p" and n in own]
+            own |= {name: (-own[name][0], own[name][1]) for name in momenta}
         return {self.inner(name): own[name] for name in own}
 
     def inner(self, name: str) -> str:
         """What stands in a column of that name."""
-        return {"p": "q", "q": "p"}.get(name, name) if self.swapped else name
+        for one, other in self.exchanged:
+            if name in (one, other):
+                return other if name == one else one
+        return name
+
+
+def start_of(orbit: AnyOrbit) -> dict[str, Fraction]:
+    """What a kernel's run of it begins with: the state, h and t."""
+    if isinstance(orbit, Orbit):
+        return orbit.start
+    point = point_of(orbit.hamiltonian, orbit.q, orbit.p)
+    return {**point, "h": orbit.step_size, "t": orbit.t0}
 
 
 @lru_cache(maxsize=4096)
-def _run_at(orbit: Orbit, step: int, digits: int) -> OrbitPoint | None:
-    if step > _MOST_STEPS:
+def _run_at(orbit: AnyOrbit, step: int, digits: int) -> AnyOrbitPoint | None:
+    if step > (_MOST_STEPS if orbit.hamiltonian.planar else _MOST_STEPS_IN_DEGREES):
         return None
     try:
         (point,) = orbit_points(orbit, steps=(step,), digits=digits)

@@ -1,51 +1,56 @@
 """Somebody's table of numbers → the rows that the reference data have, too.
 
-Only what is compared is kept, so that memory does not grow with the file (see
+Its columns are those of the reference data's runs, in the plane or in n degrees of freedom. Only
+what is compared is kept, so that memory does not grow with the file (see
 `verify.reference.compare.table`).
 """
 
-from collections.abc import Iterable, Mapping
+import re
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
 
 from verify.errors import NOT_GIVEN, InputError
 from verify.kernels.step.tangent_map import nearest_double
-from verify.reference.compare.published import KEYS, Published, PublishedRun
+from verify.reference.compare.published import Inputs, Published, PublishedRun
 from verify.reference.compare.rows import (
     COUNTED,
     Row,
     Theirs,
-    cells_of,
     number_of,
     places_of,
     printable,
     step_of,
 )
 from verify.reference.compare.table import Table, opened
-from verify.reference.make.columns import orbit_columns, state_columns
 
 _MOST_KNOWN = 10_000  # of the inputs' texts that are remembered
 _BEGINS = "t0"  # of an H in time; a scene has one, so that it need not be told
-VALUES = (*state_columns(1), *orbit_columns(1))
-COLUMNS = ("scene", *KEYS, _BEGINS, *COUNTED, *VALUES)
+_OF_SEVERAL = re.compile(r"[pq][1-9][0-9]?")
 
 
-def read(
-    path: Path, ours: Published, given: Mapping[str, str], names: Mapping[str, str]
-) -> Theirs[PublishedRun]:
+def has_degrees(path: Path, names: Mapping[str, str]) -> bool:
+    """Whether a table has a column p1, q1, …, or is said to call one so."""
+    with opened(path) as lines:
+        return any(_OF_SEVERAL.fullmatch(x) for x in (*lines.header, *names))
+
+
+def read(path: Path, ours: Published, given: Mapping[str, str], names: Mapping[str, str]) -> Theirs:
     """The table's rows that `ours` has.
 
-    `given`: what holds for all rows, by column: scene, and `KEYS`. `names`: what the table calls a
-    column, by ours. InputError where it cannot be read, or does not tell which run a row is of.
+    `given`: what holds for all rows, by column: scene, and the inputs, of which q0 and p0 may be
+    lists. `names`: what the table calls a column, by ours. InputError where it cannot be read, or
+    does not tell which run a row is of.
     """
-    found = Theirs[PublishedRun]()
+    found = Theirs()
+    columns = ("scene", *ours.keys, _BEGINS, *COUNTED, *ours.columns)
     with opened(path) as lines:
-        places = places_of(lines, names, COLUMNS, VALUES, found)
-        keys = _Keys(ours, given, places, lines)
-        texts = [(name, places[name]) for name in VALUES if name in places]
+        places = places_of(lines, names, columns, ours.columns, found)
+        keys = _Keys(ours, _each(given, ours), places, lines)
+        texts = [(name, places[name]) for name in found.columns]
         for row in lines:
             found.rows += 1
-            run = keys.run_of(cells_of(lines, row))
+            run = keys.run_of(row)
             step = run and keys.step_of(row, run)
             if run is None:
                 found.outside += 1
@@ -58,6 +63,17 @@ def read(
             found.keep(run, step, Row(lines.line, {name: row[at] for name, at in texts}), lines)
         found.read_as = keys.read_as
     return found
+
+
+def _each(given: Mapping[str, str], ours: Published) -> dict[str, str]:
+    """The options by the data's columns: lists of q and p part at their commas."""
+    parted: dict[str, str] = {}
+    for name, text in given.items():
+        if name in ("q0", "p0") and name not in ours.keys:
+            parted |= {f"{name}_{k}": x.strip() for k, x in enumerate(text.split(","), start=1)}
+        else:
+            parted[name] = text
+    return parted
 
 
 class _Keys:
@@ -73,7 +89,7 @@ class _Keys:
                 raise InputError(f"--{_option(name)}", given[name], "is a column of the table, too")
         if "scene" in given:
             ours.scene(given["scene"])  # a misspelt one has no rows, and is the reason for none
-        self.named = tuple(n for n in ("scene", *KEYS, _BEGINS) if n in places)
+        self.named = tuple(n for n in ("scene", *ours.keys, _BEGINS) if n in places)
         self.at = tuple(places[name] for name in self.named)
         self._known: dict[tuple[str, ...], PublishedRun | None] = {}
 
@@ -98,41 +114,50 @@ class _Keys:
         return step_of(self.lines, row, self.places, run.t0 or Fraction(0), run.run.step_size)
 
     def _find(self, inputs: dict[str, str]) -> PublishedRun | None:
-        scene = inputs.get("scene") or self._scene(inputs)
+        """The run of these inputs, or of the same doubles where these tell one."""
+        told = {name: inputs[name] for name in self.ours.keys if name in inputs}
+        told |= {name: x for name, x in inputs.items() if name not in ("scene", _BEGINS)}
+        exact = {name: self._number(x, name) for name, x in told.items() if name != "scheme"}
+        doubles: Inputs = {**told, **{name: nearest_double(x) for name, x in exact.items()}}
+        scene = inputs.get("scene") or self._scene(doubles)
         if scene is None:
             return None
-        for name in KEYS:
-            if name not in inputs:
-                values = self.ours.values_of(scene, name)
-                if len(values) > 1:
-                    has = f"{scene} has: {', '.join(values[:8])}"
-                    wanted = f"is wanted, as no column of {self.lines.name} is {name}; {has}"
-                    raise InputError(f"--{_option(name)}", NOT_GIVEN, wanted)
-                inputs[name] = values[0]
-        exact = tuple(self._number(inputs[n], n) for n in KEYS[1:])
-        h, q, p = map(nearest_double, exact)
-        run = self.ours.run(scene, (inputs["scheme"], h, q, p), exact)
-        if run is not None and run.t0 is not None and _BEGINS in inputs:
-            begins = self._number(inputs[_BEGINS], _BEGINS)
-            if nearest_double(begins) != nearest_double(run.t0):
-                return None
-        if run is not None:
-            for name, theirs, mine in zip(KEYS[1:], exact, run.exact, strict=True):
-                if mine != theirs:
-                    self.read_as[name] = theirs, mine
+        fitting = self.ours.fitting(scene, doubles)
+        for name in self.ours.keys:
+            if name not in told:
+                self._check_left(name, scene, fitting)
+        if len(fitting) > 1:
+            fitting = [x for x in fitting if exact.items() <= x.exact.items()]
+        if not fitting or not self._begins(fitting[0], inputs):
+            return None
+        run = fitting[0]
+        for name, theirs in exact.items():
+            if run.exact[name] != theirs:
+                self.read_as[name] = theirs, run.exact[name]
         return run
 
-    def _scene(self, inputs: dict[str, str]) -> str | None:
+    def _check_left(self, name: str, scene: str, fitting: Sequence[PublishedRun]) -> None:
+        """InputError where an input is not told and the scene has several; in n degrees of freedom,
+        where the runs that fit have."""
+        values = self.ours.values_of(scene, name)
+        left = values if self.ours.planar else {x.texts.get(name) for x in fitting}
+        if len(left) > 1:
+            has = f"{scene} has: {', '.join(values[:8])}"
+            wanted = f"is wanted, as no column of {self.lines.name} is {name}; {has}"
+            raise InputError(f"--{_option(name)}", NOT_GIVEN, wanted)
+
+    def _begins(self, run: PublishedRun, inputs: Mapping[str, str]) -> bool:
+        """Whether it begins at the time that is told, if one is and H depends on time."""
+        if run.t0 is None or _BEGINS not in inputs:
+            return True
+        return nearest_double(self._number(inputs[_BEGINS], _BEGINS)) == nearest_double(run.t0)
+
+    def _scene(self, inputs: Inputs) -> str | None:
         """The one scene that has such runs; InputError where several have."""
         every = sorted(self.ours.by_scene)
         if len(every) == 1:
             return every[0]
-        known = [name for name in KEYS if name in inputs]
-
-        def fits(run: PublishedRun) -> bool:
-            return all(self._is(run, name, inputs[name]) for name in known)
-
-        matching = [scene for scene in every if any(map(fits, self.ours.scene(scene)))]
+        matching = [scene for scene in every if self.ours.fitting(scene, inputs)]
         if len(matching) > 1:
             names = ", ".join(matching)
             raise InputError(
@@ -140,15 +165,10 @@ class _Keys:
             )
         return matching[0] if matching else None
 
-    def _is(self, run: PublishedRun, name: str, text: str) -> bool:
-        mine = run.inputs[KEYS.index(name)]
-        if name == "scheme":
-            return mine == text
-        return mine == nearest_double(self._number(text, name))
-
     def _number(self, text: str, name: str) -> Fraction:
         return number_of(self.lines, text, name)
 
 
 def _option(name: str) -> str:
-    return {"q0": "q", "p0": "p"}.get(name, name).replace("_", "-")
+    """What says one of the inputs of all rows."""
+    return name[0] if name.startswith(("q0", "p0")) else name.replace("_", "-")

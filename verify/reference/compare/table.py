@@ -52,6 +52,8 @@ class Table:
         try:
             for row in self._cells:
                 if row and not (row[0].startswith("#")):
+                    if len(row) < self.width:
+                        raise self.error(f"has {len(row)} cells, and the header {self.width}")
                     yield row
         except csv.Error as error:
             raise self.error(f"is not CSV: {error}") from None

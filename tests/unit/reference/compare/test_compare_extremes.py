@@ -33,12 +33,12 @@ def stiff(p: Any, q: Any, h: Any) -> tuple[Any, Any]:
 
 def run_of(scene: str, scheme: str, h: float, q: float) -> PublishedRun:
     inputs = (scheme, h, q)
-    return next(x for x in load(PUBLISHED, scene).runs() if x.inputs[:3] == inputs)
+    return next(x for x in load(PUBLISHED, scene).runs() if tuple(x.inputs.values())[:3] == inputs)
 
 
 def of(folder: Path, run: PublishedRun, step: Step, change: Callable[[int, Any], Any]) -> Compared:
     """A table of p and q by the step in doubles, p of each row changed."""
-    _, h, q, p = run.inputs
+    _, h, q, p = run.inputs.values()
     lines = ["step,p,q"]
     for n in range(max(run.rows) + 1):
         if n in run.rows:

@@ -74,6 +74,15 @@ def test_keys_are_columns_or_options(
         table(GOOD, scene="duffing", scheme="lie2", q0="1.5", p0="0")
 
 
+@pytest.mark.parametrize("q0", ["0.1", "1.5", "7"])
+def test_an_input_of_which_the_scene_has_several_is_wanted(
+    table: Callable[..., Theirs], q0: str
+) -> None:
+    told = {name: x for name, x in GIVEN.items() if name != "p0"} | {"q0": q0}
+    with pytest.raises(InputError, match=r"--p: .*no column of theirs.csv is p0; .*has: 0, 1\.5"):
+        table(GOOD, **told)
+
+
 def path_of(folder: Path, content: str) -> Path:
     path = folder / "keyed.csv"
     path.write_text(content)
