@@ -15,8 +15,9 @@ from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
 from verify.schemes.conditions import Condition
 from verify.schemes.residue import condition_of
+from verify.schemes.tree_weights import Block, RingWeights
 
-_SHOWN = 5  # digits of a residue
+SHOWN = 5  # digits of a residue
 
 
 @dataclass(frozen=True)
@@ -109,6 +110,11 @@ class Numbers:
         rows = [tuple(found[count * (i + 1) : count * (i + 2)]) for i in range(count)]
         return cls(ring, tuple(rows), tuple(found[:count]))
 
+    @cached_property
+    def tree_weights(self) -> RingWeights:
+        """What they put into the conditions of trees."""
+        return RingWeights(self.ring, [Block(self.a, self.b)])
+
     def condition(self, name: str, order: int, gap: Poly) -> Condition:
         """The condition that `gap`, left side − right side, is 0."""
-        return condition_of(self.ring, name, order, gap, _SHOWN)
+        return condition_of(self.ring, name, order, gap, SHOWN)

@@ -76,9 +76,9 @@ class Jets(JetRing):
         super().__init__(["p", "q", *("H_" + "p" * i + "q" * j for i, j in self.indices)])
         self._at = {index: k + 2 for k, index in enumerate(self.indices)}
 
-    def h(self, i: int, j: int) -> Poly:
-        """H_ij."""
-        if self.separable and i and j:
+    def h(self, i: int, j: int, k: int = 0) -> Poly:
+        """H_ij; of k derivatives by time, on which H does not depend, 0."""
+        if k or (self.separable and i and j):
             return self.zero
         if i + j > self.order:
             raise OverflowError(f"a derivative of order {i + j} of H; there are {self.order}")
