@@ -62,22 +62,6 @@ class ImplicitTableau:
         """
         return _area_conditions(self)
 
-    def symmetry_conditions(self) -> tuple[Condition, ...]:
-        """a_(s+1−i, s+1−j) + a_ij = b_j: then the step of −h undoes that of h.
-
-        They suffice, for every H (Hairer, Lubich, Wanner, theorem V.2.3).
-        """
-        a, b, last = self.numbers.a, self.numbers.b, self.stages - 1
-        return tuple(
-            self.numbers.condition(
-                f"a_{i + 1}{j + 1} + a_{last - i + 1}{last - j + 1} = b_{j + 1}",
-                0,
-                a[i][j] + a[last - i][last - j] - b[j],
-            )
-            for i in range(self.stages)
-            for j in range(self.stages)
-        )
-
 
 @lru_cache(maxsize=64)
 def _area_conditions(tableau: ImplicitTableau) -> tuple[Condition, ...]:

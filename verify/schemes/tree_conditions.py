@@ -73,10 +73,6 @@ class TreeConditions:
         """See `ImplicitTableau.area_conditions`."""
         return self.tableau.area_conditions()
 
-    def symmetry_conditions(self) -> tuple[Condition, ...]:
-        """See `ImplicitTableau.symmetry_conditions`."""
-        return self.tableau.symmetry_conditions()
-
 
 @lru_cache(maxsize=256)
 def _of_order(tableau: ImplicitTableau, order: int, separable: bool) -> tuple[Condition, ...]:

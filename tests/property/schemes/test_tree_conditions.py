@@ -212,7 +212,7 @@ def differences(
             total[k] = sum(
                 y.diff(p, parts.count(0), q, parts.count(1))
                 * math.prod(v[x] for v, x in zip(inner, parts, strict=True))
-                for parts in product((0, 1), repeat=len(tree))
+                for parts in product((0, 1), repeat=len(inner))
             )
         return sympy.expand(total[0]), sympy.expand(total[1])
 

@@ -26,10 +26,10 @@ from verify.schemes.conditions import Condition
 from verify.schemes.elementary_differentials import Differentials, cancel
 from verify.schemes.implicit_tableau import SHOWN
 from verify.schemes.residue import condition_of
-from verify.schemes.timed.kinetic import Kinetic
 from verify.schemes.timed.tableau import TimedNumbers, TimedTableau
 from verify.schemes.timed.tree_jets import TreeJets
 from verify.schemes.tree_conditions import MOST_ORDER, TreeConditions, conditions_of_trees
+from verify.schemes.words.kinetic import Kinetic
 
 _MOST_TIMED = 8  # vertices: of which there are 1042 trees with leaves of time
 

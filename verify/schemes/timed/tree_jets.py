@@ -7,7 +7,7 @@ from itertools import product
 
 import flint
 
-from verify.schemes.timed.kinetic import Kinetic
+from verify.schemes.words.kinetic import Kinetic
 
 
 class TreeJets:

@@ -14,9 +14,9 @@ from verify.schemes.coloured_trees import all_trees, equation_text, of_all
 from verify.schemes.every_hamiltonian import Stage, StageEquations
 from verify.schemes.implicit_tableau import ImplicitTableau
 from verify.schemes.timed.for_scheme import conditions_for
-from verify.schemes.timed.kinetic import Kinetic
 from verify.schemes.timed.runge_kutta import TimedTrees
 from verify.schemes.timed.tableau import TimedTableau
+from verify.schemes.words.kinetic import Kinetic
 
 R, F = sympy.Rational, Fraction
 TIMED = of_all(1, timed=True)
