@@ -21,15 +21,23 @@ Coefficients. Conditions on them, exact; see `verify.proof.by_conditions`.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
-from verify.algebra.series.jets import Jets, Poly, shown
+from verify.algebra.series.jets import Jets, Poly, Series, shown
+from verify.algebra.series.timed_jets import TimedJets
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import prove_by_conditions
 from verify.proof.every_proof import EveryProof as EveryProof
 from verify.proof.order import leading_of
-from verify.proof.telescoping import Telescoping, telescopes, telescopes_of_lie
+from verify.proof.telescoping import (
+    EveryJets,
+    Telescoping,
+    along,
+    telescopes,
+    telescopes_of_lie,
+)
 from verify.prose import Formula, Prose, joined, prose, read_prose
 from verify.schemes import get
 from verify.schemes.conditions import ByConditions
@@ -89,21 +97,20 @@ def _of_conditions(
     return replace(_of_series(scheme, every_h, separable), conditions=proof.conditions)
 
 
-def _convergence(jets: Jets, every_h: BySeries, most: int) -> int:
-    """p', q' agree with the exact flow up to this power of h, looked at up to h^most."""
-    agreed = -1
-    series = every_h.taylor(jets, most)
+def _convergence(jets: EveryJets, series: tuple[Series, Series]) -> int:
+    """p', q' agree with the exact flow up to this power of h, as far as the series reach."""
+    most = len(series[0]) - 1
     flows = jets.lie_derivatives("p", most), jets.lie_derivatives("q", most)
     for n in range(most + 1):
         if any(s[n] * math.factorial(n) != x[n] for s, x in zip(series, flows, strict=True)):
-            break
-        agreed = n
-    return agreed
+            return n - 1
+    return most
 
 
 def _of_stages(scheme: Scheme, every_h: StageEquations, separable: bool) -> EveryProof:
     most = scheme.order + 2
-    agreed = _convergence(Jets(most + 1, separable=separable), every_h, most)
+    jets = Jets(most + 1, separable=separable)
+    agreed = _convergence(jets, every_h.taylor(jets, most))
     preserved = all(a == b and not a.is_zero() for a, b in every_h.determinants())
     verdict, reason = Verdict.PROVED, prose("ΔJ is the zero function: det J ≡ 1, stage by stage")
     if agreed < scheme.order:
@@ -126,15 +133,39 @@ def _of_stages(scheme: Scheme, every_h: StageEquations, separable: bool) -> Ever
 
 
 def _of_series(scheme: Scheme, every_h: BySeries, separable: bool) -> EveryProof:
+    def expanded(most: int) -> tuple[Jets, tuple[Series, Series]]:
+        jets = Jets(most + 2, separable=separable)
+        return jets, every_h.taylor(jets, most)
+
+    return _expanded(scheme, expanded, separable=separable)
+
+
+def prove_lie_in_time(scheme: Scheme, every_h: TaylorSeries) -> EveryProof:
+    """Of `lieη`, for every H(p, q, t)."""
+
+    def expanded(most: int) -> tuple[TimedJets, tuple[Series, Series]]:
+        jets = TimedJets(most + 1)
+        return jets, every_h.taylor(jets, most)
+
+    return replace(_expanded(scheme, expanded, separable=False), timed=True)
+
+
+def _expanded(
+    scheme: Scheme,
+    expanded: Callable[[int], tuple[EveryJets, tuple[Series, Series]]],
+    *,
+    separable: bool,
+) -> EveryProof:
+    """By the series up to a power of h, and the jets that it is made of."""
     most = scheme.order + 1
     while True:
-        jets = Jets(most + 2, separable=separable)
-        coefficients = list(jets.delta_j(*every_h.taylor(jets, most)))
+        jets, series = expanded(most)
+        coefficients = list(jets.delta_j(*series))
         order = next((n for n, x in enumerate(coefficients, 1) if not x.is_zero()), None)
         if order is not None or most == scheme.order + _MORE:
             break
         most += 1
-    agreed = _convergence(jets, every_h, most)
+    agreed = _convergence(jets, series)
     if order is None:
         verdict = Verdict.UNDECIDED
         reason = read_prose(
@@ -147,7 +178,8 @@ def _of_series(scheme: Scheme, every_h: BySeries, separable: bool) -> EveryProof
         )
     leading = coefficients[order - 1]
     verdict, reason = _verdict(scheme, order, agreed)
-    found, formula, checked = _telescoping(jets, every_h, leading, order)
+    found, formula, checked = _telescoping(jets, scheme.every_h, leading, order)
+    below = f"the coefficients of h¹ … `h^{order - 1}` in det J are the zero polynomial"
     return EveryProof(
         scheme.name,
         separable,
@@ -162,14 +194,7 @@ def _of_series(scheme: Scheme, every_h: BySeries, separable: bool) -> EveryProof
         telescopes=found.holds,
         potential=None if found.potential is None else shown(found.potential),
         why=found.reason,
-        checked=(
-            read_prose(
-                f"the coefficients of h¹ … `h^{order - 1}` in det J are the zero polynomial"
-            ),
-            *checked,
-        )
-        if order > 1
-        else checked,
+        checked=(*([read_prose(below)] if order > 1 else []), *checked),
     )
 
 
@@ -190,7 +215,7 @@ def _missed(scheme: Scheme, agreed: int) -> Prose:
     )
 
 
-def telescoping_of(jets: Jets, every_h: BySeries, leading: Poly) -> Telescoping:
+def telescoping_of(jets: EveryJets, every_h: object, leading: Poly) -> Telescoping:
     """Whether the leading coefficient is X·G; of `lieη` by the formula where there is one."""
     if isinstance(every_h, TaylorSeries):
         return telescopes_of_lie(jets, leading, every_h.eta)
@@ -198,23 +223,23 @@ def telescoping_of(jets: Jets, every_h: BySeries, leading: Poly) -> Telescoping:
 
 
 def _telescoping(
-    jets: Jets, every_h: BySeries, leading: Poly, order: int
+    jets: EveryJets, every_h: object, leading: Poly, order: int
 ) -> tuple[Telescoping, str, tuple[Prose, ...]]:
     """Whether the leading coefficient is X·G, its formula, and the identities checked for that."""
     found = telescoping_of(jets, every_h, leading)
     if not isinstance(every_h, TaylorSeries):
         return found, "", ()
-    eta = every_h.eta
-    end = [jets.derive(jets.lie_derivatives(name, eta)[-1]) for name in ("p", "q")]
+    eta, by = every_h.eta, along(jets)
+    end = [jets.lie_derivatives(name, eta + 1)[-1] for name in ("p", "q")]
     divergence = jets.diff(end[0], "p") + jets.diff(end[1], "q")
     formula = ""
     checked: tuple[Prose, ...] = ()
     if order == eta + 1 and leading * math.factorial(eta + 1) == -divergence:
-        formula = f"-div(X^{eta} f)/{eta + 1}!, f = (-H_q, H_p)"
-        told = f"that of `h^{eta + 1}` is −div(`X^{eta}` f)/{eta + 1}!"
+        formula = f"-div({by}^{eta} f)/{eta + 1}!, f = (-H_q, H_p)"
+        told = f"that of `h^{eta + 1}` is −div(`{by}^{eta}` f)/{eta + 1}!"
         checked = (read_prose(told),)
     if found.holds:
-        checked = (*checked, prose("X·G is that coefficient"))
+        checked = (*checked, prose(f"{by}·G is that coefficient"))
     return found, formula, checked
 
 

@@ -29,6 +29,7 @@ class JetRing(ABC):
         self.names = tuple(names)
         self.gens = self.context.gens()
         self.p, self.q = self.gens[:2]
+        self._along_flow = {"p": [self.p], "q": [self.q]}  # each derivative made once
         self.zero, self.one = self.context.constant(0), self.context.constant(1)
 
     @abstractmethod
@@ -45,10 +46,10 @@ class JetRing(ABC):
 
     def lie_derivatives(self, name: str, most: int) -> Series:
         """[y, X y, …, X^most y] of y = p or q."""
-        result = [self.p if name == "p" else self.q]
-        for _ in range(most):
-            result.append(self.derive(result[-1]))
-        return result
+        known = self._along_flow[name]
+        while len(known) <= most:
+            known.append(self.derive(known[-1]))
+        return known[: most + 1]
 
     def bracket(self, x: Poly, y: Poly) -> Poly:
         """∂(x, y)/∂(p, q)."""
