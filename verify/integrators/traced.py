@@ -19,10 +19,11 @@ from verify.integrators.tracing.step_map import traced_map
 from verify.integrators.tracing.trace import Node, Tape, expressions, in_order, sizes
 from verify.integrators.user_code.step import StepError, lifted
 from verify.integrators.user_code.user_map import UserMap
+from verify.proof.claimed import Claimed
 from verify.proof.expansion import MOST_ORDERS
 from verify.proof.order import prove
 from verify.proof.symplectic import closed_form
-from verify.proof.symplectic.order import Claimed, prove_map
+from verify.proof.symplectic.order import prove_map
 from verify.prose import prose
 from verify.schemes.degrees.canonical_map import CanonicalMap, State
 from verify.verdict import Verdict

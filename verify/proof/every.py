@@ -114,7 +114,7 @@ def _of_stages(scheme: Scheme, every_h: StageEquations, separable: bool) -> Ever
     preserved = all(a == b and not a.is_zero() for a, b in every_h.determinants())
     verdict, reason = Verdict.PROVED, prose("ΔJ is the zero function: det J ≡ 1, stage by stage")
     if agreed < scheme.order:
-        verdict, reason = Verdict.REFUTED, _missed(scheme, agreed)
+        verdict, reason = Verdict.REFUTED, missed(scheme, agreed)
     elif not preserved:
         return _of_series(scheme, every_h, separable)
     ratios = joined(", ", dict.fromkeys(Formula(str(a)) for a, _ in every_h.determinants()))
@@ -172,7 +172,7 @@ def _expanded(
             f"the coefficients of ΔJ up to `h^{most}` vanish; whether all do is not decided"
         )
         if agreed < scheme.order:
-            verdict, reason = Verdict.REFUTED, _missed(scheme, agreed)
+            verdict, reason = Verdict.REFUTED, missed(scheme, agreed)
         return EveryProof(
             scheme.name, separable, verdict, reason, None, None, agreed, agreed < most
         )
@@ -200,7 +200,7 @@ def _expanded(
 
 def _verdict(scheme: Scheme, order: int, agreed: int) -> tuple[Verdict, Prose]:
     if agreed < scheme.order:
-        return Verdict.REFUTED, _missed(scheme, agreed)
+        return Verdict.REFUTED, missed(scheme, agreed)
     if scheme.area_preserving:
         return Verdict.REFUTED, prose(f"{scheme.name} claims det J ≡ 1; ΔJ has order {order}")
     return Verdict.PROVED, read_prose(
@@ -208,7 +208,8 @@ def _verdict(scheme: Scheme, order: int, agreed: int) -> tuple[Verdict, Prose]:
     )
 
 
-def _missed(scheme: Scheme, agreed: int) -> Prose:
+def missed(scheme: Scheme, agreed: int) -> Prose:
+    """That it claims a higher order than the map's for every H."""
     return read_prose(
         f"{scheme.name} claims order {scheme.order}; for a generic H the map agrees with the exact "
         f"flow up to `h^{agreed}` only"

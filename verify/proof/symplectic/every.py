@@ -23,7 +23,7 @@ from verify.errors import LimitError
 from verify.hamiltonians.canonical_field import Flow
 from verify.hamiltonians.coordinates import check_degrees, numbered
 from verify.proof.by_conditions import first_wrong, told_nearby
-from verify.proof.every import prove_every
+from verify.proof.every import missed, prove_every
 from verify.proof.every_in_time import prove_every_in_time
 from verify.proof.symplectic.defect import DefectSeries
 from verify.proof.symplectic.proof import MOST_TERMS, SymplecticProof
@@ -236,9 +236,7 @@ def _held_to(scheme: Scheme, found: SymplecticProof) -> SymplecticProof:
     """REFUTED where the scheme claims more."""
     agreed = found.convergence_order
     if agreed is not None and agreed < scheme.order:
-        said = f"{scheme.name} claims order {scheme.order}; for a generic H the map agrees with the"
-        reason = read_prose(f"{said} exact flow up to `h^{agreed}` only")
-        return replace(found, verdict=Verdict.REFUTED, reason=reason)
+        return replace(found, verdict=Verdict.REFUTED, reason=missed(scheme, agreed))
     if scheme.area_preserving and found.symplectic is False:
         reason = prose(f"{scheme.name} claims to be symplectic; S has order {found.order}")
         return replace(found, verdict=Verdict.REFUTED, reason=reason)
