@@ -24,6 +24,7 @@ import flint
 from verify.algebra.generator import terms_of
 from verify.algebra.linear_combination import combination
 from verify.algebra.series.jets import Jets, Poly, shown
+from verify.algebra.series.jets_in_degrees import Index
 from verify.algebra.series.timed_jets import TimedJets
 from verify.prose import Formula, Prose, prose, read_prose
 
@@ -161,7 +162,7 @@ def _monomial(jets: Jets, factors: Sequence[tuple[int, int]]) -> Poly:
 
 
 def multisets(
-    indices: Sequence[tuple[int, int]], factors: int, by_p: int, by_q: int, first: int = 0
+    indices: Sequence[Index], factors: int, by_p: int, by_q: int, first: int = 0
 ) -> Iterator[list[tuple[int, int]]]:
     """All products of so many H_ij, index from `first` on, with these numbers of derivatives."""
     if factors == 0:

@@ -87,7 +87,8 @@ def _derivatives(sample: Sample, jets: Jets | TimedJets) -> list[Ball]:
 
 def _value(x: Poly, derivatives: Sequence[Ball]) -> Ball:
     with working_precision(BITS):
-        total, values = flint.arb(0), [flint.arb(0)] * 2 + list(derivatives)
+        total, variables = flint.arb(0), x.context().nvars() - len(derivatives)
+        values = [flint.arb(0)] * variables + list(derivatives)
         for monomial, coefficient in terms_of(x):
             term = flint.arb(coefficient)
             for value, power in zip(values, monomial, strict=True):
