@@ -109,7 +109,7 @@ def _convergence(jets: EveryJets, series: tuple[Series, Series]) -> int:
 
 def _of_stages(scheme: Scheme, every_h: StageEquations, separable: bool) -> EveryProof:
     most = scheme.order + 2
-    jets = Jets(most + 1, separable=separable)
+    jets = Jets(most + 2, separable=separable)
     agreed = _convergence(jets, every_h.taylor(jets, most))
     preserved = all(a == b and not a.is_zero() for a, b in every_h.determinants())
     verdict, reason = Verdict.PROVED, prose("ΔJ is the zero function: det J ≡ 1, stage by stage")

@@ -10,9 +10,7 @@ A scheme for every H is a pair of series in h over these polynomials: lists of t
 h⁰, h¹, …, cut off at the same power.
 """
 
-import math
 from collections.abc import Iterator, Sequence
-from itertools import product
 
 import flint
 
@@ -67,33 +65,6 @@ class Jets(JetRing):
 
     def __init__(self, order: int, *, separable: bool = False) -> None:
         super().__init__(order, separable=separable)
-
-    # -- series -------------------------------------------------------------------------------
-
-    def shifted(self, i: int, j: int, dp: Series, dq: Series) -> Series:
-        """H_ij at (p + dp, q + dq), by Taylor's formula; dp and dq are series without h⁰."""
-        most = len(dp)
-        powers = [self._powers(d) for d in (dp, dq)]
-        total = [self.zero] * most
-        for a, b in product(range(most), repeat=2):
-            if a + b >= most or (self.separable and (i + a) and (j + b)):
-                continue
-            scale = self.h(i + a, j + b) / (math.factorial(a) * math.factorial(b))
-            for n, x in enumerate(multiplied(powers[0][a], powers[1][b])):
-                total[n] += scale * x
-        return total
-
-    def _powers(self, d: Series) -> list[Series]:
-        """[1, d, d², …], each as long as d."""
-        result = [[self.one] + [self.zero] * (len(d) - 1)]
-        while len(result) < len(d):
-            result.append(multiplied(result[-1], d))
-        return result
-
-
-def multiplied(x: Series, y: Series) -> Series:
-    """The product of two series of one length, cut off there."""
-    return [sum((x[k] * y[n - k] for k in range(n + 1)), x[0] * 0) for n in range(len(x))]
 
 
 def shown(x: Poly) -> str:

@@ -7,6 +7,7 @@ zero is called `p1 0`, `S 3 p1 q2`, `potential p1 q2`.
 
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.jet_flow import JetFlow
 from verify.proof.certificates.by_coefficients import by_coefficients
 from verify.proof.certificates.every import NOT_KNOWN
 from verify.proof.certificates.file import FORMAT, Certificate
@@ -14,7 +15,6 @@ from verify.proof.certificates.plain import Plain
 from verify.proof.certificates.statement import Statement, certificate_of_one, entries_of
 from verify.proof.symplectic.defect import DefectSeries
 from verify.proof.symplectic.defect import series_of as series_of_defect
-from verify.proof.symplectic.every import JetFlow
 from verify.proof.symplectic.proof import SymplecticProof
 from verify.proof.symplectic.telescoping import potential_of_lie
 from verify.schemes.degrees import kind_of, map_in_degrees
@@ -82,7 +82,8 @@ def of_every_in_degrees(
     kind = kind_of(scheme)
     if proof.order is None or proof.convergence_order is None or not hasattr(kind, "step"):
         raise InputError("scheme", scheme.name, NOT_KNOWN)
-    flow = JetFlow(proof.degrees, proof.order + 2, separable=data["separable"], timed=timed)
+    separable, most = data["separable"], proof.order + 2
+    flow = JetFlow.of_degrees(proof.degrees, most, separable=separable, timed=timed)
     state: State = series_of(flow, kind.step(every_h), proof.order)
     columns = [list(series.coefficients) for series in state]
     leading = DefectSeries(lambda _: (flow, state), proof.order).form(proof.order)

@@ -10,18 +10,15 @@ what is needed in the plane is needed in n.
 """
 
 import math
-from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
-from functools import cached_property
 from typing import Any
 
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.generator import Poly
-from verify.algebra.series.jets_in_degrees import JetsInDegrees
 from verify.errors import LimitError
-from verify.hamiltonians.canonical_field import Flow
-from verify.hamiltonians.coordinates import check_degrees, numbered
+from verify.hamiltonians.coordinates import check_degrees
+from verify.hamiltonians.jet_flow import JetFlow
 from verify.proof.by_conditions import first_wrong, told_nearby
 from verify.proof.every import missed, prove_every
 from verify.proof.every_in_time import prove_every_in_time
@@ -41,30 +38,6 @@ from verify.verdict import Verdict
 
 _MORE = 2  # orders beyond the claimed one that are looked at
 _MOST_TERMS = 5000  # (2n)^order, which is about the number of terms of X^order z
-
-
-class JetFlow(Flow):
-    """The field of every H."""
-
-    def __init__(self, degrees: int, order: int, *, separable: bool, timed: bool) -> None:
-        self.names = numbered(degrees)
-        self._jets = JetsInDegrees(self.names, order, separable=separable, timed=timed)
-
-    @property
-    def ring(self) -> JetsInDegrees:
-        """The jets."""
-        return self._jets
-
-    @cached_property
-    def slopes(self) -> tuple[Poly, ...]:
-        """−∂H/∂q and ∂H/∂p."""
-        n, first = self.degrees, self._jets.first
-        return (*(-first(q) for q in self.names[n:]), *map(first, self.names[:n]))
-
-    @property
-    def at_rest(self) -> Mapping[str | int, int]:
-        """The values that make f vanish."""
-        return {f"H_{name}": 0 for name in self.names}
 
 
 def prove_every_in_degrees(
@@ -150,7 +123,7 @@ def _by_series(
     scheme: Scheme, kind: Any, degrees: int, separable: bool, timed: bool
 ) -> SymplecticProof:
     every_h, most = scheme.every_h, scheme.order + 1
-    flow = JetFlow(degrees, most + 2, separable=separable, timed=timed)
+    flow = JetFlow.of_degrees(degrees, most + 2, separable=separable, timed=timed)
     series = DefectSeries(lambda n: (flow, series_of(flow, kind.step(every_h), n)), most)
     agreed = next((n - 1 for n in range(most + 1) if series.agrees(n)[0] is not True), most)
     own = kind.conditions(every_h)

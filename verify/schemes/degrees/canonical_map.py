@@ -11,7 +11,7 @@ from verify.algebra.series.power_series import Series
 from verify.hamiltonians.canonical_field import CanonicalField, Flow
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.conditions import Condition
-from verify.schemes.degrees.step_algebra import SeriesAlgebra, StepAlgebra
+from verify.schemes.step_algebra import SeriesAlgebra, StepAlgebra
 from verify.schemes.step_map import AT_STAGES
 from verify.schemes.substep import h_inside
 

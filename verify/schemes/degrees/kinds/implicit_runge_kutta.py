@@ -13,7 +13,7 @@ from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.conditions import Condition
 from verify.schemes.degrees.canonical_map import CanonicalMap, Step
-from verify.schemes.degrees.step_algebra import Number, StepAlgebra
+from verify.schemes.step_algebra import Number, StepAlgebra
 from verify.schemes.tree_conditions import TreeConditions
 
 KIND = TreeConditions

@@ -14,9 +14,9 @@ from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.conditions import Condition
 from verify.schemes.degrees.canonical_map import CanonicalMap, Step
-from verify.schemes.degrees.step_algebra import StepAlgebra
 from verify.schemes.splitting import all_times
 from verify.schemes.splitting_conditions import Splitting
+from verify.schemes.step_algebra import StepAlgebra
 
 KIND = Splitting
 
