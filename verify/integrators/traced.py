@@ -25,7 +25,8 @@ from verify.proof.order import prove
 from verify.proof.symplectic import closed_form
 from verify.proof.symplectic.order import prove_map
 from verify.prose import prose
-from verify.schemes.degrees.canonical_map import CanonicalMap, State
+from verify.schemes.degrees.canonical_map import CanonicalMap
+from verify.schemes.step_algebra import State
 from verify.verdict import Verdict
 
 _MOST_WRITTEN, _MOST_OF_MAP = (

@@ -19,7 +19,7 @@ from verify.hamiltonians.jet_flow import JetFlow
 from verify.late import sympy
 from verify.prose import count
 from verify.schemes.conditions import Condition
-from verify.schemes.step_algebra import SeriesAlgebra, StepAlgebra
+from verify.schemes.step_algebra import Step, StepAlgebra, series_of
 
 At = TypeVar("At")
 Slope = TypeVar("Slope")
@@ -106,8 +106,9 @@ class RungeKutta:
             slopes.append(slope(moved(row, slopes)))
         return moved(self.weights, slopes)
 
-    def changes(self, algebra: StepAlgebra[Any]) -> list[Any]:
-        """z' − z, stage by stage, each at t + c h where H depends on time."""
+    def changes(self, algebra: StepAlgebra[Any], standing: Fraction | None = None) -> list[Any]:
+        """z' − z, stage by stage, each at t + c h where H depends on time, or all at t + `standing`
+        h."""
         places = range(algebra.size)
 
         def moved(
@@ -119,7 +120,8 @@ class RungeKutta:
             return own, sum(weights, Fraction(0))
 
         def slope(stage: tuple[list[Any], Fraction]) -> list[Any]:
-            return algebra.slopes(*stage, places)
+            change, clock = stage
+            return algebra.slopes(change, clock if standing is None else standing, places)
 
         return self.step(slope, moved)[0]
 
@@ -233,9 +235,7 @@ def _right(
     return right
 
 
-def _over(
-    jets: Jets, changes: Callable[[StepAlgebra[Any]], list[Any]], most: int
-) -> tuple[Series, Series]:
+def _over(jets: Jets, changes: Step, most: int) -> tuple[Series, Series]:
     """p' and q' of a step of every H, as series up to h^most."""
-    p, q = (list(x.coefficients) for x in changes(SeriesAlgebra(JetFlow(jets), most)))
-    return [jets.p + p[0], *p[1:]], [jets.q + q[0], *q[1:]]
+    p, q = series_of(JetFlow(jets), changes, most)
+    return list(p.coefficients), list(q.coefficients)

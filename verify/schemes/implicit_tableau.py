@@ -8,6 +8,7 @@ algebra, and what is not zero there is enclosed by Arb; no coefficient is ever r
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import Any
 
 import sympy
 
@@ -15,6 +16,7 @@ from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
 from verify.schemes.conditions import Condition
 from verify.schemes.residue import condition_of
+from verify.schemes.step_algebra import Number, Step, StepAlgebra
 from verify.schemes.tree_weights import Block, RingWeights
 
 SHOWN = 5  # digits of a residue
@@ -102,3 +104,31 @@ class Numbers:
     def condition(self, name: str, order: int, gap: Poly) -> Condition:
         """The condition that `gap`, left side − right side, is 0."""
         return condition_of(self.ring, name, order, gap, SHOWN)
+
+
+def implicit_step(
+    rows: Sequence[Sequence[Number]], weights: Sequence[Number], clocks: Sequence[Number]
+) -> Step:
+    """How z' is made: a_ij, b_i and c_i in the ring of H's field."""
+
+    def changes(outer: StepAlgebra[Any]) -> list[Any]:
+        size = outer.size
+
+        def combined(
+            algebra: StepAlgebra[Any], own: Sequence[Sequence[Number]], unknowns: Sequence[Any]
+        ) -> list[Any]:
+            """h Σ w_j f(z + Z_j) of each row of weights, row after row."""
+            stages = [unknowns[size * i : size * (i + 1)] for i in range(len(clocks))]
+            slopes = [
+                algebra.slopes(stage, clock, range(size))
+                for stage, clock in zip(stages, clocks, strict=True)
+            ]
+            columns = [[slope[k] for slope in slopes] for k in range(size)]
+            return [
+                algebra.moved(algebra.nothing, row, column) for row in own for column in columns
+            ]
+
+        solved = outer.solved(size * len(clocks), lambda inner, z: combined(inner, rows, z))
+        return combined(outer, [weights], solved)
+
+    return changes

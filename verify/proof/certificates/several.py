@@ -18,9 +18,9 @@ from verify.proof.symplectic.defect import series_of as series_of_defect
 from verify.proof.symplectic.proof import SymplecticProof
 from verify.proof.symplectic.telescoping import potential_of_lie
 from verify.schemes.degrees import kind_of, map_in_degrees
-from verify.schemes.degrees.canonical_map import State, series_of
 from verify.schemes.every_hamiltonian import TaylorSeries
 from verify.schemes.scheme import Scheme
+from verify.schemes.step_algebra import State, series_of
 from verify.verdict import Verdict
 
 _NOTHING = "there is nothing to certify"

@@ -30,9 +30,10 @@ from verify.prose import Formula, Prose, prose, read_prose
 from verify.schemes import get
 from verify.schemes.conditions import Condition
 from verify.schemes.degrees import kind_of
-from verify.schemes.degrees.canonical_map import SOLVABLE, series_of
+from verify.schemes.degrees.canonical_map import SOLVABLE
 from verify.schemes.every_hamiltonian import TaylorSeries
 from verify.schemes.scheme import Scheme
+from verify.schemes.step_algebra import series_of
 from verify.schemes.tree_conditions import TreeConditions, all_trees_hold
 from verify.verdict import Verdict
 

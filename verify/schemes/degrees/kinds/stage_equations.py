@@ -11,10 +11,11 @@ import sympy
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.conditions import Condition
-from verify.schemes.degrees.canonical_map import CanonicalMap, Step
+from verify.schemes.degrees.canonical_map import CanonicalMap
 from verify.schemes.degrees.kinds import splittings
 from verify.schemes.every_hamiltonian import Stage, StageEquations
 from verify.schemes.splitting_conditions import Splitting
+from verify.schemes.step_algebra import Step
 
 KIND = StageEquations
 
