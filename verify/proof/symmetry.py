@@ -6,8 +6,8 @@ symmetric. That all do, as far as they are looked at, shows nothing; the verdict
 
 from dataclasses import dataclass
 
-from verify.algebra.ring import Poly, Ring
-from verify.algebra.series.power_series import Series, at_point, at_time, partials
+from verify.algebra.ring import Ring
+from verify.algebra.series.power_series import Derivatives, Series, at_moved
 from verify.prose import Formula, Prose, prose, read_prose
 from verify.schemes.step_map import StepMap
 from verify.verdict import Verdict
@@ -52,14 +52,14 @@ def undone(ring: Ring, x: Series, p: Series, q: Series) -> Series:
 
     Where H depends on time, at t + h, at which the step of −h begins.
     """
-    timed, h = "t" in ring.variables, Series.of(ring, [ring.zero, ring.one], x.most)
-    start: tuple[Poly, Poly] = (ring.variable("p"), ring.variable("q"))
-    u, v = (s - Series.of(ring, [y], s.most) for s, y in zip((p, q), start, strict=True))
+    moves = [
+        (name, y - Series.of(ring, [ring.variable(name)], y.most))
+        for name, y in (("p", p), ("q", q))
+    ]
+    if "t" in ring.variables:
+        moves.append(("t", Series.of(ring, [ring.zero, ring.one], x.most)))
     total = Series.of(ring, [-x.coefficients[0]], x.most)
     for n, coefficient in enumerate(x.coefficients):
-        if timed:
-            moved = at_time(ring, coefficient, u, v, h).shifted(n)
-        else:
-            moved = at_point(partials(ring, coefficient), u, v).shifted(n)
+        moved = at_moved(Derivatives(ring, coefficient), moves, x.most).shifted(n)
         total = total - moved if n % 2 else total + moved
     return total

@@ -5,7 +5,6 @@ f(p + u, q + v) with u, v = O(h) is exact in every coefficient that is kept, wha
 no closed form of a composition is written down on the way.
 """
 
-import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -97,29 +96,6 @@ def partials(ring: CoefficientRing, x: Poly) -> Partial:
     return partial
 
 
-def at_point(partial: Partial, u: Series, v: Series) -> Series:
-    """f(p + u, q + v) for the function f with these partial derivatives; u and v are O(h)."""
-    if not (u.coefficients[0].is_zero() and v.coefficients[0].is_zero()):
-        raise ValueError("the point is not (p, q) at h = 0")
-    ring, most = u.ring, u.most
-    total = Series.of(ring, [], most)
-    one = Series.of(ring, [ring.one], most)
-    along_p = one
-    for i in range(most + 1):
-        both = along_p
-        for j in range(most + 1 - i):
-            derivative = partial(i, j)
-            if derivative.is_zero() or both.vanishes:  # and so are all further ones by q
-                break
-            share = Fraction(1, math.factorial(i) * math.factorial(j))
-            total += both.times(derivative * ring.constant(share))
-            both = both * v
-        if partial(i, 0).is_zero():
-            break
-        along_p = along_p * u
-    return total
-
-
 class Derivatives:
     """A ring element, with its derivatives, each made once."""
 
@@ -161,11 +137,6 @@ def _taylor_terms(
         yield from _taylor_terms(x, rest, power, share)
         n += 1
         x, power, share = x.by(name), power * by, share / n
-
-
-def at_time(ring: CoefficientRing, x: Poly, u: Series, v: Series, w: Series) -> Series:
-    """f(p + u, q + v, t + w) for the ring element f; u, v and w are O(h)."""
-    return at_moved(Derivatives(ring, x), (("p", u), ("q", v), ("t", w)), u.most)
 
 
 def delta_j(p_next: Series, q_next: Series) -> Series:
