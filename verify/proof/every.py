@@ -133,33 +133,26 @@ def _of_stages(scheme: Scheme, every_h: StageEquations, separable: bool) -> Ever
 
 
 def _of_series(scheme: Scheme, every_h: BySeries, separable: bool) -> EveryProof:
-    def expanded(most: int) -> tuple[Jets, tuple[Series, Series]]:
-        jets = Jets(most + 2, separable=separable)
-        return jets, every_h.taylor(jets, most)
+    def jets_for(most: int) -> Jets:
+        return Jets(most + 2, separable=separable)
 
-    return _expanded(scheme, expanded, separable=separable)
+    return _over(jets_for, scheme, every_h, separable)
 
 
 def prove_lie_in_time(scheme: Scheme, every_h: TaylorSeries) -> EveryProof:
     """Of `lieη`, for every H(p, q, t)."""
-
-    def expanded(most: int) -> tuple[TimedJets, tuple[Series, Series]]:
-        jets = TimedJets(most + 1)
-        return jets, every_h.taylor(jets, most)
-
-    return replace(_expanded(scheme, expanded, separable=False), timed=True)
+    found = _over(lambda most: TimedJets(most + 1), scheme, every_h, separable=False)
+    return replace(found, timed=True)
 
 
-def _expanded(
-    scheme: Scheme,
-    expanded: Callable[[int], tuple[EveryJets, tuple[Series, Series]]],
-    *,
-    separable: bool,
+def _over(
+    jets_for: Callable[[int], EveryJets], scheme: Scheme, every_h: BySeries, separable: bool
 ) -> EveryProof:
-    """By the series up to a power of h, and the jets that it is made of."""
+    """By the series over the jets that are enough up to a power of h."""
     most = scheme.order + 1
     while True:
-        jets, series = expanded(most)
+        jets = jets_for(most)
+        series = every_h.taylor(jets, most)
         coefficients = list(jets.delta_j(*series))
         order = next((n for n, x in enumerate(coefficients, 1) if not x.is_zero()), None)
         if order is not None or most == scheme.order + _MORE:
@@ -178,7 +171,7 @@ def _expanded(
         )
     leading = coefficients[order - 1]
     verdict, reason = _verdict(scheme, order, agreed)
-    found, formula, checked = _telescoping(jets, scheme.every_h, leading, order)
+    found, formula, checked = _telescoping(jets, every_h, leading, order)
     below = f"the coefficients of h¹ … `h^{order - 1}` in det J are the zero polynomial"
     return EveryProof(
         scheme.name,

@@ -14,7 +14,7 @@ from typing import Any, Protocol, TypeVar, runtime_checkable
 
 import flint
 
-from verify.algebra.series.jets import JetRing, Jets, Poly, Series
+from verify.algebra.series.jets import JetRing, Poly, Series
 from verify.hamiltonians.jet_flow import JetFlow
 from verify.late import sympy
 from verify.prose import count
@@ -35,7 +35,7 @@ class BySeries(Protocol):
     @property
     def separable(self) -> bool: ...
 
-    def taylor(self, jets: Jets, most: int) -> tuple[Series, Series]: ...
+    def taylor(self, jets: JetRing, most: int) -> tuple[Series, Series]: ...
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,7 @@ class RungeKutta:
 
         return self.step(slope, moved)[0]
 
-    def taylor(self, jets: Jets, most: int) -> tuple[Series, Series]:
+    def taylor(self, jets: JetRing, most: int) -> tuple[Series, Series]:
         """p' and q' as series up to h^most; see `BySeries`."""
         return _over(jets, self.changes, most)
 
@@ -170,7 +170,7 @@ class StageEquations:
             found = [outer.between(x, y, Fraction(1)) for x, y in zip(found, change, strict=True)]
         return found
 
-    def taylor(self, jets: Jets, most: int) -> tuple[Series, Series]:
+    def taylor(self, jets: JetRing, most: int) -> tuple[Series, Series]:
         """p' and q' as series up to h^most; see `BySeries`."""
         return _over(jets, self.changes, most)
 
@@ -235,7 +235,7 @@ def _right(
     return right
 
 
-def _over(jets: Jets, changes: Step, most: int) -> tuple[Series, Series]:
+def _over(jets: JetRing, changes: Step, most: int) -> tuple[Series, Series]:
     """p' and q' of a step of every H, as series up to h^most."""
     p, q = series_of(JetFlow(jets), changes, most)
     return list(p.coefficients), list(q.coefficients)

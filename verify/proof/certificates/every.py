@@ -39,9 +39,8 @@ from verify.proof.certificates.by_coefficients import by_coefficients
 from verify.proof.certificates.file import FORMAT, Certificate
 from verify.proof.certificates.statement import Statement, in_the_plane
 from verify.proof.every import EveryProof, telescoping_of
-from verify.proof.telescoping import EveryJets
 from verify.schemes import get
-from verify.schemes.every_hamiltonian import BySeries, TaylorSeries
+from verify.schemes.every_hamiltonian import BySeries
 from verify.verdict import Verdict
 
 NOT_KNOWN = "the checker knows coefficients of what preserves area, and Taylor polynomials"
@@ -61,13 +60,8 @@ def of_every(proof: EveryProof) -> Certificate:
     if proof.order is None or not proof.leading or not isinstance(every_h, BySeries):
         raise InputError("scheme", proof.scheme, NOT_KNOWN)
     most = proof.order
-    jets: EveryJets
-    if proof.timed and isinstance(every_h, TaylorSeries):
-        jets = TimedJets(most + 2)
-        series = every_h.taylor(jets, most)
-    else:
-        jets = Jets(most + 2, separable=proof.separable)
-        series = every_h.taylor(jets, most)
+    jets = TimedJets(most + 2) if proof.timed else Jets(most + 2, separable=proof.separable)
+    series = every_h.taylor(jets, most)
     *_, leading = jets.delta_j(*series)
     found = telescoping_of(jets, every_h, leading) if proof.telescopes else None
     statement = Statement(

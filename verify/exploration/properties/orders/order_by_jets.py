@@ -53,12 +53,9 @@ def _has_series_in_jets(sample: Sample) -> bool:
 def _of_every(scheme: Scheme, most: int, timed: bool) -> tuple[Jets | TimedJets, tuple[Poly, ...]]:
     """The coefficients of h¹ … h^most in ΔJ of the scheme for every H."""
     generic = scheme.every_h
-    if timed:
-        assert isinstance(generic, TaylorSeries)  # noqa: S101 - the caller looks
-        in_time = TimedJets(most + 2)
-        return in_time, tuple(in_time.delta_j(*generic.taylor(in_time, most)))
     assert isinstance(generic, BySeries)  # noqa: S101 - the caller looks
-    jets = Jets(most + 2, separable=generic.separable)
+    size = most + 2
+    jets = TimedJets(size) if timed else Jets(size, separable=generic.separable)
     return jets, tuple(jets.delta_j(*generic.taylor(jets, most)))
 
 
