@@ -43,6 +43,13 @@ class ProvedOrder:
         return self.held if self.exact else Verdict.UNDECIDED
 
 
+def as_claimed(vanishes: bool | None, claimed: bool) -> Verdict:
+    """Whether a defect vanishes or not, as it is claimed."""
+    if vanishes is None:
+        return Verdict.UNDECIDED
+    return Verdict.PROVED if vanishes == claimed else Verdict.REFUTED
+
+
 def told_of(known: ProvedOrder, near: NearbyOrder | None) -> ProvedOrder:
     """What is known of exact coefficients near printed ones, if it is of such."""
     if near is None:

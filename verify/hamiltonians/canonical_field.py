@@ -14,6 +14,7 @@ from functools import cached_property, lru_cache
 from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.coefficient_ring import CoefficientRing
+from verify.algebra.series.power_series import Derivatives
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.late import sympy
 
@@ -47,6 +48,11 @@ class Flow(ABC):
     def start(self) -> tuple[Poly, ...]:
         """z itself."""
         return tuple(map(self.ring.variable, self.names))
+
+    @cached_property
+    def derivatives(self) -> tuple[Derivatives, ...]:
+        """f, with what is derived of it."""
+        return tuple(Derivatives(self.ring, x) for x in self.slopes)
 
     def derive(self, y: Poly) -> Poly:
         """X y; D y where H depends on time."""

@@ -24,11 +24,12 @@ from verify.integrators.tracing.step_map import traced_map
 from verify.integrators.tracing.trace import Node, Tape, written
 from verify.integrators.user_code.step import StepError, lifted
 from verify.integrators.user_code.user_map import UserMap
+from verify.proof.claimed import Claimed
 from verify.proof.expansion import MOST_ORDERS
 from verify.proof.order import prove
 from verify.proof.order_proof import Proof
 from verify.proof.symplectic import closed_form
-from verify.proof.symplectic.order import Claimed, prove_map
+from verify.proof.symplectic.order import prove_map
 from verify.proof.symplectic.proof import SymplecticProof
 from verify.prose import Prose, prose, read_prose
 from verify.schemes.degrees.canonical_map import CanonicalMap

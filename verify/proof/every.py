@@ -21,15 +21,23 @@ Coefficients. Conditions on them, exact; see `verify.proof.by_conditions`.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
-from verify.algebra.series.jets import Jets, Poly, shown
+from verify.algebra.series.jets import Jets, Poly, Series, shown
+from verify.algebra.series.timed_jets import TimedJets
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import prove_by_conditions
 from verify.proof.every_proof import EveryProof as EveryProof
 from verify.proof.order import leading_of
-from verify.proof.telescoping import Telescoping, telescopes, telescopes_of_lie
+from verify.proof.telescoping import (
+    EveryJets,
+    Telescoping,
+    along,
+    telescopes,
+    telescopes_of_lie,
+)
 from verify.prose import Formula, Prose, joined, prose, read_prose
 from verify.schemes import get
 from verify.schemes.conditions import ByConditions
@@ -89,25 +97,24 @@ def _of_conditions(
     return replace(_of_series(scheme, every_h, separable), conditions=proof.conditions)
 
 
-def _convergence(jets: Jets, every_h: BySeries, most: int) -> int:
-    """p', q' agree with the exact flow up to this power of h, looked at up to h^most."""
-    agreed = -1
-    series = every_h.taylor(jets, most)
+def _convergence(jets: EveryJets, series: tuple[Series, Series]) -> int:
+    """p', q' agree with the exact flow up to this power of h, as far as the series reach."""
+    most = len(series[0]) - 1
     flows = jets.lie_derivatives("p", most), jets.lie_derivatives("q", most)
     for n in range(most + 1):
         if any(s[n] * math.factorial(n) != x[n] for s, x in zip(series, flows, strict=True)):
-            break
-        agreed = n
-    return agreed
+            return n - 1
+    return most
 
 
 def _of_stages(scheme: Scheme, every_h: StageEquations, separable: bool) -> EveryProof:
     most = scheme.order + 2
-    agreed = _convergence(Jets(most + 1, separable=separable), every_h, most)
+    jets = Jets(most + 2, separable=separable)
+    agreed = _convergence(jets, every_h.taylor(jets, most))
     preserved = all(a == b and not a.is_zero() for a, b in every_h.determinants())
     verdict, reason = Verdict.PROVED, prose("ΔJ is the zero function: det J ≡ 1, stage by stage")
     if agreed < scheme.order:
-        verdict, reason = Verdict.REFUTED, _missed(scheme, agreed)
+        verdict, reason = Verdict.REFUTED, missed(scheme, agreed)
     elif not preserved:
         return _of_series(scheme, every_h, separable)
     ratios = joined(", ", dict.fromkeys(Formula(str(a)) for a, _ in every_h.determinants()))
@@ -126,28 +133,46 @@ def _of_stages(scheme: Scheme, every_h: StageEquations, separable: bool) -> Ever
 
 
 def _of_series(scheme: Scheme, every_h: BySeries, separable: bool) -> EveryProof:
+    def jets_for(most: int) -> Jets:
+        return Jets(most + 2, separable=separable)
+
+    return _over(jets_for, scheme, every_h, separable)
+
+
+def prove_lie_in_time(scheme: Scheme, every_h: TaylorSeries) -> EveryProof:
+    """Of `lieη`, for every H(p, q, t)."""
+    found = _over(lambda most: TimedJets(most + 1), scheme, every_h, separable=False)
+    return replace(found, timed=True)
+
+
+def _over(
+    jets_for: Callable[[int], EveryJets], scheme: Scheme, every_h: BySeries, separable: bool
+) -> EveryProof:
+    """By the series over the jets that are enough up to a power of h."""
     most = scheme.order + 1
     while True:
-        jets = Jets(most + 2, separable=separable)
-        coefficients = list(jets.delta_j(*every_h.taylor(jets, most)))
+        jets = jets_for(most)
+        series = every_h.taylor(jets, most)
+        coefficients = list(jets.delta_j(*series))
         order = next((n for n, x in enumerate(coefficients, 1) if not x.is_zero()), None)
         if order is not None or most == scheme.order + _MORE:
             break
         most += 1
-    agreed = _convergence(jets, every_h, most)
+    agreed = _convergence(jets, series)
     if order is None:
         verdict = Verdict.UNDECIDED
         reason = read_prose(
             f"the coefficients of ΔJ up to `h^{most}` vanish; whether all do is not decided"
         )
         if agreed < scheme.order:
-            verdict, reason = Verdict.REFUTED, _missed(scheme, agreed)
+            verdict, reason = Verdict.REFUTED, missed(scheme, agreed)
         return EveryProof(
             scheme.name, separable, verdict, reason, None, None, agreed, agreed < most
         )
     leading = coefficients[order - 1]
     verdict, reason = _verdict(scheme, order, agreed)
     found, formula, checked = _telescoping(jets, every_h, leading, order)
+    below = f"the coefficients of h¹ … `h^{order - 1}` in det J are the zero polynomial"
     return EveryProof(
         scheme.name,
         separable,
@@ -162,20 +187,13 @@ def _of_series(scheme: Scheme, every_h: BySeries, separable: bool) -> EveryProof
         telescopes=found.holds,
         potential=None if found.potential is None else shown(found.potential),
         why=found.reason,
-        checked=(
-            read_prose(
-                f"the coefficients of h¹ … `h^{order - 1}` in det J are the zero polynomial"
-            ),
-            *checked,
-        )
-        if order > 1
-        else checked,
+        checked=(*([read_prose(below)] if order > 1 else []), *checked),
     )
 
 
 def _verdict(scheme: Scheme, order: int, agreed: int) -> tuple[Verdict, Prose]:
     if agreed < scheme.order:
-        return Verdict.REFUTED, _missed(scheme, agreed)
+        return Verdict.REFUTED, missed(scheme, agreed)
     if scheme.area_preserving:
         return Verdict.REFUTED, prose(f"{scheme.name} claims det J ≡ 1; ΔJ has order {order}")
     return Verdict.PROVED, read_prose(
@@ -183,14 +201,15 @@ def _verdict(scheme: Scheme, order: int, agreed: int) -> tuple[Verdict, Prose]:
     )
 
 
-def _missed(scheme: Scheme, agreed: int) -> Prose:
+def missed(scheme: Scheme, agreed: int) -> Prose:
+    """That it claims a higher order than the map's for every H."""
     return read_prose(
         f"{scheme.name} claims order {scheme.order}; for a generic H the map agrees with the exact "
         f"flow up to `h^{agreed}` only"
     )
 
 
-def telescoping_of(jets: Jets, every_h: BySeries, leading: Poly) -> Telescoping:
+def telescoping_of(jets: EveryJets, every_h: object, leading: Poly) -> Telescoping:
     """Whether the leading coefficient is X·G; of `lieη` by the formula where there is one."""
     if isinstance(every_h, TaylorSeries):
         return telescopes_of_lie(jets, leading, every_h.eta)
@@ -198,23 +217,23 @@ def telescoping_of(jets: Jets, every_h: BySeries, leading: Poly) -> Telescoping:
 
 
 def _telescoping(
-    jets: Jets, every_h: BySeries, leading: Poly, order: int
+    jets: EveryJets, every_h: object, leading: Poly, order: int
 ) -> tuple[Telescoping, str, tuple[Prose, ...]]:
     """Whether the leading coefficient is X·G, its formula, and the identities checked for that."""
     found = telescoping_of(jets, every_h, leading)
     if not isinstance(every_h, TaylorSeries):
         return found, "", ()
-    eta = every_h.eta
-    end = [jets.derive(jets.lie_derivatives(name, eta)[-1]) for name in ("p", "q")]
+    eta, by = every_h.eta, along(jets)
+    end = [jets.lie_derivatives(name, eta + 1)[-1] for name in ("p", "q")]
     divergence = jets.diff(end[0], "p") + jets.diff(end[1], "q")
     formula = ""
     checked: tuple[Prose, ...] = ()
     if order == eta + 1 and leading * math.factorial(eta + 1) == -divergence:
-        formula = f"-div(X^{eta} f)/{eta + 1}!, f = (-H_q, H_p)"
-        told = f"that of `h^{eta + 1}` is −div(`X^{eta}` f)/{eta + 1}!"
+        formula = f"-div({by}^{eta} f)/{eta + 1}!, f = (-H_q, H_p)"
+        told = f"that of `h^{eta + 1}` is −div(`{by}^{eta}` f)/{eta + 1}!"
         checked = (read_prose(told),)
     if found.holds:
-        checked = (*checked, prose("X·G is that coefficient"))
+        checked = (*checked, prose(f"{by}·G is that coefficient"))
     return found, formula, checked
 
 

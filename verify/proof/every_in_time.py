@@ -10,17 +10,13 @@ Splittings and stages: by conditions on sizes, coefficients and times, `verify.s
 are necessary, too.
 """
 
-import math
 from collections.abc import Iterator
 from dataclasses import replace
 
-from verify.algebra.series.jets import shown
-from verify.algebra.series.timed_jets import TimedJets
 from verify.errors import InputError
 from verify.proof.by_conditions import agreed_order, prove_by_conditions
-from verify.proof.every import prove_every
+from verify.proof.every import prove_every, prove_lie_in_time
 from verify.proof.every_proof import EveryProof
-from verify.proof.telescoping import potential_of_lie
 from verify.prose import Prose, prose, read_prose
 from verify.schemes import get
 from verify.schemes.conditions import ByConditions
@@ -28,9 +24,9 @@ from verify.schemes.every_hamiltonian import TaylorSeries
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting_conditions import Splitting
 from verify.schemes.timed.for_scheme import conditions_for
-from verify.schemes.timed.kinetic import Kinetic
 from verify.schemes.timed.mistakes import mistakes_of_splitting
 from verify.schemes.timed.splitting import TimedSplitting
+from verify.schemes.words.kinetic import Kinetic
 from verify.verdict import Verdict
 
 _MOST_ETA = 8  # the terms triple with every order; lie8 takes 2 s
@@ -45,70 +41,15 @@ def prove_every_in_time(name: str, least: int = 0) -> EveryProof:
     """
     scheme = get(name)
     if isinstance(scheme.every_h, TaylorSeries):
-        return _of_lie(scheme, scheme.every_h.eta)
+        if scheme.order > _MOST_ETA:
+            told = f"up to lie{_MOST_ETA}: its polynomials are too long"
+            raise InputError("scheme", scheme.name, f"is proved for every H in t {told}")
+        return prove_lie_in_time(scheme, scheme.every_h)
     if isinstance(scheme.every_h, Splitting):
         return _of_splitting(scheme, scheme.every_h, least)
     if scheme.every_h is None:
         raise InputError("scheme", name, "is given for one H; it cannot be proved for every H in t")
     return _of_stages(scheme, conditions_for(scheme.every_h), least)
-
-
-def _of_lie(scheme: Scheme, eta: int) -> EveryProof:
-    if eta > _MOST_ETA:
-        problem = f"is proved for every H in t up to lie{_MOST_ETA}: its polynomials are too long"
-        raise InputError("scheme", scheme.name, problem)
-    jets = TimedJets(eta + 2)
-    flows = [jets.lie_derivatives(name, eta + 1) for name in ("p", "q")]
-    p_next, q_next = (
-        [x / math.factorial(n) if n <= eta else jets.zero for n, x in enumerate(flow)]
-        for flow in flows
-    )
-    coefficients = list(jets.delta_j(p_next, q_next))
-    order = next(n for n, x in enumerate(coefficients, 1) if not x.is_zero())
-    leading = coefficients[order - 1]
-    divergence = jets.diff(flows[0][-1], "p") + jets.diff(flows[1][-1], "q")
-    checked = [f"the coefficients of h¹ … `h^{order - 1}` in det J are the zero polynomial"]
-    formula, potential = "", None
-    if leading * math.factorial(eta + 1) == -divergence:
-        formula = f"-div(D^{eta} f)/{eta + 1}!, f = (-H_q, H_p)"
-        checked.append(f"that of `h^{eta + 1}` is −div(`D^{eta}` f)/{eta + 1}!")
-    if eta % 2 == 0:
-        found = potential_of_lie(jets, eta)
-        potential = found if jets.derive(found) == leading else None
-    holds = potential is not None
-    if holds:
-        checked.append("D·G is that coefficient")
-    return EveryProof(
-        scheme.name,
-        separable=False,
-        verdict=Verdict.PROVED,
-        reason=read_prose(
-            f"the coefficients of ΔJ below `h^{order}` vanish for every H, that of `h^{order}` "
-            "does not"
-        ),
-        order=order,
-        area_preserving=False,
-        convergence_order=eta,
-        convergence_decided=not all(flow[-1].is_zero() for flow in flows),
-        leading=shown(leading),
-        formula=formula,
-        telescopes=holds,
-        potential=None if potential is None else shown(potential),
-        why=_why(eta, holds),
-        checked=tuple(map(read_prose, checked)),
-        timed=True,
-    )
-
-
-def _why(eta: int, holds: bool) -> Prose:
-    if holds:
-        return read_prose(
-            f"G = −1/{eta + 1}! `Σ_k` `(−1)^k` ∂(`D^({eta}−k)` p, `D^k` q)/∂(p, q), k = 0 … {eta}"
-        )
-    return read_prose(
-        "for an H without t, D·G would be X·G, and that is `L` for no smooth G: where such a "
-        "motion rests, X·G = 0 and `L` is not"
-    )
 
 
 def _of_splitting(scheme: Scheme, every_h: Splitting, least: int) -> EveryProof:

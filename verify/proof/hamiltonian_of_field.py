@@ -18,6 +18,7 @@ from verify.algebra.generator import terms_of
 from verify.algebra.linear_combination import combination
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.jets import Jets
+from verify.algebra.series.jets_in_degrees import Index
 from verify.algebra.series.power_series import partials
 from verify.hamiltonians.vector_field import VectorField
 from verify.proof.modified_field import Vector, field_of
@@ -114,7 +115,7 @@ def _among_products(field: VectorField, vector: Vector, factors: int) -> Poly | 
 
 
 def _products_in_time(
-    indices: Sequence[tuple[int, int]], factors: int
+    indices: Sequence[Index], factors: int
 ) -> Iterator[list[tuple[int, int, int]]]:
     """Of m < `factors` derivatives of H, m − 1 by p and by q, and `factors` − m by t."""
     for m in range(1, factors):

@@ -19,11 +19,13 @@ from verify.proof.modified_equation import ModifiedEquation, Term, judged
 from verify.proof.modified_field import Vector, divergence, modified_field
 from verify.proof.splitting_logarithm import terms_of_splitting
 from verify.schemes import get
+from verify.schemes.coloured_trees import symmetry
 from verify.schemes.conditions import ByConditions
+from verify.schemes.elementary_differentials import Differentials
 from verify.schemes.every_hamiltonian import BySeries
 from verify.schemes.splitting_conditions import Splitting
 from verify.schemes.step_map import SOLVABLE
-from verify.schemes.tree_conditions import Differentials, TreeConditions, Weights, symmetry, trees
+from verify.schemes.tree_conditions import TreeConditions, trees
 
 MOST_ORDER = 8  # the terms multiply with every order
 _EVERY, _SEPARABLE = "every smooth H", "every smooth H = T(p) + V(q)"
@@ -83,7 +85,7 @@ def _taylor(
 
 
 def _by_trees(name: str, every_h: TreeConditions, jets: Jets, most: int) -> tuple[Series, Series]:
-    weights, differentials = Weights(every_h.tableau.numbers), Differentials(jets)
+    weights, differentials = every_h.tableau.numbers.tree_weights, Differentials(jets)
     result: tuple[Series, Series] = [jets.p], [jets.q]
     for n in range(1, most + 1):
         total = [jets.zero, jets.zero]

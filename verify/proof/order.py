@@ -6,7 +6,6 @@ p' and q' in h are held against those of the exact flow, Xⁿp/n! and Xⁿq/n!.
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property, partial
 
@@ -18,11 +17,12 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.vector_field import VectorField
 from verify.late import sympy
 from verify.proof.by_conditions import nearby_order, told_nearby
+from verify.proof.claimed import Claimed, Convergence, Words, held_to
 from verify.proof.expansion import MOST_ORDERS, VANISHES, Expansion, Leading, first_nonzero
 from verify.proof.order_proof import Proof
 from verify.proof.parameters import almost_all, not_zero_for
 from verify.proof.printed_formulas import nearby_defect, nearby_of_formulas, told_defect
-from verify.prose import Formula, Prose, prose, read_prose
+from verify.prose import Formula, Prose, prose
 from verify.schemes.conditions import Condition, NearbyOrder
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import splitting
@@ -32,6 +32,7 @@ from verify.schemes.timed.for_scheme import conditions_for
 from verify.verdict import Verdict
 
 _Coefficient = Callable[[str, int], tuple[VectorField, Ring, Poly]]
+_WORDS = Words("ΔJ", "ΔJ is the zero function: det J ≡ 1", "function", "det J ≡ 1")
 RESIDUE = Fraction(1, 2**100)  # and above it what the coefficients of the nearest leave
 _FIRST_ORDERS = 6  # of them, those that are made at once where no order is claimed
 
@@ -42,8 +43,9 @@ def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
     convergence, near = convergence_of_scheme(step_map, scheme, series)
     leading, domain = leading_of(step_map, series), step_map.domain
     inside = leading.within(domain)
-    verdict, said = _verdict(convergence, inside, scheme)
-    reason = read_prose(said)
+    claimed = Claimed.of(scheme) if scheme else Claimed()
+    defect = inside.power, inside.decision.zero
+    verdict, reason = held_to(claimed, convergence, defect, MOST_ORDERS, _WORDS)
     if inside.decision.zero is None and leading.decision.zero is not None:
         reason = prose("no point is found where all is defined: ", domain.prose)
     leading = inside
@@ -153,22 +155,6 @@ def _beyond(ring: Ring, delta_j: Poly) -> Leading:
     if decision.zero is None:
         return Leading(MOST_ORDERS + 1, decision)
     return Leading(None, decision, None if decision.zero else (ring, delta_j))
-
-
-@dataclass(frozen=True)
-class Convergence:
-    """p', q' agree with the exact flow up to h^order, shown by algebra; None: in all looked at.
-
-    `decided`: the next coefficient is shown to differ (or there is none), for the parameters in
-    `exact_for`. −1: they differ at h⁰.
-    """
-
-    order: int | None
-    decided: bool
-    exact_for: Callable[[], Domain] = field(default=lambda: EVERYWHERE, repr=False)
-
-    def misses(self, claimed: int) -> bool:
-        return self.order is not None and self.order < claimed
 
 
 def convergence_of(
@@ -294,44 +280,3 @@ def _gap(field: VectorField, own: Ring, x: Poly, name: str, n: int) -> tuple[Rin
     gap = own.expression(x) - ring.expression(flow) / math.factorial(n)
     common, (difference,) = embed([gap], ring.variables)
     return common, difference
-
-
-def _called(scheme: Scheme) -> str:
-    """Its name, quoted where that is the formulas of a user's scheme."""
-    return f"`{scheme.name}`" if "=" in scheme.name else scheme.name
-
-
-def _verdict(
-    convergence: Convergence, leading: Leading, scheme: Scheme | None
-) -> tuple[Verdict, str]:
-    """The verdict, and the reason for it."""
-    claimed = scheme.order if scheme else 1
-    if convergence.misses(claimed):
-        known = f"agrees with the exact flow up to `h^{convergence.order}`"
-        if convergence.order == -1:
-            known = "agrees with the exact flow not even at h = 0"
-        if not convergence.decided:
-            return Verdict.UNDECIDED, f"the map {known}; whether further is not decided"
-        if scheme:
-            claims = f"{_called(scheme)} claims order {claimed}"
-            return Verdict.REFUTED, f"{claims}; the map {known} only"
-        only = " only" if convergence.order is not None and convergence.order >= 0 else ""
-        return Verdict.REFUTED, f"not a scheme for this H: the map {known}{only}"
-    match leading.decision.zero:
-        case True:
-            return Verdict.PROVED, "ΔJ is the zero function: det J ≡ 1"
-        case False if leading.power is None and not (scheme and scheme.area_preserving):
-            return Verdict.PROVED, (
-                f"ΔJ is not the zero function, and its coefficients up to `h^{MOST_ORDERS}` vanish"
-            )
-        case None:
-            return Verdict.UNDECIDED, (
-                f"the coefficient of `h^{leading.power}` in ΔJ is neither shown to vanish nor not "
-                "to"
-            )
-    if scheme is not None and scheme.area_preserving:
-        return Verdict.REFUTED, f"{_called(scheme)} claims det J ≡ 1; ΔJ has order {leading.power}"
-    return Verdict.PROVED, (
-        f"the coefficients of ΔJ below `h^{leading.power}` vanish identically, that of "
-        f"`h^{leading.power}` does not"
-    )

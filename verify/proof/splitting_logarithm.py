@@ -10,7 +10,7 @@ of Poisson brackets of V and T. No field and no divergence is needed; each of th
 Hamiltonian by what it is.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from itertools import product
 
 from verify.algebra.generator import terms_of
@@ -19,7 +19,8 @@ from verify.algebra.series.jets import Jets, shown
 from verify.algebra.series.jets import Poly as JetPoly
 from verify.proof.modified_equation import Term
 from verify.proof.modified_field import field_of
-from verify.schemes.splitting_conditions import LETTERS, Splitting, coefficient
+from verify.schemes.free_lie_words import of_logarithm, words
+from verify.schemes.splitting_conditions import LETTERS, Splitting
 
 _KICK, _DRIFT = LETTERS["kick"], LETTERS["drift"]
 Sum = dict[tuple[int, ...], Poly]  # numbers by monomials of the jets
@@ -28,33 +29,23 @@ Sum = dict[tuple[int, ...], Poly]  # numbers by monomials of the jets
 def terms_of_splitting(splitting: Splitting, order: int) -> list[Term]:
     """The terms up to h^order, for every H = T(p) + V(q)."""
     jets = Jets(order + 2, separable=True)
-    logarithm = Logarithm(splitting)
+    logarithm = Logarithm(splitting, order + 1)
     return [_first(logarithm), *(_term(logarithm, jets, n) for n in range(2, order + 2))]
 
 
 class Logarithm:
-    """The coefficients c_w of the logarithm of a splitting's step, in `ring`, each made once."""
+    """The coefficients c_w of the logarithm of a splitting's step, in `ring`, of words of at most
+    so many letters."""
 
-    def __init__(self, splitting: Splitting) -> None:
-        self.ring, self.parts = splitting.numbers
-        self._known: dict[str, Poly] = {}
+    def __init__(self, splitting: Splitting, most: int) -> None:
+        self.ring, _ = splitting.numbers
+        named = {word: tuple((letter, 0) for letter in word) for word in words("splitting", most)}
+        splitting.words.prepare(named.values())
+        self._step = {word: splitting.words.coefficient(x) for word, x in named.items()}
 
     def of(self, word: str) -> Poly:
-        """c_w: log(1 + x) = Σ_m (−1)^(m+1) x^m/m, over all ways to cut the word into m pieces."""
-        total = self.ring.zero
-        for pieces in _cut(word):
-            share = self.ring.one
-            for piece in pieces:
-                share = self.ring.multiply(share, self._coefficient(piece))
-            m = len(pieces)
-            total += share / m if m % 2 else -share / m
-        return self.ring.reduce(total)
-
-    def _coefficient(self, word: str) -> Poly:
-        """That of the product of exponentials."""
-        if word not in self._known:
-            self._known[word] = coefficient(self.ring, self.parts, word)
-        return self._known[word]
+        """c_w."""
+        return self.ring.reduce(of_logarithm(self._step, word))
 
     def energy(self, jets: Jets, n: int) -> Sum:
         """H_n, the coefficient of h^(n−1) in H̃, n ≥ 2: numbers by monomials of the jets."""
@@ -91,14 +82,6 @@ def _vanishes(ring: Ring, numbers: Iterable[Poly]) -> bool | None:
     """Whether all of them are 0; those that are shown to be are left out before."""
     found = {ring.vanishes(x) for x in numbers}
     return False if False in found else None if found else True
-
-
-def _cut(word: str) -> Iterator[list[str]]:
-    if not word:
-        yield []
-    for n in range(1, len(word) + 1):
-        for rest in _cut(word[n:]):
-            yield [word[:n], *rest]
 
 
 def _bracketed(jets: Jets, word: Sequence[str]) -> JetPoly:

@@ -24,6 +24,8 @@ import flint
 from verify.algebra.generator import terms_of
 from verify.algebra.linear_combination import combination
 from verify.algebra.series.jets import Jets, Poly, shown
+from verify.algebra.series.jets_in_degrees import Index
+from verify.algebra.series.timed_jets import TimedJets
 from verify.prose import Formula, Prose, prose, read_prose
 
 
@@ -50,6 +52,13 @@ def potential_of_lie(field: Derivation, eta: int) -> Poly:
 
 # -- for a leading coefficient in the jets --------------------------------------------------------
 
+EveryJets = Jets | TimedJets
+
+
+def along(jets: EveryJets) -> str:
+    """What the derivative along the flow is called."""
+    return "D" if isinstance(jets, TimedJets) else "X"
+
 
 @dataclass(frozen=True)
 class Telescoping:
@@ -60,12 +69,14 @@ class Telescoping:
     potential: Poly | None = None
 
 
-def telescopes(jets: Jets, leading: Poly) -> Telescoping:
+def telescopes(jets: EveryJets, leading: Poly) -> Telescoping:
     """Whether the polynomial L in the jets is X·G with a polynomial G in the jets.
 
     False is shown by a linear functional that vanishes on all X·G and not on L: to take the value
     at an equilibrium, which rules out every smooth G, or one that linear algebra finds.
     """
+    if isinstance(jets, TimedJets):
+        return _without_time()
     at_rest = leading.subs({"H_p": 0, "H_q": 0})
     if not at_rest.is_zero():
         return Telescoping(
@@ -94,13 +105,21 @@ def telescopes(jets: Jets, leading: Poly) -> Telescoping:
     return Telescoping(True, prose("X·G = L, solved for G by linear algebra"), total)
 
 
-def telescopes_of_lie(jets: Jets, leading: Poly, eta: int) -> Telescoping:
+def _without_time() -> Telescoping:
+    reason = (
+        "for an H without t, D·G would be X·G, and that is `L` for no smooth G: where such a "
+        "motion rests, X·G = 0 and `L` is not"
+    )
+    return Telescoping(False, read_prose(reason))
+
+
+def telescopes_of_lie(jets: EveryJets, leading: Poly, eta: int) -> Telescoping:
     """The same for `lieη`: by the formula for even η, where it gives this L."""
     if eta % 2 == 0:
-        potential = potential_of_lie(jets, eta)
+        potential, by = potential_of_lie(jets, eta), along(jets)
         if jets.derive(potential) == leading:
             reason = (
-                f"G = −1/{eta + 1}! `Σ_k` `(−1)^k` ∂(`X^({eta}−k)` p, `X^k` q)/∂(p, q), "
+                f"G = −1/{eta + 1}! `Σ_k` `(−1)^k` ∂(`{by}^({eta}−k)` p, `{by}^k` q)/∂(p, q), "
                 f"k = 0 … {eta}"
             )
             return Telescoping(True, read_prose(reason), potential)
@@ -143,7 +162,7 @@ def _monomial(jets: Jets, factors: Sequence[tuple[int, int]]) -> Poly:
 
 
 def multisets(
-    indices: Sequence[tuple[int, int]], factors: int, by_p: int, by_q: int, first: int = 0
+    indices: Sequence[Index], factors: int, by_p: int, by_q: int, first: int = 0
 ) -> Iterator[list[tuple[int, int]]]:
     """All products of so many H_ij, index from `first` on, with these numbers of derivatives."""
     if factors == 0:

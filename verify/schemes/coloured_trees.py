@@ -42,6 +42,7 @@ def alternating(timed: bool = False) -> Grammar:
     return Grammar(((1,), (0,)), timed=timed)
 
 
+PLAIN = of_all(1)  # rooted trees as they are known, which need neither colours nor time
 NYSTROM = Grammar(((1,), (0,)), single=(1,))  # 0 of p' = f(q), 1 of q' = p
 
 
@@ -116,17 +117,28 @@ def symmetry(tree: Tree) -> int:
     return math.prod(math.factorial(n) * symmetry(child) ** n for child, n in counts.items())
 
 
-def equation_text(tree: Tree, names: tuple[str, ...]) -> str:
+def grafted(tree: Tree, branch: Tree) -> Tree:
+    """The tree with one more branch at its root."""
+    root, branches = tree
+    return root, (*branches, branch)
+
+
+def equation_text(tree: Tree, names: tuple[str, ...] = ("",)) -> str:
     """The tree's condition; `names` stand after A, b and c of each colour, t is the vector of the
     stages' times.
 
-    >>> equation_text((0, (TIME, (0, (TIME,)))), ("",))
+    >>> equation_text((0, (TIME, (0, (TIME,)))))
     'b·(t A(t)) = 1/8'
     """
+    right = f"1/{density(tree)}" if tree[1] else "1"
+    return f"{condition_text(tree, names)} = {right}"
+
+
+def condition_text(tree: Tree, names: tuple[str, ...] = ("",)) -> str:
+    """The left side of the tree's condition."""
     root, branches = tree
     inner = product_text(branches, names)
-    left = f"b{names[root]}·({inner})" if " " in inner else f"b{names[root]}·{inner}"
-    return f"{left} = 1/{density(tree)}" if branches else f"{left} = 1"
+    return f"b{names[root]}·({inner})" if " " in inner else f"b{names[root]}·{inner}"
 
 
 def product_text(branches: tuple[Tree, ...], names: tuple[str, ...]) -> str:

@@ -64,12 +64,3 @@ class ByConditions(Protocol):
     def area_conditions(self) -> tuple[Condition, ...]:
         """All that make det J ≡ 1 for every H; they suffice."""
         ...
-
-
-@runtime_checkable
-class WithSymmetry(Protocol):
-    """A scheme for every H whose coefficients tell whether it is symmetric."""
-
-    def symmetry_conditions(self) -> tuple[Condition, ...]:
-        """All that make the step of −h undo that of h, for every H; they suffice."""
-        ...

@@ -10,14 +10,16 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Protocol, TypeVar, runtime_checkable
+from typing import Any, Protocol, TypeVar, runtime_checkable
 
 import flint
 
-from verify.algebra.series.jets import JetRing, Jets, Poly, Series
+from verify.algebra.series.jets import JetRing, Poly, Series
+from verify.hamiltonians.jet_flow import JetFlow
 from verify.late import sympy
 from verify.prose import count
 from verify.schemes.conditions import Condition
+from verify.schemes.step_algebra import Step, StepAlgebra, series_of
 
 At = TypeVar("At")
 Slope = TypeVar("Slope")
@@ -33,7 +35,7 @@ class BySeries(Protocol):
     @property
     def separable(self) -> bool: ...
 
-    def taylor(self, jets: Jets, most: int) -> tuple[Series, Series]: ...
+    def taylor(self, jets: JetRing, most: int) -> tuple[Series, Series]: ...
 
 
 @dataclass(frozen=True)
@@ -104,28 +106,28 @@ class RungeKutta:
             slopes.append(slope(moved(row, slopes)))
         return moved(self.weights, slopes)
 
-    def taylor(self, jets: Jets, most: int) -> tuple[Series, Series]:
+    def changes(self, algebra: StepAlgebra[Any], standing: Fraction | None = None) -> list[Any]:
+        """z' − z, stage by stage, each at t + c h where H depends on time, or all at t + `standing`
+        h."""
+        places = range(algebra.size)
+
+        def moved(
+            weights: Sequence[Fraction], slopes: Sequence[list[Any]]
+        ) -> tuple[list[Any], Fraction]:
+            """A change of z, and that of t by h."""
+            columns = [[slope[k] for slope in slopes] for k in places]
+            own = [algebra.moved(algebra.nothing, weights, column) for column in columns]
+            return own, sum(weights, Fraction(0))
+
+        def slope(stage: tuple[list[Any], Fraction]) -> list[Any]:
+            change, clock = stage
+            return algebra.slopes(change, clock if standing is None else standing, places)
+
+        return self.step(slope, moved)[0]
+
+    def taylor(self, jets: JetRing, most: int) -> tuple[Series, Series]:
         """p' and q' as series up to h^most; see `BySeries`."""
-
-        def slope(change: tuple[Series, Series]) -> tuple[Series, Series]:
-            return [-x for x in jets.shifted(0, 1, *change)], jets.shifted(1, 0, *change)
-
-        dp, dq = self.step(slope, lambda row, slopes: _moved(jets, slopes, row, most))
-        return [jets.p + dp[0], *dp[1:]], [jets.q + dq[0], *dq[1:]]
-
-
-def _moved(
-    jets: Jets, slopes: Sequence[tuple[Series, Series]], row: Sequence[Fraction], most: int
-) -> tuple[Series, Series]:
-    """h Σ a_j k_j, as series in h."""
-    result = []
-    for part in (0, 1):
-        total = [jets.zero] * (most + 1)
-        for a, slope in zip(row, slopes, strict=False):
-            for n in range(most):
-                total[n + 1] += slope[part][n] * _exact(a)
-        result.append(total)
-    return result[0], result[1]
+        return _over(jets, self.changes, most)
 
 
 @dataclass(frozen=True)
@@ -160,18 +162,17 @@ class StageEquations:
             stages.append(Stage(length, none) if kind == "kick" else Stage(none, length))
         return cls(tuple(stages), separable=True)
 
-    def taylor(self, jets: Jets, most: int) -> tuple[Series, Series]:
-        """By iteration: each one makes one power of h more right."""
-        dp, dq = ([jets.zero] * (most + 1) for _ in range(2))
+    def changes(self, outer: StepAlgebra[Any]) -> list[Any]:
+        """z' − z: of each stage the change that it makes is solved for."""
+        found = [outer.nothing] * outer.size
         for stage in self.stages:
-            p, q = dp, dq
-            for _ in range(most):
-                at = _between(p, dp, stage.at_p), _between(q, dq, stage.at_q)
-                dp, dq = (
-                    _added(p, jets.shifted(0, 1, *at), -stage.kick),
-                    _added(q, jets.shifted(1, 0, *at), stage.drift),
-                )
-        return [jets.p + dp[0], *dp[1:]], [jets.q + dq[0], *dq[1:]]
+            change = outer.solved(outer.size, _right(stage, found))
+            found = [outer.between(x, y, Fraction(1)) for x, y in zip(found, change, strict=True)]
+        return found
+
+    def taylor(self, jets: JetRing, most: int) -> tuple[Series, Series]:
+        """p' and q' as series up to h^most; see `BySeries`."""
+        return _over(jets, self.changes, most)
 
     def conditions(self) -> tuple[Condition, ...]:
         """det A = det B of each stage, which together suffice for det J ≡ 1."""
@@ -218,10 +219,23 @@ def _exact(x: Fraction) -> flint.fmpq:
     return flint.fmpq(x.numerator, x.denominator)
 
 
-def _between(start: Series, end: Series, share: Fraction) -> Series:
-    return [x + _exact(share) * (y - x) for x, y in zip(start, end, strict=True)]
+def _right(
+    stage: Stage, before: Sequence[Any]
+) -> Callable[[StepAlgebra[Any], Sequence[Any]], list[Any]]:
+    """h times the slopes that a stage takes, at a share of the change that they make."""
+
+    def right(algebra: StepAlgebra[Any], change: Sequence[Any]) -> list[Any]:
+        n = algebra.size // 2
+        shares, weights = [stage.at_p] * n + [stage.at_q] * n, [stage.kick] * n + [stage.drift] * n
+        at = [algebra.between(*each) for each in zip(before, change, shares, strict=True)]
+        slopes = algebra.slopes(at, stage.at_q, range(2 * n))  # t goes with q
+        each = zip(weights, slopes, strict=True)
+        return [algebra.moved(algebra.nothing, [w], [slope]) for w, slope in each]
+
+    return right
 
 
-def _added(start: Series, slope: Series, weight: Fraction) -> Series:
-    """start + h·weight·slope."""
-    return [start[0], *(x + _exact(weight) * y for x, y in zip(start[1:], slope, strict=False))]
+def _over(jets: JetRing, changes: Step, most: int) -> tuple[Series, Series]:
+    """p' and q' of a step of every H, as series up to h^most."""
+    p, q = series_of(JetFlow(jets), changes, most)
+    return list(p.coefficients), list(q.coefficients)

@@ -16,14 +16,14 @@ import sympy
 
 from verify.algebra.implicit_unknowns import Matrix, define, unknowns
 from verify.algebra.ring import Poly
-from verify.algebra.series.power_series import Series, at_point, at_time, partials
 from verify.algebra.symbols import H_STEP, P, Q
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.conditions import ByConditions
 from verify.schemes.every_hamiltonian import BySeries
-from verify.schemes.implicit_tableau import ImplicitTableau
+from verify.schemes.implicit_tableau import ImplicitTableau, implicit_step
 from verify.schemes.scheme import Scheme
 from verify.schemes.stages import Point, Stages
+from verify.schemes.step_algebra import series_in_plane
 from verify.schemes.step_map import Expanded, StepMap, Substep
 from verify.schemes.tree_order import order_of
 
@@ -145,36 +145,11 @@ class _Equations:
         return slopes, gradients, drifts
 
     def taylor(self, most: int) -> Expanded:
-        """p' and q' up to h^most, by iteration: each makes one power of h more right."""
-        field, ring, count = self.source, self.source.ring, self.count
+        """p' and q' up to h^most."""
+        count, zero = self.count, self.source.ring.zero
         rows = [self.numbers[count * i : count * (i + 1)] for i in range(count + 1)]
-        start = [ring.variable(name) for name in ("p", "q")]
-        force = [-field.h_q, field.h_p]
-        gradient = [partials(ring, x) for x in force]
-        slopes = [[Series.of(ring, [x], 0) for x in force]] * count
-
-        def moved(weights: Sequence[Poly], part: int, longest: int) -> Series:
-            """h Σ w_j k_j, as far as h^longest."""
-            total = Series.of(ring, [], longest)
-            for w, slope in zip(weights, slopes, strict=True):
-                known = Series.of(ring, [ring.zero, *slope[part].coefficients], longest)
-                total += known.times(w)
-            return total
-
-        for longest in range(1, most):
-            points = [[moved(row, part, longest) for part in (0, 1)] for row in rows[:-1]]
-            if field.timed:
-                clocks = [
-                    Series.of(ring, [ring.zero, sum(row, ring.zero)], longest) for row in rows
-                ]
-                timed = zip(points, clocks, strict=False)
-                slopes = [[at_time(ring, x, u, v, w) for x in force] for (u, v), w in timed]
-            else:
-                slopes = [[at_point(x, *point) for x in gradient] for point in points]
-        p, q = (
-            Series.of(ring, [x], most) + moved(rows[-1], part, most) for part, x in enumerate(start)
-        )
-        return field, p, q
+        clocks = [sum(row, zero) for row in rows[:-1]]
+        return series_in_plane(self.source, implicit_step(rows[:-1], rows[-1], clocks), most)
 
 
 def _linear(hamiltonian: Hamiltonian, tableau: ImplicitTableau) -> StepMap | None:

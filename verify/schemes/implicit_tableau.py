@@ -8,6 +8,7 @@ algebra, and what is not zero there is enclosed by Arb; no coefficient is ever r
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import Any
 
 import sympy
 
@@ -15,8 +16,10 @@ from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
 from verify.schemes.conditions import Condition
 from verify.schemes.residue import condition_of
+from verify.schemes.step_algebra import Number, Step, StepAlgebra
+from verify.schemes.tree_weights import RingWeights, Tableau
 
-_SHOWN = 5  # digits of a residue
+SHOWN = 5  # digits of a residue
 
 
 @dataclass(frozen=True)
@@ -61,22 +64,6 @@ class ImplicitTableau:
         """
         return _area_conditions(self)
 
-    def symmetry_conditions(self) -> tuple[Condition, ...]:
-        """a_(s+1−i, s+1−j) + a_ij = b_j: then the step of −h undoes that of h.
-
-        They suffice, for every H (Hairer, Lubich, Wanner, theorem V.2.3).
-        """
-        a, b, last = self.numbers.a, self.numbers.b, self.stages - 1
-        return tuple(
-            self.numbers.condition(
-                f"a_{i + 1}{j + 1} + a_{last - i + 1}{last - j + 1} = b_{j + 1}",
-                0,
-                a[i][j] + a[last - i][last - j] - b[j],
-            )
-            for i in range(self.stages)
-            for j in range(self.stages)
-        )
-
 
 @lru_cache(maxsize=64)
 def _area_conditions(tableau: ImplicitTableau) -> tuple[Condition, ...]:
@@ -109,6 +96,39 @@ class Numbers:
         rows = [tuple(found[count * (i + 1) : count * (i + 2)]) for i in range(count)]
         return cls(ring, tuple(rows), tuple(found[:count]))
 
+    @cached_property
+    def tree_weights(self) -> RingWeights:
+        """What they put into the conditions of trees."""
+        return RingWeights(self.ring, [Tableau(self.a, self.b)])
+
     def condition(self, name: str, order: int, gap: Poly) -> Condition:
         """The condition that `gap`, left side − right side, is 0."""
-        return condition_of(self.ring, name, order, gap, _SHOWN)
+        return condition_of(self.ring, name, order, gap, SHOWN)
+
+
+def implicit_step(
+    rows: Sequence[Sequence[Number]], weights: Sequence[Number], clocks: Sequence[Number]
+) -> Step:
+    """How z' is made: a_ij, b_i and c_i in the ring of H's field."""
+
+    def changes(outer: StepAlgebra[Any]) -> list[Any]:
+        size = outer.size
+
+        def combined(
+            algebra: StepAlgebra[Any], own: Sequence[Sequence[Number]], unknowns: Sequence[Any]
+        ) -> list[Any]:
+            """h Σ w_j f(z + Z_j) of each row of weights, row after row."""
+            stages = [unknowns[size * i : size * (i + 1)] for i in range(len(clocks))]
+            slopes = [
+                algebra.slopes(stage, clock, range(size))
+                for stage, clock in zip(stages, clocks, strict=True)
+            ]
+            columns = [[slope[k] for slope in slopes] for k in range(size)]
+            return [
+                algebra.moved(algebra.nothing, row, column) for row in own for column in columns
+            ]
+
+        solved = outer.solved(size * len(clocks), lambda inner, z: combined(inner, rows, z))
+        return combined(outer, [weights], solved)
+
+    return changes

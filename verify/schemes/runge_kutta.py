@@ -8,13 +8,13 @@ stage by stage, and with power series in h its Taylor series.
 
 from collections.abc import Sequence
 from fractions import Fraction
+from functools import partial
 
-from verify.algebra.series.power_series import Series, at_point, at_time, partials
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.vector_field import VectorField
 from verify.schemes.every_hamiltonian import RungeKutta
 from verify.schemes.scheme import Scheme
 from verify.schemes.stages import Point, Stages
+from verify.schemes.step_algebra import series_in_plane
 from verify.schemes.step_map import StepMap, Substep
 
 
@@ -60,40 +60,6 @@ def runge_kutta_map(
 
     p_next, q_next, *_ = tableau.step(slope, moved)
     substep = Substep(stages.field, p_next, q_next)
-    return StepMap(
-        hamiltonian, (substep,), lambda most: (field, *taylor(field, tableau, most, standing))
-    )
-
-
-def taylor(
-    field: VectorField, tableau: RungeKutta, most: int, standing: int | None = None
-) -> tuple[Series, Series]:
-    """The Taylor series of p' and q' up to h^most; `standing` as above."""
-    ring = field.ring
-    names = ("p", "q", "t") if field.timed else ("p", "q")
-    start = [Series.of(ring, [ring.variable(name)], most) for name in names]
-    force = [-field.h_q, field.h_p]
-    gradient = [partials(ring, x) for x in force]
-    stands = field.timed and standing is not None
-    pace = Series.of(ring, [] if stands else [ring.one], most)
-    begin = list(start)
-    if stands:
-        begin[2] += Series.of(ring, [ring.zero, ring.constant(Fraction(standing or 0))], most)
-
-    def moved(weights: Sequence[Fraction], slopes: Sequence[list[Series]]) -> list[Series]:
-        result = []
-        for i, x in enumerate(begin):
-            total = Series.of(ring, [], most)
-            for w, k in zip(weights, slopes, strict=True):
-                total += k[i].times(w)
-            result.append(x + total.shifted(1))
-        return result
-
-    def slope(point: Sequence[Series]) -> list[Series]:
-        u, v, *w = (x - x0 for x, x0 in zip(point, start, strict=True))
-        if w:
-            return [*(at_time(ring, x, u, v, w[0]) for x in force), pace]
-        return [at_point(partial, u, v) for partial in gradient]
-
-    p, q, *_ = tableau.step(slope, moved)
-    return p, q
+    clock = Fraction(standing) if standing is not None else None
+    step = partial(tableau.changes, standing=clock)
+    return StepMap(hamiltonian, (substep,), lambda most: series_in_plane(field, step, most))

@@ -12,11 +12,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from itertools import cycle
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from verify.algebra.formula import symbol
 from verify.algebra.ring import Poly
-from verify.algebra.series.power_series import Series, at_time
 from verify.effort import limited
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -24,6 +23,7 @@ from verify.hamiltonians.vector_field import VectorField
 from verify.late import sympy
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting_conditions import LETTERS, Nearby, Part, Parts, Splitting, expressed
+from verify.schemes.step_algebra import Step, StepAlgebra, series_in_plane
 from verify.schemes.step_map import Expanded, StepMap, Substep
 
 Times: TypeAlias = "tuple[sympy.Expr | None, ...]"  # those that are given, None for one that is not
@@ -180,12 +180,21 @@ def _taylor(
     """p' and q' up to h^most."""
     numbers = [x for (_, size), time in zip(parts, times, strict=True) for x in (size, time)]
     field, exact = hamiltonian.field(*numbers)
-    ring = field.ring
-    start = {name: Series.of(ring, [ring.variable(name)], most) for name in ("p", "q")}
-    z = dict(start)
-    for (kind, _), size, time in zip(parts, exact[0::2], exact[1::2], strict=True):
-        u, v = (z[name] - start[name] for name in ("p", "q"))
-        clock = Series.of(ring, [ring.zero, time], most)
-        moved = at_time(ring, _move(field, kind), u, v, clock).times(size).shifted(1)
-        z["p" if kind == "kick" else "q"] += moved
-    return field, z["p"], z["q"]
+    step = shears_step([kind for kind, _ in parts], exact[0::2], exact[1::2])
+    return series_in_plane(field, step, most)
+
+
+def shears_step(kinds: Sequence[str], sizes: Sequence[Poly], times: Sequence[Poly]) -> Step:
+    """How z' is made: the sizes and times of kicks and drifts in the ring of H's field."""
+
+    def changes(algebra: StepAlgebra[Any]) -> list[Any]:
+        n = algebra.size // 2
+        moves = {"kick": range(n), "drift": range(n, 2 * n)}
+        found = [algebra.nothing] * algebra.size
+        for kind, size, time in zip(kinds, sizes, times, strict=True):
+            slopes = algebra.slopes(found, time, moves[kind])
+            for place, slope in zip(moves[kind], slopes, strict=True):
+                found[place] = algebra.moved(found[place], [size], [slope])
+        return found
+
+    return changes

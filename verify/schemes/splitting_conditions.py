@@ -1,4 +1,4 @@
-"""Order, area and symmetry of a splitting, by conditions on its coefficients, evaluated exactly.
+"""Order and area of a splitting, by conditions on its coefficients, evaluated exactly.
 
 With K and D the Lie derivatives of kick and drift, the step is S = exp(k₁hK) exp(d₁hD) …, in the
 order in which it is made, and the exact flow is exp(h(K + D)). Both are power series in two letters
@@ -25,8 +25,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from functools import cached_property
-from math import factorial
+from functools import cached_property, partial
 from typing import ClassVar, TypeAlias
 
 import flint
@@ -38,8 +37,9 @@ from verify.late import sympy
 from verify.prose import count
 from verify.schemes.conditions import Condition, NearbyOrder
 from verify.schemes.every_hamiltonian import StageEquations
-from verify.schemes.free_lie_words import lyndon
 from verify.schemes.residue import condition_of
+from verify.schemes.words.equations import TimedEquation, equations_of_words
+from verify.schemes.words.step_words import StepWords
 
 # "kick" or "drift", and what part of h it takes: what needs no root may be a Fraction, whose scheme
 # then needs no sympy.
@@ -101,24 +101,17 @@ class Splitting:
 
     def order_conditions(self, order: int) -> tuple[Condition, ...]:
         """One for each Lyndon word of at most `order` letters; InputError beyond order 8."""
-        if order > MOST_ORDER:
-            raise InputError("order", order, f"of a splitting is proved up to {MOST_ORDER}")
-        lengths = range(1, order + 1)
-        return tuple(self._of_word(word) for n in lengths for word in lyndon("splitting", n))
-
-    def _of_word(self, word: str) -> Condition:
-        if word not in self._known:
-            ring, parts = self.numbers
-            flow = Fraction(1, factorial(len(word)))
-            residue = coefficient(ring, parts, word) - ring.constant(flow)
-            self._known[word] = condition_of(
-                ring, _equation(word, flow), len(word), residue, _DIGITS
-            )
-        return self._known[word]
+        return self._conditions.up_to(order)
 
     @cached_property
-    def _known(self) -> dict[str, Condition]:
-        return {}
+    def words(self) -> StepWords:
+        """The step's coefficients of words."""
+        ring, parts = self.numbers
+        return StepWords(ring, [(letter, size, ring.zero) for letter, size in parts])
+
+    @cached_property
+    def _conditions(self) -> WordConditions:
+        return WordConditions(self.numbers[0], self.words, partial(equations_of_words, ""))
 
     def area_conditions(self) -> tuple[Condition, ...]:
         """That every kick and every drift has determinant 1, whatever its size, T and V."""
@@ -136,27 +129,6 @@ class Splitting:
             )
         return tuple(found)
 
-    def symmetry_conditions(self) -> tuple[Condition, ...]:
-        """That it is a palindrome; neighbours of one kind are one part, and none is 0.
-
-        Then the step of −h undoes that of h: its parts are those of h, in reverse and negative.
-        Conversely, parts that alternate and are not 0 are determined by the product of their
-        exponentials.
-        """
-        ring, parts = self.numbers
-        merged = _alternating(ring, parts)
-        found = []
-        if merged and merged[0][0] != merged[-1][0]:
-            name = (
-                f"the first and the last part are of one kind, not {merged[0][0]}, {merged[-1][0]}"
-            )
-            found.append(Condition(name, 0, "1", False))
-        for k in range(len(merged) // 2):
-            residue = merged[k][1] - merged[-1 - k][1]
-            name = f"part {k + 1} = part {len(merged) - k}"
-            found.append(condition_of(ring, name, 0, residue, _DIGITS))
-        return tuple(found)
-
     @property
     def stages(self) -> StageEquations | None:
         """The same scheme in stages; None where a coefficient is irrational."""
@@ -170,35 +142,27 @@ def expressed(parts: Sequence[Part]) -> Parts:
     return tuple((kind, sympy.sympify(size)) for kind, size in parts)
 
 
-def coefficient(ring: Ring, parts: Sequence[tuple[str, Poly]], word: str) -> Poly:
-    """The coefficient of the word in Π exp(a_i X_i), X_i the letters of the parts.
+class WordConditions:
+    """Conditions on a step's coefficients of words, those of each weight made once."""
 
-    `reached[n]` is that of its first n letters; a part with the letters that follow takes it on,
-    with a^m/m! for m of them.
-    """
-    reached = [ring.one, *[ring.zero] * len(word)]
-    for letter, size in parts:
-        for end in range(len(word), 0, -1):
-            share = ring.one
-            for length in range(1, end + 1):
-                if word[end - length] != letter:
-                    break
-                share = ring.multiply(share, size) / length
-                reached[end] += ring.multiply(share, reached[end - length])
-    return reached[-1]
+    def __init__(
+        self, ring: Ring, words: StepWords, equations: Callable[[int], Sequence[TimedEquation]]
+    ) -> None:
+        self.ring, self.words, self.equations = ring, words, equations
+        self._known: dict[int, tuple[Condition, ...]] = {}
 
+    def up_to(self, order: int) -> tuple[Condition, ...]:
+        """Those of weights 1 … `order`; InputError beyond order 8."""
+        if order > MOST_ORDER:
+            raise InputError("order", order, f"of a splitting is proved up to {MOST_ORDER}")
+        return tuple(c for n in range(1, order + 1) for c in self._of_weight(n))
 
-def _equation(word: str, flow: Fraction) -> str:
-    name = f"coefficient of {word} = {flow}"
-    return {"K": f"Σ kicks = 1, {name}", "D": f"Σ drifts = 1, {name}"}.get(word, name)
-
-
-def _alternating(ring: Ring, parts: Sequence[tuple[str, Poly]]) -> list[tuple[str, Poly]]:
-    """The same product with no part 0, and no two neighbours of one letter."""
-    found: list[tuple[str, Poly]] = []
-    for letter, size in parts:
-        if found and found[-1][0] == letter:
-            size = ring.reduce(found.pop()[1] + size)
-        if ring.decide(size).zero is not True:
-            found.append((letter, size))
-    return found
+    def _of_weight(self, n: int) -> tuple[Condition, ...]:
+        if n not in self._known:
+            equations = self.equations(n)
+            self.words.prepare({word for each in equations for word in each.needed})
+            self._known[n] = tuple(
+                condition_of(self.ring, each.name, n, each.residue(self.words), _DIGITS)
+                for each in equations
+            )
+        return self._known[n]

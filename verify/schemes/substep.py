@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from verify.algebra.ring import Poly, Ring
-from verify.algebra.series.power_series import Series, at_point, partials
+from verify.algebra.series.power_series import Derivatives, Series, at_moved
 from verify.hamiltonians.vector_field import VectorField
 from verify.schemes.composition import arguments
 from verify.schemes.conditions import Condition
@@ -152,7 +152,10 @@ class Substep:
         ring, start = self.ring, [self.ring.variable(name) for name in ("p", "q")]
         if self.terms is None:
             return None
-        u, v = (x - Series.of(ring, [y], x.most) for x, y in zip((p, q), start, strict=True))
+        moves = [
+            (name, x - Series.of(ring, [y], x.most))
+            for name, x, y in zip(("p", "q"), (p, q), start, strict=True)
+        ]
         result = []
         for powers, own in zip(self.terms, start, strict=True):
             if powers.get(0) != own:
@@ -160,7 +163,7 @@ class Substep:
             total = Series.of(ring, [], p.most)
             for n, x in powers.items():
                 if n <= p.most:
-                    total += at_point(partials(ring, x), u, v).shifted(n)
+                    total += at_moved(Derivatives(ring, x), moves, p.most).shifted(n)
             result.append(total)
         return result[0], result[1]
 

@@ -17,8 +17,10 @@ from verify.algebra.enclosure import enclose, enclosed, points
 from verify.algebra.series.power_series import partials
 from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians.vector_field import VectorField
+from verify.schemes.coloured_trees import symmetry
+from verify.schemes.elementary_differentials import Differentials
 from verify.schemes.implicit_tableau import ImplicitTableau
-from verify.schemes.tree_conditions import MOST_ORDER, Differentials, gaps_of, symmetry
+from verify.schemes.tree_conditions import MOST_ORDER, gaps_of
 
 _POINTS = 8
 _PRECISION = 192
@@ -65,7 +67,9 @@ class _AtPoint:
         self._of_p, self._of_q = (partials(field.ring, x) for x in (field.h_p, field.h_q))
         self._known: dict[tuple[int, int], flint.arb] = {}
 
-    def h(self, i: int, j: int) -> flint.arb:
+    def h(self, i: int, j: int, k: int = 0) -> flint.arb:
+        if k:
+            return self.zero
         if (i, j) not in self._known:
             x = self._of_p(i - 1, j) if i else self._of_q(0, j - 1)
             value = enclose(self.field.ring, x, self.point, _PRECISION)

@@ -1,11 +1,15 @@
 """Splittings with planted errors, and all the splittings there are."""
 
+from collections.abc import Sequence
+
 import sympy
 
 from verify import schemes
+from verify.algebra.ring import Poly, Ring
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import splitting
 from verify.schemes.splitting_conditions import Part, Splitting
+from verify.schemes.words.step_words import StepWords
 
 SPLITTINGS = tuple(n for n in schemes.names() if isinstance(schemes.get(n).every_h, Splitting))
 
@@ -14,6 +18,12 @@ def parts_of(name: str) -> list[Part]:
     generic = schemes.get(name).every_h
     assert isinstance(generic, Splitting)
     return list(generic.parts)
+
+
+def coefficient(ring: Ring, parts: Sequence[tuple[str, Poly]], word: str) -> Poly:
+    """The coefficient of the word in Π exp(a_i X_i), X_i the letters of the parts."""
+    step = StepWords(ring, [(letter, size, ring.zero) for letter, size in parts])
+    return step.coefficient(tuple((letter, 0) for letter in word))
 
 
 def made(name: str, parts: list[Part]) -> Scheme:

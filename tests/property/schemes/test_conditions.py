@@ -11,10 +11,11 @@ from hypothesis import strategies as st
 from tests.examples import drawn
 from tests.helpers.constructed.schemes import Made, conditions
 from tests.helpers.sampled.formulas import polynomials, rationals
+from tests.helpers.symmetry import palindromic, prove_symmetry
 from verify.algebra.embedding import embed
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import prove_by_conditions
-from verify.proof.symmetry import by_series, palindromic, prove_symmetry
+from verify.proof.symmetry import by_series
 from verify.schemes import get
 from verify.schemes.every_hamiltonian import Stage, StageEquations
 from verify.schemes.residue import decimal_of

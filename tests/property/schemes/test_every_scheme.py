@@ -8,12 +8,12 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from tests.helpers.sampled.formulas import H, P, Q, plain, polynomials, zero_there
+from tests.helpers.symmetry import prove_symmetry
 from verify import schemes
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.every import prove_every
 from verify.proof.order import prove
-from verify.proof.symmetry import prove_symmetry
 from verify.schemes import get, names
 from verify.schemes.every_hamiltonian import TaylorSeries
 from verify.schemes.methods.taylor.lie import eta_of

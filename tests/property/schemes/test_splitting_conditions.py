@@ -14,14 +14,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
+from tests.helpers.planted.splittings import coefficient
+from tests.helpers.symmetry import prove_symmetry, symmetry_conditions
 from verify.algebra.embedding import embed
 from verify.errors import InputError
 from verify.proof.by_conditions import first_wrong, prove_by_conditions
-from verify.proof.symmetry import prove_symmetry
 from verify.schemes import get
 from verify.schemes.methods.user import splitting as own_splitting
 from verify.schemes.splitting import splitting
-from verify.schemes.splitting_conditions import MOST_ORDER, Splitting, coefficient
+from verify.schemes.splitting_conditions import MOST_ORDER, Splitting
 from verify.verdict import Verdict
 
 Surd = tuple[Fraction, Fraction]  # a + b √2
@@ -185,7 +186,7 @@ def mirrored(parts: Parts) -> Parts:
 @given(st.one_of(drawn_parts(), drawn_parts().map(mirrored)))
 def test_a_splitting_is_symmetric_where_what_is_left_of_it_is_a_palindrome(parts: Parts) -> None:
     own, left = splitting_of(parts), merged(parts)
-    conditions = own.symmetry_conditions()
+    conditions = symmetry_conditions(own)
     if left:
         assert all(c.holds for c in conditions) == (left == left[::-1])
         assert len(conditions) == len(left) // 2 + (left[0][0] != left[-1][0])

@@ -16,21 +16,11 @@ from verify.algebra.series.jets import Jets
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes import get
+from verify.schemes.coloured_trees import Tree, condition_text, density, symmetry, vertices
+from verify.schemes.elementary_differentials import Differentials, cancel
 from verify.schemes.every_hamiltonian import TaylorSeries
 from verify.schemes.implicit_tableau import ImplicitTableau
-from verify.schemes.tree_conditions import (
-    MOST_ORDER,
-    Differentials,
-    Tree,
-    TreeConditions,
-    _cancels,
-    condition_text,
-    density,
-    gaps_of,
-    symmetry,
-    trees,
-    vertices,
-)
+from verify.schemes.tree_conditions import MOST_ORDER, TreeConditions, gaps_of, trees
 from verify.schemes.tree_order import order_of
 
 quick = drawn(25)
@@ -39,10 +29,11 @@ quick = drawn(25)
 def monotone(tree: Tree) -> Fraction:
     """In how many ways its vertices are numbered upwards, n!/(σ γ), by counting."""
     count, left = 1, vertices(tree) - 1
-    for child in tree:
+    _, branches = tree
+    for child in branches:
         count *= math.comb(left, vertices(child)) * monotone(child)
         left -= vertices(child)
-    same = [tree.count(child) for child in dict.fromkeys(tree)]
+    same = [branches.count(child) for child in dict.fromkeys(branches)]
     return Fraction(count, math.prod(map(math.factorial, same)))
 
 
@@ -51,7 +42,7 @@ def test_rooted_trees_are_all_and_weighted_as_the_flow_weights_them(order: int) 
     known = trees(order)
     assert len(set(known)) == len(known) == (1, 1, 2, 4, 9, 20, 48, 115)[order - 1]
     assert {vertices(t) for t in known} == {order}
-    assert all(list(t) == sorted(t, key=place) for t in known)
+    assert all(list(t) == sorted(t, key=place) for _, t in known)
     labelled = sum(Fraction(math.factorial(order), symmetry(t)) for t in known)
     assert labelled == order ** (order - 1), "Cayley"
     for tree in known:
@@ -88,8 +79,8 @@ def test_only_what_cancels_for_every_h_is_taken_for_nothing(
     gaps = {t: one * symmetry(t) * size * sign for t, sign in zip(alike, (1, -1), strict=True)}
     if other is not None:
         gaps[other] = gaps.get(other, one * 0) + one / 7
-    jets = Jets(5, separable=separable)
-    assert _cancels(numbers.ring, gaps, jets) is (other is None)
+    own = Differentials(Jets(5, separable=separable))
+    assert cancel(numbers.ring, gaps, own) is (other is None)
 
 
 numbers = st.builds(Fraction, st.integers(-2, 3), st.integers(1, 3))
@@ -119,7 +110,7 @@ def tableau_of(rows: list[list[Fraction]], weights: list[Fraction]) -> ImplicitT
 def weighted(rows: list[list[Fraction]], tree: Tree, at: int) -> Fraction:
     """Φ_i(t), by its definition."""
     return math.prod(
-        (sum(rows[at][j] * weighted(rows, t, j) for j in range(len(rows))) for t in tree),
+        (sum(rows[at][j] * weighted(rows, t, j) for j in range(len(rows))) for t in tree[1]),
         start=Fraction(1),
     )
 
@@ -215,13 +206,13 @@ def differences(
     p, q = sympy.symbols("p q", real=True)
 
     def differential(tree: Tree) -> tuple[sympy.Expr, sympy.Expr]:
-        inner = [differential(t) for t in tree]
+        inner = [differential(t) for t in tree[1]]
         total = [-hamiltonian.diff(q), hamiltonian.diff(p)]
         for k, y in enumerate(total):
             total[k] = sum(
                 y.diff(p, parts.count(0), q, parts.count(1))
                 * math.prod(v[x] for v, x in zip(inner, parts, strict=True))
-                for parts in product((0, 1), repeat=len(tree))
+                for parts in product((0, 1), repeat=len(inner))
             )
         return sympy.expand(total[0]), sympy.expand(total[1])
 

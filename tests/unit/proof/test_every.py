@@ -11,7 +11,8 @@ import sympy
 
 from tests.helpers.sampled.formulas import P, Q, plain
 from verify import schemes
-from verify.algebra.series.jets import Jets, multiplied
+from verify.algebra.series.jets import Jets
+from verify.algebra.series.power_series import Derivatives, Series, at_moved
 from verify.errors import InputError
 from verify.proof import every
 from verify.proof.every import prove_every
@@ -99,13 +100,9 @@ def test_a_shifted_derivative_is_taylors_formula() -> None:
     h = sympy.Symbol("h")
     moved = CUBIC.diff(P).subs({P: P + h + 2 * h**2, Q: Q - 3 * h + h**3}, simultaneous=True)
     expected = sympy.Poly(sympy.expand(moved), h).all_coeffs()[::-1]
-    for n, x in enumerate(jets.shifted(1, 0, dp, dq)):
+    moves = [(name, Series.of(jets, x, 3)) for name, x in (("p", dp), ("q", dq))]
+    for n, x in enumerate(at_moved(Derivatives(jets, jets.h(1, 0)), moves, 3).coefficients):
         assert at(jets, x, CUBIC) == sympy.expand(expected[n])
-
-
-def test_series_are_multiplied_up_to_their_end() -> None:
-    one = Jets(1).one
-    assert multiplied([one, 2 * one], [3 * one, 5 * one]) == [3 * one, 11 * one]
 
 
 # -- the Lie-derivative scheme --------------------------------------------------------------------

@@ -54,7 +54,7 @@ parts = st.lists(
 def test_the_logarithm_of_the_exponentials_gives_the_same_terms(chosen) -> None:
     sizes = tuple((kind, sympy.Rational(x.numerator, x.denominator)) for kind, x in chosen)
     own = Splitting(sizes)
-    jets, logarithm = Jets(7, separable=True), Logarithm(own)
+    jets, logarithm = Jets(7, separable=True), Logarithm(own, 5)
     assert own.stages is not None
     series = own.stages.taylor(jets, 5)
     vectors = modified_every.modified_field(jets, *series)

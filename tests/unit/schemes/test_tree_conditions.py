@@ -10,6 +10,7 @@ import pytest
 import sympy
 
 from tests.helpers.stepping.implicit_steps import NONLINEAR, RADAU, TABLEAUS, places, planted
+from tests.helpers.symmetry import symmetry_conditions
 from verify import schemes
 from verify.algebra.series.jets import Jets
 from verify.errors import InputError
@@ -17,20 +18,13 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof import every
 from verify.proof.every import EveryProof, counterexample, prove_every
 from verify.proof.order import convergence_of, prove
+from verify.schemes.coloured_trees import condition_text, density, symmetry, vertices
 from verify.schemes.conditions import ByConditions, Condition
+from verify.schemes.elementary_differentials import Differentials, cancel
 from verify.schemes.implicit_runge_kutta import implicit_map
 from verify.schemes.implicit_tableau import ImplicitTableau
 from verify.schemes.scheme import Scheme
-from verify.schemes.tree_conditions import (
-    Differentials,
-    TreeConditions,
-    _cancels,
-    condition_text,
-    density,
-    symmetry,
-    trees,
-    vertices,
-)
+from verify.schemes.tree_conditions import TreeConditions, trees
 from verify.schemes.tree_order import order_of
 from verify.verdict import Verdict
 
@@ -126,7 +120,7 @@ def test_known_methods_have_their_order(name: str) -> None:
 def test_known_methods_preserve_area_and_are_symmetric_as_is_known(name: str) -> None:
     tableau, _ = KNOWN[name]
     assert all(c.holds for c in tableau.area_conditions()) is (name in PRESERVING)
-    assert all(c.holds for c in tableau.symmetry_conditions()) is (name in SYMMETRIC)
+    assert all(c.holds for c in symmetry_conditions(TreeConditions(tableau))) is (name in SYMMETRIC)
 
 
 @pytest.mark.parametrize("name", KNOWN)
@@ -290,12 +284,12 @@ def test_only_what_cancels_for_every_h_is_taken_for_nothing() -> None:
     ring = TABLEAUS["gauss4"].numbers.ring
     gap = TABLEAUS["gauss4"].numbers.a[0][1]
     shares = {tree: gap * symmetry(tree) for tree in trees(5)}
-    for jets in (Jets(5), Jets(5, separable=True)):
-        assert _cancels(ring, {one: shares[one], other: -shares[other]}, jets) is True
-        assert _cancels(ring, {one: shares[one], other: shares[other]}, jets) is False
-        assert _cancels(ring, {one: shares[one]}, jets) is False
+    for own in (Differentials(Jets(5)), Differentials(Jets(5, separable=True))):
+        assert cancel(ring, {one: shares[one], other: -shares[other]}, own) is True
+        assert cancel(ring, {one: shares[one], other: shares[other]}, own) is False
+        assert cancel(ring, {one: shares[one]}, own) is False
         for tree in set(trees(5)) - {one, other}:
-            assert _cancels(ring, {one: shares[one], tree: -shares[tree]}, jets) is False
+            assert cancel(ring, {one: shares[one], tree: -shares[tree]}, own) is False
 
 
 # -- input ----------------------------------------------------------------------------------------

@@ -10,45 +10,42 @@ A scheme for every H is a pair of series in h over these polynomials: lists of t
 h⁰, h¹, …, cut off at the same power.
 """
 
-import math
-from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
-from itertools import product
 
 import flint
+
+from verify.algebra.series.jets_in_degrees import JetsInDegrees
 
 Poly = flint.fmpq_mpoly
 Series = list[Poly]
 
 
-class JetRing(ABC):
-    """Polynomials in p, q and derivatives of H: `names` are those of all variables."""
+class JetRing(JetsInDegrees):
+    """The ring of p, q and derivatives of H in the plane; `timed`: H depends on t."""
 
-    def __init__(self, names: Sequence[str]) -> None:
-        self.context = flint.fmpq_mpoly_ctx.get(list(names), flint.Ordering.degrevlex)
-        self.names = tuple(names)
-        self.gens = self.context.gens()
+    def __init__(self, order: int, *, separable: bool = False, timed: bool = False) -> None:
+        super().__init__(("p", "q"), order, separable=separable, timed=timed)
+        self.timed, self.names = timed, self.context.names()
         self.p, self.q = self.gens[:2]
-        self.zero, self.one = self.context.constant(0), self.context.constant(1)
+        self._along_flow = {"p": [self.p], "q": [self.q]}  # each derivative made once
 
-    @abstractmethod
-    def diff(self, x: Poly, name: str) -> Poly:
-        """∂x/∂p or ∂x/∂q; ∂x/∂t where H depends on time."""
+    def h(self, i: int, j: int, k: int = 0) -> Poly:
+        """∂_pⁱ ∂_q^j ∂_t^k H, which is 0 for k > 0 where H does not depend on time."""
+        if self.timed:
+            return self.of((i, j, k))
+        return self.zero if k else self.of((i, j))
 
-    @abstractmethod
     def derive(self, x: Poly) -> Poly:
-        """The derivative along the flow."""
-
-    def reduce(self, x: Poly) -> Poly:
-        """x itself: between jets there are no relations."""
-        return x
+        """The derivative along the flow: X x, or D x where H depends on time."""
+        along = self.h(1, 0) * self.diff(x, "q") - self.h(0, 1) * self.diff(x, "p")
+        return along + self.diff(x, "t") if self.timed else along
 
     def lie_derivatives(self, name: str, most: int) -> Series:
         """[y, X y, …, X^most y] of y = p or q."""
-        result = [self.p if name == "p" else self.q]
-        for _ in range(most):
-            result.append(self.derive(result[-1]))
-        return result
+        known = self._along_flow[name]
+        while len(known) <= most:
+            known.append(self.derive(known[-1]))
+        return known[: most + 1]
 
     def bracket(self, x: Poly, y: Poly) -> Poly:
         """∂(x, y)/∂(p, q)."""
@@ -63,69 +60,11 @@ class JetRing(ABC):
 
 
 class Jets(JetRing):
-    """The ring of p, q and H_ij for 1 ≤ i + j ≤ `order`; OverflowError for a derivative beyond."""
+    """Those of H(p, q): the ring of p, q and H_ij for 1 ≤ i + j ≤ `order`; OverflowError for a
+    derivative beyond."""
 
     def __init__(self, order: int, *, separable: bool = False) -> None:
-        self.order, self.separable = order, separable
-        self.indices = [
-            (n - j, j)
-            for n in range(1, order + 1)
-            for j in range(n + 1)
-            if not separable or j in (0, n)
-        ]
-        super().__init__(["p", "q", *("H_" + "p" * i + "q" * j for i, j in self.indices)])
-        self._at = {index: k + 2 for k, index in enumerate(self.indices)}
-
-    def h(self, i: int, j: int) -> Poly:
-        """H_ij."""
-        if self.separable and i and j:
-            return self.zero
-        if i + j > self.order:
-            raise OverflowError(f"a derivative of order {i + j} of H; there are {self.order}")
-        return self.gens[self._at[i, j]]
-
-    # -- derivatives --------------------------------------------------------------------------
-
-    def diff(self, x: Poly, name: str) -> Poly:
-        """∂x/∂p or ∂x/∂q."""
-        di, dj = (1, 0) if name == "p" else (0, 1)
-        total = x.derivative("pq".index(name))
-        for at, degree in enumerate(x.degrees()[2:], 2):
-            if degree > 0:  # −1 of zero
-                i, j = self.indices[at - 2]
-                total += x.derivative(at) * self.h(i + di, j + dj)
-        return total
-
-    def derive(self, x: Poly) -> Poly:
-        """X x, the derivative along the flow."""
-        return self.h(1, 0) * self.diff(x, "q") - self.h(0, 1) * self.diff(x, "p")
-
-    # -- series -------------------------------------------------------------------------------
-
-    def shifted(self, i: int, j: int, dp: Series, dq: Series) -> Series:
-        """H_ij at (p + dp, q + dq), by Taylor's formula; dp and dq are series without h⁰."""
-        most = len(dp)
-        powers = [self._powers(d) for d in (dp, dq)]
-        total = [self.zero] * most
-        for a, b in product(range(most), repeat=2):
-            if a + b >= most or (self.separable and (i + a) and (j + b)):
-                continue
-            scale = self.h(i + a, j + b) / (math.factorial(a) * math.factorial(b))
-            for n, x in enumerate(multiplied(powers[0][a], powers[1][b])):
-                total[n] += scale * x
-        return total
-
-    def _powers(self, d: Series) -> list[Series]:
-        """[1, d, d², …], each as long as d."""
-        result = [[self.one] + [self.zero] * (len(d) - 1)]
-        while len(result) < len(d):
-            result.append(multiplied(result[-1], d))
-        return result
-
-
-def multiplied(x: Series, y: Series) -> Series:
-    """The product of two series of one length, cut off there."""
-    return [sum((x[k] * y[n - k] for k in range(n + 1)), x[0] * 0) for n in range(len(x))]
+        super().__init__(order, separable=separable)
 
 
 def shown(x: Poly) -> str:

@@ -30,7 +30,7 @@ class JetsInDegrees:
         self, names: Sequence[str], order: int, *, separable: bool = False, timed: bool = False
     ) -> None:
         self.variables = (*names, "t") if timed else tuple(names)
-        self.order, self._half, self._separable = order, len(names) // 2, separable
+        self.order, self._half, self.separable = order, len(names) // 2, separable
         kinds, by = (2, self._half + timed) if separable else (1, len(self.variables))
         count = kinds * math.comb(by + order, order)
         if count > _MOST_JETS:
@@ -41,7 +41,7 @@ class JetsInDegrees:
         self.context = flint.fmpq_mpoly_ctx.get(
             [*self.variables, *written], flint.Ordering.degrevlex
         )
-        self._gens = self.context.gens()
+        self.gens = self.context.gens()
         self.zero, self.one = self.context.constant(0), self.context.constant(1)
         self.places = {name: k for k, name in enumerate(self.variables)}
         self._at = {index: len(self.variables) + k for k, index in enumerate(self.indices)}
@@ -53,22 +53,22 @@ class JetsInDegrees:
 
     def _vanishes(self, index: Index) -> bool:
         half = self._half
-        return self._separable and any(index[:half]) and any(index[half : 2 * half])
+        return self.separable and any(index[:half]) and any(index[half : 2 * half])
 
     def _called(self, index: Index) -> str:
         return "H_" + "".join(name * n for name, n in zip(self.variables, index, strict=True))
 
-    def h(self, index: Index) -> Poly:
+    def of(self, index: Index) -> Poly:
         """That derivative of H."""
         if self._vanishes(index):
             return self.zero
         if sum(index) > self.order:
             raise OverflowError(f"a derivative of order {sum(index)} of H; there are {self.order}")
-        return self._gens[self._at[index]]
+        return self.gens[self._at[index]]
 
     def first(self, name: str) -> Poly:
         """∂H/∂name."""
-        return self.h(tuple(int(other == name) for other in self.variables))
+        return self.of(tuple(int(other == name) for other in self.variables))
 
     # -- as a ring ----------------------------------------------------------------------------
 
@@ -86,7 +86,7 @@ class JetsInDegrees:
 
     def variable(self, name: str) -> Poly:
         """A variable as an element."""
-        return self._gens[self.places[name]]
+        return self.gens[self.places[name]]
 
     def diff(self, x: Poly, name: str) -> Poly:
         """The partial derivative by a variable, which sends H's derivatives to the next."""
@@ -96,7 +96,7 @@ class JetsInDegrees:
             if degree > 0:  # −1 of zero
                 index = list(self.indices[at - count])
                 index[by] += 1
-                total += x.derivative(at) * self.h(tuple(index))
+                total += x.derivative(at) * self.of(tuple(index))
         return total
 
     def decide(self, x: Poly) -> Decision:

@@ -5,8 +5,7 @@ f(p + u, q + v) with u, v = O(h) is exact in every coefficient that is kept, wha
 no closed form of a composition is written down on the way.
 """
 
-import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -97,56 +96,47 @@ def partials(ring: CoefficientRing, x: Poly) -> Partial:
     return partial
 
 
-def at_point(partial: Partial, u: Series, v: Series) -> Series:
-    """f(p + u, q + v) for the function f with these partial derivatives; u and v are O(h)."""
-    if not (u.coefficients[0].is_zero() and v.coefficients[0].is_zero()):
-        raise ValueError("the point is not (p, q) at h = 0")
-    ring, most = u.ring, u.most
-    total = Series.of(ring, [], most)
-    one = Series.of(ring, [ring.one], most)
-    along_p = one
-    for i in range(most + 1):
-        both = along_p
-        for j in range(most + 1 - i):
-            derivative = partial(i, j)
-            if derivative.is_zero() or both.vanishes:  # and so are all further ones by q
-                break
-            share = Fraction(1, math.factorial(i) * math.factorial(j))
-            total += both.times(derivative * ring.constant(share))
-            both = both * v
-        if partial(i, 0).is_zero():
-            break
-        along_p = along_p * u
-    return total
+class Derivatives:
+    """A ring element, with its derivatives, each made once."""
+
+    def __init__(self, ring: CoefficientRing, element: Poly) -> None:
+        self.ring, self.element = ring, element
+        self._known: dict[str, Derivatives] = {}
+
+    def by(self, name: str) -> "Derivatives":
+        """∂/∂name, with its own derivatives."""
+        if name not in self._known:
+            self._known[name] = Derivatives(self.ring, self.ring.diff(self.element, name))
+        return self._known[name]
 
 
-def at_moved(
-    ring: CoefficientRing, x: Poly, moves: Sequence[tuple[str, Series]], most: int
-) -> Series:
+def at_moved(x: Derivatives, moves: Sequence[tuple[str, Series]], most: int) -> Series:
     """The ring element x, up to h^most, where each variable of a name is moved by its series, O(h).
 
-    One variable after the other, so that an x with few of them is soon done.
+    By Taylor's formula, one variable after the other, so that an x with few of them is soon done.
     """
-    if not moves or x.is_zero():
-        return Series.of(ring, [x], most)
+    ring = x.ring
+    cut = [(name, Series.of(ring, by.coefficients, most)) for name, by in moves]
+    for name, by in cut:
+        if not by.coefficients[0].is_zero():
+            raise ValueError(f"{name} is moved at h = 0")
+    terms = _taylor_terms(x, cut, Series.of(ring, [ring.one], most), Fraction(1))
+    return sum(terms, Series.of(ring, [], most))
+
+
+def _taylor_terms(
+    x: Derivatives, moves: Sequence[tuple[str, Series]], power: Series, share: Fraction
+) -> Iterator[Series]:
+    """Of x and its derivatives by these variables, times the power of what stands before."""
+    if not moves:
+        yield power.times(x.element * x.ring.constant(share))
+        return
     (name, by), *rest = moves
-    if not by.coefficients[0].is_zero():
-        raise ValueError(f"{name} is moved at h = 0")
-    by = Series.of(ring, by.coefficients, most)
-    total, power = Series.of(ring, [], most), Series.of(ring, [ring.one], most)
-    for n in range(most + 1):
-        if x.is_zero() or power.vanishes:
-            break
-        inner = at_moved(ring, x, rest, most - n)  # the power begins with hⁿ
-        share = power.times(Fraction(1, math.factorial(n)))
-        total += Series.of(ring, inner.coefficients, most) * share
-        x, power = ring.diff(x, name), power * by
-    return total
-
-
-def at_time(ring: CoefficientRing, x: Poly, u: Series, v: Series, w: Series) -> Series:
-    """f(p + u, q + v, t + w) for the ring element f; u, v and w are O(h)."""
-    return at_moved(ring, x, (("p", u), ("q", v), ("t", w)), u.most)
+    n = 0
+    while not (x.element.is_zero() or power.vanishes):
+        yield from _taylor_terms(x, rest, power, share)
+        n += 1
+        x, power, share = x.by(name), power * by, share / n
 
 
 def delta_j(p_next: Series, q_next: Series) -> Series:

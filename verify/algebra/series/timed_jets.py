@@ -5,42 +5,18 @@ every H is the zero polynomial. The derivative along the flow is D = ∂_t + H_p
 ∂_t sends H_ijk to H_ij(k+1).
 """
 
-from verify.algebra.series.jets import JetRing, Poly
+from collections.abc import Iterator
 
-_STEPS = {"p": (1, 0, 0), "q": (0, 1, 0), "t": (0, 0, 1)}
+from verify.algebra.series.jets import JetRing
+from verify.algebra.series.jets_in_degrees import Index
 
 
 class TimedJets(JetRing):
-    """The ring of p, q and H_ijk, i + j ≥ 1, i + j + k ≤ `order`; KeyError for one beyond."""
+    """The ring of p, q, t and H_ijk, i + j ≥ 1, i + j + k ≤ `order`; KeyError for another one."""
 
     def __init__(self, order: int) -> None:
-        self.order = order
-        self.indices = [
-            (n - k - j, j, k)
-            for n in range(1, order + 1)
-            for k in range(n)
-            for j in range(n - k + 1)
-        ]
-        super().__init__(
-            ["p", "q", *("H_" + "p" * i + "q" * j + "t" * k for i, j, k in self.indices)]
-        )
-        self._at = {index: n + 2 for n, index in enumerate(self.indices)}
+        super().__init__(order, timed=True)
 
-    def h(self, i: int, j: int, k: int = 0) -> Poly:
-        """H_ijk."""
-        return self.gens[self._at[i, j, k]]
-
-    def diff(self, x: Poly, name: str) -> Poly:
-        """∂x/∂p, ∂x/∂q or ∂x/∂t."""
-        di, dj, dk = _STEPS[name]
-        total = self.zero if name == "t" else x.derivative("pq".index(name))
-        for at, degree in enumerate(x.degrees()[2:], 2):
-            if degree > 0:  # −1 of zero
-                i, j, k = self.indices[at - 2]
-                total += x.derivative(at) * self.h(i + di, j + dj, k + dk)
-        return total
-
-    def derive(self, x: Poly) -> Poly:
-        """D x, the derivative along the flow."""
-        along = self.h(1, 0) * self.diff(x, "q") - self.h(0, 1) * self.diff(x, "p")
-        return along + self.diff(x, "t")
+    def _of_order(self, n: int) -> Iterator[Index]:
+        """Those by t alone occur in no derivative along the flow."""
+        return ((n - k - j, j, k) for k in range(n) for j in range(n - k + 1))

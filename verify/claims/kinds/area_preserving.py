@@ -8,9 +8,9 @@ from verify.algebra.domain import EVERYWHERE, Domain
 from verify.claims.findings import Findings
 from verify.claims.formulas import within
 from verify.claims.orders import OF_DELTA_J, delta_j_of
+from verify.claims.proved_order import as_claimed
 from verify.claims.quantified import QuantifiedClaim
 from verify.scenes.results.claim import ClaimResult
-from verify.verdict import Verdict
 
 if TYPE_CHECKING:
     from verify.proof.every_proof import EveryProof
@@ -37,10 +37,7 @@ class AreaClaim(QuantifiedClaim):
         self, vanishes: bool | None, evidence: str, domain: Domain = EVERYWHERE
     ) -> ClaimResult:
         """Whether ΔJ ≡ 0 is as claimed."""
-        if vanishes is None:
-            return self.result(Verdict.UNDECIDED, evidence, domain=domain)
-        holds = vanishes == self.area_preserving
-        verdict = Verdict.PROVED if holds else Verdict.REFUTED
+        verdict = as_claimed(vanishes, self.area_preserving)
         return self.result(verdict, evidence, domain=domain)
 
     def why_only_here(self) -> str:

@@ -10,9 +10,9 @@ from verify.claims.claim import Claim
 from verify.claims.findings import Findings
 from verify.claims.formulas import within
 from verify.claims.orders import OF_S, defect_of
+from verify.claims.proved_order import as_claimed
 from verify.prose import Prose
 from verify.scenes.results.claim import ClaimResult
-from verify.verdict import Verdict
 
 
 class SymplecticClaim(Claim):
@@ -26,11 +26,8 @@ class SymplecticClaim(Claim):
         """By the proof for the scene's H."""
         known = defect_of(self, findings)
         domain = known.domain & known.exact_for
-        evidence = known.evidence + within(domain)
-        if known.vanishes is None:
-            return self.result(Verdict.UNDECIDED, evidence, domain=domain)
-        holds = known.vanishes == self.symplectic
-        return self.result(Verdict.PROVED if holds else Verdict.REFUTED, evidence, domain=domain)
+        verdict = as_claimed(known.vanishes, self.symplectic)
+        return self.result(verdict, known.evidence + within(domain), domain=domain)
 
     def checked_by(self, found: ClaimResult, findings: Findings) -> Sequence[Prose]:
         return of_scene(self, findings, OF_S)

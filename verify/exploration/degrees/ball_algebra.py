@@ -17,7 +17,7 @@ from verify.arithmetic.arb import Ball, rational_ball
 from verify.exploration.property import Silent, known
 from verify.hamiltonians.canonical_field import CanonicalField
 from verify.schemes.degrees.canonical_map import CanonicalMap
-from verify.schemes.degrees.step_algebra import Number, StepAlgebra
+from verify.schemes.step_algebra import Number, StepAlgebra
 
 
 @dataclass(frozen=True)

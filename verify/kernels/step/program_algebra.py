@@ -1,6 +1,6 @@
 """A scheme's step written into a kernel's program, in n degrees of freedom.
 
-See `verify.schemes.degrees.step_algebra`; a value is an operation of a program. Equations are
+See `verify.schemes.step_algebra`; a value is an operation of a program. Equations are
 solved by Newton's method, with derivatives taken in the loop's own program.
 """
 
@@ -13,7 +13,7 @@ from verify.kernels.step.increments import increments
 from verify.kernels.step.operations import Loop
 from verify.kernels.step.partials import Partials
 from verify.kernels.step.program import Evaluator, Program
-from verify.schemes.degrees.step_algebra import Number, StepAlgebra
+from verify.schemes.step_algebra import Number, StepAlgebra
 
 _ZERO = Fraction(0)
 

@@ -10,7 +10,7 @@ from verify.proof.assistant.formulas import Spelling, deep, list_of, rational, r
 from verify.proof.assistant.text import Export, template_words
 from verify.proof.certificates.coefficients import ONE, Stages, Tableau
 from verify.proof.certificates.numbers import Number
-from verify.proof.certificates.readers import Poly
+from verify.proof.certificates.readers import Poly, collected
 
 _NUMBERS = "AlgebraicNumbers"
 _SHEARS = ["Differential", "Symplectic", "Hamiltonians", "SymplecticMethods", "AlgebraicNumbers"]
@@ -92,19 +92,11 @@ def _stage_gaps(row: Sequence[Poly], separable: bool) -> list[Poly]:
 
 
 def _product(x: Poly, y: Poly) -> Poly:
-    return _collected((m + n, c * d) for m, c in x.items() for n, d in y.items())
+    return collected((m + n, c * d) for m, c in x.items() for n, d in y.items())
 
 
 def _sum(*parts: tuple[int, Poly]) -> Poly:
-    return _collected((m, sign * c) for sign, x in parts for m, c in x.items())
-
-
-def _collected(terms: Iterator[tuple[tuple[str, ...], Fraction]]) -> Poly:
-    total: Poly = {}
-    for names, c in terms:
-        key = tuple(sorted(names))
-        total[key] = total.get(key, Fraction(0)) + c
-    return {names: c for names, c in total.items() if c}
+    return collected((m, sign * c) for sign, x in parts for m, c in x.items())
 
 
 class _Numbers:

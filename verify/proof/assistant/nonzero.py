@@ -5,7 +5,7 @@ at a rational point at which sin, cos and exp are taken of 0, so that all values
 """
 
 import random
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations_with_replacement, islice, product
@@ -13,7 +13,7 @@ from math import factorial, prod
 
 from verify.proof.certificates.checker import Identities
 from verify.proof.certificates.entries import Expansion, Function, derived_by
-from verify.proof.certificates.readers import Poly
+from verify.proof.certificates.readers import Poly, collected
 
 _POINTS = 4000
 _TRIED = 40  # of them, those where all is defined
@@ -62,20 +62,13 @@ def _energy(values: Mapping[str, Fraction], point: Mapping[str, Fraction]) -> Po
         by = derived_by(name)
         term: Poly = {(): value / prod(factorial(by.count(x)) for x in set(by))}
         for x in by:  # times (x - its value)
-            term = _sum([*_times(term, x, Fraction(1)), *_times(term, None, -point[x])])
-        made = _sum([*made.items(), *term.items()])
+            term = collected([*_times(term, x, Fraction(1)), *_times(term, None, -point[x])])
+        made = collected([*made.items(), *term.items()])
     return made
 
 
 def _times(x: Poly, name: str | None, c: Fraction) -> list[tuple[tuple[str, ...], Fraction]]:
     return [(tuple(sorted([*names, *([name] if name else [])])), c * d) for names, d in x.items()]
-
-
-def _sum(terms: Iterable[tuple[tuple[str, ...], Fraction]]) -> Poly:
-    total: Poly = {}
-    for names, c in terms:
-        total[names] = total.get(names, Fraction(0)) + c
-    return {names: c for names, c in total.items() if c}
 
 
 def _value(x: Poly, values: Mapping[str, Fraction]) -> Fraction:

@@ -31,16 +31,16 @@ number is a text such as "-3/2".
 `verify.proof.certificates.checker` recomputes derivatives, flow and determinant from these alone.
 """
 
-from verify.algebra.ring import Poly
-from verify.algebra.series.jets import JetRing, Jets, Series
+from verify.algebra.series.jets import Jets
 from verify.algebra.series.timed_jets import TimedJets
 from verify.errors import InputError
-from verify.proof.certificates.by_coefficients import by_coefficients, terms
+from verify.hamiltonians.coordinates import PLANE
+from verify.proof.certificates.by_coefficients import by_coefficients
 from verify.proof.certificates.file import FORMAT, Certificate
+from verify.proof.certificates.statement import Statement, in_the_plane
 from verify.proof.every import EveryProof, telescoping_of
-from verify.proof.telescoping import potential_of_lie
 from verify.schemes import get
-from verify.schemes.every_hamiltonian import BySeries, TaylorSeries
+from verify.schemes.every_hamiltonian import BySeries
 from verify.verdict import Verdict
 
 NOT_KNOWN = "the checker knows coefficients of what preserves area, and Taylor polynomials"
@@ -60,40 +60,16 @@ def of_every(proof: EveryProof) -> Certificate:
     if proof.order is None or not proof.leading or not isinstance(every_h, BySeries):
         raise InputError("scheme", proof.scheme, NOT_KNOWN)
     most = proof.order
-    jets: JetRing
-    if proof.timed and isinstance(every_h, TaylorSeries):
-        jets = TimedJets(most + 2)
-        series = every_h.taylor(jets, most)
-    else:
-        jets = Jets(most + 2, separable=proof.separable)
-        series = every_h.taylor(jets, most)
+    jets = TimedJets(most + 2) if proof.timed else Jets(most + 2, separable=proof.separable)
+    series = every_h.taylor(jets, most)
     *_, leading = jets.delta_j(*series)
-    names = dict(enumerate(jets.names))
-    data |= map_of(most, proof.convergence_order, leading, series, names)
-    potential = _potential(jets, every_h, leading) if proof.telescopes else None
-    if potential is not None:
-        data["potential"] = terms(potential, names)
-    return data
-
-
-def _potential(jets: JetRing, every_h: BySeries, leading: Poly) -> Poly | None:
-    """The G of a leading coefficient that telescopes."""
-    if isinstance(jets, Jets):
-        return telescoping_of(jets, every_h, leading).potential
-    return potential_of_lie(jets, every_h.eta) if isinstance(every_h, TaylorSeries) else None
-
-
-def map_of(
-    order: int | None,
-    agreed: int,
-    leading: Poly,
-    series: tuple[Series, Series],
-    names: dict[int, str],
-) -> Certificate:
-    return {
-        "order": order,
-        "convergence_order": agreed,
-        "leading": terms(leading, names),
-        "p_next": [terms(x, names) for x in series[0]],
-        "q_next": [terms(x, names) for x in series[1]],
-    }
+    found = telescoping_of(jets, every_h, leading) if proof.telescopes else None
+    statement = Statement(
+        PLANE,
+        series,
+        most,
+        proof.convergence_order,
+        in_the_plane(leading),
+        None if found is None or found.potential is None else in_the_plane(found.potential),
+    )
+    return data | statement.written(dict(enumerate(jets.names)))

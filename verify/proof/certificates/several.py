@@ -5,33 +5,25 @@ What differs: `degrees` n; `next` has the coefficients of each coordinate's new 
 zero is called `p1 0`, `S 3 p1 q2`, `potential p1 q2`.
 """
 
-import math
-from collections.abc import Iterator, Mapping
-from fractions import Fraction
-from itertools import combinations
-from typing import Any
-
-from verify.algebra.ring import Poly
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.certificates.by_coefficients import by_coefficients, terms
+from verify.hamiltonians.jet_flow import JetFlow
+from verify.proof.certificates.by_coefficients import by_coefficients
 from verify.proof.certificates.every import NOT_KNOWN
 from verify.proof.certificates.file import FORMAT, Certificate
-from verify.proof.certificates.one import Plain, witness_of
+from verify.proof.certificates.plain import Plain
+from verify.proof.certificates.statement import Statement, certificate_of_one, entries_of
 from verify.proof.symplectic.defect import DefectSeries
 from verify.proof.symplectic.defect import series_of as series_of_defect
-from verify.proof.symplectic.every import JetFlow
 from verify.proof.symplectic.proof import SymplecticProof
 from verify.proof.symplectic.telescoping import potential_of_lie
-from verify.proof.symplectic.two_form import TwoForm
 from verify.schemes.degrees import kind_of, map_in_degrees
-from verify.schemes.degrees.canonical_map import State, series_of
 from verify.schemes.every_hamiltonian import TaylorSeries
 from verify.schemes.scheme import Scheme
+from verify.schemes.step_algebra import State, series_of
 from verify.verdict import Verdict
 
 _NOTHING = "there is nothing to certify"
-Names = Mapping[int, str]
 
 
 def of_one_in_degrees(
@@ -59,20 +51,15 @@ def of_one_in_degrees(
     has_potential = proof.telescopes and eta > 0 and eta % 2 == 0  # of odd η S ≡ 0 does, without
     potential = potential_of_lie(field, eta) if has_potential else None
     columns = [[row[k] for row in rows] for k in range(len(field.names))]
-    data = {
-        "format": FORMAT,
-        "degrees": proof.degrees,
-        "hamiltonian": terms(plain.without_constants(field.energy), plain.names),
-        **({"time_dependent": True} if field.timed else {}),
-        "parameters": [n for n in field.ring.variables if n not in (*field.names, "h", "t")],
-        "functions": plain.functions,
-        **_map(proof, field.names, columns, leading, potential, plain.names),
-        "cofactors": {},
-    }
-    data["witness"] = witness_of(data, field.names, proof.witness)
-    zeros = _zeros(plain, data, field.energy, columns, leading, potential)
-    data["cofactors"] = {what: plain.cofactors(x) for what, x in zeros if not x.is_zero()}
-    return data
+    statement = Statement(
+        field.names,
+        columns,
+        proof.order,
+        agreed,
+        entries_of(leading),
+        None if potential is None else entries_of(potential),
+    )
+    return certificate_of_one(statement, plain, field.energy, proof.witness)
 
 
 def of_every_in_degrees(
@@ -95,83 +82,20 @@ def of_every_in_degrees(
     kind = kind_of(scheme)
     if proof.order is None or proof.convergence_order is None or not hasattr(kind, "step"):
         raise InputError("scheme", scheme.name, NOT_KNOWN)
-    flow = JetFlow(proof.degrees, proof.order + 2, separable=data["separable"], timed=timed)
+    separable, most = data["separable"], proof.order + 2
+    flow = JetFlow.of_degrees(proof.degrees, most, separable=separable, timed=timed)
     state: State = series_of(flow, kind.step(every_h), proof.order)
     columns = [list(series.coefficients) for series in state]
     leading = DefectSeries(lambda _: (flow, state), proof.order).form(proof.order)
     potential = None
     if isinstance(every_h, TaylorSeries) and proof.telescopes:
         potential = potential_of_lie(flow, every_h.eta)
-    names = dict(enumerate(flow.ring.context.names()))
-    return data | _map(proof, flow.names, columns, leading, potential, names)
-
-
-def _map(
-    proof: SymplecticProof,
-    coordinates: tuple[str, ...],
-    rows: list[list[Poly]],
-    leading: TwoForm | None,
-    potential: TwoForm | None,
-    names: Names,
-) -> dict[str, Any]:
-    after = {
-        name: [terms(x, names) for x in row] for name, row in zip(coordinates, rows, strict=True)
-    }
-    beside = {} if potential is None else {"potential": _form(potential, names)}
-    return {
-        "order": proof.order,
-        "convergence_order": proof.convergence_order,
-        "leading": [] if leading is None or proof.order is None else _form(leading, names),
-        "next": after,
-        **beside,
-    }
-
-
-def _form(form: TwoForm, names: Names) -> list[list[Any]]:
-    return [[form.names[a], form.names[b], terms(x, names)] for (a, b), x in form.entries.items()]
-
-
-def _zeros(
-    plain: Plain,
-    data: Certificate,
-    energy: Poly,
-    rows: list[list[Poly]],
-    leading: TwoForm | None,
-    potential: TwoForm | None,
-) -> Iterator[tuple[str, Poly]]:
-    """What has to be zero, each by its name in the checker's words."""
-    ring, names = plain.ring, plain.coordinates
-    n, size, order = len(names) // 2, len(names), data["order"]
-    zero = ring.zero
-    first = [plain.diff(energy, name) for name in names]
-    slopes = [-x for x in first[n:]] + first[:n]
-
-    def along(y: Poly) -> Poly:
-        total = plain.diff(y, "t") if "t" in plain.variables else zero
-        for slope, name in zip(slopes, names, strict=True):
-            total += slope * plain.diff(y, name)
-        return total
-
-    for name, row in zip(names, rows, strict=True):
-        flow = ring.variable(name)
-        for k in range(data["convergence_order"] + 1):
-            own = row[k] if k < len(row) else zero
-            yield f"{name} {k}", own - flow * ring.constant(Fraction(1, math.factorial(k)))
-            flow = along(flow)
-    gradients = [[[plain.diff(x, by) for by in names] for x in row] for row in rows]
-    last = order or 2 * max(map(len, rows))
-    for m in range(1, last + 1):
-        for a, b in combinations(range(size), 2):
-            gap = -leading.at(a, b) if leading is not None and m == order else zero
-            for i in range(n):
-                p, q = gradients[i], gradients[n + i]
-                for k in range(max(0, m - len(q) + 1), min(m + 1, len(p))):
-                    gap += p[k][a] * q[m - k][b] - p[k][b] * q[m - k][a]
-            yield f"S {m} {names[a]} {names[b]}", gap
-    if potential is not None and leading is not None:
-        for a, b in combinations(range(size), 2):
-            gap = along(potential.at(a, b)) - leading.at(a, b)
-            for c, slope in enumerate(slopes):
-                gap += plain.diff(slope, names[a]) * potential.at(c, b)
-                gap += potential.at(a, c) * plain.diff(slope, names[b])
-            yield f"potential {names[a]} {names[b]}", gap
+    statement = Statement(
+        flow.names,
+        columns,
+        proof.order,
+        proof.convergence_order,
+        entries_of(leading),
+        None if potential is None else entries_of(potential),
+    )
+    return data | statement.written(dict(enumerate(flow.ring.context.names())))

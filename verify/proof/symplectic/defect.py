@@ -15,7 +15,8 @@ from verify.algebra.series.power_series import Series
 from verify.hamiltonians.canonical_field import CanonicalField, Flow, canonical_field
 from verify.proof.expansion import Expansion
 from verify.proof.symplectic.two_form import TwoForm, wedge
-from verify.schemes.degrees.canonical_map import CanonicalMap, State
+from verify.schemes.degrees.canonical_map import CanonicalMap
+from verify.schemes.step_algebra import State
 
 F = TypeVar("F", bound=Flow)
 Matrix = list[list[Series]]

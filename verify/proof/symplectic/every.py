@@ -10,20 +10,17 @@ what is needed in the plane is needed in n.
 """
 
 import math
-from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
-from functools import cached_property
 from typing import Any
 
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.generator import Poly
-from verify.algebra.series.jets_in_degrees import JetsInDegrees
 from verify.errors import LimitError
-from verify.hamiltonians.canonical_field import Flow
-from verify.hamiltonians.coordinates import check_degrees, numbered
+from verify.hamiltonians.coordinates import check_degrees
+from verify.hamiltonians.jet_flow import JetFlow
 from verify.proof.by_conditions import first_wrong, told_nearby
-from verify.proof.every import prove_every
+from verify.proof.every import missed, prove_every
 from verify.proof.every_in_time import prove_every_in_time
 from verify.proof.symplectic.defect import DefectSeries
 from verify.proof.symplectic.proof import MOST_TERMS, SymplecticProof
@@ -33,38 +30,15 @@ from verify.prose import Formula, Prose, prose, read_prose
 from verify.schemes import get
 from verify.schemes.conditions import Condition
 from verify.schemes.degrees import kind_of
-from verify.schemes.degrees.canonical_map import SOLVABLE, series_of
+from verify.schemes.degrees.canonical_map import SOLVABLE
 from verify.schemes.every_hamiltonian import TaylorSeries
 from verify.schemes.scheme import Scheme
+from verify.schemes.step_algebra import series_of
 from verify.schemes.tree_conditions import TreeConditions, all_trees_hold
 from verify.verdict import Verdict
 
 _MORE = 2  # orders beyond the claimed one that are looked at
 _MOST_TERMS = 5000  # (2n)^order, which is about the number of terms of X^order z
-
-
-class JetFlow(Flow):
-    """The field of every H."""
-
-    def __init__(self, degrees: int, order: int, *, separable: bool, timed: bool) -> None:
-        self.names = numbered(degrees)
-        self._jets = JetsInDegrees(self.names, order, separable=separable, timed=timed)
-
-    @property
-    def ring(self) -> JetsInDegrees:
-        """The jets."""
-        return self._jets
-
-    @cached_property
-    def slopes(self) -> tuple[Poly, ...]:
-        """−∂H/∂q and ∂H/∂p."""
-        n, first = self.degrees, self._jets.first
-        return (*(-first(q) for q in self.names[n:]), *map(first, self.names[:n]))
-
-    @property
-    def at_rest(self) -> Mapping[str | int, int]:
-        """The values that make f vanish."""
-        return {f"H_{name}": 0 for name in self.names}
 
 
 def prove_every_in_degrees(
@@ -150,7 +124,7 @@ def _by_series(
     scheme: Scheme, kind: Any, degrees: int, separable: bool, timed: bool
 ) -> SymplecticProof:
     every_h, most = scheme.every_h, scheme.order + 1
-    flow = JetFlow(degrees, most + 2, separable=separable, timed=timed)
+    flow = JetFlow.of_degrees(degrees, most + 2, separable=separable, timed=timed)
     series = DefectSeries(lambda n: (flow, series_of(flow, kind.step(every_h), n)), most)
     agreed = next((n - 1 for n in range(most + 1) if series.agrees(n)[0] is not True), most)
     own = kind.conditions(every_h)
@@ -236,9 +210,7 @@ def _held_to(scheme: Scheme, found: SymplecticProof) -> SymplecticProof:
     """REFUTED where the scheme claims more."""
     agreed = found.convergence_order
     if agreed is not None and agreed < scheme.order:
-        said = f"{scheme.name} claims order {scheme.order}; for a generic H the map agrees with the"
-        reason = read_prose(f"{said} exact flow up to `h^{agreed}` only")
-        return replace(found, verdict=Verdict.REFUTED, reason=reason)
+        return replace(found, verdict=Verdict.REFUTED, reason=missed(scheme, agreed))
     if scheme.area_preserving and found.symplectic is False:
         reason = prose(f"{scheme.name} claims to be symplectic; S has order {found.order}")
         return replace(found, verdict=Verdict.REFUTED, reason=reason)

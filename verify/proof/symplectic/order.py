@@ -13,7 +13,8 @@ from verify.algebra.ring import Decision, Poly, Ring
 from verify.hamiltonians.canonical_field import CanonicalField
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import told_nearby
-from verify.proof.order import Convergence, is_residue, nearby_convergence, nearby_defect_of
+from verify.proof.claimed import Claimed, Convergence, Words, held_to
+from verify.proof.order import is_residue, nearby_convergence, nearby_defect_of
 from verify.proof.parameters import not_zero_for
 from verify.proof.printed_formulas import told_defect
 from verify.proof.symplectic import closed_form
@@ -21,14 +22,14 @@ from verify.proof.symplectic.defect import DefectSeries, series_of
 from verify.proof.symplectic.proof import SymplecticProof
 from verify.proof.symplectic.telescoping import telescopes_of_lie
 from verify.proof.symplectic.two_form import Place, TwoForm
-from verify.prose import Prose, prose, read_prose
+from verify.prose import prose
 from verify.schemes.degrees import map_in_degrees
 from verify.schemes.degrees.canonical_map import CanonicalMap
 from verify.schemes.scheme import Scheme
 from verify.verdict import Verdict
 
 _MOST = 8  # powers of h that are looked at; more where a scheme claims a higher order
-_NO_SCHEME = "not a scheme for this H:"
+_WORDS = Words("S", "S is the zero form: the map is symplectic", "form", "to be symplectic")
 
 
 @dataclass(frozen=True)
@@ -49,24 +50,12 @@ class _Defect:
 _NONE = _Defect(None, Decision(True))
 
 
-@dataclass(frozen=True)
-class Claimed:
-    """What is claimed of a map: its order, and whether it is symplectic; "" of a map without a
-    name."""
-
-    name: str = ""
-    order: int = 1
-    symplectic: bool = False
-
-
 def prove_symplectic(hamiltonian: Hamiltonian, scheme: Scheme) -> SymplecticProof:
     """The order of S and of the map by exact algebra, and whether the scheme's claims hold.
 
     Raises InputError for an H that the scheme does not take.
     """
-    called = f"`{scheme.name}`" if "=" in scheme.name else scheme.name
-    claimed = Claimed(called, scheme.order, scheme.area_preserving)
-    return prove_map(map_in_degrees(scheme, hamiltonian), claimed, scheme)
+    return prove_map(map_in_degrees(scheme, hamiltonian), Claimed.of(scheme), scheme)
 
 
 def prove_map(
@@ -80,7 +69,8 @@ def prove_map(
         scheme, printed, step.hamiltonian, partial(_of_scheme, step, most)
     )
     defect = _within(step.domain, _defect(step, series, most))
-    verdict, reason = _verdict(claimed, convergence, defect, most)
+    first = defect.power, defect.decision.zero
+    verdict, reason = held_to(claimed, convergence, first, most, _WORDS)
     if near is not None and verdict is Verdict.PROVED:
         verdict, reason = near.verdict, prose(reason, "; ", told_nearby(near))
     without = nearby_defect_of(scheme, step.hamiltonian, defect.power)
@@ -208,37 +198,3 @@ class _Rest:
             return {"telescopes": known, "potential": "0" if known else ""}
         holds, potential = telescopes_of_lie(self.series.flow, eta, defect.form)
         return {"telescopes": holds, "potential": potential}
-
-
-# -- the verdict ----------------------------------------------------------------------------------
-
-
-def _verdict(
-    claimed: Claimed, convergence: Convergence, defect: _Defect, most: int
-) -> tuple[Verdict, Prose]:
-    if convergence.misses(claimed.order):
-        known = f"agrees with the exact flow up to `h^{convergence.order}`"
-        if convergence.order == -1:
-            known = "agrees with the exact flow not even at h = 0"
-        if not convergence.decided:
-            said = f"the map {known}; whether further is not decided"
-            return Verdict.UNDECIDED, read_prose(said)
-        of_it = f"{claimed.name} claims order {claimed.order};" if claimed.name else _NO_SCHEME
-        return Verdict.REFUTED, read_prose(f"{of_it} the map {known} only")
-    power, zero = defect.power, defect.decision.zero
-    if zero is None:
-        what = f"of `h^{power}`" if power is not None else f"beyond `h^{most}`"
-        said = f"the coefficient {what} in S is neither shown to vanish nor not to"
-        return Verdict.UNDECIDED, read_prose(said)
-    if zero:
-        return Verdict.PROVED, prose("S is the zero form: the map is symplectic")
-    if claimed.symplectic:
-        said = f"{claimed.name} claims to be symplectic; S has order {power}"
-        return Verdict.REFUTED, read_prose(said)
-    if power is None:
-        said = f"S is not the zero form, and its coefficients up to `h^{most}` vanish"
-        return Verdict.PROVED, read_prose(said)
-    said = (
-        f"the coefficients of S below `h^{power}` vanish identically, that of `h^{power}` does not"
-    )
-    return Verdict.PROVED, read_prose(said)

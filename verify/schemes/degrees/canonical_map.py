@@ -3,22 +3,18 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.power_series import Series
-from verify.hamiltonians.canonical_field import CanonicalField, Flow
+from verify.hamiltonians.canonical_field import CanonicalField
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.conditions import Condition
-from verify.schemes.degrees.step_algebra import SeriesAlgebra, StepAlgebra
+from verify.schemes.step_algebra import State, Step, series_of
 from verify.schemes.step_map import AT_STAGES
 from verify.schemes.substep import h_inside
 
 SOLVABLE = "the stages have a solution that depends smoothly on z"
-State = tuple[Series, ...]  # a series for each of p1 … pn, q1 … qn
-# z' − z from what a step is made of; the same kind of value.
-Step = Callable[[StepAlgebra[Any]], list[Any]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,10 +74,3 @@ class CanonicalMap:
     def symplectic_by_conditions(self) -> bool:
         """Whether it is symplectic by what its coefficients fulfil."""
         return bool(self.conditions) and all(c.holds is True for c in self.conditions)
-
-
-def series_of(flow: Flow, step: Step, most: int) -> State:
-    """z' up to h^most."""
-    changes = step(SeriesAlgebra(flow, most))
-    start = (Series.of(flow.ring, [x], most) for x in flow.start)
-    return tuple(x + y for x, y in zip(start, changes, strict=True))

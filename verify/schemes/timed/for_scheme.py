@@ -17,11 +17,11 @@ from verify.errors import InputError
 from verify.schemes.conditions import ByConditions
 from verify.schemes.every_hamiltonian import RungeKutta, StageEquations
 from verify.schemes.splitting_conditions import Splitting
-from verify.schemes.timed.kinetic import Kinetic
 from verify.schemes.timed.runge_kutta import TimedTrees
 from verify.schemes.timed.splitting import TimedSplitting
 from verify.schemes.timed.tableau import TimedTableau
 from verify.schemes.tree_conditions import TreeConditions
+from verify.schemes.words.kinetic import Kinetic
 
 Times = Sequence[sympy.Expr | None] | None
 

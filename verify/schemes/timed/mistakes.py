@@ -14,7 +14,6 @@ import flint
 from verify.algebra.enclosure import enclosed
 from verify.algebra.ring import Poly, Ring
 from verify.schemes.timed.splitting import TimedSplitting
-from verify.schemes.timed.tableau import TimedTableau
 
 _PRECISION = 192
 
@@ -44,18 +43,6 @@ def mistakes_of_splitting(splitting: TimedSplitting, within: Fraction = Fraction
     """
     found = (name_of(reading, within) for reading in _of_parts(splitting))
     return [name for name in found if name is not None]
-
-
-def mistakes_of_tableau(tableau: TimedTableau, within: Fraction = Fraction(0)) -> list[str]:
-    """Of the stages; see `mistakes_of_splitting`."""
-    numbers, ring = tableau.numbers, tableau.numbers.ring
-    if numbers.right:
-        return []
-    right = [ring.reduce(sum(row, ring.zero)) for row in numbers.matrices[-1]]
-    weights = numbers.weights[-1]
-    own, ones = _before(ring, weights), [ring.one] * len(right)
-    name = name_of(Reading(ring, "force", "stage", numbers.clock, right, own, ones), within)
-    return [] if name is None else [name]
 
 
 def _of_parts(splitting: TimedSplitting) -> Iterator[Reading]:

@@ -13,37 +13,25 @@ fail, what is left at hⁿ, Σ (b·Φ(t) − 1/γ(t)) F(t)/σ(t) over all trees,
 in the derivatives of H by p, q and t; first for H without time, which are among them.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
 
 import sympy
 
-from verify.algebra.generator import terms_of
-from verify.algebra.ring import Poly
 from verify.errors import InputError
-from verify.schemes.coloured_trees import (
-    TIME,
-    Tree,
-    all_trees,
-    density,
-    equation_text,
-    has_time,
-    of_all,
-    symmetry,
-)
+from verify.schemes.coloured_trees import PLAIN, Tree, all_trees, has_time, of_all
 from verify.schemes.conditions import Condition
+from verify.schemes.elementary_differentials import Differentials, cancel
+from verify.schemes.implicit_tableau import SHOWN
 from verify.schemes.residue import condition_of
-from verify.schemes.timed.differentials import Differentials, TreeJets
-from verify.schemes.timed.kinetic import Kinetic
 from verify.schemes.timed.tableau import TimedNumbers, TimedTableau
-from verify.schemes.tree_conditions import MOST_ORDER, TreeConditions
-from verify.schemes.tree_conditions import trees as plain_trees
+from verify.schemes.timed.tree_jets import TreeJets
+from verify.schemes.tree_conditions import MOST_ORDER, TreeConditions, conditions_of_trees
+from verify.schemes.words.kinetic import Kinetic
 
-Vector = tuple[Poly, ...]
 _MOST_TIMED = 8  # vertices: of which there are 1042 trees with leaves of time
-_DIGITS = 5  # of a residue
 
 
 @dataclass(frozen=True)
@@ -97,31 +85,27 @@ class TimedTrees:
 
 @lru_cache(maxsize=256)
 def _of_order(tableau: TimedTableau, order: int, kinetic: Kinetic | None) -> tuple[Condition, ...]:
-    numbers, parts = tableau.numbers, len(tableau.parts)
     plain = _without_time(tableau, order, kinetic)
     if plain is not None:
         return plain
     if order > _MOST_TIMED:
         return (Condition(f"b·Φ(t) = 1/γ(t) over trees of {order}", order, "unknown", None),)
-    weights, every = _Weights(numbers), all_trees(of_all(parts, timed=True), order)
-    names = ("",) if parts == 1 else ("_p", "_q")
+    numbers, parts = tableau.numbers, len(tableau.parts)
+    weights, every = numbers.tree_weights, all_trees(of_all(parts, timed=True), order)
+
+    def cancels(_: Sequence[Tree]) -> bool | None:
+        """For H without time first, which are among all."""
+        gaps = {tree: weights.gap(tree) for tree in every}
+        plain = {tree: gap for tree, gap in gaps.items() if not has_time(tree)}
+        still = Differentials(TreeJets(order, kinetic, timed=False), parts)
+        if cancel(numbers.ring, plain, still) is False:
+            return False
+        return cancel(numbers.ring, gaps, Differentials(TreeJets(order, kinetic), parts))
+
     # With right clocks a leaf of time is as any other.
-    known = [tree for tree in every if not (numbers.right and has_time(tree))]
-    found = {
-        tree: condition_of(
-            numbers.ring, equation_text(tree, names), order, weights.gap(tree), _DIGITS
-        )
-        for tree in known
-    }
-    wrong = [tree for tree in known if found[tree].holds is False]
-    if not wrong:
-        return tuple(found.values())
-    cancel = _cancel(numbers, {tree: weights.gap(tree) for tree in every}, order, kinetic)
-    if cancel is False:
-        return tuple(found.values())
-    left = tuple(c for tree, c in found.items() if tree not in wrong)
-    name = f"Σ (b·Φ(t) − 1/γ(t)) F(t)/σ(t) = 0 over the {len(wrong)} other trees"
-    return *left, Condition(name, order, "0", cancel)
+    asked = [tree for tree in every if not (numbers.right and has_time(tree))]
+    names = ("",) if parts == 1 else ("_p", "_q")
+    return conditions_of_trees(weights, asked, order, cancels, names)
 
 
 def _without_time(
@@ -133,69 +117,10 @@ def _without_time(
         return None
     generic = TreeConditions(tableau.parts[0], kinetic is not None)
     plain = tuple(c for c in generic.order_conditions(order) if c.order == order)
-    if len(plain) < len(plain_trees(order)):  # a combination, in the plane, in place of some
+    if len(plain) < len(all_trees(PLAIN, order)):  # a combination, in the plane, in place of some
         return None
     fewer = kinetic is not None and kinetic.quadratic  # than for every T
     return plain if not fewer or all(c.holds for c in plain) else None
-
-
-def _cancel(
-    numbers: TimedNumbers, gaps: Mapping[Tree, Poly], order: int, kinetic: Kinetic | None
-) -> bool | None:
-    """Whether Σ gap F(t)/σ(t) is 0 for every H; None where it is not decided."""
-    plain = {tree: gap for tree, gap in gaps.items() if not has_time(tree)}
-    if _vanishes(numbers, plain, TreeJets(order, kinetic, timed=False)) is False:
-        return False
-    return _vanishes(numbers, gaps, TreeJets(order, kinetic))
-
-
-def _vanishes(numbers: TimedNumbers, gaps: Mapping[Tree, Poly], jets: TreeJets) -> bool | None:
-    ring, differentials = numbers.ring, Differentials(jets, len(numbers.matrices))
-    found: dict[tuple[int, tuple[int, ...]], Poly] = {}
-    for tree, gap in gaps.items():
-        if gap.is_zero():
-            continue
-        share = gap / symmetry(tree)
-        for part, x in enumerate(differentials.of(tree)):
-            for monomial, coefficient in terms_of(x):
-                at = part, monomial
-                found[at] = found.get(at, ring.zero) + share * coefficient
-    zeros = {ring.decide(x).zero for x in found.values()}
-    return False if False in zeros else None if None in zeros else True
-
-
-class _Weights:
-    """b·Φ(t) of trees, each vector made once."""
-
-    def __init__(self, numbers: TimedNumbers) -> None:
-        self.numbers, self.ring = numbers, numbers.ring
-        self._summed: dict[Tree, Vector] = {TIME: numbers.clock}
-
-    def gap(self, tree: Tree) -> Poly:
-        """b·Φ(t) − 1/γ(t)."""
-        root, branches = tree
-        weight = self._dot(self.numbers.weights[root], self._vector(branches))
-        return self.ring.reduce(weight - self.ring.one / density(tree))
-
-    def _vector(self, branches: Sequence[Tree]) -> Vector:
-        """Φ_i."""
-        product = (self.ring.one,) * len(self.numbers.clock)
-        for branch in branches:
-            pairs = zip(product, self._sums(branch), strict=True)
-            product = tuple(self.ring.multiply(x, y) for x, y in pairs)
-        return product
-
-    def _sums(self, tree: Tree) -> Vector:
-        """A branch's factor: Σ_j a_ij Φ_j, of time c_i."""
-        if tree not in self._summed:
-            root, branches = tree
-            inner, matrix = self._vector(branches), self.numbers.matrices[root]
-            self._summed[tree] = tuple(self._dot(row, inner) for row in matrix)
-        return self._summed[tree]
-
-    def _dot(self, x: Vector, y: Vector) -> Poly:
-        pairs = zip(x, y, strict=True)
-        return self.ring.reduce(sum((a * b for a, b in pairs), self.ring.zero))
 
 
 def _area_of_two(numbers: TimedNumbers) -> Iterator[Condition]:
@@ -205,7 +130,7 @@ def _area_of_two(numbers: TimedNumbers) -> Iterator[Condition]:
         m, n = i + 1, j + 1
         name = f"b_p{m} a_q{m}{n} + b_q{n} a_p{n}{m} = b_p{m} b_q{n}"
         gap = u[i] * b[i][j] + v[j] * a[j][i] - u[i] * v[j]
-        yield condition_of(numbers.ring, name, 0, gap, _DIGITS)
+        yield condition_of(numbers.ring, name, 0, gap, SHOWN)
     for i in stages:
         name = f"b_p{i + 1} = b_q{i + 1}"
-        yield condition_of(numbers.ring, name, 0, u[i] - v[i], _DIGITS)
+        yield condition_of(numbers.ring, name, 0, u[i] - v[i], SHOWN)

@@ -1,6 +1,6 @@
 """Order of a splitting for H = T(p, t) + V(q, t), by conditions on its parts and their times.
 
-The step's coefficient of each word in the letters K_n and D_n (`verify.schemes.timed.words`) is to
+The step's coefficient of each word in the letters K_n and D_n (`verify.schemes.words.words`) is to
 be that of the exact flow. A product of exponentials of letters is group-like, so that where all
 coefficients of weights below n agree, the difference at weight n is a Lie polynomial: those of
 Lyndon words suffice, 2, 2, 4, 7, 15, 28, 62, 126 of weights 1 … 8 where T depends on p alone, and
@@ -11,29 +11,32 @@ weight 8 (a test has their rank). Without letters of n > 0 these are the conditi
 (`verify.schemes.timed.clocks`).
 
 For quadratic T brackets vanish or are equal from weight 4 on. There the conditions are those
-combinations of coefficients in the generator of the step (`verify.schemes.timed.step_words`) that
-count (`verify.schemes.timed.quadratic`): 2, 2, 4, 6, 12, 20, 39, 67 for p²/(2m), and 2, 3, 6, 11,
+combinations of coefficients in the generator of the step (`verify.schemes.words.step_words`) that
+count (`verify.schemes.words.quadratic`): 2, 2, 4, 6, 12, 20, 39, 67 for p²/(2m), and 2, 3, 6, 11,
 23, 45, 93, 182 for p²/(2m(t)).
 """
 
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from typing import ClassVar
 
 import sympy
 
 from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
-from verify.errors import InputError
 from verify.schemes.conditions import Condition
-from verify.schemes.residue import condition_of
-from verify.schemes.splitting_conditions import LETTERS, MOST_ORDER, Nearby, Part, Splitting
+from verify.schemes.splitting_conditions import (
+    LETTERS,
+    MOST_ORDER,
+    Nearby,
+    Part,
+    Splitting,
+    WordConditions,
+)
 from verify.schemes.timed.clocks import Times, right_clocks
-from verify.schemes.timed.equations import equations_of
-from verify.schemes.timed.kinetic import Kinetic
-from verify.schemes.timed.step_words import StepWords, TimedPart
-
-_DIGITS = 12  # of a residue
+from verify.schemes.words.equations import equations_of
+from verify.schemes.words.kinetic import Kinetic
+from verify.schemes.words.step_words import StepWords, TimedPart
 
 
 @dataclass(frozen=True)
@@ -104,30 +107,15 @@ class TimedSplitting:
 
     def order_conditions(self, order: int) -> tuple[Condition, ...]:
         """Those of weights 1 … `order`; InputError beyond order 8."""
-        if order > MOST_ORDER:
-            raise InputError("order", order, f"of a splitting is proved up to {MOST_ORDER}")
         if self.clocks_are_right and not self.kinetic.quadratic:
             return self.plain.order_conditions(order)
-        return tuple(c for n in range(1, order + 1) for c in self._of_weight(n))
+        return self._conditions.up_to(order)
 
     def area_conditions(self) -> tuple[Condition, ...]:
         """At a fixed time a kick and a drift are shears: those of the same parts without time."""
         return self.plain.area_conditions()
 
-    def _of_weight(self, n: int) -> tuple[Condition, ...]:
-        if n not in self._known:
-            (ring, _), equations = self.numbers, equations_of(self.kinetic, n)
-            self._words.prepare({word for each in equations for word in each.needed})
-            self._known[n] = tuple(
-                condition_of(ring, each.name, n, each.residue(self._words), _DIGITS)
-                for each in equations
-            )
-        return self._known[n]
-
     @cached_property
-    def _words(self) -> StepWords:
-        return StepWords(*self.numbers)
-
-    @cached_property
-    def _known(self) -> dict[int, tuple[Condition, ...]]:
-        return {}
+    def _conditions(self) -> WordConditions:
+        ring, parts = self.numbers
+        return WordConditions(ring, StepWords(ring, parts), partial(equations_of, self.kinetic))

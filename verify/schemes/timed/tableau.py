@@ -19,6 +19,7 @@ from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
 from verify.schemes.every_hamiltonian import RungeKutta, StageEquations
 from verify.schemes.implicit_tableau import ImplicitTableau
+from verify.schemes.tree_weights import RingWeights, Tableau
 
 Clock = tuple[sympy.Expr | None, ...]  # of the stages, as parts of h; None where it is right
 Given = Sequence[sympy.Expr | int | None] | None  # None where all are right
@@ -80,6 +81,12 @@ class TimedNumbers:
     weights: tuple[tuple[Poly, ...], ...]
     clock: tuple[Poly, ...]
     right: bool
+
+    @cached_property
+    def tree_weights(self) -> RingWeights:
+        """What they put into the conditions of trees."""
+        pairs = zip(self.matrices, self.weights, strict=True)
+        return RingWeights(self.ring, [Tableau(a, b, self.clock) for a, b in pairs])
 
     @classmethod
     def of(cls, tableau: TimedTableau) -> "TimedNumbers":

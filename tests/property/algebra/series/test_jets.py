@@ -18,7 +18,8 @@ from hypothesis import strategies as st
 from tests.examples import drawn
 from tests.helpers.sampled.formulas import P, Q, plain, polynomials, rationals
 from verify.algebra.linear_combination import combination
-from verify.algebra.series.jets import Jets, multiplied, shown
+from verify.algebra.series.jets import Jets, shown
+from verify.algebra.series.power_series import Derivatives, Series, at_moved
 from verify.proof.telescoping import potential_of_lie, telescopes, telescopes_of_lie
 
 ORDER = 3
@@ -115,7 +116,8 @@ def test_a_derivative_at_a_moved_point_is_taylors(separable: bool, data: st.Data
         [jets.zero, *(data.draw(in_jets(jets, degree=1)) for _ in range(most - 1))] for _ in "pq"
     )
     i, j = data.draw(st.sampled_from([(0, 1), (1, 0), (2, 0), (0, 2)]))
-    found = jets.shifted(i, j, dp, dq)
+    moves = [(name, Series.of(jets, x, most - 1)) for name, x in (("p", dp), ("q", dq))]
+    found = at_moved(Derivatives(jets, jets.h(i, j)), moves, most - 1).coefficients
     h = plain(data.draw(elements[separable]))
     u, v = (sum(put_in(jets, z, h) * T**n for n, z in enumerate(d)) for d in (dp, dq))
     true = sympy.Poly(
@@ -134,7 +136,10 @@ def test_the_product_of_two_series_is_cut_off_where_they_end(
     y = data.draw(st.lists(rationals(), min_size=len(x), max_size=len(x)))
     whole = sympy.Poly([sympy.Rational(str(a)) for a in x[::-1]], T)
     whole *= sympy.Poly([sympy.Rational(str(a)) for a in y[::-1]], T)
-    assert [sympy.Rational(str(z)) for z in multiplied(x, y)] == whole.all_coeffs()[::-1][: len(x)]
+    jets = Jets(1)
+    one, two = (Series.of(jets, list(map(jets.constant, z)), len(x) - 1) for z in (x, y))
+    found = [sympy.Rational(str(z)) for z in (one * two).coefficients]
+    assert found == whole.all_coeffs()[::-1][: len(x)]
 
 
 @pytest.mark.parametrize("separable", [False, True])

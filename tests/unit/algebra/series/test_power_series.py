@@ -8,7 +8,7 @@ import sympy
 from tests.helpers.sampled.formulas import P, Q, plain
 from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
-from verify.algebra.series.power_series import Series, at_point, delta_j, partials
+from verify.algebra.series.power_series import Derivatives, Series, at_moved, delta_j
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes import get
 
@@ -43,7 +43,7 @@ FUNCTIONS = [
 def test_a_function_at_a_point_is_its_taylor_series(text: str) -> None:
     ring, x = ring_with(text)
     u, v = series(ring, "0", "q", "a*p*q", "p"), series(ring, "0", "p", "-q**2")
-    found = at_point(partials(ring, x), u, v)
+    found = at_moved(Derivatives(ring, x), [("p", u), ("q", v)], MOST)
     moved = {P: P + H * Q + H**2 * plain("a*p*q") + H**3 * P, Q: Q + H * P - H**2 * Q**2}
     at = {P: sympy.Rational(3, 7), Q: sympy.Rational(5, 11), plain("a"): sympy.Rational(2, 3)}
     whole = plain(text).xreplace(moved)
@@ -57,8 +57,8 @@ def test_a_point_that_is_elsewhere_at_h_0_is_refused() -> None:
     ring, x = ring_with("p*q")
     elsewhere, here = series(ring, "p"), series(ring, "0", "q")
     for u, v in ((elsewhere, here), (here, elsewhere)):
-        with pytest.raises(ValueError, match="not"):
-            at_point(partials(ring, x), u, v)
+        with pytest.raises(ValueError, match="at h = 0"):
+            at_moved(Derivatives(ring, x), [("p", u), ("q", v)], MOST)
 
 
 def test_series_are_multiplied_and_cut_off() -> None:

@@ -132,7 +132,7 @@ def twice_the_potential(sample: Sample, patch: Patch) -> Sample:
 
 def blind(sample: Sample, patch: Patch) -> Sample:
     """A proof that never sees that an order is missed."""
-    from verify.proof.order import Convergence
+    from verify.proof.claimed import Convergence
 
     assert sample.proof
     patch.setattr(Convergence, "misses", lambda self, claimed: False)

@@ -147,7 +147,7 @@ def test_what_is_too_much_is_one_line(scheme: str, degrees: int, words: str) -> 
 def test_derivatives_of_h_are_what_sympy_finds() -> None:
     names, energy = ["p1", "p2", "q1", "q2"], parse(PAIR)
     jets = JetsInDegrees(names, 4)
-    x = jets.first("p1") * jets.h((1, 0, 1, 0)) + jets.variable("q2") * jets.first("q2") ** 2
+    x = jets.first("p1") * jets.of((1, 0, 1, 0)) + jets.variable("q2") * jets.first("q2") ** 2
     p1, q1, q2 = map(symbol, ("p1", "q1", "q2"))
     same = energy.diff(p1) * energy.diff(p1, q1) + q2 * energy.diff(q2) ** 2
     for name in names:

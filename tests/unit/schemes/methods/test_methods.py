@@ -6,13 +6,14 @@ import pytest
 import sympy
 
 from tests.helpers.sampled.formulas import P, Q, lie_step, plain
+from tests.helpers.symmetry import palindromic, prove_symmetry
 from verify import schemes
 from verify.errors import InputError
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
 from verify.proof.order_proof import Proof
-from verify.proof.symmetry import by_series, palindromic, prove_symmetry
+from verify.proof.symmetry import by_series
 from verify.schemes.every_hamiltonian import Stage, StageEquations
 from verify.verdict import Verdict
 

@@ -13,11 +13,10 @@ from verify.schemes import get
 from verify.schemes.coloured_trees import all_trees, equation_text, of_all
 from verify.schemes.every_hamiltonian import Stage, StageEquations
 from verify.schemes.implicit_tableau import ImplicitTableau
-from verify.schemes.timed import runge_kutta
 from verify.schemes.timed.for_scheme import conditions_for
-from verify.schemes.timed.kinetic import Kinetic
 from verify.schemes.timed.runge_kutta import TimedTrees
 from verify.schemes.timed.tableau import TimedTableau
+from verify.schemes.words.kinetic import Kinetic
 
 R, F = sympy.Rational, Fraction
 TIMED = of_all(1, timed=True)
@@ -95,7 +94,7 @@ def test_right_clocks_keep_the_order_and_frozen_ones_leave_1(name: str) -> None:
 def test_with_right_clocks_each_tree_with_leaves_of_time_holds(name: str) -> None:
     """What the argument says, tree by tree."""
     scheme = get(name)
-    weights = runge_kutta._Weights(conditions_for(scheme.every_h).tableau.numbers)
+    weights = conditions_for(scheme.every_h).tableau.numbers.tree_weights
     for n in range(1, scheme.order + 1):
         assert all(weights.ring.decide(weights.gap(t)).zero for t in all_trees(TIMED, n))
     assert not all(

@@ -15,10 +15,10 @@ from verify.schemes import get
 from verify.schemes.free_lie_words import conditions as plain_conditions
 from verify.schemes.splitting_conditions import Splitting
 from verify.schemes.timed.for_scheme import conditions_for
-from verify.schemes.timed.kinetic import Kinetic
-from verify.schemes.timed.quadratic import combinations
 from verify.schemes.timed.splitting import TimedSplitting
-from verify.schemes.timed.words import joined, lyndon, text, words
+from verify.schemes.words.kinetic import Kinetic
+from verify.schemes.words.quadratic import combinations
+from verify.schemes.words.words import joined, lyndon, text, words
 
 R, F = sympy.Rational, Fraction
 KINDS = {

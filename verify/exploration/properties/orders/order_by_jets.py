@@ -53,12 +53,9 @@ def _has_series_in_jets(sample: Sample) -> bool:
 def _of_every(scheme: Scheme, most: int, timed: bool) -> tuple[Jets | TimedJets, tuple[Poly, ...]]:
     """The coefficients of h¹ … h^most in ΔJ of the scheme for every H."""
     generic = scheme.every_h
-    if timed:
-        assert isinstance(generic, TaylorSeries)  # noqa: S101 - the caller looks
-        in_time = TimedJets(most + 2)
-        return in_time, tuple(in_time.delta_j(*generic.taylor(in_time, most)))
     assert isinstance(generic, BySeries)  # noqa: S101 - the caller looks
-    jets = Jets(most + 2, separable=generic.separable)
+    size = most + 2
+    jets = TimedJets(size) if timed else Jets(size, separable=generic.separable)
     return jets, tuple(jets.delta_j(*generic.taylor(jets, most)))
 
 
@@ -87,7 +84,8 @@ def _derivatives(sample: Sample, jets: Jets | TimedJets) -> list[Ball]:
 
 def _value(x: Poly, derivatives: Sequence[Ball]) -> Ball:
     with working_precision(BITS):
-        total, values = flint.arb(0), [flint.arb(0)] * 2 + list(derivatives)
+        total, variables = flint.arb(0), x.context().nvars() - len(derivatives)
+        values = [flint.arb(0)] * variables + list(derivatives)
         for monomial, coefficient in terms_of(x):
             term = flint.arb(coefficient)
             for value, power in zip(values, monomial, strict=True):

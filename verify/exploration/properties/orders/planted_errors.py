@@ -7,10 +7,11 @@ from verify.errors import InputError
 from verify.exploration.property import Violation, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.exploration.sample_in_degrees import SampleInDegrees
+from verify.proof.claimed import Claimed
 from verify.proof.order import prove
-from verify.proof.symplectic.order import Claimed, prove_map
+from verify.proof.symplectic.order import prove_map
 from verify.schemes.degrees.canonical_map import CanonicalMap
-from verify.schemes.degrees.step_algebra import StepAlgebra
+from verify.schemes.step_algebra import StepAlgebra
 from verify.schemes.step_map import Expanded, StepMap
 from verify.schemes.substep import Substep
 from verify.verdict import Verdict

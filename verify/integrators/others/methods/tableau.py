@@ -20,17 +20,9 @@ import sympy
 
 from verify.algebra.ring import Poly
 from verify.prose import Formula, Number, Prose, prose, read_prose
+from verify.schemes.coloured_trees import Tree, condition_text, equation_text, grafted, vertices
 from verify.schemes.implicit_tableau import ImplicitTableau, Numbers
-from verify.schemes.tree_conditions import (
-    MOST_ORDER,
-    Tree,
-    Weights,
-    condition_text,
-    equation_text,
-    gaps_of,
-    trees,
-    vertices,
-)
+from verify.schemes.tree_conditions import MOST_ORDER, gaps_of, trees
 
 ROUNDING = Fraction(1, 10**13)  # a residue below it is that of rounded coefficients
 WRONG = Fraction(1, 10**9)  # one above it is not, of 15 digits
@@ -128,15 +120,15 @@ def symplecticity(tableau: ImplicitTableau, rounded: bool = False) -> Symplectic
         said = read_prose("`b_i a_ij + b_j a_ji = b_i b_j` holds exactly for all i, j")
         return Symplecticity(True, said)
     least = float(WRONG) if rounded else 0.0
-    weights = Weights(tableau.numbers)
+    weights = tableau.numbers.tree_weights
     for u, v in _pairs():
         gap = (
-            weights.weight((*u, v)) + weights.weight((*v, u))
+            weights.weight(grafted(u, v)) + weights.weight(grafted(v, u))
             - tableau.numbers.ring.multiply(weights.weight(u), weights.weight(v))
         )  # fmt: skip
         size = abs(value(tableau.numbers, tableau.numbers.ring.reduce(gap)))
         if size > least:
-            left = f"{condition_text((*u, v))} + {condition_text((*v, u))}"
+            left = f"{condition_text(grafted(u, v))} + {condition_text(grafted(v, u))}"
             right = f"({condition_text(u)})({condition_text(v)})"
             said = prose(Formula(f"{left} = {right}"), " fails by ", Number(f"{size:.3g}"))
             return Symplecticity(False, said)

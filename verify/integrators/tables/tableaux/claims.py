@@ -20,7 +20,6 @@ from verify.integrators.tables.tableaux.order import (
 )
 from verify.integrators.tables.tableaux.symmetry import judge_symmetric, judge_symplectic
 from verify.integrators.tables.tableaux.table import MOST_STAGES, TableauTable, Texts, square
-from verify.integrators.tables.tableaux.tree_weights import Tableau
 from verify.integrators.tables.told import (
     NO_HINTS,
     Hints,
@@ -36,6 +35,7 @@ from verify.schemes.printed.asked import Asked
 from verify.schemes.printed.judged import Judged, judge
 from verify.schemes.printed.naming import Naming
 from verify.schemes.printed.printed_numbers import PrintedNumbers
+from verify.schemes.tree_weights import Tableau
 from verify.verdict import Verdict
 
 

@@ -15,7 +15,6 @@ import sympy
 from verify.arithmetic.number import E
 from verify.errors import InputError
 from verify.integrators.tables.tableaux.table import TableauTable
-from verify.integrators.tables.tableaux.tree_weights import Block, dot
 from verify.integrators.tables.told import both
 from verify.schemes.coloured_trees import (
     Grammar,
@@ -29,6 +28,7 @@ from verify.schemes.coloured_trees import (
 from verify.schemes.printed.asked import Asked, Named, Residues
 from verify.schemes.printed.judged import Judged, judge
 from verify.schemes.printed.misprint import Misprint
+from verify.schemes.tree_weights import Block, dot
 from verify.verdict import Verdict
 
 _MOST_TREES = 2500

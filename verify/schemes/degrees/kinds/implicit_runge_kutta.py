@@ -6,14 +6,11 @@ all i, j suffices for S ≡ 0, for every H in any number of degrees of freedom (
 Hairer, Lubich, Wanner, Geometric Numerical Integration, theorem VI.4.3).
 """
 
-from collections.abc import Sequence
-from typing import Any
-
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.conditions import Condition
-from verify.schemes.degrees.canonical_map import CanonicalMap, Step
-from verify.schemes.degrees.step_algebra import Number, StepAlgebra
+from verify.schemes.degrees.canonical_map import CanonicalMap
+from verify.schemes.implicit_tableau import implicit_step
 from verify.schemes.tree_conditions import TreeConditions
 
 KIND = TreeConditions
@@ -30,7 +27,7 @@ def build(coefficients: TreeConditions, hamiltonian: Hamiltonian) -> CanonicalMa
     return CanonicalMap(
         hamiltonian,
         field,
-        _step(rows, exact[count * count :], clocks),
+        implicit_step(rows, exact[count * count :], clocks),
         conditions=conditions(coefficients),
         implicit=True,
     )
@@ -39,29 +36,3 @@ def build(coefficients: TreeConditions, hamiltonian: Hamiltonian) -> CanonicalMa
 def conditions(coefficients: TreeConditions) -> tuple[Condition, ...]:
     """Those of the module's text."""
     return coefficients.tableau.area_conditions()
-
-
-def _step(
-    rows: Sequence[Sequence[Number]], weights: Sequence[Number], clocks: Sequence[Number]
-) -> Step:
-    def changes(outer: StepAlgebra[Any]) -> list[Any]:
-        size = outer.size
-
-        def combined(
-            algebra: StepAlgebra[Any], own: Sequence[Sequence[Number]], unknowns: Sequence[Any]
-        ) -> list[Any]:
-            """h Σ w_j f(z + Z_j) of each row of weights, row after row."""
-            stages = [unknowns[size * i : size * (i + 1)] for i in range(len(clocks))]
-            slopes = [
-                algebra.slopes(stage, clock, range(size))
-                for stage, clock in zip(stages, clocks, strict=True)
-            ]
-            columns = [[slope[k] for slope in slopes] for k in range(size)]
-            return [
-                algebra.moved(algebra.nothing, row, column) for row in own for column in columns
-            ]
-
-        solved = outer.solved(size * len(clocks), lambda inner, z: combined(inner, rows, z))
-        return combined(outer, [weights], solved)
-
-    return changes

@@ -4,18 +4,13 @@ A kick moves p by −a h ∂V/∂q. The one block of its Jacobian that is neithe
 and S of a shear is that block less its transpose, which is 0.
 """
 
-from collections.abc import Sequence
-from typing import Any
-
-from verify.algebra.ring import Poly
 from verify.algebra.series.jets_in_degrees import JetsInDegrees
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.conditions import Condition
-from verify.schemes.degrees.canonical_map import CanonicalMap, Step
-from verify.schemes.degrees.step_algebra import StepAlgebra
-from verify.schemes.splitting import all_times
+from verify.schemes.degrees.canonical_map import CanonicalMap
+from verify.schemes.splitting import all_times, shears_step
 from verify.schemes.splitting_conditions import Splitting
 
 KIND = Splitting
@@ -31,22 +26,8 @@ def build(coefficients: Splitting, hamiltonian: Hamiltonian) -> CanonicalMap:
         problem = "a splitting into kicks and drifts is for H = T(p) + V(q)"
         raise InputError("hamiltonian", hamiltonian.formula, problem)
     kinds = [kind for kind, _ in parts]
-    step = _step(kinds, exact[: len(parts)], exact[len(parts) :])
+    step = shears_step(kinds, exact[: len(parts)], exact[len(parts) :])
     return CanonicalMap(hamiltonian, field, step, conditions=conditions(coefficients))
-
-
-def _step(kinds: Sequence[str], sizes: Sequence[Poly], times: Sequence[Poly]) -> Step:
-    def changes(algebra: StepAlgebra[Any]) -> list[Any]:
-        n = algebra.size // 2
-        moves = {"kick": range(n), "drift": range(n, 2 * n)}
-        found = [algebra.nothing] * algebra.size
-        for kind, size, time in zip(kinds, sizes, times, strict=True):
-            slopes = algebra.slopes(found, time, moves[kind])
-            for place, slope in zip(moves[kind], slopes, strict=True):
-                found[place] = algebra.moved(found[place], [size], [slope])
-        return found
-
-    return changes
 
 
 def conditions(coefficients: Splitting) -> tuple[Condition, ...]:

@@ -6,23 +6,18 @@ a = b, dP∧dH_p + dQ∧dH_q = −d(dH) = 0 leaves dp'∧dq' − dp∧dq = (1 �
 Numerical Integration, VI.3.)
 """
 
-from collections.abc import Callable, Sequence
-from fractions import Fraction
-from typing import Any
-
 import sympy
 
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.conditions import Condition
-from verify.schemes.degrees.canonical_map import CanonicalMap, Step
+from verify.schemes.degrees.canonical_map import CanonicalMap
 from verify.schemes.degrees.kinds import splittings
-from verify.schemes.degrees.step_algebra import StepAlgebra
 from verify.schemes.every_hamiltonian import Stage, StageEquations
 from verify.schemes.splitting_conditions import Splitting
+from verify.schemes.step_algebra import Step
 
 KIND = StageEquations
-_ONE = Fraction(1)
 
 
 def build(coefficients: StageEquations, hamiltonian: Hamiltonian) -> CanonicalMap:
@@ -50,32 +45,8 @@ def conditions(coefficients: StageEquations) -> tuple[Condition, ...]:
 
 
 def step(coefficients: StageEquations) -> Step:
-    """How z' is made: of each stage the change that it makes is solved for."""
-
-    def changes(outer: StepAlgebra[Any]) -> list[Any]:
-        found = [outer.nothing] * outer.size
-        for stage in coefficients.stages:
-            change = outer.solved(outer.size, _right(stage, found))
-            found = [outer.between(x, y, _ONE) for x, y in zip(found, change, strict=True)]
-        return found
-
-    return changes
-
-
-def _right(
-    stage: Stage, before: Sequence[Any]
-) -> Callable[[StepAlgebra[Any], Sequence[Any]], list[Any]]:
-    """h times the slopes that a stage takes, at a share of the change that they make."""
-
-    def right(algebra: StepAlgebra[Any], change: Sequence[Any]) -> list[Any]:
-        n = algebra.size // 2
-        shares, weights = [stage.at_p] * n + [stage.at_q] * n, [stage.kick] * n + [stage.drift] * n
-        at = [algebra.between(*each) for each in zip(before, change, shares, strict=True)]
-        slopes = algebra.slopes(at, stage.at_q, range(2 * n))  # t goes with q
-        each = zip(weights, slopes, strict=True)
-        return [algebra.moved(algebra.nothing, [w], [slope]) for w, slope in each]
-
-    return right
+    """How z' is made."""
+    return coefficients.changes
 
 
 def _condition(stage: Stage) -> Condition:

@@ -3,8 +3,9 @@
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.conditions import Condition
-from verify.schemes.degrees.canonical_map import CanonicalMap, Step
+from verify.schemes.degrees.canonical_map import CanonicalMap
 from verify.schemes.every_hamiltonian import TaylorSeries
+from verify.schemes.step_algebra import Step
 
 KIND = TaylorSeries
 

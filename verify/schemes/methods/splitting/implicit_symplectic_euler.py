@@ -13,7 +13,6 @@ from functools import lru_cache
 
 from verify.algebra.implicit_unknowns import define, unknowns
 from verify.algebra.ring import Poly
-from verify.algebra.series.power_series import Series, at_point, partials
 from verify.algebra.symbols import H_STEP, P, Q
 from verify.effort import limited
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -23,7 +22,8 @@ from verify.schemes.methods.splitting.symplectic_euler import PARTS
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import shears
 from verify.schemes.stages import Stages
-from verify.schemes.step_map import Expanded, StepMap, Substep
+from verify.schemes.step_algebra import series_in_plane
+from verify.schemes.step_map import StepMap, Substep
 
 _ONE = Fraction(1)
 _NAMES = 20
@@ -70,18 +70,9 @@ def _by_equations(hamiltonian: Hamiltonian, field: VectorField) -> StepMap:
         added_to=[p],
     )
     step = Substep(stages.field, p - h * h_q, q + h * h_p, _EQUATIONS.conditions())
-    return StepMap(hamiltonian, (step,), lambda most: _taylor(field, most))
-
-
-def _taylor(field: VectorField, most: int) -> Expanded:
-    """p' and q' up to h^most, by iteration: each makes one power of h more right."""
-    ring = field.ring
-    own = {name: Series.of(ring, [ring.variable(name)], most) for name in ("p", "q")}
-    force, speed = partials(ring, -field.h_q), partials(ring, field.h_p)
-    still = moved = Series.of(ring, [], most)
-    for _ in range(most):
-        moved = at_point(force, moved, still).shifted(1)
-    return field, own["p"] + moved, own["q"] + at_point(speed, moved, still).shifted(1)
+    return StepMap(
+        hamiltonian, (step,), lambda most: series_in_plane(field, _EQUATIONS.changes, most)
+    )
 
 
 SCHEME = Scheme(

@@ -3,15 +3,20 @@
 A scheme's step is written once, in these few operations, and read with either.
 """
 
+from collections import deque
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from typing import Protocol, TypeVar
+from typing import Any, Protocol, TypeAlias, TypeVar
 
 from verify.algebra.ring import Poly
 from verify.algebra.series.power_series import Series, at_moved
 from verify.hamiltonians.canonical_field import Flow
+from verify.hamiltonians.plane_flow import PlaneFlow
+from verify.hamiltonians.vector_field import VectorField
 
 V = TypeVar("V")
+Recent: TypeAlias = "deque[tuple[object, list[Series]]]"
+_RECENT = 8  # slopes: of as many stages
 Number = Fraction | Poly  # a coefficient of a scheme, in the ring of H's field if it is no rational
 
 
@@ -48,8 +53,10 @@ class StepAlgebra(Protocol[V]):
 class SeriesAlgebra:
     """Values are series up to h^most over the ring of a flow."""
 
-    def __init__(self, flow: Flow, most: int) -> None:
+    def __init__(self, flow: Flow, most: int, recent: "Recent | None" = None) -> None:
+        """`recent`: slopes that were made, which are asked for again where an iteration ends."""
         self.flow, self.most = flow, most
+        self._recent: Recent = deque(maxlen=_RECENT) if recent is None else recent
 
     @property
     def nothing(self) -> Series:
@@ -68,13 +75,24 @@ class SeriesAlgebra:
     def slopes(
         self, changes: Sequence[Series], clock: Number, places: Sequence[int]
     ) -> list[Series]:
+        reach = max(self.most - 1, 0)  # as far as `moved` takes them, times h
+        key = reach, clock, places, [x.coefficients[: reach + 1] for x in changes]
+        made = next((made for asked, made in self._recent if asked == key), None)
+        if made is None:
+            made = self._slopes(changes, clock, places, reach)
+            self._recent.append((key, made))
+        return made
+
+    def _slopes(
+        self, changes: Sequence[Series], clock: Number, places: Sequence[int], reach: int
+    ) -> list[Series]:
         flow, ring = self.flow, self.flow.ring
         each = zip(flow.names, changes, strict=True)
         moves = [(name, x) for name, x in each if not x.vanishes]
         if flow.timed and clock != 0:
             late = ring.constant(clock) if isinstance(clock, Fraction) else clock
             moves.append(("t", Series.of(ring, [ring.zero, late], self.most)))
-        return [at_moved(ring, flow.slopes[k], moves, self.most) for k in places]
+        return [at_moved(flow.derivatives[k], moves, reach) for k in places]
 
     def moved(self, change: Series, weights: Sequence[Number], slopes: Sequence[Series]) -> Series:
         total = self._cut(change)
@@ -91,9 +109,29 @@ class SeriesAlgebra:
         """By iteration: each makes one power of h more right."""
         found = [SeriesAlgebra(self.flow, 0).nothing] * count
         for longest in range(1, self.most + 1):
-            shorter = SeriesAlgebra(self.flow, longest)
+            shorter = SeriesAlgebra(self.flow, longest, self._recent)
             found = right(shorter, list(map(shorter._cut, found)))
         return found
 
     def _cut(self, x: Series) -> Series:
         return Series.of(self.flow.ring, x.coefficients, self.most)
+
+
+State = tuple[Series, ...]  # a series for each of p1 … pn, q1 … qn
+# z' − z from what a step is made of; the same kind of value.
+Step = Callable[[StepAlgebra[Any]], list[Any]]
+
+
+def series_of(flow: Flow, step: Step, most: int) -> State:
+    """z' up to h^most."""
+    changes = step(SeriesAlgebra(flow, most))
+    start = (Series.of(flow.ring, [x], most) for x in flow.start)
+    return tuple(x + y for x, y in zip(start, changes, strict=True))
+
+
+def series_in_plane(
+    field: VectorField, step: Step, most: int
+) -> tuple[VectorField, Series, Series]:
+    """The field, and p' and q' up to h^most."""
+    p, q = series_of(PlaneFlow(field), step, most)
+    return field, p, q

@@ -8,10 +8,10 @@ from fractions import Fraction
 from functools import cache
 from typing import Any
 
-from verify.schemes.timed.kinetic import Kinetic
-from verify.schemes.timed.quadratic import Combination, combinations
-from verify.schemes.timed.step_words import StepWords, factors
-from verify.schemes.timed.words import Word, lyndon, of_the_flow, text, weight
+from verify.schemes.words.kinetic import Kinetic
+from verify.schemes.words.quadratic import Combination, combinations
+from verify.schemes.words.step_words import StepWords, factors
+from verify.schemes.words.words import Word, lyndon, of_the_flow, text, weight
 
 _PLAIN = 3  # the weight up to which a quadratic T asks for as much as any T
 
@@ -48,7 +48,13 @@ def equations_of(kinetic: Kinetic, n: int) -> tuple[TimedEquation, ...]:
     """Those of weight n for every V and every T of the class."""
     if kinetic.quadratic and n > _PLAIN:
         return tuple(map(_of_generator, combinations(kinetic.timed, n)))
-    return tuple(map(_of_word, lyndon(kinetic.timed, n)))
+    return equations_of_words(kinetic.timed, n)
+
+
+@cache
+def equations_of_words(kinds: str, n: int) -> tuple[TimedEquation, ...]:
+    """Those of weight n for every V and T; `kinds`: the letters whose time counts, "" for none."""
+    return tuple(map(_of_word, lyndon(kinds, n)))
 
 
 def _of_word(word: Word) -> TimedEquation:

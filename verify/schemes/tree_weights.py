@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Generic, TypeAlias, TypeVar
 
+from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.number import E
 from verify.schemes.coloured_trees import TIME, Tree, density
 
@@ -60,8 +61,8 @@ class TreeWeights(Generic[E]):
             if not branches:
                 return self.one
             ((root, branches),) = branches
-            return self._or_zero(dot(self.blocks[1].weights, self.vector((root, branches))))
-        return self._or_zero(dot(self.blocks[root].weights, self.vector(tree)))
+            return self._or_zero(self.dot(self.blocks[1].weights, self.vector((root, branches))))
+        return self._or_zero(self.dot(self.blocks[root].weights, self.vector(tree)))
 
     def gap(self, tree: Tree) -> E:
         """b·Φ(t) − 1/γ(t)."""
@@ -86,7 +87,7 @@ class TreeWeights(Generic[E]):
         if not branches:
             return (self.one,) * self.stages
         sums = self._sums(root, branches[-1])
-        return sums if len(branches) == 1 else times(self.vector((root, branches[:-1])), sums)
+        return sums if len(branches) == 1 else self.times(self.vector((root, branches[:-1])), sums)
 
     def _sums(self, root: int, tree: Tree) -> Vector[E]:
         """A branch's factor."""
@@ -106,7 +107,34 @@ class TreeWeights(Generic[E]):
                 return block.times or ()
             (tree,) = branches
         inner = self.vector(tree)
-        return tuple(dot(row, inner) for row in block.matrix)
+        return tuple(self.dot(row, inner) for row in block.matrix)
+
+    def dot(self, x: Vector[E], y: Vector[E]) -> E | None:
+        """Σ x_i y_i; None where no product is there."""
+        return dot(x, y)
+
+    def times(self, x: Vector[E], y: Vector[E]) -> Vector[E]:
+        """By component."""
+        return times(x, y)
+
+
+class RingWeights(TreeWeights[Poly]):
+    """Those of numbers in a ring, in which sums and products are reduced."""
+
+    def __init__(self, ring: Ring, blocks: Sequence[Block[Poly]]) -> None:
+        super().__init__(blocks, ring.one)
+        self.ring = ring
+
+    def dot(self, x: Vector[Poly], y: Vector[Poly]) -> Poly | None:
+        """Σ x_i y_i."""
+        return self._reduced(super().dot(x, y))
+
+    def times(self, x: Vector[Poly], y: Vector[Poly]) -> Vector[Poly]:
+        """By component."""
+        return tuple(map(self._reduced, super().times(x, y)))
+
+    def _reduced(self, x: Poly | None) -> Poly | None:
+        return None if x is None else self.ring.reduce(x)
 
 
 def dot(x: Vector[E], y: Vector[E]) -> E | None:

@@ -1,0 +1,39 @@
+"""The vector field of every H at once, over the ring of its derivatives."""
+
+from collections.abc import Mapping
+from functools import cached_property
+
+from verify.algebra.ring import Poly
+from verify.algebra.series.jets_in_degrees import JetsInDegrees
+from verify.hamiltonians.canonical_field import Flow
+from verify.hamiltonians.coordinates import numbered
+
+
+class JetFlow(Flow):
+    """f = (−∂H/∂q, ∂H/∂p) in these jets."""
+
+    def __init__(self, jets: JetsInDegrees) -> None:
+        self._jets = jets
+        self.names = tuple(name for name in jets.variables if name != "t")
+
+    @classmethod
+    def of_degrees(cls, degrees: int, order: int, *, separable: bool, timed: bool) -> "JetFlow":
+        """In so many degrees of freedom, with derivatives of H up to this order."""
+        names = numbered(degrees)
+        return cls(JetsInDegrees(names, order, separable=separable, timed=timed))
+
+    @property
+    def ring(self) -> JetsInDegrees:
+        """The jets."""
+        return self._jets
+
+    @cached_property
+    def slopes(self) -> tuple[Poly, ...]:
+        """−∂H/∂q and ∂H/∂p."""
+        n, first = self.degrees, self._jets.first
+        return (*(-first(q) for q in self.names[n:]), *map(first, self.names[:n]))
+
+    @property
+    def at_rest(self) -> Mapping[str | int, int]:
+        """The values that make f vanish."""
+        return {f"H_{name}": 0 for name in self.names}
