@@ -94,12 +94,12 @@ def _of_defect(
         what = f"of `h^{power}`" if power is not None else f"beyond `h^{most}`"
         said = f"the coefficient {what} in {name} is neither shown to vanish nor not to"
         return Verdict.UNDECIDED, said
+    not_zero = f"{name} is not the zero {words.zero}, and its coefficients up to `h^{most}` vanish"
     if claimed.symplectic:
-        claims = f"{claimed.name} claims {words.claim}"
-        return Verdict.REFUTED, f"{claims}; {name} has order {power}"
+        found = not_zero if power is None else f"{name} has order {power}"
+        return Verdict.REFUTED, f"{claimed.name} claims {words.claim}; {found}"
     if power is None:
-        said = f"{name} is not the zero {words.zero}, and its coefficients up to `h^{most}` vanish"
-        return Verdict.PROVED, said
+        return Verdict.PROVED, not_zero
     return Verdict.PROVED, (
         f"the coefficients of {name} below `h^{power}` vanish identically, that of `h^{power}` "
         "does not"
