@@ -11,7 +11,14 @@ from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering, picked
 from verify.commands.shared.destinations import OUT_FILE
 from verify.commands.shared.input import hamiltonian_of, hamiltonian_options, scheme_option
-from verify.commands.shared.output import agreement, agreement_json, cut, line, order_json
+from verify.commands.shared.output import (
+    agreement,
+    agreement_json,
+    cut,
+    line,
+    order_json,
+    print_checks,
+)
 from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
@@ -285,8 +292,4 @@ def _print_every(proof: "EveryProof") -> None:
     if proof.domain:
         line("where", proof.domain.prose)
     line("the map", f"agrees with the exact flow {agreement(proof)}")
-    for identity in proof.checked:
-        line("checked", identity)
-    for condition in proof.conditions:
-        found = "holds" if condition.holds else f"residue {condition.residue}"
-        line("condition", f"{condition.name}: {found}")
+    print_checks(proof)

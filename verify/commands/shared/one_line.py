@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.shared.initial_value import listed
 from verify.commands.shared.input import (
     SCENE,
     SCHEME,
     hamiltonian_of,
     hamiltonian_options,
+    listed,
+    options,
     target,
 )
 from verify.errors import NOT_GIVEN, InputError
@@ -29,11 +30,11 @@ schemes_option = click.option(
     metavar="NAME",
     help="lie1, lie2, …, stormer-verlet, rk4, …, or 'p_next = …; q_next = …'; repeatable.",
 )
-_START = (
+start_options = options(
     click.option("--q", metavar="Q", help="Initial displacement."),
     click.option("--p", metavar="P", help="Initial momentum."),
 )
-_STEPS = (
+_STEPS = options(
     click.option(
         "--step-size", "step_sizes", multiple=True, metavar="H", help="Greater than 0; repeatable."
     ),
@@ -47,19 +48,11 @@ def with_one_line(*own: Callable[..., Any]) -> Callable[..., Any]:
     """
 
     def decorated(command: Callable[..., Any]) -> Callable[..., Any]:
-        for option in reversed((schemes_option, *_STEPS, *own)):
-            command = option(command)
+        command = schemes_option(_STEPS(options(*own)(command)))
         argument = click.argument("scene", type=SCENE, required=False, metavar="[SCENE]")
         return argument(hamiltonian_options(command))
 
     return decorated
-
-
-def start_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The command with --q and --p."""
-    for option in reversed(_START):
-        command = option(command)
-    return command
 
 
 def scenes_of(
