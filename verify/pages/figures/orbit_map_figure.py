@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from verify.pages.figures.notebook_figure import NARROW, WIDE
-from verify.pages.figures.state_panels import name_marks, name_states, panels_beside
+from verify.pages.figures.panels import name_marks, name_states, panels_beside
 from verify.pages.figures.svg import INK, SERIES
 from verify.scenes.results.stability import OrbitKind, OrbitMapResult
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from verify.pages.figures.state_panels import name_states, panels_beside
+from verify.pages.figures.panels import name_states, panels_beside
 from verify.pages.figures.svg import INK, SERIES
 from verify.scenes.results.poincare import MapSections, PoincareResult
 from verify.scenes.results.stroboscopic import SchemeSections, StroboscopicResult

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from verify.pages.figures.axes import decades, grid_lines
 from verify.pages.figures.logarithm import lg
-from verify.pages.figures.state_panels import name_marks, panels_beside
+from verify.pages.figures.panels import name_marks, panels_beside
 from verify.pages.figures.svg import INK, SERIES
 from verify.scenes.results.stability import Kind, StabilityMapResult
 

@@ -1,25 +1,26 @@
-"""Panels side by side over the same two coordinates, one a map, as SVG."""
+"""Panels side by side, as SVG: their places, and the names of what several of them share."""
 
 from collections.abc import Sequence
 from typing import Any
 
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, MaxNLocator
 
-from verify.pages.figures.axes import grid_lines
+from verify.pages.figures.axes import grid_lines, round_numbers
 from verify.pages.figures.notebook_figure import NARROW, WIDE, sheet
 
 
 def panels_beside(
-    count: int, *, in_a_row: int, height: float, beside: float = 0
+    count: int, *, in_a_row: int, height: float, beside: float = 0, shared: bool = True
 ) -> tuple[Figure, Any]:
-    """A figure with so many panels that share their axes, in rows of one `height`, and all the
-    places there are; those that stay empty have no axes. `beside`: height of what is below them.
+    """A figure with so many panels in rows of one `height`, and all the places there are.
+
+    Those that stay empty have no axes. `beside`: height of what is below the panels; `shared`:
+    whether all have the same axes.
     """
     columns = min(count, in_a_row)
     rows = -(-count // columns)
     figure = sheet(height * rows + beside, WIDE if columns > 1 else NARROW)
-    panels: Any = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    panels: Any = figure.subplots(rows, columns, sharex=shared, sharey=shared, squeeze=False)
     for axes in panels.flat[count:]:
         axes.set_axis_off()
     return figure, panels
@@ -31,9 +32,7 @@ def name_states(panels: Any, titles: Sequence[str], names: Sequence[str], room: 
         axes.set_title(title)
         axes.set_xlabel(names[0])
         axes.margins(room)
-        for axis in (axes.xaxis, axes.yaxis):
-            axis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
-            axis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}".replace("-", "−")))
+        round_numbers(axes)
         axes.tick_params(labelbottom=True)
         grid_lines(axes, "both")
     for row in panels:
