@@ -62,15 +62,13 @@ if TYPE_CHECKING:
     "than sin, cos, exp and quotients, those of the proof for every H.",
 )
 def prove(
-    system: str | None,
-    hamiltonian: str | None,
-    params: tuple[str, ...],
     scheme: str,
     every_hamiltonian: bool,
     separable: bool,
     time_dependent: bool,
     degrees: int | None,
     certificate: Path | None,
+    **named: Any,
 ) -> Answer:
     """Prove the order in h of ΔJ = det J − 1, and of the map itself.
 
@@ -91,8 +89,8 @@ def prove(
         for option, given in only.items():
             if given:
                 raise InputError(f"--{option}", NOT_GIVEN, "goes with --every-hamiltonian")
-        return _prove_one(hamiltonian_of(system, hamiltonian, params), scheme, certificate)
-    if system is not None or hamiltonian is not None or params:
+        return _prove_one(hamiltonian_of(**named), scheme, certificate)
+    if any(given not in (None, ()) for given in named.values()):
         raise InputError(
             "--every-hamiltonian", NOT_GIVEN, "goes without --system, --hamiltonian, --param"
         )

@@ -35,6 +35,7 @@ step_size_option = click.option(
 
 def request_from(
     names: Sequence[str],
+    *,
     q: str | None,
     p: str | None,
     scale: str | None,

@@ -60,14 +60,12 @@ def scenes_of(
     given: Mapping[str, Any],
     needed: tuple[str, ...],
     sections: Callable[..., Mapping[str, Any]],
-    *,
-    several: bool = False,
 ) -> "list[Scene]":
     """The scenes of SCENE, or the one that the options in `given` are.
 
     `needed`: which of them cannot be left out, beside schemes and step sizes. `sections` makes the
-    scene's sections of those that are not the system's nor the schemes. `several`: H may have more
-    degrees of freedom than one. InputError where both are given, or neither, or one is missing.
+    scene's sections of those that are not the system's nor the schemes. InputError where both are
+    given, or neither, or one is missing.
     """
     if scene is not None:
         goes_alone(given)
@@ -78,8 +76,6 @@ def scenes_of(
             "SCENE", NOT_GIVEN, "is missing; or give --system, --scheme, --step-size, …"
         )
     exact = hamiltonian_of(*(given[name] for name in _SYSTEM))
-    if not several:
-        exact.check_planar()
     for name in (*_NEEDED, *needed):
         if name not in asked:
             raise InputError(name, NOT_GIVEN, "is missing")

@@ -6,11 +6,10 @@ from dataclasses import dataclass
 from verify.pages.figures.captioned_plot import Plot
 from verify.pages.sections.rows import Row
 from verify.pages.sections.section import Picture, Place
-from verify.pages.text.typography import NBSP, whole
+from verify.pages.text.typography import whole
 from verify.scenes.results.poincare import PoincareOrbit
 from verify.scenes.results.stroboscopic import StroboscopicOrbit
 
-IS = f"{NBSP}={NBSP}"
 Orbits = Sequence[PoincareOrbit] | Sequence[StroboscopicOrbit]
 
 

@@ -8,10 +8,10 @@ from markupsafe import Markup
 from verify.arithmetic.exact import short
 from verify.pages.figures.captioned_plot import plotted
 from verify.pages.sections.by_key import by_key
-from verify.pages.sections.orbits_view import IS, OrbitsView, pictures
+from verify.pages.sections.orbits_view import OrbitsView, pictures
 from verify.pages.sections.rows import Row
 from verify.pages.sections.section import Section
-from verify.pages.text.typography import listed, number, step, whole
+from verify.pages.text.typography import IS, listed, number, step, whole
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.stability import OrbitKind, OrbitMapResult
 

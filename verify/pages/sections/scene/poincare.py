@@ -6,7 +6,6 @@ from markupsafe import Markup
 
 from verify.pages.figures.captioned_plot import plotted
 from verify.pages.sections.orbits_view import (
-    IS,
     OrbitsView,
     first_known,
     left,
@@ -15,9 +14,8 @@ from verify.pages.sections.orbits_view import (
 )
 from verify.pages.sections.rows import Row
 from verify.pages.sections.section import Section
-from verify.pages.text.typography import listed, number, step, whole
+from verify.pages.text.typography import IS, listed, map_name, number, step, whole
 from verify.scenes.results.poincare import MapSections, PoincareOrbit, PoincareResult
-from verify.scenes.results.regions import EXACT_FLOW
 from verify.scenes.results.report import SceneResult
 
 
@@ -33,8 +31,8 @@ def _one(result: PoincareResult, anchor: str) -> OrbitsView:
     where = f"where {result.coordinate} passes {number(result.value)} {way}"
     title = f"{orbits} orbits {where}"
     lead = (
-        f"{title}, by {listed(map(_name, result.sections))}, until t{IS}{number(result.time)}; "
-        f"h{IS}{step(result.step_size)}"
+        f"{title}, by {listed(map_name(each.map) for each in result.sections)}, "
+        f"until t{IS}{number(result.time)}; h{IS}{step(result.step_size)}"
     )
     passes = max(len(o.points) for each in result.sections for o in each.orbits)
     shown = drawn_looks(result.sections)
@@ -63,16 +61,13 @@ def _one(result: PoincareResult, anchor: str) -> OrbitsView:
     )
 
 
-def _name(sections: MapSections) -> str:
-    return "the exact flow" if sections.map == EXACT_FLOW else sections.map
-
-
 def _finding(sections: MapSections) -> str:
     """How far the map's orbits are known, and how well."""
     orbits = sections.orbits
     lost = [o for o in orbits if o.known < len(o.points)]
     error = max((o.error for o in orbits), key=Fraction)
-    said = f"With {whole(sections.digits)} digits in {sections.arithmetic}, by {_name(sections)},"
+    said = f"With {whole(sections.digits)} digits in {sections.arithmetic}, "
+    said += f"by {map_name(sections.map)},"
     within = f"within {number(error)} (estimated, by a second reckoning)"
     if not lost:
         return f"{said} every point is known {within}."

@@ -6,7 +6,6 @@ from markupsafe import Markup
 
 from verify.pages.figures.captioned_plot import plotted
 from verify.pages.sections.orbits_view import (
-    IS,
     OrbitsView,
     first_known,
     left,
@@ -15,7 +14,7 @@ from verify.pages.sections.orbits_view import (
 )
 from verify.pages.sections.rows import Row
 from verify.pages.sections.section import Section
-from verify.pages.text.typography import listed, number, step, whole
+from verify.pages.text.typography import IS, listed, number, step, whole
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.stroboscopic import StroboscopicResult
 
