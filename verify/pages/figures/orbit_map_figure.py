@@ -1,6 +1,7 @@
 """What orbits do over two of their initial values, a panel a scheme, as SVG."""
 
 from collections.abc import Sequence
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -35,7 +36,7 @@ def draw_orbit_maps(maps: Sequence[OrbitMapResult]) -> Figure:
 
 
 def _panel(axes: Any, over: OrbitMapResult, columns: int) -> None:
-    xs, ys = ([float(x) for x in values] for values in (over.across, over.upwards))
+    xs, ys = ([float(Fraction(x)) for x in values] for values in (over.across, over.upwards))
     width = (NARROW if columns == 1 else WIDE / columns) - 60
     size = min(30.0, (width / len(xs)) ** 2, ((_HEIGHT - 50) / len(ys)) ** 2) / 2
     for kind, mark in _MARKS.items():
