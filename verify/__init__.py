@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from verify.pages.plotting import plot_runs as plot_runs
     from verify.pages.plotting import plot_separation as plot_separation
     from verify.pages.plotting import plot_work_precision as plot_work_precision
-    from verify.pages.plotting_energy import plot_energy_drift as plot_energy_drift
+    from verify.pages.plotting_orbits import plot_energy_drift as plot_energy_drift
     from verify.pages.plotting_orbits import plot_orbit as plot_orbit
     from verify.proof.modified_equation import ModifiedEquation as ModifiedEquation
     from verify.proof.order_proof import Proof as Proof
@@ -75,7 +75,7 @@ _NAMES = {
     "check_map": ("verify.calls.check_map", "any map of one's own: symplectic or not"),
     "check_table": ("verify.calls.check_table", "printed coefficients, by what they claim"),
     "plot_orbit": ("verify.pages.plotting_orbits", "an orbit's quantity over t, or in the plane"),
-    "plot_energy_drift": ("verify.pages.plotting_energy", "the drift of H and of H̃ over t"),
+    "plot_energy_drift": ("verify.pages.plotting_orbits", "the drift of H and of H̃ over t"),
     "plot_runs": ("verify.pages.plotting", "a quantity of runs against the step size"),
     "plot_over_time": ("verify.pages.plotting", "ΔJ and Λ over t, as bands"),
     "plot_separation": ("verify.pages.plotting", "truncation and rounding against the step size"),

@@ -51,7 +51,7 @@ def bench(scene: str | None, output: Path | None, cluster: str | None, **given: 
     """
     if output is not None and output.suffix != ".svg":
         raise InputError("--output", str(output), "must end in .svg")
-    scenes = scenes_of(scene, given, ("q", "p", "time"), _section, several=True)
+    scenes = scenes_of(scene, given, ("q", "p", "time"), _section)
     asked = [each for each in scenes if each.work_precision]
     if not asked:
         raise InputError("SCENE", scene or NOT_GIVEN, "has no [work_precision]; add one")

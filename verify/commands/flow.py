@@ -60,7 +60,7 @@ def flow(scene: str | None, keep: Path | None, where: "Placement", **given: Any)
     from verify.studies.regions.findings import flow_json, flows_of
     from verify.studies.regions.plan import need_flows
 
-    scenes = scenes_of(scene, given, (), _sections, several=True)
+    scenes = scenes_of(scene, given, (), _sections)
     plan = plan_of(scenes, need_flows)
     if not plan.tasks:
         raise InputError("SCENE", scene or NOT_GIVEN, "asks for no [[flow]]; add one")
@@ -70,7 +70,8 @@ def flow(scene: str | None, keep: Path | None, where: "Placement", **given: Any)
     notes = [rounded_down(t, [section.step_size]) for section in sections for t in section.times]
 
     def shown() -> None:
-        _print(found)
+        for name, result in found:
+            _print_flow(name, result)
         print_once(notes)
 
     return Answer(
@@ -97,11 +98,6 @@ def _sections(
 
 def _zeros(like: "str | list[str] | None") -> str | list[str]:
     return ["0"] * len(like) if isinstance(like, list) else "0"
-
-
-def _print(found: "Sequence[tuple[str, FlowResult]]") -> None:
-    for name, result in found:
-        _print_flow(name, result)
 
 
 def _print_flow(name: str, result: "FlowResult") -> None:

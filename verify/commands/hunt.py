@@ -51,7 +51,7 @@ def hunt(
     if drawn.degrees > 1:
         return _in_degrees(asked, found, store, output, where)
     shown = gallery(asked, found, store, where=where)
-    _keep_scenes(shown, output)
+    _write_scenes([each.scene for each in shown.scenes], output)
     report = gallery_report(shown, _command(asked), begun, store.taken, len(tasks), where)
     page = write(report, output)
     told = {"examples": shown.examples, "failures": [], "seed": seed}
@@ -121,12 +121,8 @@ def _command(asked: "Hunt") -> str:
     return f"verify explore {' '.join(own)}"
 
 
-def _keep_scenes(shown: "Gallery", output: Path) -> None:
-    """Writes worst-1.toml and so on; those of an earlier hunt that had more do not stay."""
-    _write_scenes([each.scene for each in shown.scenes], output)
-
-
 def _write_scenes(texts: "Sequence[str]", output: Path) -> None:
+    """Writes worst-1.toml and so on; those of an earlier hunt that had more do not stay."""
     from verify.files import write_atomically
 
     for place, text in enumerate(texts, start=1):

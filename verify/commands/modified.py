@@ -35,13 +35,11 @@ if TYPE_CHECKING:
     "--separable", is_flag=True, help="With --every-hamiltonian: for every H = T(p) + V(q)."
 )
 def modified(
-    system: str | None,
-    hamiltonian: str | None,
-    params: tuple[str, ...],
     scheme: str,
     order: int,
     every_hamiltonian: bool,
     separable: bool,
+    **named: Any,
 ) -> Answer:
     """Find the energy that a scheme keeps, H̃ = H + h H_2 + …, by exact algebra.
 
@@ -56,14 +54,14 @@ def modified(
 
     begun = time.perf_counter()
     if every_hamiltonian:
-        if system is not None or hamiltonian is not None or params:
+        if any(given not in (None, ()) for given in named.values()):
             problem = "goes without --system, --hamiltonian, --param"
             raise InputError("--every-hamiltonian", NOT_GIVEN, problem)
         found = modified_hamiltonian(scheme, None, order, separable=separable)
     else:
         if separable:
             raise InputError("--separable", NOT_GIVEN, "goes with --every-hamiltonian")
-        exact = hamiltonian_of(system, hamiltonian, params)
+        exact = hamiltonian_of(**named)
         found = modified_hamiltonian(scheme, exact, order)
     seconds = f"{time.perf_counter() - begun:.6f}"
     return Answer(

@@ -98,4 +98,12 @@ _LINES: Mapping[str, Callable[[Task], str]] = {
         f"{' and '.join(task['axes'])}"
     ),
     "flow": _flow,
+    "poincare": lambda task: (
+        f"follow {len(task['initial_values'])} orbits by {task['map']}, {task['steps']} steps of "
+        f"{task['step_size']}, to where {task['coordinate']} passes {task['value']}"
+    ),
+    "stroboscopic": lambda task: (
+        f"follow {len(task['initial_values'])} orbits by {task['scheme']}, {task['periods']} times "
+        f"{task['steps']} steps of {task['step_size']}"
+    ),
 }

@@ -11,7 +11,14 @@ from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering, picked
 from verify.commands.shared.destinations import OUT_FILE
 from verify.commands.shared.input import hamiltonian_of, hamiltonian_options, scheme_option
-from verify.commands.shared.output import agreement, agreement_json, cut, line, order_json
+from verify.commands.shared.output import (
+    agreement,
+    agreement_json,
+    cut,
+    line,
+    order_json,
+    print_checks,
+)
 from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
@@ -55,15 +62,13 @@ if TYPE_CHECKING:
     "than sin, cos, exp and quotients, those of the proof for every H.",
 )
 def prove(
-    system: str | None,
-    hamiltonian: str | None,
-    params: tuple[str, ...],
     scheme: str,
     every_hamiltonian: bool,
     separable: bool,
     time_dependent: bool,
     degrees: int | None,
     certificate: Path | None,
+    **named: Any,
 ) -> Answer:
     """Prove the order in h of ΔJ = det J − 1, and of the map itself.
 
@@ -84,8 +89,8 @@ def prove(
         for option, given in only.items():
             if given:
                 raise InputError(f"--{option}", NOT_GIVEN, "goes with --every-hamiltonian")
-        return _prove_one(hamiltonian_of(system, hamiltonian, params), scheme, certificate)
-    if system is not None or hamiltonian is not None or params:
+        return _prove_one(hamiltonian_of(**named), scheme, certificate)
+    if any(given not in (None, ()) for given in named.values()):
         raise InputError(
             "--every-hamiltonian", NOT_GIVEN, "goes without --system, --hamiltonian, --param"
         )
@@ -285,8 +290,4 @@ def _print_every(proof: "EveryProof") -> None:
     if proof.domain:
         line("where", proof.domain.prose)
     line("the map", f"agrees with the exact flow {agreement(proof)}")
-    for identity in proof.checked:
-        line("checked", identity)
-    for condition in proof.conditions:
-        found = "holds" if condition.holds else f"residue {condition.residue}"
-        line("condition", f"{condition.name}: {found}")
+    print_checks(proof)

@@ -120,7 +120,7 @@ class _Asked:
 
 def _asked(scene: str | None, given: Mapping[str, Any]) -> _Asked:
     if scene is None:
-        scenes = scenes_of(None, given, ("q", "p"), partial(_sections, given), several=True)
+        scenes = scenes_of(None, given, ("q", "p"), partial(_sections, given))
         name = given["system"] or "hamiltonian"
         return _Asked(line_of(given), name, f"{', '.join(given['schemes'])} on {name}", scenes)
     goes_alone(given)

@@ -1,5 +1,7 @@
 """The command `verify run`: N steps, each number with its error bound."""
 
+import csv
+import io
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,13 +12,17 @@ from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering
 from verify.commands.shared.cache import cache_option
 from verify.commands.shared.destinations import OUT_FILE, OUT_FOLDER, STANDARD_OUTPUT, keepable
-from verify.commands.shared.initial_value import listed, start_options
-from verify.commands.shared.input import scheme_option, with_kept_hamiltonian
-from verify.commands.shared.orbit_file import check_points, write_orbit
+from verify.commands.shared.input import (
+    listed,
+    scheme_option,
+    start_options,
+    with_kept_hamiltonian,
+)
 from verify.errors import InputError
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
+    from verify.scenes.results.orbit import OrbitTable
     from verify.scenes.results.run import RunResult
 
 
@@ -66,16 +72,19 @@ def run(exact: "Hamiltonian", scheme: str, **options: Any) -> Answer:
     verify run --system pendulum --scheme lie2 --step-size 0.01 --time 20 --q 1 --p 0 \\
            --csv orbit.csv
     """
+    from verify.arithmetic.exact import whole
+    from verify.scenes.results.orbit import MOST_POINTS
+
     table, points = options.pop("table"), options.pop("points")
     if table == STANDARD_OUTPUT and click.get_current_context().params["as_json"]:
         raise InputError("--csv", "-", "does not go with --json: both are for standard output")
     if points is not None and table is None:
         raise InputError("--points", points, "goes with --csv")
-    if table is not None:
-        check_points(points)
+    if points is not None:
+        whole("points", points, 1, MOST_POINTS)
     result, note = _result(exact, scheme, **options)
     if table is not None:
-        write_orbit(result, table, points)
+        _write_orbit(result, table, MOST_POINTS if points is None else points)
 
     def shown() -> None:
         show.print_run(result)
@@ -140,3 +149,29 @@ def _result(
     keeper.clear()
     until = None if time is None else positive(time, "time")
     return result, rounded_down(until, [positive(step_size, "step_size")])
+
+
+def _write_orbit(result: "RunResult", path: Path, points: int) -> None:
+    """Writes so many states after the initial one at most; `path`: see `OUT_FILE`.
+
+    InputError where the file cannot be written, and where no digits of the states are known.
+    """
+    from verify.commands.shared.progress import counting_bar
+    from verify.files import write_atomically
+    from verify.runs.orbit import orbit_of
+
+    with counting_bar("stepping again, for the states", result.steps) as tell:
+        table = orbit_of(result, points, tell)
+    if path == STANDARD_OUTPUT:
+        click.echo(_as_csv(table), nl=False)
+    else:
+        write_atomically(path, _as_csv(table))
+
+
+def _as_csv(table: "OrbitTable") -> str:
+    """The rows under a header, ended by line feeds; what is not defined at a state is empty."""
+    file = io.StringIO()
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(table.columns)
+    writer.writerows(table.rows)
+    return file.getvalue()

@@ -4,14 +4,21 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering
 from verify.commands.shared.cache import cache_option
-from verify.commands.shared.initial_value import listed, start_options
-from verify.commands.shared.input import scheme_option, with_kept_hamiltonian
+from verify.commands.shared.input import (
+    listed,
+    scheme_option,
+    start_options,
+    with_kept_hamiltonian,
+)
+from verify.commands.shared.output import print_once
+from verify.commands.shared.separation import print_separation, separation_json
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
+    from verify.scenes.results.separation import SeparationGrid
+    from verify.scenes.results.separation_in_degrees import SeparationGridInDegrees
 
 
 @click.command()
@@ -47,7 +54,6 @@ def separate(
     With several step sizes also the one below which rounding is the larger part.
     """
     from verify.arithmetic.exact import positive
-    from verify.commands.shared import separation_in_degrees as in_degrees
     from verify.commands.shared.progress import progress_bar
     from verify.hamiltonians.start import check_start
     from verify.scenes.values import rounded_down
@@ -60,22 +66,16 @@ def separate(
     counts = grid(step_sizes, options["steps"], options["time"])
     with progress_bar("stepping", RUNS * sum(n for _, n in counts)) as advance:
         options |= {"step_sizes": step_sizes, "progress": advance}
+        result: SeparationGrid | SeparationGridInDegrees
         if exact.planar:
             result = separate_grid(exact, scheme, **options)
         else:
-            of_form = separate_grid_in_degrees(exact, scheme, **options)
+            result = separate_grid_in_degrees(exact, scheme, **options)
     time = options["time"]
     note = rounded_down(time and positive(time, "time"), [h for h, _ in counts])
 
     def shown() -> None:
-        if exact.planar:
-            show.print_separation(result)
-        else:
-            in_degrees.print_separation(of_form)
-        if note:
-            click.echo(note)
+        print_separation(result)
+        print_once([note])
 
-    def data() -> dict[str, Any]:
-        return show.separation_json(result) if exact.planar else in_degrees.as_json(of_form)
-
-    return Answer(data, shown)
+    return Answer(lambda: separation_json(result), shown)

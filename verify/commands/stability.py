@@ -15,7 +15,6 @@ from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
     from verify.execution.executors import Placement
-    from verify.scenes.scene import Scene
     from verify.studies.stability.findings import StabilityFindings
 
 _PLAIN = ("stable", "drifts")  # verdicts that say all there is
@@ -52,22 +51,12 @@ def stability(
     """
     if linear:
         return linear_answer(scene, given)
-    scenes = scenes_of(scene, given, ("q", "p"), _section, several=True)
-    return _of_scenes(scene, scenes, keep, where)
-
-
-def _section(*, q: Any, p: Any, **rest: Any) -> dict[str, Any]:
-    return {"stability": [{**rest, "initial_values": [{"q": q, "p": p}]}]}
-
-
-def _of_scenes(
-    scene: str | None, scenes: "list[Scene]", keep: Path | None, where: "Placement"
-) -> Answer:
     from verify.execution.study import plan_of
     from verify.scenes.values import rounded_down
     from verify.studies.stability.findings import findings_of
     from verify.studies.stability.plan import need_stability
 
+    scenes = scenes_of(scene, given, ("q", "p"), _section)
     plan = plan_of(scenes, need_stability)
     if not plan.tasks:
         problem = "asks for no [[stability]], [[largest_step]], [[stability_map]] or [[orbit_map]]"
@@ -84,6 +73,10 @@ def _of_scenes(
         print_once(notes)
 
     return Answer(found.as_json, shown)
+
+
+def _section(*, q: Any, p: Any, **rest: Any) -> dict[str, Any]:
+    return {"stability": [{**rest, "initial_values": [{"q": q, "p": p}]}]}
 
 
 def _print(found: "StabilityFindings") -> None:

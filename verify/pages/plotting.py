@@ -131,7 +131,7 @@ def plot_table(claim: ClaimResult) -> Figure:
 
 def plot_work_precision(found: WorkPrecisionResult) -> Figure:
     """Solution error at T against run time in seconds, and against the step size."""
-    panels = error_panels(found)
+    panels = list(error_panels(found))
     if not panels:
         raise InputError("found", len(found.lines), "hold no run with an error and a run time")
     return shown(lambda: work_figure.draw_panels(panels, f"error at T = {found.time}"))

@@ -11,14 +11,15 @@ schemes = ["lie2", "stormer-verlet"]   # the scene's, where it is left out
 beyond = 10                            # what goes farther has left; 10 times the farthest start
 """
 
+from collections.abc import Iterator
 from fractions import Fraction
-from typing import Annotated, Any, Self
+from typing import Annotated, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
 from verify import schemes as scheme_catalogue
-from verify.arithmetic.exact import rational, text, whole
-from verify.errors import NOT_GIVEN, InputError
+from verify.arithmetic.exact import rational, text
+from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import point_of
 from verify.scenes.frozen import Section
@@ -30,27 +31,22 @@ from verify.scenes.values import (
     StepSize,
     Time,
     distinct,
+    one_length,
+    read_range,
     steps_of,
 )
 
 _MOST_CELLS, _MOST_STEPS = 10_000, 10**9  # the steps of all cells: minutes
 
 
-def _evenly(given: Any) -> Any:
-    """A table with from, to and count as the list that it stands for."""
-    if not isinstance(given, dict):
-        return given
-    if set(given) != {"from", "to", "count"}:
-        raise InputError("range", ", ".join(map(str, given)), "allowed: from, to, count")
-    low, high = rational(given["from"], "from"), rational(given["to"], "to")
-    count = whole("count", given["count"], 2, 200)
-    if low >= high:
-        raise InputError("from, to", given["from"], "from must be less than to")
-    return tuple(low + (high - low) * k / (count - 1) for k in range(count))
+def _evenly(low: Fraction, high: Fraction, count: int) -> Iterator[Fraction]:
+    return (low + (high - low) * k / (count - 1) for k in range(count))
 
 
 Evenly = Annotated[
-    tuple[Number, ...], BeforeValidator(_evenly), Field(min_length=1, max_length=200)
+    tuple[Number, ...],
+    BeforeValidator(lambda given: read_range(given, rational, _evenly)),
+    Field(min_length=1, max_length=200),
 ]
 
 
@@ -79,8 +75,7 @@ class OrbitMap(Section):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        if (self.time is None) == (self.steps is None):
-            raise InputError("time, steps", NOT_GIVEN, "give one of the two")
+        one_length(self.time, self.steps)
         for name in ("axes", "across", "upwards", "schemes"):
             distinct(name, getattr(self, name))
         for scheme in self.schemes:

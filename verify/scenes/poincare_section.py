@@ -19,7 +19,7 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from verify.errors import NOT_GIVEN, InputError
+from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.frozen import Section
 from verify.scenes.values import (
@@ -31,6 +31,7 @@ from verify.scenes.values import (
     StepSize,
     Time,
     distinct,
+    one_length,
     steps_of,
 )
 
@@ -67,8 +68,7 @@ class Poincare(Section):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        if (self.time is None) == (self.steps is None):
-            raise InputError("time, steps", NOT_GIVEN, "give one of the two")
+        one_length(self.time, self.steps)
         for name in ("initial_values", "schemes", "draw"):
             distinct(name, getattr(self, name))
         if self.count * len(self.initial_values) > _MOST_STEPS:

@@ -6,7 +6,7 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from verify.errors import NOT_GIVEN, InputError, unknown
+from verify.errors import InputError, unknown
 from verify.scenes.frozen import Section
 from verify.scenes.observables import OF_FORM
 from verify.scenes.values import (
@@ -20,6 +20,7 @@ from verify.scenes.values import (
     Time,
     auto_for_digits,
     distinct,
+    one_length,
     steps_of,
 )
 
@@ -56,8 +57,7 @@ class Grid(Section):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        if (self.time is None) == (self.steps is None):
-            raise InputError("time, steps", NOT_GIVEN, "give one of the two")
+        one_length(self.time, self.steps)
         for name in self.observables or ():
             if name not in (*OBSERVABLES, *OF_FORM):
                 raise unknown("observable", name, OBSERVABLES)
@@ -147,8 +147,7 @@ class Series(Section):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        if (self.time is None) == (self.steps is None):
-            raise InputError("time, steps", NOT_GIVEN, "give one of the two")
+        one_length(self.time, self.steps)
         steps_of(self.time, self.steps, self.step_size)
         return self
 

@@ -23,14 +23,14 @@ initial_value = { q = 1, p = 0 }
 
 from collections.abc import Iterator
 from fractions import Fraction
-from typing import Annotated, Any, Self
+from typing import Annotated, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
 from verify import schemes as scheme_catalogue
-from verify.arithmetic.exact import decimal, positive, text, whole
+from verify.arithmetic.exact import decimal, positive, text
 from verify.arithmetic.systems import mpfr
-from verify.errors import NOT_GIVEN, InputError
+from verify.errors import InputError
 from verify.scenes.frozen import Section
 from verify.scenes.values import (
     Number,
@@ -40,6 +40,8 @@ from verify.scenes.values import (
     StepSize,
     Time,
     distinct,
+    one_length,
+    read_range,
     steps_of,
 )
 
@@ -47,19 +49,6 @@ _MOST_STEPS = 10**9  # of a run that is judged: minutes
 _MOST_MAP_STEPS = 100_000
 _MOST_CELLS = 10_000
 _SHOWN = 3  # digits of a value in a range
-
-
-def _spread(given: Any) -> Any:
-    """A table with from, to and count as the list that it stands for."""
-    if not isinstance(given, dict):
-        return given
-    if set(given) != {"from", "to", "count"}:
-        raise InputError("range", ", ".join(map(str, given)), "allowed: from, to, count")
-    low, high, count = positive(given["from"], "from"), positive(given["to"], "to"), given["count"]
-    whole("count", count, 2, 200)
-    if low >= high:
-        raise InputError("from, to", given["from"], "from must be less than to")
-    return tuple(_evenly(low, high, count))
 
 
 def _evenly(low: Fraction, high: Fraction, count: int) -> Iterator[Fraction]:
@@ -73,12 +62,9 @@ def _evenly(low: Fraction, high: Fraction, count: int) -> Iterator[Fraction]:
         yield Fraction(decimal(arithmetic.exact(size), _SHOWN))
 
 
-Values = Annotated[
-    tuple[Number, ...], BeforeValidator(_spread), Field(min_length=1, max_length=200)
-]
-StepSizes = Annotated[
-    tuple[StepSize, ...], BeforeValidator(_spread), Field(min_length=1, max_length=200)
-]
+_SPREAD = BeforeValidator(lambda given: read_range(given, positive, _evenly))
+Values = Annotated[tuple[Number, ...], _SPREAD, Field(min_length=1, max_length=200)]
+StepSizes = Annotated[tuple[StepSize, ...], _SPREAD, Field(min_length=1, max_length=200)]
 Schemes = Annotated[tuple[SchemeName, ...], Field(max_length=100)]
 
 
@@ -112,8 +98,7 @@ class Stability(OfSchemes):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        if (self.time is None) == (self.steps is None):
-            raise InputError("time, steps", NOT_GIVEN, "give one of the two")
+        one_length(self.time, self.steps)
         for h in self.step_sizes:
             self.steps_for(h)
         return self

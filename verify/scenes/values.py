@@ -1,6 +1,6 @@
 """The values that a scene's keys take: exact numbers, counts, initial values."""
 
-from collections.abc import Collection, Iterable
+from collections.abc import Callable, Collection, Iterable
 from fractions import Fraction
 from typing import Annotated, Any
 
@@ -57,6 +57,32 @@ def auto_for_digits(data: Any) -> Any:
     """A section's keys, with `arithmetic` auto where digits are asked for and no arithmetic is."""
     wanted = isinstance(data, dict) and "digits" in data and "arithmetic" not in data
     return {**data, "arithmetic": AUTO} if wanted else data
+
+
+def read_range(
+    given: Any,
+    read: Callable[[Any, str], Fraction],
+    values: Callable[[Fraction, Fraction, int], Iterable[Fraction]],
+) -> Any:
+    """A table with from, to and count as the list of `values` that it stands for; else as it is.
+
+    `read`: how its ends are read, by their names.
+    """
+    if not isinstance(given, dict):
+        return given
+    if set(given) != {"from", "to", "count"}:
+        raise InputError("range", ", ".join(map(str, given)), "allowed: from, to, count")
+    low, high = read(given["from"], "from"), read(given["to"], "to")
+    count = whole("count", given["count"], 2, 200)
+    if low >= high:
+        raise InputError("from, to", given["from"], "from must be less than to")
+    return tuple(values(low, high, count))
+
+
+def one_length(time: Fraction | None, steps: int | None) -> None:
+    """InputError unless one of the two says how long a run is."""
+    if (time is None) == (steps is None):
+        raise InputError("time, steps", NOT_GIVEN, "give one of the two")
 
 
 def distinct(name: str, given: Collection[object]) -> None:

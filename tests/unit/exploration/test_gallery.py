@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from tests.helpers.constructed.galleries import at, gallery, shown
-from verify.commands.hunt import _command, _keep_scenes, _when
+from verify.commands.hunt import _command, _when, _write_scenes
 from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS
 from verify.exploration.gallery import gallery as gallery_of
@@ -83,7 +83,7 @@ def test_where_nothing_of_lambda_is_known_neither_part_is_said_to_be_the_larger(
 def test_scenes_of_an_earlier_hunt_do_not_stay(tmp_path: Path) -> None:
     for name in ("worst-1.toml", "worst-2.toml", "worst-12.toml", "worst-of-mine.toml"):
         (tmp_path / name).write_text("old")
-    _keep_scenes(gallery(shown()), tmp_path)
+    _write_scenes([each.scene for each in gallery(shown()).scenes], tmp_path)
     left = {file.name: file.read_text() for file in tmp_path.iterdir()}
     assert set(left) == {"worst-1.toml", "worst-of-mine.toml"}
     assert left["worst-1.toml"] == shown().scene

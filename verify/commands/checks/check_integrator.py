@@ -63,16 +63,12 @@ def check_integrator(
     command: str | None,
     number_type: str,
     arguments: str | None,
-    q: str | None,
-    p: str | None,
-    scale: str | None,
-    within: str | None,
-    step_size: str | None,
     order: int | None,
     area_preserving: bool,
     symplectic: bool,
     area_order: int | None,
     time_limit: float,
+    **looking: str | None,
 ) -> Answer:
     """Check a step of your own, in Python or any language: its order and that of ΔJ.
 
@@ -101,7 +97,7 @@ def check_integrator(
     from verify.integrators.results import Claims
 
     begun = time.perf_counter()
-    request = request_from(exact.coordinates, q, p, scale, within, step_size)
+    request = request_from(exact.coordinates, **looking)
     if exact.symbols:
         raise InputError("--param", exact.symbols[0], "has no value; a step of one's own needs it")
     called = command or target or ""

@@ -44,11 +44,8 @@ def check_map(
     degrees: int,
     arguments: str | None,
     params: tuple[str, ...],
-    q: str | None,
-    p: str | None,
-    scale: str | None,
-    within: str | None,
     time_limit: float,
+    **looking: str | None,
 ) -> Answer:
     """Check whether a Python function map(p, q) → (p', q') of your own is symplectic, without an H.
 
@@ -73,7 +70,7 @@ def check_map(
     begun = time.perf_counter()
     check_degrees(degrees)
     names = coordinates_in(degrees)
-    request = request_from(names, q, p, scale, within)
+    request = request_from(names, **looking)
     parameters = {n: rational(x, f"parameter {n}") for n, x in values_of(params).items()}
     callee = callee_from(
         load(target, "map"), names, stepped=False, arguments=arguments, parameters=parameters,

@@ -1,11 +1,12 @@
 """Where a check of a user's code looks: options, and how they are read."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
+from verify.commands.shared.input import options
 from verify.errors import InputError
 
 if TYPE_CHECKING:
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
     from verify.integrators.places.place import Place
     from verify.integrators.results import Finding
 
-_OPTIONS = (
+looking_options = options(
     click.option("--q", "q", metavar="Q", help="A state to look at first: q, or q1,q2,…"),
     click.option("--p", "p", metavar="P", help="Its momenta: p, or p1,p2,…"),
     click.option(
@@ -27,25 +28,14 @@ _OPTIONS = (
         help="A defect that you allow, such as 1e-8; else that of the numbers' rounding.",
     ),
 )
-_STEP_SIZE = click.option(
+step_size_option = click.option(
     "--step-size", metavar="H", help="The step size that matters to you: the largest looked at."
 )
 
 
-def looking_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The command with the options that say where to look, for a map."""
-    for option in reversed(_OPTIONS):
-        command = option(command)
-    return command
-
-
-def step_size_option(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The command with the step size that a step is looked at with."""
-    return _STEP_SIZE(command)
-
-
 def request_from(
     names: Sequence[str],
+    *,
     q: str | None,
     p: str | None,
     scale: str | None,

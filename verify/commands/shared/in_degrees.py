@@ -6,7 +6,14 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands.shared.answer import picked
-from verify.commands.shared.output import agreement, agreement_json, cut, line, order_json
+from verify.commands.shared.output import (
+    agreement,
+    agreement_json,
+    cut,
+    line,
+    order_json,
+    print_checks,
+)
 
 if TYPE_CHECKING:
     from verify.proof.symplectic.proof import SymplecticProof
@@ -64,11 +71,7 @@ def print_symplectic(texts: Mapping[str, Any], scheme: str, proof: "SymplecticPr
     line("det J", _of_volume(proof))
     if proof.telescopes is not None and not proof.symplectic:
         line("telescopes", _telescoping(proof))
-    for identity in proof.checked:
-        line("checked", str(identity))
-    for condition in proof.conditions:
-        found = "holds" if condition.holds else f"residue {condition.residue}"
-        line("condition", f"{condition.name}: {found}")
+    print_checks(proof)
     if proof.domain:
         line("where", str(proof.domain.prose))
     line("the map", f"agrees with the exact flow {agreement(proof)}")

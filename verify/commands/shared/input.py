@@ -81,7 +81,22 @@ CLAIMS = _FileOr(lambda: ("paper",))
 FILE = _FileOr(tuple)
 SCHEME = _Named("scheme", _schemes)
 _SYSTEM = _Named("system", _systems)
-_HAMILTONIAN_OPTIONS = (
+Command = Callable[..., Any]
+
+
+def options(*given: Callable[[Command], Command]) -> Callable[[Command], Command]:
+    """Makes a command take these options, which its help lists in this order."""
+
+    def with_options(command: Command) -> Command:
+        for option in reversed(given):
+            command = option(command)
+        return command
+
+    return with_options
+
+
+# Those that name a Hamiltonian, which `hamiltonian_of` takes.
+hamiltonian_options = options(
     click.option(
         "--system",
         type=_SYSTEM,
@@ -107,6 +122,15 @@ scheme_option = click.option(
 )
 
 
+start_options = options(
+    click.option(
+        "--q",
+        required=True,
+        metavar="Q",
+        help="Initial displacement; of q1, q2, … one each, as 0.1,0.2.",
+    ),
+    click.option("--p", required=True, metavar="P", help="Initial momentum; as --q."),
+)
 time_limit_option = click.option(
     "--time-limit",
     type=click.FloatRange(0.01),
@@ -114,13 +138,6 @@ time_limit_option = click.option(
     metavar="SECONDS",
     help="For all calls of the function.",
 )
-
-
-def hamiltonian_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The command with the options that name a Hamiltonian, which `hamiltonian_of` takes."""
-    for option in reversed(_HAMILTONIAN_OPTIONS):
-        command = option(command)
-    return command
 
 
 def with_hamiltonian(command: Callable[..., Any], *, kept: bool = False) -> Callable[..., Any]:
@@ -182,6 +199,16 @@ def hamiltonian_of(
     from verify.hamiltonians.kept import kept_or_read
 
     return kept_or_read(source, values, read)
+
+
+def listed(given: str, exact: "Hamiltonian") -> str | list[str]:
+    """The number; of an H of p1 … qn a list, the numbers that commas part.
+
+    Whoever takes them says so where there are too few or too many.
+    """
+    if exact.planar:
+        return given
+    return [part.strip() for part in given.split(",")]
 
 
 def paper_folder() -> Path:

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands.shared.answer import Answer
-from verify.commands.shared.initial_value import listed
-from verify.commands.shared.input import hamiltonian_of
+from verify.commands.shared.input import hamiltonian_of, listed
 from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:

@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.shared.initial_value import listed
 from verify.commands.shared.input import (
     SCENE,
     SCHEME,
     hamiltonian_of,
     hamiltonian_options,
+    listed,
+    options,
     target,
 )
 from verify.errors import NOT_GIVEN, InputError
@@ -29,11 +30,11 @@ schemes_option = click.option(
     metavar="NAME",
     help="lie1, lie2, …, stormer-verlet, rk4, …, or 'p_next = …; q_next = …'; repeatable.",
 )
-_START = (
+start_options = options(
     click.option("--q", metavar="Q", help="Initial displacement."),
     click.option("--p", metavar="P", help="Initial momentum."),
 )
-_STEPS = (
+_STEPS = options(
     click.option(
         "--step-size", "step_sizes", multiple=True, metavar="H", help="Greater than 0; repeatable."
     ),
@@ -47,19 +48,11 @@ def with_one_line(*own: Callable[..., Any]) -> Callable[..., Any]:
     """
 
     def decorated(command: Callable[..., Any]) -> Callable[..., Any]:
-        for option in reversed((schemes_option, *_STEPS, *own)):
-            command = option(command)
+        command = schemes_option(_STEPS(options(*own)(command)))
         argument = click.argument("scene", type=SCENE, required=False, metavar="[SCENE]")
         return argument(hamiltonian_options(command))
 
     return decorated
-
-
-def start_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The command with --q and --p."""
-    for option in reversed(_START):
-        command = option(command)
-    return command
 
 
 def scenes_of(
@@ -67,14 +60,12 @@ def scenes_of(
     given: Mapping[str, Any],
     needed: tuple[str, ...],
     sections: Callable[..., Mapping[str, Any]],
-    *,
-    several: bool = False,
 ) -> "list[Scene]":
     """The scenes of SCENE, or the one that the options in `given` are.
 
     `needed`: which of them cannot be left out, beside schemes and step sizes. `sections` makes the
-    scene's sections of those that are not the system's nor the schemes. `several`: H may have more
-    degrees of freedom than one. InputError where both are given, or neither, or one is missing.
+    scene's sections of those that are not the system's nor the schemes. InputError where both are
+    given, or neither, or one is missing.
     """
     if scene is not None:
         goes_alone(given)
@@ -85,8 +76,6 @@ def scenes_of(
             "SCENE", NOT_GIVEN, "is missing; or give --system, --scheme, --step-size, …"
         )
     exact = hamiltonian_of(*(given[name] for name in _SYSTEM))
-    if not several:
-        exact.check_planar()
     for name in (*_NEEDED, *needed):
         if name not in asked:
             raise InputError(name, NOT_GIVEN, "is missing")

@@ -13,18 +13,13 @@ if TYPE_CHECKING:
 
     from verify.hamiltonians.hamiltonian import Hamiltonian
     from verify.integrators.results import Finding
+    from verify.proof.every import EveryProof
     from verify.proof.order_proof import Proof
     from verify.proof.potential import Potential
     from verify.proof.symplectic.proof import SymplecticProof
     from verify.scenes.frozen import Frozen
     from verify.scenes.results.report import Report
     from verify.scenes.results.run import RunResult
-    from verify.scenes.results.separation import (
-        CrossoverResult,
-        EvaluationResult,
-        SeparationGrid,
-        SeparationResult,
-    )
 
 _WIDTH, _NAMES = 88, 10  # of a line, and of the name that it begins with
 _LONGEST = 400  # characters of a formula on the terminal
@@ -104,6 +99,15 @@ def line(name: str, text: str) -> None:
     """A name and what it is, wrapped."""
     first, rest = f"  {name:{_NAMES}} ", " " * (_NAMES + 3)
     click.echo(textwrap.fill(text, _WIDTH, initial_indent=first, subsequent_indent=rest))
+
+
+def print_checks(proof: "EveryProof | SymplecticProof") -> None:
+    """The identities that were checked, and the conditions that decide."""
+    for identity in proof.checked:
+        line("checked", str(identity))
+    for condition in proof.conditions:
+        found = "holds" if condition.holds else f"residue {condition.residue}"
+        line("condition", f"{condition.name}: {found}")
 
 
 def print_head(
@@ -206,81 +210,6 @@ def plain_json(model: "Frozen") -> dict[str, Any]:
 
     data: dict[str, Any] = model.model_dump(mode="json", context=PLAIN)
     return data
-
-
-def separation_json(found: "SeparationGrid") -> dict[str, Any]:
-    """The first step size's parts, and those of all of them as `grid`."""
-    points = [_separated(point) for point in found.points]
-    ways = {"plain": found.plain, "closed_form": found.closed_form}
-    crossover = {name: way.model_dump(mode="json") for name, way in ways.items()}
-    seconds = f"{sum(point.seconds for point in found.points):.6f}"
-    return {**points[0], "crossover": crossover, "grid": points, "seconds": seconds}
-
-
-def _separated(point: "SeparationResult") -> dict[str, Any]:
-    return {
-        **_evaluated(point.plain),
-        "closed_form": _evaluated(point.closed_form),
-        **picked(point, "step_size", "steps", "digits"),
-        "working_arithmetic": "float64",
-        **picked(point, "arithmetic", "error_method", "status", "failed_step", "reason"),
-        "seconds": f"{point.seconds:.6f}",
-    }
-
-
-def _evaluated(way: "EvaluationResult | None") -> dict[str, Any]:
-    from verify.scenes.results.separation import Parts
-
-    names = (type(way.parts) if way else Parts).model_fields
-    values = {n: getattr(way.parts, n) if way else None for n in names}
-    shown = {n: value.value if value else None for n, value in values.items()}
-    return {
-        "lambda_working": shown.pop("lambda_working"),
-        "truncation": shown.pop("truncation"),
-        "rounding": shown,
-        "error_bound": {n: value.bound for n, value in values.items() if value},
-        "error_kind": way.error_kind if way else None,
-        "largest": way.largest if way else None,
-        "growth": {n: plain_json(g) for n, g in way.growth.items()} if way else None,
-        "series": [point.model_dump(mode="json") for point in way.series] if way else [],
-    }
-
-
-def print_separation(found: "SeparationGrid") -> None:
-    for point in found.points:
-        click.echo(f"h = {point.step_size}, {point.steps} steps")
-        if point.status == "finished":
-            _print_parts(point)
-        else:
-            at = f" at step {point.failed_step}" if point.failed_step else ""
-            click.echo(f"  {point.status}{at}: {point.reason}")
-    if len(found.points) > 1:
-        for label, way in (("plain", found.plain), ("closed form", found.closed_form)):
-            click.echo(f"rounding overtakes truncation, {label}: {crossed(way)}")
-
-
-def _print_parts(point: "SeparationResult") -> None:
-    from verify.scenes.results.separation import SHOWN
-
-    ways = [way for way in (point.plain, point.closed_form) if way]
-    parts = {name: f"  {name}" for name in ways[0].parts.of_rounding}
-    click.echo(f"  {'':16}{'plain':26}{'closed form' if len(ways) > 1 else ''}")
-    for name, label in (SHOWN | parts).items():
-        values = [getattr(way.parts, name) for way in ways]
-        click.echo(f"  {label:16}" + "".join(f"{value.value:26}" for value in values).rstrip())
-    for label, way in zip(("plain", "closed form"), ways, strict=False):
-        growth = way.growth["total"]
-        click.echo(f"  rounding with N, {label}: {growth.name} ({growth.reason})")
-    if len(ways) < 2:
-        click.echo("  no closed form: some det J ≤ 0, which has no logarithm")
-    click.echo(f"  {point.arithmetic} as exact arithmetic, {point.seconds:.3g} s; "
-               f"bounds {ways[0].error_kind} ({point.error_method})")  # fmt: skip
-
-
-def crossed(way: "CrossoverResult") -> str:
-    if way.bracket is None:
-        return way.reason
-    return f"h* = {way.step_size or '?'}, {way.bracket[0]} … {way.bracket[1]} ({way.reason})"
 
 
 def print_report(made: "Report", *pages: Path) -> None:

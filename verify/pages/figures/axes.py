@@ -41,6 +41,13 @@ def grid_lines(axes: Any, which: str = "y") -> None:
     axes.tick_params(length=3, width=0.7)
 
 
+def round_numbers(axes: Any) -> None:
+    """Some five round numbers on either axis."""
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
+        axis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}".replace("-", "−")))
+
+
 def decades(axis: Any, *, most: int = 7) -> None:
     """Powers of ten as ticks of an axis that shows logarithms."""
     axis.set_major_locator(_Decades(most, integer=True, min_n_ticks=2))

@@ -4,9 +4,15 @@ from collections.abc import Iterator, Sequence
 from math import isfinite, log10, nan
 
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, MaxNLocator
 
-from verify.pages.figures.axes import Mark, decades, grid_lines, line_style, mark_places
+from verify.pages.figures.axes import (
+    Mark,
+    decades,
+    grid_lines,
+    line_style,
+    mark_places,
+    round_numbers,
+)
 from verify.pages.figures.logarithm import lg
 from verify.pages.figures.notebook_figure import canvas
 from verify.pages.figures.svg import INK, SERIES
@@ -39,9 +45,7 @@ def draw_orbit(points: Sequence[tuple[str, str]], steps: int) -> Figure:
     if _alike(q, p):
         axes.set_aspect("equal")
     grid_lines(axes, "both")
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
-        axis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}".replace("-", "−")))
+    round_numbers(axes)
     axes.set_xlabel("q")
     axes.set_ylabel("p", rotation=0, labelpad=10)
     figure.legend(loc="outside lower center", ncols=2)

@@ -1,18 +1,18 @@
 """What orbits do over two of their initial values, a panel a scheme, as SVG."""
 
 from collections.abc import Sequence
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, MaxNLocator
 
-from verify.pages.figures.axes import grid_lines
-from verify.pages.figures.notebook_figure import NARROW, WIDE, sheet
+from verify.pages.figures.notebook_figure import NARROW, WIDE
+from verify.pages.figures.panels import name_marks, name_states, panels_beside
 from verify.pages.figures.svg import INK, SERIES
 from verify.scenes.results.stability import OrbitKind, OrbitMapResult
 
-_IN_A_ROW, _HEIGHT, _LEGEND = 3, 250, 40
+_IN_A_ROW, _HEIGHT, _LEGEND, _ROOM = 3, 250, 40, 0.04
 _LEVELS = 6  # lines of equal energy
 
 # What a kind looks like; shapes differ as well as colours.
@@ -27,26 +27,16 @@ _MARKS: dict[OrbitKind, dict[str, Any]] = {
 def draw_orbit_maps(maps: Sequence[OrbitMapResult]) -> Figure:
     """Each orbit by its kind's mark, over lines of equal energy; all maps over the same starts."""
     columns = min(len(maps), _IN_A_ROW)
-    rows = -(-len(maps) // columns)
-    figure = sheet(_HEIGHT * rows + _LEGEND, WIDE if columns > 1 else NARROW)
-    panels: Any = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
+    figure, panels = panels_beside(len(maps), in_a_row=columns, height=_HEIGHT, beside=_LEGEND)
     for axes, over in zip(panels.flat, maps, strict=False):
         _panel(axes, over, columns)
-    for axes in panels.flat[len(maps) :]:
-        axes.set_axis_off()
-    for row in panels:
-        row[0].set_ylabel(maps[0].axes[1], rotation=0, labelpad=10)
-    named = {
-        label: handle
-        for axes in panels.flat
-        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
-    }
-    figure.legend(named.values(), named, loc="outside lower center", ncols=4, handlelength=1.6)
+    name_states(panels, [over.scheme for over in maps], maps[0].axes, _ROOM)
+    name_marks(figure, panels, 4)
     return figure
 
 
 def _panel(axes: Any, over: OrbitMapResult, columns: int) -> None:
-    xs, ys = ([float(x) for x in values] for values in (over.across, over.upwards))
+    xs, ys = ([float(Fraction(x)) for x in values] for values in (over.across, over.upwards))
     width = (NARROW if columns == 1 else WIDE / columns) - 60
     size = min(30.0, (width / len(xs)) ** 2, ((_HEIGHT - 50) / len(ys)) ** 2) / 2
     for kind, mark in _MARKS.items():
@@ -57,11 +47,3 @@ def _panel(axes: Any, over: OrbitMapResult, columns: int) -> None:
     if min(energies.shape) > 1 and np.isfinite(energies).all() and np.ptp(energies) > 0:
         look = {"colors": INK, "linewidths": 0.5, "alpha": 0.35, "linestyles": "solid"}
         axes.contour(xs, ys, energies, levels=_LEVELS, **look)
-    axes.set_title(over.scheme)
-    axes.set_xlabel(over.axes[0])
-    axes.margins(0.04)
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
-        axis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}".replace("-", "−")))
-    axes.tick_params(labelbottom=True)
-    grid_lines(axes, "both")

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import StepPatch
 
 from verify.pages.figures.axes import grid_lines, scaled_ticks, time_axis
-from verify.pages.figures.notebook_figure import NARROW, WIDE, sheet
+from verify.pages.figures.panels import panels_beside
 from verify.pages.figures.svg import INK, SERIES
 from verify.scenes.results.run import RunResult, SeriesPoint
 
@@ -58,14 +58,11 @@ def draw_over_time(rows: Sequence[Along]) -> Figure:
     """The panels of each orbit beside one another, with its name where there are several."""
     several = len(rows) > 1
     panels = [(run, quantity, row.label * several) for row in rows for run, quantity in row.panels]
-    columns = min(len(panels), _IN_A_ROW)
-    count = -(-len(panels) // columns)
-    figure = sheet(_HEIGHT * count + 10, WIDE if columns > 1 else NARROW)
-    all_axes: Any = figure.subplots(count, columns, squeeze=False).flat
-    for axes, (run, quantity, label) in zip(all_axes, panels, strict=False):
+    figure, all_axes = panels_beside(
+        len(panels), in_a_row=_IN_A_ROW, height=_HEIGHT, beside=10, shared=False
+    )
+    for axes, (run, quantity, label) in zip(all_axes.flat, panels, strict=False):
         _panel(axes, run, quantity, label)
-    for axes in all_axes[len(panels) :]:
-        axes.set_axis_off()
     return figure
 
 

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from verify.pages.figures.axes import decades, grid_lines
 from verify.pages.figures.logarithm import lg
-from verify.pages.figures.notebook_figure import NARROW, WIDE, sheet
+from verify.pages.figures.panels import name_marks, panels_beside
 from verify.pages.figures.svg import INK, SERIES
 from verify.scenes.results.stability import Kind, StabilityMapResult
 
@@ -36,29 +36,17 @@ def draw_planes(maps: Sequence[StabilityMapResult]) -> Figure:
     All maps are over the same steps and values; they share their axes and one legend.
     """
     columns = min(len(maps), _COLUMNS)
-    rows = -(-len(maps) // columns)
-    figure = sheet(_PANEL * rows + 60, WIDE if columns > 1 else NARROW)
-    panels: Any = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
+    figure, panels = panels_beside(len(maps), in_a_row=columns, height=_PANEL, beside=60)
     size = 1 if columns == 1 else _SMALLER
     for axes, over in zip(panels.flat, maps, strict=False):
         _panel(axes, over, size)
-    for axes in panels.flat[len(maps) :]:
-        axes.set_axis_off()
     for axes in panels[:, 0]:
         axes.set_ylabel(f"{maps[0].parameter} (logarithmic)")
     for j in range(columns):
-        lowest = max(i for i in range(rows) if i * columns + j < len(maps))
+        lowest = max(i for i in range(len(panels)) if i * columns + j < len(maps))
         panels[lowest, j].set_xlabel("step size h (logarithmic)")
         panels[lowest, j].tick_params(labelbottom=True)
-    named = {
-        label: handle
-        for axes in panels.flat
-        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
-    }
-    figure.legend(
-        named.values(), named, loc="outside lower center", ncols=5 if columns > 1 else 2,
-        handlelength=1.6,
-    )  # fmt: skip
+    name_marks(figure, panels, 5 if columns > 1 else 2)
     return figure
 
 

@@ -26,7 +26,7 @@ def plots(found: WorkPrecisionResult, *, name: str) -> Iterator[Plot]:
     """All that there is to draw, as the panels of one figure."""
     own = [line for line in found.lines if not line.peer]
     told = [
-        (list(_error_panels(found)), _caption([line for line in own if _timed(line)])),
+        (list(error_panels(found)), _caption([line for line in own if _timed(line)])),
         (list(_area_panels(found)), _of_areas(found)),
         (list(_digit_panels(found)), _of_digits(found)),
     ]
@@ -48,12 +48,8 @@ def plots(found: WorkPrecisionResult, *, name: str) -> Iterator[Plot]:
     )
 
 
-def error_panels(found: WorkPrecisionResult) -> "list[Panel]":
+def error_panels(found: WorkPrecisionResult) -> "Iterator[Panel]":
     """Solution error against run time and, of the schemes, against the step size."""
-    return list(_error_panels(found))
-
-
-def _error_panels(found: WorkPrecisionResult) -> "Iterator[Panel]":
     lines = [line for line in found.lines if _timed(line)]
     own = [line for line in lines if not line.peer]
     if lines:

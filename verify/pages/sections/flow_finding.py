@@ -6,10 +6,9 @@ from fractions import Fraction
 
 from verify.pages.sections.by_key import by_key
 from verify.pages.sections.flow_words import Words, words
-from verify.pages.text.typography import NBSP, listed, number, step, whole
+from verify.pages.text.typography import IS, NBSP, listed, map_name, number, step, whole
 from verify.scenes.results.regions import EXACT_FLOW, FlowImage, FlowResult
 
-IS = f"{NBSP}={NBSP}"
 _SEEN = Fraction(1, 1000)  # of an area: an eye does not see less in a picture; the sentence says it
 
 # -- sentences on all of a scene ------------------------------------------------------------------
@@ -186,11 +185,10 @@ def _by_planes(flow: FlowResult) -> Iterator[str]:
     seen = last.outlines[0].projections
     planes = listed([f"(q{x.plane}, p{x.plane})" for x in seen])
     areas = listed([f"{float(x.area):.4g}".replace("-", "−") for x in seen])
-    whose = "the exact flow" if last.map == EXACT_FLOW else last.map
     yield (
-        f"After N{IS}{whole(last.steps)} steps by {whose} the projections to {planes} enclose "
-        f"{areas} of what the outline enclosed in (q{flow.plane}, p{flow.plane}) before: their sum "
-        "is the invariant, not each of them."
+        f"After N{IS}{whole(last.steps)} steps by {map_name(last.map)} the projections to "
+        f"{planes} enclose {areas} of what the outline enclosed in (q{flow.plane}, p{flow.plane}) "
+        "before: their sum is the invariant, not each of them."
     )
 
 

@@ -7,8 +7,8 @@ import numpy as np
 
 from verify.pages.figures.flow_figure import line_width, stretched
 from verify.pages.figures.flow_grid import Grid
-from verify.pages.text.typography import NBSP, listed, whole
-from verify.scenes.results.regions import EXACT_FLOW, FlowResult
+from verify.pages.text.typography import IS, listed, map_name, whole
+from verify.scenes.results.regions import FlowResult
 
 _NEAR = 2  # widths of a line: what lies so near hides what it lies on, nearly
 _NOTED = 1.5  # times as long: an outline drawn out so far is spoken of
@@ -35,13 +35,9 @@ def _stretched(grid: Grid) -> Iterator[str]:
     if times >= _NOTED:
         said = whole(round(times)) if times >= 10 else f"{times:.1f}"
         yield (
-            f"After N{NBSP}={NBSP}{whole(steps)} steps by {_map(first.name)} the outline is "
+            f"After N{IS}{whole(steps)} steps by {map_name(first.name)} the outline is "
             f"{said} times as long as before."
         )
-
-
-def _map(name: str) -> str:
-    return f"the {name}" if name == EXACT_FLOW else name
 
 
 def _upon_each_other(flow: FlowResult, line: float) -> Iterator[str]:
@@ -68,7 +64,7 @@ def _upon_before(grid: Grid) -> Iterator[str]:
         if _lies_upon(curves[0], grid.before[0], _NEAR * line_width(grid))
     }
     if hidden:
-        counts = listed([f"N{NBSP}={NBSP}{whole(n)}" for n in sorted(hidden)])
+        counts = listed([f"N{IS}{whole(n)}" for n in sorted(hidden)])
         yield f"At {counts} the image lies within two lines’ widths of the grey one and hides it."
 
 

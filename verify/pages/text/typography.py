@@ -13,12 +13,14 @@ from markupsafe import Markup, escape
 from verify.arithmetic.exact import text
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.growth import AverageResult
+from verify.scenes.results.regions import EXACT_FLOW
 from verify.scenes.results.run import RunResult
 from verify.scenes.results.separation import SeparationResult
 from verify.scenes.results.separation_in_degrees import SeparationInDegrees
 from verify.scenes.results.work_precision import WorkPrecisionResult
 
 NBSP = "\u00a0"
+IS = f"{NBSP}={NBSP}"
 _SUPERSCRIPT = str.maketrans("0123456789-+", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺")
 _GROUP, _IN_A_LINE = 5, 3  # digits to a group, groups to a line
 _UNGROUPED = 17  # digits at most of a number that is left in one piece
@@ -134,10 +136,10 @@ def start(
     """A run's initial value, and when it starts, where that is not 0."""
     t0 = getattr(run, "t0", "0")
     at = {"q₀": run.q, "p₀": run.p} | ({} if t0 == "0" else {"t₀": t0})
-    return ", ".join(f"{name}{NBSP}={NBSP}{_coordinates(x)}" for name, x in at.items())
+    return ", ".join(f"{name}{IS}{coordinates(x)}" for name, x in at.items())
 
 
-def _coordinates(x: str | tuple[str, ...]) -> str:
+def coordinates(x: str | tuple[str, ...]) -> str:
     """A number; or those of n degrees of freedom, in brackets."""
     return number(x) if isinstance(x, str) else f"({', '.join(map(number, x))})"
 
@@ -149,6 +151,11 @@ def interval(t0: str, length: Fraction | str, shown: Callable[[str], str] = str)
     '[1/3, 7/3]'
     """
     return f"[{shown(t0)}, {shown(text(Fraction(t0) + Fraction(length)))}]"
+
+
+def map_name(name: str) -> str:
+    """A scheme's name, or that of the exact flow, in a sentence."""
+    return f"the {name}" if name == EXACT_FLOW else name
 
 
 def listed(items: Iterable[str]) -> str:

@@ -1,7 +1,7 @@
 """Truncation and rounding in Λ as they were found, and how they show themselves in a notebook."""
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from verify.frames import library, nearest_float
 from verify.notebook import html_table
@@ -17,10 +17,23 @@ SHOWN = {"lambda_working": "Λ in float64", "truncation": "truncation", "total":
 WAYS = {"plain": "the plain way", "closed_form": "closed form"}
 
 
-class Parts(Frozen):
+class Chain(Frozen):
+    """The parts of what float64 finds, which the chain's kinds of rounding end."""
+
+    rounding: ClassVar[tuple[str, ...]]
+
+    @property
+    def of_rounding(self) -> tuple[str, ...]:
+        """The names of the parts of rounding, in the chain's order."""
+        first, *others = self.rounding
+        return first, *(["clock"] if hasattr(self, "clock") else []), *others
+
+
+class Parts(Chain):
     """truncation + input + trajectory + determinant + product = lambda_working (one equation of
     exact rationals, of which these are the known digits); total is the sum of the last four."""
 
+    rounding: ClassVar = ROUNDING
     lambda_working: Value
     truncation: Value
     total: Value
@@ -29,23 +42,12 @@ class Parts(Frozen):
     determinant: Value
     product: Value
 
-    @property
-    def of_rounding(self) -> tuple[str, ...]:
-        """The names of the parts of rounding, in the chain's order."""
-        return ROUNDING
-
 
 class PartsInTime(Parts):
     """Of an H that depends on time: what float64's clock does stands between input and
     trajectory."""
 
     clock: Value
-
-    @property
-    def of_rounding(self) -> tuple[str, ...]:
-        """The names of the parts of rounding, in the chain's order."""
-        first, *others = ROUNDING
-        return first, "clock", *others
 
 
 class PartsAt(Frozen):

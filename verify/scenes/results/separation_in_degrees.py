@@ -2,12 +2,12 @@
 
 from fractions import Fraction
 from itertools import combinations
-from typing import Literal
+from typing import ClassVar, Literal
 
 from verify.notebook import html_table
 from verify.scenes.frozen import Frozen, OfScheme, Said, Seconds, WithProse
 from verify.scenes.results.bounded_value import Value
-from verify.scenes.results.separation import WAYS, CrossoverResult, GrowthResult
+from verify.scenes.results.separation import WAYS, Chain, CrossoverResult, GrowthResult
 
 FORM_ROUNDING = ("input", "trajectory", "derivatives", "product")
 FORM_SHOWN = {"w_working": "W in float64", "truncation": "truncation", "total": "rounding"}
@@ -57,11 +57,12 @@ class FormValue(Frozen):
         return f"{self.largest} at the greatest entry"
 
 
-class FormParts(Frozen):
+class FormParts(Chain):
     """truncation + input + trajectory + derivatives + product = w_working, entry by entry (an
     equation of exact rationals, of which these are the known digits); total is the sum of the last
     four."""
 
+    rounding: ClassVar = FORM_ROUNDING
     w_working: FormValue
     truncation: FormValue
     total: FormValue
@@ -70,23 +71,12 @@ class FormParts(Frozen):
     derivatives: FormValue
     product: FormValue
 
-    @property
-    def of_rounding(self) -> tuple[str, ...]:
-        """The names of the parts of rounding, in the chain's order."""
-        return FORM_ROUNDING
-
 
 class FormPartsInTime(FormParts):
     """Of an H that depends on time: what float64's clock does stands between input and
     trajectory."""
 
     clock: FormValue
-
-    @property
-    def of_rounding(self) -> tuple[str, ...]:
-        """The names of the parts of rounding, in the chain's order."""
-        first, *others = FORM_ROUNDING
-        return first, "clock", *others
 
 
 class FormAt(Frozen):

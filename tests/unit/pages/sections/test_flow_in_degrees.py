@@ -8,7 +8,7 @@ import pytest
 from tests.helpers.constructed.flows import circle, exact, flow, image, outline
 from verify.errors import InputError
 from verify.pages.figures.flow_grid import grid_of
-from verify.pages.figures.poincare_figure import drawn
+from verify.pages.figures.orbit_points_figure import drawn
 from verify.pages.plotting import plot_flow
 from verify.pages.sections.flow_finding import finding, findings
 from verify.pages.sections.scene.flow import SECTION

@@ -48,3 +48,8 @@ def test_of_an_h_that_depends_on_time_no_energy_is_told() -> None:
     text = text_of(page_of(driven))
     assert "Grey lines" not in text
     assert "energy" not in text.split("Terms")[0].split("Orbits over two")[-1]
+
+
+def test_starts_that_are_no_decimals_have_their_place() -> None:
+    thirds = MAP.model_copy(update={"across": ("-1/6", "0", "1/6")})
+    assert "6 orbits over q2 and p2" in text_of(page_of(thirds))

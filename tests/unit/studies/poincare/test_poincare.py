@@ -176,7 +176,7 @@ def test_a_scene_has_each_map_and_a_page_draws_them(tmp_path: Path) -> None:
         name="sections", title="", hamiltonian="", parameters={}, source="", time=None,
         proofs=(), criteria=(), runs=(), series=(), poincare=(result,),
     )  # fmt: skip
-    (view,) = SECTION.view(scene, "of-it").each
+    (view,) = SECTION.view(scene, "of-it")
     assert len(view.rows) == 4
     assert "every point is known within" in view.finding
     assert "<svg" in view.plot.svg

@@ -150,8 +150,7 @@ def test_a_page_says_how_far_orbits_are_known(tmp_path: Path) -> None:
         proofs=(), criteria=(), runs=(), series=(),
         stroboscopic=(found(tmp_path, periods=LONG, digits=17),),
     )  # fmt: skip
-    view = SECTION.view(scene, "of-it")
-    (each,) = view.each
+    (each,) = SECTION.view(scene, "of-it")
     assert "1 of 2 orbits is known for a part of the time alone" in each.finding
     assert "float64 shows another picture from period" in each.finding
     assert len(each.rows) == 4

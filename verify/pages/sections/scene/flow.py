@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 from markupsafe import Markup
 
 from verify.pages.figures.captioned_plot import Plot, plotted
-from verify.pages.sections.flow_finding import IS, finding, findings, mean_of, region_of
+from verify.pages.sections.flow_finding import finding, findings, mean_of, region_of
 from verify.pages.sections.flow_words import words
 from verify.pages.sections.rows import Row
 from verify.pages.sections.section import Picture, Place, Section
-from verify.pages.text.typography import listed, number, step, whole
-from verify.scenes.results.regions import EXACT_FLOW, FlowImage, FlowResult
+from verify.pages.text.typography import IS, listed, map_name, number, step, whole
+from verify.scenes.results.regions import FlowImage, FlowResult
 from verify.scenes.results.report import SceneResult
 
 if TYPE_CHECKING:
@@ -143,10 +143,7 @@ def _plot(flow: FlowResult, name: str, plane: int | None) -> Plot:
     from verify.pages.sections.flow_pictures import picture_sentences
 
     grid, what = grid_of(flow, plane), _the(flow)
-    maps = listed(
-        f"the {name}" if name == EXACT_FLOW else name
-        for name in dict.fromkeys(image.map for image in flow.images)
-    )
+    maps = listed(map(map_name, dict.fromkeys(image.map for image in flow.images)))
     lead = f"{what[:1].upper()}{what[1:]}, carried by {maps} with h{IS}{step(flow.step_size)}"
     if flow.plane is not None:
         lead += f", as it is seen in ({', '.join(grid.axes)})"

@@ -1,53 +1,30 @@
 """What orbits do over two of their initial values, as the page shows it: sentences and a figure."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 
 from markupsafe import Markup
 
 from verify.arithmetic.exact import short
-from verify.pages.figures.captioned_plot import Plot, plotted
+from verify.pages.figures.captioned_plot import plotted
 from verify.pages.sections.by_key import by_key
+from verify.pages.sections.orbits_view import OrbitsView, pictures
 from verify.pages.sections.rows import Row
-from verify.pages.sections.section import Picture, Place, Section
-from verify.pages.text.typography import NBSP, listed, number, step, whole
+from verify.pages.sections.section import Section
+from verify.pages.text.typography import IS, listed, number, step, whole
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.stability import OrbitKind, OrbitMapResult
 
-_IS = f"{NBSP}={NBSP}"
 
-
-@dataclass(frozen=True)
-class StartsView:
-    """The maps of some schemes over the same starts."""
-
-    anchor: str
-    title: str
-    finding: tuple[str, ...]
-    rows: tuple[Row, ...]
-    plot: Plot
-
-
-@dataclass(frozen=True)
-class OrbitMapView:
-    """All of them."""
-
-    each: tuple[StartsView, ...]
-
-
-def _view(scene: SceneResult, anchor: str) -> OrbitMapView | None:
-    if not scene.orbit_maps:
-        return None
+def _view(scene: SceneResult, anchor: str) -> tuple[OrbitsView, ...]:
     together = by_key(
         scene.orbit_maps,
         lambda m: (m.axes, m.across, m.upwards, m.q, m.p, m.step_size, m.steps, m.beyond),
     )
-    each = (_one(of, f"starts-{k}-of-{anchor}") for k, of in enumerate(together.values()))
-    return OrbitMapView(tuple(each))
+    return tuple(_one(of, f"starts-{k}-of-{anchor}") for k, of in enumerate(together.values()))
 
 
-def _one(maps: Sequence[OrbitMapResult], anchor: str) -> StartsView:
+def _one(maps: Sequence[OrbitMapResult], anchor: str) -> OrbitsView:
     from verify.pages.figures.orbit_map_figure import draw_orbit_maps
 
     over = maps[0]
@@ -56,14 +33,14 @@ def _one(maps: Sequence[OrbitMapResult], anchor: str) -> StartsView:
     title = f"{cells} orbits over {axes}"
     time = short(Fraction(over.step_size) * over.steps)
     names = listed(m.scheme for m in maps)
-    lead = f"{title}, by {names}, until t{_IS}{number(time)}; h{_IS}{step(over.step_size)}"
+    lead = f"{title}, by {names}, until t{IS}{number(time)}; h{IS}{step(over.step_size)}"
     counts = "; ".join(f"{m.scheme}: {_counts(m)}" for m in maps)
-    rest = ", ".join(f"{name}{_IS}{number(x)}" for name, x in _others(over))
+    rest = ", ".join(f"{name}{IS}{number(x)}" for name, x in _others(over))
     lines = " Grey lines: the same energy H." if _has_energies(over) else ""
-    return StartsView(
+    return OrbitsView(
         anchor=anchor,
         title=title,
-        finding=tuple(map(_energy_finding, maps)),
+        finding=" ".join(map(_energy_finding, maps)),
         rows=tuple(_row(m, kind) for m in maps for kind in m.counted()),
         plot=plotted(
             lambda: draw_orbit_maps(maps),
@@ -144,16 +121,11 @@ _TERMS = {
 }
 
 
-def _pictures(view: OrbitMapView) -> Iterator[Picture]:
-    for each in view.each:
-        yield Picture((2,), each.plot, Place(each.anchor, each.title))
-
-
 SECTION = Section(
     order=31,
     title="Orbits over two initial values",
     anchor="orbit-map",
     view=_view,
-    pictures=_pictures,
+    pictures=lambda views: pictures(views, 2),
     terms=lambda _: _TERMS,
 )

@@ -1,73 +1,52 @@
 """Orbits where they pass a surface, as the page shows them: sentences, a figure, a table."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass
 from fractions import Fraction
 
 from markupsafe import Markup
 
-from verify.pages.figures.captioned_plot import Plot, plotted
+from verify.pages.figures.captioned_plot import plotted
+from verify.pages.sections.orbits_view import (
+    OrbitsView,
+    first_known,
+    left,
+    pictures,
+    title_from,
+)
 from verify.pages.sections.rows import Row
-from verify.pages.sections.section import Picture, Place, Section
-from verify.pages.text.typography import NBSP, listed, number, step, whole
+from verify.pages.sections.section import Section
+from verify.pages.text.typography import IS, listed, map_name, number, step, whole
 from verify.scenes.results.poincare import MapSections, PoincareOrbit, PoincareResult
-from verify.scenes.results.regions import EXACT_FLOW
 from verify.scenes.results.report import SceneResult
 
-_IS = f"{NBSP}={NBSP}"
+
+def _view(scene: SceneResult, anchor: str) -> tuple[OrbitsView, ...]:
+    return tuple(_one(result, f"passes-{k}-of-{anchor}") for k, result in enumerate(scene.poincare))
 
 
-@dataclass(frozen=True)
-class PassesView:
-    """What one section of the scene asked for."""
-
-    result: PoincareResult
-    anchor: str
-    title: str
-    finding: str
-    rows: tuple[Row, ...]
-    plot: Plot
-
-
-@dataclass(frozen=True)
-class PoincareView:
-    """All of them."""
-
-    each: tuple[PassesView, ...]
-
-
-def _view(scene: SceneResult, anchor: str) -> PoincareView | None:
-    if not scene.poincare:
-        return None
-    found = (_one(result, f"passes-{k}-of-{anchor}") for k, result in enumerate(scene.poincare))
-    return PoincareView(tuple(found))
-
-
-def _one(result: PoincareResult, anchor: str) -> PassesView:
-    from verify.pages.figures.poincare_figure import draw_passes, drawn, drawn_passes
+def _one(result: PoincareResult, anchor: str) -> OrbitsView:
+    from verify.pages.figures.orbit_points_figure import draw_passes, drawn, drawn_looks
 
     way = "upwards" if result.rising else "downwards"
     orbits = whole(len(result.sections[0].orbits))
     where = f"where {result.coordinate} passes {number(result.value)} {way}"
     title = f"{orbits} orbits {where}"
     lead = (
-        f"{title}, by {listed(map(_name, result.sections))}, until t{_IS}{number(result.time)}; "
-        f"h{_IS}{step(result.step_size)}"
+        f"{title}, by {listed(map_name(each.map) for each in result.sections)}, "
+        f"until t{IS}{number(result.time)}; h{IS}{step(result.step_size)}"
     )
     passes = max(len(o.points) for each in result.sections for o in each.orbits)
-    shown = drawn_passes(result.sections)
+    shown = drawn_looks(result.sections)
     some = f" The first {whole(shown)} passes are drawn." * (shown < passes)
     outside = drawn(result)[1]
     if outside:
         some += f" Points far out, by orbits that escape, are not drawn: {whole(outside)}."
     said = " ".join(map(_finding, result.sections))
-    return PassesView(
-        result=result,
+    return OrbitsView(
         anchor=anchor,
-        title=f"{result.source}: {title}" if result.source else title,
+        title=title_from(result.source, title),
         finding=said,
         rows=tuple(
-            Row(each.map, _cells(o), _left(o)) for each in result.sections for o in each.orbits
+            Row(each.map, _cells(o), left(o)) for each in result.sections for o in each.orbits
         ),
         plot=plotted(
             lambda: draw_passes(result),
@@ -82,36 +61,24 @@ def _one(result: PoincareResult, anchor: str) -> PassesView:
     )
 
 
-def _name(sections: MapSections) -> str:
-    return "the exact flow" if sections.map == EXACT_FLOW else sections.map
-
-
 def _finding(sections: MapSections) -> str:
     """How far the map's orbits are known, and how well."""
     orbits = sections.orbits
     lost = [o for o in orbits if o.known < len(o.points)]
     error = max((o.error for o in orbits), key=Fraction)
-    said = f"With {whole(sections.digits)} digits in {sections.arithmetic}, by {_name(sections)},"
+    said = f"With {whole(sections.digits)} digits in {sections.arithmetic}, "
+    said += f"by {map_name(sections.map)},"
     within = f"within {number(error)} (estimated, by a second reckoning)"
     if not lost:
         return f"{said} every point is known {within}."
-    first = min(o.known for o in lost)
-    many = f"{whole(len(lost))} of {whole(len(orbits))} orbits"
-    part = "is known for a part" if len(lost) == 1 else "are known for a part"
-    return (
-        f"{said} {many} {part} of the time alone, at least for {whole(first)} passes; what is "
-        f"known is so {within}."
-    )
+    part = first_known(orbits, lost, "passes")
+    return f"{said} {part}; what is known is so {within}."
 
 
 def _cells(orbit: PoincareOrbit) -> tuple[str, ...]:
     q, p = (", ".join(map(number, values)) for values in (orbit.q, orbit.p))
     counts = whole(len(orbit.points)), whole(orbit.known)
     return q, p, number(orbit.energy), *counts, number(orbit.error)
-
-
-def _left(orbit: PoincareOrbit) -> str:
-    return "it leaves every range" if orbit.left else ""
 
 
 _TERMS = {
@@ -125,16 +92,11 @@ _TERMS = {
 }
 
 
-def _pictures(view: PoincareView) -> Iterator[Picture]:
-    for each in view.each:
-        yield Picture((3,), each.plot, Place(each.anchor, each.title))
-
-
 SECTION = Section(
     order=26,
     title="Where orbits pass a surface",
     anchor="poincare",
     view=_view,
-    pictures=_pictures,
+    pictures=lambda views: pictures(views, 3),
     terms=lambda _: _TERMS,
 )

@@ -13,7 +13,7 @@ from verify.pages.sections.by_key import by_key
 from verify.pages.sections.rows import Row, shown, told
 from verify.pages.sections.section import Picture, Section
 from verify.pages.text.prose import prose
-from verify.pages.text.typography import listed, number, step, whole
+from verify.pages.text.typography import coordinates, listed, number, step, whole
 from verify.pages.text.words import counts_of
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.stability import (
@@ -174,13 +174,9 @@ def _caption(maps: Sequence[StabilityMapResult], counts: str) -> str:
     if never:
         limit += f" For {listed(never)} linear theory has no stable step."
     return (
-        f"Each mark is a run of {whole(over.steps)} steps from q = {_numbers(over.q)}, "
-        f"p = {_numbers(over.p)}.{limit}" + f" {counts}." * (len(maps) == 1)
+        f"Each mark is a run of {whole(over.steps)} steps from q = {coordinates(over.q)}, "
+        f"p = {coordinates(over.p)}.{limit}" + f" {counts}." * (len(maps) == 1)
     )
-
-
-def _numbers(given: str | tuple[str, ...]) -> str:
-    return number(given) if isinstance(given, str) else f"({', '.join(map(number, given))})"
 
 
 def _is_positive(step_size: str | None) -> bool:

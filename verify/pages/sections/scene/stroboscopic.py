@@ -1,77 +1,57 @@
 """Orbits at multiples of a period, as the page shows them: sentences, a figure, a table."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from verify.pages.figures.captioned_plot import Plot, plotted
+from verify.pages.figures.captioned_plot import plotted
+from verify.pages.sections.orbits_view import (
+    OrbitsView,
+    first_known,
+    left,
+    pictures,
+    title_from,
+)
 from verify.pages.sections.rows import Row
-from verify.pages.sections.section import Picture, Place, Section
-from verify.pages.text.typography import NBSP, listed, number, step, whole
+from verify.pages.sections.section import Section
+from verify.pages.text.typography import IS, listed, number, step, whole
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.stroboscopic import StroboscopicResult
 
-_IS = f"{NBSP}={NBSP}"
+
+def _view(scene: SceneResult, anchor: str) -> tuple[OrbitsView, ...]:
+    results = enumerate(scene.stroboscopic)
+    return tuple(_one(result, f"strobe-{k}-of-{anchor}") for k, result in results)
 
 
-@dataclass(frozen=True)
-class SectionsView:
-    """What one section of the scene asked for."""
-
-    result: StroboscopicResult
-    anchor: str
-    title: str
-    finding: str
-    rows: tuple[Row, ...]
-    plot: Plot
-
-
-@dataclass(frozen=True)
-class StroboscopicView:
-    """All of them."""
-
-    each: tuple[SectionsView, ...]
-
-    def of(self, source: str) -> tuple[SectionsView, ...]:
-        return tuple(x for x in self.each if x.result.source == source)
-
-
-def _view(scene: SceneResult, anchor: str) -> StroboscopicView | None:
-    if not scene.stroboscopic:
-        return None
-    found = (_one(result, f"strobe-{k}-of-{anchor}") for k, result in enumerate(scene.stroboscopic))
-    return StroboscopicView(tuple(found))
-
-
-def _one(result: StroboscopicResult, anchor: str) -> SectionsView:
-    from verify.pages.figures.stroboscopic_figure import draw_sections, drawn_periods
+def _one(result: StroboscopicResult, anchor: str) -> OrbitsView:
+    from verify.pages.figures.orbit_points_figure import draw_periods, drawn_looks
 
     schemes = listed(each.scheme for each in result.sections)
-    begins = "" if result.t0 is None else f", from t₀{_IS}{number(result.t0)}"
+    begins = "" if result.t0 is None else f", from t₀{IS}{number(result.t0)}"
     orbits = whole(len(result.sections[0].orbits))
     lead = (
         f"{orbits} orbits by {schemes}, looked at {whole(result.periods)} times, every "
-        f"{number(result.period)}{begins}; h{_IS}{step(result.step_size)}"
+        f"{number(result.period)}{begins}; h{IS}{step(result.step_size)}"
     )
-    title = f"{orbits} orbits at multiples of T{_IS}{number(result.period)}"
+    title = f"{orbits} orbits at multiples of T{IS}{number(result.period)}"
     turn = " q is an angle, and drawn within one turn." * result.q_is_angle
-    drawn = drawn_periods(result.sections)
+    drawn = drawn_looks(result.sections, 1)
     some = f" The first {whole(drawn)} periods are drawn." * (drawn < result.periods)
     said = " ".join(_finding(result))
-    return SectionsView(
-        result=result,
+    return OrbitsView(
         anchor=anchor,
-        title=f"{result.source}: {title}" if result.source else title,
+        title=title_from(result.source, title),
         finding=said,
         rows=tuple(_rows(result)),
         plot=plotted(
-            lambda: draw_sections(result.sections, result.q_is_angle),
+            lambda: draw_periods(result),
             name=f"points-of-{anchor}",
             lead=lead,
             label=f"{lead}. {said}",
             caption=f"A colour an orbit; grey: what more digits do not confirm.{turn}{some}",
         ),
+        source=result.source,
     )
 
 
@@ -80,10 +60,7 @@ def _finding(result: StroboscopicResult) -> Iterator[str]:
         lost = [o for o in each.orbits if o.known < len(o.points) - 1]
         of = f"{each.scheme}: with {whole(each.digits)} digits in {each.arithmetic}"
         if lost:
-            first = min(o.known for o in lost)
-            many = f"{whole(len(lost))} of {whole(len(each.orbits))} orbits"
-            part = "is known for a part" if len(lost) == 1 else "are known for a part"
-            yield f"{of} {many} {part} of the time alone, at least for {whole(first)} periods."
+            yield f"{of} {first_known(each.orbits, lost, 'periods')}."
         else:
             yield f"{of} every orbit is known to its end."
         floats = min(o.in_float64 for o in each.orbits)
@@ -99,7 +76,7 @@ def _rows(result: StroboscopicResult) -> Iterator[Row]:
                 number(orbit.q), number(orbit.p), whole(done), whole(orbit.known),
                 whole(orbit.in_float64),
             )  # fmt: skip
-            yield Row(each.scheme, cells, "it leaves every range" if orbit.left else "")
+            yield Row(each.scheme, cells, left(orbit))
 
 
 _TERMS = {
@@ -111,18 +88,13 @@ _TERMS = {
 }
 
 
-def _pictures(view: StroboscopicView) -> Iterator[Picture]:
-    for each in view.each:
-        yield Picture((3,), each.plot, Place(each.anchor, each.title))
-
-
 SECTION = Section(
     order=25,
     title="Once in each period",
     anchor="stroboscopic",
     view=_view,
-    pictures=_pictures,
+    pictures=lambda views: pictures(views, 3),
     terms=lambda _: _TERMS,
     shows="stroboscopic",
-    drawn=lambda view, label: ((each.plot, each.finding) for each in view.of(label)),
+    drawn=lambda views, label: ((x.plot, x.finding) for x in views if x.source == label),
 )

@@ -1,14 +1,13 @@
 """Truncation against rounding in W as the page shows it, in n degrees of freedom."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
 from markupsafe import Markup
 
 from verify.pages.figures.captioned_plot import few, few_digits
-from verify.pages.figures.separation_caption import end_of
-from verify.pages.sections.rows import Group, Row, shown, told
+from verify.pages.sections.rows import Group, Row, groups_of_grids, told_of_points
 from verify.pages.sections.section import Section
 from verify.pages.text import words
 from verify.pages.text.prose import prose
@@ -48,11 +47,11 @@ def _view(scene: SceneResult, proof: ProofResult, _: str) -> FormSeparationView 
     return FormSeparationView(
         finding=tuple(_findings(rows)),
         kinds=next((x.plain.parts.of_rounding for x in rows if x.plain), FORM_ROUNDING),
-        parts=tuple(_groups(every, _parts_row)),
-        motions=tuple(_groups(every, _motion_row)),
+        parts=tuple(groups_of_grids(every, _parts_row)),
+        motions=tuple(groups_of_grids(every, _motion_row)),
         crossed=tuple(_crossed(grid) for grid in beside),
         count=len(rows),
-        told=told(len(rows), sum(map(len, shown([rows], _failed))), sum(map(_failed, rows))),
+        told=told_of_points(rows),
         computed=_computed(rows),
     )
 
@@ -89,22 +88,7 @@ def _ways(point: SeparationInDegrees) -> tuple[FormEvaluation | None, FormEvalua
     return point.plain, point.closed_form
 
 
-def _failed(point: SeparationInDegrees) -> bool:
-    return point.plain is None
-
-
 # -- tables ---------------------------------------------------------------------------------------
-
-
-def _groups(
-    grids: Sequence[SeparationGridInDegrees], row: Callable[[SeparationInDegrees], Row | None]
-) -> Iterator[Group]:
-    """A group for each grid with a row; as many rows as are shown, of all that there are."""
-    for grid, held in zip(grids, shown((grid.points for grid in grids), _failed), strict=True):
-        points = sorted(held, key=lambda point: Fraction(point.step_size))
-        rows = [found for point in points if (found := row(point))]
-        if rows:
-            yield Group(start(points[0]) + end_of(grid.points), rows)
 
 
 def _parts_row(point: SeparationInDegrees) -> Row:

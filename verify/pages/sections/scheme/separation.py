@@ -1,15 +1,14 @@
 """Truncation against rounding in Λ as the page shows it: sentences, figures and tables."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import partial
 
 from markupsafe import Markup
 
 from verify.pages.figures.captioned_plot import Plot, few_digits, plotted
 from verify.pages.figures.separation_caption import caption, end_of
-from verify.pages.sections.rows import Group, Row, shown, told
+from verify.pages.sections.rows import Group, Row, groups_of_grids, told_of_points
 from verify.pages.sections.section import Picture, Section
 from verify.pages.sections.separation_finding import (
     computed,
@@ -60,10 +59,10 @@ def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> SeparationView
         finding=tuple(finding(of_grid, " on the grid of runs" if own else "")),
         plots=tuple(_plots(wide, anchor)),
         kinds=next((x.plain.parts.of_rounding for x in rows if x.plain), ROUNDING),
-        parts=tuple(_groups([*own, *wide], _parts_row)),
-        growths=tuple(_groups([*own, *wide], _growth_row)),
+        parts=tuple(groups_of_grids([*own, *wide], _parts_row)),
+        growths=tuple(groups_of_grids([*own, *wide], _growth_row)),
         count=len(rows),
-        told=told(len(rows), sum(map(len, shown([rows], _failed))), sum(map(_failed, rows))),
+        told=told_of_points(rows),
         growth=growth_finding(of_grid),
         computed=computed(rows),
     )
@@ -89,22 +88,7 @@ def _plots(grids: Sequence[SeparationGrid], name: str) -> Iterator[Plot]:
         )
 
 
-def _failed(point: SeparationResult) -> bool:
-    return point.plain is None
-
-
 # -- tables ---------------------------------------------------------------------------------------
-
-
-def _groups(
-    grids: Sequence[SeparationGrid], row: Callable[[SeparationResult], Row | None]
-) -> Iterator[Group]:
-    """A group for each grid with a row; as many rows as are shown, of all that there are."""
-    for grid, held in zip(grids, shown((grid.points for grid in grids), _failed), strict=True):
-        points = sorted(held, key=lambda point: Fraction(point.step_size))
-        rows = [found for point in points if (found := row(point))]
-        if rows:
-            yield Group(start(points[0]) + end_of(grid.points), rows)
 
 
 def _parts_row(point: SeparationResult) -> Row:

@@ -1,0 +1,49 @@
+"""Orbits by several maps in one picture, as the page shows them: what sections of them share."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from verify.pages.figures.captioned_plot import Plot
+from verify.pages.sections.rows import Row
+from verify.pages.sections.section import Picture, Place
+from verify.pages.text.typography import whole
+from verify.scenes.results.poincare import PoincareOrbit
+from verify.scenes.results.stroboscopic import StroboscopicOrbit
+
+Orbits = Sequence[PoincareOrbit] | Sequence[StroboscopicOrbit]
+
+
+@dataclass(frozen=True)
+class OrbitsView:
+    """One of the scene's sections; `source`: what of a paper it repeats."""
+
+    anchor: str
+    title: str
+    finding: str
+    rows: tuple[Row, ...]
+    plot: Plot
+    source: str = ""
+
+
+def pictures(views: Sequence[OrbitsView], rank: int) -> Iterator[Picture]:
+    """The picture of each, for the first screen."""
+    for each in views:
+        yield Picture((rank,), each.plot, Place(each.anchor, each.title))
+
+
+def title_from(source: str, title: str) -> str:
+    """With what of a paper it repeats, where it does."""
+    return f"{source}: {title}" if source else title
+
+
+def first_known(orbits: Orbits, lost: Orbits, looks: str) -> str:
+    """How many of the orbits are known for a part of the time, and for how long at least."""
+    first = min(orbit.known for orbit in lost)
+    many = f"{whole(len(lost))} of {whole(len(orbits))} orbits"
+    part = "is known for a part" if len(lost) == 1 else "are known for a part"
+    return f"{many} {part} of the time alone, at least for {whole(first)} {looks}"
+
+
+def left(orbit: PoincareOrbit | StroboscopicOrbit) -> str:
+    """That it left every range, where it did."""
+    return "it leaves every range" if orbit.left else ""
