@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.embedding import embed
@@ -16,8 +16,12 @@ from verify.algebra.ring_text import as_expression_at_0
 from verify.algebra.series.power_series import Series
 from verify.algebra.series.quotient_series import QuotientSeries
 from verify.errors import InputError, LimitError
+from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.late import sympy
 from verify.proof.parameters import not_zero_for
+from verify.schemes.degrees.canonical_map import CanonicalMap
+from verify.schemes.degrees.defect import DefectSeries
+from verify.schemes.step_algebra import State
 from verify.schemes.substep import h_inside
 
 MOST_ORDERS = 12  # Taylor coefficients looked at where a map is not a polynomial in h
@@ -152,3 +156,26 @@ def first_nonzero(coefficient: Callable[[int], tuple[Ring, Poly]], length: int) 
         if decision.zero is not True:
             return Leading(n, decision, (ring, x))
     return None
+
+
+# -- of a map --------------------------------------------------------------------------------------
+
+
+def series_of(step: CanonicalMap, first: int) -> DefectSeries[CanonicalField]:
+    """The coefficients of h⁰, h¹, … of one map in n degrees of freedom, S and ΔJ among them."""
+    return DefectSeries(partial(_state, step), first)
+
+
+def _state(step: CanonicalMap, most: int) -> tuple[CanonicalField, State]:
+    if step.expand is not None:
+        return step.expand(most)
+    series = step.series(most)
+    if series is not None:
+        return step.field, series
+    assert step.closed is not None  # noqa: S101 - a map has one or the other
+    count, ring = most + 1, step.ring
+    expansions = [Expansion(ring, x) for x in step.closed]
+    parts = [each.coefficient(n) for each in expansions for n in range(count)]
+    flow, exact = canonical_field(step.hamiltonian, *(own.expression(x) for own, x in parts))
+    rows = (exact[count * i : count * (i + 1)] for i in range(len(expansions)))
+    return flow, tuple(Series.of(flow.ring, row, most) for row in rows)

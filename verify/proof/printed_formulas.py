@@ -29,10 +29,11 @@ from verify.effort import limited
 from verify.errors import InputError, LimitError
 from verify.hamiltonians.canonical_field import CanonicalField
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.symplectic.defect import DefectSeries, series_of
+from verify.proof.expansion import series_of
 from verify.prose import Formula, Prose, prose
 from verify.schemes.conditions import Condition, NearbyOrder
 from verify.schemes.degrees.by_formulas import map_by_formulas
+from verify.schemes.degrees.defect import DefectSeries
 from verify.schemes.printed.asked import BITS, Asked, Named
 from verify.schemes.printed.judged import WITHIN, Judged, judge
 from verify.schemes.printed.naming import Naming

@@ -57,7 +57,7 @@ def test_long_forms_are_named_and_not_written_out(capsys: pytest.CaptureFixture[
     ("typed", "status", "said"),
     [
         ((*ONE, "--scheme", OWN), 1, "REFUTED: p1_next = p1; "),
-        ((*ONE, "--scheme", "p_next = p; q_next = q"), 2, "in one degree of freedom only"),
+        ((*ONE, "--scheme", "p_next = p; q_next = q"), 2, "H needs p1_next, p2_next"),
         ((*EVERY[:-1], "65", "--scheme", "lie2"), 2, "--degrees=65: must be 1 … 64"),
         ((*EVERY[:-1], "20", "--scheme", "lie2"), 2, "derivatives of H would be needed"),
         ((*EVERY[:-1], "x", "--scheme", "lie2"), 2, "--degrees=x"),

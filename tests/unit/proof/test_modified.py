@@ -9,10 +9,11 @@ from verify import schemes
 from verify.algebra.symbols import H_STEP
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof import hamiltonian_of_field, modified
-from verify.proof.modified import modified_of
-from verify.proof.modified_equation import ModifiedEquation, Term, judged
-from verify.proof.modified_field import Vector
+from verify.proof.modified import hamiltonian_of_field
+from verify.proof.modified import one as modified
+from verify.proof.modified.equation import ModifiedEquation, Term, judged
+from verify.proof.modified.field import Vector
+from verify.proof.modified.one import modified_of
 from verify.schemes.step_map import StepMap
 from verify.verdict import Verdict
 

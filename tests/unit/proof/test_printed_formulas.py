@@ -9,7 +9,7 @@ from verify.claims.findings import Findings
 from verify.claims.kinds import models
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.modified import modified_of
+from verify.proof.modified.one import modified_of
 from verify.proof.order import prove
 from verify.proof.order_proof import Proof
 from verify.proof.symplectic.order import prove_symplectic

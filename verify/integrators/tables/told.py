@@ -1,12 +1,11 @@
 """What is told of one claim of a table, the claims that orders and digits make, and hints."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Protocol, Self, TypeVar
 
-from verify.arithmetic.number import E
 from verify.errors import InputError
 from verify.integrators.tables.cost import Cost, Severity, cost_of, exact_numbers, severity_of
 from verify.prose import Prose
@@ -70,19 +69,6 @@ def best_reading(table: T, found: Callable[[T], Judged]) -> Judged:
         if other.holds and other.off is not None and other.off <= _HALF:
             return other
     return told
-
-
-def both(first: Asked, second: Asked) -> Asked:
-    """The conditions of both, the first ones on the first of the second's entries."""
-    count = len(first.entries)
-
-    def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
-        return [
-            *first.residues(entries[:count], one, bound), *second.residues(entries, one, bound)
-        ]  # fmt: skip
-
-    equations = (*first.equations, *second.equations)
-    return replace(second, equations=equations, residues=residues, by_form=first.by_form)
 
 
 def order_claims(

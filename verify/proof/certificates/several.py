@@ -13,11 +13,11 @@ from verify.proof.certificates.every import NOT_KNOWN
 from verify.proof.certificates.file import FORMAT, Certificate
 from verify.proof.certificates.plain import Plain
 from verify.proof.certificates.statement import Statement, certificate_of_one, entries_of
-from verify.proof.symplectic.defect import DefectSeries
-from verify.proof.symplectic.defect import series_of as series_of_defect
+from verify.proof.expansion import series_of as series_of_defect
 from verify.proof.symplectic.proof import SymplecticProof
 from verify.proof.symplectic.telescoping import potential_of_lie
 from verify.schemes.degrees import kind_of, map_in_degrees
+from verify.schemes.degrees.defect import DefectSeries
 from verify.schemes.every_hamiltonian import TaylorSeries
 from verify.schemes.scheme import Scheme
 from verify.schemes.step_algebra import State, series_of

@@ -18,7 +18,7 @@ from verify.proof.certificates.by_coefficients import terms
 from verify.proof.certificates.checker import see_witness
 from verify.proof.certificates.file import FORMAT, Certificate
 from verify.proof.certificates.plain import Plain
-from verify.proof.symplectic.two_form import TwoForm
+from verify.schemes.degrees.two_form import TwoForm
 
 _TRIED = 20  # points
 Form = Mapping[tuple[str, str], Poly]  # entries above the diagonal

@@ -6,9 +6,9 @@ from functools import lru_cache
 
 from verify.algebra.ring import Poly
 from verify.proof.symplectic.closed_form import defect, jacobian
-from verify.proof.symplectic.defect import DefectSeries
-from verify.proof.symplectic.two_form import Place
 from verify.schemes.degrees.canonical_map import CanonicalMap
+from verify.schemes.degrees.defect import DefectSeries
+from verify.schemes.degrees.two_form import Place
 
 _MOST_TERMS = 40_000  # of products in all entries, beyond which S is not multiplied out
 

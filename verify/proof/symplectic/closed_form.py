@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from verify.algebra.ring import Poly, Ring
-from verify.proof.symplectic.two_form import TwoForm, wedge
+from verify.schemes.degrees.two_form import TwoForm, wedge
 
 _MOST_TERMS = 300  # of J's entries together, beyond which det J is not multiplied out
 

@@ -22,15 +22,15 @@ from verify.hamiltonians.jet_flow import JetFlow
 from verify.proof.by_conditions import first_wrong, told_nearby
 from verify.proof.every import missed, prove_every
 from verify.proof.every_in_time import prove_every_in_time
-from verify.proof.symplectic.defect import DefectSeries
 from verify.proof.symplectic.proof import MOST_TERMS, SymplecticProof
 from verify.proof.symplectic.telescoping import potential_of_lie
-from verify.proof.symplectic.two_form import TwoForm, lie_derivative, wedge
 from verify.prose import Formula, Prose, prose, read_prose
 from verify.schemes import get
 from verify.schemes.conditions import Condition
 from verify.schemes.degrees import kind_of
 from verify.schemes.degrees.canonical_map import SOLVABLE
+from verify.schemes.degrees.defect import DefectSeries
+from verify.schemes.degrees.two_form import TwoForm, lie_derivative, wedge
 from verify.schemes.every_hamiltonian import TaylorSeries
 from verify.schemes.scheme import Scheme
 from verify.schemes.step_algebra import series_of

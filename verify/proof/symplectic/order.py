@@ -14,17 +14,18 @@ from verify.hamiltonians.canonical_field import CanonicalField
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import told_nearby
 from verify.proof.claimed import Claimed, Convergence, Words, held_to
+from verify.proof.expansion import series_of
 from verify.proof.order import is_residue, nearby_convergence, nearby_defect_of
 from verify.proof.parameters import not_zero_for
 from verify.proof.printed_formulas import told_defect
 from verify.proof.symplectic import closed_form
-from verify.proof.symplectic.defect import DefectSeries, series_of
 from verify.proof.symplectic.proof import SymplecticProof
 from verify.proof.symplectic.telescoping import telescopes_of_lie
-from verify.proof.symplectic.two_form import Place, TwoForm
 from verify.prose import prose
 from verify.schemes.degrees import map_in_degrees
 from verify.schemes.degrees.canonical_map import CanonicalMap
+from verify.schemes.degrees.defect import DefectSeries
+from verify.schemes.degrees.two_form import Place, TwoForm
 from verify.schemes.scheme import Scheme
 from verify.verdict import Verdict
 

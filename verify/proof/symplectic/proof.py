@@ -5,9 +5,9 @@ from fractions import Fraction
 
 from verify.algebra.domain import Domain
 from verify.notebook import cut
-from verify.proof.symplectic.two_form import TwoForm
 from verify.prose import Prose
 from verify.schemes.conditions import Condition, NearbyOrder
+from verify.schemes.degrees.two_form import TwoForm
 from verify.verdict import Verdict
 
 MOST_TERMS = 2000  # of a form that is written out

@@ -23,7 +23,7 @@ from verify.algebra.ring import Poly
 from verify.algebra.substitution import substitute
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import CanonicalField, Flow
-from verify.proof.symplectic.two_form import TwoForm, lie_derivative, wedge
+from verify.schemes.degrees.two_form import TwoForm, lie_derivative, wedge
 
 
 def potential_of_lie(flow: Flow, eta: int) -> TwoForm:

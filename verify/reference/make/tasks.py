@@ -9,7 +9,6 @@ from verify.execution.keeping import Keeper
 from verify.execution.task import HamiltonianTask
 from verify.hamiltonians.start import point_of
 from verify.kernels.orbit import Orbit
-from verify.scenes.frozen import Frozen
 from verify.scenes.results.reference import OrbitResult, SolutionResult
 from verify.scenes.results.reference_in_degrees import OrbitInDegreesResult, SolutionInDegreesResult
 from verify.scenes.values import Coordinates, Number, StepSize
@@ -55,15 +54,10 @@ class OrbitAtSteps(AtSteps):
     def cost(self) -> int:
         return ROW_COST * len(self.steps) + automatic()[-1].cost * sum(self.steps)
 
-    def compute(self, keeper: Keeper) -> Frozen:
-        from verify.reference.make.orbit_points import OrbitInDegrees, orbit_points
-
-        exact = self.exact_hamiltonian()
-        start: dict[str, Any] = {"q": self.q, "p": self.p, "t0": self.t0 or Fraction()}
-        kind = Orbit if exact.planar else OrbitInDegrees
-        orbit = kind(exact, self.scheme, self.step_size, **start)
-        points = orbit_points(orbit, self.steps, self.digits)
-        return self.result.model_validate({"points": tuple(points)})
+    @property
+    def start(self) -> dict[str, Any]:
+        """q, p and t₀."""
+        return {"q": self.q, "p": self.p, "t0": self.t0 or Fraction()}
 
 
 class OrbitTask(OrbitAtSteps):
@@ -78,6 +72,13 @@ class OrbitTask(OrbitAtSteps):
         """Orbits of one scheme's map, whatever the step size and the initial value."""
         return f"{self.kind} {self.scheme} {self.hamiltonian}"
 
+    def compute(self, keeper: Keeper) -> OrbitResult:
+        from verify.reference.make.orbit_points import orbit_points
+
+        orbit = Orbit(self.exact_hamiltonian(), self.scheme, self.step_size, **self.start)
+        points = orbit_points(orbit, self.steps, self.digits)
+        return OrbitResult.model_validate({"points": tuple(points)})
+
 
 class OrbitInDegreesTask(OrbitAtSteps):
     """State, H, S, W and Λ."""
@@ -85,6 +86,14 @@ class OrbitInDegreesTask(OrbitAtSteps):
     result = OrbitInDegreesResult
     numbers = "H, S, W and Λ"
     kind: Literal["orbit in degrees"] = "orbit in degrees"
+
+    def compute(self, keeper: Keeper) -> OrbitInDegreesResult:
+        from verify.reference.make.orbit_points import OrbitInDegrees, orbit_points
+
+        exact = self.exact_hamiltonian()
+        orbit = OrbitInDegrees(exact, self.scheme, self.step_size, **self.start)
+        points = orbit_points(orbit, self.steps, self.digits)
+        return OrbitInDegreesResult.model_validate({"points": tuple(points)})
 
 
 class SolutionAtSteps(AtSteps):
@@ -94,14 +103,13 @@ class SolutionAtSteps(AtSteps):
     def cost(self) -> int:
         return FLOW_ROW_COST * len(self.steps)
 
-    def compute(self, keeper: Keeper) -> Frozen:
-        from verify.reference.make.orbit_points import solution_points
-
-        exact, t0 = self.exact_hamiltonian(), self.t0 or Fraction()
+    @property
+    def times(self) -> dict[str, Any]:
+        """Where the exact flow begins, and the times after it by their N."""
+        exact = self.exact_hamiltonian()
+        after = {n: n * self.step_size for n in self.steps}
         start = point_of(exact, self.q, self.p)
-        times = {n: n * self.step_size for n in self.steps}
-        points = solution_points(exact, start, t0, times, self.digits)
-        return self.result.model_validate({"points": tuple(points)})
+        return {"hamiltonian": exact, "start": start, "t0": self.t0 or Fraction(), "times": after}
 
 
 class SolutionTask(SolutionAtSteps):
@@ -110,9 +118,21 @@ class SolutionTask(SolutionAtSteps):
     result = SolutionResult
     kind: Literal["solution"] = "solution"
 
+    def compute(self, keeper: Keeper) -> SolutionResult:
+        from verify.reference.make.orbit_points import solution_points
+
+        points = solution_points(**self.times, digits=self.digits)
+        return SolutionResult.model_validate({"points": tuple(points)})
+
 
 class SolutionInDegreesTask(SolutionAtSteps):
     """p1 … pn, q1 … qn."""
 
     result = SolutionInDegreesResult
     kind: Literal["solution in degrees"] = "solution in degrees"
+
+    def compute(self, keeper: Keeper) -> SolutionInDegreesResult:
+        from verify.reference.make.orbit_points import solution_points
+
+        points = solution_points(**self.times, digits=self.digits)
+        return SolutionInDegreesResult.model_validate({"points": tuple(points)})

@@ -1,7 +1,7 @@
 """What is asked of a table: conditions on its entries, as polynomials that any numbers can take."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
 from typing import Protocol
@@ -70,6 +70,19 @@ class Asked:
     def up_to(self, order: int) -> list[int]:
         """The places of the conditions of that order, and of lower ones."""
         return [k for k, each in enumerate(self.equations) if each.order <= order]
+
+
+def both(first: Asked, second: Asked) -> Asked:
+    """The conditions of both, the first ones on the first of the second's entries."""
+    count = len(first.entries)
+
+    def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
+        return [
+            *first.residues(entries[:count], one, bound), *second.residues(entries, one, bound)
+        ]  # fmt: skip
+
+    equations = (*first.equations, *second.equations)
+    return replace(second, equations=equations, residues=residues, by_form=first.by_form)
 
 
 Number = Callable[[sympy.Expr], E]

@@ -14,8 +14,7 @@ from typing import Any
 import sympy
 
 from verify.arithmetic.number import E
-from verify.integrators.tables.told import both
-from verify.schemes.printed.asked import Asked, Named
+from verify.schemes.printed.asked import Asked, Named, both
 from verify.schemes.printed.judged import Judged, judge
 from verify.schemes.printed.printed_numbers import PrintedNumbers
 from verify.schemes.printed.splitting_table import PrintedTable, judge_order

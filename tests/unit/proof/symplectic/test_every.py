@@ -15,8 +15,8 @@ from verify.proof.every import prove_every
 from verify.proof.symplectic import every as module
 from verify.proof.symplectic.every import prove_every_in_degrees, quantifier
 from verify.proof.symplectic.order import prove_symplectic
-from verify.proof.symplectic.two_form import TwoForm
 from verify.schemes import get
+from verify.schemes.degrees.two_form import TwoForm
 
 PAIR = "p1**2*q2 + (p2 + q1*p1)**3/3 + q1**2*q2**2*p2 + p1*p2*q1"
 DRIVEN = "p1**2*q2*t + (p2 + q1*p1)**3/3 + q1**2*q2**2*t**2 + p1*p2*q1*t"

@@ -188,7 +188,7 @@ def test_time_counts() -> None:
     ("formula", "scheme", "words"),
     [
         (LINEAR, "p1_next = p1; q1_next = q1", "H needs p1_next, p2_next, q1_next, q2_next"),
-        (LINEAR, "p_next = p; q_next = q", "known in one degree of freedom only"),
+        (LINEAR, "p_next = p; q_next = q", "H needs p1_next, p2_next, q1_next, q2_next"),
         (LINEAR, "rk4, clock frozen", "known in one degree of freedom only"),
         (LINEAR, "p1_next = p1 + q3; p2_next = p2; q1_next = q1; q2_next = q2", "q3"),
     ],

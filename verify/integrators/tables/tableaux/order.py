@@ -15,7 +15,6 @@ import sympy
 from verify.arithmetic.number import E
 from verify.errors import InputError
 from verify.integrators.tables.tableaux.table import TableauTable
-from verify.integrators.tables.told import both
 from verify.schemes.coloured_trees import (
     Grammar,
     Tree,
@@ -25,7 +24,7 @@ from verify.schemes.coloured_trees import (
     symmetry,
     vertices,
 )
-from verify.schemes.printed.asked import Asked, Named, Residues
+from verify.schemes.printed.asked import Asked, Named, Residues, both
 from verify.schemes.printed.judged import Judged, judge
 from verify.schemes.printed.misprint import Misprint
 from verify.schemes.tree_weights import Block, dot

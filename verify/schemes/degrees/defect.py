@@ -6,16 +6,13 @@ with hᵐ, ΔJ is Σ S(p_i, q_i) up to h^(2m−1).
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from functools import partial
 from typing import Generic, TypeVar
 
 from verify.algebra.generator import Poly
 from verify.algebra.series.coefficient_ring import CoefficientRing
 from verify.algebra.series.power_series import Series
-from verify.hamiltonians.canonical_field import CanonicalField, Flow, canonical_field
-from verify.proof.expansion import Expansion
-from verify.proof.symplectic.two_form import TwoForm, wedge
-from verify.schemes.degrees.canonical_map import CanonicalMap
+from verify.hamiltonians.canonical_field import Flow
+from verify.schemes.degrees.two_form import TwoForm, wedge
 from verify.schemes.step_algebra import State
 
 F = TypeVar("F", bound=Flow)
@@ -130,23 +127,3 @@ def _times(x: Matrix, y: Matrix) -> Matrix:
             row.append(total)
         found.append(row)
     return found
-
-
-def series_of(step: CanonicalMap, first: int) -> DefectSeries[CanonicalField]:
-    """Those of one map."""
-    return DefectSeries(partial(_state, step), first)
-
-
-def _state(step: CanonicalMap, most: int) -> tuple[CanonicalField, State]:
-    if step.expand is not None:
-        return step.expand(most)
-    series = step.series(most)
-    if series is not None:
-        return step.field, series
-    assert step.closed is not None  # noqa: S101 - a map has one or the other
-    count, ring = most + 1, step.ring
-    expansions = [Expansion(ring, x) for x in step.closed]
-    parts = [each.coefficient(n) for each in expansions for n in range(count)]
-    flow, exact = canonical_field(step.hamiltonian, *(own.expression(x) for own, x in parts))
-    rows = (exact[count * i : count * (i + 1)] for i in range(len(expansions)))
-    return flow, tuple(Series.of(flow.ring, row, most) for row in rows)

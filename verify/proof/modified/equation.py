@@ -1,4 +1,4 @@
-"""What is known of a scheme's modified equation; see `verify.proof.modified_field`."""
+"""What is known of a scheme's modified equation; see `verify.proof.modified.field`."""
 
 from dataclasses import dataclass, field, replace
 from fractions import Fraction

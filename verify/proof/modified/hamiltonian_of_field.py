@@ -21,7 +21,7 @@ from verify.algebra.series.jets import Jets
 from verify.algebra.series.jets_in_degrees import Index
 from verify.algebra.series.power_series import partials
 from verify.hamiltonians.vector_field import VectorField
-from verify.proof.modified_field import Vector, field_of
+from verify.proof.modified.field import Vector, field_of
 from verify.proof.potential import among_polynomials
 from verify.proof.telescoping import multisets
 

@@ -1,6 +1,6 @@
 """The modified Hamiltonian of a step map, term by term, for one H.
 
-See `verify.proof.modified_field`. Each term is decided: its divergence is the zero function, and
+See `verify.proof.modified.field`. Each term is decided: its divergence is the zero function, and
 then it is Hamiltonian; or a point shows that it is not, and no modified Hamiltonian reaches there.
 The first divergence that is not 0 is held against the leading term of ΔJ, which is made from the
 determinant of the map and shares no code with the terms.
@@ -14,9 +14,9 @@ from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
 from verify.hamiltonians.vector_field import VectorField
 from verify.proof.expansion import MOST_ORDERS, Expansion, Leading
-from verify.proof.hamiltonian_of_field import hamiltonian_of
-from verify.proof.modified_equation import ModifiedEquation, Term, judged
-from verify.proof.modified_field import Vector, divergence, modified_field
+from verify.proof.modified.equation import ModifiedEquation, Term, judged
+from verify.proof.modified.field import Vector, divergence, modified_field
+from verify.proof.modified.hamiltonian_of_field import hamiltonian_of
 from verify.proof.order import leading_of, nearby_of_scheme
 from verify.schemes.scheme import Scheme
 from verify.schemes.step_map import StepMap

@@ -17,8 +17,8 @@ from verify.algebra.generator import terms_of
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.jets import Jets, shown
 from verify.algebra.series.jets import Poly as JetPoly
-from verify.proof.modified_equation import Term
-from verify.proof.modified_field import field_of
+from verify.proof.modified.equation import Term
+from verify.proof.modified.field import field_of
 from verify.schemes.free_lie_words import of_logarithm, words
 from verify.schemes.splitting_conditions import LETTERS, Splitting
 

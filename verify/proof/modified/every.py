@@ -1,11 +1,11 @@
 """The modified Hamiltonian of a scheme for every H at once, in the derivatives of H.
 
-Schemes with a series over the jets are treated as for one H (`verify.proof.modified_field`), and
+Schemes with a series over the jets are treated as for one H (`verify.proof.modified.field`), and
 as the derivatives are free, everything is decided. Two kinds are given by irrational coefficients:
 - Runge–Kutta methods: z' = z + Σ_t h^|t| b·Φ(t) F(t)/σ(t), where the weights b·Φ(t) are rational,
   as those of Gauss methods are: their conjugates are the method with its stages swapped;
 - splittings, whose terms are the logarithm of their product of exponentials
-  (`verify.proof.splitting_logarithm`).
+  (`verify.proof.modified.splitting_logarithm`).
 """
 
 from collections.abc import Sequence
@@ -14,10 +14,10 @@ from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.series.jets import Jets, Series, shown
 from verify.errors import InputError
 from verify.proof.by_conditions import nearby_order
-from verify.proof.hamiltonian_of_field import hamiltonian_in_jets
-from verify.proof.modified_equation import ModifiedEquation, Term, judged
-from verify.proof.modified_field import Vector, divergence, modified_field
-from verify.proof.splitting_logarithm import terms_of_splitting
+from verify.proof.modified.equation import ModifiedEquation, Term, judged
+from verify.proof.modified.field import Vector, divergence, modified_field
+from verify.proof.modified.hamiltonian_of_field import hamiltonian_in_jets
+from verify.proof.modified.splitting_logarithm import terms_of_splitting
 from verify.schemes import get
 from verify.schemes.coloured_trees import symmetry
 from verify.schemes.conditions import ByConditions
