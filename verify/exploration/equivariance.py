@@ -1,73 +1,120 @@
-"""A step in other coordinates, or in another time, is the same step: what equivariance asks.
+"""Steps in other coordinates, or in another time, are the same steps: what equivariance asks.
 
-M is a linear map of the plane. Where M carries the flow of H to that of K, a scheme that knows of
-no coordinates carries its step along, too: Φ_K(M z) = M Φ_H(z). An H that depends on time is K's at
-another time, too: what H is at t, K is at c t + s.
+Where MᵀΩM = cΩ and K = c·H∘M⁻¹, M carries the flow of H to that of K; of a scheme that knows of no
+coordinates it carries each step along, too: Φ_K∘M = M∘Φ_H, J becomes M J M⁻¹, and with A = M⁻¹ the
+defect S becomes c AᵀSA. An H that depends on time is K's at another time, too: what H is at t, K is
+at c t + s.
 """
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 
+import flint
 import sympy
 
 from verify.algebra.formula import symbol
-from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.ball_steps import BITS, ball_steps, unlike
+from verify.exploration.any_sample import AnySample
+from verify.exploration.ball_steps import (
+    BITS,
+    BallState,
+    Matrix,
+    ball_steps,
+    defect,
+    omega,
+    overlap,
+    unlike,
+)
+from verify.exploration.degrees.symplectic_matrices import Exact, exact
 from verify.exploration.property import Violation, only_if
-from verify.exploration.sample import Sample
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.every_hamiltonian import RungeKutta, TaylorSeries
 
-Matrix = tuple[tuple[Fraction, Fraction], tuple[Fraction, Fraction]]
-_P, _Q, _T = map(symbol, "pqt")
-IDENTITY: Matrix = ((Fraction(1), Fraction(0)), (Fraction(0), Fraction(1)))
+_MOST_STEPS = 3
 
 
 @dataclass(frozen=True)
 class Change:
-    """K = `factor` · H in the coordinates M z, at the time `pace` · t + `shift`."""
+    """K = `factor` · H in the coordinates M z, at the time `pace` · t + `shift`; MᵀΩM = cΩ with
+    c = `factor` · `pace`."""
 
-    matrix: Matrix = IDENTITY
+    matrix: Exact
     factor: Fraction = Fraction(1)
     pace: Fraction = Fraction(1)
     shift: Fraction = Fraction(0)
 
+    @cached_property
+    def inverse(self) -> Exact:
+        """M⁻¹."""
+        return self.matrix.inv()
 
-def knows_no_coordinates(sample: Sample) -> bool:
-    """Whether the scheme treats p and q alike, so that every linear map may be asked for."""
+
+def knows_no_coordinates(sample: AnySample) -> bool:
+    """Whether the scheme treats all coordinates alike, so that each linear map may be asked for."""
     return isinstance(sample.scheme.every_h, TaylorSeries | RungeKutta)
 
 
-def transformed_hamiltonian(sample: Sample, change: Change) -> Hamiltonian:
+def transformed_hamiltonian(sample: AnySample, change: Change) -> Hamiltonian:
     """K(z, t) = factor · H(M⁻¹ z, (t − shift)/pace)."""
-    (a, b), (c, d) = change.matrix
-    determinant = a * d - b * c
-    p, q = (
-        sympy.Rational(x / determinant) * _P + sympy.Rational(y / determinant) * _Q
-        for x, y in ((d, -b), (-c, a))
-    )
-    time = (_T - sympy.Rational(change.shift)) / sympy.Rational(change.pace)
-    expression = sample.hamiltonian.exact.xreplace({_P: p, _Q: q, _T: time})
+    names = sample.hamiltonian.coordinates
+    symbols = [symbol(name) for name in names]
+    put = {
+        x: sympy.Add(*(_rational(change.inverse[a, b]) * y for b, y in enumerate(symbols)))
+        for a, x in enumerate(symbols)
+    }
+    t = symbol("t")
+    put[t] = (t - sympy.Rational(change.shift)) / sympy.Rational(change.pace)
+    expression = sample.hamiltonian.exact.xreplace(put)
     return Hamiltonian(sympy.Rational(change.factor) * expression)
 
 
-def must_be_same_step(sample: Sample, change: Change) -> None:
-    """Violation where Φ_K of h · pace at M z is not M Φ_H(z); Silent where one is not known."""
-    only_if(sample.brief)
-    (a, b), (c, d) = change.matrix
-    p, q = sample.p, sample.q
-    ours = ball_steps(sample.step_map, sample.start, 1)[-1].sharp()
-    other = sample.scheme.step_map(transformed_hamiltonian(sample, change))
-    start = {"p": a * p + b * q, "q": c * p + d * q, "h": sample.step_size * change.pace}
-    if sample.timed:
-        start["t"] = sample.t0 * change.pace + change.shift
-    theirs = ball_steps(other, start, 1)[-1].sharp()
+def must_be_same_steps(sample: AnySample, change: Change) -> None:
+    """Violation where the run of K from M z is not the image of that of H, or S not that of S;
+    Silent where one is not known. In the plane of one step, whose maps may be long."""
+    planar = sample.hamiltonian.planar
+    only_if(sample.brief and (planar or sample.scheme.explicit))
+    steps = 1 if planar else min(sample.steps, _MOST_STEPS)
+    ours = [state.sharp() for state in ball_steps(sample.step_map, sample.start, steps)]
+    other = replace(
+        sample,
+        hamiltonian=transformed_hamiltonian(sample, change),
+        step_size=sample.step_size * change.pace,
+        steps=steps,
+        t0=sample.t0 * change.pace + change.shift,
+    ).at(moved(change, sample.point))
+    # A part of H may have vanished with a coordinate: K is of fewer degrees then.
+    only_if(other.hamiltonian.coordinates == sample.hamiltonian.coordinates)
+    only_if(planar or other.brief)
+    theirs = [state.sharp() for state in ball_steps(other.step_map, other.start, steps)]
     with working_precision(BITS):
-        p_next, q_next = (
-            rational_ball(x) * ours.p + rational_ball(y) * ours.q for x, y in change.matrix
-        )
-    pairs = (theirs.p, p_next), (theirs.q, q_next), (theirs.product, ours.product)
-    for what, (found, wanted) in zip(("p'", "q'", "det J"), pairs, strict=True):
-        if not found.overlaps(wanted):
-            raise Violation(f"{what} is {unlike(found, wanted)}")
+        for mine, found in zip(ours[1:], theirs[1:], strict=True):
+            _must_be_image(change, sample.hamiltonian.coordinates, mine, found)
+
+
+def moved(change: Change, point: Mapping[str, Fraction]) -> list[Fraction]:
+    """M z, of a point's coordinates in their order."""
+    column = change.matrix * Exact([[exact(x)] for x in point.values()])
+    return [Fraction(int(x.p), int(x.q)) for x in column.entries()]
+
+
+def _must_be_image(
+    change: Change, names: tuple[str, ...], mine: BallState, found: BallState
+) -> None:
+    there, back = Matrix(change.matrix), Matrix(change.inverse)
+    wanted = there * Matrix([[mine.point[name]] for name in names])
+    for k, name in enumerate(names):
+        if not found.point[name].overlaps(wanted[k, 0]):
+            raise Violation(f"{name}' is {unlike(found.point[name], wanted[k, 0])}")
+    if not overlap(found.matrix, there * mine.matrix * back):
+        raise Violation("J is not M J M⁻¹")
+    # Of c AᵀSA, A = M⁻¹, c by AᵀΩA = Ω/c.
+    canonical = omega(len(names))
+    scale = (back.transpose() * canonical * back)[0, len(names) // 2]
+    if not overlap(defect(found.own) * scale, back.transpose() * defect(mine.own) * back):
+        raise Violation("S is not c AᵀSA, A = M⁻¹")
+
+
+def _rational(x: flint.fmpq) -> sympy.Rational:
+    return sympy.Rational(int(x.p), int(x.q))

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from verify.arithmetic.arb import Ball, rational_ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.degrees.ball_steps import Matrix
+from verify.exploration.ball_steps import Matrix
 from verify.exploration.degrees.mpfr_runs import RunInDegrees
 from verify.exploration.sample_in_degrees import SampleInDegrees
 

@@ -74,7 +74,7 @@ def _by_own_clock(sample: Sample, step_map: StepMap, start: Mapping[str, Fractio
         state = ball_steps(step_map, start, 0)[0]
         with working_precision(BITS):
             for _ in range(sample.steps):
-                at = replace(state, t=rational_ball(Fraction(t)))
+                at = replace(state, point={**state.point, "t": rational_ball(Fraction(t))})
                 state, t = stepped(step_map, at, rational_ball(start["h"])), t + h
             return state.sharp().product - 1
     except Silent:

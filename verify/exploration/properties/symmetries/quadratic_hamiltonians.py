@@ -17,8 +17,7 @@ from verify.algebra.formula import symbol
 from verify.arithmetic.arb import middle_and_radius, rational_ball
 from verify.arithmetic.exact import short
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.ball_steps import BITS, sharp, unlike
-from verify.exploration.degrees import ball_steps as several
+from verify.exploration.ball_steps import BITS, Matrix, ball_steps, overlap, sharp, unlike
 from verify.exploration.property import Silent, Violation, known, only_if
 from verify.exploration.sample import Sample
 from verify.exploration.sample_in_degrees import SampleInDegrees
@@ -112,9 +111,9 @@ def holds_in_degrees(sample: SampleInDegrees) -> None:
     wanted = _stability_matrix(_stability_function(generic), form, sample.step_size)
     step = map_in_degrees(sample.scheme, hamiltonian)
     start = {name: x for name, x in sample.start.items() if name != "t"}
-    found = several.ball_steps(step, start, 1)[-1].sharp()
+    found = ball_steps(step, start, 1)[-1].sharp()
     with working_precision(BITS):
-        if not several.overlap(found.own, wanted):
+        if not overlap(found.own, wanted):
             raise Violation(f"J is not R(hL) for Hess H = {[[short(x) for x in r] for r in form]}")
 
 
@@ -131,7 +130,7 @@ def _form(sample: SampleInDegrees) -> list[list[Fraction]]:
 
 def _stability_matrix(
     coefficients: Sequence[Fraction], form: list[list[Fraction]], h: Fraction
-) -> several.Matrix:
+) -> Matrix:
     """R(hL), where L has −∂²H/∂q∂z in its upper half and ∂²H/∂p∂z in its lower."""
     n = len(form) // 2
     slopes = [[-h * x for x in row] for row in form[n:]] + [[h * x for x in r] for r in form[:n]]
@@ -141,4 +140,4 @@ def _stability_matrix(
     for c in coefficients:
         total, power = total + power * flint.fmpq(c.numerator, c.denominator), power * exact
     with working_precision(BITS):
-        return several.Matrix(total)
+        return Matrix(total)
