@@ -10,7 +10,10 @@ from typing import Any, Self
 from verify import arithmetic as number_systems
 from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
+from verify.flows.extrapolation import Flow
+from verify.hamiltonians.canonical_field import CanonicalField
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.vector_field import VectorField
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.proof.order_proof import Proof
 from verify.proof.symplectic.proof import SymplecticProof
@@ -86,8 +89,22 @@ class AnySample(ABC):
 
     @property
     @abstractmethod
+    def short(self) -> bool:
+        """Whether kernels of it are written in a moment."""
+
+    @property
+    @abstractmethod
     def brief(self) -> bool:
         """Whether its map is short enough to be looked at in a few points in a moment."""
+
+    @property
+    @abstractmethod
+    def field(self) -> VectorField | CanonicalField:
+        """H's own, with its derivatives by the coordinates."""
+
+    @abstractmethod
+    def flow(self, digits: int) -> Flow:
+        """The exact flow, to so many digits."""
 
     @property
     @abstractmethod

@@ -8,6 +8,7 @@ from typing import Any, Self
 
 from verify.algebra.ring import Poly, Ring
 from verify.exploration.any_sample import AnySample
+from verify.flows.extrapolation import Flow
 from verify.hamiltonians.vector_field import VectorField
 from verify.proof.order import prove
 from verify.proof.order_proof import Proof
@@ -84,6 +85,9 @@ class Sample(AnySample):
     @cached_property
     def _terms(self) -> int:
         return sum(step.length for step in self.step_map.substeps)
+
+    def flow(self, digits: int) -> Flow:
+        return Flow(self.field, digits)
 
     @property
     def slopes(self) -> tuple[Ring, Sequence[Poly]]:

@@ -11,6 +11,7 @@ from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
 from verify.exploration.any_sample import AnySample
 from verify.exploration.sample import Sample
+from verify.flows.degrees.extrapolation import FlowInDegrees
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.proof.symplectic.order import prove_symplectic
 from verify.proof.symplectic.proof import SymplecticProof
@@ -81,6 +82,9 @@ class SampleInDegrees(AnySample):
     def brief(self) -> bool:
         """Whether its map is short enough to be looked at in a few points in a moment."""
         return self._terms <= _MOST_OF_POINTS
+
+    def flow(self, digits: int) -> FlowInDegrees:
+        return FlowInDegrees(self.field, digits)
 
     @property
     def slopes(self) -> tuple[Ring, Sequence[Poly]]:

@@ -14,9 +14,7 @@ from verify.exploration.any_sample import AnySample
 from verify.exploration.ball_steps import ball_steps
 from verify.exploration.property import Violation, known, only_if, silent_at
 from verify.exploration.sample import Sample
-from verify.flows.degrees.extrapolation import FlowInDegrees
-from verify.flows.extrapolation import Flow, NoFlowError
-from verify.hamiltonians.canonical_field import canonical_field
+from verify.flows.extrapolation import NoFlowError
 
 _STEP = Fraction(1, 2**96)
 _BITS_A_POWER, _SPARE, _LOST = 96, 200, 60
@@ -77,7 +75,7 @@ def _error(sample: AnySample, start: Point, order: int) -> dict[str, Ball]:
     """Step minus flow in each coordinate, as balls; Silent where one of them is not known."""
     bits = _BITS_A_POWER * (order + 3) + _SPARE
     after = ball_steps(sample.step_map, start, 1, bits)[-1]
-    flow = _flow(sample, int(bits * _DIGITS_A_BIT))
+    flow = sample.flow(int(bits * _DIGITS_A_BIT))
     arithmetic = flow.arithmetic
     with silent_at(NoFlowError), arithmetic.context():
         end = flow.advance(flow.state(start), arithmetic.number(start["h"]))
@@ -86,12 +84,6 @@ def _error(sample: AnySample, start: Point, order: int) -> dict[str, Ball]:
             name: after.point[name] - _with_error(arithmetic.exact(x), bits - _LOST)
             for name, x in zip(sample.point, end, strict=False)
         }
-
-
-def _flow(sample: AnySample, digits: int) -> Flow | FlowInDegrees:
-    if isinstance(sample, Sample):
-        return Flow(sample.field, digits)
-    return FlowInDegrees(canonical_field(sample.hamiltonian)[0], digits)
 
 
 def _with_error(x: Fraction, bits: int) -> Ball:
