@@ -11,6 +11,7 @@ from verify.schemes import get
 
 if TYPE_CHECKING:
     from verify.proof.checked.proved import About
+    from verify.proof.every_proof import EveryProof
 
     AboutAll = frozenset[About]
 
@@ -43,8 +44,14 @@ def of_every(
     """The marks of the proof for every H that is meant; `least` as for `prove_every`."""
     from verify.proof.checked import marks
     from verify.proof.checked.proved import of_every_hamiltonian
+
+    proof = proof_of_every(name, separable=separable, timed=timed, least=least)
+    return marks(of_every_hamiltonian(proof, get(name), about))
+
+
+def proof_of_every(name: str, *, separable: bool, timed: bool, least: int) -> "EveryProof":
+    """The proof for every H that is meant; `least` as for `prove_every`."""
     from verify.proof.every import prove_every
     from verify.proof.every_in_time import prove_every_in_time
 
-    proof = prove_every_in_time(name, least) if timed else prove_every(name, separable, least)
-    return marks(of_every_hamiltonian(proof, get(name), about))
+    return prove_every_in_time(name, least) if timed else prove_every(name, separable, least)

@@ -16,9 +16,8 @@ from verify.scenes.run_sections import Grid
 from verify.scenes.scene import Scene
 from verify.studies.kinds.grid import grid_tasks, shares_runs
 from verify.studies.separation.form_separate import grid_in_degrees
-from verify.studies.separation.form_task import FormSeparationTask
 from verify.studies.separation.separate import as_grid
-from verify.studies.separation.task import DIGITS, SeparationTask
+from verify.studies.separation.task import DIGITS, FormSeparationTask, SeparationTask
 
 Made = TypeVar("Made")
 

@@ -12,8 +12,8 @@ import sympy
 
 from verify.algebra.formula import symbol
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.ball_steps import BITS, BallState, ball_steps, defect, unlike
-from verify.exploration.degrees.mpfr_runs import RunInDegrees, must_agree
+from verify.exploration.oracles.ball_steps import BITS, BallState, ball_steps, defect, unlike
+from verify.exploration.oracles.mpfr_runs import RunInDegrees, must_agree
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.hamiltonians.hamiltonian import Hamiltonian

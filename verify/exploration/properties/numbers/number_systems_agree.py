@@ -16,7 +16,7 @@ from verify import arithmetic as number_systems
 from verify.arithmetic.arb import Ball, around, rational_ball, shown
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.any_sample import AnySample
-from verify.exploration.ball_steps import BITS, BallState, ball_steps, defect, largest
+from verify.exploration.oracles.ball_steps import BITS, BallState, ball_steps, defect, largest
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
 from verify.exploration.sample_in_degrees import SampleInDegrees

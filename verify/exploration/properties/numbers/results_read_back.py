@@ -4,7 +4,7 @@ from verify.algebra.enclosure import enclose
 from verify.algebra.expressions.formula_text import to_text
 from verify.arithmetic.arb import shown
 from verify.exploration.any_sample import AnySample
-from verify.exploration.ball_steps import BITS
+from verify.exploration.oracles.ball_steps import BITS
 from verify.exploration.property import Violation
 from verify.exploration.sample import Sample
 from verify.hamiltonians.canonical_field import canonical_field

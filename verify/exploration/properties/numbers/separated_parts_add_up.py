@@ -13,7 +13,7 @@ from fractions import Fraction
 from verify.arithmetic.arb import Ball, around, rational_ball, shown
 from verify.arithmetic.exact import decimal
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.ball_steps import BITS, ball_steps, stepped
+from verify.exploration.oracles.ball_steps import BITS, ball_steps, stepped
 from verify.exploration.property import Silent, Violation, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.schemes.step_map import StepMap

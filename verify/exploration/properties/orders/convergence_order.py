@@ -11,7 +11,7 @@ from fractions import Fraction
 from verify.arithmetic.arb import Ball, around, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.any_sample import AnySample
-from verify.exploration.ball_steps import ball_steps
+from verify.exploration.oracles.ball_steps import ball_steps
 from verify.exploration.property import Violation, known, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.flows.extrapolation import NoFlowError

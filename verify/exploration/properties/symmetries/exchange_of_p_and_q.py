@@ -6,8 +6,8 @@ Asked of schemes that treat p and q alike.
 from fractions import Fraction
 
 from verify.exploration.any_sample import AnySample
-from verify.exploration.degrees.symplectic_matrices import exchanged
-from verify.exploration.equivariance import Change, knows_no_coordinates, must_be_same_steps
+from verify.exploration.oracles.equivariance import Change, knows_no_coordinates, must_be_same_steps
+from verify.exploration.oracles.symplectic_matrices import exchanged
 from verify.exploration.property import only_if
 
 _IN = 2  # one in so many samples

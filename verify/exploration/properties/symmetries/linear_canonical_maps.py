@@ -6,14 +6,14 @@ Schemes that step p and q by turns are asked for M that scales p and q only.
 from fractions import Fraction
 
 from verify.exploration.any_sample import AnySample
-from verify.exploration.degrees.symplectic_matrices import (
+from verify.exploration.oracles.equivariance import Change, knows_no_coordinates, must_be_same_steps
+from verify.exploration.oracles.symplectic_matrices import (
     Exact,
     diagonal,
     exact,
     of_places,
     symplectic,
 )
-from verify.exploration.equivariance import Change, knows_no_coordinates, must_be_same_steps
 from verify.exploration.property import only_if
 
 _IN, _AFTER = 2, 1  # one in so many samples, and not those whose time is scaled

@@ -3,7 +3,7 @@
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.any_sample import AnySample
-from verify.exploration.ball_steps import BITS, ball_steps, stepped, unlike
+from verify.exploration.oracles.ball_steps import BITS, ball_steps, stepped, unlike
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
 from verify.proof.symmetry import by_series

@@ -10,8 +10,8 @@ from fractions import Fraction
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.exact import decimal
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.ball_steps import BITS, ball_steps, defect, entries, largest, unlike
-from verify.exploration.degrees.mpfr_runs import jacobian_of_run
+from verify.exploration.oracles.ball_steps import BITS, ball_steps, defect, entries, largest, unlike
+from verify.exploration.oracles.mpfr_runs import jacobian_of_run
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
 from verify.exploration.sample_in_degrees import SampleInDegrees

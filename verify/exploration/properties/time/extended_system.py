@@ -13,7 +13,7 @@ from verify.algebra.enclosure import enclose_all, enclose_over
 from verify.arithmetic.arb import Ball, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.any_sample import AnySample
-from verify.exploration.ball_steps import BITS, ball_steps, sharp, unlike
+from verify.exploration.oracles.ball_steps import BITS, ball_steps, sharp, unlike
 from verify.exploration.property import Silent, Violation, known, only_if
 from verify.schemes.every_hamiltonian import RungeKutta
 from verify.schemes.splitting_conditions import Splitting

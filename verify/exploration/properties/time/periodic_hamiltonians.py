@@ -15,7 +15,7 @@ from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.any_sample import AnySample
-from verify.exploration.ball_steps import (
+from verify.exploration.oracles.ball_steps import (
     BITS,
     BallState,
     ball_steps,

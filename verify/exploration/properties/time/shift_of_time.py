@@ -3,8 +3,8 @@
 from fractions import Fraction
 
 from verify.exploration.any_sample import AnySample
-from verify.exploration.degrees.symplectic_matrices import identity
-from verify.exploration.equivariance import Change, must_be_same_steps
+from verify.exploration.oracles.equivariance import Change, must_be_same_steps
+from verify.exploration.oracles.symplectic_matrices import identity
 from verify.exploration.property import only_if
 
 _IN, _AFTER = 2, 1  # one in so many samples, and not those whose time is scaled

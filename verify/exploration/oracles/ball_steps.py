@@ -2,7 +2,7 @@
 
 No kernel is written for them: an oracle for the number systems that shares no code with those, and
 rigorous. In the plane the ring's own elements are enclosed, term by term; in n degrees of freedom a
-step is made as told in `verify.exploration.degrees.ball_algebra`. ΔJ is taken from the entries of
+step is made as told in `verify.exploration.oracles.ball_algebra`. ΔJ is taken from the entries of
 J, not from its closed form.
 """
 
@@ -16,7 +16,7 @@ import flint
 from verify.algebra.enclosure import enclose_all
 from verify.arithmetic.arb import Ball, rational_ball, shown
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.degrees.ball_algebra import BallAlgebra
+from verify.exploration.oracles.ball_algebra import BallAlgebra
 from verify.exploration.property import known, only_if
 from verify.schemes.degrees.canonical_map import CanonicalMap
 from verify.schemes.step_map import StepMap

@@ -13,7 +13,7 @@ from verify import arithmetic as number_systems
 from verify.arithmetic.arb import Ball, rational_ball
 from verify.arithmetic.exact import decimal
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.ball_steps import Matrix
+from verify.exploration.oracles.ball_steps import Matrix
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.hamiltonians.hamiltonian import Hamiltonian

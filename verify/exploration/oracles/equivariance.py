@@ -17,7 +17,7 @@ import sympy
 from verify.algebra.formula import symbol
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.any_sample import AnySample
-from verify.exploration.ball_steps import (
+from verify.exploration.oracles.ball_steps import (
     BITS,
     BallState,
     Matrix,
@@ -27,7 +27,7 @@ from verify.exploration.ball_steps import (
     overlap,
     unlike,
 )
-from verify.exploration.degrees.symplectic_matrices import Exact, exact
+from verify.exploration.oracles.symplectic_matrices import Exact, exact
 from verify.exploration.property import Violation, only_if
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.every_hamiltonian import RungeKutta, TaylorSeries
