@@ -8,10 +8,10 @@ from verify.claims.findings import Findings
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.prose import Prose
 from verify.schemes import get
+from verify.studies.proofs.every import proof_of_every
 
 if TYPE_CHECKING:
     from verify.proof.checked.proved import About
-    from verify.proof.every_proof import EveryProof
 
     AboutAll = frozenset[About]
 
@@ -47,11 +47,3 @@ def of_every(
 
     proof = proof_of_every(name, separable=separable, timed=timed, least=least)
     return marks(of_every_hamiltonian(proof, get(name), about))
-
-
-def proof_of_every(name: str, *, separable: bool, timed: bool, least: int) -> "EveryProof":
-    """The proof for every H that is meant; `least` as for `prove_every`."""
-    from verify.proof.every import prove_every
-    from verify.proof.every_in_time import prove_every_in_time
-
-    return prove_every_in_time(name, least) if timed else prove_every(name, separable, least)

@@ -10,7 +10,7 @@ from abc import abstractmethod
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
-from verify.claims.checked import of_every, of_scene, proof_of_every
+from verify.claims.checked import of_every, of_scene
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
 from verify.errors import InputError
@@ -18,6 +18,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.prose import Prose
 from verify.scenes.results.claim import ClaimResult
 from verify.schemes import get
+from verify.studies.proofs.every import proof_of_every
 
 if TYPE_CHECKING:
     from verify.claims.checked import AboutAll

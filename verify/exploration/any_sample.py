@@ -11,7 +11,7 @@ from verify import arithmetic as number_systems
 from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
 from verify.flows.extrapolation import Flow
-from verify.hamiltonians.canonical_field import CanonicalField
+from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.vector_field import VectorField
 from verify.kernels.stepping import KernelRun, Outcome
@@ -107,9 +107,10 @@ class AnySample(ABC):
         """The exact flow, to so many digits."""
 
     @property
-    @abstractmethod
     def slopes(self) -> tuple[Ring, Sequence[Poly]]:
         """The derivatives of the coordinates by t, in their order, and their ring."""
+        field, _ = canonical_field(self.hamiltonian)
+        return field.ring, field.slopes
 
     @property
     def polynomial(self) -> bool:

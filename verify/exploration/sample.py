@@ -6,7 +6,6 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any, Self
 
-from verify.algebra.ring import Poly, Ring
 from verify.exploration.any_sample import AnySample
 from verify.flows.extrapolation import Flow
 from verify.hamiltonians.vector_field import VectorField
@@ -88,7 +87,3 @@ class Sample(AnySample):
 
     def flow(self, digits: int) -> Flow:
         return Flow(self.field, digits)
-
-    @property
-    def slopes(self) -> tuple[Ring, Sequence[Poly]]:
-        return self.field.ring, (-self.field.h_q, self.field.h_p)

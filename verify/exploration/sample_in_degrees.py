@@ -7,7 +7,6 @@ from functools import cached_property
 from math import inf
 from typing import Any, Self
 
-from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
 from verify.exploration.any_sample import AnySample
 from verify.exploration.sample import Sample
@@ -85,10 +84,6 @@ class SampleInDegrees(AnySample):
 
     def flow(self, digits: int) -> FlowInDegrees:
         return FlowInDegrees(self.field, digits)
-
-    @property
-    def slopes(self) -> tuple[Ring, Sequence[Poly]]:
-        return self.field.ring, self.field.slopes
 
     @cached_property
     def _terms(self) -> float:
