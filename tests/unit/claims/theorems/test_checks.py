@@ -16,8 +16,7 @@ from verify.claims.theorems import (
     two_norm,
 )
 from verify.claims.theorems.checks import developables, families, matrices, sums, triangle
-from verify.claims.theorems.checks.check import Check
-from verify.claims.theorems.checks.formulas import same
+from verify.claims.theorems.checks.check import Check, same
 from verify.claims.theorems.convergence import _lengthened
 from verify.claims.theorems.criteria_examples import (
     COMPENSATED,
