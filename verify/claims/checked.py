@@ -8,6 +8,7 @@ from verify.claims.findings import Findings
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.prose import Prose
 from verify.schemes import get
+from verify.studies.proofs.every import proof_of_every
 
 if TYPE_CHECKING:
     from verify.proof.checked.proved import About
@@ -43,8 +44,6 @@ def of_every(
     """The marks of the proof for every H that is meant; `least` as for `prove_every`."""
     from verify.proof.checked import marks
     from verify.proof.checked.proved import of_every_hamiltonian
-    from verify.proof.every import prove_every
-    from verify.proof.every_in_time import prove_every_in_time
 
-    proof = prove_every_in_time(name, least) if timed else prove_every(name, separable, least)
+    proof = proof_of_every(name, separable=separable, timed=timed, least=least)
     return marks(of_every_hamiltonian(proof, get(name), about))

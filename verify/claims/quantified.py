@@ -8,7 +8,7 @@ not zero for some H; det J ≡ 1 is false where some H has another det J.
 
 from abc import abstractmethod
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 from verify.claims.checked import of_every, of_scene
 from verify.claims.claim import Claim
@@ -18,6 +18,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.prose import Prose
 from verify.scenes.results.claim import ClaimResult
 from verify.schemes import get
+from verify.studies.proofs.every import proof_of_every
 
 if TYPE_CHECKING:
     from verify.claims.checked import AboutAll
@@ -51,25 +52,18 @@ class QuantifiedClaim(Claim):
         """By the proof for every H that it is made of, or for the scene's."""
         if self.every is None:
             return self.judge_one(findings)
-        if self.in_time:
-            from verify.proof.every_in_time import prove_every_in_time
-
-            return self.judge_every(prove_every_in_time(self.scheme, self.looked_at))
-        from verify.proof.every import prove_every
-
-        return self.judge_every(prove_every(self.scheme, self.of_separable, self.looked_at))
+        return self.judge_every(proof_of_every(self.scheme, **self._of_which))
 
     def checked_by(self, found: ClaimResult, findings: Findings) -> Sequence[Prose]:
         """By the proof for every H that it is made of, or for the scene's."""
         if self.every is None:
             return of_scene(self, findings, self.about)
-        return of_every(
-            self.scheme,
-            self.about,
-            separable=self.of_separable,
-            timed=self.in_time,
-            least=self.looked_at,
-        )
+        return of_every(self.scheme, self.about, **self._of_which)
+
+    @property
+    def _of_which(self) -> dict[str, Any]:
+        """Which proof for every H it asks for."""
+        return {"separable": self.of_separable, "timed": self.in_time, "least": self.looked_at}
 
     @property
     def of_separable(self) -> bool:

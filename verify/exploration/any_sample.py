@@ -1,15 +1,28 @@
 """What a drawn scene is to properties, in the plane and in n degrees of freedom alike."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from functools import cached_property
+from typing import Any, Self
 
 from verify import arithmetic as number_systems
+from verify.algebra.ring import Poly, Ring
+from verify.errors import InputError
+from verify.flows.extrapolation import Flow
+from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.vector_field import VectorField
 from verify.kernels.stepping import KernelRun, Outcome
+from verify.proof.order_proof import Proof
+from verify.proof.symplectic.proof import SymplecticProof
+from verify.scenes.run_sections import Grid
 from verify.scenes.scene import Scene
+from verify.schemes import get
+from verify.schemes.degrees.canonical_map import CanonicalMap
 from verify.schemes.scheme import Scheme
+from verify.schemes.step_map import StepMap
 
 
 @dataclass(frozen=True)
@@ -23,6 +36,36 @@ class AnySample(ABC):
     steps: int
     t0: Fraction
     scene: Scene
+    p: Any
+    q: Any
+
+    @classmethod
+    def of(cls, scene: Scene) -> Self:
+        """The first scheme, step size and initial value of a scene that has a [grid].
+
+        Raises InputError for one that has none, or that starts elsewhere.
+        """
+        if scene.grid is None:
+            raise InputError("scene", scene.name, "has no [grid], which gives step and start")
+        h = scene.grid.step_sizes[0]
+        return cls(
+            hamiltonian=scene.exact_hamiltonian(),
+            scheme=get(scene.schemes[0]),
+            step_size=h,
+            steps=scene.grid.steps_for(h),
+            t0=scene.t0,
+            scene=scene,
+            **cls._initial(scene, scene.grid),
+        )
+
+    @classmethod
+    @abstractmethod
+    def _initial(cls, scene: Scene, grid: Grid) -> dict[str, Any]:
+        """p and q of the first initial value."""
+
+    @abstractmethod
+    def at(self, values: Sequence[Fraction]) -> Self:
+        """The same from another point, whose coordinates are given in their order."""
 
     @property
     @abstractmethod
@@ -31,8 +74,61 @@ class AnySample(ABC):
 
     @property
     @abstractmethod
+    def step_map(self) -> StepMap | CanonicalMap:
+        """The map of one step, for this H; asked for where it is `brief`."""
+
+    @property
+    @abstractmethod
+    def proof(self) -> Proof | SymplecticProof:
+        """What is proved of the map: orders, the leading coefficient of its defect."""
+
+    @property
+    @abstractmethod
+    def ordinary(self) -> bool:
+        """Whether its map is proved in a moment."""
+
+    @property
+    @abstractmethod
+    def short(self) -> bool:
+        """Whether kernels of it are written in a moment."""
+
+    @property
+    @abstractmethod
+    def brief(self) -> bool:
+        """Whether its map is short enough to be looked at in a few points in a moment."""
+
+    @property
+    @abstractmethod
+    def field(self) -> VectorField | CanonicalField:
+        """H's own, with its derivatives by the coordinates."""
+
+    @abstractmethod
+    def flow(self, digits: int) -> Flow:
+        """The exact flow, to so many digits."""
+
+    @property
+    def slopes(self) -> tuple[Ring, Sequence[Poly]]:
+        """The derivatives of the coordinates by t, in their order, and their ring."""
+        field, _ = canonical_field(self.hamiltonian)
+        return field.ring, field.slopes
+
+    @property
+    def polynomial(self) -> bool:
+        """Whether H is a polynomial."""
+        return self._kinds <= {"variable"}
+
+    @cached_property
+    def _kinds(self) -> set[str]:
+        """Of what the slopes are made."""
+        ring, slopes = self.slopes
+        return {g.kind for g in ring.generators_in(*slopes)}
+
+    @property
     def turn(self) -> int:
         """A number by which properties choose what they look at of a sample."""
+        names, point = self.hamiltonian.coordinates, self.point
+        p, q = point[names[0]], point[names[len(names) // 2]]
+        return 7 * self.steps + abs(p.numerator) + q.denominator
 
     def is_turn(self, one_in: int, after: int = 0) -> bool:
         """Whether a property that takes long looks at this sample: at one in so many.
@@ -61,9 +157,10 @@ class AnySample(ABC):
         return run.run(number_systems.get(number_system, digits))
 
     @property
-    @abstractmethod
     def run_arguments(self) -> dict[str, Any]:
         """What `run` and `separate` are called with beside H and the scheme."""
+        own = {"q": self.q, "p": self.p, "step_size": self.step_size, "steps": self.steps}
+        return own | {"t0": self.t0}
 
     @property
     def timed(self) -> bool:

@@ -6,10 +6,10 @@ are left out, each with the reason.
 """
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from functools import lru_cache
-from typing import Any, TypeVar
+from functools import lru_cache, partial
+from typing import Any
 
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
@@ -24,7 +24,7 @@ from verify.execution.plan import Plan
 from verify.exploration.any_sample import AnySample
 from verify.exploration.property import Property, Violation, only_if, silent_at
 from verify.exploration.sample import Sample
-from verify.exploration.sample_in_degrees import SampleInDegrees
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.prose import read_prose
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.scene import Scene
@@ -32,7 +32,6 @@ from verify.schemes import get
 from verify.verdict import Verdict
 
 _NAME = "drawn"
-S = TypeVar("S", Sample, SampleInDegrees)
 
 
 def claims_left_out(claims: Sequence[Claim]) -> dict[str, list[str]]:
@@ -72,25 +71,16 @@ def claim_property(text: str) -> Property:
     sentence = (
         str(read_prose(claim.statement)) or f"{claim.kind} of {claim.scheme}, as {claim.id} says"
     )
-    return Property(
-        claim.id,
-        sentence,
-        lambda sample: _check(claim, sample, sample.field.separable),
-        claim.scheme,
-        lambda sample: _check_in_degrees(claim, sample),
-    )
+    check = partial(_check, claim)
+    return Property(claim.id, sentence, check, claim.scheme, check)
 
 
-def _check_in_degrees(claim: Claim, sample: SampleInDegrees) -> None:
-    """Of claims that algebra decides; a run's are of the plane."""
-    only_if(not claim.run_keys and sample.brief)
-    _check(claim, sample, lambda: sample.field.separable)
-
-
-def _check(claim: Claim, sample: S, is_separable: Callable[[], bool]) -> None:
-    """Raises Violation where the claim is refuted for the sample's H and run."""
+def _check(claim: Claim, sample: AnySample) -> None:
+    """Raises Violation where the claim is refuted for the sample's H and run; in n degrees of
+    freedom of claims that algebra decides, as a run's are of the plane."""
+    only_if(isinstance(sample, Sample) or (not claim.run_keys and sample.brief))
     separable = isinstance(claim, QuantifiedClaim) and claim.of_separable
-    only_if(not separable or is_separable())
+    only_if(not separable or canonical_field(sample.hamiltonian)[0].separable)
     asked = _of_scheme(sample, claim.scheme)
     only_if(asked.ordinary)
     with silent_at(InputError):  # too long a formula, or an end of the run that cannot be had
@@ -100,7 +90,7 @@ def _check(claim: Claim, sample: S, is_separable: Callable[[], bool]) -> None:
     only_if(found.verdict is not Verdict.UNDECIDED)
 
 
-def _of_scheme(sample: S, name: str) -> S:
+def _of_scheme(sample: AnySample, name: str) -> AnySample:
     """The sample with that scheme; Silent where the scheme does not take its H."""
     scene = sample.scene.model_copy(update={"schemes": (name,), "name": _NAME})
     asked = replace(sample, scheme=get(name), scene=scene)

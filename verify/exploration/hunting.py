@@ -44,8 +44,8 @@ class Hunt:
     def __post_init__(self) -> None:
         if self.measure not in MEASURES:
             raise unknown("maximise", self.measure, MEASURES)
-        if self.drawn.degrees > 1 and MEASURES[self.measure].in_degrees is None:
-            allowed = ", ".join(name for name, x in MEASURES.items() if x.in_degrees)
+        if self.drawn.degrees > 1 and not MEASURES[self.measure].several:
+            allowed = ", ".join(name for name, x in MEASURES.items() if x.several)
             problem = f"is of one degree of freedom; allowed in more: {allowed}"
             raise InputError("maximise", self.measure, problem)
         if not 1 <= self.examples <= MOST_EXAMPLES:

@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
 from verify import arithmetic as number_systems
 from verify.arithmetic.exact import magnitude
@@ -28,20 +29,18 @@ _ROUNDOFF = Fraction(1, 2**53)
 
 @dataclass(frozen=True)
 class Measure:
-    """`value(sample, digits)`: lg of it, or None; `sentence`: what it is. `in_degrees`: the same in
-    n degrees of freedom, and `several` what it is there; None and "" of one that is of the plane.
+    """`value(sample, digits)`: lg of it, or None; `sentence`: what it is, and `several` what it is
+    in n degrees of freedom; "" of one that is of the plane.
     """
 
     sentence: str
-    value: Callable[[Sample, int], float | None]
-    in_degrees: Callable[[SampleInDegrees, int], float | None] | None = None
+    value: Callable[[Any, int], float | None]
     several: str = ""
 
-    def of(self, sample: Sample | SampleInDegrees, digits: int) -> float | None:
-        """Its value for a sample of either kind."""
-        if isinstance(sample, Sample):
-            return self.value(sample, digits)
-        return self.in_degrees(sample, digits) if self.in_degrees else None
+    def of(self, sample: AnySample, digits: int) -> float | None:
+        """Its value for a sample; None where it is not of so many degrees of freedom."""
+        asked = self.said(sample.hamiltonian.degrees) or sample.hamiltonian.planar
+        return self.value(sample, digits) if asked else None
 
     def said(self, degrees: int) -> str:
         """What it is, in so many degrees of freedom."""
@@ -69,19 +68,17 @@ def _greatest(trail: Trail, bound: Fraction) -> Fraction:
     return top if top > 10 * bound else Fraction(0)
 
 
-def digits_lost(sample: Sample, digits: int = DIGITS) -> float | None:
-    """lg of the error of float64's p and q after the run, in units of its roundoff.
+def digits_lost(sample: AnySample, digits: int = DIGITS) -> float | None:
+    """lg of the error of float64's coordinates after the run, in units of its roundoff.
 
-    Relative to the farthest that the orbit is from (0, 0): where it comes near to that, no digit is
-    lost that anything hangs on.
+    Relative to the farthest that the orbit is from the origin: where it comes near to that, no
+    digit is lost that anything hangs on.
     """
     exact = _stays(sample, digits)
     if exact is None:
         return None
     found = sample.run("float64", 17)
-    if found.done < sample.steps:
-        return None
-    return _lost(sample, exact, found)
+    return None if found.done < sample.steps else _lost(sample, exact, found)
 
 
 def _lost(sample: AnySample, exact: Outcome, found: Outcome) -> float | None:
@@ -91,63 +88,23 @@ def _lost(sample: AnySample, exact: Outcome, found: Outcome) -> float | None:
     return None if not size or not error else _lg(error / (size * _ROUNDOFF))
 
 
-def growth(sample: Sample, digits: int = DIGITS) -> float | None:
-    """lg of the greatest |Λ| of the run, in numbers of so many digits: no rounding is in it."""
-    found = _stays(sample, digits)
-    if found is None or not found.values["lambda_max"]:
-        return None
-    return _lg(found.values["lambda_max"])
+def growth(sample: AnySample, digits: int = DIGITS) -> float | None:
+    """lg of the greatest |Λ| of the run, in numbers of so many digits: no rounding is in it; in n
+    degrees of freedom of the greatest |entry| of W of the whole run."""
+    name = "lambda_max" if sample.hamiltonian.planar else "symplectic_defect"
+    found = _stays(sample, digits, name)
+    return None if found is None or not found.values[name] else _lg(found.values[name])
 
 
-def defect_of_step(sample: Sample, digits: int = DIGITS) -> float | None:
-    """lg of the greatest |ΔJ| of the run over h to the power that is proved of it."""
+def defect_of_step(sample: AnySample, digits: int = DIGITS) -> float | None:
+    """lg of the greatest |ΔJ| of the run, in n degrees of freedom of the greatest |entry| of S of
+    any step, over h to the power that is proved of it."""
+    name = "delta_j_max" if sample.hamiltonian.planar else "symplectic_defect_max"
     order = sample.proof.order if sample.ordinary else None
-    found = _stays(sample, digits, "delta_j_max")
-    if found is None or order is None or not found.values["delta_j_max"]:
+    found = None if order is None else _stays(sample, digits, name)
+    if found is None or order is None or not found.values[name]:
         return None
-    return _lg(found.values["delta_j_max"] / sample.step_size**order)
-
-
-# -- in n degrees of freedom ----------------------------------------------------------------------
-
-
-def digits_lost_in_degrees(sample: SampleInDegrees, digits: int = DIGITS) -> float | None:
-    """As `digits_lost`, of all coordinates."""
-    exact = _stays_in_degrees(sample, digits)
-    if exact is None:
-        return None
-    found = sample.run("float64", 17)
-    return None if found.done < sample.steps else _lost(sample, exact, found)
-
-
-def growth_in_degrees(sample: SampleInDegrees, digits: int = DIGITS) -> float | None:
-    """lg of the greatest |entry| of W of the whole run."""
-    found = _stays_in_degrees(sample, digits, "symplectic_defect")
-    if found is None or not found.values["symplectic_defect"]:
-        return None
-    return _lg(found.values["symplectic_defect"])
-
-
-def defect_in_degrees(sample: SampleInDegrees, digits: int = DIGITS) -> float | None:
-    """lg of the greatest |entry| of S of any step over h to the power that is proved of S."""
-    order = sample.proof.order if sample.ordinary else None
-    if order is None:
-        return None
-    found = _stays_in_degrees(sample, digits, "symplectic_defect_max")
-    if found is None or not found.values["symplectic_defect_max"]:
-        return None
-    return _lg(found.values["symplectic_defect_max"] / sample.step_size**order)
-
-
-def _stays_in_degrees(sample: SampleInDegrees, digits: int, *observables: str) -> Outcome | None:
-    """The run with so many digits; None where it goes far, or its kernel is long."""
-    if not sample.short or (sample.step_map.symplectic_by_conditions and observables):
-        return None
-    found = sample.run("mpfr", digits, *observables)
-    if found.done < sample.steps:
-        return None
-    near = all(abs(x[name]) <= _FAR for x in found.trail for name in sample.point)
-    return found if near else None
+    return _lg(found.values[name] / sample.step_size**order)
 
 
 def orbit(sample: Sample) -> list[tuple[Fraction, Fraction]]:
@@ -157,12 +114,17 @@ def orbit(sample: Sample) -> list[tuple[Fraction, Fraction]]:
     return [(sample.q, sample.p), *((x["q"], x["p"]) for x in trail)]
 
 
-def _stays(sample: Sample, digits: int, observable: str = "lambda_max") -> Outcome | None:
-    """The run with so many digits; None where it goes far."""
-    found = sample.run("mpfr", digits, observable)
+def _stays(sample: AnySample, digits: int, *observables: str) -> Outcome | None:
+    """The run with so many digits; None where it goes far, or, in n degrees of freedom, where its
+    kernel is long or nothing is to be observed."""
+    if isinstance(sample, SampleInDegrees) and (
+        not sample.short or (observables and sample.step_map.symplectic_by_conditions)
+    ):
+        return None
+    found = sample.run("mpfr", digits, *observables)
     if found.done < sample.steps:
         return None
-    near = all(max(abs(x["p"]), abs(x["q"])) <= _FAR for x in found.trail)
+    near = all(abs(x[name]) <= _FAR for x in found.trail for name in sample.point)
     return found if near else None
 
 
@@ -178,16 +140,12 @@ MEASURES = {
     "digits-lost": Measure(
         "error of float64's p and q at the end, in roundoffs",
         digits_lost,
-        digits_lost_in_degrees,
         "error of float64's coordinates at the end, in roundoffs",
     ),
-    "growth": Measure(
-        "greatest |Λ| of the run", growth, growth_in_degrees, "greatest |entry| of W of the run"
-    ),
+    "growth": Measure("greatest |Λ| of the run", growth, "greatest |entry| of W of the run"),
     "defect": Measure(
         "greatest |ΔJ| of a step over its proved power of h",
         defect_of_step,
-        defect_in_degrees,
         "greatest |entry| of S of a step over its proved power of h",
     ),
 }

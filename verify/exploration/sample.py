@@ -1,17 +1,18 @@
 """A drawn scene of the plane as properties look at it: an H, scheme, step size, start, t₀ and N."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
-from verify.errors import InputError
 from verify.exploration.any_sample import AnySample
+from verify.flows.extrapolation import Flow
 from verify.hamiltonians.vector_field import VectorField
 from verify.proof.order import prove
 from verify.proof.order_proof import Proof
+from verify.scenes.run_sections import Grid
 from verify.scenes.scene import Scene
-from verify.schemes import get
 from verify.schemes.every_hamiltonian import TaylorSeries
 from verify.schemes.step_map import StepMap
 
@@ -27,24 +28,13 @@ class Sample(AnySample):
     q: Fraction
 
     @classmethod
-    def of(cls, scene: Scene) -> "Sample":
-        """The first scheme, step size and initial value of a scene of the plane that has a [grid].
+    def _initial(cls, scene: Scene, grid: Grid) -> dict[str, Any]:
+        start = grid.in_the_plane[0]
+        return {"p": start.p, "q": start.q}
 
-        Raises InputError for one that has none.
-        """
-        if scene.grid is None:
-            raise InputError("scene", scene.name, "has no [grid], which gives step and start")
-        start, h = scene.grid.in_the_plane[0], scene.grid.step_sizes[0]
-        return cls(
-            hamiltonian=scene.exact_hamiltonian(),
-            scheme=get(scene.schemes[0]),
-            p=start.p,
-            q=start.q,
-            step_size=h,
-            steps=scene.grid.steps_for(h),
-            t0=scene.t0,
-            scene=scene,
-        )
+    def at(self, values: Sequence[Fraction]) -> Self:
+        p, q = values
+        return replace(self, p=p, q=q)
 
     @property
     def point(self) -> dict[str, Fraction]:
@@ -95,24 +85,5 @@ class Sample(AnySample):
     def _terms(self) -> int:
         return sum(step.length for step in self.step_map.substeps)
 
-    @property
-    def polynomial(self) -> bool:
-        """Whether H is a polynomial."""
-        return self._kinds <= {"variable"}
-
-    @cached_property
-    def _kinds(self) -> set[str]:
-        """Of what H's derivatives are made."""
-        field = self.step_map.substeps[0].field
-        return {g.kind for g in field.ring.generators_in(field.h_p, field.h_q)}
-
-    @property
-    def turn(self) -> int:
-        """A number by which properties choose what they look at of a sample."""
-        return 7 * self.steps + abs(self.p.numerator) + self.q.denominator
-
-    @property
-    def run_arguments(self) -> dict[str, Any]:
-        """What `run` and `separate` are called with beside H and the scheme."""
-        own = {"q": self.q, "p": self.p, "step_size": self.step_size, "steps": self.steps}
-        return own | {"t0": self.t0}
+    def flow(self, digits: int) -> Flow:
+        return Flow(self.field, digits)

@@ -1,20 +1,22 @@
 """A drawn scene in n degrees of freedom as properties look at it."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from math import inf
-from typing import Any
+from typing import Any, Self
 
 from verify.errors import InputError
 from verify.exploration.any_sample import AnySample
 from verify.exploration.sample import Sample
+from verify.flows.degrees.extrapolation import FlowInDegrees
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.proof.symplectic.order import prove_symplectic
 from verify.proof.symplectic.proof import SymplecticProof
+from verify.scenes.run_sections import Grid
 from verify.scenes.scene import Scene
 from verify.scenes.values import InitialState
-from verify.schemes import get
 from verify.schemes.degrees import map_in_degrees
 from verify.schemes.degrees.canonical_map import CanonicalMap
 from verify.schemes.every_hamiltonian import TaylorSeries
@@ -33,42 +35,20 @@ class SampleInDegrees(AnySample):
     q: tuple[Fraction, ...]
 
     @classmethod
-    def of(cls, scene: Scene) -> "SampleInDegrees":
-        """The first scheme, step size and initial value of a scene in n degrees of freedom.
-
-        Raises InputError for one that has no [grid].
-        """
-        if scene.grid is None:
-            raise InputError("scene", scene.name, "has no [grid], which gives step and start")
-        start, h = scene.grid.initial_values[0], scene.grid.step_sizes[0]
+    def _initial(cls, scene: Scene, grid: Grid) -> dict[str, Any]:
+        start = grid.initial_values[0]
         if not isinstance(start, InitialState):
             raise InputError("scene", scene.name, "starts in the plane; allowed: q and p as lists")
-        return cls(
-            hamiltonian=scene.exact_hamiltonian(),
-            scheme=get(scene.schemes[0]),
-            step_size=h,
-            steps=scene.grid.steps_for(h),
-            t0=scene.t0,
-            scene=scene,
-            p=start.p,
-            q=start.q,
-        )
+        return {"p": start.p, "q": start.q}
+
+    def at(self, values: Sequence[Fraction]) -> Self:
+        degrees = len(values) // 2
+        return replace(self, p=tuple(values[:degrees]), q=tuple(values[degrees:]))
 
     @property
     def point(self) -> dict[str, Fraction]:
         """p1 … pn, q1 … qn at the start."""
         return dict(zip(self.hamiltonian.coordinates, (*self.p, *self.q), strict=True))
-
-    @property
-    def turn(self) -> int:
-        """A number by which properties choose what they look at of a sample."""
-        return 7 * self.steps + abs(self.p[0].numerator) + self.q[0].denominator
-
-    @property
-    def run_arguments(self) -> dict[str, Any]:
-        """What `run` is called with beside H and the scheme."""
-        own = {"q": self.q, "p": self.p, "step_size": self.step_size, "steps": self.steps}
-        return own | {"t0": self.t0}
 
     @property
     def field(self) -> CanonicalField:
@@ -102,16 +82,8 @@ class SampleInDegrees(AnySample):
         """Whether its map is short enough to be looked at in a few points in a moment."""
         return self._terms <= _MOST_OF_POINTS
 
-    @property
-    def polynomial(self) -> bool:
-        """Whether H is a polynomial."""
-        return self._kinds <= {"variable"}
-
-    @cached_property
-    def _kinds(self) -> set[str]:
-        """Of what the slopes are made."""
-        field = self.field
-        return {g.kind for g in field.ring.generators_in(*field.slopes)}
+    def flow(self, digits: int) -> FlowInDegrees:
+        return FlowInDegrees(self.field, digits)
 
     @cached_property
     def _terms(self) -> float:

@@ -11,8 +11,7 @@ import sympy
 from verify.algebra.symbols import H_STEP, P, Q
 from verify.arithmetic.flint_precision import working_precision
 from verify.claims.theorems.argument import Argument, concluded, step
-from verify.claims.theorems.checks.check import BALLS, Check
-from verify.claims.theorems.checks.formulas import same
+from verify.claims.theorems.checks.check import BALLS, Check, same
 from verify.claims.theorems.checks.sums import geometric
 from verify.claims.theorems.oscillator import PRECISION, errors, final_error
 from verify.hamiltonians import systems

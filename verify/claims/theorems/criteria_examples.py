@@ -13,8 +13,7 @@ import sympy
 
 from verify.algebra.formula import parse
 from verify.arithmetic.exact import decimal
-from verify.claims.theorems.checks.check import NUMBERS, Check
-from verify.claims.theorems.checks.formulas import same
+from verify.claims.theorems.checks.check import NUMBERS, Check, same
 from verify.claims.theorems.exact_maps import Areas, Point, areas, map_from_formulas
 
 Numbers = tuple[Fraction, Fraction, Fraction]  # max |ΔJ|, MSE, Λ

@@ -9,8 +9,7 @@ from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.symbols import H_STEP, P, Q
 from verify.claims.theorems.argument import Argument, concluded, step
 from verify.claims.theorems.checks import families
-from verify.claims.theorems.checks.check import Check
-from verify.claims.theorems.checks.formulas import same
+from verify.claims.theorems.checks.check import Check, same
 from verify.claims.theorems.checks.matrices import of_the_field, where_it_rests
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian

@@ -7,9 +7,8 @@ import sympy
 from verify.algebra.formula import symbol
 from verify.algebra.symbols import H_STEP, P, Q
 from verify.claims.theorems.argument import Argument, concluded, step
-from verify.claims.theorems.checks.check import Check, vanishes
+from verify.claims.theorems.checks.check import Check, same, vanishes
 from verify.claims.theorems.checks.differential import Flow, Poly, flow_of_every_hamiltonian
-from verify.claims.theorems.checks.formulas import same
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.assistant.stated import Shipped

@@ -10,9 +10,8 @@ from verify.algebra.symbols import H_STEP, P, Q
 from verify.arithmetic.exact import decimal, text
 from verify.arithmetic.flint_precision import working_precision
 from verify.claims.theorems.argument import Argument, concluded, step
-from verify.claims.theorems.checks.check import BALLS, NUMBERS, Check, vanishes
+from verify.claims.theorems.checks.check import BALLS, NUMBERS, Check, same, vanishes
 from verify.claims.theorems.checks.differential import flow_of_every_hamiltonian
-from verify.claims.theorems.checks.formulas import same
 from verify.claims.theorems.exact_maps import Point, jacobian, next_point, squared
 from verify.claims.theorems.oscillator import PRECISION, errors, factor
 from verify.hamiltonians import systems

@@ -8,9 +8,8 @@ from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.formula import parse
 from verify.algebra.symbols import P, Q
 from verify.claims.theorems.argument import Argument, concluded, step
-from verify.claims.theorems.checks.check import vanishes
+from verify.claims.theorems.checks.check import same, vanishes
 from verify.claims.theorems.checks.differential import flow_of_every_hamiltonian
-from verify.claims.theorems.checks.formulas import same
 from verify.proof.assistant.stated import Shipped
 from verify.verdict import Verdict
 

@@ -7,8 +7,7 @@ import sympy
 from verify.algebra.symbols import P, Q
 from verify.arithmetic.exact import decimal, text
 from verify.claims.theorems.argument import Argument, concluded, step
-from verify.claims.theorems.checks.check import NUMBERS, Check
-from verify.claims.theorems.checks.formulas import same
+from verify.claims.theorems.checks.check import NUMBERS, Check, same
 from verify.claims.theorems.checks.matrices import stretching
 from verify.claims.theorems.exact_maps import Point, jacobian, next_point, squared
 from verify.claims.theorems.lipschitz import PAIR, duffing

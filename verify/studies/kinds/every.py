@@ -21,8 +21,7 @@ def _need(plan: Plan, scene: Scene, scheme: str, _preserves: bool) -> None:
 
 def _task(scene: Scene, scheme: str) -> EveryTask:
     exact = scene.exact_hamiltonian()
-    degrees = 1 if exact.planar else exact.degrees
-    return EveryTask(scheme=scheme, timed=exact.time_dependent, degrees=degrees)
+    return EveryTask(scheme=scheme, timed=exact.time_dependent, degrees=exact.degrees)
 
 
 def _found(scene: Scene, results: Results) -> dict[str, Any]:

@@ -16,9 +16,17 @@ from verify.studies.separation.task import does_for_first_link
 from verify.studies.separation.working import POINTS
 
 
-def grid_task(scene: Scene, scheme: str, h: Fraction, start: int) -> RunTask:
-    """The grid's run for a step size and the index of an initial value."""
-    return _grid_task(scene, scheme, h, start, _fields_of_all(scene))
+def grid_task(
+    scene: Scene, scheme: str, h: Fraction, start: int, of_all: dict[str, Any] | None = None
+) -> RunTask:
+    """The grid's run for a step size and the index of an initial value.
+
+    `of_all`: what all runs have in common, where several are asked for.
+    """
+    assert scene.grid is not None  # noqa: S101 - asked for by grids only
+    at, steps = scene.grid.initial_values[start], scene.grid.steps_for(h)
+    shared = of_all or _fields_of_all(scene)
+    return RunTask(**shared, scheme=scheme, step_size=h, steps=steps, q=at.q, p=at.p)
 
 
 def grid_tasks(scene: Scene, scheme: str) -> list[RunTask]:
@@ -27,18 +35,10 @@ def grid_tasks(scene: Scene, scheme: str) -> list[RunTask]:
         return []
     of_all = _fields_of_all(scene)
     return [
-        _grid_task(scene, scheme, h, start, of_all)
+        grid_task(scene, scheme, h, start, of_all)
         for start in range(len(scene.grid.initial_values))
         for h in scene.grid.step_sizes
     ]
-
-
-def _grid_task(
-    scene: Scene, scheme: str, h: Fraction, start: int, of_all: dict[str, Any]
-) -> RunTask:
-    assert scene.grid is not None  # noqa: S101 - asked for by grids only
-    at, steps = scene.grid.initial_values[start], scene.grid.steps_for(h)
-    return RunTask(**of_all, scheme=scheme, step_size=h, steps=steps, q=at.q, p=at.p)
 
 
 def _fields_of_all(scene: Scene) -> dict[str, Any]:

@@ -3,12 +3,12 @@
 In n degrees of freedom it is W that is split.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import repeat
-from typing import Any, TypeVar
+from typing import Any
 
 from verify.execution.plan import Plan
-from verify.execution.study import Result, Results, Section, Study, called, known_results
+from verify.execution.study import Results, Section, Study, called, known_results
 from verify.kernels.step.in_degrees import map_of
 from verify.scenes.results.separation import SeparationResult
 from verify.scenes.results.separation_in_degrees import SeparationInDegrees
@@ -16,11 +16,8 @@ from verify.scenes.run_sections import Grid
 from verify.scenes.scene import Scene
 from verify.studies.kinds.grid import grid_tasks, shares_runs
 from verify.studies.separation.form_separate import grid_in_degrees
-from verify.studies.separation.form_task import FormSeparationTask
 from verify.studies.separation.separate import as_grid
-from verify.studies.separation.task import DIGITS, SeparationTask
-
-Made = TypeVar("Made")
+from verify.studies.separation.task import DIGITS, FormSeparationTask, SeparationTask
 
 
 def _rows(
@@ -74,26 +71,21 @@ def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
 
 
 def _found(scene: Scene, results: Results) -> dict[str, Any]:
-    def over(
-        grids: Sequence[Grid], model: type[Result], made: Callable[[Sequence[Result]], Made]
-    ) -> tuple[Made, ...]:
-        rows = (
-            known_results(model, row, results)
+    model: Any = SeparationResult
+    made: Any = as_grid
+    prefix = ""
+    if not scene.exact_hamiltonian().planar:
+        model, made, prefix = SeparationInDegrees, grid_in_degrees, "form_"
+    of_each = {"separations": _own(scene), "crossovers": _beside(scene)}
+    return {
+        prefix + name: tuple(
+            made(known)
             for scheme in scene.schemes
             for grid in grids
             for row in _rows(scene, scheme, grid)
+            if (known := known_results(model, row, results))
         )
-        return tuple(made(row) for row in rows if row)
-
-    own, beside = _own(scene), _beside(scene)
-    if scene.exact_hamiltonian().planar:
-        model = SeparationResult
-        return {
-            "separations": over(own, model, as_grid), "crossovers": over(beside, model, as_grid),
-        }  # fmt: skip
-    return {
-        "form_separations": over(own, SeparationInDegrees, grid_in_degrees),
-        "form_crossovers": over(beside, SeparationInDegrees, grid_in_degrees),
+        for name, grids in of_each.items()
     }
 
 

@@ -1,6 +1,6 @@
 """The task of a proof for every H."""
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from verify.execution.keeping import Keeper
 from verify.execution.task import Task
@@ -9,6 +9,7 @@ from verify.scenes.results.step import StepResult
 
 if TYPE_CHECKING:
     from verify.proof.every_proof import EveryProof
+    from verify.proof.symplectic.proof import SymplecticProof
 
 _COST = 20_000_000  # of a proof, about
 
@@ -40,24 +41,33 @@ class EveryTask(Task):
         from verify.proof.checked import marks
         from verify.proof.checked.paper_steps import steps_of
         from verify.proof.checked.proved import ALL, of_every_hamiltonian
-        from verify.proof.every import prove_every
         from verify.schemes import get
 
         if self.degrees > 1:
             return _in_degrees(self.scheme, self.degrees, self.timed)
-        proof = _in_time(self.scheme) if self.timed else prove_every(self.scheme)
-        known = EveryResult.model_fields.keys() - {"degrees", "steps", "checked_by"}
-        return EveryResult(
-            **{name: getattr(proof, name) for name in known},
-            steps=tuple(StepResult(text=x.text, checked_by=x.checked_by) for x in steps_of(proof)),
-            checked_by=marks(of_every_hamiltonian(proof, get(self.scheme), ALL)),
-        )
+        proof = proof_of_every(self.scheme, timed=self.timed)
+        steps = tuple(StepResult(text=x.text, checked_by=x.checked_by) for x in steps_of(proof))
+        marked = marks(of_every_hamiltonian(proof, get(self.scheme), ALL))
+        return _result(proof, degrees=1, steps=steps, checked_by=marked)
 
 
-def _in_time(scheme: str) -> "EveryProof":
-    from verify.proof.every_in_time import prove_every_in_time
+def _result(proof: "EveryProof | SymplecticProof", **differs: Any) -> EveryResult:
+    """The proof's own fields, and those in which the result differs from it."""
+    same = EveryResult.model_fields.keys() - differs
+    return EveryResult(**{name: getattr(proof, name) for name in same}, **differs)
 
-    return prove_every_in_time(scheme)
+
+def proof_of_every(
+    name: str, *, separable: bool = False, timed: bool = False, least: int = 0
+) -> "EveryProof":
+    """The proof for every H in the plane that is meant; `least` as for `prove_every`."""
+    if timed:
+        from verify.proof.every_in_time import prove_every_in_time
+
+        return prove_every_in_time(name, least)
+    from verify.proof.every import prove_every
+
+    return prove_every(name, separable, least)
 
 
 def _in_degrees(name: str, degrees: int, timed: bool) -> EveryResult:
@@ -68,24 +78,15 @@ def _in_degrees(name: str, degrees: int, timed: bool) -> EveryResult:
     from verify.schemes import get
 
     proof = prove_every_in_degrees(name, degrees, timed=timed)
-    return EveryResult(
+    return _result(
+        proof,
         scheme=name,
         quantifier=quantifier(get(name), degrees, separable=False, timed=timed),
         timed=timed,
-        degrees=degrees,
-        verdict=proof.verdict,
-        reason=proof.reason,
-        order=proof.order,
-        area_preserving=proof.area_preserving,
-        convergence_order=proof.convergence_order,
-        convergence_decided=proof.convergence_decided,
         formula="",
         leading=proof.formula or proof.leading_text,
-        telescopes=proof.telescopes,
-        potential=proof.potential,
         why=Prose(proof.why),
-        checked=proof.checked,
-        conditions=proof.conditions,
         argument=Prose(),
+        steps=(),
         checked_by=marks(of_degrees(proof, get(name), ALL, timed=timed)),
     )

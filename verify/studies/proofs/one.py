@@ -12,12 +12,13 @@ from verify.execution.task import SchemeTask
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
 from verify.proof.order_proof import Proof
+from verify.proof.symplectic.order import prove_symplectic
+from verify.proof.symplectic.proof import MOST_TERMS, SymplecticProof
 from verify.prose import Prose
-from verify.scenes.results.proof import Formulas, ProofResult
+from verify.scenes.results.proof import FormResult, Formulas, ProofResult
 from verify.schemes import get
 from verify.schemes.scheme import Scheme
 from verify.schemes.step_map import StepMap, grouped
-from verify.studies.proofs.one_in_degrees import in_degrees
 
 _COST = 10_000_000  # of a proof, about
 _LONG = 12  # digits of a value that no formula is read with
@@ -44,19 +45,14 @@ class ProofTask(SchemeTask):
         """The proof for this H, as a result."""
         hamiltonian, scheme = self.exact_hamiltonian(), get(self.scheme)
         begun = time.perf_counter()
-        if not hamiltonian.planar:
-            found = in_degrees(hamiltonian, scheme, marked=self.formulas)
-            return found.model_copy(update={"seconds": time.perf_counter() - begun})
-        step_map = scheme.step_map(hamiltonian)
-        proof = prove(step_map, scheme)
-        written = _written(step_map) if self.formulas else dict.fromkeys(_FORMULAS)
+        made = _in_plane if hamiltonian.planar else _in_degrees
+        proof, more = made(hamiltonian, scheme, self.formulas)
         return ProofResult(
             **hamiltonian.texts,
             scheme=self.scheme,
             verdict=proof.verdict,
             reason=proof.reason,
             order=proof.order,
-            leading=proof.first.text,
             area_preserving=proof.area_preserving,
             convergence_order=proof.convergence_order,
             convergence_decided=proof.convergence_decided,
@@ -64,19 +60,57 @@ class ProofTask(SchemeTask):
             enclosure=proof.enclosure,
             domain=proof.domain.texts,
             where=proof.domain.prose,
-            **written,
-            symbolic=_symbolic(hamiltonian, scheme, proof.order) if self.formulas else None,
-            checked_by=_marks(proof, scheme) if self.formulas else (),
+            **more,
+            checked_by=_marks(proof, hamiltonian, scheme) if self.formulas else (),
             seconds=time.perf_counter() - begun,
         )
 
 
-def _marks(proof: Proof, scheme: Scheme) -> tuple[Prose, ...]:
+def _marks(
+    proof: Proof | SymplecticProof, hamiltonian: Hamiltonian, scheme: Scheme
+) -> tuple[Prose, ...]:
     """Who else checked it."""
     from verify.proof.checked import marks
-    from verify.proof.checked.proved import DEFECT, MAP, of_one_hamiltonian
+    from verify.proof.checked.proved import DEFECT, MAP, of_degrees, of_one_hamiltonian
 
+    if isinstance(proof, SymplecticProof):
+        return marks(of_degrees(proof, scheme, DEFECT | MAP, hamiltonian))
     return marks(of_one_hamiltonian(proof, scheme, DEFECT | MAP))
+
+
+def _in_plane(
+    hamiltonian: Hamiltonian, scheme: Scheme, formulas: bool
+) -> tuple[Proof, dict[str, Any]]:
+    """The proof and what is written out beside it."""
+    step_map = scheme.step_map(hamiltonian)
+    proof = prove(step_map, scheme)
+    written = _written(step_map) if formulas else dict.fromkeys(_FORMULAS)
+    symbolic = _symbolic(hamiltonian, scheme, proof.order) if formulas else None
+    return proof, {"leading": proof.first.text, **written, "symbolic": symbolic}
+
+
+def _in_degrees(
+    hamiltonian: Hamiltonian, scheme: Scheme, _: bool
+) -> tuple[SymplecticProof, dict[str, Any]]:
+    """The proof and its form S; closed forms are not written out."""
+    proof = prove_symplectic(hamiltonian, scheme)
+    leading = proof.leading
+    entries: tuple[tuple[str, str], ...] = ()
+    if leading is not None and leading.length <= MOST_TERMS:
+        each = leading.entries.items()
+        entries = tuple((leading.called(at), leading.ring.text(x)) for at, x in each)
+    form = FormResult(
+        symplectic=proof.symplectic,
+        entries=entries,
+        entry=proof.entry,
+        volume_order=proof.volume_order,
+        volume_leading=proof.volume_leading,
+        telescopes=proof.telescopes,
+        potential=proof.potential,
+        why=proof.why,
+    )
+    written = dict.fromkeys(_FORMULAS) | {"delta_j": "0" if proof.symplectic else None}
+    return proof, {"leading": proof.leading_text, **written, "form": form}
 
 
 def _written(step_map: StepMap) -> dict[str, Any]:

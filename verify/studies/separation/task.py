@@ -1,4 +1,4 @@
-"""The task of splitting Λ of one run into truncation and rounding."""
+"""The tasks of splitting Λ of one run, in n degrees of freedom W, into truncation and rounding."""
 
 from collections.abc import Iterator
 from fractions import Fraction
@@ -7,19 +7,24 @@ from typing import Literal
 from verify.arithmetic import AUTO, step_cost
 from verify.arithmetic.systems import ball, float64
 from verify.execution.keeping import Keeper
-from verify.execution.task import InitialValueTask, Task
+from verify.execution.task import InitialValueTask, StartTask, Task
 from verify.runs.run import AskedRun
 from verify.runs.task import RunTask
 from verify.scenes.frozen import Frozen
 from verify.scenes.results.separation import SeparationResult
+from verify.scenes.results.separation_in_degrees import SeparationInDegrees
 from verify.scenes.values import Number, StepSize
 from verify.studies.separation.chain import CANCELLED
+from verify.studies.separation.form_run import POINTS as POINTS_OF_FORM
+from verify.studies.separation.form_separate import separate_in_degrees
 from verify.studies.separation.separate import separate
 from verify.studies.separation.working import POINTS
 
 DIGITS = 6  # of each part, in a scene
 _RUNS = 3  # of the chain, in wide numbers
 _CHECKPOINT_COST = 80_000  # of Λ and its parts at one of them, about
+_RUNS_OF_FORM = 8  # of which those beside float64 are done twice and carry matrices
+_CHECKPOINT_COST_OF_FORM = 400_000  # of W and its parts
 
 
 def does_for_first_link(arithmetic: str, digits: int) -> bool:
@@ -70,3 +75,25 @@ class SeparationTask(InitialValueTask):
 
     def _separated(self, keeper: Keeper, own: AskedRun | None) -> SeparationResult:
         return separate(self.exact_hamiltonian(), **self.asked("run"), run=own, keeper=keeper)
+
+
+class FormSeparationTask(StartTask):
+    """Split W of a float64 run into truncation and rounding."""
+
+    result = SeparationInDegrees
+    kind: Literal["separation in degrees"] = "separation in degrees"
+    step_size: StepSize
+    steps: int
+    t0: Number = Fraction(0)
+    digits: int
+
+    @property
+    def cost(self) -> int:
+        """About how many float64 steps its runs and their checkpoints are worth."""
+        checkpoints = min(self.steps, POINTS_OF_FORM)
+        own = _CHECKPOINT_COST_OF_FORM * checkpoints
+        return own + _RUNS_OF_FORM * self.steps * step_cost(AUTO)
+
+    def compute(self, keeper: Keeper) -> SeparationInDegrees:
+        """The separation, as a result."""
+        return separate_in_degrees(self.exact_hamiltonian(), **self.asked(), keeper=keeper)

@@ -6,29 +6,33 @@ in a run four times as long, so that no slow beat is taken for one.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
 from math import ceil, sqrt
 from statistics import fmean, pstdev
 
 from verify.arithmetic.exact import quotient
-from verify.studies.stability.run_motion import RunMotion
+from verify.flows.orbit import ExactOrbit
+from verify.studies.stability.exact_motion import ExactMotion
+from verify.studies.stability.run_motion import Motion, RunMotion
 from verify.studies.stability.trail import (
     MOST_INTERPRETED,
     MOST_SECTIONS,
+    Run,
+    RunInDegrees,
     Trail,
     follow_precisely,
 )
 
+AnyMotion = Motion[Run, ExactOrbit] | Motion[RunInDegrees, ExactMotion]
 _STRETCHES = 8
-LONGER = 4
+_LONGER = 4
 _PERIODS = 8  # of the exact orbit, that the longer run lasts at least
 _SEEN = 2.0**-53  # of the energy scale: what float64 could not show is no drift
 _MOST_LOOKED_AT = 20_000  # steps of a last period
 _FEW = 16  # of them, in which a run that goes on moves farther than one that has died
 _SURE = 4.0  # standard errors of a mean
-SLOWER = 16.0  # times less, at most, in the longer run
+_SLOWER = 16.0  # times less, at most, in the longer run
 
 
 def drift_of(motion: RunMotion) -> Fraction | None:
@@ -42,20 +46,26 @@ def drift_of(motion: RunMotion) -> Fraction | None:
     errors = _errors(motion, trail)
     if errors and errors[-1] and _died(motion, trail, period):
         return Fraction(errors[-1] / float(run.time))
-    first = rate_of(errors, trail)
+    return lasting_rate(motion)
+
+
+def lasting_rate(motion: AnyMotion) -> Fraction | None:
+    """The rate of a drift that a run four times as long still has; None where none is seen."""
+    trail = motion.precise
+    first = _rate_of(_errors(motion, trail), trail)
     if first is None:
         return None
-    longer = replace(run, steps=LONGER * trail.steps)
+    longer = motion.run.shortened(_LONGER * trail.steps)
     if longer.steps <= MOST_INTERPRETED:
         again = follow_precisely(longer, motion.digits)
         if motion.stays(again):  # else it has drifted away
-            second = rate_of(_errors(motion, again), again)
-            if second is None or second / first < 1 / SLOWER:
+            second = _rate_of(_errors(motion, again), again)
+            if second is None or second / first < 1 / _SLOWER:
                 return None
     return Fraction(first)
 
 
-def too_short(motion: RunMotion) -> bool:
+def too_short(motion: AnyMotion) -> bool:
     """Whether the energy has not swung often enough to be told from a drift.
 
     Of an orbit that does not come back within the time there is only that one way.
@@ -63,7 +73,7 @@ def too_short(motion: RunMotion) -> bool:
     orbit = motion.orbit
     if orbit.period is None:
         return orbit.kind == "open"
-    return LONGER * motion.precise.steps * motion.run.step_size < _PERIODS * orbit.period
+    return _LONGER * motion.precise.steps * motion.run.step_size < _PERIODS * orbit.period
 
 
 def _died(motion: RunMotion, trail: Trail, period: Fraction) -> bool:
@@ -85,14 +95,14 @@ def _rests(motion: RunMotion, trail: Trail) -> bool:
     return all(high - low < r / 100 for low, high, r in ends)
 
 
-def _errors(motion: RunMotion, trail: Trail) -> list[float]:
+def _errors(motion: AnyMotion, trail: Trail) -> list[float]:
     """(H − H(z₀)) / scale at the trail's points; empty where it is not known."""
     found = motion.energy_errors(trail)
     known = [float(x) for x in found if x is not None]
     return known if motion.orbit.scale and len(known) == len(found) else []
 
 
-def rate_of(errors: Sequence[float], trail: Trail) -> float | None:
+def _rate_of(errors: Sequence[float], trail: Trail) -> float | None:
     """That of the energy errors at a trail's points; None where no drift is seen."""
     if len(errors) < 4 * _STRETCHES:
         return None

@@ -67,6 +67,11 @@ class ExactMotion:
     times: tuple[Fraction, ...]
     sensitivity: Sensitivity | None = None
 
+    @property
+    def turns(self) -> tuple[bool, ...]:
+        """Whether a coordinate is an angle that goes round; none is taken for one here."""
+        return (False,) * len(self.reach)
+
 
 def moved(state: State, reach: State, part: Fraction) -> State:
     """A neighbour so far away, in a direction that no coordinate is left out of."""

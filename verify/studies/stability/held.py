@@ -2,19 +2,19 @@
 in n degrees of freedom.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Protocol
 
 from verify.flows.orbit import ExactOrbit, exact_orbit
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.run import run as run_of
 from verify.studies.stability.exact_motion import ExactMotion, exact_motion
 from verify.studies.stability.frequency import frequency, frequency_in_degrees
-from verify.studies.stability.run_motion import RunMotion, float64
-from verify.studies.stability.trail import Followed, Run, RunInDegrees, State, follow
+from verify.studies.stability.run_motion import RunMotion
+from verify.studies.stability.trail import Followed, Run, RunInDegrees, State
 from verify.studies.stability.verdict_in_degrees import MotionInDegrees, judge_in_degrees
 from verify.studies.stability.verdict_on_run import Judgement, judge
 
@@ -45,18 +45,33 @@ class Within:
         return name in done.values and abs(done.values[name]) <= most
 
 
-class Held(Protocol):
-    """The exact motion from one start for some time, and what is asked of runs from there."""
+@dataclass(frozen=True)
+class Held(ABC):
+    """The exact motion from one state for some time, and what is asked of runs from there."""
+
+    hamiltonian: Hamiltonian
+    state: State
+    time: Fraction
+    t0: Fraction
 
     @property
+    @abstractmethod
     def exact(self) -> ExactOrbit | ExactMotion: ...
     @property
+    @abstractmethod
     def frequency(self) -> Fraction:
         """The greatest ω; 0 where nothing oscillates."""
 
+    @abstractmethod
+    def _motion(self, scheme: str, h: Fraction, steps: int) -> RunMotion | MotionInDegrees: ...
+
     def keeps(self, scheme: str, h: Fraction, steps: int, within: Within) -> bool:
         """Whether the float64 run keeps within the bounds."""
+        motion = self._motion(scheme, h, steps)
+        trail = motion.float64
+        return motion.stays(trail) and within.holds(motion.run, motion.worst(trail))
 
+    @abstractmethod
     def judged(self, scheme: str, h: Fraction, steps: int) -> Judgement:
         """The verdict on the run."""
 
@@ -69,13 +84,7 @@ def held(
     return (_InPlane if hamiltonian.planar else _InDegrees)(hamiltonian, state, time, t0)
 
 
-@dataclass(frozen=True)
-class _InPlane:
-    hamiltonian: Hamiltonian
-    state: State
-    time: Fraction
-    t0: Fraction
-
+class _InPlane(Held):
     @property
     def exact(self) -> ExactOrbit:
         return exact_orbit(self.hamiltonian, *self.state, self.time, self.t0)
@@ -88,23 +97,12 @@ class _InPlane:
         p, q = self.state
         return RunMotion(Run(self.hamiltonian, scheme, h, q, p, steps, t0=self.t0))
 
-    def keeps(self, scheme: str, h: Fraction, steps: int, within: Within) -> bool:
-        motion = self._motion(scheme, h, steps)
-        trail = motion.float64
-        return motion.stays(trail) and within.holds(motion.run, motion.worst(trail))
-
     def judged(self, scheme: str, h: Fraction, steps: int) -> Judgement:
         return judge(self._motion(scheme, h, steps))
 
 
-@dataclass(frozen=True)
-class _InDegrees:
+class _InDegrees(Held):
     """Where the motion is bounded it is followed once, over the whole time, for all runs."""
-
-    hamiltonian: Hamiltonian
-    state: State
-    time: Fraction
-    t0: Fraction
 
     @property
     def exact(self) -> ExactMotion:
@@ -118,11 +116,6 @@ class _InDegrees:
         run = RunInDegrees(self.hamiltonian, scheme, h, self.state, steps, self.t0)
         known = self.exact.kind in ("bounded", "driven")
         return MotionInDegrees(run, self.exact if known else None)
-
-    def keeps(self, scheme: str, h: Fraction, steps: int, within: Within) -> bool:
-        motion = self._motion(scheme, h, steps)
-        trail = follow(motion.run, float64())
-        return motion.stays(trail) and within.holds(motion.run, motion.worst(trail))
 
     def judged(self, scheme: str, h: Fraction, steps: int) -> Judgement:
         return judge_in_degrees(self._motion(scheme, h, steps))

@@ -1,18 +1,22 @@
 """A scene's sections on stability → the tasks that they need."""
 
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Iterator, Sequence
+from typing import Any, TypeVar
 
 from verify.arithmetic.exact import short
 from verify.execution.plan import Plan
 from verify.execution.study import called
+from verify.scenes.orbit_map_section import OrbitMap
 from verify.scenes.scene import Scene
+from verify.scenes.stability_sections import LargestStepOver, StabilityMap
 from verify.studies.stability.task import (
     LargestStepTask,
     OrbitMapTask,
     StabilityMapTask,
     StabilityTask,
 )
+
+Asked = TypeVar("Asked", LargestStepOver, StabilityMap, OrbitMap)
 
 
 def need_stability(plan: Plan, scene: Scene) -> None:
@@ -51,48 +55,35 @@ def stability_tasks(scene: Scene) -> Iterator[tuple[str, StabilityTask]]:
                     yield "/".join(filter(None, parts)), task
 
 
-def largest_step_tasks(scene: Scene) -> Iterator[LargestStepTask]:
-    given = _given(scene) if scene.largest_step else {}
-    for section in scene.largest_step:
-        at = section.initial_value
+def _of_schemes(scene: Scene, sections: Sequence[Asked]) -> Iterator[tuple[Asked, dict[str, Any]]]:
+    """Each section with each of its schemes, and what its task begins with."""
+    given = _given(scene) if sections else {}
+    for section in sections:
+        start = {"q": section.initial_value.q, "p": section.initial_value.p}
         for scheme in section.schemes or scene.schemes:
-            yield LargestStepTask(
-                **given, scheme=scheme, time=section.time, q=at.q, p=at.p,
-                energy_error=section.energy_error, symplectic_defect=section.symplectic_defect,
-            )  # fmt: skip
+            yield section, {**given, "scheme": scheme, **start}
+
+
+def largest_step_tasks(scene: Scene) -> Iterator[LargestStepTask]:
+    for section, begun in _of_schemes(scene, scene.largest_step):
+        yield LargestStepTask(
+            **begun, time=section.time, energy_error=section.energy_error,
+            symplectic_defect=section.symplectic_defect,
+        )  # fmt: skip
 
 
 def stability_map_tasks(scene: Scene) -> Iterator[StabilityMapTask]:
-    given = _given(scene) if scene.stability_map else {}
-    for section in scene.stability_map:
-        at = section.initial_value
-        for scheme in section.schemes or scene.schemes:
-            yield StabilityMapTask(
-                **given,
-                scheme=scheme,
-                parameter=section.parameter,
-                values=section.values,
-                step_sizes=section.step_sizes,
-                steps=section.steps,
-                q=at.q,
-                p=at.p,
-            )
+    for section, begun in _of_schemes(scene, scene.stability_map):
+        yield StabilityMapTask(
+            **begun, parameter=section.parameter, values=section.values,
+            step_sizes=section.step_sizes, steps=section.steps,
+        )  # fmt: skip
 
 
 def orbit_map_tasks(scene: Scene) -> Iterator[OrbitMapTask]:
-    given = _given(scene) if scene.orbit_map else {}
-    for section in scene.orbit_map:
-        at = section.initial_value
-        for scheme in section.schemes or scene.schemes:
-            yield OrbitMapTask(
-                **given,
-                scheme=scheme,
-                axes=section.axes,
-                across=section.across,
-                upwards=section.upwards,
-                q=at.q,
-                p=at.p,
-                step_size=section.step_size,
-                steps=section.count,
-                beyond=section.farthest(scene.exact_hamiltonian()),
-            )
+    for section, begun in _of_schemes(scene, scene.orbit_map):
+        yield OrbitMapTask(
+            **begun, axes=section.axes, across=section.across, upwards=section.upwards,
+            step_size=section.step_size, steps=section.count,
+            beyond=section.farthest(scene.exact_hamiltonian()),
+        )  # fmt: skip

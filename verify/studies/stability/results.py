@@ -1,6 +1,7 @@
 """The verdict on one run as a result, with numbers as decimals."""
 
 from fractions import Fraction
+from typing import Any
 
 from verify.arithmetic.exact import plain, text
 from verify.hamiltonians.start import shown_of
@@ -9,16 +10,16 @@ from verify.scenes.results.stability import StabilityResult
 from verify.studies.stability.frequency import frequency
 from verify.studies.stability.limits import linear_limit, shortened
 from verify.studies.stability.run_motion import RunMotion
-from verify.studies.stability.trail import Run, RunInDegrees
+from verify.studies.stability.trail import Followed, Run, RunInDegrees
 from verify.studies.stability.verdict_in_degrees import MotionInDegrees, judge_in_degrees
 from verify.studies.stability.verdict_on_run import Judgement, judge
 
 
-def result_in_degrees(run: RunInDegrees) -> StabilityResult:
-    """The verdict on one run in n degrees of freedom."""
-    motion = MotionInDegrees(run)
-    found, orbit, exact = judge_in_degrees(motion), motion.orbit, run.hamiltonian
-    point, seen = dict(zip(exact.coordinates, run.state, strict=True)), orbit.sensitivity
+def run_result(run: Followed) -> StabilityResult:
+    """The verdict on one run."""
+    exact = run.hamiltonian
+    point = dict(zip(exact.coordinates, run.state, strict=True))
+    exact_orbit, found, more = _in_plane(run) if isinstance(run, Run) else _in_degrees(run)
     return StabilityResult(
         **exact.texts,
         scheme=run.scheme,
@@ -31,34 +32,29 @@ def result_in_degrees(run: RunInDegrees) -> StabilityResult:
         step=found.step,
         rate=shortened(found.rate, 3),
         energy_error=shortened(found.energy_error, 3),
-        lyapunov=None if seen is None else f"{seen.exponent:.2g}",
-        exact_orbit=orbit.summary,
-        detail=found.detail,
+        exact_orbit=exact_orbit,
+        **more,
     )
 
 
-def run_result(run: Run) -> StabilityResult:
-    """The verdict on one run."""
+def _in_plane(run: Run) -> tuple[Prose, Judgement, dict[str, Any]]:
+    """What the exact orbit does, the verdict, and what linear theory says beside it."""
     motion = RunMotion(run)
-    found, orbit = judge(motion), motion.orbit
-    limit, h_omega = linear_limit(run.scheme), run.step_size * frequency(orbit)
-    return StabilityResult(
-        **run.hamiltonian.texts,
-        scheme=run.scheme,
-        step_size=text(run.step_size),
-        steps=run.steps,
-        q=text(run.q),
-        p=text(run.p),
-        t0=text(run.t0) if run.hamiltonian.time_dependent else None,
-        kind=found.kind,
-        step=found.step,
-        rate=shortened(found.rate, 3),
-        energy_error=shortened(found.energy_error, 3),
-        h_omega=shortened(h_omega, 3) if h_omega else None,
-        linear_limit=shortened(limit, 6),
-        exact_orbit=orbit.summary,
-        detail=found.detail + _against_theory(found, h_omega, limit),
-    )
+    found, limit = judge(motion), linear_limit(run.scheme)
+    h_omega = run.step_size * frequency(motion.orbit)
+    return motion.orbit.summary, found, {
+        "h_omega": shortened(h_omega, 3) if h_omega else None,
+        "linear_limit": shortened(limit, 6),
+        "detail": found.detail + _against_theory(found, h_omega, limit),
+    }  # fmt: skip
+
+
+def _in_degrees(run: RunInDegrees) -> tuple[Prose, Judgement, dict[str, Any]]:
+    """What the exact motion does, the verdict, and how fast its neighbours part."""
+    motion = MotionInDegrees(run)
+    found, seen = judge_in_degrees(motion), motion.orbit.sensitivity
+    rate = None if seen is None else f"{seen.exponent:.2g}"
+    return motion.orbit.summary, found, {"lyapunov": rate, "detail": found.detail}
 
 
 def _against_theory(found: Judgement, h_omega: Fraction, limit: Fraction | None) -> Prose:

@@ -1,43 +1,51 @@
 """The motion in one run: in float64 and in high precision, and the bounds it is held to.
 
-Bounds: ten times the exact orbit's reach in p and in q, and a hundred times its energy scale (see
-`verify.flows.orbit`), but for an H that depends on time, whose value the drive changes. Two runs
-are apart where they differ by a tenth of the reach.
+Bounds: ten times the exact orbit's reach in each coordinate, and a hundred times its energy scale
+(see `verify.flows.orbit`), but for an H that depends on time, whose value the drive changes. Two
+runs are apart where they differ by a tenth of the reach.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
 from operator import sub
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from verify import arithmetic as number_systems
 from verify.arithmetic.exact import fraction, quotient
 from verify.arithmetic.number_system import Arithmetic
 from verify.flows.energies import energies_at
-from verify.flows.orbit import exact_orbit
+from verify.flows.orbit import ExactOrbit, exact_orbit
 from verify.flows.orbit_search import initial_value_digits
-from verify.studies.stability.trail import Point, Run, Trail, follow, follow_precisely
+from verify.studies.stability.exact_motion import ExactMotion
+from verify.studies.stability.trail import (
+    Point,
+    Run,
+    RunInDegrees,
+    Trail,
+    follow,
+    follow_precisely,
+)
 
 _BEYOND = 10  # times the reach
 _ENERGY = 100  # times the energy scale
 _APART = Fraction(1, 10)  # of the reach
 _DIGITS = 40
+AnyRun = TypeVar("AnyRun", Run, RunInDegrees)
+AnyOrbit = TypeVar("AnyOrbit", ExactOrbit, ExactMotion)
 
 
 def float64() -> Arithmetic:
     return number_systems.get("float64", 17)
 
 
-class RunMotion:
-    """What is seen of one run; each thing is made when it is looked at."""
+class Motion(Generic[AnyRun, AnyOrbit]):
+    """What is seen of one run beside the exact orbit; each thing is made when it is looked at."""
 
-    def __init__(self, run: Run) -> None:
-        self.run = run
-        self.orbit = exact_orbit(run.hamiltonian, run.p, run.q, run.time, run.t0)
-        # More where the initial value is written with more.
-        self.digits = _DIGITS + initial_value_digits((run.p, run.q))
+    def __init__(self, run: AnyRun, orbit: AnyOrbit, digits: int = _DIGITS) -> None:
+        self.run: AnyRun = run
+        self.orbit: AnyOrbit = orbit
+        self.digits = digits
         self._known: dict[int, tuple[Trail, list[Any]]] = {}
 
     @cached_property
@@ -54,7 +62,7 @@ class RunMotion:
         asked = self.precise.steps
         if asked == self.run.steps:
             return self.float64
-        return follow(replace(self.run, steps=asked), float64())
+        return follow(self.run.shortened(asked), float64())
 
     @cached_property
     def _first_energy(self) -> Any:
@@ -92,7 +100,7 @@ class RunMotion:
         """The least and the greatest of them, and None where some are not known."""
         energies = self._energies(trail)
         known = [x for x in energies if x is not None]
-        ends = [self._error(end(known)) for end in (min, max)] if known else []
+        ends: list[Any] = [self._error(end(known)) for end in (min, max)] if known else []
         return ends if len(known) == len(energies) else [*ends, None]
 
     def worst(self, trail: Trail) -> Fraction | None:
@@ -102,19 +110,19 @@ class RunMotion:
 
     @cached_property
     def _bounds(self) -> list[tuple[int, Any, Any]]:
-        """Which coordinates have some, 0 for p and 1 for q, with the least and the greatest."""
+        """Which coordinates have some, by their places, with the least and the greatest."""
         orbit = self.orbit
         of_each = enumerate(zip(orbit.centre, orbit.reach, orbit.turns, strict=True))
         wide = [(k, c, _BEYOND * (r or 1)) for k, (c, r, turns) in of_each if not turns]
         return [(k, quotient(centre - half), quotient(centre + half)) for k, centre, half in wide]
 
     def _inside(self, columns: Sequence[Sequence[Any]]) -> bool:
-        """Whether no p and no q of these states is out of the exact orbit's bounds."""
+        """Whether no coordinate of these states is out of the exact orbit's bounds."""
         bounds = ((columns[k], low, high) for k, low, high in self._bounds)
         return all(low <= min(x) and max(x) <= high for x, low, high in bounds)
 
     def outside(self, point: Point) -> bool:
-        """Whether p or q is out of the exact orbit's bounds."""
+        """Whether a coordinate is out of the exact orbit's bounds."""
         return not self._inside([[x] for x in point.state])
 
     def beyond(self, point: Point) -> bool:
@@ -133,7 +141,7 @@ class RunMotion:
 
     @cached_property
     def _near(self) -> list[Any]:
-        """How far p and q of two runs may be from each other."""
+        """How far the coordinates of two runs may be from each other."""
         return [quotient(_APART * (r or 1)) for r in self.orbit.reach]
 
     def apart(self, one: Point, other: Point) -> bool:
@@ -144,6 +152,15 @@ class RunMotion:
         """Whether two runs of as many steps both end, and are together all the way."""
         columns = zip(one.columns, other.columns, self._near, strict=True)
         return one.finished and other.finished and all(_farthest(x, y) <= d for x, y, d in columns)
+
+
+class RunMotion(Motion[Run, ExactOrbit]):
+    """That in the plane."""
+
+    def __init__(self, run: Run) -> None:
+        orbit = exact_orbit(run.hamiltonian, run.p, run.q, run.time, run.t0)
+        # More where the initial value is written with more.
+        super().__init__(run, orbit, _DIGITS + initial_value_digits((run.p, run.q)))
 
 
 def _farthest(one: Sequence[Any], other: Sequence[Any]) -> Any:

@@ -45,14 +45,14 @@ class StabilityTask(_FromATime):
         return _RUN_COST + self.steps * step_cost(AUTO)
 
     def compute(self, keeper: Keeper) -> StabilityResult:
-        from verify.studies.stability.results import result_in_degrees, run_result
+        from verify.studies.stability.results import run_result
         from verify.studies.stability.trail import Run, RunInDegrees
 
         exact, t0 = self.exact_hamiltonian(), self.t0 or Fraction(0)
         of = exact, self.scheme, self.step_size
         point = point_of(exact, self.q, self.p)
         if not exact.planar:
-            return result_in_degrees(RunInDegrees(*of, tuple(point.values()), self.steps, t0))
+            return run_result(RunInDegrees(*of, tuple(point.values()), self.steps, t0))
         return run_result(Run(*of, point["q"], point["p"], self.steps, t0=t0))
 
 

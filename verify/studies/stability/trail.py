@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 from sympy import isprime
 
@@ -29,32 +29,6 @@ MOST_INTERPRETED = 300_000  # steps in an arithmetic that has no compiler
 
 
 State = tuple[Fraction, ...]  # p and q; p1 … pn, q1 … qn
-
-
-class Followed(Protocol):
-    """One run: the first N steps of an orbit, in the plane or in n degrees of freedom."""
-
-    @property
-    def hamiltonian(self) -> Hamiltonian: ...
-    @property
-    def scheme(self) -> str: ...
-    @property
-    def step_size(self) -> Fraction: ...
-    @property
-    def steps(self) -> int: ...
-    @property
-    def start(self) -> Mapping[str, Fraction]:
-        """What a kernel's run begins with."""
-
-    @property
-    def state(self) -> State:
-        """The coordinates at its start."""
-
-    def onwards(self, state: State, step: int, steps: int) -> "Followed":
-        """So many steps from a state that it has after `step`."""
-
-    def shortened(self, steps: int) -> "Followed":
-        """So many of its steps, or more."""
 
 
 @dataclass(frozen=True)
@@ -106,6 +80,9 @@ class RunInDegrees:
 
     def shortened(self, steps: int) -> "RunInDegrees":
         return replace(self, steps=steps)
+
+
+Followed = Run | RunInDegrees  # one run: the first N steps of an orbit
 
 
 class Point(NamedTuple):

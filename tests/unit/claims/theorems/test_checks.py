@@ -7,10 +7,16 @@ import pytest
 
 from tests.helpers.planted.theorem_controls import refused
 from verify.algebra.symbols import P, Q
-from verify.claims.theorems import area_criteria, criteria, determinant, lipschitz, two_norm
-from verify.claims.theorems.checks import developables, families, linear, matrices, sums, triangle
-from verify.claims.theorems.checks.check import Check
-from verify.claims.theorems.checks.formulas import same
+from verify.claims.theorems import (
+    area_criteria,
+    criteria,
+    determinant,
+    lipschitz,
+    matrix_vector,
+    two_norm,
+)
+from verify.claims.theorems.checks import developables, families, matrices, sums, triangle
+from verify.claims.theorems.checks.check import Check, same
 from verify.claims.theorems.convergence import _lengthened
 from verify.claims.theorems.criteria_examples import (
     COMPENSATED,
@@ -36,8 +42,8 @@ PLANTED: list[tuple[Callable[..., Check], Any]] = [
     (sums.squares_of_times, 2),
     (sums.mean_of_fourth_powers, 4),
     (sums.compensated_changes, 1),
-    (linear.euler, 1),
-    (linear.stays_linear, 1),
+    (matrix_vector.euler, 1),
+    (matrix_vector.stays_linear, 1),
     (developables.contracted, 2),
     (developables.legendre, -1),
     (developables.radial, 1),

@@ -5,14 +5,14 @@ By balls, with S and the Jacobian; of a step that solves equations by two runs o
 
 from fractions import Fraction
 
-from verify.exploration.degrees.equivariance import (
+from verify.exploration.oracles.equivariance import (
     Change,
     moved,
     must_be_same_steps,
     transformed_hamiltonian,
 )
-from verify.exploration.degrees.mpfr_runs import RunInDegrees, must_agree
-from verify.exploration.degrees.symplectic_matrices import cycled
+from verify.exploration.oracles.mpfr_runs import RunInDegrees, must_agree
+from verify.exploration.oracles.symplectic_matrices import cycled
 from verify.exploration.property import only_if
 from verify.exploration.sample_in_degrees import SampleInDegrees
 

@@ -12,10 +12,8 @@ import sympy
 
 from verify.algebra.formula import symbol
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.ball_steps import BITS, BallState, unlike
-from verify.exploration.ball_steps import ball_steps as steps_in_plane
-from verify.exploration.degrees import ball_steps as several
-from verify.exploration.degrees.mpfr_runs import RunInDegrees, must_agree
+from verify.exploration.oracles.ball_steps import BITS, BallState, ball_steps, defect, unlike
+from verify.exploration.oracles.mpfr_runs import RunInDegrees, must_agree
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -39,7 +37,7 @@ def holds_in_degrees(sample: SampleInDegrees) -> None:
     start = sample.start if together.time_dependent else {
         name: x for name, x in sample.start.items() if name != "t"
     }  # fmt: skip
-    whole = several.ball_steps(step, start, steps)[-1].sharp()
+    whole = ball_steps(step, start, steps)[-1].sharp()
     planes = [_end_in_plane(sample, part, steps) for part in parts]
     with working_precision(BITS):
         _must_be_product(whole, planes)
@@ -74,11 +72,11 @@ def _end_in_plane(sample: SampleInDegrees, part: Part, steps: int) -> BallState:
     start = {**point, "h": sample.step_size}
     if hamiltonian.time_dependent:
         start["t"] = sample.t0
-    return steps_in_plane(sample.scheme.step_map(hamiltonian), start, steps)[-1].sharp()
+    return ball_steps(sample.scheme.step_map(hamiltonian), start, steps)[-1].sharp()
 
 
-def _must_be_product(whole: several.BallState, planes: Sequence[BallState]) -> None:
-    n, defect = len(planes), several.defect(whole.matrix)
+def _must_be_product(whole: BallState, planes: Sequence[BallState]) -> None:
+    n, form = len(planes), defect(whole.matrix)
     for k, plane in enumerate(planes):
         for letter, half in (("p", 0), ("q", n)):
             name, wanted = f"{letter}{k + 1}", plane.point[letter]
@@ -87,8 +85,8 @@ def _must_be_product(whole: several.BallState, planes: Sequence[BallState]) -> N
             for j in range(2 * n):
                 if j % n != k and not whole.matrix[half + k, j].contains(0):
                     raise Violation(f"J of the run has an entry of {name} by another degree")
-        if not defect[k, n + k].overlaps(plane.product - 1):
-            told = unlike(defect[k, n + k], plane.product - 1)
+        if not form[k, n + k].overlaps(plane.product - 1):
+            told = unlike(form[k, n + k], plane.product - 1)
             raise Violation(f"W's entry dp{k + 1}∧dq{k + 1} is {told}, Λ of its plane")
     product = planes[0].product
     for plane in planes[1:]:

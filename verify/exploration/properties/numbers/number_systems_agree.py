@@ -4,7 +4,8 @@ One number system a sample, by its numbers, so that all of them get their turn. 
 solves equations, which balls do not do here, float64 is held against 40 digits.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from functools import reduce
 from itertools import pairwise
@@ -14,8 +15,8 @@ import flint
 from verify import arithmetic as number_systems
 from verify.arithmetic.arb import Ball, around, rational_ball, shown
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.ball_steps import BITS, BallState, ball_steps
-from verify.exploration.degrees import ball_steps as several
+from verify.exploration.any_sample import AnySample
+from verify.exploration.oracles.ball_steps import BITS, BallState, ball_steps, defect, largest
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
 from verify.exploration.sample_in_degrees import SampleInDegrees
@@ -34,9 +35,13 @@ def holds(sample: Sample) -> None:
     name = _turn(sample)
     wanted = _enclosed(sample)
     found = _run(sample, name, number_systems.about(name).digits or _DIGITS)
+    with working_precision(BITS):
+        _must_agree(found, wanted)
+
+
+def _must_agree(found: RunResult, wanted: Mapping[str, Ball]) -> None:
     for quantity, value in found.values.items():
-        ours = _ball(value)
-        if not ours.overlaps(wanted[quantity]):
+        if not _ball(value).overlaps(wanted[quantity]):
             within = f"{value.value} ± {value.bound}"
             true = shown(wanted[quantity], 20)
             raise Violation(f"{quantity} is {within} in {found.arithmetic}, and truly {true}")
@@ -63,11 +68,16 @@ def _of_states(states: Sequence[BallState]) -> dict[str, Ball]:
     errors = [abs(state.product - 1) for state in states[1:]]
     # det J of a single step, where no step before had det J = 0.
     changes = [abs(two.product / one.product - 1) for one, two in pairwise(states)]
-    found = {"p": states[-1].p, "q": states[-1].q, "lambda": states[-1].product - 1}
+    found = {**_place(states[-1]), "lambda": states[-1].product - 1}
     found["lambda_max"] = reduce(flint.arb.max, errors)
     found["delta_j_max"] = reduce(flint.arb.max, changes)
     found["mse"] = sum((x * x for x in changes), rational_ball(Fraction())) / len(changes)
     return found
+
+
+def _place(state: BallState) -> dict[str, Ball]:
+    """The coordinates, without t."""
+    return {name: x for name, x in state.point.items() if name != "t"}
 
 
 def _ball(value: Value) -> Ball:
@@ -75,14 +85,16 @@ def _ball(value: Value) -> Ball:
         return around(Fraction(value.value), Fraction(value.bound))
 
 
-def _run(sample: Sample, arithmetic: str, digits: int) -> RunResult:
+def _run(
+    sample: AnySample, arithmetic: str, digits: int, observables: Sequence[str] = _OBSERVABLES
+) -> RunResult:
     found = run(
         sample.hamiltonian,
         sample.scheme.name,
         **sample.run_arguments,
         arithmetic=arithmetic,
         digits=digits,
-        observables=_OBSERVABLES,
+        observables=observables,
     )
     only_if(found.status == "finished")
     return found
@@ -100,34 +112,21 @@ def holds_in_degrees(sample: SampleInDegrees) -> None:
     only_if(sample.is_turn(_IN_DEGREES, _AFTER) and sample.short and sample.scheme.explicit)
     systems = [n for n in number_systems.names() if not number_systems.about(n).compiles]
     name = systems[sample.turn // _IN_DEGREES % len(systems)]
-    steps = min(sample.steps, _STEPS_IN_DEGREES)
-    states = [s.sharp() for s in several.ball_steps(sample.step_map, sample.start, steps)]
-    found = run(
-        sample.hamiltonian,
-        sample.scheme.name,
-        **sample.run_arguments | {"steps": steps},
-        arithmetic=name,
-        digits=number_systems.about(name).digits or _DIGITS,
-        observables=_OF_FORM,
-    )
-    only_if(found.status == "finished")
+    brief = replace(sample, steps=min(sample.steps, _STEPS_IN_DEGREES))
+    states = [s.sharp() for s in ball_steps(sample.step_map, sample.start, brief.steps)]
+    found = _run(brief, name, number_systems.about(name).digits or _DIGITS, _OF_FORM)
     with working_precision(BITS):
-        wanted = _of_run(states)
-        for quantity, value in found.values.items():
-            if not _ball(value).overlaps(wanted[quantity]):
-                within = f"{value.value} ± {value.bound}"
-                true = shown(wanted[quantity], 20)
-                raise Violation(f"{quantity} is {within} in {found.arithmetic}, and truly {true}")
+        _must_agree(found, _of_run(states))
 
 
-def _of_run(states: Sequence[several.BallState]) -> dict[str, Ball]:
+def _of_run(states: Sequence[BallState]) -> dict[str, Ball]:
     """The values of a run, from balls of its states."""
     last = states[-1]
-    forms = [several.largest(several.defect(state.own)) for state in states[1:]]
+    forms = [largest(defect(state.own)) for state in states[1:]]
     changes = [abs(state.own.det() - 1) for state in states[1:]]
-    found = {name: x for name, x in last.point.items() if name != "t"}
+    found = _place(last)
     found["symplectic_defect_max"] = reduce(flint.arb.max, forms)
-    found["symplectic_defect"] = several.largest(several.defect(last.matrix))
+    found["symplectic_defect"] = largest(defect(last.matrix))
     found["delta_j_max"] = reduce(flint.arb.max, changes)
     found["lambda"] = last.matrix.det() - 1
     return found

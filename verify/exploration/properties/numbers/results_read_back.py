@@ -3,10 +3,10 @@
 from verify.algebra.enclosure import enclose
 from verify.algebra.expressions.formula_text import to_text
 from verify.arithmetic.arb import shown
-from verify.exploration.ball_steps import BITS
+from verify.exploration.any_sample import AnySample
+from verify.exploration.oracles.ball_steps import BITS
 from verify.exploration.property import Violation
 from verify.exploration.sample import Sample
-from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.scene import Scene, scene_from
@@ -18,12 +18,13 @@ _SCENES, _MAPS = 2, 3  # one in so many is read back; where no scene is, H is
 _LONGEST = 15  # terms of a map
 
 
-def holds(sample: Sample) -> None:
+def holds_in_any_degrees(sample: AnySample) -> None:
+    """The map's formulas are those of the plane."""
     if sample.is_turn(_SCENES):
         _must_be_same_scene(sample.scene)
     else:
         _must_be_same(sample)
-    if sample.is_turn(_MAPS):
+    if isinstance(sample, Sample) and sample.is_turn(_MAPS):
         _must_be_same_map(sample)
 
 
@@ -32,13 +33,13 @@ def _must_be_same_scene(scene: Scene) -> None:
         raise Violation("the scene's TOML reads back as another scene")
 
 
-def _must_be_same(sample: Sample) -> None:
+def _must_be_same(sample: AnySample) -> None:
     given, values = sample.hamiltonian, []
     read = Hamiltonian.parse(given.formula, dict(given.values))
     for hamiltonian in (given, read):
-        field, _ = hamiltonian.field()
-        values.append([enclose(field.ring, x, sample.start, BITS) for x in
-                       (field.energy, field.h_p, field.h_q)])  # fmt: skip
+        field, _ = canonical_field(hamiltonian)
+        elements = (field.energy, *field.slopes)
+        values.append([enclose(field.ring, x, sample.start, BITS) for x in elements])
     for x, y in zip(*values, strict=True):
         if (x is None) != (y is None) or (x is not None and not x.overlaps(y)):
             raise Violation(f"H reads back as another: {given.formula}")
@@ -55,19 +56,3 @@ def _must_be_same_map(sample: Sample) -> None:
                         for step in (closed, read))  # fmt: skip
         if ours is not None and theirs is not None and not ours.overlaps(theirs):
             raise Violation(f"{name} reads back as {shown(theirs)}, and is {shown(ours)}")
-
-
-def holds_in_degrees(sample: SampleInDegrees) -> None:
-    """The scene, or H."""
-    if sample.is_turn(_SCENES):
-        _must_be_same_scene(sample.scene)
-        return
-    given, values = sample.hamiltonian, []
-    read = Hamiltonian.parse(given.formula, dict(given.values))
-    for hamiltonian in (given, read):
-        field, _ = canonical_field(hamiltonian)
-        elements = (field.energy, *field.slopes)
-        values.append([enclose(field.ring, x, sample.start, BITS) for x in elements])
-    for x, y in zip(*values, strict=True):
-        if (x is None) != (y is None) or (x is not None and not x.overlaps(y)):
-            raise Violation(f"H reads back as another: {given.formula}")

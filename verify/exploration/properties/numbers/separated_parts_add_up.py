@@ -13,7 +13,7 @@ from fractions import Fraction
 from verify.arithmetic.arb import Ball, around, rational_ball, shown
 from verify.arithmetic.exact import decimal
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.ball_steps import BITS, ball_steps, stepped
+from verify.exploration.oracles.ball_steps import BITS, ball_steps, stepped
 from verify.exploration.property import Silent, Violation, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.schemes.step_map import StepMap
@@ -74,7 +74,7 @@ def _by_own_clock(sample: Sample, step_map: StepMap, start: Mapping[str, Fractio
         state = ball_steps(step_map, start, 0)[0]
         with working_precision(BITS):
             for _ in range(sample.steps):
-                at = replace(state, t=rational_ball(Fraction(t)))
+                at = replace(state, point={**state.point, "t": rational_ball(Fraction(t))})
                 state, t = stepped(step_map, at, rational_ball(start["h"])), t + h
             return state.sharp().product - 1
     except Silent:

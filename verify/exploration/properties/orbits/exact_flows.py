@@ -12,10 +12,9 @@ from verify.algebra.enclosure import enclose
 from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.arb import Ball, rational_ball, shown
 from verify.arithmetic.flint_precision import working_precision
+from verify.exploration.any_sample import AnySample
 from verify.exploration.property import Silent, Violation, known, only_if, silent_at
 from verify.exploration.sample import Sample
-from verify.exploration.sample_in_degrees import SampleInDegrees
-from verify.flows.degrees.extrapolation import FlowInDegrees
 from verify.flows.extrapolation import Flow, NoFlowError
 from verify.proof.potential import potential_of
 
@@ -29,23 +28,25 @@ Point = Mapping[str, Fraction]
 Element = tuple[Ring, Poly]
 
 
-def holds(sample: Sample) -> None:
-    only_if(sample.is_turn(_IN) and sample.ordinary)
-    flow = Flow(sample.field, _DIGITS)
+def holds_in_any_degrees(sample: AnySample) -> None:
+    """The potential is one of the plane."""
+    planar = isinstance(sample, Sample)
+    only_if(sample.is_turn(_IN) and (sample.ordinary if planar else sample.short))
+    flow = sample.flow(_DIGITS)
     start = sample.start
     after = _flow_to(flow, start, _TIME)
     back = _flow_to(flow, after, -_TIME)
-    for name in "pq":
+    for name in sample.point:
         x, y = start[name], back[name]
         if abs(x - y) > _KNOWN * (1 + abs(x)):
             raise Violation(f"{name} comes back as {float(y)!r}, from {float(x)!r}")
     _energy_must_be_kept(sample, after)
-    if sample.is_turn(_OF_POTENTIALS):
+    if isinstance(sample, Sample) and sample.is_turn(_OF_POTENTIALS):
         with suppress(Silent):  # the flow has been looked at
             _potential_must_move(sample)
 
 
-def _energy_must_be_kept(sample: Sample, after: Point) -> None:
+def _energy_must_be_kept(sample: AnySample, after: Point) -> None:
     field = sample.field
     ring, energy = field.ring, field.energy
     if sample.timed:
@@ -65,10 +66,10 @@ def _potential_must_move(sample: Sample) -> None:
     _must_grow(sample, "G", known(found.element), "L", known(sample.proof.first.element))
 
 
-def _must_grow(sample: Sample, name: str, x: Element, rate: str, wanted_rate: Element) -> None:
+def _must_grow(sample: AnySample, name: str, x: Element, rate: str, wanted_rate: Element) -> None:
     """Violation where an element does not grow, over an instant, by another one a time."""
     start = sample.start
-    end = _flow_to(Flow(sample.field, 2 * _DIGITS), start, _INSTANT)
+    end = _flow_to(sample.flow(2 * _DIGITS), start, _INSTANT)
     ends = [_value(x, point) for point in (start, end)]
     wanted = _value(wanted_rate, start)
     with working_precision(_BITS):
@@ -83,49 +84,10 @@ def _flow_to(flow: Flow, start: Point, time: Fraction) -> dict[str, Fraction]:
     """Where the flow is after the time, and when where H depends on it."""
     with silent_at(NoFlowError):
         z = flow.follow(flow.state(start), time, _MOST_STEPS)
-    found = dict(zip("pqt", map(flow.arithmetic.exact, z), strict=False))
+    found = dict(zip(flow.names, map(flow.arithmetic.exact, z), strict=False))
     return found | {"t": start["t"] + time} if flow.timed else found
 
 
 def _value(element: Element, point: Point) -> Ball:
     ring, x = element
     return known(enclose(ring, x, point, _BITS))
-
-
-# -- in n degrees of freedom ----------------------------------------------------------------------
-
-
-def holds_in_degrees(sample: SampleInDegrees) -> None:
-    """It keeps H, or of an H in time moves H by ∂H/∂t, and comes back."""
-    only_if(sample.is_turn(_IN) and sample.short)
-    field = sample.field
-    flow = FlowInDegrees(field, _DIGITS)
-    start = sample.start
-    after = _followed(flow, start, _TIME)
-    back = _followed(flow, after, -_TIME)
-    for name in field.names:
-        x, y = start[name], back[name]
-        if abs(x - y) > _KNOWN * (1 + abs(x)):
-            raise Violation(f"{name} comes back as {float(y)!r}, from {float(x)!r}")
-    ring = field.ring
-    if not sample.timed:
-        before, then = (_value((ring, field.energy), point) for point in (start, after))
-        with working_precision(_BITS):
-            if abs(then - before) > rational_ball(_KNOWN) * 10**6 * (1 + abs(before)):
-                raise Violation(f"H is {shown(before, 12)}, and after {_TIME} {shown(then, 12)}")
-        return
-    end = _followed(FlowInDegrees(field, 2 * _DIGITS), start, _INSTANT)
-    grown = [_value((ring, field.energy), point) for point in (start, end)]
-    wanted = _value((ring, ring.diff(field.energy, "t")), start)
-    with working_precision(_BITS):
-        rate = (grown[1] - grown[0]) / rational_ball(_INSTANT)
-        if abs(rate - wanted) > (1 + abs(wanted)) * rational_ball(_WITHIN):
-            raise Violation(f"H grows by {shown(rate, 12)} a time, and ∂H/∂t is {shown(wanted)}")
-
-
-def _followed(flow: FlowInDegrees, start: Point, time: Fraction) -> dict[str, Fraction]:
-    """Where the flow is after the time, and when where H depends on it."""
-    with silent_at(NoFlowError):
-        z = flow.follow(flow.state(start), time, _MOST_STEPS)
-    found = dict(zip(flow.names, map(flow.arithmetic.exact, z), strict=True))
-    return found | {"t": start["t"] + time} if flow.timed else found

@@ -10,7 +10,7 @@ from verify.algebra.enclosure import enclose_over
 from verify.arithmetic.arb import Ball, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
-from verify.exploration.ball_steps import BallState, ball_steps, sharp, unlike
+from verify.exploration.oracles.ball_steps import BallState, ball_steps, sharp, unlike
 from verify.exploration.property import Violation, known, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.proof.growth_law import Element, GrowthLaw, NoLawError, growth_law

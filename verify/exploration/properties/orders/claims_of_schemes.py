@@ -3,13 +3,14 @@
 Its ΔJ then has at least one order more than the scheme, as the exact flow has det J = 1.
 """
 
+from verify.exploration.any_sample import AnySample
 from verify.exploration.property import Violation, only_if
-from verify.exploration.sample import Sample
-from verify.exploration.sample_in_degrees import SampleInDegrees
+from verify.proof.symplectic.proof import SymplecticProof
 from verify.verdict import Verdict
 
 
-def holds(sample: Sample) -> None:
+def holds_in_any_degrees(sample: AnySample) -> None:
+    """In n degrees of freedom S takes the place of ΔJ."""
     only_if(sample.ordinary)
     proof, scheme = sample.proof, sample.scheme
     if proof.verdict is Verdict.REFUTED:
@@ -17,21 +18,10 @@ def holds(sample: Sample) -> None:
     only_if(proof.verdict is not Verdict.UNDECIDED)
     if proof.convergence_order is not None and proof.convergence_order < scheme.order:
         raise Violation(f"{scheme.name} is proved, and has order {proof.convergence_order}")
+    defect = "S" if isinstance(proof, SymplecticProof) else "ΔJ"
     if proof.order is not None and proof.order <= scheme.order:
-        raise Violation(f"{scheme.name} has order {scheme.order}, and its ΔJ {proof.order}")
-
-
-def holds_in_degrees(sample: SampleInDegrees) -> None:
-    """The same of S in place of ΔJ."""
-    only_if(sample.ordinary)
-    proof, scheme = sample.proof, sample.scheme
-    if proof.verdict is Verdict.REFUTED:
-        raise Violation(f"{scheme.name} is refuted: {proof.reason}")
-    only_if(proof.verdict is not Verdict.UNDECIDED)
-    if proof.convergence_order is not None and proof.convergence_order < scheme.order:
-        raise Violation(f"{scheme.name} is proved, and has order {proof.convergence_order}")
-    if proof.order is not None and proof.order <= scheme.order:
-        raise Violation(f"{scheme.name} has order {scheme.order}, and its S {proof.order}")
-    volume = proof.volume_order
-    if volume is not None and proof.order is not None and volume < proof.order:
-        raise Violation(f"S has order {proof.order}, and det J − 1 {volume}")
+        raise Violation(f"{scheme.name} has order {scheme.order}, and its {defect} {proof.order}")
+    if isinstance(proof, SymplecticProof):
+        volume = proof.volume_order
+        if volume is not None and proof.order is not None and volume < proof.order:
+            raise Violation(f"S has order {proof.order}, and det J − 1 {volume}")

@@ -16,7 +16,7 @@ from verify.algebra.series.jets import Jets, Poly
 from verify.algebra.series.timed_jets import TimedJets
 from verify.arithmetic.arb import Ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.ball_steps import BITS, sharp, unlike
+from verify.exploration.oracles.ball_steps import BITS, sharp, unlike
 from verify.exploration.property import Violation, known, only_if
 from verify.exploration.sample import Sample
 from verify.schemes.every_hamiltonian import BySeries, RungeKutta, StageEquations, TaylorSeries

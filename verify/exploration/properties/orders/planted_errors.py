@@ -9,7 +9,9 @@ from verify.exploration.sample import Sample
 from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.proof.claimed import Claimed
 from verify.proof.order import prove
+from verify.proof.order_proof import Proof
 from verify.proof.symplectic.order import prove_map
+from verify.proof.symplectic.proof import SymplecticProof
 from verify.schemes.degrees.canonical_map import CanonicalMap
 from verify.schemes.step_algebra import StepAlgebra
 from verify.schemes.step_map import Expanded, StepMap
@@ -26,11 +28,15 @@ def holds(sample: Sample) -> None:
     only_if(sample.proof.verdict is Verdict.PROVED)
     with silent_at(InputError):  # its closed form is too large to be looked at
         found = prove(_planted(sample, order), sample.scheme)
+    _must_be_refuted(found, order, f"with q'·h^{order} added to p'")
+
+
+def _must_be_refuted(found: Proof | SymplecticProof, order: int, planted: str) -> None:
     if found.verdict is not Verdict.REFUTED:
-        raise Violation(f"with q'·h^{order} added to p' it is {found.verdict.value}")
+        raise Violation(f"{planted} it is {found.verdict.value}")
     if found.convergence_order != order - 1:
         told = f"agrees with the flow up to h^{found.convergence_order}"
-        raise Violation(f"with q'·h^{order} added to p' it {told}, and truly up to h^{order - 1}")
+        raise Violation(f"{planted} it {told}, and truly up to h^{order - 1}")
 
 
 def _planted(sample: Sample, power: int) -> StepMap:
@@ -60,11 +66,7 @@ def holds_in_degrees(sample: SampleInDegrees) -> None:
     claimed = Claimed(sample.scheme.name, order, sample.scheme.area_preserving)
     with silent_at(InputError):
         found = prove_map(_planted_in_degrees(sample.step_map, order), claimed)
-    if found.verdict is not Verdict.REFUTED:
-        raise Violation(f"with h^{order} f1 added to q1' it is {found.verdict.value}")
-    if found.convergence_order != order - 1:
-        told = f"agrees with the flow up to h^{found.convergence_order}"
-        raise Violation(f"with h^{order} f1 added to q1' it {told}, and truly up to h^{order - 1}")
+    _must_be_refuted(found, order, f"with h^{order} f1 added to q1'")
 
 
 def _planted_in_degrees(true: CanonicalMap, power: int) -> CanonicalMap:

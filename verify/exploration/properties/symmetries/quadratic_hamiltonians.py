@@ -17,8 +17,8 @@ from verify.algebra.formula import symbol
 from verify.arithmetic.arb import middle_and_radius, rational_ball
 from verify.arithmetic.exact import short
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.ball_steps import BITS, sharp, unlike
-from verify.exploration.degrees import ball_steps as several
+from verify.exploration.any_sample import AnySample
+from verify.exploration.oracles.ball_steps import BITS, Matrix, ball_steps, overlap, sharp, unlike
 from verify.exploration.property import Silent, Violation, known, only_if
 from verify.exploration.sample import Sample
 from verify.exploration.sample_in_degrees import SampleInDegrees
@@ -34,13 +34,11 @@ def holds(sample: Sample) -> None:
     generic = sample.scheme.every_h
     if not isinstance(generic, TaylorSeries | RungeKutta):
         raise Silent
-    hessian = _hessian(sample)
-    h_pp, h_pq, h_qq = hessian
+    form = _form(sample)
+    (h_pp, h_pq), (_, h_qq) = form
     square = -(sample.step_size**2) * (h_pp * h_qq - h_pq**2)
     wanted = _product(_stability_function(generic), square)
-    p, q = symbol("p"), symbol("q")
-    a, b, c = map(sympy.Rational, hessian)
-    step_map = sample.scheme.step_map(Hamiltonian(a * p**2 / 2 + b * p * q + c * q**2 / 2))
+    step_map = sample.scheme.step_map(_quadratic(sample, form))
     whole = step_map.whole
     found = enclose(whole.ring, whole.delta_j, {"h": sample.step_size}, BITS)
     # det J − 1 against ΔJ, and not det J: of a small ΔJ that has lost most digits.
@@ -50,18 +48,6 @@ def holds(sample: Sample) -> None:
         given = f"for Hess H = ({short(h_pp)}, {short(h_pq)}, {short(h_qq)})"
         told = "not defined" if found is None else unlike(found, true)
         raise Violation(f"{given} ΔJ is {told}")
-
-
-def _hessian(sample: Sample) -> tuple[Fraction, Fraction, Fraction]:
-    """H_pp, H_pq, H_qq at the initial value, rounded; Silent where they are no usual numbers."""
-    field = sample.field
-    ring, point = field.ring, sample.start
-    found = []
-    for x, name in ((field.h_p, "p"), (field.h_p, "q"), (field.h_q, "q")):
-        value = known(enclose(ring, ring.diff(x, name), point, 128))
-        only_if(abs(value) < 10**6)
-        found.append(Fraction(round(middle_and_radius(value)[0] * _UNIT), _UNIT))
-    return found[0], found[1], found[2]
 
 
 @lru_cache(maxsize=64)
@@ -97,28 +83,30 @@ def holds_in_degrees(sample: SampleInDegrees) -> None:
     generic = sample.scheme.every_h
     if not isinstance(generic, TaylorSeries | RungeKutta) or not sample.is_turn(_IN_DEGREES):
         raise Silent
-    names = sample.hamiltonian.coordinates
     form = _form(sample)
-    symbols = list(map(symbol, names))
-    quadratic = sympy.Add(
-        *(
-            sympy.Rational(form[a][b]) * x * y / 2
-            for a, x in enumerate(symbols)
-            for b, y in enumerate(symbols)
-        )
-    )
-    hamiltonian = Hamiltonian(quadratic)
-    only_if(hamiltonian.coordinates == names)
+    hamiltonian = _quadratic(sample, form)
+    only_if(hamiltonian.coordinates == sample.hamiltonian.coordinates)
     wanted = _stability_matrix(_stability_function(generic), form, sample.step_size)
     step = map_in_degrees(sample.scheme, hamiltonian)
     start = {name: x for name, x in sample.start.items() if name != "t"}
-    found = several.ball_steps(step, start, 1)[-1].sharp()
+    found = ball_steps(step, start, 1)[-1].sharp()
     with working_precision(BITS):
-        if not several.overlap(found.own, wanted):
+        if not overlap(found.own, wanted):
             raise Violation(f"J is not R(hL) for Hess H = {[[short(x) for x in r] for r in form]}")
 
 
-def _form(sample: SampleInDegrees) -> list[list[Fraction]]:
+def _quadratic(sample: AnySample, form: list[list[Fraction]]) -> Hamiltonian:
+    """The quadratic H with that Hessian."""
+    symbols = list(map(symbol, sample.hamiltonian.coordinates))
+    terms = (
+        sympy.Rational(form[a][b]) * x * y / 2
+        for a, x in enumerate(symbols)
+        for b, y in enumerate(symbols)
+    )
+    return Hamiltonian(sympy.Add(*terms))
+
+
+def _form(sample: AnySample) -> list[list[Fraction]]:
     """The Hessian of H at the initial value, rounded; Silent where it has no usual numbers."""
     field, _ = canonical_field(sample.hamiltonian)
     found = []
@@ -131,7 +119,7 @@ def _form(sample: SampleInDegrees) -> list[list[Fraction]]:
 
 def _stability_matrix(
     coefficients: Sequence[Fraction], form: list[list[Fraction]], h: Fraction
-) -> several.Matrix:
+) -> Matrix:
     """R(hL), where L has −∂²H/∂q∂z in its upper half and ∂²H/∂p∂z in its lower."""
     n = len(form) // 2
     slopes = [[-h * x for x in row] for row in form[n:]] + [[h * x for x in r] for r in form[:n]]
@@ -141,4 +129,4 @@ def _stability_matrix(
     for c in coefficients:
         total, power = total + power * flint.fmpq(c.numerator, c.denominator), power * exact
     with working_precision(BITS):
-        return several.Matrix(total)
+        return Matrix(total)

@@ -2,38 +2,33 @@
 
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.ball_steps import BITS, ball_steps, stepped, unlike
-from verify.exploration.degrees import ball_steps as several
+from verify.exploration.any_sample import AnySample
+from verify.exploration.oracles.ball_steps import BITS, ball_steps, stepped, unlike
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
-from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.proof.symmetry import by_series
 from verify.verdict import Verdict
 
-_IN = 3  # one in so many samples is looked at by series, too
+_IN = 3  # one in so many samples of the plane is looked at by series, too
 
 
-def holds(sample: Sample) -> None:
+def holds_in_any_degrees(sample: AnySample) -> None:
     only_if(sample.scheme.symmetric)
-    if sample.is_turn(_IN) and sample.ordinary and not sample.step_map.implicit:
-        series = by_series(sample.step_map, sample.scheme.order + 1)
-        if series.verdict is Verdict.REFUTED:
-            raise Violation(f"by series it is not symmetric: {series.reason}")
+    if isinstance(sample, Sample):
+        _by_series(sample)
+    else:
+        only_if(sample.brief)
     first, last = ball_steps(sample.step_map, sample.start, 1)
     with working_precision(BITS):
         back = stepped(sample.step_map, last, rational_ball(-sample.step_size)).sharp()
-    for name, ball, start in (("p", back.p, first.p), ("q", back.q, first.q)):
-        if not ball.overlaps(start):
-            raise Violation(f"{name} comes back as {unlike(ball, start)}")
-
-
-def holds_in_degrees(sample: SampleInDegrees) -> None:
-    """By balls alone."""
-    only_if(sample.scheme.symmetric and sample.brief)
-    first, last = several.ball_steps(sample.step_map, sample.start, 1)
-    with working_precision(BITS):
-        back = several.stepped(sample.step_map, last, rational_ball(-sample.step_size)).sharp()
     for name in sample.point:
         if not back.point[name].overlaps(first.point[name]):
             told = unlike(back.point[name], first.point[name])
             raise Violation(f"{name} comes back as {told}")
+
+
+def _by_series(sample: Sample) -> None:
+    if sample.is_turn(_IN) and sample.ordinary and not sample.step_map.implicit:
+        series = by_series(sample.step_map, sample.scheme.order + 1)
+        if series.verdict is Verdict.REFUTED:
+            raise Violation(f"by series it is not symmetric: {series.reason}")

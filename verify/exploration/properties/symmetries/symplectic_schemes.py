@@ -10,9 +10,8 @@ from fractions import Fraction
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.exact import decimal
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.ball_steps import BITS, ball_steps, unlike
-from verify.exploration.degrees import ball_steps as several
-from verify.exploration.degrees.differences import jacobian_of_run
+from verify.exploration.oracles.ball_steps import BITS, ball_steps, defect, entries, largest, unlike
+from verify.exploration.oracles.mpfr_runs import jacobian_of_run
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
 from verify.exploration.sample_in_degrees import SampleInDegrees
@@ -64,18 +63,18 @@ def holds_in_degrees(sample: SampleInDegrees) -> None:
     if sample.step_map.implicit:
         _by_differences(sample)
         return
-    after = several.ball_steps(sample.step_map, sample.start, 1)[-1].sharp()
+    after = ball_steps(sample.step_map, sample.start, 1)[-1].sharp()
     with working_precision(BITS):
-        form = several.defect(after.own)
-    if not all(x.contains(0) for x in several.entries(form)):
-        raise Violation(f"S is not 0; its greatest |entry| is {several.largest(form).str(6)}")
+        form = defect(after.own)
+    if not all(x.contains(0) for x in entries(form)):
+        raise Violation(f"S is not 0; its greatest |entry| is {largest(form).str(6)}")
 
 
 def _by_differences(sample: SampleInDegrees) -> None:
     only_if(sample.is_turn(_BY_DIFFERENCES) and sample.short)
     found, known = jacobian_of_run(sample)
     with working_precision(_BITS_OF_DIFFERENCES):
-        largest = several.largest(several.defect(found))
-        wrong = largest > known
+        seen = largest(defect(found))
+        wrong = seen > known
     if wrong:
-        raise Violation(f"W is {largest.str(6)} after {_STEPS} steps, by differences of runs")
+        raise Violation(f"W is {seen.str(6)} after {_STEPS} steps, by differences of runs")

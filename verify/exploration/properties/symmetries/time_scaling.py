@@ -6,25 +6,16 @@ c·H is at t/c.
 
 from fractions import Fraction
 
-from verify.exploration.degrees import equivariance as several
-from verify.exploration.degrees.symplectic_matrices import identity
-from verify.exploration.equivariance import Change, must_be_same_step
+from verify.exploration.any_sample import AnySample
+from verify.exploration.oracles.equivariance import Change, must_be_same_steps
+from verify.exploration.oracles.symplectic_matrices import identity
 from verify.exploration.property import only_if
-from verify.exploration.sample import Sample
-from verify.exploration.sample_in_degrees import SampleInDegrees
 
 _IN = 2  # one in so many samples
 _FACTOR = Fraction(-2, 3)
 
 
-def holds(sample: Sample) -> None:
-    only_if(sample.is_turn(_IN))
-    must_be_same_step(sample, Change(factor=_FACTOR, pace=1 / _FACTOR))
-
-
-def holds_in_degrees(sample: SampleInDegrees) -> None:
-    """The same for S."""
+def holds_in_any_degrees(sample: AnySample) -> None:
     only_if(sample.is_turn(_IN))
     same = identity(2 * sample.hamiltonian.degrees)
-    change = several.Change(same, factor=_FACTOR, pace=1 / _FACTOR)
-    several.must_be_same_steps(sample, change)
+    must_be_same_steps(sample, Change(same, factor=_FACTOR, pace=1 / _FACTOR))

@@ -12,56 +12,41 @@ import flint
 
 from verify.algebra.generator import Generator
 from verify.algebra.ring import Poly, Ring
-from verify.arithmetic.arb import Ball, rational_ball
+from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.ball_steps import BITS, BallState, ball_steps, sharp, stepped, unlike
-from verify.exploration.degrees import ball_steps as several
+from verify.exploration.any_sample import AnySample
+from verify.exploration.oracles.ball_steps import (
+    BITS,
+    BallState,
+    ball_steps,
+    overlap,
+    sharp,
+    stepped,
+    unlike,
+)
 from verify.exploration.property import Violation, known, only_if
-from verify.exploration.sample import Sample
-from verify.exploration.sample_in_degrees import SampleInDegrees
 
 
-def holds(sample: Sample) -> None:
-    only_if(sample.timed and sample.brief)
-    field = sample.field
-    frequency = known(_frequency(field.ring, (field.h_p, field.h_q)))
-    start = ball_steps(sample.step_map, sample.start, 0)[0]
-    with working_precision(BITS):
-        period = 2 * flint.arb.pi() / rational_ball(abs(frequency))
-        for size in (rational_ball(sample.step_size), period):
-            _must_be_alike(sample, start, period, size)
-
-
-def _must_be_alike(sample: Sample, start: BallState, period: Ball, size: Ball) -> None:
-    assert start.t is not None  # noqa: S101 - H depends on t
-    now, later = (
-        stepped(sample.step_map, replace(start, t=start.t + shift), size) for shift in (0, period)
-    )
-    pairs = (now.p, later.p), (now.q, later.q), (now.product, later.product)
-    for what, (one, other) in zip(("p'", "q'", "det J"), pairs, strict=True):
-        only_if(sharp(one) and sharp(other))
-        if not one.overlaps(other):
-            raise Violation(f"a period later {what} is {unlike(other, one)}")
-
-
-def holds_in_degrees(sample: SampleInDegrees) -> None:
+def holds_in_any_degrees(sample: AnySample) -> None:
     """The same of the Jacobian."""
     only_if(sample.timed and sample.brief)
-    field = sample.field
-    frequency = known(_frequency(field.ring, field.slopes))
-    start = several.ball_steps(sample.step_map, sample.start, 0)[0]
+    frequency = known(_frequency(*sample.slopes))
+    start = ball_steps(sample.step_map, sample.start, 0)[0]
     with working_precision(BITS):
         period = 2 * flint.arb.pi() / rational_ball(abs(frequency))
         later = replace(start, point=start.point | {"t": start.point["t"] + period})
         for size in (rational_ball(sample.step_size), period):
-            one, other = (several.stepped(sample.step_map, x, size) for x in (start, later))
-            for name in field.names:
-                x, y = one.point[name], other.point[name]
-                only_if(sharp(x) and sharp(y))
-                if not x.overlaps(y):
-                    raise Violation(f"a period later {name}' is {unlike(y, x)}")
-            if not several.overlap(one.own, other.own):
-                raise Violation("a period later J is another")
+            _must_be_alike(*(stepped(sample.step_map, x, size) for x in (start, later)))
+
+
+def _must_be_alike(one: BallState, other: BallState) -> None:
+    for name, x in one.point.items():
+        y = other.point[name]
+        only_if(sharp(x) and sharp(y))
+        if name != "t" and not x.overlaps(y):
+            raise Violation(f"a period later {name}' is {unlike(y, x)}")
+    if not overlap(one.own, other.own):
+        raise Violation("a period later J is another")
 
 
 def _frequency(ring: Ring, slopes: Sequence[Poly]) -> Fraction | None:

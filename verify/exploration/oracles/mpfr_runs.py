@@ -1,12 +1,19 @@
 """Short runs in 60 digits, of a sample or of another H with its scheme, step and t₀: for steps that
-solve equations, which balls do not."""
+solve equations, which balls do not.
+
+A kernel finds the derivatives of such a step by solving other equations; here the Jacobian of a run
+is made of central differences of runs in more digits.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
 from verify import arithmetic as number_systems
+from verify.arithmetic.arb import Ball, rational_ball
 from verify.arithmetic.exact import decimal
+from verify.arithmetic.flint_precision import working_precision
+from verify.exploration.oracles.ball_steps import Matrix
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -16,6 +23,10 @@ DIGITS = 60
 STEPS = 2
 _KNOWN = Fraction(1, 10**30)
 _FAR = 10**6
+
+_DIGITS_OF_DIFFERENCES, _BITS = 160, 700
+_APART = Fraction(1, 10**50)  # the derivatives' error is its square, times the third derivatives
+_DERIVATIVES_KNOWN = Fraction(1, 10**70)
 
 
 @dataclass(frozen=True)
@@ -59,3 +70,22 @@ def must_agree(
         if abs(x - wanted[name]) > _KNOWN * (size + abs(wanted[name])):
             told = f"{decimal(x, 12)}, and should be {decimal(wanted[name], 12)}"
             raise Violation(f"{name} is {told}")
+
+
+def jacobian_of_run(sample: SampleInDegrees) -> tuple[Matrix, Ball]:
+    """J of two steps, and what S of it may be where the map is symplectic: the error of J times its
+    size, squared as that grows with the derivatives; Silent where an end is not known."""
+    columns = []
+    for name, x in sample.point.items():
+        ends = [
+            RunInDegrees(sample.hamiltonian, {**sample.point, name: x + by}, sample).values(
+                digits=_DIGITS_OF_DIFFERENCES
+            )
+            for by in (_APART, -_APART)
+        ]
+        up, down = ([end[n] for n in sample.point] for end in ends)
+        columns.append([(a - b) / (2 * _APART) for a, b in zip(up, down, strict=True)])
+    size = 1 + max(abs(x) for column in columns for x in column)
+    with working_precision(_BITS):
+        found = Matrix([[rational_ball(x) for x in row] for row in zip(*columns, strict=True)])
+        return found, rational_ball(_DERIVATIVES_KNOWN * size**4)

@@ -1,12 +1,13 @@
-"""Steps in other coordinates, or in another time, are the same steps, in n degrees of freedom.
+"""Steps in other coordinates, or in another time, are the same steps: what equivariance asks.
 
-As `verify.exploration.equivariance` in the plane. Where MᵀΩM = cΩ and K = c·H∘M⁻¹, M carries the
-flow of H to that of K; of a scheme that knows of no coordinates it carries each step along, too:
-Φ_K∘M = M∘Φ_H, J becomes M J M⁻¹, and with A = M⁻¹ the defect S becomes c AᵀSA.
+Where MᵀΩM = cΩ and K = c·H∘M⁻¹, M carries the flow of H to that of K; of a scheme that knows of no
+coordinates it carries each step along, too: Φ_K∘M = M∘Φ_H, J becomes M J M⁻¹, and with A = M⁻¹ the
+defect S becomes c AᵀSA. An H that depends on time is K's at another time, too: what H is at t, K is
+at c t + s.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 
@@ -15,20 +16,20 @@ import sympy
 
 from verify.algebra.formula import symbol
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.ball_steps import BITS, unlike
-from verify.exploration.degrees.ball_steps import (
+from verify.exploration.any_sample import AnySample
+from verify.exploration.oracles.ball_steps import (
+    BITS,
     BallState,
     Matrix,
     ball_steps,
     defect,
     omega,
     overlap,
+    unlike,
 )
-from verify.exploration.degrees.symplectic_matrices import Exact, exact
+from verify.exploration.oracles.symplectic_matrices import Exact, exact
 from verify.exploration.property import Violation, only_if
-from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.schemes.degrees import map_in_degrees
 from verify.schemes.every_hamiltonian import RungeKutta, TaylorSeries
 
 _MOST_STEPS = 3
@@ -50,12 +51,12 @@ class Change:
         return self.matrix.inv()
 
 
-def knows_no_coordinates(sample: SampleInDegrees) -> bool:
+def knows_no_coordinates(sample: AnySample) -> bool:
     """Whether the scheme treats all coordinates alike, so that each linear map may be asked for."""
     return isinstance(sample.scheme.every_h, TaylorSeries | RungeKutta)
 
 
-def transformed_hamiltonian(sample: SampleInDegrees, change: Change) -> Hamiltonian:
+def transformed_hamiltonian(sample: AnySample, change: Change) -> Hamiltonian:
     """K(z, t) = factor · H(M⁻¹ z, (t − shift)/pace)."""
     names = sample.hamiltonian.coordinates
     symbols = [symbol(name) for name in names]
@@ -69,25 +70,24 @@ def transformed_hamiltonian(sample: SampleInDegrees, change: Change) -> Hamilton
     return Hamiltonian(sympy.Rational(change.factor) * expression)
 
 
-def must_be_same_steps(sample: SampleInDegrees, change: Change) -> None:
+def must_be_same_steps(sample: AnySample, change: Change) -> None:
     """Violation where the run of K from M z is not the image of that of H, or S not that of S;
-    Silent where one is not known."""
-    only_if(sample.brief and sample.scheme.explicit)
-    steps = min(sample.steps, _MOST_STEPS)
+    Silent where one is not known. In the plane of one step, whose maps may be long."""
+    planar = sample.hamiltonian.planar
+    only_if(sample.brief and (planar or sample.scheme.explicit))
+    steps = 1 if planar else min(sample.steps, _MOST_STEPS)
     ours = [state.sharp() for state in ball_steps(sample.step_map, sample.start, steps)]
-    other = SampleInDegrees(
+    other = replace(
+        sample,
         hamiltonian=transformed_hamiltonian(sample, change),
-        scheme=sample.scheme,
         step_size=sample.step_size * change.pace,
         steps=steps,
         t0=sample.t0 * change.pace + change.shift,
-        scene=sample.scene,
-        **_halves(moved(change, sample.point)),
-    )
+    ).at(moved(change, sample.point))
     # A part of H may have vanished with a coordinate: K is of fewer degrees then.
-    only_if(other.hamiltonian.coordinates == sample.hamiltonian.coordinates and other.brief)
-    step = map_in_degrees(other.scheme, other.hamiltonian)
-    theirs = [state.sharp() for state in ball_steps(step, other.start, steps)]
+    only_if(other.hamiltonian.coordinates == sample.hamiltonian.coordinates)
+    only_if(planar or other.brief)
+    theirs = [state.sharp() for state in ball_steps(other.step_map, other.start, steps)]
     with working_precision(BITS):
         for mine, found in zip(ours[1:], theirs[1:], strict=True):
             _must_be_image(change, sample.hamiltonian.coordinates, mine, found)
@@ -114,11 +114,6 @@ def _must_be_image(
     scale = (back.transpose() * canonical * back)[0, len(names) // 2]
     if not overlap(defect(found.own) * scale, back.transpose() * defect(mine.own) * back):
         raise Violation("S is not c AᵀSA, A = M⁻¹")
-
-
-def _halves(values: list[Fraction]) -> dict[str, tuple[Fraction, ...]]:
-    half = len(values) // 2
-    return {"p": tuple(values[:half]), "q": tuple(values[half:])}
 
 
 def _rational(x: flint.fmpq) -> sympy.Rational:

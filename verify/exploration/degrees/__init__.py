@@ -1,1 +1,0 @@
-"""Steps in n degrees of freedom in ball arithmetic, and in other coordinates: oracles."""
