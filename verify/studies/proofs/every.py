@@ -23,7 +23,6 @@ class EveryTask(Task):
         "verify.proof.checked",
         "verify.proof.checked.paper_steps",
         "verify.proof.checked.proved",
-        "verify.proof.every",
         "verify.schemes",
     )
     kind: Literal["every"] = "every"
