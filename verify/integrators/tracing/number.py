@@ -122,10 +122,11 @@ def constant(kind: Kind, value: Any) -> "TracedNumber | None":
 def _is_written(value: float, exact: Fraction) -> bool:
     """Whether a float is likely to be the number that was written, and no rounded product.
 
-    From 10¹² on a double has few bits after its point, whatever it comes from.
+    From 10¹² on a double has few bits after its point, whatever it comes from: 75674920197265.2,
+    a product, is …265.203125.
     """
     plain = exact.denominator <= _SIMPLE and abs(exact) < _WHOLE
-    return plain and _digits(value) <= _EXACT_DIGITS
+    return plain and _digits(value) <= _EXACT_DIGITS and Fraction(repr(value)) == exact
 
 
 def _digits(value: float) -> int:

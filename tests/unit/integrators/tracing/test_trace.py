@@ -13,7 +13,7 @@ from tests.helpers.programs import user_steps as own_steps
 from verify.algebra.formula import symbol
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.tracing.functions import copied
-from verify.integrators.tracing.number import UntraceableError, reading
+from verify.integrators.tracing.number import UntraceableError, constant, reading
 from verify.integrators.tracing.series import TracedSeries
 from verify.integrators.tracing.shears import shears_of
 from verify.integrators.tracing.step_map import traced_map
@@ -96,6 +96,23 @@ def test_a_step_that_is_nearly_shears_is_none() -> None:
 )
 def test_a_float_is_read_as_what_it_is_written_for(value: float, read: Fraction | None) -> None:
     assert reading(value) == read
+
+
+@pytest.mark.parametrize(
+    ("value", "rounded"),
+    [
+        (3776010000000.25, False),
+        (75674920197265.0, False),
+        (0.375, False),
+        (75674920197265.2, True),  # G·m·M, whose exact value is …265.203125
+        (-3.77601e21 * 6.7895e-05 * 0.000295176, True),
+    ],
+)
+def test_a_product_that_is_rounded_counts_as_rounded(value: float, rounded: bool) -> None:
+    tape = Tape()
+    constant(tape, value)
+    assert bool(tape.rounded) is rounded
+    assert not tape.readings
 
 
 def test_the_users_module_is_not_changed() -> None:
