@@ -34,7 +34,7 @@ from verify.prose import Formula, Prose, prose
 from verify.schemes.conditions import Condition, NearbyOrder
 from verify.schemes.degrees.by_formulas import map_by_formulas
 from verify.schemes.degrees.defect import DefectSeries
-from verify.schemes.printed.asked import BITS, Asked, Named
+from verify.schemes.printed.asked import BITS, Asked, Named, ball_of
 from verify.schemes.printed.judged import WITHIN, Judged, judge
 from verify.schemes.printed.naming import Naming
 from verify.schemes.printed.nearby_order import highest
@@ -73,8 +73,7 @@ def moved_by_units(formulas: Formulas, hamiltonian: Hamiltonian) -> list[Formula
     if not read.readings:
         return []
     first = read.readings[0]
-    values = {name: rational(text, name) for name, text in read.numbers.items() if "/" not in text}
-    return [read.at({name: values[name] + unit}) for name, unit in first.units.items()]
+    return [read.at({name: first.values[name] + unit}) for name, unit in first.units.items()]
 
 
 def told_defect(near: NearbyOrder, form: str) -> Prose:
@@ -139,7 +138,8 @@ def _exact_or_printed(text: str, parameters: set[sympy.Rational]) -> str:
     if "/" in text:
         return text
     value = rational(text)
-    return str(value) if abs(sympy.sympify(value)) in parameters else text
+    # In brackets, as a long quotient may be read as another rounded number.
+    return f"({value})" if abs(sympy.sympify(value)) in parameters else text
 
 
 @dataclass(frozen=True)
@@ -194,9 +194,11 @@ class _PrintedMap:
 
     def _box(self, numbers: PrintedNumbers) -> dict[str, Ball]:
         """All values near the printed ones, in balls."""
-        exact = {name: rational(numbers.numbers[name], name) for name in self.names}
-        radius = {name: WITHIN * unit for name, unit in numbers.units.items()}
-        return {name: around(x, radius.get(name, Fraction(0))) for name, x in exact.items()}
+        exact = {
+            name: ball_of(numbers.entry(name)) for name in self.names if name not in numbers.units
+        }
+        units = numbers.units.items()
+        return exact | {name: around(numbers.values[name], WITHIN * unit) for name, unit in units}
 
 
 class _Conditions:

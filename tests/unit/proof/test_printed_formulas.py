@@ -77,6 +77,8 @@ def test_a_parameter_of_h_is_exact() -> None:
     exact = proof_of(heavy, fall.format(g="9.80665001"))
     assert (exact.verdict, exact.convergence_decided) == (Verdict.PROVED, True)
     assert "near" not in proof_of(heavy, "p_next = p - 9.80665001*h; q_next = q + h*p").reason
+    off = "p_next = p - 9.80665001*h*1.0000000001; q_next = q + h*p"
+    assert proof_of(heavy, off).convergence_order == 1  # by the other number alone
 
 
 def test_several_degrees() -> None:

@@ -87,3 +87,10 @@ def test_a_limit_of_formulas_is_that_of_exact_numbers_near_them(a: str, b: str, 
 @pytest.mark.parametrize("a", ["0.50000010001", "0.501"])
 def test_a_wrong_digit_of_formulas_leaves_no_stable_step(a: str) -> None:
     assert linear_stability(HALVES.format(a=a, b="0.49999999999", c="1/2")).interval == 0
+
+
+def test_a_long_quotient_in_formulas_may_stand_for_another_number() -> None:
+    """It is the only number that is rounded, and is moved by what it is known to."""
+    kick = "p_next = p - (14142135623731/14142135623730)*h*q"
+    found = linear_stability(f"{kick}; q_next = q + h*p_next")
+    assert abs(Fraction(found.decimal(12)) - 2) < Fraction(1, 10**8)
