@@ -153,7 +153,8 @@ def tried(text: str, scheme: str, arithmetic: Arithmetic, at: Sequence[Fraction]
 
 
 INVOLVED = ["a*p**2/2 + exp(-q**2)", "sqrt(1 + p**2)/a + log(2 + q**2)", "p**2/(2 + q**2) + pi*q",
-            "cosh(p) + sinh(a*q)", "(3 + q**2 + p)**(1/3) + atan(q)"]  # fmt: skip
+            "cosh(p) + sinh(a*q)", "(3 + q**2 + p)**(1/3) + atan(q)",
+            "p**2/2 + 1/(2 - q**2)", "1/q + p**2", "log(q) + p", "sqrt(a*q) + p**2"]  # fmt: skip
 hamiltonians = st.one_of(
     polynomials(degree=5, most_terms=3),
     st.builds("a*({})".format, polynomials(degree=4, most_terms=3)),
@@ -166,7 +167,10 @@ def one_of(*numbers: str) -> st.SearchStrategy[Fraction]:
     return st.sampled_from([Fraction(x) for x in numbers])
 
 
-points = st.tuples(rationals(5), rationals(5), one_of("1/7", "3", "1e-9"), rationals(30))
+# Denominators, and what is under logarithms and roots, well below 1 as well as above.
+near = one_of("1.41", "-1.414", "1e-3", "-1/70", "1/9")
+places = st.one_of(rationals(5), near)
+points = st.tuples(places, rationals(5), one_of("1/7", "3", "1e-9"), rationals(30))
 widths = one_of("0", "1e-6", "1/10")
 schemes = st.sampled_from(["lie1", "lie2", "symplectic-euler"])
 

@@ -122,6 +122,32 @@ def test_the_bound_of_every_function_holds(
         assert bound <= 600 * Fraction(2, 2**BITS) * max(1, abs(true)), "and is no idle bound"
 
 
+@pytest.mark.parametrize("kind", FUNCTIONS)
+@pytest.mark.parametrize("x", ["1/50", "1/7", "9/10", "3", "-1/50", "-2"])
+@pytest.mark.parametrize("share", ["1/3", "1/10000"])
+def test_what_an_argument_is_off_is_magnified_by_the_functions_slope(
+    kind: str, x: str, share: str
+) -> None:
+    """Far above rounding, which is not counted here; below 1 slopes are steep."""
+    middle = Fraction(x)
+    if kind in ("log", "root") and middle < 0:
+        return
+    off = abs(middle) * Fraction(share)
+    program = Program()
+    root = program.apply(kind, program.input("x", static=False), degree=3)
+    with flint.ctx.workprec(PRECISION):
+        given = {"x": Rounded(rational_ball(middle), rational_ball(off))}
+        found = analyse(program, [0, root], given, lambda *_: flint.arb(0))
+        assert found is not None
+        bound = bounds(found[root].error)[1]
+    true = value(program, root, {"x": middle}, FINE)
+    ends = (abs(value(program, root, {"x": y}, FINE) - true) for y in (middle - off, middle + off))
+    largest = max(ends)
+    assert largest <= bound * (1 + Fraction(1, 2**60))
+    limit = 4 if kind not in ("sin", "cos", "atan", "cosh") else None
+    assert limit is None or bound <= limit * largest, "and is near what may be reached"
+
+
 def test_there_is_no_bound_where_the_value_is_not_defined_all_over_the_box() -> None:
     program = Program()
     x = program.input("x", static=False)

@@ -1,0 +1,324 @@
+"""Bounds of runs are what their formulas say, term by term, of drawn sizes of everything.
+
+Where a bound is loose, a term that is missing shows in no orbit. Here each term is a part of the
+bound that counts, in one of the draws at least: the formulas in `tests/helpers/run_bounds.py` are
+worked out apart, and where one of what stands in them is left out, another number comes out.
+"""
+
+import random
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from fractions import Fraction
+from types import SimpleNamespace
+from typing import Any
+
+import flint
+import pytest
+
+from tests.helpers import run_bounds
+from tests.helpers.run_bounds import Noted, Real, ctx
+from verify.arithmetic.arb import rational_ball
+from verify.arithmetic.flint_precision import working_precision
+from verify.kernels.rounding import PRECISION, Rounded
+from verify.runs import form_bound, inverse_norm
+from verify.runs.a_posteriori import _Certificate
+from verify.runs.derivatives import norm
+from verify.runs.derivatives_in_degrees import DerivativesInDegrees
+from verify.runs.step_rounding import StepErrors
+
+SEEDS = range(40)
+SIZES = 2, 4, 6, 8
+CLOSE = ctx.mpf(10) ** -20
+ALL = frozenset(
+    {"delta_j_max", "mse", "lambda", "lambda_max", "symplectic_defect_max", "symplectic_defect"}
+)
+
+
+def drawn(seed: int, size: int) -> Noted:
+    """Sizes at which every term of every bound is a part of it that counts.
+
+    The rounding of M's numbers, 2⁻⁴⁸, is seen at 20 digits; no other term is that small.
+    """
+    draw = random.Random(f"{seed} {size}")  # noqa: S311 - sizes, no secret
+
+    def between(low: float, high: float) -> Real:
+        return ctx.mpf(draw.uniform(low, high))
+
+    n = draw.randint(1, 12)
+    squares = between(1.1, 3) * size
+    seen = {
+        "growth_top": squares,
+        "growth": between(1, n + 1) * squares,
+        "det_low": between(0.7, 1),
+        "form_top": between(1, 1.3) * size / 2,
+        "least": -between(0.01, 0.5),
+        "most": between(0.01, 0.5) * draw.choice([1, 3]),
+    }
+    rate = between(0.05, 0.2)
+    m = run_bounds.grown(n, size, seen, rate * run_bounds.least(size, seen) / seen["growth"])
+    tiny = ctx.mpf(10) ** -draw.randint(5, 7)
+    start, state = tiny * between(0.2, 1), tiny * between(0.2, 1) * m.least / m.path
+    linear = ctx.exp(m.rate) * (start + m.path / m.least * state)
+    moved = 1 / (linear * m.path)  # about 1/Σ ‖e_k‖
+    curved = between(0.1, 0.3) / (ctx.exp(m.rate) * m.path / m.least * 2 * m.top**2 * linear)
+    steep, size_of_form, slope_of_form = between(0.02, 0.05), between(0.05, 0.1), between(0.05, 0.1)
+    scale = ctx.ldexp(1, -draw.randint(0, 5))
+
+    def wider(x: Real) -> Callable[[Real], Real]:
+        """x, and more over a wider box."""
+        return lambda margin: x * (1 + margin / (1000 * tiny * m.top))
+
+    forms = wider(size_of_form / n), wider(slope_of_form * moved)
+    return Noted(
+        size=size, steps=n, seen=seen, start=start, state=state,
+        delta_j=between(0.02, 0.05) / n / scale, tangent=rate * m.least / seen["growth"],
+        largest=between(0.05, 0.2) / scale, defect=between(0.01, 0.1) * slope_of_form / scale,
+        second=wider(curved), slope=wider(steep * moved / scale),
+        form=lambda margin: (forms[0](margin), forms[1](margin)),
+        of_matrix=between(0.02, 0.1) * m.least / m.path,
+        of_entry=between(0.05, 0.2) * m.top**2 / n,
+        squares=between(0.1, 0.5), scale=scale, unit=between(0.005, 0.02) / n,
+        absolute=draw.random() < 0.5,
+    )  # fmt: skip
+
+
+def ball(x: Real) -> flint.arb:
+    return rational_ball(exact(x))
+
+
+def exact(x: Real) -> Fraction:
+    mantissa, exponent = ctx.frexp(x)
+    return Fraction(int(ctx.ldexp(mantissa, 200))) * Fraction(2) ** (int(exponent) - 200)
+
+
+def number(x: flint.arb) -> Real:
+    with working_precision(200):
+        return ctx.mpf(x.mid().str(40, radius=False))
+
+
+class Told(DerivativesInDegrees):
+    """Derivatives of a step as they were drawn; how far the box was widened stands in it."""
+
+    def __init__(self, noted: Noted) -> None:
+        object.__setattr__(self, "noted", noted)
+
+    def _at(self, function: Callable[[Real], Any], box: Mapping[str, Any]) -> Any:
+        return function(number(box["widened"]))
+
+    def second(self, _: Any, box: Mapping[str, Any]) -> flint.arb:
+        return ball(self._at(self.noted.second, box))  # type: ignore[attr-defined]
+
+    def gradient(self, _: Any, box: Mapping[str, Any]) -> flint.arb:
+        noted: Noted = self.noted  # type: ignore[attr-defined]
+        return ball(self._at(noted.slope, box) * noted.scale)
+
+    def form(self, _: Any, box: Mapping[str, Any]) -> tuple[flint.arb, flint.arb]:
+        size, slope = self._at(self.noted.form, box)  # type: ignore[attr-defined]
+        return ball(size), ball(slope)
+
+
+def certificate(noted: Noted) -> tuple[_Certificate, StepErrors]:
+    """A certificate of a run that noted this, and what its steps lose."""
+    made = object.__new__(_Certificate)
+    zero = Rounded(flint.arb(0), flint.arb(0))
+    # ‖of_matrix‖ is of one entry alone, and the greatest of_entry of two.
+    values = {"dm": zero, "dw_1": zero, "dw_2": zero}
+
+    def adding(size: flint.arb, x: Rounded) -> flint.arb:
+        if x is values["dm"]:
+            assert size.overlaps(3 * motion.top)
+            return ball(noted.of_matrix)
+        assert size.overlaps(9 * motion.top**2 / ball(noted.scale))
+        part = ball(noted.of_entry / noted.scale)
+        return part if x is values["dw_2"] else part / 3
+
+    names = tuple("pq") if noted.size == 2 else tuple(f"z{k}" for k in range(noted.size))
+    values["dm"], values["dw_1"] = (Rounded(flint.arb(k), flint.arb(0)) for k in (1, 2))
+    # The first error, as two coordinates that are off by 3/5 and 4/5 of it.
+    off = dict(zip(names, (Fraction(3, 5), Fraction(-4, 5)), strict=False))
+    start, first = {n: Fraction(k) for k, n in enumerate(names)}, exact(noted.start)
+    rounded = {Fraction(k): k + first * off.get(n, Fraction(0)) for k, n in enumerate(names)}
+    vars(made).update(
+        run=SimpleNamespace(observables=ALL, start=start),
+        arithmetic=SimpleNamespace(
+            absolute=noted.absolute, number=rounded.__getitem__, exact=lambda x: x
+        ),
+        values={"mse": exact(noted.squares)},
+        rounding=SimpleNamespace(
+            fixed=dict,
+            box=lambda margin: {"widened": margin},
+            adding=adding,
+            kernel=SimpleNamespace(matrix=["m"]),
+        ),
+        steps=noted.steps,
+        seen={name: ball(x) for name, x in noted.seen.items()},
+        names=names,
+        unit=ball(noted.unit),
+        scale=ball(noted.scale),
+    )
+    errors = StepErrors(
+        state=ball(noted.state), delta_j=ball(noted.delta_j), tangent=ball(noted.tangent),
+        size=ball(noted.largest), defect=ball(noted.defect), values=values,
+    )  # fmt: skip
+    found = made.motion(errors)
+    assert found is not None
+    motion = found
+    return made, errors
+
+
+def bounds_of(noted: Noted) -> dict[str, Real]:
+    """What the certificate says of a run that noted this."""
+    with working_precision(PRECISION):
+        made, errors = certificate(noted)
+        told = Told(noted)
+        orbit = made.orbit(errors, told)
+        assert orbit is not None
+        found = {"state": orbit[0], "path": orbit[1]}
+        found |= made.observables(errors, told, *orbit)
+        found |= made.of_form(errors, told, *orbit)
+        return {name: number(x) for name, x in found.items()}
+
+
+def by_formulas(noted: Noted) -> dict[str, Real]:
+    """The same by formulas that are worked out apart."""
+    state, path = run_bounds.of_state(noted)
+    product = run_bounds.of_lambda(noted)
+    return {
+        "state": state,
+        "path": path,
+        "delta_j_max": run_bounds.of_delta_j_max(noted),
+        "mse": run_bounds.of_mse(noted),
+        "lambda": product,
+        "lambda_max": product,
+        "symplectic_defect_max": run_bounds.of_defect_max(noted),
+        "symplectic_defect": run_bounds.of_defect(noted),
+    }
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_every_bound_of_a_run_is_what_its_formula_says(size: int) -> None:
+    for seed in SEEDS:
+        noted = drawn(seed, size)
+        found, true = bounds_of(noted), by_formulas(noted)
+        assert found.keys() == true.keys()
+        for name, value in true.items():
+            assert abs(found[name] / value - 1) < CLOSE, (name, seed, size)
+
+
+TERMS: dict[str, Callable[[Noted], Noted]] = {
+    name: lambda noted, name=name: replace(noted, **{name: ctx.mpf(0)})  # type: ignore[misc]
+    for name in ("start", "state", "delta_j", "tangent", "largest", "defect", "of_matrix",
+                 "of_entry", "squares", "unit")
+} | {
+    "second": lambda noted: replace(noted, second=lambda _: ctx.mpf(0)),
+    "slope": lambda noted: replace(noted, slope=lambda _: ctx.mpf(0)),
+    "form's size": lambda noted: replace(noted, form=lambda x: (ctx.mpf(0), noted.form(x)[1])),
+    "form's slope": lambda noted: replace(noted, form=lambda x: (noted.form(x)[0], ctx.mpf(0))),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("term", TERMS)
+def test_a_term_that_is_left_out_of_a_formula_shows(term: str) -> None:
+    """The negative control: a bound without the term is another, by a part in 10⁴ at least, in a third
+    of the draws."""
+    moved = []
+    for seed in SEEDS:
+        noted = drawn(seed, 4)
+        right, lacking = by_formulas(noted), by_formulas(TERMS[term](noted))
+        moved.append(max(abs(lacking[name] / right[name] - 1) for name in right))
+    assert sum(x > ctx.mpf(10) ** -4 for x in moved) > len(SEEDS) // 3
+
+
+def test_where_the_quadratic_term_grows_beyond_twice_the_linear_one_nothing_is_certified() -> None:
+    for seed in SEEDS:
+        noted = drawn(seed, 2)
+        with working_precision(PRECISION):
+            made, errors = certificate(noted)
+            _, reach = made.orbit(errors, Told(noted)) or (None, None)
+            assert reach is not None
+            steep = replace(noted, second=lambda _, noted=noted: 10**9 * noted.second(0))
+            assert made.orbit(errors, Told(steep)) is None
+
+
+def test_a_form_that_may_be_larger_than_was_counted_has_no_bound() -> None:
+    """Y > 1, E > max ‖M‖, and an error of W of more than 3 max ‖M‖², each alone."""
+    zero, one = flint.arb(0), flint.arb(1)
+    motion = form_bound.Motion(steps=10, least=one, rate=zero, top=one, path=one)
+    small = dict.fromkeys(("summed", "second", "size", "slope", "of_matrix", "of_entry"), zero)
+
+    def bound(**more: Any) -> flint.arb:
+        return form_bound.of_form(motion, **small | {n: flint.arb(x) for n, x in more.items()})
+
+    assert bound() == 0
+    assert bound(summed=0.49, second=1).is_finite()
+    assert not bound(summed=0.51, second=1).is_finite()
+    assert bound(of_matrix=0.99).is_finite()
+    assert not bound(of_matrix=1.01).is_finite()
+    assert bound(of_entry=0.29).is_finite()
+    assert not bound(of_entry=0.31).is_finite()
+    fast = replace(motion, rate=flint.arb(0.6))  # e^Q Q > 1
+    assert not form_bound.of_form(fast, **small).is_finite()
+
+
+# -- the inverse of M --------------------------------------------------------------------------
+
+
+def matrix(draw: random.Random, size: int) -> list[list[Fraction]]:
+    """Far from symplectic: nearly singular, or long in a direction."""
+    rows = [[Fraction(draw.randint(-9, 9), 4) for _ in range(size)] for _ in range(size)]
+    stretched, factor = draw.randrange(size), draw.choice([Fraction(1, 50), 1, 20])
+    rows[stretched] = [x * factor for x in rows[stretched]]
+    return rows
+
+
+def noted_by(rows: list[list[Fraction]]) -> dict[str, flint.arb]:
+    """What a run would note of one M: with the sign of its determinant left out, as the sign of
+    a Pfaffian that has not passed 0."""
+    size, n = len(rows), len(rows) // 2
+    columns = [[row[k] for row in rows] for k in range(size)]
+    form = [
+        [sum(u[i] * v[n + i] - u[n + i] * v[i] for i in range(n)) for v in columns] for u in columns
+    ]
+    above = [form[a][b] for a in range(size) for b in range(a + 1, size)]
+    det = flint.fmpq_mat(size, size, [flint.fmpq(x.numerator, x.denominator) for r in rows for x in r]).det()  # fmt: skip
+    return {
+        "growth_top": rational_ball(sum((x * x for row in rows for x in row), Fraction(0))),
+        "det_low": rational_ball(abs(Fraction(int(det.p), int(det.q)))),
+        "form_top": rational_ball(sum((x * x for x in above), Fraction(0))),
+    }
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_the_inverse_is_no_larger_than_is_said(size: int) -> None:
+    """‖M‖/‖M⁻¹‖ ≥ d in Frobenius' norms, up to the n that these two may differ by."""
+    draw = random.Random(f"inverse {size}")  # noqa: S311 - no secret
+    nearest = ctx.inf
+    for _ in range(300):
+        rows = matrix(draw, size)
+        seen = noted_by(rows)
+        if not seen["det_low"] > 0:
+            continue
+        with working_precision(PRECISION):
+            least = inverse_norm.least_of(size, seen)
+        if not least > 0:
+            continue
+        exact_rows = ctx.matrix([[ctx.mpf(x.numerator) / x.denominator for x in r] for r in rows])
+        singular = ctx.svd_r(exact_rows, compute_uv=False)
+        share = singular[0] * singular[size - 1] / number(least)
+        assert share >= 1 - ctx.mpf(10) ** -12, rows
+        nearest = min(nearest, share)
+    assert nearest < 2 * size  # and the bound is near what it bounds, for one of them
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_the_inverses_bound_is_what_its_formula_says(size: int) -> None:
+    for seed in SEEDS:
+        seen = drawn(seed, size).seen
+        with working_precision(PRECISION):
+            found = inverse_norm.least_of(size, {n: ball(x) for n, x in seen.items()})
+        assert abs(number(found) / run_bounds.least(size, seen) - 1) < CLOSE
+
+
+def test_the_norm_is_euclids() -> None:
+    with working_precision(PRECISION):
+        assert norm([flint.arb(-3), flint.arb(4)]).overlaps(flint.arb(5))
