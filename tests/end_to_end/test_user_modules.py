@@ -69,6 +69,7 @@ def test_no_library_is_taken_from_the_folder_of_the_user(
     assert (done.returncode, said in done.stdout + done.stderr) == (status, True), done.stderr
 
 
+@pytest.mark.sample(6)
 @pytest.mark.parametrize("name", ["queue", "statistics", "test", "click", "tests", "difflib"])
 @pytest.mark.parametrize("suffix", ["", ".py"])
 def test_a_module_that_is_called_as_a_library_is_still_the_users_own(

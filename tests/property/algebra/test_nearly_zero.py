@@ -93,4 +93,6 @@ def test_a_number_that_is_nearly_0_is_not(family: str, bits: int) -> None:
 @pytest.mark.parametrize("family", ["degree 3", "degree 4", "seventh of a turn", "logarithms"])
 @pytest.mark.parametrize("made", AROUND)
 def test_a_function_that_nearly_vanishes_does_not(made: str, family: str, bits: int) -> None:
-    assert decide(AROUND[made].format(x=combination(family, coefficients(family, bits)))) is not True
+    assert (
+        decide(AROUND[made].format(x=combination(family, coefficients(family, bits)))) is not True
+    )

@@ -46,6 +46,7 @@ def test_so_it_is_in_c(tmp_path: Path) -> None:
     assert (found.verdict, found.convergence_order, found.symplectic) == ("REFUTED", 1, False)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("sigma", ["1/1000", "2", "340"])
 def test_a_molecule_of_any_size_is_of_its_order_up_to_the_cutoff(sigma: str) -> None:
     size = float(Fraction(sigma))
@@ -57,6 +58,7 @@ def test_a_molecule_of_any_size_is_of_its_order_up_to_the_cutoff(sigma: str) -> 
     assert (wrong.verdict, wrong.convergence_order) == ("REFUTED", 0), wrong.reason
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("rate", [1, 10**6, 10**12])
 def test_the_order_of_a_right_method_on_stiff_h_is_seen(rate: int) -> None:
     found = judged(steps.stiff(rate), BOTH, hamiltonian=f"p**2/2 + {rate}*q**2/2")
@@ -93,6 +95,7 @@ void step(int n, double t, double h, double *p, double *q)
 """
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize(
     ("energy", "force", "velocity", "right", "wrong"),
     [
@@ -208,6 +211,7 @@ def pull(q: Any) -> Any:
     return -math.sin(q)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9, 1e-12])
 def test_a_tolerance_above_the_noise_is_refuted_and_named(tolerance: float) -> None:
     found = judged(steps.midpoint(pull, tolerance), Claims(symplectic=True))
@@ -278,6 +282,7 @@ def test_each_shape_is_understood(step: steps.Step) -> None:
     assert (found.verdict, found.convergence_order) == ("PROVED", 2), found.notes
 
 
+@pytest.mark.left_to_ci
 def test_bodies_in_space_have_arrays_of_their_shape() -> None:
     found = judged(steps.bodies, BOTH, hamiltonian=steps.TWO_BODIES)
     assert found.verdict.holds
@@ -488,6 +493,7 @@ def test_a_star_and_light_planets_are_judged_in_their_units() -> None:
     assert wrong.verdict == "REFUTED"  # of the force between the planets alone
 
 
+@pytest.mark.left_to_ci
 def test_what_is_refuted_in_c_is_printed(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -91,7 +91,9 @@ def orbit(arithmetic: Arithmetic, **start: Fraction) -> tuple[KernelRun, StepRou
     return run, StepRounding(run, arithmetic, outcome, -1), outcome
 
 
-@pytest.mark.parametrize("arithmetic", [fixed.at_bits(112), mpfr.at_bits(40)], ids=["fixed", "mpfr"])
+@pytest.mark.parametrize(
+    "arithmetic", [fixed.at_bits(112), mpfr.at_bits(40)], ids=["fixed", "mpfr"]
+)
 def test_a_step_begins_where_the_run_has_been_with_what_its_inputs_are_off(
     arithmetic: Arithmetic,
 ) -> None:
@@ -123,7 +125,9 @@ def test_a_step_begins_where_the_run_has_been_with_what_its_inputs_are_off(
 
 def ends_of(x: flint.arb) -> tuple[Fraction, Fraction]:
     with working_precision(PRECISION):
-        return tuple(Fraction(int(m.p), int(m.q)) for m in (end.fmpq() for end in (x.lower(), x.upper())))  # type: ignore[return-value]
+        return tuple(
+            Fraction(int(m.p), int(m.q)) for m in (end.fmpq() for end in (x.lower(), x.upper()))
+        )  # type: ignore[return-value]
 
 
 def upper(x: flint.arb) -> Fraction:

@@ -21,8 +21,11 @@ def test_initial_values_are_exact_and_within_reach() -> None:
 def test_extreme_initial_values_are_so() -> None:
     numbers = [x for value in fuzzed(s.initial_values(extreme=True), 400)
                for x in (value.q, value.p)]  # fmt: skip
-    assert any(0 < abs(x) < Fraction(1, 10**200) for x in numbers)
-    assert any(abs(x) > 10**200 for x in numbers)
+    for sign in (1, -1):
+        assert any(0 < sign * x < Fraction(1, 10**100) for x in numbers)
+        assert any(sign * x > 10**100 for x in numbers)
+        near = (x for x in numbers if 0 < sign * (x - round(x)) < Fraction(1, 10**20))
+        assert any(round(x) for x in near)
     assert 0 in numbers
     assert any(0 < abs(x - round(x)) < Fraction(1, 10**50) and round(x) for x in numbers)
     assert any(x.denominator > 10**30 and abs(x) <= 2 for x in numbers)

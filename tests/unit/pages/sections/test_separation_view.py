@@ -18,6 +18,7 @@ from tests.helpers.pages.imported_modules import imported_by
 from tests.unit.pages.figures.test_figures import figures
 from tests.unit.pages.test_page import EVIL, SCRIPT, Reader, proof, report, run, scene
 from verify.pages.page import render
+from verify.pages.sections.separation_finding import finding
 from verify.pages.text.typography import grouped, step
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.report import SceneResult
@@ -207,3 +208,16 @@ def test_a_series_names_what_it_repeats_only_where_the_scene_says_so() -> None:
     page = render(report((scene(series=(run(series=points, source="Figure 10"),)),)))
     assert "p₀ = −0.5 (for Figure 10)." in text_of(page)
     assert "Figure" not in text_of(render(report((scene(series=(run(series=points),)),))))
+
+
+@pytest.mark.parametrize("unknown", [0, 1, 2])
+def test_how_often_the_closed_form_gains_is_said_of_all_that_have_it(unknown: int) -> None:
+    """Of an entry of which no digit is known nothing is gained, and it counts among the others."""
+    gained = [evaluation("1.000e-02", "1.000e-05"), evaluation("1.000e-02", "1.000e-12")]
+    silent = [evaluation("1.000e-02", "0"), evaluation("1.000e-02", "0")]
+    points = [point("0.1", *gained), point("0.2", *gained)]
+    points += [point(f"0.{3 + k}", *silent) for k in range(unknown)]
+    said = " ".join(finding(points))
+    among = f"{2 + unknown} entries" if unknown else "all 2 entries"
+    said = said.partition("log1p summation")[2]
+    assert f"smaller in {f'2 of {among}' if unknown else among}" in said

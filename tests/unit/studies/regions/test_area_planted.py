@@ -1,6 +1,7 @@
 """Planted errors of the area's probe are seen, and rounding is measured."""
 
 from fractions import Fraction
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -79,3 +80,19 @@ def test_a_sample_of_panels_in_finer_arithmetic_is_enough(monkeypatch: pytest.Mo
     every = measured(outline, plane, CHANGED)
     assert few.change == every.change
     assert every.rounded / 8 <= few.rounded <= 8 * every.rounded
+
+
+@pytest.mark.parametrize("sampled", [1, 3, 10, 1000])
+def test_the_rounding_of_a_sample_stands_for_all_panels(sampled: int) -> None:
+    """100 panels of two halves, each of which loses 5 units, without regard to its sign."""
+    panels = [SimpleNamespace(start=k, parts=(7 * k, -k)) for k in range(100)]
+    probe = object.__new__(Probe)
+    vars(probe).update(
+        goals=[None],
+        plane=SimpleNamespace(radius=None, sampled=sampled, finer=None),
+        _of=lambda families, _: families,
+        _images=lambda starts, _: starts,
+        _areas=lambda starts: [(7 * k + 2, -k - 3) for k in starts],
+    )
+    (found,) = probe._roundings([SimpleNamespace(halves=panels)])  # type: ignore[list-item]
+    assert found == 2 * 5 * len(panels)

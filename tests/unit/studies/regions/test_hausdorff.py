@@ -72,6 +72,13 @@ def test_the_bound_without_the_sagittas_would_be_too_small() -> None:
     assert holds(hausdorff(*curves, sagitta(1, 20), sagitta(1.5, 13)), 0.5)
 
 
+@pytest.mark.parametrize("sagittas", [(0.5, 0.0), (0.0, 0.5), (0.25, 0.5)])
+def test_each_curves_sagitta_is_a_part_of_the_bound(sagittas: tuple[float, float]) -> None:
+    found = hausdorff([SQUARE], [SQUARE + 2.0], *sagittas)
+    assert max(sagittas) <= found.bound <= sum(sagittas) + 1e-9
+    assert holds(found, float(np.hypot(2, 2)))
+
+
 def test_a_polygon_and_itself() -> None:
     """Also where its points are others, or begin elsewhere, or run the other way."""
     for other in (SQUARE, divided(SQUARE, 7), np.roll(SQUARE, 1, axis=0), SQUARE[::-1]):

@@ -1,0 +1,75 @@
+"""A mistake is named where it fits, and where the right reading is off by many times more."""
+
+from collections.abc import Callable
+from fractions import Fraction
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from verify.reference.compare import diagnosis
+from verify.reference.compare.diagnosis import Diagnosis
+from verify.reference.compare.findings import DOUBLE, Fit, Of, RunFindings, Verdict
+
+PLACE = (7, "lambda")
+UNIT = DOUBLE
+THEIRS = Fraction(3, 1000)
+ROUNDED = UNIT * THEIRS  # as near as two numbers of that size are told apart
+
+
+def judged(right: Fraction, other: Fraction, *, fits: bool = True) -> list[str]:
+    """The names that are said of a column that is off by `right` in the right reading, and by
+    `other` in the first of the others; the rest of them do not fit."""
+    wrong = Fit({"lambda": Verdict.MORE})
+    wrong.parts, wrong.apart = {"lambda": PLACE[0]}, {PLACE: right}
+    near = Fit({"lambda": Verdict.AGREES if fits else Verdict.MORE})
+    near.apart = {PLACE: other}
+    asked: list[Any] = []
+
+    def fit(_: Any, __: Any, ___: Any, read: Any = None, *, wholly: bool = True) -> Fit:
+        if read is None:
+            return wrong
+        asked.append(read)
+        return near if len(asked) == 1 else wrong
+
+    judge = SimpleNamespace(
+        fit=fit, digits=lambda _: 17, cells={PLACE: SimpleNamespace(theirs=THEIRS)},
+        names=["lambda"], right=None, state=[],
+    )  # fmt: skip
+    findings = RunFindings("a run", {"lambda": Of(Verdict.MORE, 3, 2.0, 7, 7)}, unit=UNIT)
+    named = Diagnosis(judge, findings)._of_column(None, "lambda")  # type: ignore[arg-type]
+    return [name for name, _ in named]
+
+
+@pytest.mark.parametrize("times", [2, 10, 29])
+@pytest.mark.parametrize("other", [ROUNDED, 5 * ROUNDED, 1000 * ROUNDED, ROUNDED / 100])
+def test_a_reading_that_is_not_much_nearer_is_not_named(times: int, other: Fraction) -> None:
+    """Nearer than rounding does not count: no number tells that."""
+    assert judged(times * max(other, ROUNDED), other) == []
+
+
+@pytest.mark.parametrize("times", [30, 31, 1000])
+@pytest.mark.parametrize("other", [ROUNDED, 5 * ROUNDED, 1000 * ROUNDED, ROUNDED / 100])
+def test_a_reading_that_fits_and_is_much_nearer_is_named(times: int, other: Fraction) -> None:
+    assert judged(times * max(other, ROUNDED), other) == ["lambda+1"]
+    assert judged(times * max(other, ROUNDED), other, fits=False) == []
+
+
+@pytest.mark.parametrize("times", [2, 29, 30, 1000])
+def test_a_mistake_of_the_state_is_told_by_the_same_rule(
+    times: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    right, other = Fit({"lambda": Verdict.MORE}), Fit({"lambda": Verdict.AGREES})
+    right.parts, right.apart = {"lambda": PLACE[0]}, {PLACE: times * ROUNDED}
+    other.apart = {PLACE: ROUNDED}
+    late = SimpleNamespace(name="late", says="a step late", setting="late", synonyms=())
+    judge = SimpleNamespace(
+        fit=lambda setting, *_, **__: other if setting == "late" else right,
+        units=lambda: [UNIT], right="right", cells={PLACE: SimpleNamespace(theirs=THEIRS)},
+        known=lambda *_: {},
+    )  # fmt: skip
+    for where in ("of_inputs", "of_states"):
+        names: Callable[[Any], Any] = lambda _, where=where: [late] if where == "of_states" else []  # type: ignore[misc]  # noqa: E731
+        monkeypatch.setattr(diagnosis, where, names)
+    found = list(Diagnosis(judge, RunFindings("a run"))._fitting(["lambda"]))  # type: ignore[arg-type]
+    assert found == ([late] if times >= 30 else [])

@@ -1,0 +1,100 @@
+"""That an exact solution lies near printed numbers is shown where one does, and nowhere else."""
+
+from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
+
+import flint
+import pytest
+
+from verify.arithmetic.arb import Ball, rational_ball
+from verify.arithmetic.flint_precision import working_precision
+from verify.schemes.printed.nearby import AnyNumbers, Nearby
+from verify.schemes.printed.nearest import HELD, _solution, nearest
+
+Function = Callable[[Sequence[Ball]], Ball]
+
+
+class Conditions(Nearby):
+    """Conditions written down, with their derivatives, near numbers of one unit each."""
+
+    def __init__(
+        self,
+        start: Sequence[Fraction],
+        values: Sequence[Function],
+        slopes: Sequence[Sequence[Function]],
+        second: Sequence[float],
+    ) -> None:
+        self._values, self._slopes = values, slopes
+        self.names = tuple(f"x{k}" for k in range(len(start)))
+        exact = dict(zip(self.names, start, strict=True))
+        self.numbers = AnyNumbers(
+            {n: str(x) for n, x in exact.items()}, exact, dict.fromkeys(exact, Fraction(1, 10**8))
+        )
+        self.start = [rational_ball(x) for x in start]
+        self.unit = [rational_ball(Fraction(1, 10**8)) for _ in start]
+        self.second = [flint.arb(x) for x in second]
+        self.value = self.residues(self.start, range(len(values)))
+        self.slope = self.slopes(self.start, self.value)
+
+    def residues(self, at: Sequence[Ball], rows: Sequence[int]) -> dict[int, Ball]:
+        return {k: self._values[k](at) for k in rows}
+
+    def slopes(self, at: Sequence[Ball], value: Mapping[int, Ball]) -> dict[int, list[Ball]]:
+        return {k: [slope(at) for slope in self._slopes[k]] for k in value}
+
+
+def parabola(start: Fraction, shift: Fraction) -> Conditions:
+    """x² + shift = 0."""
+    return Conditions(
+        [start], [lambda x: x[0] * x[0] + rational_ball(shift)], [[lambda x: 2 * x[0]]], [2]
+    )
+
+
+@pytest.mark.parametrize("near", [4, 10, 40, 100])
+@pytest.mark.parametrize("above", [3, 10, 100, 200])
+def test_a_parabola_that_stays_above_0_has_no_zero_near_its_lowest_point(
+    near: int, above: int
+) -> None:
+    """Where its slope is small the second derivative is all that is left."""
+    with working_precision(600):
+        start = Fraction(1, 2**near)
+        conditions = parabola(start, start / 2**above)
+        assert _solution(conditions, [0], conditions.start) is None
+        assert nearest(conditions, [0]) is None
+
+
+@pytest.mark.parametrize("off", [12, 30, 60])
+def test_a_zero_that_is_near_is_shown_and_where_it_is(off: int) -> None:
+    with working_precision(600):
+        for root in (Fraction(1, 3), Fraction(-5, 7)):
+            conditions = parabola(root + Fraction(1, 2**off), -root * root)
+            found = nearest(conditions, [0])
+            assert found is not None
+            assert (found.shown, found.rest) == (1, 0)
+            assert abs(found.numbers["x0"] - root) < Fraction(1, 2**150)
+            assert abs(found.off / (Fraction(10**8, 2**off)) - 1) < Fraction(1, 2**20)
+            balls = _solution(conditions, [0], [rational_ball(found.numbers["x0"])])
+            assert balls is not None
+            assert balls[0].overlaps(rational_ball(root))
+
+
+def test_a_condition_that_depends_on_another_has_to_hold_there_too() -> None:
+    """x y = 1/4 and x + y = 1 have the one solution ½, ½, at which x = ½ to any digit."""
+    quarter, half = flint.arb(0.25), flint.arb(0.5)
+    with working_precision(600):
+
+        def conditions(shift: Ball) -> Conditions:
+            return Conditions(
+                [Fraction(1, 2) + Fraction(1, 10**8), Fraction(1, 2)],
+                [lambda x: x[0] - half, lambda x: x[1] - half, lambda x: x[0] * x[1] - quarter + shift],
+                [[lambda _: flint.arb(1), lambda _: flint.arb(0)],
+                 [lambda _: flint.arb(0), lambda _: flint.arb(1)],
+                 [lambda x: x[1], lambda x: x[0]]],
+                [0, 0, 1],
+            )  # fmt: skip
+
+        found = nearest(conditions(flint.arb(0)), [0, 1, 2])
+        assert found is not None
+        assert found.shown == 2
+        assert found.rest < HELD
+        assert nearest(conditions(flint.arb(2) ** -190), [0, 1, 2]) is None
