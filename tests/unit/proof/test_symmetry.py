@@ -1,4 +1,4 @@
-"""That a step is not undone by that of −h, by its series for one H; and that this proves no more."""
+"""That a step is not undone by that of −h, by its series for one H; that proves no more."""
 
 import pytest
 
@@ -20,8 +20,8 @@ IN_TIME = "p**2/2 + q**4/7 + p**3/3 + q*t + q**2*t**2"
 def test_a_step_that_is_not_symmetric_is_refuted_at_the_power_where_it_differs(
     scheme: str, power: int, formula: str
 ) -> None:
-    """Steps of ±h that are off by ±d h^(r + 1) and d (−h)^(r + 1) leave 2 d h^(r + 1) for odd r, and
-    for even r nothing but the next power."""
+    """Steps of ±h that are off by d h^(r + 1) and d (−h)^(r + 1) leave 2 d h^(r + 1) for odd r,
+    and for even r nothing but the next power."""
     found = by_series(get(scheme).step_map(Hamiltonian.parse(formula)), 6)
     assert (found.verdict, found.power) == (Verdict.REFUTED, power)
     assert f"O(h^{power})" in str(found.reason)

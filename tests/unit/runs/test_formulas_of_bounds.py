@@ -219,8 +219,8 @@ TERMS: dict[str, Callable[[Noted], Noted]] = {
 
 @pytest.mark.parametrize("term", TERMS)
 def test_a_term_that_is_left_out_of_a_formula_shows(term: str) -> None:
-    """The negative control: a bound without the term is another, by a part in 10⁴ at least, in a third
-    of the draws."""
+    """The negative control: a bound without the term is another, by a part in 10⁴ at least, in a
+    third of the draws."""
     moved = []
     for seed in SEEDS:
         noted = drawn(seed, 4)
@@ -280,7 +280,8 @@ def noted_by(rows: list[list[Fraction]]) -> dict[str, flint.arb]:
         [sum(u[i] * v[n + i] - u[n + i] * v[i] for i in range(n)) for v in columns] for u in columns
     ]
     above = [form[a][b] for a in range(size) for b in range(a + 1, size)]
-    det = flint.fmpq_mat(size, size, [flint.fmpq(x.numerator, x.denominator) for r in rows for x in r]).det()  # fmt: skip
+    entries = [flint.fmpq(x.numerator, x.denominator) for row in rows for x in row]
+    det = flint.fmpq_mat(size, size, entries).det()
     return {
         "growth_top": rational_ball(sum((x * x for row in rows for x in row), Fraction(0))),
         "det_low": rational_ball(abs(Fraction(int(det.p), int(det.q)))),

@@ -1,4 +1,4 @@
-"""What one step of a run loses is what its formulas say, and what the operations lose contains it."""
+"""What one step of a run loses is what its formulas say, and no number loses more."""
 
 import random
 from collections.abc import Callable
@@ -134,7 +134,7 @@ def upper(x: flint.arb) -> Fraction:
     return ends_of(x)[1]
 
 
-# -- orbits whose increments are larger than their states -------------------------------------------
+# -- orbits whose increments are larger than their states -----------------------------------------
 
 
 @pytest.mark.parametrize("bits", [12, 24, 53, 100])
@@ -153,7 +153,7 @@ def test_one_step_from_nearly_nothing_is_within_its_bound(bits: int, size: str) 
         assert errors["q"] <= 8 * Fraction(size) / 2**bits
 
 
-# -- the clock ---------------------------------------------------------------------------------------
+# -- the clock ------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("system", [fixed, mpfr, mpmath], ids=lambda x: x.NAME)

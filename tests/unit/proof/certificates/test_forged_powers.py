@@ -36,7 +36,8 @@ def preserving(kind: str, a: int, b: int, square: bool = True) -> Data:
         "witness": {},
     }  # fmt: skip
     if kind == EVERY:
-        data = {n: x for n, x in data.items() if n not in ("parameters", "functions", "cofactors", "witness")}  # fmt: skip
+        for name in ("parameters", "functions", "cofactors", "witness"):
+            del data[name]
         data |= {"hamiltonian": "every", "separable": False}
     if kind == TIMED:
         data["time_dependent"] = True

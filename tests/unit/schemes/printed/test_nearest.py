@@ -86,7 +86,8 @@ def test_a_condition_that_depends_on_another_has_to_hold_there_too() -> None:
         def conditions(shift: Ball) -> Conditions:
             return Conditions(
                 [Fraction(1, 2) + Fraction(1, 10**8), Fraction(1, 2)],
-                [lambda x: x[0] - half, lambda x: x[1] - half, lambda x: x[0] * x[1] - quarter + shift],
+                [lambda x: x[0] - half, lambda x: x[1] - half,
+                 lambda x: x[0] * x[1] - quarter + shift],
                 [[lambda _: flint.arb(1), lambda _: flint.arb(0)],
                  [lambda _: flint.arb(0), lambda _: flint.arb(1)],
                  [lambda x: x[1], lambda x: x[0]]],

@@ -25,7 +25,8 @@ def moments(name: str, letter: str, power: int) -> sympy.Expr:
     else:
         weights = conditions.tableau.parts[0 if letter == "p" else -1].weights  # type: ignore[attr-defined]
     pairs = zip(weights, conditions.clock, strict=True)
-    return sum((b * (sympy.Rational(T0) + c * sympy.Rational(H)) ** power for b, c in pairs), sympy.S.Zero)  # fmt: skip
+    t0, h = sympy.Rational(T0), sympy.Rational(H)
+    return sum((b * (t0 + c * h) ** power for b, c in pairs), sympy.S.Zero)
 
 
 def stepped(name: str, formula: str, letter: str) -> sympy.Rational:
