@@ -1,8 +1,14 @@
-"""What can be changed at one node of a Python syntax tree, each change with a word for it."""
+"""What can be changed at one node of a Python syntax tree, each change with a word for it.
+
+Those of the field are in `tests.mutants.of_the_field`: a term, a factor, a square, q for p, a
+rounding.
+"""
 
 import ast
 import copy
 from collections.abc import Iterator
+
+from tests.mutants import of_the_field
 
 Change = tuple[str, ast.AST, ast.AST]  # a word, the node that goes, the node that comes
 
@@ -26,6 +32,7 @@ def changes_of(node: ast.AST) -> Iterator[Change]:
     yield from _of_condition(node)
     yield from _of_call(node)
     yield from _of_statement(node)
+    yield from of_the_field.changes_of(node)
     if isinstance(node, ast.Slice):
         yield from _shifted(node)
 
@@ -101,6 +108,7 @@ def _of_statement(node: ast.AST) -> Iterator[Change]:
             for at in _own_returns(node.body):
                 if at.value is not None:
                     yield "return-negated", at.value, ast.UnaryOp(ast.Not(), at.value)
+                yield from (("returned", at.value, ast.Constant(x)) for x in (True, False))
 
 
 def _own_returns(body: list[ast.stmt]) -> Iterator[ast.Return]:

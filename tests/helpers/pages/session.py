@@ -226,10 +226,12 @@ def folder_of_a_user(folder: Path) -> Iterator[None]:
 
 
 def _forget(folder: Path) -> None:
-    """Let go of all modules whose files are in that folder, but for those of this checkout."""
+    """Let go of all modules whose files are in that folder, but for those of this checkout and of
+    the environment that Python runs in, which may lie there, too."""
+    spared = tuple(f"{path}{os.sep}" for path in (ROOT, sys.prefix, sys.base_prefix))
     for name, module in list(sys.modules.items()):
         file = str(getattr(module, "__file__", None) or "")
-        if file.startswith(f"{folder}{os.sep}") and not file.startswith(str(ROOT)):
+        if file.startswith(f"{folder}{os.sep}") and not file.startswith(spared):
             del sys.modules[name]
 
 
