@@ -14,6 +14,10 @@ PLANE, TWO = ["--q", "1", "--p", "0"], ["--q", "0, 1/10", "--p", "1/10, 0"]
 PENDULUM = ["--system", "pendulum", "--scheme", "lie2"]
 HENON = ["--system", "henon-heiles", "--scheme", "lie2"]
 FILES = {
+    "made.toml": 'hamiltonian = "p**2/2 + q**4/4"\nschemes = ["lie1"]\n[[reference]]\n'
+    "step_sizes = [0.1]\ninitial_values = [{ q = 1, p = 0 }]\nsteps = [0, 1, 2]\ndigits = 9\n"
+    "flow = false\n",
+    "theirs.csv": "step,p,q\n0,0,1\n1,-0.1,1\n",
     "code.py": "def step(p, q, h):\n    p = p - h*q\n    return p, q + h*p\n\n\n"
     "def turn(p, q):\n    return p, q + p\n",
     "table.toml": '[[table]]\nname = "verlet"\nkind = "splitting"\nfirst = "kick"\n'
@@ -25,19 +29,29 @@ COMMANDS = {
     "prove": ["prove", *PENDULUM],
     "prove, several degrees": ["prove", *HENON],
     "prove --every-hamiltonian": ["prove", "--every-hamiltonian", "--scheme", "lie2"],
+    "prove --every-hamiltonian, several degrees": ["prove", "--every-hamiltonian", "--degrees", "2",
+                                                   "--scheme", "lie2"],
     "modified": ["modified", *PENDULUM, "--order", "1"],
     "run": ["run", *PENDULUM, *START, *PLANE],
     "run, several degrees": ["run", *HENON, *START, *TWO],
     "separate": ["separate", *PENDULUM, *START, *PLANE],
+    "separate, several degrees": ["separate", *HENON, *START, *TWO],
     "check-integrator": ["check-integrator", "code.py:step", "--hamiltonian", "p**2/2 + q**2/2"],
     "check-map": ["check-map", "code.py:turn"],
     "check-table": ["check-table", "table.toml"],
     "check": ["check", "claims.toml"],
     "stability": ["stability", *PENDULUM, *START, *PLANE],
     "stability --linear": ["stability", "--linear", "--scheme", "lie2"],
+    "flow": ["flow", *PENDULUM, *START, "--q", "1"],
+    "explore": ["explore", "--property", "order-by-jets", "--examples", "2"],
+    "explore --maximise": ["explore", "--maximise", "defect", "--examples", "2", "--steps", "5"],
     "bench": ["bench", *PENDULUM, *START[:2], "--step-size", "0.05", "--time", "1", *PLANE],
     "certificate check": ["certificate", "check", "proof.json"],
     "export": ["export", *PENDULUM, "--language", "c"],
+    "reference make": ["reference", "make", "made.toml", "-o", "data"],
+    "reference check": ["reference", "check", "data"],
+    "reference compare": ["reference", "compare", "theirs.csv", "--data", "data", "--scene", "made",
+                          "--scheme", "lie1", *START[:2], *PLANE],
     "plan": ["plan", "paper"],
     "schemes": ["schemes"],
     "systems": ["systems"],
@@ -46,6 +60,11 @@ ENTRIES = {
     "check-table, a claim": ("check-table", "claims"),
     "check, a claim": ("check", "claims"),
     "stability, a case": ("stability", "cases"),
+    "modified, a term": ("modified", "terms"),
+    "flow, an image": ("flow", "images"),
+    "explore, a property": ("explore", "properties"),
+    "reference make, a file": ("reference make", "files"),
+    "reference compare, a column": ("reference compare", "columns"),
 }
 
 
@@ -81,6 +100,8 @@ def test_a_command_prints_the_keys_that_are_listed(
         Path(file).write_text(text, encoding="utf-8")
     if name == "certificate check":
         assert here(capsys, *COMMANDS["prove"], "--certificate", "proof.json")[0] == 0
+    if name in ("reference check", "reference compare"):
+        assert here(capsys, *COMMANDS["reference make"])[0] == 0
     status, out, _ = here(capsys, *COMMANDS[name], "--json")
     found = json_of(out)
     assert (status, set(found)) == (0, LISTED[name])
