@@ -1,4 +1,4 @@
-"""Periods of H(p, q, t): one that is found, one that is given for t, and whether q is an angle."""
+"""Periods of H(p, q, t), or of one in n degrees: in a variable, in t, and whether q is an angle."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from verify.algebra.formula import symbol
 from verify.arithmetic.exact import text
 from verify.effort import unless_long
 from verify.errors import InputError
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.late import sympy
 
@@ -44,7 +45,7 @@ def _is_same(hamiltonian: Hamiltonian, name: str, shift: sympy.Expr) -> bool | N
     moved = unless_long(lambda: sympy.expand(hamiltonian.exact.xreplace({x: x + shift})), None)
     if moved is None:
         return None
-    field, (change,) = hamiltonian.field(moved - hamiltonian.exact)
+    field, (change,) = canonical_field(hamiltonian, moved - hamiltonian.exact)
     return field.ring.decide(change).zero
 
 

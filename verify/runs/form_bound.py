@@ -12,6 +12,9 @@ and S these are). With B a bound of the second derivatives of a step, ‖A(ẑ_k
 3. W = Σ J_kᵀ S_k J_k; an entry of the computed sum is off by at most the sum of
    (‖Ĵ‖ + ‖J‖) ‖S‖ E + ‖J‖² ‖S(ẑ_k) − S(z_k)‖, and by the rounding of its terms. Entries of Ĵ were
    taken to be within ±3 max ‖M‖ where rounding was counted, so that E ≤ max ‖M‖ is asked for.
+
+Where ‖M‖ grows like N, as in integrable motion, Σ‖e_k‖ grows like N⁵, E like N⁷, and the bound like
+N⁹: it takes the worst of every step for all. `verify.runs.digits_on_demand` has a nearer one.
 """
 
 from dataclasses import dataclass

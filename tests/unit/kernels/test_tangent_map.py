@@ -18,6 +18,7 @@ from verify.arithmetic.arb import bounds, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import fixed, mpfr, mpmath
+from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.chunked_loop import ChunkedLoop
 from verify.kernels.kernel import kernel_for
 from verify.kernels.stepping import KernelRun
@@ -141,3 +142,35 @@ def greatest_eigenvalue(m: list[Any]) -> Any:
     a, b, c, d = m
     x, y, z = a * a + c * c, b * b + d * d, a * b + c * d
     return (x + y + ((x - y) ** 2 + 4 * z * z).sqrt()) / 2
+
+
+@pytest.mark.parametrize("t0", ["-1/2", "0", "1/3", "40"])
+@pytest.mark.parametrize("arithmetic", [fixed.at_bits(112), mpfr.at_bits(70), mpmath.at_bits(60)],
+                         ids=lambda a: a.name)  # fmt: skip
+@pytest.mark.parametrize("degrees", [1, 2])
+def test_in_time_it_is_the_product_of_the_steps_from_whatever_t(
+    degrees: int, arithmetic: Arithmetic, t0: str
+) -> None:
+    """Explicit Euler of H = p²/2 + (1 + t) q²/20, whose Jacobian is known at every step; a second
+    degree is p₂²/2, of which M has the entries 1, 1 and k h."""
+    text = "p**2/2 + (1 + t)*q**2/20"
+    names = ("p", "q")
+    if degrees == 2:
+        text, names = f"{text.replace('p', 'p1').replace('q', 'q1')} + p2**2/2", ("p1", "q1")
+    h, steps = Fraction(1, 50), 40
+    start = {n: Fraction(1, 7) for n in ("p1", "p2", "q1", "q2")[: 2 * degrees]}
+    start = start if degrees == 2 else dict.fromkeys(names, Fraction(1, 7))
+    start |= {"h": h, "t": Fraction(t0)}
+    made = KernelRun(Hamiltonian.parse(text), "lie1", start, steps, frozenset(), 0)
+    seen = made.run(arithmetic, tangent=True).tangents[-1]
+
+    m, sizes, determinants = [Fraction(x) for x in (1, 0, 0, 1)], [], []
+    for k in range(steps + 1):
+        beside = [Fraction(x) for x in (1, 1, k * h)] if degrees == 2 else []
+        sizes.append(squares(m) + squares(beside))
+        determinants.append(m[0] * m[3] - m[1] * m[2])
+        force = (1 + Fraction(t0) + k * h) / 10
+        m = product([Fraction(1), -h * force, h, Fraction(1)], m)
+    assert near_float(seen["growth_top"], max(sizes), 8)
+    assert near_float(seen["growth"], sum(sizes), steps + 8)
+    assert abs(seen["det_low"] - min(determinants)) <= max(sizes) / 2**48

@@ -241,3 +241,20 @@ def test_a_pole_in_t_that_a_step_passes_over_is_named_with_its_step() -> None:
 def test_smooth_in_all_times_is_seen_in_few_looks() -> None:
     always = Hamiltonian.parse("p**2/2 + q**2/(3/2 + cos(t))")
     check_times(always, Fraction(0), Fraction(1, 1000), 10**7)
+
+
+@pytest.mark.parametrize("t0", ["0", "1000000"])
+def test_in_two_degrees_far_in_time_fixed_takes_periods_off_and_gives_what_mpfr_does(
+    t0: str,
+) -> None:
+    """Of an H that is periodic in t, and would leave the format otherwise."""
+    formula = "p1**2/2 + p2**2/2 - cos(q1)*(1 + cos(t)/3) + (q1 - q2)**2/2"
+    fixed, mpfr = (
+        run(Hamiltonian.parse(formula), "lie2", q=["1/7", "1/8"], p=["1/10", "1/5"], t0=t0,
+            step_size="1/10", steps=400, arithmetic=name, digits=15)
+        for name in ("fixed", "mpfr")
+    )  # fmt: skip
+    assert (fixed.arithmetic, mpfr.arithmetic) == ("fixed", "mpfr")
+    assert {n: v.value for n, v in fixed.values.items()} == {
+        n: v.value for n, v in mpfr.values.items()
+    }

@@ -103,7 +103,7 @@ class Tangent:
 
     @property
     def lowering(self) -> Lowering:
-        return Lowering(self.program, (), "t")
+        return Lowering(self.program, (), "slope")
 
 
 def _read_as(at: int) -> str:
