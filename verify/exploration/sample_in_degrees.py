@@ -10,7 +10,7 @@ from typing import Any, Self
 from verify.errors import InputError
 from verify.exploration.any_sample import AnySample
 from verify.exploration.sample import Sample
-from verify.flows.degrees.extrapolation import FlowInDegrees
+from verify.flows.extrapolation import Flow
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.proof.symplectic.order import prove_symplectic
 from verify.proof.symplectic.proof import SymplecticProof
@@ -82,8 +82,8 @@ class SampleInDegrees(AnySample):
         """Whether its map is short enough to be looked at in a few points in a moment."""
         return self._terms <= _MOST_OF_POINTS
 
-    def flow(self, digits: int) -> FlowInDegrees:
-        return FlowInDegrees(self.field, digits)
+    def flow(self, digits: int) -> Flow:
+        return Flow(self.field, digits)
 
     @cached_property
     def _terms(self) -> float:
