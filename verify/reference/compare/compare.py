@@ -146,6 +146,7 @@ def _separated(off: list[_Off]) -> Separated | None:
         orbit.hamiltonian, orbit.scheme, q=orbit.q, p=orbit.p,
         step_size=orbit.step_size, steps=step, t0=orbit.t0, digits=_SEPARATED_DIGITS,
     )  # fmt: skip
+    assert isinstance(result, SeparationResult)  # noqa: S101 - tables are of the plane
     return Separated(label, step, apart, result) if result.plain else None
 
 

@@ -29,14 +29,9 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
 from verify.studies.separation.chain import QUANTITIES, Chain, separated_chains
 from verify.studies.separation.kernel import WORKING
+from verify.studies.separation.mixed_run import Stopped
 from verify.studies.separation.separate import separate
-from verify.studies.separation.working import (
-    Link,
-    Stopped,
-    WorkingRun,
-    _accumulated,
-    rounded_inputs,
-)
+from verify.studies.separation.working import Link, WorkingRun, _accumulated, rounded_inputs
 
 few = drawn(10)
 some = drawn(14)

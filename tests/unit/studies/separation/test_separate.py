@@ -150,7 +150,7 @@ def plant(monkeypatch: pytest.MonkeyPatch) -> Callable[[str, str], None]:
     """Replaces a pattern in the lines of every mixed kernel that is made from now on."""
 
     def planted(pattern: str, by: str) -> None:
-        original = separation_kernel._assemble
+        original = separation_kernel.assemble
 
         def changed(*given: Any) -> str:
             *others, inside = given
@@ -159,7 +159,7 @@ def plant(monkeypatch: pytest.MonkeyPatch) -> Callable[[str, str], None]:
             return original(*others, lines)
 
         mixed_kernel.cache_clear()
-        monkeypatch.setattr(separation_kernel, "_assemble", changed)
+        monkeypatch.setattr(separation_kernel, "assemble", changed)
 
     yield planted  # type: ignore[misc]
     mixed_kernel.cache_clear()
