@@ -17,7 +17,7 @@ from verify.errors import InputError
 from verify.flows import closed_form
 from verify.flows.closed_orbit import at_rest, closed_orbit
 from verify.flows.confirmed import METHOD, check_poles, confirmed
-from verify.flows.extrapolation import Flow, NoFlowError
+from verify.flows.extrapolation import NoFlowError
 from verify.hamiltonians import known_flows
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
@@ -144,5 +144,5 @@ def _numerical_solution(
     `start`: p, q, and t where H depends on it.
     """
     field, _ = hamiltonian.field()
-    (p, q), bound = confirmed(lambda more: Flow(field, more), start, 2, time, digits)
+    (p, q), bound = confirmed(field, start, time, digits)
     return Solution(p, q, bound, METHOD, enclosed=False)

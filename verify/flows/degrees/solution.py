@@ -17,7 +17,6 @@ from verify.effort import MOST, unless_long
 from verify.errors import InputError
 from verify.flows.closed_form import MOST_DIGITS, many_on_grid, until
 from verify.flows.confirmed import METHOD, check_poles, confirmed
-from verify.flows.extrapolation import Flow
 from verify.flows.solution import exact_solution
 from verify.hamiltonians import kepler_motion
 from verify.hamiltonians.canonical_field import canonical_field
@@ -165,5 +164,5 @@ def _numerical(
     check_poles(hamiltonian, t0, time)
     field, _ = canonical_field(hamiltonian)
     start = [*point.values(), *([t0] if field.timed else [])]
-    after, bound = confirmed(lambda more: Flow(field, more), start, len(point), time, digits)
+    after, bound = confirmed(field, start, time, digits)
     return SolutionInDegrees(dict(zip(point, after, strict=True)), bound, METHOD, enclosed=False)
