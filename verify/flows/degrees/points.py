@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from verify.flows.degrees.solution import Point, solution_in_degrees
-from verify.flows.points_together import METHOD, Together
+from verify.flows.degrees.solution import solution_in_degrees
+from verify.flows.points_together import METHOD, Point, Together
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
 Array = Any  # numpy.ndarray, which is imported where it is used

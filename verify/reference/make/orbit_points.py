@@ -19,9 +19,9 @@ from verify.arithmetic.arb import around, in_reach, middle_and_radius, rational_
 from verify.arithmetic.exact import text
 from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
-from verify.flows.degrees.solution import SolutionInDegrees, solution_in_degrees
+from verify.flows.degrees.solution import solution_in_degrees
 from verify.flows.extrapolation import NoFlowError
-from verify.flows.solution import leaves_by_algebra
+from verify.flows.solution import Solution, leaves_by_algebra
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import point_of
@@ -191,7 +191,7 @@ def _flow_point(
     try:
         for guard in _GUARDS:
             if step == 0:  # the initial value itself, also where H is not defined
-                at = SolutionInDegrees(start, Fraction(0), "the initial value itself")
+                at = Solution(start, Fraction(0), "the initial value itself")
             else:
                 at = solution_in_degrees(hamiltonian, start, time, digits + guard, t0)
             known = {name: (x, at.bound) for name, x in at.point.items()}
