@@ -24,11 +24,7 @@ def _rows(
 ) -> Sequence[Sequence[SeparationTask | FormSeparationTask]]:
     """The splits of the grid's runs, by initial value, then step size."""
     given = scene.hamiltonian_fields()
-    task, starts = (
-        (SeparationTask, grid.in_the_plane)
-        if scene.exact_hamiltonian().planar
-        else (FormSeparationTask, grid.initial_values)
-    )
+    task = SeparationTask if scene.exact_hamiltonian().planar else FormSeparationTask
     shared = grid is scene.grid and shares_runs(scene)
     runs: Iterator[dict[str, Any]] = repeat({})
     if shared:  # they are in the same order
@@ -41,7 +37,7 @@ def _rows(
             )
             for h in grid.step_sizes
         ]
-        for at in starts
+        for at in grid.initial_values
     ]  # fmt: skip
 
 

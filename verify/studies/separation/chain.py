@@ -160,7 +160,7 @@ def lacking(chains: Iterable[Chain], digits: int, least: Fraction = Fraction(0))
     return [max(each) for each in zip(*(x.lacking(digits, least) for x in chains), strict=True)]
 
 
-class _AreaLinks(LinksOnDemand[Link, Working]):
+class _AreaLinks(LinksOnDemand[Link, Working[Link]]):
     """The links of Λ."""
 
     observable = "lambda"
@@ -187,13 +187,13 @@ class _AreaLinks(LinksOnDemand[Link, Working]):
         """The chain of the plain way and that of the closed form."""
         shared, working = self.shared(), self.working
         parts = PARTS_IN_TIME if self.kernel_run.hamiltonian.time_dependent else PARTS
-        plain = Chain(self.marks, (*shared, working.determinant, working.plain), parts)
-        fourth, fifth = working.closed_delta_j, working.closed_form
+        plain = Chain(self.marks, (*shared, working.factors, working.plain), parts)
+        fourth, fifth = working.closed_factors, working.closed_form
         if fourth is None or fifth is None:
             return plain, None
         return plain, Chain(self.marks, (*shared, fourth, fifth), parts)
 
-    def beside(self) -> Working:
+    def beside(self) -> Working[Link]:
         """In what can follow float64 everywhere where another cannot, or has no bound of its
         rounding."""
         run = WorkingRun(

@@ -127,8 +127,8 @@ class _FormLinks(LinksOnDemand[Links, FormWorking]):
             return tuple(Chain(self.marks, own, parts) for own in each)
 
         first = shared[0]
-        closed = working.closed_derivatives or first, working.closed_form or first
-        return chains(working.derivatives, working.plain), chains(*closed)
+        closed = working.closed_factors or first, working.closed_form or first
+        return chains(working.factors, working.plain), chains(*closed)
 
     def beside(self) -> FormWorking:
         """In what has every range and function."""

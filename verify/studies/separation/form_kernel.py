@@ -30,9 +30,8 @@ from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.step.computation import Computation, Observed
-from verify.kernels.step.in_degrees import computed_in_degrees, map_of, preserves
+from verify.kernels.step.in_degrees import computed_in_degrees, map_of, preserves, with_slopes
 from verify.kernels.step.lowering import Lowering
-from verify.kernels.step.partials import Partials
 from verify.kernels.step.program import Program
 from verify.schemes.step_map import StepMap
 from verify.studies.separation.kernel import AT, Mixed, assemble, box_of, prefixed_lines, scope_of
@@ -70,10 +69,8 @@ class Step:
             symplectic=form, carried=form,
         )  # fmt: skip
         made = computed_in_degrees(step, asked)
-        program = made.program.copy()
-        partials = Partials(program, [program.input(n, static=False) for n in made.coordinates])
-        changes = [made.outputs[f"d{name}"] for name in made.coordinates]
-        return cls(made, program, tuple(tuple(partials.gradient(at)) for at in changes))
+        program, _, slopes = with_slopes(made)
+        return cls(made, program, tuple(map(tuple, slopes)))
 
     def names(self, prefix: str) -> Rows:
         """K's entries by their names in the source."""

@@ -32,7 +32,7 @@ from verify.studies.separation.mixed_run import (
 )
 from verify.studies.separation.stepper import State
 from verify.studies.separation.trail import Trail
-from verify.studies.separation.working import Link, exact_link
+from verify.studies.separation.working import Link, Working, exact_link
 
 POINTS = 512  # checkpoints of a run; each has a matrix for each link
 Entries = tuple[Fraction, ...]  # of W above its diagonal, row by row
@@ -52,18 +52,9 @@ class Size(NamedTuple):
 
 
 @dataclass(frozen=True)
-class FormWorking:
-    """What one run of the kernel found; links are None where they were not followed.
+class FormWorking(Working[Links]):
+    """`sizes`: how large M is at every checkpoint."""
 
-    `sizes`: how large M is at every checkpoint.
-    """
-
-    clock: Links | None
-    trajectory: Links | None
-    derivatives: Links
-    plain: Links
-    closed_derivatives: Links | None  # None: S ≡ 0
-    closed_form: Links | None
     sizes: tuple[Size, ...]
 
 
@@ -101,16 +92,16 @@ class FormRun(MixedRun[FormKernel]):
             apart = self._apart(trail, fine, arithmetic, again, name)
             return links_of(fine, lambda each: Link(Trail.of(each), apart, "estimated", RERUN))
 
-        derivatives = links("w_n")
-        assert derivatives is not None  # noqa: S101 - every kernel has it
+        factors = links("w_n")
+        assert factors is not None  # noqa: S101 - every kernel has it
         plain = [tuple(map(Fraction, self._plain(state))) for state in states]
         closed = [self._entries(state, "f_w", arithmetic) for state in states if kernel.closed]
         return FormWorking(
             clock=links("w_c"),
             trajectory=links("w_t"),
-            derivatives=derivatives,
+            factors=factors,
             plain=links_of(plain, _of_float64),
-            closed_derivatives=links("w_w"),
+            closed_factors=links("w_w"),
             closed_form=links_of(closed, _of_float64) if kernel.closed else None,
             sizes=tuple(self._of_size(state, arithmetic) for state in states),
         )

@@ -10,7 +10,7 @@ import copy
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from typing import Any, ClassVar, Generic, Protocol, TypeVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 from verify import arithmetic as number_systems
 from verify import lockstep
@@ -22,7 +22,7 @@ from verify.runs.estimated import working_digits
 from verify.runs.run import AskedRun
 from verify.studies.separation.mixed_run import POINTS, Advance, Stopped, marks_of
 from verify.studies.separation.trail import Trail
-from verify.studies.separation.working import Kind, Link, rounded_inputs
+from verify.studies.separation.working import Kind, Link, Working, rounded_inputs
 
 _MANTISSAS = 2**53  # whole numbers up to here are float64s
 _DOUBLINGS = 6
@@ -30,17 +30,8 @@ _ATTEMPTS = 4
 AsLink = Callable[[Sequence[Fraction]], Link]  # of values at the checkpoints
 
 
-class Followed(Protocol):
-    """What a run in float64 found, with exact arithmetic beside it; None: not followed."""
-
-    @property
-    def clock(self) -> Any: ...
-    @property
-    def trajectory(self) -> Any: ...
-
-
 L = TypeVar("L")  # Link, or one for each entry
-W = TypeVar("W", bound=Followed)
+W = TypeVar("W", bound=Working[Any])
 C = TypeVar("C")  # chains
 
 

@@ -19,7 +19,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Literal
+from typing import Generic, Literal, TypeVar
 
 import flint
 
@@ -63,16 +63,23 @@ class Link:
     method: str
 
 
-@dataclass(frozen=True)
-class Working:
-    """What one run of the mixed kernel found; a link is None where it was not followed."""
+L = TypeVar("L")  # Link, or one for each entry of W
 
-    clock: Link | None
-    trajectory: Link | None
-    determinant: Link
-    plain: Link
-    closed_delta_j: Link | None  # None: some 1 + ΔJ ≤ 0, which has no logarithm
-    closed_form: Link | None
+
+@dataclass(frozen=True)
+class Working(Generic[L]):
+    """What one run of the mixed kernel found; a link is None where it was not followed.
+
+    `factors`: each step's determinant, or Jacobian, is float64's; `closed_factors`: its ΔJ, or S.
+    None, as `closed_form`, where some 1 + ΔJ ≤ 0, which has no logarithm, and where S ≡ 0.
+    """
+
+    clock: L | None
+    trajectory: L | None
+    factors: L
+    plain: L
+    closed_factors: L | None
+    closed_form: L | None
 
 
 def exact_link(trail: Sequence[Fraction], method: str) -> Link:
@@ -82,7 +89,7 @@ def exact_link(trail: Sequence[Fraction], method: str) -> Link:
 class WorkingRun(MixedRun[MixedKernel]):
     """The float64 run of a run in the plane."""
 
-    def step_through(self, arithmetic: Arithmetic, advance: Advance) -> Working:
+    def step_through(self, arithmetic: Arithmetic, advance: Advance) -> Working[Link]:
         """All steps; raises Stopped where float64 leaves its range."""
         kernel = self._kernel(arithmetic)
         states = self._states(kernel, arithmetic, advance)

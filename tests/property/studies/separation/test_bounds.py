@@ -98,7 +98,7 @@ def test_bounds_of_few_bits_hold_against_many_at_every_checkpoint(
     except Stopped:
         assume(False)
         raise
-    for name in ("trajectory", "determinant", "closed_delta_j"):
+    for name in ("trajectory", "factors", "closed_factors"):
         x, y = getattr(coarse, name), getattr(fine, name)
         assert (x is None) == (y is None)
         if x is not None:
@@ -135,7 +135,7 @@ def test_fixed_point_beside_float64_is_within_its_bound(
     coarse, fine = (
         working.step_through(x, lambda _: None) for x in (FIXED, number_systems.get("mpfr", 90))
     )
-    for name in ("trajectory", "determinant", "closed_delta_j"):
+    for name in ("trajectory", "factors", "closed_factors"):
         x, y = getattr(coarse, name), getattr(fine, name)
         agree(x, y)
         if x.kind == "enclosed":

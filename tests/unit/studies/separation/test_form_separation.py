@@ -219,7 +219,7 @@ def test_few_digits_give_wide_bounds_that_hold_all_the_same() -> None:
         beside.step_through(number_systems.get("mpfr", digits), lambda _: None)
         for digits in (20, 60)
     )
-    for name in ("trajectory", "derivatives", "closed_derivatives"):
+    for name in ("trajectory", "factors", "closed_factors"):
         pairs = list(zip(getattr(coarse, name), getattr(fine, name), strict=True))
         apart = [abs(x - y) for a, b in pairs for x, y in zip(a.trail, b.trail, strict=True)]
         bound = max(a.bound for a, _ in pairs)

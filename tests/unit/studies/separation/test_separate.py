@@ -205,7 +205,7 @@ def test_counted_bounds_hold_for_few_bits_and_are_not_far_off(
     kernel_run = KernelRun(hamiltonian, "lie2", start, 600, WORKING, 10)
     working = WorkingRun(kernel_run, rounded_inputs(kernel_run), follow=True)
     coarse, fine = (working.step_through(x, lambda _: None) for x in (made, mpfr.at_bits(300)))
-    for name in ("trajectory", "determinant", "closed_delta_j"):
+    for name in ("trajectory", "factors", "closed_factors"):
         x, y = getattr(coarse, name), getattr(fine, name)
         assert x.kind == y.kind == "enclosed"
         error = max(abs(a - b) for a, b in zip(x.trail, y.trail, strict=True))
