@@ -66,11 +66,11 @@ def separate(
     True
     """
     count = steps_from(steps, time, step_size)
-    found = separate_grid(
+    grid = separate_grid(
         system, scheme, q=q, p=p, step_sizes=[step_size], steps=count, t0=t0,
         parameters=parameters, digits=digits, arithmetic=arithmetic, progress=progress,
     )  # fmt: skip
-    return found.points[0]
+    return grid.points[0]
 
 
 @overload

@@ -79,8 +79,8 @@ def exact_points(
         return _in_closed_form(hamiltonian, p, q, tuple(times))
 
     def solved(start: Point, time: Fraction, digits: int) -> tuple[Point, Fraction]:
-        found = exact_solution(hamiltonian, **start, time=time, digits=digits, t0=t0)
-        return {"p": found.p, "q": found.q}, found.bound
+        solution = exact_solution(hamiltonian, **start, time=time, digits=digits, t0=t0)
+        return solution.point, solution.bound
 
     together = Together(hamiltonian, np.array([p, q]), tuple(times), t0, solved, extreme=True)
     (p, q), bound, alone = together.followed()

@@ -29,14 +29,14 @@ _SAFETY = 4  # an error is at most so many times what it is estimated to be by a
 
 @dataclass(frozen=True)
 class Together:
-    """φ_t of `given`, an array (coordinate, point), for each of `times`, from t0 on where H depends
-    on time. `solved` (point, time, digits): where one point comes to, and a bound of its error.
+    """φ_t of `starts`, an array (coordinate, point), for each of `times`, from t0 on where H
+    depends on time. `solved` (point, time, digits): where one comes to, and a bound of its error.
 
     `extreme`: whether the sample has the point of the greatest p.
     """
 
     hamiltonian: Hamiltonian
-    given: Array
+    starts: Array
     times: Sequence[Fraction]
     t0: Fraction
     solved: Solved
@@ -52,7 +52,7 @@ class Together:
         import numpy as np
 
         h, times = self.hamiltonian, self.times
-        fine, rough = (follow(h, self.given, times, columns, self.t0) for columns in COLUMNS)
+        fine, rough = (follow(h, self.starts, times, columns, self.t0) for columns in COLUMNS)
         apart = np.abs(fine - rough).max(axis=0)  # (time, point)
         trusted = apart <= TRUSTED * self._scale(fine)  # nan is not
         alone = tuple(map(int, np.flatnonzero(~trusted.all(axis=0))))
@@ -70,24 +70,24 @@ class Together:
         """The largest coordinate at both ends, in size, for each time and point."""
         import numpy as np
 
-        return np.maximum(np.abs(self.given).max(axis=0), np.abs(ends).max(axis=0))
+        return np.maximum(np.abs(self.starts).max(axis=0), np.abs(ends).max(axis=0))
 
     def exact(self, i: int, time: Fraction) -> tuple[list[float], float]:
         """Where point i comes to by itself, and a bound of the error. Raises NoFlowError."""
         names = self.hamiltonian.coordinates
-        start = {name: Fraction(x) for name, x in zip(names, self.given[:, i], strict=True)}
+        start = {name: Fraction(x) for name, x in zip(names, self.starts[:, i], strict=True)}
         with naming(i, start, time):
-            found, bound = self.solved(start, time, DIGITS)
-            return [float(found[name]) for name in names], float(bound)
+            point, bound = self.solved(start, time, DIGITS)
+            return [float(point[name]) for name in names], float(bound)
 
     def _checked(
-        self, found: Array, time: Fraction, alone: Sequence[int], estimated: float
+        self, ends: Array, time: Fraction, alone: Sequence[int], estimated: float
     ) -> float:
         """A bound of the errors, by what the sample's are."""
         worst = 0.0
         for i in self._sample(alone):
             true, bound = self.exact(i, time)
-            error = max(abs(float(x) - y) for x, y in zip(found[:, i], true, strict=True))
+            error = max(abs(float(x) - y) for x, y in zip(ends[:, i], true, strict=True))
             worst = max(worst, error + bound)
             if error > _SAFETY * estimated:
                 raise NoFlowError(
@@ -100,11 +100,11 @@ class Together:
         """Points found together, evenly between."""
         import numpy as np
 
-        together = np.setdiff1d(np.arange(self.given.shape[1]), alone)
+        together = np.setdiff1d(np.arange(self.starts.shape[1]), alone)
         if len(together) <= SAMPLE:
             return [int(i) for i in together]
         evenly = np.linspace(0, len(together) - 1, SAMPLE - self.extreme).round().astype(int)
-        first = [self.given[0, together].argmax()] * self.extreme
+        first = [self.starts[0, together].argmax()] * self.extreme
         return sorted({int(together[i]) for i in (*first, *evenly)})
 
 

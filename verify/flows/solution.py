@@ -89,13 +89,12 @@ def exact_solution(
     if rest:
         return itself
     if known is not None:
-        found = closed_form.evaluate(known, (p, q), time, digits)
-        return _in_closed_form(found, known.method)
+        return _in_closed_form(closed_form.evaluate(known, (p, q), time, digits), known.method)
     return numerical_solution(hamiltonian, itself.point, time, digits)
 
 
-def _in_closed_form(found: closed_form.Evaluation, method: str) -> Solution:
-    return Solution({"p": found.p, "q": found.q}, found.bound, method)
+def _in_closed_form(end: closed_form.Evaluation, method: str) -> Solution:
+    return Solution({"p": end.p, "q": end.q}, end.bound, method)
 
 
 def numerical_solution(

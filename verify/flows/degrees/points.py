@@ -37,10 +37,10 @@ def points_in_degrees(
     import numpy as np
 
     def solved(start: Point, time: Fraction, digits: int) -> tuple[Point, Fraction]:
-        found = solution_in_degrees(hamiltonian, start, time, digits, t0)
-        return found.point, found.bound
+        solution = solution_in_degrees(hamiltonian, start, time, digits, t0)
+        return solution.point, solution.bound
 
     names = hamiltonian.coordinates
-    given = np.array([points[name] for name in names], dtype=np.float64)
-    found, bound, _ = Together(hamiltonian, given, [time], t0, solved).followed()
-    return PointsInDegrees(dict(zip(names, found[:, 0], strict=True)), bound)
+    starts = np.array([points[name] for name in names], dtype=np.float64)
+    ends, bound, _ = Together(hamiltonian, starts, [time], t0, solved).followed()
+    return PointsInDegrees(dict(zip(names, ends[:, 0], strict=True)), bound)

@@ -141,7 +141,7 @@ def parts_table(
     caption = f"{point.scheme}: {point.steps} steps of h = {point.step_size}, {whole} in float64"
     if point.plain is None:
         return html_table(caption, (), [(point.status, point.reason)])
-    ways = {label: found for way, label in WAYS.items() if (found := getattr(point, way))}
+    ways = {label: getattr(point, way) for way, label in WAYS.items() if getattr(point, way)}
     parts = {**labels, **{name: f"– {name}" for name in point.plain.parts.of_rounding}}
     rows = [
         (label, *(cell(getattr(way.parts, name)) for way in ways.values()))

@@ -54,10 +54,10 @@ def power_law(
         return PowerLaw(None, None, "exponential", prose("‖M‖ grows exponentially: no power fits"))
     if not envelope.reaches(_DECADES):
         return PowerLaw(None, None, "undecided", prose(_SHORT))
-    found, error = envelope.slope()
+    exponent, error = envelope.slope()
     width = max(_NEAR, WIDTH * error)
-    held = [k for k in range(len(_LAWS)) if abs(found - k) <= width]
+    held = [k for k in range(len(_LAWS)) if abs(exponent - k) <= width]
     name: Law = _LAWS[held[0]] if len(held) == 1 else "undecided"
     near = f" is near {held[0]}" if len(held) == 1 else " is near no whole exponent, or near two"
-    shown = with_error(found, WIDTH * error)
-    return PowerLaw(found, error, name, prose("fitted exponent ", *shown, near))
+    shown = with_error(exponent, WIDTH * error)
+    return PowerLaw(exponent, error, name, prose("fitted exponent ", *shown, near))

@@ -67,8 +67,8 @@ class FormWay(Way):
 
     def law(self, name: str) -> PowerLawResult:
         """How the greatest entry of a quantity grows with N."""
-        found = power_law(self.marks, self.tops[name], self.noise[name], self.motion)
-        return PowerLawResult(**found.fields)
+        law = power_law(self.marks, self.tops[name], self.noise[name], self.motion)
+        return PowerLawResult(**law.fields)
 
     def tangent(self, time: Fraction, half: Callable[[float], Halved]) -> TangentGrowth:
         """How M grew, and what follows for W; `half` tells of an exponential rate whose it is."""
@@ -122,21 +122,21 @@ class FormWay(Way):
                      Number(f"{law.exponent:.2f}"), measured)  # fmt: skip
 
 
-def split_in_degrees(found: FormChains, begun: Start, steps: int, digits: int) -> dict[str, Any]:
-    """What the chains of W give of a result."""
-    motion = motion_of(found.marks, [x.norm for x in found.sizes])
+def split_in_degrees(chains: FormChains, begun: Start, steps: int, digits: int) -> dict[str, Any]:
+    """What the each of W give of a result."""
+    motion = motion_of(chains.marks, [x.norm for x in chains.sizes])
     plain, closed = (
-        FormWay(chains, found.sizes, motion) for chains in (found.plain, found.closed_form)
+        FormWay(each, chains.sizes, motion) for each in (chains.plain, chains.closed_form)
     )
     half = partial(halved, begun, steps)
-    methods = dict.fromkeys(x for chain in found.plain for x in chain.methods)
+    methods = dict.fromkeys(x for chain in chains.plain for x in chain.methods)
     return {
-        "arithmetic": found.arithmetic,
+        "arithmetic": chains.arithmetic,
         "plain": plain.evaluation(digits),
         "closed_form": closed.evaluation(digits),
         "tangent": closed.tangent(begun.step_size * steps, half),
         "error_method": "; ".join(methods),
-        "seconds": found.seconds,
+        "seconds": chains.seconds,
     }
 
 

@@ -117,13 +117,13 @@ def growth(marks: Sequence[int], values: Sequence[Fraction], noise: Fraction) ->
             f"a fit takes {LEAST} over {_DECADES}"
         )
         return Growth(None, None, "undecided", reason, *seen)
-    found, scatter = envelope.slope()
+    exponent, scatter = envelope.slope()
     error = max(scatter, _WANDERING * envelope.reach**-1.5)
-    held = [at for at in _NAMES if abs(found - at) <= WIDTH * error]
+    held = [at for at in _NAMES if abs(exponent - at) <= WIDTH * error]
     name = _NAMES[held[0]][0] if len(held) == 1 else "undecided"
     holds = " and ".join(_NAMES[at][1] for at in held) or "neither ½ nor 1"
-    reason = prose(*with_error(found, WIDTH * error), f" holds {holds}")
-    return Growth(found, error, name, reason, *seen)
+    reason = prose(*with_error(exponent, WIDTH * error), f" holds {holds}")
+    return Growth(exponent, error, name, reason, *seen)
 
 
 def with_error(exponent: float, width: float) -> tuple[Number, str, Number]:

@@ -69,27 +69,27 @@ class MixedRun(ABC, Generic[K]):
         wide = [arithmetic.number(Fraction(x)) for x in given]
         fixed = [*given, *wide, *self._limits(kernel, arithmetic)]
         label = f"beside {arithmetic.name} {arithmetic.bits} {self.inputs} {kernel.source}"
-        found = self._kept(label, arithmetic)
+        states = self._kept(label, arithmetic)
         stepper = Stepper(kernel, arithmetic, fixed, self._in_range)
-        state = found[-1] if found else self._first_state(kernel, arithmetic)
-        done = self.marks[len(found) - 1] if found else 0
+        state = states[-1] if states else self._first_state(kernel, arithmetic)
+        done = self.marks[len(states) - 1] if states else 0
         arithmetic.expect(kernel.function, self.run.steps - done)
         while done < self.run.steps:
-            every, stops = self._ahead(done, len(found), arithmetic.chunk)
+            every, stops = self._ahead(done, len(states), arithmetic.chunk)
             beyond = self.run.steps - done - every * stops
-            states = stepper.states(state, every, stops, beyond)
-            for state in states:
+            after = stepper.states(state, every, stops, beyond)
+            for state in after:
                 done += every
                 advance(every)
-                if done == self.marks[len(found)]:
-                    found.append(state)
-                self._keep(label, found, arithmetic)
-            if len(states) < stops and arithmetic.absolute:
+                if done == self.marks[len(states)]:
+                    states.append(state)
+                self._keep(label, states, arithmetic)
+            if len(after) < stops and arithmetic.absolute:
                 raise UnsupportedError(f"the orbit leaves the range of {arithmetic.name}")
-            if len(states) < stops:
+            if len(after) < stops:
                 done += stepper.last_good(state, every)
                 raise Stopped("left range", done + 1, "float64 leaves its range")
-        return found
+        return states
 
     def _ahead(self, done: int, at: int, chunk: int) -> tuple[int, int]:
         """So many steps to the next stop and so many stops: marks, or on the way to the next."""
@@ -101,21 +101,19 @@ class MixedRun(ABC, Generic[K]):
     def _first_state(self, kernel: K, arithmetic: Arithmetic) -> State:
         state: dict[str, Any] = {}
         for name in kernel.state_names:
-            own = name.removeprefix(AT).removeprefix("f_")
-            if own in self.inputs:
-                value = Fraction(self.inputs[own])
-            elif name in kernel.start:
+            if name in kernel.start:
                 value = Fraction(kernel.start[name])
-            else:  # an end of the region that a coordinate visits
-                value = Fraction(self.inputs[own.rpartition("_")[0]])
+            else:  # of a coordinate or t, or an end of the region that it visits
+                bare = name.removeprefix(AT).removeprefix("f_")
+                value = Fraction(self.inputs[bare.removesuffix("_low").removesuffix("_high")])
             state[name] = _number(arithmetic, name, value)
         return state
 
-    def _keep(self, label: str, found: Sequence[State], arithmetic: Arithmetic) -> None:
+    def _keep(self, label: str, states: Sequence[State], arithmetic: Arithmetic) -> None:
         """Writes the checkpoints so far, where that is due."""
         if self.run.keeper.due(label):
             texts = [
-                {n: fraction_text(as_rational(x, arithmetic)) for n, x in s.items()} for s in found
+                {n: fraction_text(as_rational(x, arithmetic)) for n, x in s.items()} for s in states
             ]
             self.run.keeper.save(label, {"found": texts})
 
@@ -139,14 +137,14 @@ def visited(
 ) -> dict[str, Rounded]:
     """What a wide program is evaluated at, over the region that the float64 states visited, each
     number within `cut` of its float64. `last`: what the kernel carried in the end."""
-    found = {n: rational_ball(Fraction(x)) for n, x in named_inputs(kernel, inputs).items()}
+    region = {n: rational_ball(Fraction(x)) for n, x in named_inputs(kernel, inputs).items()}
     for name in (n.removesuffix("_low") for n in last if n.endswith("_low")):
         low, high = (rational_ball(Fraction(last[f"{name}_{side}"])) for side in ("low", "high"))
-        found[name.removeprefix("f_")] = low.union(high)
+        region[name.removeprefix("f_")] = low.union(high)
     if "f_t" in last:
         first, end = (rational_ball(Fraction(x)) for x in (inputs["t"], last["f_t"]))
-        found["t"] = first.union(end)
-    return {name: Rounded(x, cut) for name, x in found.items()}
+        region["t"] = first.union(end)
+    return {name: Rounded(x, cut) for name, x in region.items()}
 
 
 def _number(arithmetic: Arithmetic, name: str, value: Fraction) -> Number:

@@ -126,15 +126,15 @@ def separate(
     return SeparationResult(**result) if planar else SeparationInDegrees(**result)
 
 
-def _split(found: Chains, digits: int) -> dict[str, Any]:
+def _split(chains: Chains, digits: int) -> dict[str, Any]:
     """What the chains of Λ give of a result."""
-    closed = found.closed_form and evaluation(Way([found.closed_form]), digits)
+    closed = chains.closed_form and evaluation(Way([chains.closed_form]), digits)
     return {
-        "arithmetic": found.arithmetic,
-        "plain": evaluation(Way([found.plain]), digits),
+        "arithmetic": chains.arithmetic,
+        "plain": evaluation(Way([chains.plain]), digits),
         "closed_form": closed,
-        "error_method": "; ".join(found.plain.methods),
-        "seconds": found.seconds,
+        "error_method": "; ".join(chains.plain.methods),
+        "seconds": chains.seconds,
     }
 
 

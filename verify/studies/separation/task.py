@@ -43,8 +43,8 @@ class _Separation(StartTask):
     @property
     def cost(self) -> int:
         """About how many float64 steps its runs and their checkpoints are worth."""
-        own = self.point_cost * min(self.steps, self.points)
-        return own + self.runs * self.steps * step_cost(AUTO)
+        of_points = self.point_cost * min(self.steps, self.points)
+        return of_points + self.runs * self.steps * step_cost(AUTO)
 
     def _separated(self, keeper: Keeper, run: AskedRun | None = None) -> Any:
         return separate(self.exact_hamiltonian(), **self.asked("run"), run=run, keeper=keeper)
@@ -80,8 +80,8 @@ class SeparationTask(_Separation):
     def compute(self, keeper: Keeper) -> SeparationResult:
         """The separation, as a result."""
         own = self.run.asked_run(keeper) if self.run else None
-        found: SeparationResult = self._separated(keeper, own)
-        return found
+        split: SeparationResult = self._separated(keeper, own)
+        return split
 
     def computed(self, keeper: Keeper) -> Iterator[tuple[Task, Frozen]]:
         """The separation, and the run where that was done for it."""
@@ -102,5 +102,5 @@ class FormSeparationTask(_Separation):
 
     def compute(self, keeper: Keeper) -> SeparationInDegrees:
         """The separation, as a result."""
-        found: SeparationInDegrees = self._separated(keeper)
-        return found
+        split: SeparationInDegrees = self._separated(keeper)
+        return split

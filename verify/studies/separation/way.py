@@ -51,8 +51,8 @@ class Way:
     def growth(self) -> dict[str, GrowthResult]:
         """Of rounding, and of each part of it."""
         names = ("total", *self.chains[0].parts)
-        found = {n: growth(self.marks, self.tops[n], self.noise[n]) for n in names}
-        return {n: GrowthResult(**x.fields) for n, x in found.items()}
+        fits = {n: growth(self.marks, self.tops[n], self.noise[n]) for n in names}
+        return {n: GrowthResult(**x.fields) for n, x in fits.items()}
 
     @property
     def kind(self) -> Kind:

@@ -21,7 +21,7 @@ def run_result(run: Run) -> StabilityResult:
     exact = run.hamiltonian
     point = dict(zip(exact.coordinates, run.state, strict=True))
     motion = RunMotion(run) if exact.planar else MotionInDegrees(run)
-    found = verdict(motion)
+    judged = verdict(motion)
     return StabilityResult(
         **exact.texts,
         scheme=run.scheme,
@@ -30,27 +30,27 @@ def run_result(run: Run) -> StabilityResult:
         q=shown_of(exact, point, "q"),
         p=shown_of(exact, point, "p"),
         t0=text(run.t0) if exact.time_dependent else None,
-        kind=found.kind,
-        step=found.step,
-        rate=shortened(found.rate, 3),
-        energy_error=shortened(found.energy_error, 3),
+        kind=judged.kind,
+        step=judged.step,
+        rate=shortened(judged.rate, 3),
+        energy_error=shortened(judged.energy_error, 3),
         exact_orbit=motion.orbit.summary,
-        **_beside(motion, found),
+        **_beside(motion, judged),
     )
 
 
-def _beside(motion: RunMotion | MotionInDegrees, found: Judgement) -> dict[str, Any]:
+def _beside(motion: RunMotion | MotionInDegrees, judged: Judgement) -> dict[str, Any]:
     """What linear theory says beside the verdict; in n degrees of freedom how fast neighbours
     part."""
     if isinstance(motion, MotionInDegrees):
         seen = motion.orbit.sensitivity
         rate = None if seen is None else f"{seen.exponent:.2g}"
-        return {"lyapunov": rate, "detail": found.detail}
+        return {"lyapunov": rate, "detail": judged.detail}
     limit, h_omega = linear_limit(motion.run.scheme), motion.run.step_size * frequency(motion.orbit)
     return {
         "h_omega": shortened(h_omega, 3) if h_omega else None,
         "linear_limit": shortened(limit, 6),
-        "detail": found.detail + _against_theory(found, h_omega, limit),
+        "detail": judged.detail + _against_theory(judged, h_omega, limit),
     }
 
 

@@ -306,3 +306,13 @@ def test_all_parts_have_the_digits_that_are_asked_for(
             nothing = size == 0 and bound * 10 ** (4 * digits) <= largest
             known = bound * 10 ** (digits - 1) <= size
             assert nothing or known, f"{name}: {value.value} ± {value.bound}"
+
+
+@pytest.mark.parametrize("name", ["sum", "rest", "p_low", "x0", "plain"])
+def test_a_parameter_may_have_a_name_that_the_kernel_has_for_itself(name: str) -> None:
+    asked = {"scheme": "lie2", "q": 1, "p": 0, "step_size": "0.1", "steps": 20}
+    named = Hamiltonian.parse(f"p**2/2 + {name}*q**4/4", {name: 3})
+    plain = Hamiltonian.parse("p**2/2 + a*q**4/4", {"a": 3})
+    one, other = (separate(exact, **asked) for exact in (named, plain))  # type: ignore[arg-type]
+    assert one.plain == other.plain
+    assert one.closed_form == other.closed_form
