@@ -143,18 +143,19 @@ class Flow:
         """By Aitken and Neville's scheme in the steps' squares; None where it does not end."""
         above: Sequence[Sequence[Number]] = [[] for _ in z]  # a row of values for each coordinate
         for j, factors in enumerate(self._factors, start=1):
-            rows = []
-            for x, before in zip(self._rule(*z, time, 2 * j), above, strict=False):
-                row = [x]
+            rows, moved, size, apart = [], 0, 0, 0
+            for last, start, before in zip(self._rule(*z, time, 2 * j), z, above, strict=False):
+                x, row = last, [last]
                 for old, (up, down) in zip(before, factors, strict=True):
                     x = x + (x - old) * up / down
                     row.append(x)
                 rows.append(row)
-            if j > 2:
+                if j > 2:
+                    moved += abs(x - start)
+                    size += abs(x)
+                    apart += abs(x - row[-2])
+            if j > 2 and apart <= self._tolerance * (moved + size / STILL):
                 ends = [row[-1] for row in rows]
-                moved = sum([abs(x - x0) for x, x0 in zip(ends, z, strict=False)])
-                size = moved + sum(map(abs, ends)) / STILL
-                if sum([abs(row[-1] - row[-2]) for row in rows]) <= self._tolerance * size:
-                    return (*ends, z[-1] + time) if self.timed else tuple(ends)
+                return (*ends, z[-1] + time) if self.timed else tuple(ends)
             above = rows
         return None

@@ -21,6 +21,7 @@ from flint import arb, fmpq
 from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
 from verify.flows import closed_form
+from verify.flows.extrapolation import NoFlowError
 from verify.flows.points_together import METHOD, Point, Together, naming
 from verify.flows.solution import exact_solution
 from verify.hamiltonians import known_flows
@@ -97,13 +98,15 @@ def _in_closed_form(
     told = []
     with working_precision(_BITS):
         for i, start in enumerate(zip(p.tolist(), q.tolist(), strict=True)):
-            with naming(i, dict(zip(PLANE, start, strict=True)), farthest):
+            try:
                 told.append(follow_one(*start))
+            except (NoFlowError, OverflowError) as error:
+                raise naming(error, i, dict(zip(PLANE, start, strict=True)), farthest) from None
     methods = [method for method, _ in told]
     shape = len(told), len(times), 3
     states = np.array([states for _, states in told], dtype=np.float64).reshape(shape)
-    p, q, error = np.ascontiguousarray(states.T)
-    bound = float(error.max(initial=0.0))
+    p, q, errors = np.ascontiguousarray(states.T)
+    bound = float(errors.max(initial=0.0))
     method = f"{max(dict.fromkeys(methods), key=methods.count)}, in balls"
     return Points(p, q, bound, method)
 

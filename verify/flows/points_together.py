@@ -5,8 +5,7 @@ two are apart by more than `TRUSTED` a point is solved by itself, with more digi
 they are apart estimates its error. So is a sample solved, that all are held against.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -76,9 +75,11 @@ class Together:
         """Where point i comes to by itself, and a bound of the error. Raises NoFlowError."""
         names = self.hamiltonian.coordinates
         start = {name: Fraction(x) for name, x in zip(names, self.starts[:, i], strict=True)}
-        with naming(i, start, time):
+        try:
             point, bound = self.solved(start, time, DIGITS)
             return [float(point[name]) for name in names], float(bound)
+        except (NoFlowError, OverflowError) as error:
+            raise naming(error, i, start, time) from None
 
     def _checked(
         self, ends: Array, time: Fraction, alone: Sequence[int], estimated: float
@@ -108,14 +109,11 @@ class Together:
         return sorted({int(together[i]) for i in (*first, *evenly)})
 
 
-@contextmanager
-def naming(i: int, start: Mapping[str, Any], time: Fraction) -> Iterator[None]:
-    """NoFlowError, and OverflowError beyond float64, with the point that it is of."""
-    try:
-        yield
-    except (NoFlowError, OverflowError) as error:
-        said = error.said if isinstance(error, NoFlowError) else "it is beyond float64"
-        names = sorted(start, key=lambda name: name[0] != "q")
-        where = ", ".join(f"{name} = `{float(start[name]):.6g}`" for name in names)
-        at = read_prose(f"point {i}, {where}, to t = `{float(time):.6g}`: ")
-        raise NoFlowError(at + said) from None
+def naming(
+    error: NoFlowError | OverflowError, i: int, start: Mapping[str, Any], time: Fraction
+) -> NoFlowError:
+    """The error, with the point that it is of; an overflow is one beyond float64."""
+    said = error.said if isinstance(error, NoFlowError) else "it is beyond float64"
+    names = sorted(start, key=lambda name: name[0] != "q")
+    where = ", ".join(f"{name} = `{float(start[name]):.6g}`" for name in names)
+    return NoFlowError(read_prose(f"point {i}, {where}, to t = `{float(time):.6g}`: ") + said)
