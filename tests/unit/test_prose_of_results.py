@@ -108,7 +108,7 @@ def test_what_is_found_of_a_step_is_marked(step: Any, claims: Claims) -> None:
 @pytest.mark.parametrize("h", ["1/10", "1/2", "9/4"])
 @pytest.mark.parametrize("q", ["1/2", "30"])
 def test_stability_is_marked(h: str, q: str) -> None:
-    run = Run(DUFFING, "symplectic-euler", Fraction(h), Fraction(q), Fraction(0), 200)
+    run = Run(DUFFING, "symplectic-euler", Fraction(h), (Fraction(0), Fraction(q)), 200)
     found = run_result(run)
     assert unmarked(found) == []
     assert len(list(proses(found))) == 2

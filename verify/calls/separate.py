@@ -18,7 +18,6 @@ from verify.hamiltonians.start import Given, check_start
 from verify.scenes.results.separation import SeparationGrid, SeparationResult
 from verify.scenes.results.separation_in_degrees import SeparationGridInDegrees, SeparationInDegrees
 from verify.scenes.values import AUTO, steps_from
-from verify.studies.separation import form_separate as in_degrees
 from verify.studies.separation import separate as study
 
 
@@ -66,15 +65,12 @@ def separate(
     >>> found.plain.parts.truncation > found.plain.parts.total
     True
     """
-    exact = hamiltonian_from(system, parameters)
-    name, count = scheme_name(scheme, exact), steps_from(steps, time, step_size)
-    asked: dict[str, Any] = {"q": q, "p": p, "step_size": step_size, "steps": count, "t0": t0}
-    with progress_of(progress, "separating, steps", study.RUNS * count, adding=True) as tell:
-        asked |= {"digits": whole("digits", digits, 1), "arithmetic": arithmetic}
-        if exact.planar:
-            return study.separate(exact, name, **asked, progress=tell)
-        check_start(exact, q, p, t0)
-        return in_degrees.separate_in_degrees(exact, name, **asked, progress=tell)
+    count = steps_from(steps, time, step_size)
+    grid = separate_grid(
+        system, scheme, q=q, p=p, step_sizes=[step_size], steps=count, t0=t0,
+        parameters=parameters, digits=digits, arithmetic=arithmetic, progress=progress,
+    )  # fmt: skip
+    return grid.points[0]
 
 
 @overload
@@ -122,7 +118,5 @@ def separate_grid(
     asked: dict[str, Any] = {"q": q, "p": p, "step_sizes": sizes, "steps": steps, "time": time}
     with progress_of(progress, "separating, steps", total, adding=True) as tell:
         asked |= {"t0": t0, "digits": whole("digits", digits, 1), "arithmetic": arithmetic}
-        if exact.planar:
-            return study.separate_grid(exact, name, **asked, progress=tell)
         check_start(exact, q, p, t0)
-        return in_degrees.separate_grid_in_degrees(exact, name, **asked, progress=tell)
+        return study.separate_grid(exact, name, **asked, progress=tell)

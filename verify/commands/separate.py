@@ -17,8 +17,6 @@ from verify.commands.shared.separation import print_separation, separation_json
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
-    from verify.scenes.results.separation import SeparationGrid
-    from verify.scenes.results.separation_in_degrees import SeparationGridInDegrees
 
 
 @click.command()
@@ -57,20 +55,14 @@ def separate(
     from verify.commands.shared.progress import progress_bar
     from verify.hamiltonians.start import check_start
     from verify.scenes.values import rounded_down
-    from verify.studies.separation.form_separate import separate_grid_in_degrees
     from verify.studies.separation.separate import RUNS, grid, separate_grid
 
     options |= {name: listed(options[name], exact) for name in ("q", "p")}
-    if not exact.planar:
-        check_start(exact, options["q"], options["p"], options["t0"])
+    check_start(exact, options["q"], options["p"], options["t0"])
     counts = grid(step_sizes, options["steps"], options["time"])
     with progress_bar("stepping", RUNS * sum(n for _, n in counts)) as advance:
         options |= {"step_sizes": step_sizes, "progress": advance}
-        result: SeparationGrid | SeparationGridInDegrees
-        if exact.planar:
-            result = separate_grid(exact, scheme, **options)
-        else:
-            result = separate_grid_in_degrees(exact, scheme, **options)
+        result = separate_grid(exact, scheme, **options)
     time = options["time"]
     note = rounded_down(time and positive(time, "time"), [h for h, _ in counts])
 

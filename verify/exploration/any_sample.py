@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 from verify import arithmetic as number_systems
 from verify.algebra.ring import Poly, Ring
@@ -30,6 +30,10 @@ class AnySample(ABC):
     """One H, scheme, step size, t₀ and number of steps, of a scene; where it starts, the two kinds
     of samples say."""
 
+    most_of_kernels: ClassVar[int]
+    """Terms, so that a kernel is written in a moment."""
+    most_of_points: ClassVar[int]
+    """Terms, so that a point is looked at in a moment."""
     hamiltonian: Hamiltonian
     scheme: Scheme
     step_size: Fraction
@@ -89,22 +93,27 @@ class AnySample(ABC):
 
     @property
     @abstractmethod
-    def short(self) -> bool:
-        """Whether kernels of it are written in a moment."""
+    def terms(self) -> float:
+        """How many there are of what a step is made of."""
 
     @property
-    @abstractmethod
+    def short(self) -> bool:
+        """Whether kernels of it are written in a moment."""
+        return self.terms <= self.most_of_kernels
+
+    @property
     def brief(self) -> bool:
         """Whether its map is short enough to be looked at in a few points in a moment."""
+        return self.terms <= self.most_of_points
 
     @property
     @abstractmethod
     def field(self) -> VectorField | CanonicalField:
         """H's own, with its derivatives by the coordinates."""
 
-    @abstractmethod
     def flow(self, digits: int) -> Flow:
         """The exact flow, to so many digits."""
+        return Flow(self.field, digits)
 
     @property
     def slopes(self) -> tuple[Ring, Sequence[Poly]]:

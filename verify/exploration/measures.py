@@ -17,8 +17,8 @@ from verify.exploration.sample import Sample
 from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.studies.separation.chain import separated_chains
+from verify.studies.separation.mixed_run import Stopped
 from verify.studies.separation.trail import Trail
-from verify.studies.separation.working import Stopped
 
 DIGITS = 40  # of what stands for exact arithmetic
 _SHARE = 10  # of them, a digit of Λ's parts: these need more by themselves

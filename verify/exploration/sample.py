@@ -7,7 +7,6 @@ from functools import cached_property
 from typing import Any, Self
 
 from verify.exploration.any_sample import AnySample
-from verify.flows.extrapolation import Flow
 from verify.hamiltonians.vector_field import VectorField
 from verify.proof.order import prove
 from verify.proof.order_proof import Proof
@@ -16,14 +15,15 @@ from verify.scenes.scene import Scene
 from verify.schemes.every_hamiltonian import TaylorSeries
 from verify.schemes.step_map import StepMap
 
-# Terms of a map in all its parts, so that a kernel is written, a proof made, a point looked at.
-_MOST_OF_KERNELS, _MOST_TERMS, _MOST_OF_POINTS = 20, 40, 150
+_MOST_TERMS = 40  # of a map in all its parts, so that a proof is made in a moment
 
 
 @dataclass(frozen=True)
 class Sample(AnySample):
     """What a property is asked about; the map and its proof are made once for all of them."""
 
+    most_of_kernels = 20
+    most_of_points = 150
     p: Fraction
     q: Fraction
 
@@ -65,7 +65,7 @@ class Sample(AnySample):
         composition's series for a rational H as many denominators.
         """
         scheme = self.scheme
-        if self._terms > _MOST_TERMS:
+        if self.terms > _MOST_TERMS:
             return False
         if self.polynomial or scheme.order <= 2 or isinstance(scheme.every_h, TaylorSeries):
             return True
@@ -74,16 +74,8 @@ class Sample(AnySample):
     @property
     def short(self) -> bool:
         """Whether kernels of it are written in a moment."""
-        return self.ordinary and self._terms <= _MOST_OF_KERNELS
-
-    @property
-    def brief(self) -> bool:
-        """Whether its map is short enough to be looked at in a few points in a moment."""
-        return self._terms <= _MOST_OF_POINTS
+        return self.ordinary and super().short
 
     @cached_property
-    def _terms(self) -> int:
+    def terms(self) -> int:
         return sum(step.length for step in self.step_map.substeps)
-
-    def flow(self, digits: int) -> Flow:
-        return Flow(self.field, digits)

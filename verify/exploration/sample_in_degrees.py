@@ -10,7 +10,6 @@ from typing import Any, Self
 from verify.errors import InputError
 from verify.exploration.any_sample import AnySample
 from verify.exploration.sample import Sample
-from verify.flows.degrees.extrapolation import FlowInDegrees
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.proof.symplectic.order import prove_symplectic
 from verify.proof.symplectic.proof import SymplecticProof
@@ -21,9 +20,7 @@ from verify.schemes.degrees import map_in_degrees
 from verify.schemes.degrees.canonical_map import CanonicalMap
 from verify.schemes.every_hamiltonian import TaylorSeries
 
-# Terms of what a step is made of, so that a proof is made of it, a kernel written, a point looked
-# at, in a moment.
-_MOST_TERMS, _MOST_OF_KERNELS, _MOST_OF_POINTS = 30, 60, 250
+_MOST_TERMS = 30  # of what a step is made of, so that a proof is made of it in a moment
 _MOST_ORDER = 4  # of a scheme whose series is made
 
 
@@ -31,6 +28,8 @@ _MOST_ORDER = 4  # of a scheme whose series is made
 class SampleInDegrees(AnySample):
     """What a property is asked about; the map and its proof are made once for all of them."""
 
+    most_of_kernels = 60
+    most_of_points = 250
     p: tuple[Fraction, ...]
     q: tuple[Fraction, ...]
 
@@ -69,24 +68,11 @@ class SampleInDegrees(AnySample):
     def ordinary(self) -> bool:
         """Whether its map is proved in a moment: its series in h are short."""
         exact = self.step_map.symplectic_by_conditions if self.brief else False
-        small = self._terms <= _MOST_TERMS and (exact or self._kinds <= {"variable", "sin", "cos"})
+        small = self.terms <= _MOST_TERMS and (exact or self._kinds <= {"variable", "sin", "cos"})
         return small and self.scheme.order <= _MOST_ORDER
 
-    @property
-    def short(self) -> bool:
-        """Whether kernels of it are written in a moment."""
-        return self._terms <= _MOST_OF_KERNELS
-
-    @property
-    def brief(self) -> bool:
-        """Whether its map is short enough to be looked at in a few points in a moment."""
-        return self._terms <= _MOST_OF_POINTS
-
-    def flow(self, digits: int) -> FlowInDegrees:
-        return FlowInDegrees(self.field, digits)
-
     @cached_property
-    def _terms(self) -> float:
+    def terms(self) -> float:
         """Of the slopes; of a Taylor series those of all its terms, made one after the other and
         as long as they are few."""
         field, generic = self.field, self.scheme.every_h
@@ -94,7 +80,7 @@ class SampleInDegrees(AnySample):
         if not isinstance(generic, TaylorSeries):
             return total
         for n in range(2, generic.eta + 1):
-            if total > _MOST_OF_POINTS:
+            if total > self.most_of_points:
                 return inf
             total += sum(map(len, field.power(n)))
         return total

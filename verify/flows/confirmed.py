@@ -1,12 +1,14 @@
 """The numerical flow with more and more digits, until two agree; poles in t are found before."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 
 from verify.arithmetic.exact import plain
 from verify.flows.extrapolation import Flow, NoFlowError
+from verify.hamiltonians.canonical_field import CanonicalField
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.times_on_the_way import first_fault
+from verify.hamiltonians.vector_field import VectorField
 
 METHOD = "numerical flow: Gragg's method, extrapolated"
 _GUARD = 6  # digits beyond those asked for with which the first flow is followed
@@ -26,20 +28,16 @@ def check_poles(hamiltonian: Hamiltonian, t0: Fraction, time: Fraction) -> None:
 
 
 def confirmed(
-    flow_with: Callable[[int], Flow],
-    start: Sequence[Fraction],
-    coordinates: int,
-    time: Fraction,
-    digits: int,
+    field: VectorField | CanonicalField, start: Sequence[Fraction], time: Fraction, digits: int
 ) -> tuple[list[Fraction], Fraction]:
     """The coordinates after the time and a bound of the error of each, an estimate; NoFlowError.
 
-    `flow_with`: the flow to so many digits. `start`: so many coordinates, and t where H depends on
-    it.
+    `start`: the coordinates, and t where H depends on it.
     """
+    coordinates = len(field.names)
     before: list[Fraction] | None = None
     for k in range(_TRIES):
-        flow = flow_with(digits + _GUARD + k * _MORE)
+        flow = Flow(field, digits + _GUARD + k * _MORE)
         z = flow.follow(tuple(map(flow.number, start)), time)
         after = [flow.arithmetic.exact(x) for x in z[:coordinates]]
         if before is not None:

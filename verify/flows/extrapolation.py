@@ -14,12 +14,13 @@ from fractions import Fraction
 from typing import Any
 
 from verify.arithmetic.systems import mpfr
-from verify.flows.functions import Elements, Written
+from verify.flows.functions import Written
+from verify.hamiltonians.canonical_field import CanonicalField
 from verify.hamiltonians.vector_field import VectorField
 from verify.prose import read_prose
 
 Number = Any  # gmpy2.mpfr, which has no type stubs
-State = tuple[Number, ...]  # p, q, and t where H depends on it
+State = tuple[Number, ...]  # the coordinates, and t where H depends on it
 
 GUARD = 12  # digits beyond those asked for, and what extrapolation and rounding may take of them
 LOST_DIGITS = 8
@@ -48,38 +49,37 @@ def columns_for(digits: int) -> int:
 
 
 class Flow:
-    """The exact flow of a vector field without symbols, to `digits` digits."""
+    """The exact flow of a field without symbols, in the plane or in n degrees of freedom, to
+    `digits` digits; a state has all its coordinates, and t where H depends on it."""
 
-    def __init__(self, field: VectorField, digits: int) -> None:
-        slopes = [(field.ring, -field.h_q), (field.ring, field.h_p)]
-        self._write(slopes, ("p", "q"), field.timed, digits)
-
-    def _write(
-        self, slopes: Elements, coordinates: Sequence[str], timed: bool, digits: int
-    ) -> None:
-        """The slopes and Gragg's rule as functions, and what so many digits ask for."""
-        self.arithmetic, self.timed = mpfr.make(digits + GUARD), timed
-        self.names = (*coordinates, "t") if timed else tuple(coordinates)
+    def __init__(self, field: VectorField | CanonicalField, digits: int) -> None:
+        names, self.timed = field.names, field.timed
+        self.arithmetic = mpfr.make(digits + GUARD)
+        self.names = (*names, "t") if self.timed else tuple(names)
+        slopes = [(field.ring, x) for x in field.slopes]
         written = Written.of(self.arithmetic, slopes, self.names)
         self._slopes, self._rule = written.at(), written.gragg_rule()
         self._tolerance = self.arithmetic.number(Fraction(1, 10 ** (digits + GUARD - LOST_DIGITS)))
-        self._columns = columns_for(digits)
+        self._factors = [
+            # (n_j / n_{j−k})² − 1 with n_j = 2 j, as a quotient of whole numbers
+            [((j - k) ** 2, j**2 - (j - k) ** 2) for k in range(1, j)]
+            for j in range(1, columns_for(digits) + 1)
+        ]
 
     def number(self, x: Fraction) -> Number:
         return self.arithmetic.number(x)
 
     def state(self, point: Mapping[str, Fraction]) -> State:
-        """z at a point: p and q by name, and t where H depends on it."""
+        """z at a point: the coordinates by name, and t where H depends on it."""
         return tuple(self.number(point[name]) for name in self.names)
 
     def slope(self, z: State) -> State:
-        """f(z) = (−H_q, H_p). Raises NoFlowError where it is not defined."""
+        """f(z). Raises NoFlowError where it is not defined."""
         try:
             with self.arithmetic.context():
-                p, q = self._slopes(*z)
+                return self._slopes(*z)
         except (ArithmeticError, ValueError):
             raise NoFlowError("the orbit leaves where H is defined") from None
-        return p, q
 
     def step(self, z: State, time: Number) -> State | None:
         """φ_time(z) by one extrapolated step; None where that does not give the digits."""
@@ -134,26 +134,28 @@ class Flow:
 
     def _first_step(self, z: State, goal: Number) -> Number:
         """A guess: the time in which the state would become different."""
-        p, q = self.slope(z)
+        slopes = self.slope(z)
         with self.arithmetic.context():
-            speed = abs(p) + abs(q)
-            return min(goal, (1 + abs(z[0]) + abs(z[1])) / speed) if speed else goal
+            speed = sum(map(abs, slopes))
+            return min(goal, sum(map(abs, z[: len(slopes)]), 1) / speed) if speed else goal
 
     def _extrapolated(self, z: State, time: Number) -> State | None:
         """By Aitken and Neville's scheme in the steps' squares; None where it does not end."""
-        above: list[State] = []
-        for j in range(1, self._columns + 1):
-            row = [self._rule(*z, time, 2 * j)]
-            for k, (p, q) in enumerate(above, start=1):
-                # (n_j / n_{j−k})² − 1 with n_j = 2 j, as a quotient of whole numbers
-                up, down = (j - k) ** 2, j**2 - (j - k) ** 2
-                last_p, last_q = row[-1]
-                row.append((last_p + (last_p - p) * up / down, last_q + (last_q - q) * up / down))
-            if j > 2:
-                (p, q), (p0, q0) = row[-1], row[-2]
-                moved = abs(p - z[0]) + abs(q - z[1])
-                size = moved + (abs(p) + abs(q)) / STILL
-                if abs(p - p0) + abs(q - q0) <= self._tolerance * size:
-                    return (p, q, z[2] + time) if self.timed else (p, q)
-            above = row
+        above: Sequence[Sequence[Number]] = [[] for _ in z]  # a row of values for each coordinate
+        for j, factors in enumerate(self._factors, start=1):
+            rows, moved, size, apart = [], 0, 0, 0
+            for last, start, before in zip(self._rule(*z, time, 2 * j), z, above, strict=False):
+                x, row = last, [last]
+                for old, (up, down) in zip(before, factors, strict=True):
+                    x = x + (x - old) * up / down
+                    row.append(x)
+                rows.append(row)
+                if j > 2:
+                    moved += abs(x - start)
+                    size += abs(x)
+                    apart += abs(x - row[-2])
+            if j > 2 and apart <= self._tolerance * (moved + size / STILL):
+                ends = [row[-1] for row in rows]
+                return (*ends, z[-1] + time) if self.timed else tuple(ends)
+            above = rows
         return None

@@ -63,12 +63,8 @@ def follow(
 
 def slopes_of(hamiltonian: Hamiltonian) -> Slopes:
     """f at the coordinates and a t, which an H without time does not look at."""
-    if hamiltonian.planar:
-        plane, _ = hamiltonian.field()
-        elements = [(plane.ring, -plane.h_q), (plane.ring, plane.h_p)]
-    else:
-        field, _ = canonical_field(hamiltonian)
-        elements = [(field.ring, x) for x in field.slopes]
+    field, _ = hamiltonian.field() if hamiltonian.planar else canonical_field(hamiltonian)
+    elements = [(field.ring, x) for x in field.slopes]
     names = hamiltonian.coordinates
     if hamiltonian.time_dependent:
         return functions_at(arrays(), elements, (*names, "t"))

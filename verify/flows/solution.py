@@ -9,6 +9,7 @@ the Duffing oscillator, 0.2 and 1.1 s against 0.4 and 2.2 s on the pendulum, 0.9
 order 43 and 76, with steps as long as its last terms allow).
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -17,8 +18,9 @@ from verify.errors import InputError
 from verify.flows import closed_form
 from verify.flows.closed_orbit import at_rest, closed_orbit
 from verify.flows.confirmed import METHOD, check_poles, confirmed
-from verify.flows.extrapolation import Flow, NoFlowError
+from verify.flows.extrapolation import NoFlowError
 from verify.hamiltonians import known_flows
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
 _TOLD = 12  # digits of a time at which a solution ends
@@ -28,21 +30,32 @@ NOT_KNOWN = "not known"
 _FORCED = "closed form of the forced oscillator"  # the one that is known in time
 _FROM_START = Fraction(0)
 State = tuple[Fraction, Fraction]  # p, q
+Point = Mapping[str, Fraction]
+ITSELF = "the initial value itself"
 
 
 @dataclass(frozen=True)
 class Solution:
-    """(p, q) = φ_time(p₀, q₀): `bound` ≥ |error| of each of p and q; `method` says how.
+    """z = φ_time(z₀), the coordinates by their names: `bound` ≥ |error| of each; `method` says how.
 
     In closed form the bound is `enclosed`, by ball arithmetic, and 0 where the solution is exact;
     else it is an estimate, by a second evaluation with more digits.
     """
 
-    p: Fraction
-    q: Fraction
+    point: Point
     bound: Fraction
     method: str
     enclosed: bool = True
+
+    @property
+    def p(self) -> Fraction:
+        """In the plane."""
+        return self.point["p"]
+
+    @property
+    def q(self) -> Fraction:
+        """In the plane."""
+        return self.point["q"]
 
 
 def exact_solution(
@@ -63,23 +76,40 @@ def exact_solution(
     where it could not be followed so far.
     """
     _check(hamiltonian, digits)
+    itself = Solution({"p": p, "q": q}, Fraction(0), ITSELF)
     if time == 0:
-        return Solution(p, q, Fraction(0), "the initial value itself")
+        return itself
     if hamiltonian.time_dependent:
         state = known_flows.state_in_time(hamiltonian, (p, q, t0), time)
         if state is not None:
-            found = closed_form.enclosed(state, (p, q), digits)
-            return Solution(found.p, found.q, found.bound, _FORCED)
-        check_poles(hamiltonian, t0, time)
-        return _numerical_solution(hamiltonian, (p, q, t0), time, digits)
+            return _in_closed_form(closed_form.enclosed(state, (p, q), digits), _FORCED)
+        return numerical_solution(hamiltonian, itself.point, time, digits, t0)
     known = known_flows.closed_form(hamiltonian, p, q)
     rest = known.rest if known else at_rest(hamiltonian, hamiltonian.field()[0], (p, q))
     if rest:
-        return Solution(p, q, Fraction(0), "the initial value itself")
+        return itself
     if known is not None:
-        found = closed_form.evaluate(known, (p, q), time, digits)
-        return Solution(found.p, found.q, found.bound, known.method)
-    return _numerical_solution(hamiltonian, (p, q), time, digits)
+        return _in_closed_form(closed_form.evaluate(known, (p, q), time, digits), known.method)
+    return numerical_solution(hamiltonian, itself.point, time, digits)
+
+
+def _in_closed_form(end: closed_form.Evaluation, method: str) -> Solution:
+    return Solution({"p": end.p, "q": end.q}, end.bound, method)
+
+
+def numerical_solution(
+    hamiltonian: Hamiltonian,
+    point: Point,
+    time: Fraction,
+    digits: int,
+    t0: Fraction = _FROM_START,
+) -> Solution:
+    """By the numerical flow with more and more digits, until two of them agree."""
+    check_poles(hamiltonian, t0, time)
+    field, _ = hamiltonian.field() if hamiltonian.planar else canonical_field(hamiltonian)
+    start = [*point.values(), *([t0] if field.timed else [])]
+    after, bound = confirmed(field, start, time, digits)
+    return Solution(dict(zip(point, after, strict=True)), bound, METHOD, enclosed=False)
 
 
 def leaves(hamiltonian: Hamiltonian, *, p: Fraction, q: Fraction, time: Fraction) -> str | None:
@@ -134,15 +164,3 @@ def _reason_to_leave(hamiltonian: Hamiltonian, start: State) -> str | None:
     if orbit.kind == "rotation":
         return "it goes to infinity as t grows: it goes round"
     return None
-
-
-def _numerical_solution(
-    hamiltonian: Hamiltonian, start: tuple[Fraction, ...], time: Fraction, digits: int
-) -> Solution:
-    """By the numerical flow with more and more digits, until two of them agree.
-
-    `start`: p, q, and t where H depends on it.
-    """
-    field, _ = hamiltonian.field()
-    (p, q), bound = confirmed(lambda more: Flow(field, more), start, 2, time, digits)
-    return Solution(p, q, bound, METHOD, enclosed=False)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from verify.algebra.ring import Poly, Ring
+from verify.hamiltonians.coordinates import PLANE
 from verify.hamiltonians.lie_derivatives import LieDerivatives
 
 
@@ -21,6 +22,16 @@ class VectorField:
     h_p: Poly
     h_q: Poly
     of_energy: Poly | None = None
+
+    @property
+    def names(self) -> tuple[str, str]:
+        """p and q."""
+        return PLANE
+
+    @property
+    def slopes(self) -> tuple[Poly, Poly]:
+        """p' and q'."""
+        return -self.h_q, self.h_p
 
     @property
     def energy(self) -> Poly:

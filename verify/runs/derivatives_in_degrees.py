@@ -14,8 +14,7 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.rounding import Ball, Rounded, analyse
 from verify.kernels.step.computation import Observed
-from verify.kernels.step.in_degrees import computed_in_degrees, map_of
-from verify.kernels.step.partials import Partials
+from verify.kernels.step.in_degrees import computed_in_degrees, map_of, with_slopes
 from verify.kernels.step.program import Program
 from verify.runs.derivatives import norm
 from verify.schemes.step_map import StepMap
@@ -54,16 +53,13 @@ class DerivativesInDegrees:
             symplectic=form,
         )  # fmt: skip
         made = computed_in_degrees(step, asked)
-        program = made.program.copy()
-        partials = Partials(program, [program.input(n, static=False) for n in made.coordinates])
-        changes = [made.outputs[f"d{name}"] for name in made.coordinates]
-        slopes = [x for at in changes for x in partials.gradient(at)]
-        second = [x for at in slopes for x in partials.gradient(at)]
+        program, partials, slopes = with_slopes(made)
+        second = [x for row in slopes for at in row for x in partials.gradient(at)]
         defect = tuple(made.defect.values())
         return cls(
             program,
             made.parameters,
-            (*changes, made.outputs["dj"]),
+            (*(made.outputs[f"d{name}"] for name in made.coordinates), made.outputs["dj"]),
             tuple(second),
             tuple(partials.gradient(made.outputs["dj"])),
             defect,

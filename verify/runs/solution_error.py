@@ -5,8 +5,9 @@ from fractions import Fraction
 from math import isqrt
 
 from verify.errors import InputError
-from verify.flows.degrees.solution import SolutionInDegrees, solution_in_degrees
+from verify.flows.degrees.solution import solution_in_degrees
 from verify.flows.extrapolation import NoFlowError
+from verify.flows.solution import Solution
 from verify.runs.orbit import orbit_of
 from verify.runs.start import Start
 from verify.scenes.results.bounded_value import Value
@@ -55,7 +56,7 @@ def _solution(begun: Start, times: list[Fraction], digits: int) -> Iterator[_Poi
 
 
 def _followed(
-    begun: Start, times: list[Fraction], digits: int, whole: SolutionInDegrees
+    begun: Start, times: list[Fraction], digits: int, whole: Solution
 ) -> Iterator[_Point]:
     """The solution from one time to the next, held at its end to the one of a single piece.
 

@@ -9,7 +9,7 @@ from tests.helpers.sampled.formulas import monomial, polynomials, rationals
 from verify import arithmetic as number_systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.studies.separation.chain import Chains, separated_chains
-from verify.studies.separation.working import Stopped
+from verify.studies.separation.mixed_run import Stopped
 
 sizes = st.builds(lambda n, k: Fraction(n, 2 * 7**k), st.integers(0, 8), st.integers(0, 9))
 starts = st.fractions(min_value=-1, max_value=1, max_denominator=30)

@@ -12,6 +12,7 @@ from verify.arithmetic.float_context import WIDE
 from verify.errors import InputError
 from verify.flows import extrapolation_of_many as flow_of_many
 from verify.flows import points as module
+from verify.flows import points_together
 from verify.flows.extrapolation import Flow, NoFlowError
 from verify.flows.points import Points, exact_points
 from verify.flows.solution import exact_solution
@@ -268,7 +269,7 @@ def test_a_numerical_flow_at_another_time_is_seen(monkeypatch: pytest.MonkeyPatc
     def planted(h: Any, points: Any, times: Any, columns: int, t0: Any) -> Any:
         return right(h, points, [t * (1 + Fraction(1, 10**11)) for t in times], columns, t0)
 
-    monkeypatch.setattr(module, "follow", planted)
+    monkeypatch.setattr(points_together, "follow", planted)
     with pytest.raises(NoFlowError, match=r"is wrong by .* was estimated"):
         exact_points(Hamiltonian.parse(SEXTIC), *cloud(0.3, 1.0), (Fraction(3),))
 

@@ -5,14 +5,9 @@ from fractions import Fraction
 import pytest
 
 from verify.errors import InputError
-from verify.flows.degrees.solution import (
-    SolutionInDegrees,
-    _numerical,
-    solution_in_degrees,
-    uncoupled,
-)
+from verify.flows.degrees.solution import solution_in_degrees, uncoupled
 from verify.flows.extrapolation import NoFlowError
-from verify.flows.solution import exact_solution
+from verify.flows.solution import Solution, exact_solution, numerical_solution
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import point_of
@@ -31,14 +26,12 @@ ELLIPSES: dict[str, Start] = {
 }
 
 
-def after(
-    hamiltonian: Hamiltonian, start: Start, time: str, digits: int = DIGITS
-) -> SolutionInDegrees:
+def after(hamiltonian: Hamiltonian, start: Start, time: str, digits: int = DIGITS) -> Solution:
     q, p = start
     return solution_in_degrees(hamiltonian, point_of(hamiltonian, q, p), Fraction(time), digits)
 
 
-def apart(one: SolutionInDegrees, other: SolutionInDegrees) -> Fraction:
+def apart(one: Solution, other: Solution) -> Fraction:
     return max(abs(one.point[name] - other.point[name]) for name in one.point)
 
 
@@ -48,7 +41,7 @@ def apart(one: SolutionInDegrees, other: SolutionInDegrees) -> Fraction:
 def test_an_ellipse_in_closed_form_is_that_of_the_numerical_flow(name: str, time: str) -> None:
     found = after(KEPLER, ELLIPSES[name], time)
     start = point_of(KEPLER, *ELLIPSES[name])
-    other = _numerical(KEPLER, start, Fraction(time), DIGITS, Fraction(0))
+    other = numerical_solution(KEPLER, start, Fraction(time), DIGITS, Fraction(0))
     assert found.enclosed
     assert "ellipse" in found.method
     assert not other.enclosed

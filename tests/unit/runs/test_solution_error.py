@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 import verify
-from verify.flows.degrees.solution import Point, SolutionInDegrees
+from verify.flows.solution import Point, Solution
 from verify.hamiltonians import known_flows
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs import solution_error
@@ -47,7 +47,7 @@ def test_what_is_lost_on_the_way_is_in_the_bound(
     """A solution that says more than it knows is found out by the one of a single piece."""
     true, lost = solution_error.solution_in_degrees, Fraction(1, 10**4)
 
-    def careless(h: Hamiltonian, at: Point, time: Fraction, *rest: Any) -> SolutionInDegrees:
+    def careless(h: Hamiltonian, at: Point, time: Fraction, *rest: Any) -> Solution:
         found = true(h, at, time, *rest)
         moved = {**found.point, "p": found.point["p"] + lost}
         return found if time == 1 else replace(found, point=moved)

@@ -1,7 +1,6 @@
 """Truncation and rounding in Λ, or in n degrees of freedom in W, as `verify separate` tells it."""
 
 import textwrap
-from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -84,55 +83,35 @@ def _evaluated(way: "Evaluation | None", parts: "type[Parts | FormParts]") -> di
 
 def print_separation(found: "Grid") -> None:
     """Each step size, and where rounding overtakes truncation."""
-    from verify.scenes.results.separation import SeparationResult
-
     for point in found.points:
         click.echo(f"h = {point.step_size}, {point.steps} steps")
         if point.status != "finished":
             at = f" at step {point.failed_step}" if point.failed_step else ""
             click.echo(f"  {point.status}{at}: {point.reason}")
-        elif isinstance(point, SeparationResult):
-            _print_parts(point)
         else:
-            _print_form(point)
+            _print_parts(point)
     if len(found.points) > 1:
         for way, label in _LABELS.items():
             click.echo(f"rounding overtakes truncation, {label}: {_crossed(getattr(found, way))}")
 
 
-def _print_parts(point: "SeparationResult") -> None:
-    from verify.scenes.results.separation import SHOWN
-
-    ways = [way for way in (point.plain, point.closed_form) if way]
-    labels = SHOWN | {name: f"  {name}" for name in ways[0].parts.of_rounding}
-    click.echo(f"  {'':16}{'plain':26}{'closed form' if len(ways) > 1 else ''}")
-    for name, label in labels.items():
-        _print_cells(label, (getattr(way.parts, name).value for way in ways), 26)
-    for label, way in zip(_LABELS.values(), ways, strict=False):
-        growth = way.growth["total"]
-        click.echo(f"  rounding with N, {label}: {growth.name} ({growth.reason})")
-    if len(ways) < 2:
-        click.echo("  no closed form: some det J ≤ 0, which has no logarithm")
-    _print_computed(point, ways[0].error_kind)
-
-
-def _print_form(point: "SeparationInDegrees") -> None:
+def _print_parts(point: "Point") -> None:
+    from verify.scenes.results.separation import SHOWN, SeparationResult
     from verify.scenes.results.separation_in_degrees import FORM_SHOWN
 
-    ways: Mapping[str, FormEvaluation] = {way: getattr(point, way) for way in _LABELS}
-    labels = FORM_SHOWN | {name: f"  {name}" for name in ways["plain"].parts.of_rounding}
-    click.echo(f"  {'greatest entry':16}{'plain':38}closed form")
-    for name, label in labels.items():
-        cells = []
-        for way in ways.values():
-            own = getattr(way.parts, name)
-            at = point.name_of(own.place) if own.largest.exact else ""
-            cells.append(f"{own.largest.value:24} {at}")
-        _print_cells(label, cells, 38)
-    for key, label in _LABELS.items():
-        law = ways[key].law
-        click.echo(f"  max |W| with N, {label}: {law.name} ({law.reason}; measured, not proved)")
-    if tangent := point.tangent:
+    planar = isinstance(point, SeparationResult)
+    ways = {label: way for key, label in _LABELS.items() if (way := getattr(point, key))}
+    first, kinds = ways["plain"], dict.fromkeys(way.error_kind for way in ways.values())
+    shown, head, width = (SHOWN, "", 26) if planar else (FORM_SHOWN, "greatest entry", 38)
+    click.echo(f"  {head:16}{'plain':{width}}{'closed form' if len(ways) > 1 else ''}")
+    for name, label in (shown | {name: f"  {name}" for name in first.parts.of_rounding}).items():
+        cells = (_cell(point, getattr(way.parts, name)) for way in ways.values())
+        click.echo(f"  {label:16}" + "".join(f"{cell:{width}}" for cell in cells).rstrip())
+    for label, way in ways.items():
+        click.echo(f"  {_grows(way, label)}")
+    if len(ways) < 2:
+        click.echo("  no closed form: some det J ≤ 0, which has no logarithm")
+    if tangent := getattr(point, "tangent", None):
         click.echo(
             f"  tangent map: ‖M‖² = {float(tangent.norm_squared):.3g}, "
             f"‖∧²M‖ = {float(tangent.areas):.3g}, finite-time Lyapunov exponent "
@@ -140,18 +119,26 @@ def _print_form(point: "SeparationInDegrees") -> None:
         )
         meaning = textwrap.fill(str(tangent.meaning), _WIDTH, subsequent_indent="  ")
         click.echo(f"  {meaning}")
-    _print_computed(point, ", ".join(dict.fromkeys(way.error_kind for way in ways.values())))
-
-
-def _print_cells(label: str, cells: Iterable[str], width: int) -> None:
-    click.echo(f"  {label:16}" + "".join(f"{cell:{width}}" for cell in cells).rstrip())
-
-
-def _print_computed(point: "Point", kinds: str) -> None:
     click.echo(
         f"  {point.arithmetic} as exact arithmetic, {point.seconds:.3g} s; "
-        f"bounds {kinds} ({point.error_method})"
+        f"bounds {first.error_kind if planar else ', '.join(kinds)} ({point.error_method})"
     )
+
+
+def _cell(point: Any, value: Any) -> str:
+    """A number; of a matrix the greatest entry, and which that is."""
+    if not hasattr(value, "largest"):
+        return str(value.value)
+    at = point.name_of(value.place) if value.largest.exact else ""
+    return f"{value.largest.value:24} {at}"
+
+
+def _grows(way: "Evaluation", label: str) -> str:
+    """How rounding grows with N; in n degrees of freedom how W does."""
+    law, growth = getattr(way, "law", None), way.growth["total"]
+    if law is None:
+        return f"rounding with N, {label}: {growth.name} ({growth.reason})"
+    return f"max |W| with N, {label}: {law.name} ({law.reason}; measured, not proved)"
 
 
 def _crossed(way: "CrossoverResult") -> str:

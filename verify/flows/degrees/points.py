@@ -1,8 +1,6 @@
 """The exact flow of many points at once in n degrees of freedom, in float64.
 
-As in the plane (`verify.flows.points`) the points follow a numerical flow together and twice, by
-extrapolations of two orders. A point at which the two are apart is left to `solution_in_degrees`,
-as is a sample that all are held against.
+As in the plane without a closed form (`verify.flows.points`) they follow a numerical flow together.
 """
 
 from collections.abc import Mapping
@@ -11,19 +9,8 @@ from fractions import Fraction
 from typing import Any
 
 from verify.flows.degrees.solution import solution_in_degrees
-from verify.flows.extrapolation import NoFlowError
-from verify.flows.extrapolation_of_many import follow
-from verify.flows.sample_check import (
-    COLUMNS,
-    DIGITS,
-    METHOD,
-    SAMPLE,
-    TRUSTED,
-    UNIT,
-    checked_bound,
-)
+from verify.flows.points_together import METHOD, Point, Together
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.prose import read_prose
 
 Array = Any  # numpy.ndarray, which is imported where it is used
 _ZERO = Fraction(0)
@@ -45,45 +32,15 @@ def points_in_degrees(
     """φ_time of the points, arrays of float64 of one length by the names p1 … qn, from t0 on where
     H depends on time. H has no parameter without a value.
 
-    Raises NoFlowError, naming the point, where one cannot be followed so far, and where the
-    numerical flow fails the check at the sample.
+    Raises NoFlowError as `Together.followed` does.
     """
     import numpy as np
 
+    def solved(start: Point, time: Fraction, digits: int) -> tuple[Point, Fraction]:
+        solution = solution_in_degrees(hamiltonian, start, time, digits, t0)
+        return solution.point, solution.bound
+
     names = hamiltonian.coordinates
-    given = np.array([points[name] for name in names], dtype=np.float64)
-    fine, rough = (follow(hamiltonian, given, [time], k, t0)[:, 0] for k in COLUMNS)
-    apart = abs(fine - rough).max(axis=0)
-    scale = np.maximum(abs(given).max(axis=0), abs(fine).max(axis=0))
-    alone = np.flatnonzero(~(apart <= TRUSTED * scale))  # nan is not
-    own = _Exact(hamiltonian, names, given, time, t0)
-    for i in map(int, alone):
-        fine[:, i], apart[i] = own(i)
-    together = np.setdiff1d(np.arange(given.shape[1]), alone)
-    places = np.linspace(0, len(together) - 1, min(SAMPLE, len(together))).round().astype(int)
-    sample = sorted({int(together[k]) for k in places})
-    greatest = float((apart + UNIT * scale).max(initial=0.0))
-    bound = checked_bound(lambda i: fine[:, i], own, sample, greatest, time)
-    return PointsInDegrees(dict(zip(names, fine, strict=True)), bound)
-
-
-@dataclass(frozen=True)
-class _Exact:
-    """Points by themselves, with more digits."""
-
-    hamiltonian: Hamiltonian
-    names: tuple[str, ...]
-    given: Array
-    time: Fraction
-    t0: Fraction
-
-    def __call__(self, i: int) -> tuple[list[float], float]:
-        """Where point i comes to, and the error of each coordinate. Raises NoFlowError."""
-        start = {name: Fraction(x) for name, x in zip(self.names, self.given[:, i], strict=True)}
-        try:
-            found = solution_in_degrees(self.hamiltonian, start, self.time, DIGITS, self.t0)
-        except NoFlowError as error:
-            where = ", ".join(f"{name} = `{float(x):.6g}`" for name, x in start.items())
-            at = read_prose(f"point {i}, {where}, to t = `{float(self.time):.6g}`: ")
-            raise NoFlowError(at + error.said) from None
-        return [float(found.point[name]) for name in self.names], float(found.bound)
+    starts = np.array([points[name] for name in names], dtype=np.float64)
+    ends, bound, _ = Together(hamiltonian, starts, [time], t0, solved).followed()
+    return PointsInDegrees(dict(zip(names, ends[:, 0], strict=True)), bound)

@@ -5,8 +5,7 @@ H is taken apart into what is not coupled. A part in one degree of freedom is th
 ellipse; all else is followed by the numerical flow, with more digits until two of them agree.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from fractions import Fraction
 from functools import lru_cache
 
@@ -16,29 +15,13 @@ from verify.algebra.formula import symbol
 from verify.effort import MOST, unless_long
 from verify.errors import InputError
 from verify.flows.closed_form import MOST_DIGITS, many_on_grid, until
-from verify.flows.confirmed import METHOD, check_poles, confirmed
-from verify.flows.degrees.extrapolation import FlowInDegrees
-from verify.flows.solution import exact_solution
+from verify.flows.solution import ITSELF, Point, Solution, exact_solution, numerical_solution
 from verify.hamiltonians import kepler_motion
-from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.coordinates import PLANE, numbered
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.systems import get
 
-_ITSELF = "the initial value itself"
 _ELLIPSE = "closed form of Kepler's ellipse"
-Point = Mapping[str, Fraction]
-
-
-@dataclass(frozen=True)
-class SolutionInDegrees:
-    """The coordinates by their names; `bound` ≥ |error| of each, `enclosed` where it is rigorous,
-    by the `method`."""
-
-    point: Point
-    bound: Fraction
-    method: str
-    enclosed: bool = True
 
 
 def solution_in_degrees(
@@ -47,7 +30,7 @@ def solution_in_degrees(
     time: Fraction,
     digits: int,
     t0: Fraction = Fraction(0),
-) -> SolutionInDegrees:
+) -> Solution:
     """φ_time(point), whose bound is at most 10^−digits times the largest coordinate at both ends.
 
     Time may be negative; t0 is when it begins where H depends on it. Raises InputError for a
@@ -58,7 +41,7 @@ def solution_in_degrees(
     if not 1 <= digits <= MOST_DIGITS:
         raise InputError("digits", digits, f"must be 1 … {MOST_DIGITS}")
     if time == 0:
-        return SolutionInDegrees(point, Fraction(0), _ITSELF)
+        return Solution(point, Fraction(0), ITSELF)
     parts = [] if hamiltonian.planar else uncoupled(hamiltonian)
     if len(parts) < 2:
         return _of_part(hamiltonian, point, time, digits, t0)
@@ -69,7 +52,7 @@ def solution_in_degrees(
         solved = _of_part(part, own, time, digits, t0)
         solutions.append(solved)
         found |= {old: solved.point[name] for name, old in zip(own, names, strict=True)}
-    return SolutionInDegrees(
+    return Solution(
         {name: found[name] for name in hamiltonian.coordinates},
         max(solved.bound for solved in solutions),
         "; ".join(dict.fromkeys(solved.method for solved in solutions)),
@@ -111,21 +94,17 @@ def _part(
 
 def _of_part(
     hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int, t0: Fraction
-) -> SolutionInDegrees:
+) -> Solution:
     if tuple(point) == PLANE:
-        plane = exact_solution(
-            hamiltonian, p=point["p"], q=point["q"], time=time, digits=digits, t0=t0
-        )
-        after = {"p": plane.p, "q": plane.q}
-        return SolutionInDegrees(after, plane.bound, plane.method, plane.enclosed)
-    return _ellipse(hamiltonian, point, time, digits) or _numerical(
+        return exact_solution(hamiltonian, **point, time=time, digits=digits, t0=t0)
+    return _ellipse(hamiltonian, point, time, digits) or numerical_solution(
         hamiltonian, point, time, digits, t0
     )
 
 
 def _ellipse(
     hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int
-) -> SolutionInDegrees | None:
+) -> Solution | None:
     """Where H is Kepler's and the orbit is bound; None for all else."""
     mu = unless_long(lambda: _strength(hamiltonian), None, MOST)
     if mu is None:
@@ -136,7 +115,7 @@ def _ellipse(
     start = list(point.values())
     found = until(lambda: many_on_grid(kepler_motion.after(mu, q, p, time), start, digits), digits)
     after = dict(zip(("p1", "p2", "q1", "q2"), found[0], strict=True))
-    return SolutionInDegrees(after, found[1], _ELLIPSE)
+    return Solution(after, found[1], _ELLIPSE)
 
 
 @lru_cache(maxsize=64)
@@ -157,15 +136,3 @@ def _strength(hamiltonian: Hamiltonian) -> Fraction | None:
     gap = sympy.simplify(hamiltonian.exact - kepler.subs(mu, value))
     same = gap.is_number and not gap.free_symbols
     return Fraction(int(value.p), int(value.q)) if same else None
-
-
-def _numerical(
-    hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int, t0: Fraction
-) -> SolutionInDegrees:
-    check_poles(hamiltonian, t0, time)
-    field, _ = canonical_field(hamiltonian)
-    start = [*point.values(), *([t0] if field.timed else [])]
-    after, bound = confirmed(
-        lambda more: FlowInDegrees(field, more), start, len(point), time, digits
-    )
-    return SolutionInDegrees(dict(zip(point, after, strict=True)), bound, METHOD, enclosed=False)

@@ -8,8 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from verify.flows.degrees.extrapolation import FlowInDegrees
-from verify.flows.extrapolation import NoFlowError
+from verify.flows.extrapolation import Flow, NoFlowError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.measures.slopes import (
@@ -127,10 +126,10 @@ def distances_of(
     return Distances(probe.how, tuple(made), step.periods)
 
 
-def flow_of(hamiltonian: Hamiltonian, probe: Probe) -> FlowInDegrees:
+def flow_of(hamiltonian: Hamiltonian, probe: Probe) -> Flow:
     """The exact flow, to the digits that a probe asks for."""
     digits = _DIGITS if probe.how == "duals" else probe.step.numbers.digits + _MORE
-    return FlowInDegrees(canonical_field(hamiltonian)[0], digits)
+    return Flow(canonical_field(hamiltonian)[0], digits)
 
 
 def _chosen(places: Sequence[Place], most: int) -> list[Place]:
@@ -143,7 +142,7 @@ def _chosen(places: Sequence[Place], most: int) -> list[Place]:
 
 
 def _periods(
-    step: UserMap, probe: Probe, flow: FlowInDegrees, hamiltonian: Hamiltonian,
+    step: UserMap, probe: Probe, flow: Flow, hamiltonian: Hamiltonian,
     places: Sequence[Place], part: Fraction,
 ) -> Periods:  # fmt: skip
     """By which it reduces its coordinates, as a step of almost no length shows."""
@@ -158,7 +157,7 @@ def _periods(
     return wrapped(ends, hamiltonian, smallest) if ends else ()
 
 
-def goal(flow: FlowInDegrees, probe: Probe, place: Place, h: Fraction) -> list[Fraction]:
+def goal(flow: Flow, probe: Probe, place: Place, h: Fraction) -> list[Fraction]:
     """Where the exact flow ends, from the state and over the time that the probe calls with.
 
     Raises StepError.
@@ -174,7 +173,7 @@ def goal(flow: FlowInDegrees, probe: Probe, place: Place, h: Fraction) -> list[F
 
 
 def _at(
-    step: UserMap, probe: Probe, flow: FlowInDegrees, place: Place, parts: Sequence[Fraction]
+    step: UserMap, probe: Probe, flow: Flow, place: Place, parts: Sequence[Fraction]
 ) -> PlaceOrder:
     """All components at one place."""
     size, begun = len(place.z), probe.begin(place)

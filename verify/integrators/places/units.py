@@ -13,8 +13,7 @@ from typing import Any
 
 import gmpy2
 
-from verify.flows.degrees.extrapolation import FlowInDegrees
-from verify.flows.extrapolation import NoFlowError
+from verify.flows.extrapolation import Flow, NoFlowError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.places.place import simple
@@ -37,7 +36,7 @@ class Field:
     def __init__(self, hamiltonian: Hamiltonian) -> None:
         self.degrees, self.names = hamiltonian.degrees, hamiltonian.coordinates
         self.timed = hamiltonian.time_dependent
-        self._flow = FlowInDegrees(canonical_field(hamiltonian)[0], _DIGITS)
+        self._flow = Flow(canonical_field(hamiltonian)[0], _DIGITS)
 
     def _slopes(self, z: Vector, t: float) -> list[Any] | None:
         try:

@@ -9,8 +9,7 @@ from fractions import Fraction
 from math import gcd, lcm
 from typing import TYPE_CHECKING, TypeVar
 
-from verify.flows.degrees.extrapolation import FlowInDegrees
-from verify.flows.extrapolation import NoFlowError
+from verify.flows.extrapolation import Flow, NoFlowError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.prose import Number, Prose, prose
@@ -91,7 +90,7 @@ def _fraction(x: "sympy.Expr") -> Fraction:
 
 def _repeats(hamiltonian: Hamiltonian, place: int, period: Fraction) -> bool:
     """Whether the field is the same after that period, at points."""
-    flow, same = FlowInDegrees(canonical_field(hamiltonian)[0], _OF_FIELD), 0
+    flow, same = Flow(canonical_field(hamiltonian)[0], _OF_FIELD), 0
     names = hamiltonian.coordinates
     for first in range(_POINTS):
         point = [Fraction(2 * k + 3 * first + 1, 11) for k in range(len(names))]

@@ -60,6 +60,14 @@ def computed_in_degrees(step: CanonicalMap, asked: Observed) -> Computation:
     return _Step(step, asked).computation()
 
 
+def with_slopes(made: Computation) -> tuple[Program, Partials, list[list[int]]]:
+    """A copy of the step's program, what differentiates in it, and K = J − 1, row by row."""
+    program = made.program.copy()
+    partials = Partials(program, [program.input(n, static=False) for n in made.coordinates])
+    changes = [made.outputs[f"d{name}"] for name in made.coordinates]
+    return program, partials, [partials.gradient(at) for at in changes]
+
+
 class _Step:
     def __init__(self, step: CanonicalMap, asked: Observed) -> None:
         self.step, self.asked, self.program = step, asked, Program()

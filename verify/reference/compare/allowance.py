@@ -14,10 +14,11 @@ import flint
 from verify.algebra.enclosure import enclose_all
 from verify.arithmetic.arb import around, in_reach, middle_and_radius, rational_ball
 from verify.arithmetic.flint_precision import working_precision
+from verify.kernels.orbit import Orbit
 from verify.kernels.step.computation import step_map_of
 from verify.reference.compare.findings import DOUBLE, SINGLE, Spread
 from verify.reference.compare.scatter import Scatters
-from verify.reference.make.orbit_points import AnyOrbit, Bounded
+from verify.reference.make.orbit_points import Bounded
 
 USUAL, WORST = 8, 16  # times what the copies show, since operations differ
 _NOT_AT_ALL = Spread(0, 0)
@@ -33,7 +34,7 @@ _UNDERFLOWS = (  # units of roundoff, and what all numbers of that format are lo
 class Allowance:
     """Of one orbit, for one unit roundoff."""
 
-    def __init__(self, orbit: AnyOrbit, unit: Fraction, scatters: Scatters) -> None:
+    def __init__(self, orbit: Orbit, unit: Fraction, scatters: Scatters) -> None:
         self.orbit, self.unit, self._scatters = orbit, unit, scatters
         self._few = _FEW if orbit.hamiltonian.planar else _FEW_IN_DEGREES
         self._entries: dict[int, Fraction] = {}
@@ -79,7 +80,7 @@ class Allowance:
         return _PRODUCTS * self.unit * most
 
 
-def products(orbit: AnyOrbit, done: int, known: dict[str, Bounded]) -> Fraction:
+def products(orbit: Orbit, done: int, known: dict[str, Bounded]) -> Fraction:
     """A bound of |a d| + |b c| over the substeps of the step after so many, at least 1: what det J
     is the rest of. 1 where that is not looked at, as in n degrees of freedom."""
     if not orbit.hamiltonian.planar:

@@ -14,8 +14,8 @@ from fractions import Fraction
 from verify.arithmetic.systems import float64
 from verify.errors import InputError
 from verify.hamiltonians.start import point_of
+from verify.kernels.orbit import Orbit
 from verify.reference.compare.findings import DOUBLE, Spread, Spreads
-from verify.reference.make.orbit_points import OrbitInDegrees
 from verify.runs.run import run
 
 _OFF = Fraction(1, 2**24)  # of the orbit's size: what is carried has 20 digits of bits beside it
@@ -39,7 +39,7 @@ class _Row:
 class Carried:
     """That of one orbit."""
 
-    def __init__(self, orbit: OrbitInDegrees) -> None:
+    def __init__(self, orbit: Orbit) -> None:
         self._orbit = orbit
         self._rows: dict[int, _Row | None] = {}
 

@@ -16,7 +16,6 @@ from verify.reference.compare.published import Published, PublishedRun
 from verify.reference.compare.rows import Theirs
 from verify.reference.compare.scatter import Scatters
 from verify.reference.compare.setting import Points, Setting
-from verify.reference.make.orbit_points import AnyOrbit
 from verify.scenes.results.separation import SeparationResult
 from verify.studies.separation.separate import separate
 
@@ -127,7 +126,7 @@ def _off_by_rounding(judge: Judge, judged: RunFindings) -> Iterator[_Off]:
     if of is None or of.verdict not in (Verdict.ROUNDING, Verdict.PERHAPS):
         return
     orbit = judge.ours.orbit
-    if not isinstance(orbit, Orbit):  # there it takes long
+    if not orbit.hamiltonian.planar:  # there it takes long
         return
     last = _MOST_SEPARATED if judged.lost_from is None else judged.lost_from - 1
     for (step, name), cell in judge.cells.items():
@@ -146,6 +145,7 @@ def _separated(off: list[_Off]) -> Separated | None:
         orbit.hamiltonian, orbit.scheme, q=orbit.q, p=orbit.p,
         step_size=orbit.step_size, steps=step, t0=orbit.t0, digits=_SEPARATED_DIGITS,
     )  # fmt: skip
+    assert isinstance(result, SeparationResult)  # noqa: S101 - tables are of the plane
     return Separated(label, step, apart, result) if result.plain else None
 
 
@@ -168,9 +168,7 @@ class _Search:
         return len(self.known) > before
 
 
-def _orbits(
-    runs: Iterable[PublishedRun], points: Points, names: Container[str]
-) -> Iterator[AnyOrbit]:
+def _orbits(runs: Iterable[PublishedRun], points: Points, names: Container[str]) -> Iterator[Orbit]:
     """What runs with one of these mistakes would be."""
     for run in runs:
         for mistake in of_states(Setting(run.orbit, points)):

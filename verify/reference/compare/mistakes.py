@@ -49,7 +49,7 @@ class Mistake:
 def of_inputs(right: Setting) -> Iterator[Mistake]:
     """Inputs that are doubles; no program that works with doubles can be told by them."""
     orbit = right.orbit
-    if not isinstance(orbit, Orbit):
+    if not orbit.hamiltonian.planar:
         return
     exact = {"h": orbit.step_size, "q0": orbit.q, "p0": orbit.p, **dict(orbit.hamiltonian.values)}
     if orbit.hamiltonian.time_dependent:
@@ -68,7 +68,7 @@ def of_inputs(right: Setting) -> Iterator[Mistake]:
 
 def of_states(right: Setting) -> Iterator[Mistake]:
     """All that can be seen in doubles."""
-    if not isinstance(right.orbit, Orbit):
+    if not right.orbit.hamiltonian.planar:
         yield from _in_degrees(right)
         return
     yield from _of_columns(right, right.orbit)
@@ -198,7 +198,7 @@ def without_synonyms(mistakes: list[Mistake]) -> list[Mistake]:
     for mistake in mistakes:
         setting, (q, p, h) = mistake.setting, _ELSEWHERE
         state = None
-        if mistake.name.startswith(_OF_SCHEME) and isinstance(setting.orbit, Orbit):
+        if mistake.name.startswith(_OF_SCHEME) and setting.orbit.hamiltonian.planar:
             there = replace(setting.orbit, q=q, p=p, step_size=h)
             known = replace(setting, orbit=there).numbers(1, _SHARP)
             state = (known["p"][0], known["q"][0]) if "p" in known else None

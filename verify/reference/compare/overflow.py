@@ -13,16 +13,16 @@ import numpy as np
 from verify.arithmetic.float_context import FLOAT
 from verify.flows.extrapolation_of_many import arrays
 from verify.kernels.kernel import kernel_for
+from verify.kernels.orbit import Orbit
 from verify.reference.compare.allowance import products
 from verify.reference.compare.scatter import inputs_of, run_of
-from verify.reference.compare.setting import start_of
-from verify.reference.make.orbit_points import AnyOrbit, Bounded
+from verify.reference.make.orbit_points import Bounded
 
 _LARGE = Fraction(10) ** 250  # what is summed up or multiplied on the way to it may be larger
 _MOST_STEPS = 20_000  # stepped
 
 
-def may_overflow(orbit: AnyOrbit, step: int, known: dict[str, Bounded]) -> bool:
+def may_overflow(orbit: Orbit, step: int, known: dict[str, Bounded]) -> bool:
     """Within so many steps and the next; `known` are the run's numbers then, the state among them
     unless it has left the reference data's range, too."""
     if any(name not in known for name in orbit.hamiltonian.coordinates):
@@ -33,7 +33,7 @@ def may_overflow(orbit: AnyOrbit, step: int, known: dict[str, Bounded]) -> bool:
 
 
 @lru_cache(maxsize=4096)
-def _overflows(orbit: AnyOrbit, step: int) -> bool:
+def _overflows(orbit: Orbit, step: int) -> bool:
     run = run_of(orbit)
     if run.implicit:
         return False
@@ -41,7 +41,7 @@ def _overflows(orbit: AnyOrbit, step: int) -> bool:
     try:
         kernel = kernel_for(run.hamiltonian, orbit.scheme, arithmetic, run.observables, False)
         given = [FLOAT.rational(x) for x in inputs_of(run, kernel, arithmetic)]
-        begun = [start_of(orbit)[name] for name in kernel.coordinates]
+        begun = [orbit.start[name] for name in kernel.coordinates]
         state = [FLOAT.rational(Fraction(x)) for x in (*begun, *kernel.start)]
     except OverflowError:  # what is given is no double
         return True

@@ -33,7 +33,7 @@ from verify.reference.make.models_in_degrees import (
     RunInDegrees,
     is_of_degrees,
 )
-from verify.reference.make.orbit_points import AnyOrbit, Bounded, OrbitInDegrees
+from verify.reference.make.orbit_points import Bounded
 from verify.reference.make.reading import json_of
 from verify.reference.make.writing import MANIFEST, SCHEMAS
 from verify.scenes.results.reference import Rounded
@@ -86,16 +86,13 @@ class PublishedRun:
         return f"{self.scene}: {self.run.label}"
 
     @cached_property
-    def orbit(self) -> AnyOrbit:
+    def orbit(self) -> Orbit:
         """What was run."""
         h, *start = self.exact.values()
         scheme, t0 = self.run.scheme, self.t0 or Fraction(0)
-        if isinstance(self.run, Run):
-            return Orbit(self.hamiltonian, scheme, h, *start, t0=t0)
         half = self.hamiltonian.degrees
-        return OrbitInDegrees(
-            self.hamiltonian, scheme, h, tuple(start[:half]), tuple(start[half:]), t0
-        )
+        q, p = start if half == 1 else (tuple(start[:half]), tuple(start[half:]))
+        return Orbit(self.hamiltonian, scheme, h, q, p, t0=t0)
 
     @property
     def t0(self) -> Fraction | None:

@@ -28,8 +28,6 @@ from verify.kernels.orbit import Orbit
 from verify.kernels.stepping import KernelRun
 from verify.reference.compare.carried import Carried
 from verify.reference.compare.findings import Spread, Spreads
-from verify.reference.compare.setting import start_of
-from verify.reference.make.orbit_points import AnyOrbit
 
 _PUSH = 2.0**-42 if WIDE.prec > 60 else 2.0**-32  # numbers have 20 bits and more beside it
 _COPIES = 16  # of each kind
@@ -137,10 +135,10 @@ class Scatter:
         return apart[:, :_COPIES].max(axis=1), apart.max(axis=1)
 
 
-def run_of(orbit: AnyOrbit) -> KernelRun:
+def run_of(orbit: Orbit) -> KernelRun:
     """One step of the orbit, with Λ and, in the plane, MSE."""
     observed = frozenset({"mse", "lambda"} if orbit.hamiltonian.planar else {"lambda"})
-    return KernelRun(orbit.hamiltonian, orbit.scheme, start_of(orbit), 1, observed, 0)
+    return KernelRun(orbit.hamiltonian, orbit.scheme, orbit.start, 1, observed, 0)
 
 
 def inputs_of(run: KernelRun, kernel: Kernel, arithmetic: Arithmetic) -> list[Fraction]:
@@ -155,28 +153,28 @@ class Scatters:
     """The scatters of a table's orbits, each made when it is first needed, with others of its kind;
     other orbits have one of their own."""
 
-    def __init__(self, orbits: Iterable[AnyOrbit] = (), marks: Sequence[int] = ()) -> None:
-        self._carried: dict[AnyOrbit, Carried] = {}
+    def __init__(self, orbits: Iterable[Orbit] = (), marks: Sequence[int] = ()) -> None:
+        self._carried: dict[Orbit, Carried] = {}
         self._place: dict[Orbit, tuple[tuple[Orbit, ...], int]] = {}
         self._marks = marks
         self._made: dict[tuple[Orbit, ...], Scatter] = {}
         self.expect(orbits)
 
-    def expect(self, orbits: Iterable[AnyOrbit]) -> None:
+    def expect(self, orbits: Iterable[Orbit]) -> None:
         """They may be asked for, too; so those of a kind that are new step together."""
         kinds: dict[object, list[Orbit]] = {}
         for orbit in dict.fromkeys(orbits):
-            if isinstance(orbit, Orbit) and orbit not in self._place:
+            if orbit.hamiltonian.planar and orbit not in self._place:
                 kinds.setdefault((orbit.hamiltonian.expression, orbit.scheme), []).append(orbit)
         for kind in kinds.values():
             for first in range(0, len(kind), _TOGETHER):
                 together = tuple(kind[first : first + _TOGETHER])
                 self._place |= {orbit: (together, k) for k, orbit in enumerate(together)}
 
-    def at(self, orbit: AnyOrbit, step: int) -> Spreads | None:
+    def at(self, orbit: Orbit, step: int) -> Spreads | None:
         """As `Scatter.at`, in any order; of no number where the scheme solves equations, unless in
         n degrees of freedom."""
-        if not isinstance(orbit, Orbit):
+        if not orbit.hamiltonian.planar:
             return self._carried.setdefault(orbit, Carried(orbit)).at(step)
         together, k = self._place.get(orbit, ((orbit,), 0))
         try:

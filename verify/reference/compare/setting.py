@@ -10,10 +10,9 @@ from functools import lru_cache
 
 from verify.arithmetic.number_system import UnsupportedError
 from verify.errors import InputError
-from verify.hamiltonians.start import point_of
 from verify.kernels.orbit import Orbit
 from verify.reference.make.columns import AnyOrbitPoint, values_of
-from verify.reference.make.orbit_points import AnyOrbit, Bounded, orbit_points
+from verify.reference.make.orbit_points import Bounded, orbit_points
 
 _MOST_STEPS = 2_000_000  # run; what is farther is not known
 _MOST_STEPS_IN_DEGREES = 20_000
@@ -28,11 +27,11 @@ def numbers_of(point: AnyOrbitPoint, degrees: int) -> dict[str, Bounded]:
 class Points:
     """Orbits after some steps: from the reference data where they have them, else by a run."""
 
-    def __init__(self, known: Mapping[AnyOrbit, tuple[int, Mapping[int, AnyOrbitPoint]]]) -> None:
+    def __init__(self, known: Mapping[Orbit, tuple[int, Mapping[int, AnyOrbitPoint]]]) -> None:
         """`known`: of an orbit its digits, and its points by step."""
         self._known = known
 
-    def at(self, orbit: AnyOrbit, step: int, digits: int) -> AnyOrbitPoint | None:
+    def at(self, orbit: Orbit, step: int, digits: int) -> AnyOrbitPoint | None:
         """To so many digits and no fewer; None where there is no such state."""
         have, rows = self._known.get(orbit, (0, {}))
         if have >= digits and step in rows:
@@ -40,7 +39,7 @@ class Points:
             return point if point.status == "finished" else None
         return _run_at(orbit, step, digits)
 
-    def of_other_schemes(self, orbit: AnyOrbit) -> Iterator[AnyOrbit]:
+    def of_other_schemes(self, orbit: Orbit) -> Iterator[Orbit]:
         """Those of the reference data that differ from an orbit in the scheme alone."""
         for other in self._known:
             if other != orbit and replace(other, scheme=orbit.scheme) == orbit:
@@ -52,7 +51,7 @@ class Setting:
     """A run; row N holds what it is after N + `late` steps, some columns perhaps `exchanged` in
     pairs, and every p perhaps `negated`. `points` knows what it is."""
 
-    orbit: AnyOrbit
+    orbit: Orbit
     points: Points = field(compare=False)
     late: int = 0
     exchanged: tuple[tuple[str, str], ...] = ()
@@ -76,16 +75,8 @@ class Setting:
         return name
 
 
-def start_of(orbit: AnyOrbit) -> dict[str, Fraction]:
-    """What a kernel's run of it begins with: the state, h and t."""
-    if isinstance(orbit, Orbit):
-        return orbit.start
-    point = point_of(orbit.hamiltonian, orbit.q, orbit.p)
-    return {**point, "h": orbit.step_size, "t": orbit.t0}
-
-
 @lru_cache(maxsize=4096)
-def _run_at(orbit: AnyOrbit, step: int, digits: int) -> AnyOrbitPoint | None:
+def _run_at(orbit: Orbit, step: int, digits: int) -> AnyOrbitPoint | None:
     if step > (_MOST_STEPS if orbit.hamiltonian.planar else _MOST_STEPS_IN_DEGREES):
         return None
     try:

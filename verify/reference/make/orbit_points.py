@@ -8,7 +8,6 @@ numbers round to one decimal.
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from fractions import Fraction
 from types import MappingProxyType
 from typing import Any, Literal
@@ -20,9 +19,9 @@ from verify.arithmetic.arb import around, in_reach, middle_and_radius, rational_
 from verify.arithmetic.exact import text
 from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
-from verify.flows.degrees.solution import SolutionInDegrees, solution_in_degrees
+from verify.flows.degrees.solution import solution_in_degrees
 from verify.flows.extrapolation import NoFlowError
-from verify.flows.solution import leaves_by_algebra
+from verify.flows.solution import Solution, leaves_by_algebra
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import point_of
@@ -47,28 +46,13 @@ _BITS = 64  # beyond the digits, for the roundings of one step, or of H
 Bounded = tuple[Fraction, Fraction]  # a value and its bound
 
 
-@dataclass(frozen=True)
-class OrbitInDegrees:
-    """The iterates of a scheme's step of one size from (q, p), at t0 where H depends on time."""
-
-    hamiltonian: Hamiltonian
-    scheme: str
-    step_size: Fraction
-    q: tuple[Fraction, ...]
-    p: tuple[Fraction, ...]
-    t0: Fraction = Fraction(0)
-
-
-AnyOrbit = Orbit | OrbitInDegrees
-
-
-def orbit_points(orbit: AnyOrbit, steps: Sequence[int], digits: int) -> Iterator[Any]:
+def orbit_points(orbit: Orbit, steps: Sequence[int], digits: int) -> Iterator[Any]:
     """The orbit after each of these numbers of steps, every number to so many digits."""
     for step in steps:
         yield _point(orbit, step, digits)
 
 
-def _point(orbit: AnyOrbit, step: int, digits: int) -> AnyOrbitPoint:
+def _point(orbit: Orbit, step: int, digits: int) -> AnyOrbitPoint:
     start = point_of(orbit.hamiltonian, orbit.q, orbit.p)
     beside = orbit_columns(orbit.hamiltonian.degrees)
     observables = tuple(x for x in beside if x not in MAY_LACK)
@@ -92,7 +76,7 @@ def _point(orbit: AnyOrbit, step: int, digits: int) -> AnyOrbitPoint:
     return _orbit_point(orbit, step, "unresolved")
 
 
-def _run(orbit: AnyOrbit, steps: int, digits: int, observables: Sequence[str]) -> RunResult:
+def _run(orbit: Orbit, steps: int, digits: int, observables: Sequence[str]) -> RunResult:
     return run(
         orbit.hamiltonian,
         orbit.scheme,
@@ -121,7 +105,7 @@ def _all_rounded(
 
 
 def _orbit_point(
-    orbit: AnyOrbit,
+    orbit: Orbit,
     step: int,
     status: Literal["finished", "left range", "unresolved"],
     values: Mapping[str, Rounded | None] = MappingProxyType({}),
@@ -143,7 +127,7 @@ def _state(hamiltonian: Hamiltonian, values: Mapping[str, Rounded | None]) -> di
 
 
 def _at_state(
-    orbit: AnyOrbit, step: int, known: Mapping[str, Bounded], digits: int
+    orbit: Orbit, step: int, known: Mapping[str, Bounded], digits: int
 ) -> dict[str, Bounded]:
     """ΔJ of the orbit's next step after so many, or H in several degrees of freedom, from any state
     within the bounds in `known`; nothing where it may not be defined there.
@@ -152,7 +136,7 @@ def _at_state(
         box = {name: around(*known[name]) for name in orbit.hamiltonian.coordinates}
         if orbit.hamiltonian.time_dependent:
             box["t"] = rational_ball(orbit.t0 + step * orbit.step_size)
-        if isinstance(orbit, Orbit):
+        if orbit.hamiltonian.planar:
             name, value = "delta_j", _delta_j(orbit, box)
         else:
             field, _ = canonical_field(orbit.hamiltonian)
@@ -207,7 +191,7 @@ def _flow_point(
     try:
         for guard in _GUARDS:
             if step == 0:  # the initial value itself, also where H is not defined
-                at = SolutionInDegrees(start, Fraction(0), "the initial value itself")
+                at = Solution(start, Fraction(0), "the initial value itself")
             else:
                 at = solution_in_degrees(hamiltonian, start, time, digits + guard, t0)
             known = {name: (x, at.bound) for name, x in at.point.items()}

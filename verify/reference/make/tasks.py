@@ -55,9 +55,10 @@ class OrbitAtSteps(AtSteps):
         return ROW_COST * len(self.steps) + automatic()[-1].cost * sum(self.steps)
 
     @property
-    def start(self) -> dict[str, Any]:
-        """q, p and t₀."""
-        return {"q": self.q, "p": self.p, "t0": self.t0 or Fraction()}
+    def orbit(self) -> Orbit:
+        """What is run."""
+        exact, t0 = self.exact_hamiltonian(), self.t0 or Fraction()
+        return Orbit(exact, self.scheme, self.step_size, self.q, self.p, t0=t0)
 
 
 class OrbitTask(OrbitAtSteps):
@@ -75,8 +76,7 @@ class OrbitTask(OrbitAtSteps):
     def compute(self, keeper: Keeper) -> OrbitResult:
         from verify.reference.make.orbit_points import orbit_points
 
-        orbit = Orbit(self.exact_hamiltonian(), self.scheme, self.step_size, **self.start)
-        points = orbit_points(orbit, self.steps, self.digits)
+        points = orbit_points(self.orbit, self.steps, self.digits)
         return OrbitResult.model_validate({"points": tuple(points)})
 
 
@@ -88,11 +88,9 @@ class OrbitInDegreesTask(OrbitAtSteps):
     kind: Literal["orbit in degrees"] = "orbit in degrees"
 
     def compute(self, keeper: Keeper) -> OrbitInDegreesResult:
-        from verify.reference.make.orbit_points import OrbitInDegrees, orbit_points
+        from verify.reference.make.orbit_points import orbit_points
 
-        exact = self.exact_hamiltonian()
-        orbit = OrbitInDegrees(exact, self.scheme, self.step_size, **self.start)
-        points = orbit_points(orbit, self.steps, self.digits)
+        points = orbit_points(self.orbit, self.steps, self.digits)
         return OrbitInDegreesResult.model_validate({"points": tuple(points)})
 
 

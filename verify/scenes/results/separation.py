@@ -1,7 +1,7 @@
 """Truncation and rounding in Λ as they were found, and how they show themselves in a notebook."""
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, ClassVar, Literal
+from collections.abc import Callable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from verify.frames import library, nearest_float
 from verify.notebook import html_table
@@ -125,18 +125,32 @@ class SeparationResult(OfScheme):
 
     def _repr_html_(self) -> str:
         """The parts of Λ for each way to evaluate it, with their bounds."""
-        caption = f"{self.scheme}: {self.steps} steps of h = {self.step_size}, Λ in float64"
-        if self.plain is None:
-            return html_table(caption, (), [(self.status, self.reason)])
-        ways = {way: label for way, label in WAYS.items() if getattr(self, way)}
-        parts = SHOWN | {name: f"– {name}" for name in self.plain.parts.of_rounding}
-        rows = [
-            (label, *(str(getattr(getattr(self, way).parts, name)) for way in ways))
-            for name, label in parts.items()
-        ]
-        rows.append(("rounding with N", *(getattr(self, way).growth["total"].name for way in ways)))
-        foot = f"{self.arithmetic} as exact arithmetic; bounds {self.plain.error_kind}: "
-        return html_table(caption, ("", *ways.values()), rows, foot + self.error_method)
+        return parts_table(self, "Λ", SHOWN, str, grows=lambda way: way.growth["total"].name)
+
+
+def parts_table(
+    point: Any,
+    whole: str,
+    labels: Mapping[str, str],
+    cell: Callable[[Any], str],
+    said: str = "",
+    grows: Callable[[Any], str] | None = None,
+) -> str:
+    """What was split, of Λ or W, for each way to evaluate it, and how rounding `grows` with N;
+    `said` at its foot, first."""
+    caption = f"{point.scheme}: {point.steps} steps of h = {point.step_size}, {whole} in float64"
+    if point.plain is None:
+        return html_table(caption, (), [(point.status, point.reason)])
+    ways = {label: getattr(point, way) for way, label in WAYS.items() if getattr(point, way)}
+    parts = {**labels, **{name: f"– {name}" for name in point.plain.parts.of_rounding}}
+    rows = [
+        (label, *(cell(getattr(way.parts, name)) for way in ways.values()))
+        for name, label in parts.items()
+    ]
+    if grows:
+        rows.append(("rounding with N", *map(grows, ways.values())))
+    foot = f"{said}{point.arithmetic} as exact arithmetic; bounds {point.plain.error_kind}: "
+    return html_table(caption, ("", *ways), rows, foot + point.error_method)
 
 
 class CrossoverResult(Frozen):

@@ -4,10 +4,9 @@ from fractions import Fraction
 from itertools import combinations
 from typing import ClassVar, Literal
 
-from verify.notebook import html_table
 from verify.scenes.frozen import Frozen, OfScheme, Said, Seconds, WithProse
 from verify.scenes.results.bounded_value import Value
-from verify.scenes.results.separation import WAYS, Chain, CrossoverResult, GrowthResult
+from verify.scenes.results.separation import Chain, CrossoverResult, GrowthResult, parts_table
 
 FORM_ROUNDING = ("input", "trajectory", "derivatives", "product")
 FORM_SHOWN = {"w_working": "W in float64", "truncation": "truncation", "total": "rounding"}
@@ -177,18 +176,8 @@ class SeparationInDegrees(OfScheme):
 
     def _repr_html_(self) -> str:
         """The greatest entry of each part for each way to evaluate W, with its bound."""
-        caption = f"{self.scheme}: {self.steps} steps of h = {self.step_size}, W in float64"
-        if self.plain is None or self.tangent is None:
-            return html_table(caption, (), [(self.status, self.reason)])
-        ways = {way: label for way, label in WAYS.items() if getattr(self, way)}
-        labels = FORM_SHOWN | {name: f"– {name}" for name in self.plain.parts.of_rounding}
-        rows = [
-            (label, *(str(getattr(getattr(self, way).parts, name).largest) for way in ways))
-            for name, label in labels.items()
-        ]
-        foot = f"the greatest entry of each; {self.tangent.meaning} {self.arithmetic} as exact "
-        foot += f"arithmetic; bounds {self.plain.error_kind}: {self.error_method}"
-        return html_table(caption, ("", *ways.values()), rows, foot)
+        meaning = f"the greatest entry of each; {self.tangent.meaning} " if self.tangent else ""
+        return parts_table(self, "W", FORM_SHOWN, lambda matrix: str(matrix.largest), meaning)
 
 
 class SeparationGridInDegrees(Frozen):

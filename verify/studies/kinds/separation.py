@@ -15,7 +15,6 @@ from verify.scenes.results.separation_in_degrees import SeparationInDegrees
 from verify.scenes.run_sections import Grid
 from verify.scenes.scene import Scene
 from verify.studies.kinds.grid import grid_tasks, shares_runs
-from verify.studies.separation.form_separate import grid_in_degrees
 from verify.studies.separation.separate import as_grid
 from verify.studies.separation.task import DIGITS, FormSeparationTask, SeparationTask
 
@@ -25,11 +24,7 @@ def _rows(
 ) -> Sequence[Sequence[SeparationTask | FormSeparationTask]]:
     """The splits of the grid's runs, by initial value, then step size."""
     given = scene.hamiltonian_fields()
-    task, starts = (
-        (SeparationTask, grid.in_the_plane)
-        if scene.exact_hamiltonian().planar
-        else (FormSeparationTask, grid.initial_values)
-    )
+    task = SeparationTask if scene.exact_hamiltonian().planar else FormSeparationTask
     shared = grid is scene.grid and shares_runs(scene)
     runs: Iterator[dict[str, Any]] = repeat({})
     if shared:  # they are in the same order
@@ -42,7 +37,7 @@ def _rows(
             )
             for h in grid.step_sizes
         ]
-        for at in starts
+        for at in grid.initial_values
     ]  # fmt: skip
 
 
@@ -71,15 +66,12 @@ def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
 
 
 def _found(scene: Scene, results: Results) -> dict[str, Any]:
-    model: Any = SeparationResult
-    made: Any = as_grid
-    prefix = ""
-    if not scene.exact_hamiltonian().planar:
-        model, made, prefix = SeparationInDegrees, grid_in_degrees, "form_"
+    planar = scene.exact_hamiltonian().planar
+    model: Any = SeparationResult if planar else SeparationInDegrees
     of_each = {"separations": _own(scene), "crossovers": _beside(scene)}
     return {
-        prefix + name: tuple(
-            made(known)
+        name if planar else f"form_{name}": tuple(
+            as_grid(known)
             for scheme in scene.schemes
             for grid in grids
             for row in _rows(scene, scheme, grid)

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from verify import arithmetic as number_systems
-from verify import lockstep
 from verify.arithmetic import AUTO
 from verify.arithmetic.exact import magnitude
 from verify.arithmetic.number_system import UnsupportedError
@@ -20,23 +19,14 @@ from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.step.computation import common_power, step_map_of
 from verify.kernels.stepping import KernelRun, Outcome
-from verify.runs.digits_on_demand import choose
 from verify.runs.estimated import working_digits
 from verify.runs.run import AskedRun, proved
 from verify.schemes import get
 from verify.schemes.step_map import StepMap
 from verify.studies.separation.links import AsLink, LinksOnDemand, last_system
+from verify.studies.separation.mixed_run import POINTS, Advance, marks_of
 from verify.studies.separation.trail import Trail
-from verify.studies.separation.working import (
-    POINTS,
-    Advance,
-    Kind,
-    Link,
-    Working,
-    WorkingRun,
-    exact_link,
-    marks_of,
-)
+from verify.studies.separation.working import Kind, Link, Working, WorkingRun, exact_link
 
 PARTS = ("input", "trajectory", "determinant", "product")  # of rounding, in the chain's order
 PARTS_IN_TIME = ("input", "clock", "trajectory", "determinant", "product")
@@ -156,22 +146,21 @@ def separated_chains(
     """
     kernel_run = KernelRun(hamiltonian, scheme, start, steps, frozenset({"lambda"}), POINTS, keeper)
     step_map = step_map_of(hamiltonian, scheme)
-    begun = lockstep.clock()
-    if arithmetic == AUTO:
-        arithmetic = choose(kernel_run, digits + CANCELLED)
     links = _AreaLinks(kernel_run, step_map, arithmetic, digits + CANCELLED, advance)
     if run is not None:
         links.take(run)
-    plain, closed = links.to_digits(links.chains, lambda found: _lacking(found, digits))
-    return Chains(plain, closed, arithmetic, lockstep.clock() - begun)
+    plain, closed = links.to_digits(
+        links.chains, lambda found: lacking(filter(None, found), digits)
+    )
+    return Chains(plain, closed, links.arithmetic, links.seconds)
 
 
-def _lacking(chains: Iterable[Chain | None], digits: int) -> list[int]:
+def lacking(chains: Iterable[Chain], digits: int, least: Fraction = Fraction(0)) -> list[int]:
     """How many digits each link lacks, for the chain in which it lacks most."""
-    return [max(each) for each in zip(*(x.lacking(digits) for x in chains if x), strict=True)]
+    return [max(each) for each in zip(*(x.lacking(digits, least) for x in chains), strict=True)]
 
 
-class _AreaLinks(LinksOnDemand[Link, Working]):
+class _AreaLinks(LinksOnDemand[Link, Working[Link]]):
     """The links of Λ."""
 
     observable = "lambda"
@@ -184,7 +173,7 @@ class _AreaLinks(LinksOnDemand[Link, Working]):
         digits: int,
         advance: Advance,
     ) -> None:
-        super().__init__(kernel_run, arithmetic, digits, POINTS, advance)
+        super().__init__(kernel_run, arithmetic, digits, advance)
         self._step_map = step_map
 
     def of_proof(self, name: str) -> Link | None:
@@ -198,13 +187,13 @@ class _AreaLinks(LinksOnDemand[Link, Working]):
         """The chain of the plain way and that of the closed form."""
         shared, working = self.shared(), self.working
         parts = PARTS_IN_TIME if self.kernel_run.hamiltonian.time_dependent else PARTS
-        plain = Chain(self.marks, (*shared, working.determinant, working.plain), parts)
-        fourth, fifth = working.closed_delta_j, working.closed_form
+        plain = Chain(self.marks, (*shared, working.factors, working.plain), parts)
+        fourth, fifth = working.closed_factors, working.closed_form
         if fourth is None or fifth is None:
             return plain, None
         return plain, Chain(self.marks, (*shared, fourth, fifth), parts)
 
-    def beside(self) -> Working:
+    def beside(self) -> Working[Link]:
         """In what can follow float64 everywhere where another cannot, or has no bound of its
         rounding."""
         run = WorkingRun(

@@ -23,7 +23,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from verify import arithmetic as number_systems
-from verify import lockstep
 from verify.arithmetic import AUTO
 from verify.errors import InputError
 from verify.execution.keeping import NOTHING, Keeper
@@ -31,12 +30,12 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.chunked_loop import ENTRIES
 from verify.kernels.step.in_degrees import map_of, preserves
 from verify.kernels.stepping import KernelRun, Outcome
-from verify.runs.digits_on_demand import choose
 from verify.runs.estimated import working_digits
-from verify.studies.separation.chain import Chain
+from verify.studies.separation.chain import Chain, lacking
 from verify.studies.separation.form_run import POINTS, FormRun, FormWorking, Links, Size, links_of
 from verify.studies.separation.links import AsLink, LinksOnDemand, last_system
-from verify.studies.separation.working import Advance, exact_link
+from verify.studies.separation.mixed_run import Advance
+from verify.studies.separation.working import exact_link
 
 PARTS = ("input", "trajectory", "derivatives", "product")  # of rounding, in the chain's order
 PARTS_IN_TIME = ("input", "clock", "trajectory", "derivatives", "product")
@@ -84,32 +83,30 @@ def form_chains(
     if kernel_run.implicit:
         problem = "solves equations; in n degrees of freedom its Jacobian is not followed"
         raise InputError("scheme", scheme, problem)
-    begun = lockstep.clock()
-    if arithmetic == AUTO:
-        arithmetic = choose(kernel_run, digits + _CANCELLED)
     links = _FormLinks(kernel_run, arithmetic, digits + _CANCELLED, advance)
     plain, closed = links.to_digits(
         links.chains, lambda found: _lacking((*found[0], *found[1]), digits)
     )
-    return FormChains(plain, closed, links.working.sizes, arithmetic, lockstep.clock() - begun)
+    return FormChains(plain, closed, links.working.sizes, links.arithmetic, links.seconds)
 
 
 def _lacking(chains: Sequence[Chain], digits: int) -> list[int]:
     """How many digits each link lacks, for the entry that lacks most."""
     largest = max(abs(chain.final(name)[0]) for chain in chains for name in chain.quantities)
     least = largest / Fraction(10) ** (digits + _HIDDEN)
-    return [max(each) for each in zip(*(x.lacking(digits, least) for x in chains), strict=True)]
+    return lacking(chains, digits, least)
 
 
 class _FormLinks(LinksOnDemand[Links, FormWorking]):
     """The links of all entries of W."""
 
     observable = "symplectic_defect"
+    points = POINTS
 
     def __init__(
         self, kernel_run: KernelRun, arithmetic: str, digits: int, advance: Advance
     ) -> None:
-        super().__init__(kernel_run, arithmetic, digits, POINTS, advance)
+        super().__init__(kernel_run, arithmetic, digits, advance)
         self.digits["beside"] += _PRODUCTS
 
     def of_proof(self, name: str) -> Links | None:
@@ -130,8 +127,8 @@ class _FormLinks(LinksOnDemand[Links, FormWorking]):
             return tuple(Chain(self.marks, own, parts) for own in each)
 
         first = shared[0]
-        closed = working.closed_derivatives or first, working.closed_form or first
-        return chains(working.derivatives, working.plain), chains(*closed)
+        closed = working.closed_factors or first, working.closed_form or first
+        return chains(working.factors, working.plain), chains(*closed)
 
     def beside(self) -> FormWorking:
         """In what has every range and function."""

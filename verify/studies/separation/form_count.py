@@ -26,9 +26,10 @@ import flint
 from verify.arithmetic.arb import bounds, in_reach, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic
-from verify.kernels.rounding import PRECISION, Ball, Rounded, analyse, rounding_of
+from verify.kernels.rounding import PRECISION, Ball, analyse, rounding_of
 from verify.runs.derivatives import norm
 from verify.studies.separation.form_kernel import FormKernel
+from verify.studies.separation.mixed_run import visited
 from verify.studies.separation.stepper import State
 
 _FLOAT = flint.arb(2) ** -45  # of sums of squares in float64, relative
@@ -104,16 +105,8 @@ class _Count:
 
     def evaluated(self, inputs: Mapping[str, float]) -> tuple[Ball, Ball]:
         """‖K‖ over the region that the float64 states visited, and the error of the wide K."""
-        kernel, zero = self.kernel, flint.arb(0)
-        given = {"h": inputs["h"]}
-        given |= {f"x{k}": inputs[n] for k, n in enumerate(kernel.parameters)}
-        box = {n: Rounded(rational_ball(Fraction(x)), zero) for n, x in given.items()}
-        for n in kernel.coordinates:
-            low, high = (rational_ball(Fraction(self.last[f"f_{n}_{x}"])) for x in ("low", "high"))
-            box[n] = Rounded(low.union(high), zero)
-        if kernel.timed:
-            first, end = (rational_ball(Fraction(x)) for x in (inputs["t"], self.last["f_t"]))
-            box["t"] = Rounded(first.union(end), zero)
+        kernel = self.kernel
+        box = visited(kernel, inputs, self.last, flint.arb(0))
         program, roots = kernel.wide.program, kernel.wide.roots()
         found = analyse(program, program.live(roots), box, rounding_of(self.arithmetic))
         if found is None:

@@ -22,7 +22,6 @@ row and column, M₁₂ of w_t is w_t_0_1.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import lru_cache
 from itertools import combinations
 
@@ -31,34 +30,23 @@ from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.step.computation import Computation, Observed
-from verify.kernels.step.in_degrees import computed_in_degrees, map_of, preserves
+from verify.kernels.step.in_degrees import computed_in_degrees, map_of, preserves, with_slopes
 from verify.kernels.step.lowering import Lowering
-from verify.kernels.step.partials import Partials
 from verify.kernels.step.program import Program
 from verify.schemes.step_map import StepMap
-from verify.studies.separation.kernel import AT, box_of, prefixed_lines
+from verify.studies.separation.kernel import AT, Mixed, assemble, box_of, prefixed_lines, scope_of
 
 Rows = Sequence[Sequence[str]]  # of names; an empty one is 0
 
 
 @dataclass(frozen=True)
-class FormKernel:
-    """`function(steps, f_h, *f_parameters, w_h, *w_parameters, *state_names)` → (steps done,
-    *state_names).
+class FormKernel(Mixed):
+    """`products`: the letters of the matrices that are carried, as `w_t`. `wide`: what the wide
+    lines compute at z̃, with K's entries `slopes`."""
 
-    `products`: the letters of the matrices that are carried, as `w_t`; `closed`: whether S is not
-    constantly 0. `wide`: what the wide lines compute at z̃, with K's entries `slopes`.
-    """
-
-    function: Callable[..., tuple[int, *tuple[Number, ...]]]
-    parameters: tuple[str, ...]
     coordinates: tuple[str, ...]
-    state_names: tuple[str, ...]
     products: tuple[str, ...]
-    timed: bool
-    closed: bool
     wide: "Step"
-    source: str
 
 
 @dataclass(frozen=True)
@@ -81,10 +69,8 @@ class Step:
             symplectic=form, carried=form,
         )  # fmt: skip
         made = computed_in_degrees(step, asked)
-        program = made.program.copy()
-        partials = Partials(program, [program.input(n, static=False) for n in made.coordinates])
-        changes = [made.outputs[f"d{name}"] for name in made.coordinates]
-        return cls(made, program, tuple(tuple(partials.gradient(at)) for at in changes))
+        program, _, slopes = with_slopes(made)
+        return cls(made, program, tuple(map(tuple, slopes)))
 
     def names(self, prefix: str) -> Rows:
         """K's entries by their names in the source."""
@@ -136,20 +122,23 @@ def form_kernel(
     regions = [f"f_{n}" for n in names]
     inside = [line for name in regions for line in box_of(name)] + inside
     moves += watched
+    start = {f"{matrix}_{a}_{b}": int(a == b) for matrix in products for a, b in _places(names)}
+    sums = ("f_w", "w_w") * closed
+    start |= {f"{w}_{a}_{b}": 0 for w in sums for a, b in _places(names) if a < b}
     states = (
         *(f"f_{n}" for n in (*names, *("t" * timed))),
         *(f"{AT}{n}" for n in names if follow and timed),
-        *(f"{matrix}_{a}_{b}" for matrix in products for a, b in _places(names)),
-        *(f"{w}_{a}_{b}" for w in ("f_w", "w_w") * closed for a, b in _places(names) if a < b),
+        *start,
         *(f"{name}_{side}" for name in regions for side in ("low", "high")),
         *tops,
     )
-    source = _assemble(narrow, states, before, [*inside, *moves])
-    scope = _scope(narrow, working, wide, arithmetic)
+    source = assemble(len(narrow.made.parameters), (), states, before, [*inside, *moves])
+    constants = _constants(narrow, working), _constants(wide, arithmetic)
+    scope = scope_of(working, constants[0], arithmetic, constants[1])
     function = arithmetic.compile(source, "kernel", scope)
     return FormKernel(
-        function, narrow.made.parameters, names, states, tuple(products), timed, closed, wide,
-        source,
+        function, narrow.made.parameters, states, start | dict.fromkeys(tops, 0), closed, source,
+        names, tuple(products), wide,
     )  # fmt: skip
 
 
@@ -277,35 +266,5 @@ def _watched(narrow: Step, products: Sequence[str], closed: bool) -> tuple[list[
     return tops, lines
 
 
-def _assemble(
-    narrow: Step, states: Sequence[str], before: Sequence[str], inside: Sequence[str]
-) -> str:
-    given = [prefix + name for prefix in ("f_", "w_") for name in _given(narrow)]
-    names = ", ".join(states)
-    return "\n".join(
-        [
-            f"def kernel(steps, {', '.join(given)}, {names}):",
-            *(f"    {line}" for line in before),
-            "    for _ in range(steps):",
-            *(f"        {line}" for line in inside),
-            f"    return steps, {names}",
-            "",
-        ]
-    )
-
-
-def _scope(
-    narrow: Step, working: Arithmetic, wide: Step, arithmetic: Arithmetic
-) -> dict[str, Number]:
-    """The constants and functions that the source names."""
-
-    def constants(step: Step, own: Arithmetic) -> dict[str, Number]:
-        return Lowering(step.program, own.functions, bits=own.bits).named_constants(own.number)
-
-    exact = constants(wide, arithmetic)
-    return {
-        "wide": lambda x: arithmetic.number(Fraction(x)),
-        **arithmetic.functions,
-        **{f"f_{n}": x for n, x in {**working.functions, **constants(narrow, working)}.items()},
-        **{f"{prefix}{name}": x for prefix in ("w_", AT) for name, x in exact.items()},
-    }
+def _constants(step: Step, own: Arithmetic) -> dict[str, Number]:
+    return Lowering(step.program, own.functions, bits=own.bits).named_constants(own.number)

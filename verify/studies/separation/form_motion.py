@@ -8,17 +8,16 @@ measured, and not proved.
 """
 
 from dataclasses import dataclass
-from fractions import Fraction
 from math import log
 from typing import Literal
 
-from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
+from verify.runs.start import Start
 from verify.runs.tangent_growth import finite_time_lyapunov
 from verify.studies.separation.form_growth import motion_of
 from verify.studies.separation.form_run import POINTS
 from verify.studies.separation.links import last_system
-from verify.studies.separation.working import marks_of
+from verify.studies.separation.mixed_run import marks_of
 
 _DIGITS = 20
 _ALIKE = 2  # rates within this factor of each other
@@ -35,17 +34,16 @@ class Halved:
     rate: float | None
 
 
-def halved(
-    hamiltonian: Hamiltonian, scheme: str, start: dict[str, Fraction], steps: int, rate: float
-) -> Halved:
+def halved(begun: Start, steps: int, rate: float) -> Halved:
     """Of a run whose tangent map grew exponentially at that `rate`."""
-    half = start | {"h": start["h"] / 2}
-    run = KernelRun(hamiltonian, scheme, half, 2 * steps, frozenset(), 0, sections=POINTS)
+    hamiltonian, h = begun.hamiltonian, begun.step_size
+    half = {**begun.point, "h": h / 2} | ({"t": begun.t0} if hamiltonian.time_dependent else {})
+    run = KernelRun(hamiltonian, begun.scheme, half, 2 * steps, frozenset(), 0, sections=POINTS)
     outcome = run.run(last_system().make(_DIGITS), tangent=True)
     if outcome.done < 2 * steps:
         return Halved("undecided", None)
     tops = [note["growth_top"] for note in outcome.tangents]
-    size, time = len(hamiltonian.coordinates), steps * start["h"]
+    size, time = len(hamiltonian.coordinates), steps * h
     own = finite_time_lyapunov(log(float(tops[-1])) / 2, size, float(time))
     alike = rate < _ALIKE * own and own < _ALIKE * rate
     grows = motion_of(marks_of(2 * steps, POINTS), tops) == "exponential"

@@ -2,12 +2,14 @@
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
+from functools import partial
 from math import isqrt, log, log10
+from typing import Any
 
-from verify.arithmetic.exact import decimal, known_text, magnitude, text
+from verify.arithmetic.exact import decimal, magnitude, text
 from verify.prose import Number, Prose, prose
+from verify.runs.start import Start
 from verify.runs.tangent_growth import finite_time_lyapunov
-from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.separation_in_degrees import (
     FormAt,
     FormEvaluation,
@@ -18,14 +20,13 @@ from verify.scenes.results.separation_in_degrees import (
     TangentGrowth,
 )
 from verify.studies.separation.chain import Chain
-from verify.studies.separation.form_growth import Kind, PowerLaw, power_law
-from verify.studies.separation.form_motion import Cause, Halved
+from verify.studies.separation.form_chain import FormChains
+from verify.studies.separation.form_growth import Kind, PowerLaw, motion_of, power_law
+from verify.studies.separation.form_motion import Cause, Halved, halved
 from verify.studies.separation.form_run import Size
-from verify.studies.separation.growth import growth, log_spaced
-from verify.studies.separation.separate import growth_result
+from verify.studies.separation.way import Way
 
 _SHOWN = 7  # digits of what a figure shows
-_CHECKPOINTS = 32
 _SO_W = (
     "; W adds MᵀSM at every step, S of that step and M the tangent map so far, and so grows as "
     "areas do under M, at most like ‖M‖²"
@@ -37,45 +38,37 @@ _WHOSE: dict[Cause, str] = {
 }
 
 
-class FormWay:
-    """All entries of W for one way to evaluate it, and the greatest of them at every checkpoint."""
+class FormWay(Way):
+    """All entries of W for one way to evaluate it, and how M moved."""
 
     def __init__(self, chains: Sequence[Chain], sizes: Sequence[Size], motion: Kind) -> None:
-        self.chains, self.sizes, self.motion = chains, sizes, motion
-        self.marks, self.names = chains[0].marks, chains[0].quantities
-        self.tops: dict[str, list[Fraction]] = {}
-        self.noise: dict[str, Fraction] = {}
-        for name in self.names:
-            trails = [chain.trail(name) for chain in chains]
-            each = zip(*(trail for trail, _ in trails), strict=True)
-            self.tops[name] = [max(map(abs, entries)) for entries in each]
-            self.noise[name] = max(bound for _, bound in trails)
+        super().__init__(chains)
+        self.sizes, self.motion = sizes, motion
 
     def evaluation(self, digits: int) -> FormEvaluation:
         """As results have it."""
-        size = _size(len(self.chains))
-        parts = {
-            _named(name): FormValue.of(
-                tuple(Value.of(*chain.final(name), digits) for chain in self.chains), size
-            )
-            for name in self.names
-        }
-        rounding = ("total", *self.chains[0].parts)
-        tops, noise = self.tops, self.noise
-        shown = log_spaced(range(len(self.marks)), self.marks, _CHECKPOINTS)
-        enclosed = all(chain.kind == "enclosed" for chain in self.chains)
+        size, entries = _size(len(self.chains)), self.values(digits)
+        parts = {_named(name): FormValue.of(each, size) for name, each in entries.items()}
         return FormEvaluation(
             parts=FormPartsInTime(**parts) if "clock" in parts else FormParts(**parts),
-            largest={n: _few(max(tops[n]), noise[n]) for n in ("truncation", "total")},
-            growth={n: growth_result(growth(self.marks, tops[n], noise[n])) for n in rounding},
+            largest=self.largest,
+            growth=self.growth,
             law=self.law("lambda_working"),
-            series=tuple(self._at(k) for k in shown),
-            error_kind="enclosed" if enclosed else "estimated",
+            series=tuple(
+                FormAt(
+                    steps=self.marks[k],
+                    norm_squared=decimal(self.sizes[k].norm, _SHOWN),
+                    parts={_named(name): text for name, text in texts.items()},
+                )
+                for k, texts in self.series()
+            ),
+            error_kind=self.kind,
         )
 
     def law(self, name: str) -> PowerLawResult:
         """How the greatest entry of a quantity grows with N."""
-        return _law(power_law(self.marks, self.tops[name], self.noise[name], self.motion))
+        law = power_law(self.marks, self.tops[name], self.noise[name], self.motion)
+        return PowerLawResult(**law.fields)
 
     def tangent(self, time: Fraction, half: Callable[[float], Halved]) -> TangentGrowth:
         """How M grew, and what follows for W; `half` tells of an exponential rate whose it is."""
@@ -95,8 +88,8 @@ class FormWay:
             motion=self.motion,
             cause=halved.cause if halved else None,
             at_half_step=_short(halved.rate) if halved and halved.rate is not None else None,
-            law=_law(laws[0]),
-            law_of_areas=_law(laws[1]),
+            law=PowerLawResult(**laws[0].fields),
+            law_of_areas=PowerLawResult(**laws[1].fields),
             per_area=decimal(self.tops["truncation"][-1] / areas[-1], 3),
             meaning=self._exponential(rate, halved) if halved else self._power(laws[0]),
         )
@@ -128,26 +121,27 @@ class FormWay:
                      Number(f"{own.exponent:.2f}"), "; ‖M‖² that of ",
                      Number(f"{law.exponent:.2f}"), measured)  # fmt: skip
 
-    def _at(self, k: int) -> FormAt:
-        shown = {_named(n): _few(self.tops[n][k], self.noise[n]) for n in self.names}
-        square = decimal(self.sizes[k].norm, _SHOWN)
-        return FormAt(steps=self.marks[k], norm_squared=square, parts=shown)
 
-
-def _law(found: PowerLaw) -> PowerLawResult:
-    def shown(x: float | None) -> str | None:
-        return None if x is None else f"{x:.3f}"
-
-    numbers = {"exponent": shown(found.exponent), "standard_error": shown(found.standard_error)}
-    return PowerLawResult(**vars(found) | numbers)
+def split_in_degrees(chains: FormChains, begun: Start, steps: int, digits: int) -> dict[str, Any]:
+    """What the each of W give of a result."""
+    motion = motion_of(chains.marks, [x.norm for x in chains.sizes])
+    plain, closed = (
+        FormWay(each, chains.sizes, motion) for each in (chains.plain, chains.closed_form)
+    )
+    half = partial(halved, begun, steps)
+    methods = dict.fromkeys(x for chain in chains.plain for x in chain.methods)
+    return {
+        "arithmetic": chains.arithmetic,
+        "plain": plain.evaluation(digits),
+        "closed_form": closed.evaluation(digits),
+        "tangent": closed.tangent(begun.step_size * steps, half),
+        "error_method": "; ".join(methods),
+        "seconds": chains.seconds,
+    }
 
 
 def _short(x: float) -> str:
     return f"{x:.4g}"
-
-
-def _few(x: Fraction, noise: Fraction) -> str:
-    return known_text(x, noise, _SHOWN)
 
 
 def _named(name: str) -> str:

@@ -19,23 +19,25 @@ from typing import Any, NamedTuple
 
 from verify import arithmetic as number_systems
 from verify.arithmetic.number_system import Arithmetic
-from verify.execution.keeping import fraction_of, fraction_text
-from verify.kernels.stepping import KernelRun
 from verify.runs.estimated import digits_of
 from verify.studies.separation.form_count import counted
 from verify.studies.separation.form_kernel import FormKernel, form_kernel
-from verify.studies.separation.kernel import AT
-from verify.studies.separation.stepper import State, Stepper
+from verify.studies.separation.mixed_run import (
+    COUNTED,
+    MORE_DIGITS,
+    RERUN,
+    Advance,
+    MixedRun,
+    as_rational,
+)
+from verify.studies.separation.stepper import State
 from verify.studies.separation.trail import Trail
-from verify.studies.separation.working import Advance, Link, Stopped, exact_link, marks_of
+from verify.studies.separation.working import Link, Working, exact_link
 
 POINTS = 512  # checkpoints of a run; each has a matrix for each link
-MORE_DIGITS = 15
 Entries = tuple[Fraction, ...]  # of W above its diagonal, row by row
 Links = tuple[Link, ...]  # one for each of these entries
 _LINKS = ("w_c", "w_t", "w_n", "w_w")  # what is carried in wide numbers of which W is read
-COUNTED = "rounding counted"
-METHOD = f"rerun with {MORE_DIGITS} more digits"
 
 
 class Size(NamedTuple):
@@ -50,18 +52,9 @@ class Size(NamedTuple):
 
 
 @dataclass(frozen=True)
-class FormWorking:
-    """What one run of the kernel found; links are None where they were not followed.
+class FormWorking(Working[Links]):
+    """`sizes`: how large M is at every checkpoint."""
 
-    `sizes`: how large M is at every checkpoint.
-    """
-
-    clock: Links | None
-    trajectory: Links | None
-    derivatives: Links
-    plain: Links
-    closed_derivatives: Links | None  # None: S ≡ 0
-    closed_form: Links | None
     sizes: tuple[Size, ...]
 
 
@@ -70,15 +63,10 @@ def links_of(trail: Sequence[Entries], make: Callable[[tuple[Fraction, ...]], Li
     return tuple(make(each) for each in zip(*trail, strict=True))
 
 
-class FormRun:
-    """The float64 run of a run, with exact arithmetic beside it; `follow` as in the kernel.
+class FormRun(MixedRun[FormKernel]):
+    """The float64 run of a run in n degrees of freedom."""
 
-    `inputs`: h, the coordinates and the kernel's parameters, as float64 numbers.
-    """
-
-    def __init__(self, run: KernelRun, inputs: dict[str, float], follow: bool) -> None:
-        self.run, self.inputs, self.follow = run, inputs, follow
-        self.marks = marks_of(run.steps, POINTS)
+    points = POINTS
 
     def step_through(self, arithmetic: Arithmetic, advance: Advance) -> FormWorking:
         """All steps; raises Stopped where float64 leaves its range."""
@@ -102,18 +90,18 @@ class FormRun:
                 )
             fine = self._trail(again, name, finer)
             apart = self._apart(trail, fine, arithmetic, again, name)
-            return links_of(fine, lambda each: Link(Trail.of(each), apart, "estimated", METHOD))
+            return links_of(fine, lambda each: Link(Trail.of(each), apart, "estimated", RERUN))
 
-        derivatives = links("w_n")
-        assert derivatives is not None  # noqa: S101 - every kernel has it
+        factors = links("w_n")
+        assert factors is not None  # noqa: S101 - every kernel has it
         plain = [tuple(map(Fraction, self._plain(state))) for state in states]
         closed = [self._entries(state, "f_w", arithmetic) for state in states if kernel.closed]
         return FormWorking(
             clock=links("w_c"),
             trajectory=links("w_t"),
-            derivatives=derivatives,
+            factors=factors,
             plain=links_of(plain, _of_float64),
-            closed_derivatives=links("w_w"),
+            closed_factors=links("w_w"),
             closed_form=links_of(closed, _of_float64) if kernel.closed else None,
             sizes=tuple(self._of_size(state, arithmetic) for state in states),
         )
@@ -149,65 +137,8 @@ class FormRun:
     def _kernel(self, arithmetic: Arithmetic) -> FormKernel:
         return form_kernel(self.run.hamiltonian, self.run.scheme, arithmetic, self.follow)
 
-    # -- stepping -----------------------------------------------------------------------------
-
-    def _states(self, kernel: FormKernel, arithmetic: Arithmetic, advance: Advance) -> list[State]:
-        """What the kernel carries, at every checkpoint."""
-        given = [self.inputs[n] for n in ("h", *kernel.parameters)]
-        fixed = [*given, *(arithmetic.number(Fraction(x)) for x in given)]
-        label = f"form beside {arithmetic.name} {arithmetic.bits} {self.inputs} {kernel.source}"
-        found = self._kept(label, arithmetic)
-        stepper = Stepper(kernel, arithmetic, fixed, self._in_range)
-        state = found[-1] if found else self._first_state(kernel, arithmetic)
-        done = self.marks[len(found) - 1] if found else 0
-        arithmetic.expect(kernel.function, self.run.steps - done)
-        while done < self.run.steps:
-            every = min(arithmetic.chunk, self.marks[len(found)] - done)
-            states = stepper.states(state, every, 1, self.run.steps - done - every)
-            if not states:
-                done += stepper.last_good(state, every)
-                raise Stopped("left range", done + 1, "float64 leaves its range")
-            (state,) = states
-            done += every
-            advance(every)
-            if done == self.marks[len(found)]:
-                found.append(state)
-            self._keep(label, found, arithmetic)
-        return found
-
     def _in_range(self, state: State) -> bool:
         return all(map(math.isfinite, (*self._plain(state), self._norm(state))))
-
-    def _first_state(self, kernel: FormKernel, arithmetic: Arithmetic) -> State:
-        state: dict[str, Any] = {}
-        for name in kernel.state_names:
-            matrix, *place = name.split("_")[-3:]
-            region, _, side = name.removeprefix("f_").rpartition("_")
-            if name.startswith(AT):
-                value = Fraction(self.inputs[name.removeprefix(AT)])
-            elif name.removeprefix("f_") in self.inputs:
-                value = Fraction(self.inputs[name.removeprefix("f_")])
-            elif side in ("low", "high"):
-                value = Fraction(self.inputs[region])
-            else:
-                value = Fraction(int(matrix != "w" and place[0] == place[1]))
-            state[name] = float(value) if name[0] == "f" else arithmetic.number(value)
-        return state
-
-    def _keep(self, label: str, found: Sequence[State], arithmetic: Arithmetic) -> None:
-        """Writes the checkpoints so far, where that is due."""
-        if self.run.keeper.due(label):
-            texts = [{n: fraction_text(_exact(x, arithmetic)) for n, x in s.items()} for s in found]
-            self.run.keeper.save(label, {"found": texts})
-
-    def _kept(self, label: str, arithmetic: Arithmetic) -> list[State]:
-        """The checkpoints that an interrupted run has left."""
-        kept = self.run.keeper.load(label) or {"found": []}
-        exact = ({n: fraction_of(x) for n, x in state.items()} for state in kept["found"])
-        return [
-            {n: float(x) if n[0] == "f" else arithmetic.number(x) for n, x in state.items()}
-            for state in exact
-        ]
 
     # -- what is read of a state --------------------------------------------------------------
 
@@ -225,13 +156,13 @@ class FormRun:
     def _scaled(self, state: State, matrix: str, own: Arithmetic) -> tuple[list[list[int]], int]:
         """A wide matrix as whole numbers over one denominator: Fractions take ten times as long."""
         every = range(self._size)
-        exact = [[_exact(state[f"{matrix}_{a}_{b}"], own) for b in every] for a in every]
+        exact = [[as_rational(state[f"{matrix}_{a}_{b}"], own) for b in every] for a in every]
         one = max(x.denominator for row in exact for x in row)  # of powers of 2
         return [[x.numerator * (one // x.denominator) for x in row] for row in exact], one
 
     def _entries(self, state: State, matrix: str, own: Arithmetic) -> Entries:
         places = combinations(range(self._size), 2)
-        return tuple(_exact(state[f"{matrix}_{a}_{b}"], own) for a, b in places)
+        return tuple(as_rational(state[f"{matrix}_{a}_{b}"], own) for a, b in places)
 
 
 def of_product(entry: Callable[[int, int], Any], size: int, one: int = 1) -> tuple[Any, ...]:
@@ -268,7 +199,3 @@ def size_of(matrix: Sequence[Sequence[int]], one: int) -> Size:
 
 def _of_float64(trail: tuple[Fraction, ...]) -> Link:
     return exact_link(trail, "a float64")
-
-
-def _exact(x: Any, own: Arithmetic) -> Fraction:
-    return Fraction(x) if isinstance(x, float) else own.exact(x)

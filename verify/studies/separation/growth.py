@@ -25,7 +25,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Literal
+from typing import Any, Literal
 
 from verify.arithmetic.arb import slope
 from verify.prose import Number, Prose, prose
@@ -34,11 +34,11 @@ from verify.studies.separation.trail import Trail
 Name = Literal["random walk", "drift", "undecided"]
 _FIRST = 8  # values that a maximum is taken of, at least
 _MOST = 32  # checkpoints of a fit
-_LEAST = 5
+LEAST = 5
 _DECADES = 1.5
 _ABOVE = 10  # times the error bound
 _WANDERING = 1.65
-_WIDTH = 2.5  # standard errors, each way
+WIDTH = 2.5  # standard errors, each way
 _NAMES: dict[float, tuple[Name, str]] = {  # by the one exponent that the interval holds
     0.0: ("undecided", "0"),
     0.5: ("random walk", "½"),
@@ -47,13 +47,26 @@ _NAMES: dict[float, tuple[Name, str]] = {  # by the one exponent that the interv
 
 
 @dataclass(frozen=True)
-class Growth:
-    """|rounding| ~ N^exponent from `first` to `last` steps; no exponent where none was fitted."""
+class Fit:
+    """size ~ N^exponent as it was fitted, and the name of it; no exponent where nothing was."""
 
     exponent: float | None
     standard_error: float | None
-    name: Name
+    name: str
     reason: Prose
+
+    @property
+    def fields(self) -> dict[str, Any]:
+        """As results have them, numbers as decimals."""
+        numbers = {"exponent": self.exponent, "standard_error": self.standard_error}
+        return vars(self) | {n: None if x is None else f"{x:.3f}" for n, x in numbers.items()}
+
+
+@dataclass(frozen=True)
+class Growth(Fit):
+    """That of |rounding|, from `first` to `last` steps."""
+
+    name: Name
     first: int
     last: int
     points: int
@@ -68,27 +81,54 @@ class Crossover:
     reason: str
 
 
+class Envelope:
+    """The greatest |value| so far at equidistant numbers of steps, each known to within `noise`,
+    and the checkpoints that a fit takes of it."""
+
+    def __init__(self, marks: Sequence[int], values: Sequence[Fraction], noise: Fraction) -> None:
+        self.marks, self.tops = marks, Trail.of(values).envelope()
+        usable = [k for k in self.tops.above(_ABOVE * noise) if k + 1 >= _FIRST]
+        self.chosen = log_spaced(usable, [marks[k] for k in usable], _MOST)
+        ends = (self.chosen[0], self.chosen[-1]) if self.chosen else ()
+        self.first, self.last = [marks[k] for k in ends] or (0, 0)
+
+    @property
+    def reach(self) -> float:
+        """From the first to the last of them, in ln N."""
+        return math.log(self.last / self.first) if self.chosen else 0.0
+
+    def reaches(self, decades: float) -> bool:
+        """Whether they are enough, over so many decades of N."""
+        return len(self.chosen) >= LEAST and self.reach >= decades * math.log(10)
+
+    def slope(self) -> tuple[float, float]:
+        """The fitted exponent and its standard error."""
+        return slope([(math.log(self.marks[k]), log(self.tops[k])) for k in self.chosen])
+
+
 def growth(marks: Sequence[int], values: Sequence[Fraction], noise: Fraction) -> Growth:
     """The fit for values at equidistant numbers of steps, each known to within `noise`."""
-    tops = Trail.of(values).envelope()
-    usable = [k for k in tops.above(_ABOVE * noise) if k + 1 >= _FIRST]
-    chosen = log_spaced(usable, [marks[k] for k in usable], _MOST)
-    first, last = (marks[chosen[0]], marks[chosen[-1]]) if chosen else (0, 0)
-    reach = math.log(last / first) if chosen else 0.0
-    if len(chosen) < _LEAST or reach < _DECADES * math.log(10):
+    envelope = Envelope(marks, values, noise)
+    seen = envelope.first, envelope.last, len(envelope.chosen)
+    if not envelope.reaches(_DECADES):
+        decades = f"{envelope.reach / math.log(10):.1f}"
         reason = prose(
-            f"{len(chosen)} checkpoints above noise over {reach / math.log(10):.1f} decades of N; "
-            f"a fit takes {_LEAST} over {_DECADES}"
+            f"{len(envelope.chosen)} checkpoints above noise over {decades} decades of N; "
+            f"a fit takes {LEAST} over {_DECADES}"
         )
-        return Growth(None, None, "undecided", reason, first, last, len(chosen))
-    found, scatter = slope([(math.log(marks[k]), log(tops[k])) for k in chosen])
-    error = max(scatter, _WANDERING * reach**-1.5)
-    held = [at for at in _NAMES if abs(found - at) <= _WIDTH * error]
+        return Growth(None, None, "undecided", reason, *seen)
+    exponent, scatter = envelope.slope()
+    error = max(scatter, _WANDERING * envelope.reach**-1.5)
+    held = [at for at in _NAMES if abs(exponent - at) <= WIDTH * error]
     name = _NAMES[held[0]][0] if len(held) == 1 else "undecided"
     holds = " and ".join(_NAMES[at][1] for at in held) or "neither ½ nor 1"
-    width = Number(f"{_WIDTH * error:.3f}")
-    reason = prose(Number(f"{found:.3f}"), " ± ", width, f" holds {holds}")
-    return Growth(found, error, name, reason, first, last, len(chosen))
+    reason = prose(*with_error(exponent, WIDTH * error), f" holds {holds}")
+    return Growth(exponent, error, name, reason, *seen)
+
+
+def with_error(exponent: float, width: float) -> tuple[Number, str, Number]:
+    """The exponent, and its interval."""
+    return Number(f"{exponent:.3f}"), " ± ", Number(f"{width:.3f}")
 
 
 def log_spaced(indices: Sequence[int], at: Sequence[int], most: int) -> list[int]:

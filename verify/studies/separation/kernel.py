@@ -26,7 +26,7 @@ and libm, and LLVM compiles it for fixed-point numbers; both round as numba's fl
 import keyword
 import math
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
@@ -57,24 +57,30 @@ _CLOSED_SUM = (
 
 
 @dataclass(frozen=True)
-class MixedKernel:
+class Mixed:
     """`function(steps, f_h, *f_parameters, w_h, *w_parameters, *limits, *state_names)` → (steps
     done, *state_names).
 
     `state_names` names what goes from step to step, `start` has the initial values but for those
-    that are p's or q's. `wide`: the kernel of the wide numbers alone, whose `outputs["dj"]` is the
-    ΔJ that is followed; its function is none. `closed`: whether ΔJ in closed form is not constantly
-    0.
+    that are coordinates or ends of the region that they visit. `closed`: whether ΔJ, or S, in
+    closed form is not constantly 0.
     """
 
     function: Callable[..., tuple[int, *tuple[Number, ...]]]
     parameters: tuple[str, ...]
-    limits: tuple[str, ...]
     state_names: tuple[str, ...]
     start: dict[str, int]
-    wide: Kernel
     closed: bool
     source: str
+
+
+@dataclass(frozen=True)
+class MixedKernel(Mixed):
+    """`limits`: of an arithmetic of limited range. `wide`: the kernel of the wide numbers alone,
+    whose `outputs["dj"]` is the ΔJ that is followed; its function is none."""
+
+    limits: tuple[str, ...]
+    wide: Kernel
 
 
 @lru_cache(maxsize=16)
@@ -124,9 +130,12 @@ def mixed_kernel(
     moved = (*(AT + n for n in "pq"),) if follow and timed else ()
     names = ("f_p", "f_q", *(["f_t"] * timed), *moved, *sides, *totals)
     limits = LIMITS if arithmetic.absolute else ()
-    source = _assemble(len(narrow.parameters), limits, names, before, inside)
-    function = _compiled(source, arithmetic, _scope(narrow, working, wide, arithmetic))
-    return MixedKernel(function, narrow.parameters, limits, names, totals, wide, closed, source)
+    source = assemble(len(narrow.parameters), limits, names, before, inside)
+    constants = _constants(narrow, working), _constants(wide, arithmetic)
+    scope = scope_of(working, constants[0], arithmetic, constants[1])
+    scope |= {"f_log1p": _log1p, "w_one": arithmetic.number(Fraction(1))}
+    function = _compiled(source, arithmetic, scope)
+    return MixedKernel(function, narrow.parameters, names, totals, closed, source, limits, wide)
 
 
 def _clocked(
@@ -183,19 +192,18 @@ def prefixed_lines(
     return [prefixed(line) for line in before], [prefixed(line) for line in inside]
 
 
-def _scope(
-    narrow: Kernel, working: Arithmetic, wide: Kernel, arithmetic: Arithmetic
+def scope_of(
+    working: Arithmetic,
+    narrow: Mapping[str, Number],
+    arithmetic: Arithmetic,
+    wide: Mapping[str, Number],
 ) -> dict[str, Number]:
-    """The constants and functions that the source names."""
-    floats = {**working.functions, **_constants(narrow, working)}
-    constants = _constants(wide, arithmetic)
+    """The functions that the source names, and its constants, in float64 and in wide numbers."""
     return {
         "wide": lambda x: arithmetic.number(Fraction(x)),
         **arithmetic.functions,
-        **{f"f_{name}": x for name, x in floats.items()},
-        **{f"{prefix}{name}": x for prefix in ("w_", AT) for name, x in constants.items()},
-        "f_log1p": _log1p,
-        "w_one": arithmetic.number(Fraction(1)),
+        **{f"f_{name}": x for name, x in {**working.functions, **narrow}.items()},
+        **{f"{prefix}{name}": x for prefix in ("w_", AT) for name, x in wide.items()},
     }
 
 
@@ -228,7 +236,7 @@ def box_of(name: str) -> list[str]:
     return [f"if {low} > {name}: {low} = {name}", f"if {name} > {high}: {high} = {name}"]
 
 
-def _assemble(
+def assemble(
     parameters: int,
     limits: Sequence[str],
     state_names: Sequence[str],

@@ -10,23 +10,19 @@ import copy
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from typing import Any, ClassVar, Generic, Protocol, TypeVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 from verify import arithmetic as number_systems
+from verify import lockstep
+from verify.arithmetic import AUTO
 from verify.arithmetic.number_system import NumberSystem
 from verify.kernels.stepping import KernelRun, Outcome
-from verify.runs.digits_on_demand import Measured, measure
+from verify.runs.digits_on_demand import Measured, choose, measure
 from verify.runs.estimated import working_digits
 from verify.runs.run import AskedRun
+from verify.studies.separation.mixed_run import POINTS, Advance, Stopped, marks_of
 from verify.studies.separation.trail import Trail
-from verify.studies.separation.working import (
-    Advance,
-    Kind,
-    Link,
-    Stopped,
-    marks_of,
-    rounded_inputs,
-)
+from verify.studies.separation.working import Kind, Link, Working, rounded_inputs
 
 _MANTISSAS = 2**53  # whole numbers up to here are float64s
 _DOUBLINGS = 6
@@ -34,17 +30,8 @@ _ATTEMPTS = 4
 AsLink = Callable[[Sequence[Fraction]], Link]  # of values at the checkpoints
 
 
-class Followed(Protocol):
-    """What a run in float64 found, with exact arithmetic beside it; None: not followed."""
-
-    @property
-    def clock(self) -> Any: ...
-    @property
-    def trajectory(self) -> Any: ...
-
-
 L = TypeVar("L")  # Link, or one for each entry
-W = TypeVar("W", bound=Followed)
+W = TypeVar("W", bound=Working[Any])
 C = TypeVar("C")  # chains
 
 
@@ -52,12 +39,16 @@ class LinksOnDemand(ABC, Generic[L, W]):
     """The links that all ways to evaluate share, and how many digits each is asked for."""
 
     observable: ClassVar[str]  # of a run in exact arithmetic's stead
+    points: ClassVar[int] = POINTS  # checkpoints
 
     def __init__(
-        self, kernel_run: KernelRun, arithmetic: str, digits: int, points: int, advance: Advance
+        self, kernel_run: KernelRun, arithmetic: str, digits: int, advance: Advance
     ) -> None:
-        self.kernel_run, self.arithmetic, self.advance = kernel_run, arithmetic, advance
-        self.marks = marks_of(kernel_run.steps, points)
+        """`auto` takes the fastest arithmetic that can."""
+        self._begun = lockstep.clock()
+        self.arithmetic = choose(kernel_run, digits) if arithmetic == AUTO else arithmetic
+        self.kernel_run, self.advance = kernel_run, advance
+        self.marks = marks_of(kernel_run.steps, self.points)
         self.digits = {"first": digits, "second": digits, "beside": digits}
         self.inputs = rounded_inputs(kernel_run)
         self.rounded = _with_inputs(kernel_run, self.inputs)
@@ -81,6 +72,11 @@ class LinksOnDemand(ABC, Generic[L, W]):
     @abstractmethod
     def read(self, run: Outcome, last: Fraction, as_link: AsLink) -> L:
         """The link of a run in exact arithmetic's stead, of whose last value `last` is known."""
+
+    @property
+    def seconds(self) -> float:
+        """Since it was begun."""
+        return lockstep.clock() - self._begun
 
     def take(self, run: AskedRun) -> None:
         """The first link is what comes of this run, as long as its digits do."""

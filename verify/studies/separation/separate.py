@@ -30,6 +30,11 @@ small ΔJ is. `closed_form`: ΔJ from its own closed form, where nothing cancels
 Λ = expm1(Σ log1p(ΔJ_k)) with the sum's own errors added at the end. Truncation, input and
 trajectory are the same for both.
 
+In n degrees of freedom W is split so, entry by entry (`verify.studies.separation.form_chain`):
+`plain` is what a program does that multiplies the steps' Jacobians and takes MᵀΩM − Ω at the end,
+`closed_form` is that of `verify run` (`verify.studies.separation.form_run`). How W and the tangent
+map grow is told in `verify.studies.separation.form_growth`.
+
 How far the parts are known is told in `verify.studies.separation.working` and
 `verify.runs.estimated`, what is made of a run's checkpoints and of a grid of step sizes in
 `verify.studies.separation.growth`.
@@ -37,47 +42,44 @@ How far the parts are known is told in `verify.studies.separation.working` and
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
-from typing import Protocol
+from typing import Any, Protocol
 
 from verify import arithmetic as number_systems
 from verify.arithmetic import AUTO
-from verify.arithmetic.exact import Exact, known_text, positive, rational, text
+from verify.arithmetic.exact import Exact, positive, rational, text
 from verify.arithmetic.systems import float64
 from verify.errors import NOT_GIVEN, InputError
 from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.start import Given, point_of
 from verify.hamiltonians.times_on_the_way import check_times
 from verify.runs.run import AskedRun, check
-from verify.scenes.results.bounded_value import Value
+from verify.runs.start import Start
 from verify.scenes.results.separation import (
+    WAYS,
     CrossoverResult,
-    EvaluationResult,
-    GrowthResult,
-    Parts,
-    PartsAt,
-    PartsInTime,
-    PartsInTimeAt,
     SeparationGrid,
     SeparationResult,
 )
+from verify.scenes.results.separation_in_degrees import SeparationGridInDegrees, SeparationInDegrees
 from verify.schemes import canonical
-from verify.studies.separation.chain import Chain, Chains, separated_chains
-from verify.studies.separation.growth import Growth, crossover, growth, log_spaced
-from verify.studies.separation.trail import Trail
-from verify.studies.separation.working import Stopped
+from verify.studies.separation.chain import Chains, separated_chains
+from verify.studies.separation.form_chain import form_chains
+from verify.studies.separation.form_result import split_in_degrees
+from verify.studies.separation.growth import crossover
+from verify.studies.separation.mixed_run import Stopped
+from verify.studies.separation.way import Way, evaluation
 
 Progress = Callable[[int], None]  # called with a number of steps just done, of 3 N in all
 RUNS = 3  # of N steps each: two in exact arithmetic's stead and one in both
-_SHOWN = 7  # digits of what a figure shows
-_CHECKPOINTS = 32
 
 
 def separate(
     hamiltonian: Hamiltonian,
     scheme: str,
     *,
-    q: Exact,
-    p: Exact,
+    q: Given,
+    p: Given,
     step_size: Exact,
     steps: int,
     t0: Exact = 0,
@@ -86,58 +88,62 @@ def separate(
     progress: Progress | None = None,
     keeper: Keeper = NOTHING,
     run: AskedRun | None = None,
-) -> SeparationResult:
-    """Λ of a float64 run of `steps` steps from (q, p), split into truncation and rounding.
+) -> SeparationResult | SeparationInDegrees:
+    """Λ of a float64 run of `steps` steps from (q, p), split into truncation and rounding; in n
+    degrees of freedom, where q and p are lists, W.
 
     `t0`: when it starts, of an H that depends on time. `digits`: significant digits wanted of every
     part. `arithmetic` stands for exact arithmetic; `auto` takes the fastest that can. `run`: one of
-    the same steps that is asked for too, and done once for both. Raises InputError for h ≤ 0,
-    N < 1, a parameter without a value, unknown names, and for float64, which is what is examined.
+    the same steps in the plane that is asked for too, and done once for both. Raises InputError for
+    h ≤ 0, N < 1, a parameter without a value, unknown names, and for float64, which is what is
+    examined; in n degrees of freedom for more than 4 of them, and a scheme that solves equations.
     """
-    scheme = canonical(scheme)
-    start = {"p": rational(p, "p"), "q": rational(q, "q"), "h": positive(step_size, "step_size")}
+    scheme, h, planar = canonical(scheme), positive(step_size, "step_size"), hamiltonian.planar
+    begun = Start(hamiltonian, scheme, h, point_of(hamiltonian, q, p), rational(t0, "t0"))
+    start = {**begun.point, "h": h}
     if hamiltonian.time_dependent:
-        start["t"] = rational(t0, "t0")
-        check_times(hamiltonian, start["t"], start["h"], steps)
-    check(hamiltonian, steps, digits, ())
+        start["t"] = begun.t0
+        check_times(hamiltonian, begun.t0, h, steps)
+    check(hamiltonian, steps, digits, () if planar else ("symplectic_defect",))
     check_reference(arithmetic)
-    found: Chains | None = None
-    stopped = None
+    asked = hamiltonian, scheme, start, steps, digits, arithmetic, progress or (lambda _: None)
+    result: dict[str, Any] = {
+        **hamiltonian.texts, "scheme": scheme, "arithmetic": arithmetic, "digits": digits,
+        "step_size": text(h), "steps": steps, "q": begun.text("q"), "p": begun.text("p"),
+        "t0": text(start.get("t", Fraction(0))), "status": "finished", "failed_step": None,
+        "reason": "", "plain": None, "closed_form": None, "error_method": "none", "seconds": 0.0,
+    }  # fmt: skip
+    if not planar:
+        result |= {"coordinates": hamiltonian.coordinates, "tangent": None}
     try:
-        advance = progress or (lambda _: None)
-        found = separated_chains(
-            hamiltonian, scheme, start, steps, digits, arithmetic, advance, keeper, run
-        )
-    except Stopped as answer:
-        stopped = answer
-    return SeparationResult(
-        **hamiltonian.texts,
-        scheme=scheme,
-        arithmetic=found.arithmetic if found else arithmetic,
-        digits=digits,
-        step_size=text(start["h"]),
-        steps=steps,
-        q=text(start["q"]),
-        p=text(start["p"]),
-        t0=text(start.get("t", Fraction(0))),
-        status=stopped.status if stopped else "finished",
-        failed_step=stopped.step if stopped else None,
-        reason=stopped.reason if stopped else "",
-        plain=_evaluation(found.plain, digits) if found else None,
-        closed_form=(
-            _evaluation(found.closed_form, digits) if found and found.closed_form else None
-        ),
-        error_method="; ".join(found.plain.methods) if found else "none",
-        seconds=found.seconds if found else 0.0,
-    )
+        if planar:
+            result |= _split(separated_chains(*asked, keeper, run), digits)
+        else:
+            result |= split_in_degrees(form_chains(*asked, keeper), begun, steps, digits)
+    except Stopped as stopped:
+        ends = {"status": stopped.status, "failed_step": stopped.step, "reason": stopped.reason}
+        result |= ends
+    return SeparationResult(**result) if planar else SeparationInDegrees(**result)
+
+
+def _split(chains: Chains, digits: int) -> dict[str, Any]:
+    """What the chains of Λ give of a result."""
+    closed = chains.closed_form and evaluation(Way([chains.closed_form]), digits)
+    return {
+        "arithmetic": chains.arithmetic,
+        "plain": evaluation(Way([chains.plain]), digits),
+        "closed_form": closed,
+        "error_method": "; ".join(chains.plain.methods),
+        "seconds": chains.seconds,
+    }
 
 
 def separate_grid(
     hamiltonian: Hamiltonian,
     scheme: str,
     *,
-    q: Exact,
-    p: Exact,
+    q: Given,
+    p: Given,
     step_sizes: Sequence[Exact],
     steps: int | None = None,
     time: Exact | None = None,
@@ -145,7 +151,7 @@ def separate_grid(
     digits: int = 17,
     arithmetic: str = AUTO,
     progress: Progress | None = None,
-) -> SeparationGrid:
+) -> SeparationGrid | SeparationGridInDegrees:
     """`separate` for several step sizes, over N = `steps` steps or N = ⌊time / h⌋ each.
 
     Raises InputError as `separate` does, and where a step size is given twice, or not exactly one
@@ -154,33 +160,27 @@ def separate_grid(
     counts = grid(step_sizes, steps, time)
     for _, count in counts:
         check(hamiltonian, count, digits, ())  # before the first of them is run
-    points = [
-        separate(
-            hamiltonian,
-            scheme,
-            q=q,
-            p=p,
-            step_size=h,
-            steps=count,
-            t0=t0,
-            digits=digits,
-            arithmetic=arithmetic,
-            progress=progress,
-        )
-        for h, count in counts
-    ]
-    return as_grid(points)
+    return as_grid(
+        [
+            separate(
+                hamiltonian, scheme, q=q, p=p, step_size=h, steps=count, t0=t0, digits=digits,
+                arithmetic=arithmetic, progress=progress,
+            )
+            for h, count in counts
+        ]
+    )  # fmt: skip
 
 
-def as_grid(points: Sequence[SeparationResult]) -> SeparationGrid:
-    """Separations for several step sizes, with the crossover of each way to evaluate Λ."""
-
-    def crossed(name: str) -> CrossoverResult:
-        return crossing((point.step_size, getattr(point, name)) for point in points)
-
-    return SeparationGrid(
-        points=tuple(points), plain=crossed("plain"), closed_form=crossed("closed_form")
-    )
+def as_grid(
+    points: Sequence[SeparationResult | SeparationInDegrees],
+) -> SeparationGrid | SeparationGridInDegrees:
+    """Separations for several step sizes, with the crossover of each way to evaluate Λ, or W."""
+    crossed = {
+        way: crossing((point.step_size, getattr(point, way)) for point in points) for way in WAYS
+    }
+    if any(isinstance(point, SeparationInDegrees) for point in points):
+        return SeparationGridInDegrees.model_validate({"points": tuple(points), **crossed})
+    return SeparationGrid.model_validate({"points": tuple(points), **crossed})
 
 
 class _Way(Protocol):
@@ -226,37 +226,3 @@ def check_reference(arithmetic: str) -> None:
     if arithmetic not in known:
         wrong = "is what is examined" if arithmetic == float64.NAME else "unknown"
         raise InputError("arithmetic", arithmetic, f"{wrong}; allowed: {', '.join(known)}")
-
-
-# -- from a chain to a result ---------------------------------------------------------------------
-
-
-def _evaluation(chain: Chain, digits: int) -> EvaluationResult:
-    trails = {name: chain.trail(name) for name in chain.quantities}
-    parts = {name: Value.of(*chain.final(name), digits) for name in chain.quantities}
-    tops = {n: trails[n][0].largest for n in ("truncation", "total")}
-    shown = log_spaced(range(len(chain.marks)), chain.marks, _CHECKPOINTS)
-    return EvaluationResult(
-        parts=PartsInTime(**parts) if "clock" in parts else Parts(**parts),
-        largest={n: known_text(x, trails[n][1], _SHOWN) for n, x in tops.items()},
-        growth={n: growth_result(growth(chain.marks, *trails[n])) for n in ("total", *chain.parts)},
-        series=tuple(_at(chain, trails, k) for k in shown),
-        error_kind=chain.kind,
-    )
-
-
-def _at(chain: Chain, trails: dict[str, tuple[Trail, Fraction]], k: int) -> PartsAt:
-    names = (n for n in chain.quantities if n != "lambda_working")
-    shown = {n: known_text(trails[n][0][k], trails[n][1], _SHOWN) for n in names}
-    model = PartsInTimeAt if "clock" in shown else PartsAt
-    return model(steps=chain.marks[k], **shown)
-
-
-def growth_result(found: Growth) -> GrowthResult:
-    """The growth as results have it."""
-
-    def shown(x: float | None) -> str | None:
-        return None if x is None else f"{x:.3f}"
-
-    numbers = {"exponent": shown(found.exponent), "standard_error": shown(found.standard_error)}
-    return GrowthResult(**vars(found) | numbers)

@@ -4,10 +4,11 @@ import math
 from bisect import bisect_left
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import takewhile
-from typing import Any, Protocol
+from typing import Any
 
 from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic
+from verify.studies.separation.kernel import Mixed
 
 State = Mapping[str, Any]  # a float or a wide number; its name begins with f or with w
 
@@ -28,16 +29,6 @@ class Carried(Mapping[str, Any]):
         return len(self._at)
 
 
-class Stepped(Protocol):
-    """A kernel whose function takes and returns what is carried, in the order of its names."""
-
-    @property
-    def function(self) -> Callable[..., tuple[int, *tuple[Number, ...]]]: ...
-
-    @property
-    def state_names(self) -> tuple[str, ...]: ...
-
-
 class Stepper:
     """A mixed kernel with all that stays the same from step to step.
 
@@ -46,7 +37,7 @@ class Stepper:
 
     def __init__(
         self,
-        kernel: Stepped,
+        kernel: Mixed,
         arithmetic: Arithmetic,
         fixed: Sequence[Number],
         also: Callable[[State], bool] = lambda _: True,

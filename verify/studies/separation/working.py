@@ -16,42 +16,38 @@ is within 1.5 · 1.01 · N |θ| ≤ 4 N |ρ| of the exact one, as long as this i
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, Literal
+from typing import Generic, Literal, TypeVar
 
 import flint
 
 from verify import arithmetic as number_systems
-from verify.arithmetic.arb import bounds, in_reach, rational_ball
+from verify.arithmetic.arb import bounds, in_reach
 from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.arithmetic.systems import float64
-from verify.execution.keeping import fraction_of, fraction_text
 from verify.kernels.reach import limits
-from verify.kernels.rounding import PRECISION, Rounded, analyse, rounding_of
+from verify.kernels.rounding import PRECISION, analyse, rounding_of
 from verify.kernels.stepping import KernelRun
 from verify.runs.estimated import digits_of
-from verify.studies.separation.kernel import AT, MixedKernel, mixed_kernel
-from verify.studies.separation.stepper import State, Stepper
+from verify.studies.separation.kernel import MixedKernel, mixed_kernel
+from verify.studies.separation.mixed_run import (
+    COUNTED,
+    MORE_DIGITS,
+    RERUN,
+    Advance,
+    MixedRun,
+    Stopped,
+    named_inputs,
+    visited,
+)
+from verify.studies.separation.stepper import State
 from verify.studies.separation.trail import Trail
 
 Kind = Literal["enclosed", "estimated"]
-Advance = Callable[[int], None]  # called with the number of steps just done
-POINTS = 2048  # checkpoints of a run
-_MORE_DIGITS = 15
 _WIDE = ("clock", "trajectory", "determinant", "closed")
-
-
-class Stopped(Exception):  # noqa: N818 - no error, an answer
-    """A run of the chain that has no last value."""
-
-    def __init__(
-        self, status: Literal["left range", "unresolved"], step: int | None, reason: str
-    ) -> None:
-        super().__init__(reason)
-        self.status, self.step, self.reason = status, step, reason
 
 
 @dataclass(frozen=True)
@@ -67,39 +63,33 @@ class Link:
     method: str
 
 
-@dataclass(frozen=True)
-class Working:
-    """What one run of the mixed kernel found; a link is None where it was not followed."""
+L = TypeVar("L")  # Link, or one for each entry of W
 
-    clock: Link | None
-    trajectory: Link | None
-    determinant: Link
-    plain: Link
-    closed_delta_j: Link | None  # None: some 1 + ΔJ ≤ 0, which has no logarithm
-    closed_form: Link | None
+
+@dataclass(frozen=True)
+class Working(Generic[L]):
+    """What one run of the mixed kernel found; a link is None where it was not followed.
+
+    `factors`: each step's determinant, or Jacobian, is float64's; `closed_factors`: its ΔJ, or S.
+    None, as `closed_form`, where some 1 + ΔJ ≤ 0, which has no logarithm, and where S ≡ 0.
+    """
+
+    clock: L | None
+    trajectory: L | None
+    factors: L
+    plain: L
+    closed_factors: L | None
+    closed_form: L | None
 
 
 def exact_link(trail: Sequence[Fraction], method: str) -> Link:
     return Link(Trail.of(trail), Fraction(0), "enclosed", method)
 
 
-def marks_of(steps: int, points: int = POINTS) -> tuple[int, ...]:
-    """The numbers of steps at the checkpoints, as a run of so many sections notes them."""
-    section = -(-steps // points)
-    return tuple(min(k, steps) for k in range(section, steps + section, section))
+class WorkingRun(MixedRun[MixedKernel]):
+    """The float64 run of a run in the plane."""
 
-
-class WorkingRun:
-    """The float64 run of a run, with exact arithmetic beside it.
-
-    `inputs`: h, p, q and the kernel's parameters, as the float64 numbers that they are rounded to.
-    """
-
-    def __init__(self, run: KernelRun, inputs: dict[str, float], follow: bool) -> None:
-        self.run, self.inputs, self.follow = run, inputs, follow
-        self.marks = marks_of(run.steps)
-
-    def step_through(self, arithmetic: Arithmetic, advance: Advance) -> Working:
+    def step_through(self, arithmetic: Arithmetic, advance: Advance) -> Working[Link]:
         """All steps; raises Stopped where float64 leaves its range."""
         kernel = self._kernel(arithmetic)
         states = self._states(kernel, arithmetic, advance)
@@ -107,7 +97,7 @@ class WorkingRun:
         unknown = {name for name, bound in bound_of.items() if bound is None}
         if unknown:
             unknown = unknown if unknown == {"clock"} else set(bound_of)
-            finer = number_systems.get(arithmetic.name, digits_of(arithmetic) + _MORE_DIGITS)
+            finer = number_systems.get(arithmetic.name, digits_of(arithmetic) + MORE_DIGITS)
             again = self._states(self._kernel(finer), finer, lambda _: None)
             bound_of |= {n: _apart(n, states, again, arithmetic, finer) for n in unknown}
 
@@ -117,8 +107,8 @@ class WorkingRun:
                 return None
             trail = Trail.of(arithmetic.exact(state[f"w_{name}"]) for state in states)
             if name in unknown:
-                return Link(trail, bound, "estimated", f"rerun with {_MORE_DIGITS} more digits")
-            return Link(trail, bound, "enclosed", "rounding counted")
+                return Link(trail, bound, "estimated", RERUN)
+            return Link(trail, bound, "enclosed", COUNTED)
 
         determinant = link("determinant")
         assert determinant is not None  # noqa: S101 - every kernel has it
@@ -135,86 +125,16 @@ class WorkingRun:
     def _kernel(self, arithmetic: Arithmetic) -> MixedKernel:
         return mixed_kernel(self.run.hamiltonian, self.run.scheme, arithmetic, self.follow)
 
-    # -- stepping -----------------------------------------------------------------------------
-
-    def _states(self, kernel: MixedKernel, arithmetic: Arithmetic, advance: Advance) -> list[State]:
-        """What the kernel carries, at every checkpoint."""
-        given = [self.inputs[n] for n in ("h", *kernel.parameters)]
-        wide = [arithmetic.number(Fraction(x)) for x in given]
-        fixed = [*given, *wide, *self._limits(kernel, arithmetic)]
-        label = f"beside {arithmetic.name} {arithmetic.bits} {self.inputs} {kernel.source}"
-        found = self._kept(label, arithmetic)
-        stepper = Stepper(kernel, arithmetic, fixed)
-        state = found[-1] if found else self._first_state(kernel, arithmetic)
-        done = self.marks[len(found) - 1] if found else 0
-        arithmetic.expect(kernel.function, self.run.steps - done)
-        while done < self.run.steps:
-            every, stops = self._ahead(done, len(found), arithmetic.chunk)
-            beyond = self.run.steps - done - every * stops
-            states = stepper.states(state, every, stops, beyond)
-            for state in states:
-                done += every
-                advance(every)
-                if done == self.marks[len(found)]:
-                    found.append(state)
-                self._keep(label, found, arithmetic)
-            if len(states) < stops and arithmetic.absolute:
-                raise UnsupportedError(f"the orbit leaves the range of {arithmetic.name}")
-            if len(states) < stops:
-                done += stepper.last_good(state, every)
-                raise Stopped("left range", done + 1, "float64 leaves its range")
-        return found
-
-    def _keep(self, label: str, found: Sequence[State], arithmetic: Arithmetic) -> None:
-        """Writes the checkpoints so far, where that is due."""
-        if self.run.keeper.due(label):
-            states = [{n: _exact(arithmetic, x) for n, x in s.items()} for s in found]
-            texts = [{n: fraction_text(x) for n, x in s.items()} for s in states]
-            self.run.keeper.save(label, {"found": texts})
-
-    def _ahead(self, done: int, at: int, chunk: int) -> tuple[int, int]:
-        """So many steps to the next stop and so many stops: marks, or on the way to the next."""
-        left, section = self.marks[at] - done, self.marks[0]
-        if left == section <= chunk:
-            return section, min(chunk, self.run.steps - done) // section
-        return min(chunk, left), 1
-
-    def _first_state(self, kernel: MixedKernel, arithmetic: Arithmetic) -> State:
-        state: dict[str, Any] = {
-            f"f_{n}": x for n, x in self.inputs.items() if n in ("p", "q", "t")
-        }
-        for name in kernel.state_names:
-            if name.startswith(AT):
-                state[name] = arithmetic.number(Fraction(self.inputs[name.removeprefix(AT)]))
-            elif name not in kernel.start:  # p, q and the region that they visit
-                state[name] = state[name[:3]]
-            else:
-                state[name] = _number(arithmetic, name, Fraction(kernel.start[name]))
-        return state
-
-    def _kept(self, label: str, arithmetic: Arithmetic) -> list[State]:
-        """The checkpoints that an interrupted run has left."""
-        kept = self.run.keeper.load(label) or {"found": []}
-        return [
-            {n: _number(arithmetic, n, fraction_of(x)) for n, x in state.items()}
-            for state in kept["found"]
-        ]
-
     def _limits(self, kernel: MixedKernel, arithmetic: Arithmetic) -> list[Number]:
         """What the kernel compares p, q and Λ with; UnsupportedError where they start beyond it."""
         if not kernel.limits:
             return []
-        inputs = {n: Fraction(x) for n, x in self._named(kernel).items()}
+        inputs = {n: Fraction(x) for n, x in named_inputs(kernel, self.inputs).items()}
         found = limits(kernel.wide, inputs, {n: Fraction(self.inputs[n]) for n in ("p", "q")})
         if found is None:
             name = arithmetic.name
             raise UnsupportedError(f"a step from the start may leave the range of {name}")
         return [float(found.p), float(found.q), arithmetic.number(found.part)]
-
-    def _named(self, kernel: MixedKernel) -> dict[str, float]:
-        """h and the parameters by the names that the source has for them."""
-        named = {f"x{k}": self.inputs[n] for k, n in enumerate(kernel.parameters)}
-        return {"h": self.inputs["h"], **named}
 
     # -- bounds -------------------------------------------------------------------------------
 
@@ -241,28 +161,11 @@ class WorkingRun:
         with flint.ctx.workprec(PRECISION):
             # A float64 goes to a fixed-point number but for what is below its last place.
             cut = flint.arb(2) ** -arithmetic.bits if arithmetic.absolute else flint.arb(0)
-            inputs = {
-                n: Rounded(rational_ball(Fraction(x)), cut) for n, x in self._named(kernel).items()
-            }
-            for n in ("p", "q"):
-                low, high = (rational_ball(Fraction(last[f"f_{n}_{x}"])) for x in ("low", "high"))
-                inputs[n] = Rounded(low.union(high), cut)
-            if "f_t" in last:
-                first, end = (rational_ball(Fraction(x)) for x in (self.inputs["t"], last["f_t"]))
-                inputs["t"] = Rounded(first.union(end), cut)
+            inputs = visited(kernel, self.inputs, last, cut)
             live, rounding = lowering.live([root]), rounding_of(arithmetic)
             found = analyse(lowering.program, live, inputs, rounding)
             error = None if found is None else found[root].error
             return None if error is None or not in_reach(error) else bounds(error)[1]
-
-
-def _number(arithmetic: Arithmetic, name: str, value: Fraction) -> Number:
-    """What a name that begins with f or with w holds: a float64 or a wide number."""
-    return float(value) if name[0] == "f" else arithmetic.number(value)
-
-
-def _exact(arithmetic: Arithmetic, x: Number) -> Fraction:
-    return Fraction(x) if isinstance(x, float) else arithmetic.exact(x)
 
 
 def rounded_inputs(run: KernelRun) -> dict[str, float]:

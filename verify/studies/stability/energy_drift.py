@@ -18,13 +18,11 @@ from verify.studies.stability.run_motion import Motion, RunMotion
 from verify.studies.stability.trail import (
     MOST_INTERPRETED,
     MOST_SECTIONS,
-    Run,
-    RunInDegrees,
     Trail,
     follow_precisely,
 )
 
-AnyMotion = Motion[Run, ExactOrbit] | Motion[RunInDegrees, ExactMotion]
+AnyMotion = Motion[ExactOrbit] | Motion[ExactMotion]
 _STRETCHES = 8
 _LONGER = 4
 _PERIODS = 8  # of the exact orbit, that the longer run lasts at least

@@ -13,8 +13,7 @@ from functools import lru_cache
 from math import log, pi
 from typing import Literal
 
-from verify.flows.degrees.extrapolation import FlowInDegrees
-from verify.flows.extrapolation import NoFlowError
+from verify.flows.extrapolation import Flow, NoFlowError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.prose import Prose, prose, read_prose
@@ -128,7 +127,7 @@ class _Search:
         self, hamiltonian: Hamiltonian, state: State, time: Fraction, t0: Fraction
     ) -> None:
         field, _ = canonical_field(hamiltonian)
-        self.flow, self.t0, self.state = FlowInDegrees(field, _DIGITS), t0, state
+        self.flow, self.t0, self.state = Flow(field, _DIGITS), t0, state
         self.part = time / _TIMES
         self.times = [float(k * self.part) for k in range(_TIMES + 1)]
         self.speeds: list[State] = []

@@ -2,7 +2,6 @@
 in n degrees of freedom.
 """
 
-from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -14,7 +13,7 @@ from verify.runs.run import run as run_of
 from verify.studies.stability.exact_motion import ExactMotion, exact_motion
 from verify.studies.stability.frequency import frequency, frequency_in_degrees
 from verify.studies.stability.run_motion import RunMotion
-from verify.studies.stability.trail import Followed, Run, RunInDegrees, State
+from verify.studies.stability.trail import Run, State
 from verify.studies.stability.verdict_in_degrees import MotionInDegrees, judge_in_degrees
 from verify.studies.stability.verdict_on_run import Judgement, judge
 
@@ -27,14 +26,14 @@ class Within:
     energy_error: Fraction | None = None
     symplectic_defect: Fraction | None = None
 
-    def holds(self, run: Followed, energy_error: Fraction | None) -> bool:
+    def holds(self, run: Run, energy_error: Fraction | None) -> bool:
         """Of a run whose energy error is so great at most."""
         most = self.energy_error
         if most is not None and (energy_error is None or energy_error > most):
             return False
         return self.symplectic_defect is None or self._keeps_the_form(run, self.symplectic_defect)
 
-    def _keeps_the_form(self, run: Followed, most: Fraction) -> bool:
+    def _keeps_the_form(self, run: Run, most: Fraction) -> bool:
         of, start, planar = run.hamiltonian, run.start, run.hamiltonian.planar
         p, q = ([start[x] for x in of.coordinates if x[0] == letter] for letter in "pq")
         name = "lambda" if planar else "symplectic_defect"
@@ -45,9 +44,20 @@ class Within:
         return name in done.values and abs(done.values[name]) <= most
 
 
+AnyMotion = RunMotion | MotionInDegrees
+
+
+def verdict(motion: AnyMotion) -> Judgement:
+    """That on one run."""
+    return judge(motion) if isinstance(motion, RunMotion) else judge_in_degrees(motion)
+
+
 @dataclass(frozen=True)
-class Held(ABC):
-    """The exact motion from one state for some time, and what is asked of runs from there."""
+class Held:
+    """The exact motion from one state for some time, and what is asked of runs from there.
+
+    In n degrees of freedom a bounded motion is followed once, over the whole time, for all runs.
+    """
 
     hamiltonian: Hamiltonian
     state: State
@@ -55,15 +65,27 @@ class Held(ABC):
     t0: Fraction
 
     @property
-    @abstractmethod
-    def exact(self) -> ExactOrbit | ExactMotion: ...
-    @property
-    @abstractmethod
+    def exact(self) -> ExactOrbit | ExactMotion:
+        if self.hamiltonian.planar:
+            return exact_orbit(self.hamiltonian, *self.state, self.time, self.t0)
+        return exact_motion(self.hamiltonian, self.state, self.time, self.t0)
+
+    @cached_property
     def frequency(self) -> Fraction:
         """The greatest ω; 0 where nothing oscillates."""
+        exact = self.exact
+        if isinstance(exact, ExactMotion):
+            return frequency_in_degrees(self.hamiltonian, exact)
+        return frequency(exact)
 
-    @abstractmethod
-    def _motion(self, scheme: str, h: Fraction, steps: int) -> RunMotion | MotionInDegrees: ...
+    def _motion(self, scheme: str, h: Fraction, steps: int) -> AnyMotion:
+        run = Run(self.hamiltonian, scheme, h, self.state, steps, self.t0)
+        if self.hamiltonian.planar:
+            return RunMotion(run)
+        exact = self.exact
+        if isinstance(exact, ExactMotion) and exact.kind in ("bounded", "driven"):
+            return MotionInDegrees(run, exact)
+        return MotionInDegrees(run)
 
     def keeps(self, scheme: str, h: Fraction, steps: int, within: Within) -> bool:
         """Whether the float64 run keeps within the bounds."""
@@ -71,9 +93,9 @@ class Held(ABC):
         trail = motion.float64
         return motion.stays(trail) and within.holds(motion.run, motion.worst(trail))
 
-    @abstractmethod
     def judged(self, scheme: str, h: Fraction, steps: int) -> Judgement:
         """The verdict on the run."""
+        return verdict(self._motion(scheme, h, steps))
 
 
 def held(
@@ -81,41 +103,4 @@ def held(
 ) -> Held:
     """The motion from a point, given by the names of its coordinates, at t0."""
     state = tuple(point[name] for name in hamiltonian.coordinates)
-    return (_InPlane if hamiltonian.planar else _InDegrees)(hamiltonian, state, time, t0)
-
-
-class _InPlane(Held):
-    @property
-    def exact(self) -> ExactOrbit:
-        return exact_orbit(self.hamiltonian, *self.state, self.time, self.t0)
-
-    @property
-    def frequency(self) -> Fraction:
-        return frequency(self.exact)
-
-    def _motion(self, scheme: str, h: Fraction, steps: int) -> RunMotion:
-        p, q = self.state
-        return RunMotion(Run(self.hamiltonian, scheme, h, q, p, steps, t0=self.t0))
-
-    def judged(self, scheme: str, h: Fraction, steps: int) -> Judgement:
-        return judge(self._motion(scheme, h, steps))
-
-
-class _InDegrees(Held):
-    """Where the motion is bounded it is followed once, over the whole time, for all runs."""
-
-    @property
-    def exact(self) -> ExactMotion:
-        return exact_motion(self.hamiltonian, self.state, self.time, self.t0)
-
-    @cached_property
-    def frequency(self) -> Fraction:
-        return frequency_in_degrees(self.hamiltonian, self.exact)
-
-    def _motion(self, scheme: str, h: Fraction, steps: int) -> MotionInDegrees:
-        run = RunInDegrees(self.hamiltonian, scheme, h, self.state, steps, self.t0)
-        known = self.exact.kind in ("bounded", "driven")
-        return MotionInDegrees(run, self.exact if known else None)
-
-    def judged(self, scheme: str, h: Fraction, steps: int) -> Judgement:
-        return judge_in_degrees(self._motion(scheme, h, steps))
+    return Held(hamiltonian, state, time, t0)

@@ -8,18 +8,20 @@ from verify.hamiltonians.start import shown_of
 from verify.prose import Number, Prose, prose
 from verify.scenes.results.stability import StabilityResult
 from verify.studies.stability.frequency import frequency
+from verify.studies.stability.held import verdict
 from verify.studies.stability.limits import linear_limit, shortened
 from verify.studies.stability.run_motion import RunMotion
-from verify.studies.stability.trail import Followed, Run, RunInDegrees
-from verify.studies.stability.verdict_in_degrees import MotionInDegrees, judge_in_degrees
-from verify.studies.stability.verdict_on_run import Judgement, judge
+from verify.studies.stability.trail import Run
+from verify.studies.stability.verdict_in_degrees import MotionInDegrees
+from verify.studies.stability.verdict_on_run import Judgement
 
 
-def run_result(run: Followed) -> StabilityResult:
+def run_result(run: Run) -> StabilityResult:
     """The verdict on one run."""
     exact = run.hamiltonian
     point = dict(zip(exact.coordinates, run.state, strict=True))
-    exact_orbit, found, more = _in_plane(run) if isinstance(run, Run) else _in_degrees(run)
+    motion = RunMotion(run) if exact.planar else MotionInDegrees(run)
+    judged = verdict(motion)
     return StabilityResult(
         **exact.texts,
         scheme=run.scheme,
@@ -28,33 +30,28 @@ def run_result(run: Followed) -> StabilityResult:
         q=shown_of(exact, point, "q"),
         p=shown_of(exact, point, "p"),
         t0=text(run.t0) if exact.time_dependent else None,
-        kind=found.kind,
-        step=found.step,
-        rate=shortened(found.rate, 3),
-        energy_error=shortened(found.energy_error, 3),
-        exact_orbit=exact_orbit,
-        **more,
+        kind=judged.kind,
+        step=judged.step,
+        rate=shortened(judged.rate, 3),
+        energy_error=shortened(judged.energy_error, 3),
+        exact_orbit=motion.orbit.summary,
+        **_beside(motion, judged),
     )
 
 
-def _in_plane(run: Run) -> tuple[Prose, Judgement, dict[str, Any]]:
-    """What the exact orbit does, the verdict, and what linear theory says beside it."""
-    motion = RunMotion(run)
-    found, limit = judge(motion), linear_limit(run.scheme)
-    h_omega = run.step_size * frequency(motion.orbit)
-    return motion.orbit.summary, found, {
+def _beside(motion: RunMotion | MotionInDegrees, judged: Judgement) -> dict[str, Any]:
+    """What linear theory says beside the verdict; in n degrees of freedom how fast neighbours
+    part."""
+    if isinstance(motion, MotionInDegrees):
+        seen = motion.orbit.sensitivity
+        rate = None if seen is None else f"{seen.exponent:.2g}"
+        return {"lyapunov": rate, "detail": judged.detail}
+    limit, h_omega = linear_limit(motion.run.scheme), motion.run.step_size * frequency(motion.orbit)
+    return {
         "h_omega": shortened(h_omega, 3) if h_omega else None,
         "linear_limit": shortened(limit, 6),
-        "detail": found.detail + _against_theory(found, h_omega, limit),
-    }  # fmt: skip
-
-
-def _in_degrees(run: RunInDegrees) -> tuple[Prose, Judgement, dict[str, Any]]:
-    """What the exact motion does, the verdict, and how fast its neighbours part."""
-    motion = MotionInDegrees(run)
-    found, seen = judge_in_degrees(motion), motion.orbit.sensitivity
-    rate = None if seen is None else f"{seen.exponent:.2g}"
-    return motion.orbit.summary, found, {"lyapunov": rate, "detail": found.detail}
+        "detail": judged.detail + _against_theory(judged, h_omega, limit),
+    }
 
 
 def _against_theory(found: Judgement, h_omega: Fraction, limit: Fraction | None) -> Prose:

@@ -15,16 +15,13 @@ _NEAR = Fraction(1, 10**6)  # an equilibrium is looked for in this neighbourhood
 def describe_rounded_start(run: Run) -> Prose:
     """How float64 rounds the initial value, and what it cannot tell it from; may be empty."""
     told = Prose()
-    for name in ("q", "p"):
-        given = getattr(run, name)
+    for name, given in zip(("q", "p"), reversed(run.state), strict=True):
         gap = abs(Fraction(float(given)) - given)
         if gap:
             told += prose(f"; it rounds {name}0 by ", Number(f"{float(gap):.1e}"))
     rest = nearest_equilibrium(run)
-    if rest is not None and all(
-        float(x) == float(y) for x, y in zip(rest, (run.p, run.q), strict=True)
-    ):
-        apart = max(abs(x - y) for x, y in zip(rest, (run.p, run.q), strict=True))
+    if rest is not None and all(float(x) == float(y) for x, y in zip(rest, run.state, strict=True)):
+        apart = max(abs(x - y) for x, y in zip(rest, run.state, strict=True))
         far = f"`{float(apart):.1e}`"
         told += read_prose(f" and cannot tell z0 from an equilibrium, which is {far} away")
     return told
@@ -40,7 +37,7 @@ def nearest_equilibrium(run: Run) -> tuple[Fraction, Fraction] | None:
     gradient = (field.h_p, field.h_q)
     hessian = [ring.diff(x, name) for x in gradient for name in ("p", "q")]
     at = functions_at(arithmetic, [(ring, x) for x in (*gradient, *hessian)])
-    start = arithmetic.number(run.p), arithmetic.number(run.q)
+    start = tuple(map(arithmetic.number, run.state))
     near = arithmetic.number(_NEAR)
     try:
         with arithmetic.context():

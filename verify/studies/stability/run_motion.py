@@ -21,7 +21,6 @@ from verify.studies.stability.exact_motion import ExactMotion
 from verify.studies.stability.trail import (
     Point,
     Run,
-    RunInDegrees,
     Trail,
     follow,
     follow_precisely,
@@ -31,7 +30,6 @@ _BEYOND = 10  # times the reach
 _ENERGY = 100  # times the energy scale
 _APART = Fraction(1, 10)  # of the reach
 _DIGITS = 40
-AnyRun = TypeVar("AnyRun", Run, RunInDegrees)
 AnyOrbit = TypeVar("AnyOrbit", ExactOrbit, ExactMotion)
 
 
@@ -39,11 +37,11 @@ def float64() -> Arithmetic:
     return number_systems.get("float64", 17)
 
 
-class Motion(Generic[AnyRun, AnyOrbit]):
+class Motion(Generic[AnyOrbit]):
     """What is seen of one run beside the exact orbit; each thing is made when it is looked at."""
 
-    def __init__(self, run: AnyRun, orbit: AnyOrbit, digits: int = _DIGITS) -> None:
-        self.run: AnyRun = run
+    def __init__(self, run: Run, orbit: AnyOrbit, digits: int = _DIGITS) -> None:
+        self.run = run
         self.orbit: AnyOrbit = orbit
         self.digits = digits
         self._known: dict[int, tuple[Trail, list[Any]]] = {}
@@ -154,13 +152,14 @@ class Motion(Generic[AnyRun, AnyOrbit]):
         return one.finished and other.finished and all(_farthest(x, y) <= d for x, y, d in columns)
 
 
-class RunMotion(Motion[Run, ExactOrbit]):
+class RunMotion(Motion[ExactOrbit]):
     """That in the plane."""
 
     def __init__(self, run: Run) -> None:
-        orbit = exact_orbit(run.hamiltonian, run.p, run.q, run.time, run.t0)
+        p, q = run.state
+        orbit = exact_orbit(run.hamiltonian, p, q, run.time, run.t0)
         # More where the initial value is written with more.
-        super().__init__(run, orbit, _DIGITS + initial_value_digits((run.p, run.q)))
+        super().__init__(run, orbit, _DIGITS + initial_value_digits((p, q)))
 
 
 def _farthest(one: Sequence[Any], other: Sequence[Any]) -> Any:

@@ -46,14 +46,11 @@ class StabilityTask(_FromATime):
 
     def compute(self, keeper: Keeper) -> StabilityResult:
         from verify.studies.stability.results import run_result
-        from verify.studies.stability.trail import Run, RunInDegrees
+        from verify.studies.stability.trail import Run
 
         exact, t0 = self.exact_hamiltonian(), self.t0 or Fraction(0)
-        of = exact, self.scheme, self.step_size
-        point = point_of(exact, self.q, self.p)
-        if not exact.planar:
-            return run_result(RunInDegrees(*of, tuple(point.values()), self.steps, t0))
-        return run_result(Run(*of, point["q"], point["p"], self.steps, t0=t0))
+        state = tuple(point_of(exact, self.q, self.p).values())
+        return run_result(Run(exact, self.scheme, self.step_size, state, self.steps, t0))
 
 
 class LargestStepTask(_FromATime):

@@ -18,7 +18,6 @@ from verify import arithmetic as number_systems
 from verify.arithmetic.exact import fraction, quotient
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.orbit import Orbit
 from verify.kernels.stepping import KernelRun
 from verify.runs.digits_on_demand import worth_compiling
 
@@ -32,30 +31,8 @@ State = tuple[Fraction, ...]  # p and q; p1 … pn, q1 … qn
 
 
 @dataclass(frozen=True)
-class Run(Orbit):
-    """A run in the plane."""
-
-    steps: int
-
-    @property
-    def time(self) -> Fraction:
-        return self.steps * self.step_size
-
-    @property
-    def state(self) -> State:
-        return self.p, self.q
-
-    def onwards(self, state: State, step: int, steps: int) -> "Run":
-        p, q = state
-        return replace(self, p=p, q=q, t0=self.t0 + step * self.step_size, steps=steps)
-
-    def shortened(self, steps: int) -> "Run":
-        return replace(self, steps=steps)
-
-
-@dataclass(frozen=True)
-class RunInDegrees:
-    """The first N steps from a state, p1 … pn, q1 … qn, at t0 where H depends on time."""
+class Run:
+    """The first N steps from a state, p and q or p1 … qn, at t0 where H depends on time."""
 
     hamiltonian: Hamiltonian
     scheme: str
@@ -74,15 +51,12 @@ class RunInDegrees:
         point = dict(zip(self.hamiltonian.coordinates, self.state, strict=True))
         return {**point, "h": self.step_size, "t": self.t0}
 
-    def onwards(self, state: State, step: int, steps: int) -> "RunInDegrees":
+    def onwards(self, state: State, step: int, steps: int) -> "Run":
         t0 = self.t0 + step * self.step_size
         return replace(self, state=state, steps=steps, t0=t0)
 
-    def shortened(self, steps: int) -> "RunInDegrees":
+    def shortened(self, steps: int) -> "Run":
         return replace(self, steps=steps)
-
-
-Followed = Run | RunInDegrees  # one run: the first N steps of an orbit
 
 
 class Point(NamedTuple):
@@ -109,7 +83,7 @@ class Trail:
     rationals: any two of them are compared exactly, ten times as fast as Fractions are.
     """
 
-    run: Followed
+    run: Run
     arithmetic: Arithmetic
     every: int
     columns: tuple[tuple[Any, ...], ...]
@@ -139,7 +113,7 @@ class Trail:
         return follow(self.run.onwards(state, point.step, steps), self.arithmetic)
 
 
-def follow(run: Followed, arithmetic: Arithmetic) -> Trail:
+def follow(run: Run, arithmetic: Arithmetic) -> Trail:
     """The run in this arithmetic. Raises UnsupportedError where that lacks a function."""
     asked = run.hamiltonian, run.scheme, {**run.start}, run.steps, frozenset[str](), 0
     own = KernelRun(*asked, sections=_sections(run.steps))
@@ -163,7 +137,7 @@ def _sections(steps: int) -> int:
     return next((k for k, length in lengths if length >= _FEWEST and isprime(length)), aimed)
 
 
-def follow_precisely(run: Followed, digits: int) -> Trail:
+def follow_precisely(run: Run, digits: int) -> Trail:
     """The run to so many digits, compiled where that repays.
 
     Without a compiler only the first 300 000 of its steps are done, and `steps` says so.

@@ -30,7 +30,7 @@ from verify.studies.stability.exact_motion import (
 )
 from verify.studies.stability.run_motion import Motion
 from verify.studies.stability.trail import (
-    RunInDegrees,
+    Run,
     first_apart,
     first_step,
     follow_precisely,
@@ -41,10 +41,10 @@ _NEAR = Fraction(1, 10**20)  # of the reach, a neighbour of the scheme's own orb
 _KEPT = 1  # energy scales: what has not lost more has kept its energy
 
 
-class MotionInDegrees(Motion[RunInDegrees, ExactMotion]):
+class MotionInDegrees(Motion[ExactMotion]):
     """That in n degrees of freedom."""
 
-    def __init__(self, run: RunInDegrees, orbit: ExactMotion | None = None) -> None:
+    def __init__(self, run: Run, orbit: ExactMotion | None = None) -> None:
         """`orbit`: the exact motion from there, over the run's time or longer, if it is known."""
         of = run.hamiltonian, run.state, run.time, run.t0
         super().__init__(run, exact_motion(*of) if orbit is None else orbit)

@@ -16,7 +16,7 @@ High precision is believed where twice as many digits say the same. What is boun
 told in `verify.studies.stability.run_motion`.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import chain
 
@@ -120,8 +120,9 @@ def _not_the_scheme(motion: RunMotion) -> Judgement:
 def _sensitive(motion: RunMotion, digits: int, precise: Trail) -> Prose:
     """Whether a neighbour parts from the run as well, without rounding: as driven ones may be
     chaotic."""
-    run = replace(motion.run, steps=precise.steps)
-    near = follow_precisely(replace(run, q=run.q + _NEXT * (motion.orbit.reach[1] or 1)), digits)
+    p, q = motion.run.state
+    state = p, q + _NEXT * (motion.orbit.reach[1] or 1)
+    near = follow_precisely(motion.run.onwards(state, 0, precise.steps), digits)
     step = first_apart(near, precise, motion.apart)
     if step is None:
         return Prose()
@@ -150,7 +151,7 @@ def _range_alone(motion: RunMotion) -> bool:
     In 53 bits and in fewer: where rounding parts runs, 53 bits may keep together by chance.
     """
     steps = min(motion.precise.steps, _RANGE_STEPS, motion.as_far.done + 1)
-    run = replace(motion.run, steps=steps)
+    run = motion.run.shortened(steps)
     precise = follow(run, motion.precise.arithmetic)
     if motion.together(follow(run, float64()), precise):
         return False
@@ -177,7 +178,7 @@ def _vanished(motion: RunMotion) -> Prose:
     seen = (abs(x) for x in (*chain(*motion.float64.columns), *motion.orbit.reach) if x)
     if min(seen, default=_SMALL) >= _SMALL:
         return Prose()
-    run = replace(motion.run, steps=min(motion.run.steps, _RANGE_STEPS))
+    run = motion.run.shortened(min(motion.run.steps, _RANGE_STEPS))
     wide, own = follow(run, mpfr.at_bits(_FLOAT_BITS)), follow(run, float64())
     for k, name in ((1, "q"), (0, "p")):
         true, kept = ([point.state[k] for point in trail.points] for trail in (wide, own))

@@ -7,8 +7,8 @@ from time import perf_counter
 
 from verify.arithmetic.exact import text
 from verify.errors import InputError
-from verify.flows.degrees.solution import SolutionInDegrees
 from verify.flows.extrapolation import NoFlowError
+from verify.flows.solution import Solution
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import Given, point_of
 from verify.scenes.results.work_precision import WorkPoint
@@ -22,7 +22,7 @@ class Errors:
     """The exact solution at the time; by scheme and step size the points, not yet timed; and how
     long all of it took."""
 
-    solution: SolutionInDegrees
+    solution: Solution
     points: Mapping[tuple[str, Fraction], WorkPoint]
     seconds: float
 

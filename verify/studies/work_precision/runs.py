@@ -21,7 +21,8 @@ from verify.arithmetic.arb import in_reach, middle_and_radius
 from verify.arithmetic.exact import decimal, text
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import float64
-from verify.flows.degrees.solution import Point, SolutionInDegrees, solution_in_degrees
+from verify.flows.degrees.solution import solution_in_degrees
+from verify.flows.solution import Point, Solution
 from verify.hamiltonians.energy import energy_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.chunked_loop import ChunkedLoop
@@ -52,9 +53,7 @@ _FIELDS = {
 State = tuple[Fraction, ...]  # p1 … pn, q1 … qn
 
 
-def reference(
-    hamiltonian: Hamiltonian, point: Point, time: Fraction, t0: Fraction
-) -> SolutionInDegrees:
+def reference(hamiltonian: Hamiltonian, point: Point, time: Fraction, t0: Fraction) -> Solution:
     """The exact solution that errors are held against; NoFlowError where it is not reached."""
     digits = _REFERENCE_DIGITS if hamiltonian.planar else _IN_DEGREES
     return solution_in_degrees(hamiltonian, point, time, digits, t0)
@@ -64,13 +63,13 @@ def reference(
 class Problem(InitialValueProblem):
     """An initial value problem with its exact solution at the time."""
 
-    solution: SolutionInDegrees
+    solution: Solution
 
     @cached_property
-    def _ends(self) -> dict[Fraction, SolutionInDegrees]:
+    def _ends(self) -> dict[Fraction, Solution]:
         return {self.time: self.solution}
 
-    def solution_after(self, h: Fraction) -> SolutionInDegrees:
+    def solution_after(self, h: Fraction) -> Solution:
         """The exact solution after N·h, N = T/h rounded down, where the steps end."""
         end = self.time // h * h
         if end not in self._ends:

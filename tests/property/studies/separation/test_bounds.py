@@ -29,14 +29,9 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
 from verify.studies.separation.chain import QUANTITIES, Chain, separated_chains
 from verify.studies.separation.kernel import WORKING
+from verify.studies.separation.mixed_run import Stopped
 from verify.studies.separation.separate import separate
-from verify.studies.separation.working import (
-    Link,
-    Stopped,
-    WorkingRun,
-    _accumulated,
-    rounded_inputs,
-)
+from verify.studies.separation.working import Link, WorkingRun, _accumulated, rounded_inputs
 
 few = drawn(10)
 some = drawn(14)
@@ -103,7 +98,7 @@ def test_bounds_of_few_bits_hold_against_many_at_every_checkpoint(
     except Stopped:
         assume(False)
         raise
-    for name in ("trajectory", "determinant", "closed_delta_j"):
+    for name in ("trajectory", "factors", "closed_factors"):
         x, y = getattr(coarse, name), getattr(fine, name)
         assert (x is None) == (y is None)
         if x is not None:
@@ -140,7 +135,7 @@ def test_fixed_point_beside_float64_is_within_its_bound(
     coarse, fine = (
         working.step_through(x, lambda _: None) for x in (FIXED, number_systems.get("mpfr", 90))
     )
-    for name in ("trajectory", "determinant", "closed_delta_j"):
+    for name in ("trajectory", "factors", "closed_factors"):
         x, y = getattr(coarse, name), getattr(fine, name)
         agree(x, y)
         if x.kind == "enclosed":

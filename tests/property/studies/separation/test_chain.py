@@ -15,9 +15,10 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.studies.separation.chain import PARTS, QUANTITIES, Chain, Kind
 from verify.studies.separation.growth import crossover, log_spaced
+from verify.studies.separation.mixed_run import marks_of
 from verify.studies.separation.separate import as_grid, grid, separate, separate_grid
 from verify.studies.separation.trail import Trail
-from verify.studies.separation.working import Link, marks_of
+from verify.studies.separation.working import Link
 
 quick = drawn(40)
 values = st.builds(Fraction, st.integers(-50, 50), st.integers(1, 10**6))

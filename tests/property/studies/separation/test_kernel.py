@@ -13,7 +13,8 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
 from verify.studies.separation.chain import QUANTITIES, Chain
 from verify.studies.separation.kernel import WORKING, mixed_kernel
-from verify.studies.separation.working import Stopped, WorkingRun, rounded_inputs
+from verify.studies.separation.mixed_run import Stopped
+from verify.studies.separation.working import WorkingRun, rounded_inputs
 
 few = drawn(10)
 

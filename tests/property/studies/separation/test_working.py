@@ -252,6 +252,6 @@ def test_a_run_that_is_interrupted_goes_on_to_the_same_bits(
     again = working(keeper).step_through(made, rest.append)
     # The step that was told last was not kept.
     assert sum(rest) == (steps - sum(told[:-1]) if after < steps else steps)
-    for link in ("trajectory", "determinant", "plain", "closed_delta_j", "closed_form"):
+    for link in ("trajectory", "factors", "plain", "closed_factors", "closed_form"):
         assert went(getattr(again, link)) == went(getattr(once, link))
     assert set(PARTS) < set(QUANTITIES)

@@ -13,7 +13,7 @@ from verify.exploration import properties
 from verify.exploration.any_sample import AnySample
 from verify.exploration.property import Violation
 from verify.exploration.sample_in_degrees import SampleInDegrees, sample_of
-from verify.flows.degrees.extrapolation import FlowInDegrees
+from verify.flows.extrapolation import Flow
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import kernel_for
 from verify.kernels.statements import Statements
@@ -107,9 +107,9 @@ def blind(sample: SampleInDegrees, patch: Patch) -> None:
 
 def half_a_flow(_: SampleInDegrees, patch: Patch) -> None:
     """Forwards, by half the time."""
-    true = FlowInDegrees.follow
+    true = Flow.follow
     patch.setattr(
-        FlowInDegrees,
+        Flow,
         "follow",
         lambda self, z, time, most: true(self, z, time / 2 if time > 0 else time, most),
     )

@@ -11,7 +11,7 @@ import sympy
 
 from verify.algebra.formula import symbol
 from verify.calls.given import hamiltonian_from
-from verify.flows.solution import _numerical_solution, exact_solution
+from verify.flows.solution import exact_solution, numerical_solution
 from verify.hamiltonians import forced_motion, systems
 from verify.proof.order import prove
 from verify.scenes.scene import Scene
@@ -70,8 +70,8 @@ def test_the_forced_oscillator_in_closed_form_is_the_numerical_flow(
     assert found.bound < Fraction(1, 10**39)
     if not hamiltonian.time_dependent:  # a constant force: the potential's own closed form
         return
-    start = first_p, first_q, Fraction(t0)
-    other = _numerical_solution(hamiltonian, start, Fraction(time), 25)
+    start = {"p": first_p, "q": first_q}
+    other = numerical_solution(hamiltonian, start, Fraction(time), 25, Fraction(t0))
     assert abs(found.p - other.p) + abs(found.q - other.q) < Fraction(1, 10**23)
 
 

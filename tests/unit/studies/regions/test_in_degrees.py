@@ -9,7 +9,7 @@ from click.testing import CliRunner
 
 import verify
 from verify.commands.main import cli
-from verify.flows.degrees import points as module_of_points
+from verify.flows import points_together as module_of_points
 from verify.flows.degrees.points import points_in_degrees
 from verify.flows.degrees.solution import solution_in_degrees
 from verify.flows.extrapolation import NoFlowError

@@ -11,7 +11,7 @@ from verify.runs.tangent_growth import finite_time_lyapunov
 from verify.scenes.results.separation_in_degrees import TangentGrowth
 from verify.studies.separation.form_growth import motion_of, power_law
 from verify.studies.separation.form_run import of_product, size_of
-from verify.studies.separation.form_separate import separate_in_degrees
+from verify.studies.separation.separate import separate
 
 MARKS = tuple(range(4, 2049, 4))
 HENON = systems.get("henon-heiles").hamiltonian({})
@@ -66,7 +66,7 @@ def test_the_exponent_is_that_of_the_identity_s_growth() -> None:
 def tangent(
     exact: Hamiltonian, scheme: str, h: str, steps: int, **start: list[str]
 ) -> TangentGrowth:
-    found = separate_in_degrees(exact, scheme, step_size=h, steps=steps, digits=5, **start)
+    found = separate(exact, scheme, step_size=h, steps=steps, digits=5, **start)
     assert found.tangent is not None
     return found.tangent
 

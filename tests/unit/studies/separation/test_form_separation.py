@@ -17,7 +17,7 @@ from verify.kernels.stepping import KernelRun
 from verify.studies.separation.chain import Chain
 from verify.studies.separation.form_chain import FormChains, form_chains
 from verify.studies.separation.form_run import FormRun
-from verify.studies.separation.form_separate import separate_in_degrees
+from verify.studies.separation.separate import separate
 from verify.studies.separation.working import rounded_inputs
 
 DIGITS = 30
@@ -123,7 +123,7 @@ def test_parts_add_up_exactly_at_every_checkpoint(scheme: str) -> None:
 
 
 def test_what_is_symplectic_by_proof_has_no_truncation_and_is_not_run() -> None:
-    found = separate_in_degrees(
+    found = separate(
         HENON, "stormer-verlet", q=["0.3", "-0.1"], p=["0.1", "0.2"], step_size="0.1", steps=60
     )
     assert found.plain is not None
@@ -145,11 +145,11 @@ def test_the_working_w_of_the_closed_form_is_that_of_a_float64_run_bit_for_bit()
 
 
 def test_an_orbit_that_escapes_says_at_which_step() -> None:
-    found = separate_in_degrees(
+    found = separate(
         HENON, "lie2", q=["0.9", "0.9"], p=["0.1", "0.2"], step_size="0.05", steps=2000
     )
     assert (found.status, found.failed_step, found.plain) == ("left range", 121, None)
-    before = separate_in_degrees(
+    before = separate(
         HENON, "lie2", q=["0.9", "0.9"], p=["0.1", "0.2"], step_size="0.05", steps=100
     )
     assert before.status == "finished"
@@ -169,7 +169,7 @@ def test_named_systems_are_separated(
     system: str, parameters: dict[str, Any], scheme: str, q: list[str], p: list[str]
 ) -> None:
     exact = systems.get(system).hamiltonian(parameters)
-    found = separate_in_degrees(exact, scheme, q=q, p=p, step_size="0.01", steps=15)
+    found = separate(exact, scheme, q=q, p=p, step_size="0.01", steps=15)
     assert found.status == "finished"
     assert found.closed_form is not None
     parts = found.closed_form.parts
@@ -194,7 +194,7 @@ def test_bad_input_is_refused_in_one_line(changed: dict[str, Any], problem: str)
     asked = {"hamiltonian": HENON, "scheme": "lie2", "q": ["0.3", "-0.1"], "p": ["0.1", "0.2"],
              "step_size": "0.1", "steps": 10}  # fmt: skip
     with pytest.raises(InputError, match=problem) as error:
-        separate_in_degrees(**(asked | changed))
+        separate(**(asked | changed))
     assert "\n" not in str(error.value)
 
 
@@ -219,7 +219,7 @@ def test_few_digits_give_wide_bounds_that_hold_all_the_same() -> None:
         beside.step_through(number_systems.get("mpfr", digits), lambda _: None)
         for digits in (20, 60)
     )
-    for name in ("trajectory", "derivatives", "closed_derivatives"):
+    for name in ("trajectory", "factors", "closed_factors"):
         pairs = list(zip(getattr(coarse, name), getattr(fine, name), strict=True))
         apart = [abs(x - y) for a, b in pairs for x, y in zip(a.trail, b.trail, strict=True)]
         bound = max(a.bound for a, _ in pairs)

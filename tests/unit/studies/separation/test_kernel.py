@@ -15,7 +15,8 @@ from verify.kernels.kernel import Kernel, Writer
 from verify.kernels.stepping import KernelRun
 from verify.schemes import get
 from verify.studies.separation.kernel import WORKING, MixedKernel, mixed_kernel
-from verify.studies.separation.working import WorkingRun, marks_of, rounded_inputs
+from verify.studies.separation.mixed_run import marks_of
+from verify.studies.separation.working import WorkingRun, rounded_inputs
 
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + delta*q**4/4", {"delta": 1})
 PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")

@@ -151,7 +151,7 @@ def plant(monkeypatch: pytest.MonkeyPatch) -> Callable[[str, str], None]:
     """Replaces a pattern in the lines of every mixed kernel that is made from now on."""
 
     def planted(pattern: str, by: str) -> None:
-        original = separation_kernel._assemble
+        original = separation_kernel.assemble
 
         def changed(*given: Any) -> str:
             *others, inside = given
@@ -160,7 +160,7 @@ def plant(monkeypatch: pytest.MonkeyPatch) -> Callable[[str, str], None]:
             return original(*others, lines)
 
         mixed_kernel.cache_clear()
-        monkeypatch.setattr(separation_kernel, "_assemble", changed)
+        monkeypatch.setattr(separation_kernel, "assemble", changed)
 
     yield planted  # type: ignore[misc]
     mixed_kernel.cache_clear()
@@ -206,7 +206,7 @@ def test_counted_bounds_hold_for_few_bits_and_are_not_far_off(
     kernel_run = KernelRun(hamiltonian, "lie2", start, 600, WORKING, 10)
     working = WorkingRun(kernel_run, rounded_inputs(kernel_run), follow=True)
     coarse, fine = (working.step_through(x, lambda _: None) for x in (made, mpfr.at_bits(300)))
-    for name in ("trajectory", "determinant", "closed_delta_j"):
+    for name in ("trajectory", "factors", "closed_factors"):
         x, y = getattr(coarse, name), getattr(fine, name)
         assert x.kind == y.kind == "enclosed"
         error = max(abs(a - b) for a, b in zip(x.trail, y.trail, strict=True))
@@ -307,3 +307,13 @@ def test_all_parts_have_the_digits_that_are_asked_for(
             nothing = size == 0 and bound * 10 ** (4 * digits) <= largest
             known = bound * 10 ** (digits - 1) <= size
             assert nothing or known, f"{name}: {value.value} ± {value.bound}"
+
+
+@pytest.mark.parametrize("name", ["sum", "rest", "p_low", "x0", "plain"])
+def test_a_parameter_may_have_a_name_that_the_kernel_has_for_itself(name: str) -> None:
+    asked = {"scheme": "lie2", "q": 1, "p": 0, "step_size": "0.1", "steps": 20}
+    named = Hamiltonian.parse(f"p**2/2 + {name}*q**4/4", {name: 3})
+    plain = Hamiltonian.parse("p**2/2 + a*q**4/4", {"a": 3})
+    one, other = (separate(exact, **asked) for exact in (named, plain))  # type: ignore[arg-type]
+    assert one.plain == other.plain
+    assert one.closed_form == other.closed_form

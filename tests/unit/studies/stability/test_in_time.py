@@ -26,7 +26,7 @@ def case(
     text: str, scheme: str, h: str, steps: int, q: str = "1", p: str = "0", t0: str = "0"
 ) -> Run:
     exact = Hamiltonian.parse(text)
-    return Run(exact, scheme, rational(h), rational(q), rational(p), steps, t0=rational(t0))
+    return Run(exact, scheme, rational(h), (rational(p), rational(q)), steps, rational(t0))
 
 
 def judged(*given: str | int, **more: str) -> Judgement:

@@ -14,7 +14,7 @@ from verify.studies.stability.run_motion import RunMotion
 from verify.studies.stability.trail import Point, Run, Trail
 
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + q**4/4")
-CASE = Run(DUFFING, "lie2", Fraction(1, 20), Fraction(2, 3), Fraction(-1, 7), 700)
+CASE = Run(DUFFING, "lie2", Fraction(1, 20), (Fraction(-1, 7), Fraction(2, 3)), 700)
 EXACT = Fraction(1, 10**75)
 
 
@@ -99,7 +99,7 @@ def test_runs_are_together_up_to_a_tenth_of_the_reach_at_every_point(
 
 def test_where_h_has_no_value_at_a_point_the_run_does_not_stay() -> None:
     well = RunMotion(Run(Hamiltonian.parse("p**2/2 + q**2/2 + 1/q"), "lie2", Fraction(1, 50),
-                         Fraction(3, 2), Fraction(0), 200))  # fmt: skip
+                         (Fraction(0), Fraction(3, 2)), 200))  # fmt: skip
     assert well.stays(well.precise)
     undefined = changed(well.precise, 20, 1, Fraction(0))
     assert not well.outside(undefined.points[20])
@@ -119,7 +119,7 @@ def test_a_motion_that_rests_for_a_few_steps_only_has_not_died(
 ) -> None:
     text, scheme, h, steps, q = case
     motion = RunMotion(
-        Run(Hamiltonian.parse(text), scheme, Fraction(h), Fraction(q), Fraction(0), steps)
+        Run(Hamiltonian.parse(text), scheme, Fraction(h), (Fraction(0), Fraction(q)), steps)
     )
     trail, period = motion.precise, motion.orbit.period
     assert period is not None

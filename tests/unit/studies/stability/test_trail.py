@@ -21,13 +21,13 @@ from verify.studies.stability.trail import (
 
 FLOAT = arithmetic.get("float64", 17)
 GROWING = Run(
-    Hamiltonian.parse("p**2/2 + q**2/2"), "lie1", Fraction(1, 10), Fraction(1), Fraction(0), 3000
+    Hamiltonian.parse("p**2/2 + q**2/2"), "lie1", Fraction(1, 10), (Fraction(0), Fraction(1)), 3000
 )
 
 
 def stepped(case: Run, steps: int) -> tuple[float, float]:
     """lie1 on the harmonic oscillator, in float64."""
-    p, q, h = float(case.p), float(case.q), float(case.step_size)
+    p, q, h = *map(float, case.state), float(case.step_size)
     for _ in range(steps):
         p, q = p + -h * q, q + h * p
     return p, q
@@ -47,7 +47,7 @@ def test_a_trail_has_the_states_of_a_plain_loop() -> None:
 @pytest.mark.parametrize("text", ["p**2/2 + q**2/2 + q**4/4", "p**2/2 + q**2/2 - q*cos(2*t)"])
 def test_its_points_are_the_exact_numbers_that_the_run_notes(name: str, text: str) -> None:
     made = arithmetic.get(name, 30)
-    case = Run(Hamiltonian.parse(text), "lie2", Fraction(1, 30), Fraction(1, 3), Fraction(0), 700)
+    case = Run(Hamiltonian.parse(text), "lie2", Fraction(1, 30), (Fraction(0), Fraction(1, 3)), 700)
     trail, every = follow(case, made), 7
     noted = KernelRun(
         case.hamiltonian, "lie2", {**case.start}, 700, frozenset(), 0, sections=100
@@ -118,7 +118,7 @@ def test_without_a_compiler_only_so_many_steps_are_done_and_it_says_so(
 ) -> None:
     monkeypatch.setattr(trails, "MOST_INTERPRETED", 3000)
     hamiltonian = Hamiltonian.parse("p**2/2 + q*atan(q)")  # which fixed has not
-    case = Run(hamiltonian, "lie1", Fraction(1, 10**6), Fraction(1), Fraction(0), 400_000)
+    case = Run(hamiltonian, "lie1", Fraction(1, 10**6), (Fraction(0), Fraction(1)), 400_000)
     trail = follow_precisely(case, 30)
     assert trail.arithmetic.name == "mpfr"
     assert trail.finished

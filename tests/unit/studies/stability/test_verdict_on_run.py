@@ -24,7 +24,7 @@ PI = Fraction("3.141592653589793238462643383279502884197169399375105820974944592
 
 def case(text: str, scheme: str, h: str, steps: int, q: str | Fraction, p: str = "0") -> Run:
     at = q if isinstance(q, Fraction) else rational(q)
-    return Run(Hamiltonian.parse(text), scheme, rational(h), at, rational(p), steps)
+    return Run(Hamiltonian.parse(text), scheme, rational(h), (rational(p), at), steps)
 
 
 def judged(*given: object) -> Judgement:
@@ -236,7 +236,7 @@ def test_what_more_digits_agree_on_is_held_against_the_bounds_too(
     assert judged(*top).kind == "unstable: arithmetic"
 
     def elsewhere(case: Run, digits: int) -> object:
-        return follow_precisely(replace(case, q=1000 * case.q), digits)
+        return follow_precisely(replace(case, state=(case.state[0], 1000 * case.state[1])), digits)
 
     monkeypatch.setattr(blame, "follow_precisely", elsewhere)  # 80 digits and more
     assert judged(*top).kind == "unstable: scheme"

@@ -19,7 +19,7 @@ from verify.exploration.sample import Sample
 from verify.schemes.step_map import StepMap
 from verify.studies.separation.chain import Chain, separated_chains
 from verify.studies.separation.kernel import WORKING
-from verify.studies.separation.working import Stopped
+from verify.studies.separation.mixed_run import Stopped
 
 _IN = 2  # one in so many samples
 _DIGITS = 8
