@@ -59,10 +59,6 @@ class VectorField:
         """Xⁿ y of y = p or q, made once."""
         return self._powers.power(name, n)
 
-    def lie_derivatives(self, name: str, most: int) -> Sequence[Poly]:
-        """[y, X y, …, X^most y] of y = p or q, each made once."""
-        return [self._powers.power(name, n) for n in range(most + 1)]
-
     def taylor(self, name: str, most: int) -> dict[int, Poly]:
         """{n: Xⁿy/n!} of y = p or q, n = 0 … most, those that are not 0."""
         terms = {n: self._powers.term(name, n) for n in range(most + 1)}
@@ -79,11 +75,6 @@ class VectorField:
     def delta_j(self, n: int, eta: int) -> Poly:
         """The coefficient of hⁿ in ΔJ of the map `truncated(eta)`, by direct expansion."""
         return self._powers.delta_j(n, eta)
-
-    def bracket(self, x: Poly, y: Poly) -> Poly:
-        """∂(x, y)/∂(p, q)."""
-        diff, multiply = self.ring.diff, self.ring.multiply
-        return multiply(diff(x, "p"), diff(y, "q")) - multiply(diff(x, "q"), diff(y, "p"))
 
     def separable(self) -> bool:
         """Whether H = T(p) + V(q): the mixed derivative H_pq is the zero function."""

@@ -17,7 +17,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.vector_field import VectorField
 from verify.late import sympy
 from verify.proof.by_conditions import nearby_order, told_nearby
-from verify.proof.claimed import Claimed, Convergence, Words, held_to
+from verify.proof.claimed import IN_PLANE, Claimed, Convergence, held_to
 from verify.proof.expansion import MOST_ORDERS, VANISHES, Expansion, Leading, first_nonzero
 from verify.proof.order_proof import Proof
 from verify.proof.parameters import almost_all, not_zero_for
@@ -32,7 +32,6 @@ from verify.schemes.timed.for_scheme import conditions_for
 from verify.verdict import Verdict
 
 _Coefficient = Callable[[str, int], tuple[VectorField, Ring, Poly]]
-_WORDS = Words("ΔJ", "ΔJ is the zero function: det J ≡ 1", "function", "det J ≡ 1")
 RESIDUE = Fraction(1, 2**100)  # and above it what the coefficients of the nearest leave
 _FIRST_ORDERS = 6  # of them, those that are made at once where no order is claimed
 
@@ -45,7 +44,7 @@ def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
     inside = leading.within(domain)
     claimed = Claimed.of(scheme) if scheme else Claimed()
     defect = inside.power, inside.decision.zero
-    verdict, reason = held_to(claimed, convergence, defect, MOST_ORDERS, _WORDS)
+    verdict, reason = held_to(claimed, convergence, defect, MOST_ORDERS, IN_PLANE)
     if inside.decision.zero is None and leading.decision.zero is not None:
         reason = prose("no point is found where all is defined: ", domain.prose)
     leading = inside

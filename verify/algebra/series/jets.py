@@ -27,7 +27,6 @@ class JetRing(JetsInDegrees):
         super().__init__(("p", "q"), order, separable=separable, timed=timed)
         self.timed, self.names = timed, self.context.names()
         self.p, self.q = self.gens[:2]
-        self._along_flow = {"p": [self.p], "q": [self.q]}  # each derivative made once
 
     def h(self, i: int, j: int, k: int = 0) -> Poly:
         """∂_pⁱ ∂_q^j ∂_t^k H, which is 0 for k > 0 where H does not depend on time."""
@@ -39,17 +38,6 @@ class JetRing(JetsInDegrees):
         """The derivative along the flow: X x, or D x where H depends on time."""
         along = self.h(1, 0) * self.diff(x, "q") - self.h(0, 1) * self.diff(x, "p")
         return along + self.diff(x, "t") if self.timed else along
-
-    def lie_derivatives(self, name: str, most: int) -> Series:
-        """[y, X y, …, X^most y] of y = p or q."""
-        known = self._along_flow[name]
-        while len(known) <= most:
-            known.append(self.derive(known[-1]))
-        return known[: most + 1]
-
-    def bracket(self, x: Poly, y: Poly) -> Poly:
-        """∂(x, y)/∂(p, q)."""
-        return self.diff(x, "p") * self.diff(y, "q") - self.diff(x, "q") * self.diff(y, "p")
 
     def delta_j(self, p_next: Sequence[Poly], q_next: Sequence[Poly]) -> Iterator[Poly]:
         """The coefficients of h¹, h², … in det ∂(p', q')/∂(p, q), as far as the series reach."""

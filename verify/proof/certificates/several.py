@@ -7,20 +7,14 @@ zero is called `p1 0`, `S 3 p1 q2`, `potential p1 q2`.
 
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.jet_flow import JetFlow
-from verify.proof.certificates.by_coefficients import by_coefficients
-from verify.proof.certificates.every import NOT_KNOWN
-from verify.proof.certificates.file import FORMAT, Certificate
+from verify.proof.certificates.file import Certificate
 from verify.proof.certificates.plain import Plain
 from verify.proof.certificates.statement import Statement, certificate_of_one, entries_of
-from verify.proof.expansion import series_of as series_of_defect
+from verify.proof.expansion import series_of
 from verify.proof.symplectic.proof import SymplecticProof
-from verify.proof.symplectic.telescoping import potential_of_lie
-from verify.schemes.degrees import kind_of, map_in_degrees
-from verify.schemes.degrees.defect import DefectSeries
-from verify.schemes.every_hamiltonian import TaylorSeries
+from verify.proof.telescoping import potential_of_lie
+from verify.schemes.degrees import map_in_degrees
 from verify.schemes.scheme import Scheme
-from verify.schemes.step_algebra import State, series_of
 from verify.verdict import Verdict
 
 _NOTHING = "there is nothing to certify"
@@ -43,7 +37,7 @@ def of_one_in_degrees(
         if step.degree is None:
             raise InputError("map", scheme.name, "is not written out as a polynomial in h")
         most = step.degree
-    defect = series_of_defect(step, most)
+    defect = series_of(step, most)
     field, rows = defect.flow, [defect.coefficient(n) for n in range(most + 1)]
     plain = Plain(field.ring, field.names)
     leading = None if proof.order is None else defect.form(proof.order)
@@ -60,42 +54,3 @@ def of_one_in_degrees(
         None if potential is None else entries_of(potential),
     )
     return certificate_of_one(statement, plain, field.energy, proof.witness)
-
-
-def of_every_in_degrees(
-    proof: SymplecticProof, scheme: Scheme, *, separable: bool, timed: bool
-) -> Certificate:
-    """The certificate of a proof for every H. Raises InputError where there is none."""
-    every_h = scheme.every_h
-    if proof.verdict is not Verdict.PROVED or every_h is None:
-        raise InputError("scheme", scheme.name, f"{proof.verdict}: {_NOTHING}")
-    data: Certificate = {
-        "format": FORMAT,
-        "degrees": proof.degrees,
-        "hamiltonian": "every",
-        "separable": separable or scheme.needs_separable,
-        **({"time_dependent": True} if timed else {}),
-    }
-    given = by_coefficients(scheme, timed=timed) if proof.symplectic else None
-    if given is not None:
-        return data | given
-    kind = kind_of(scheme)
-    if proof.order is None or proof.convergence_order is None or not hasattr(kind, "step"):
-        raise InputError("scheme", scheme.name, NOT_KNOWN)
-    separable, most = data["separable"], proof.order + 2
-    flow = JetFlow.of_degrees(proof.degrees, most, separable=separable, timed=timed)
-    state: State = series_of(flow, kind.step(every_h), proof.order)
-    columns = [list(series.coefficients) for series in state]
-    leading = DefectSeries(lambda _: (flow, state), proof.order).form(proof.order)
-    potential = None
-    if isinstance(every_h, TaylorSeries) and proof.telescopes:
-        potential = potential_of_lie(flow, every_h.eta)
-    statement = Statement(
-        flow.names,
-        columns,
-        proof.order,
-        proof.convergence_order,
-        entries_of(leading),
-        None if potential is None else entries_of(potential),
-    )
-    return data | statement.written(dict(enumerate(flow.ring.context.names())))

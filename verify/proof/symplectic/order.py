@@ -13,14 +13,14 @@ from verify.algebra.ring import Decision, Poly, Ring
 from verify.hamiltonians.canonical_field import CanonicalField
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import told_nearby
-from verify.proof.claimed import Claimed, Convergence, Words, held_to
+from verify.proof.claimed import IN_DEGREES, Claimed, Convergence, held_to
 from verify.proof.expansion import series_of
 from verify.proof.order import is_residue, nearby_convergence, nearby_defect_of
 from verify.proof.parameters import not_zero_for
 from verify.proof.printed_formulas import told_defect
 from verify.proof.symplectic import closed_form
 from verify.proof.symplectic.proof import SymplecticProof
-from verify.proof.symplectic.telescoping import telescopes_of_lie
+from verify.proof.telescoping import telescopes_of_lie
 from verify.prose import prose
 from verify.schemes.degrees import map_in_degrees
 from verify.schemes.degrees.canonical_map import CanonicalMap
@@ -30,7 +30,6 @@ from verify.schemes.scheme import Scheme
 from verify.verdict import Verdict
 
 _MOST = 8  # powers of h that are looked at; more where a scheme claims a higher order
-_WORDS = Words("S", "S is the zero form: the map is symplectic", "form", "to be symplectic")
 
 
 @dataclass(frozen=True)
@@ -71,7 +70,7 @@ def prove_map(
     )
     defect = _within(step.domain, _defect(step, series, most))
     first = defect.power, defect.decision.zero
-    verdict, reason = held_to(claimed, convergence, first, most, _WORDS)
+    verdict, reason = held_to(claimed, convergence, first, most, IN_DEGREES)
     if near is not None and verdict is Verdict.PROVED:
         verdict, reason = near.verdict, prose(reason, "; ", told_nearby(near))
     without = nearby_defect_of(scheme, step.hamiltonian, defect.power)

@@ -13,10 +13,11 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
 from verify.proof.order_proof import Proof
 from verify.proof.symplectic.order import prove_symplectic
-from verify.proof.symplectic.proof import MOST_TERMS, SymplecticProof
+from verify.proof.symplectic.proof import SymplecticProof
 from verify.prose import Prose
 from verify.scenes.results.proof import FormResult, Formulas, ProofResult
 from verify.schemes import get
+from verify.schemes.degrees.two_form import MOST_TERMS
 from verify.schemes.scheme import Scheme
 from verify.schemes.step_map import StepMap, grouped
 
@@ -71,11 +72,9 @@ def _marks(
 ) -> tuple[Prose, ...]:
     """Who else checked it."""
     from verify.proof.checked import marks
-    from verify.proof.checked.proved import DEFECT, MAP, of_degrees, of_one_hamiltonian
+    from verify.proof.checked.proved import DEFECT, MAP, of_one_hamiltonian
 
-    if isinstance(proof, SymplecticProof):
-        return marks(of_degrees(proof, scheme, DEFECT | MAP, hamiltonian))
-    return marks(of_one_hamiltonian(proof, scheme, DEFECT | MAP))
+    return marks(of_one_hamiltonian(proof, hamiltonian, scheme, DEFECT | MAP))
 
 
 def _in_plane(
