@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
     from verify.proof.every_proof import EveryProof
     from verify.proof.order_proof import Proof
-    from verify.proof.potential import Potential
     from verify.proof.special_values import SpecialValue
     from verify.proof.symplectic.proof import SymplecticProof
     from verify.schemes.scheme import Scheme
@@ -106,14 +105,10 @@ def _prove_every(
 
         _write(of_every(proof), certificate)
     texts = {"hamiltonian": proof.quantifier}
-    point: dict[str, Any] = {} if proof.planar else {"witness": {}}  # of S an entry is shown
+    shown = partial(print_symplectic, texts, proof.scheme)
     return Answer(
-        lambda: show.proof_json(
-            texts, proof.scheme, proof, seconds, **show.checks_json(proof), **point
-        ),
-        lambda: (
-            _print_every(proof) if proof.planar else print_symplectic(texts, proof.scheme, proof)
-        ),
+        lambda: show.proof_json(texts, proof.scheme, proof, seconds, **show.checks_json(proof)),
+        lambda: (_print_every if proof.planar else shown)(proof),
         failed=proof.verdict == "REFUTED",
     )
 
@@ -141,9 +136,9 @@ def _prove_one(exact: "Hamiltonian", scheme: str, certificate: Path | None) -> A
             exact.texts, chosen.name, proof, seconds,
             delta_j=proof.step_map.delta_j_text, telescopes=potential.holds,
             potential=potential.text, special_values=list(map(_special_json, special)),
-            **show.witness_json(proof.witness),
+            witness=show.point_json(proof.witness),
         ),
-        lambda: _print_one(exact, chosen.name, proof, potential, special),
+        lambda: show.print_proof(exact, chosen.name, proof, potential, special),
         failed=proof.verdict == "REFUTED",
     )  # fmt: skip
 
@@ -158,13 +153,14 @@ def _prove_in_degrees(exact: "Hamiltonian", scheme: str, certificate: Path | Non
     proof = prove_symplectic(exact, chosen)
     seconds = f"{time.perf_counter() - begun:.6f}"
     if certificate is not None:
-        from verify.proof.certificates.several import of_one_in_degrees
+        from verify.proof.certificates.one import of_one_in_degrees
 
         made = partial(of_one_in_degrees, proof, exact, chosen)
         _write(_certificate(made, proof, exact, chosen), certificate)
-    more = {**show.checks_json(proof), **show.witness_json(proof.witness)}
     return Answer(
-        lambda: show.proof_json(exact.texts, chosen.name, proof, seconds, **more),
+        lambda: show.proof_json(
+            exact.texts, chosen.name, proof, seconds, **show.checks_json(proof)
+        ),
         lambda: print_symplectic(exact.texts, chosen.name, proof),
         failed=proof.verdict == "REFUTED",
     )
@@ -176,18 +172,6 @@ def _special_json(special: "SpecialValue") -> dict[str, Any]:
     proof, keys = special.proof, ("verdict", "reason", "area_preserving")
     return {"parameter": special.parameter, "value": text(special.value), **order_json(proof.order),
             **picked(proof, *keys), "domain": proof.domain.texts}  # fmt: skip
-
-
-def _print_one(
-    exact: "Hamiltonian",
-    scheme: str,
-    proof: "Proof",
-    potential: "Potential",
-    special: "list[SpecialValue]",
-) -> None:
-    show.print_proof(exact, scheme, proof, potential)
-    for each in special:
-        click.echo(f"  but at   {each.parameter} = {each.value}: {each.proof.reason}")
 
 
 def _certificate(

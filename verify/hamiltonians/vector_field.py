@@ -1,6 +1,5 @@
 """The vector field of a planar Hamiltonian in a ring, and what is derived along it."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -43,13 +42,6 @@ class VectorField:
     def timed(self) -> bool:
         """Whether H depends on t."""
         return "t" in self.ring.places
-
-    def powers(self, y: Poly, most: int) -> Sequence[Poly]:
-        """[y, X y, …, X^most y]."""
-        result = [y]
-        for _ in range(most):
-            result.append(self.derive(result[-1]))
-        return result
 
     @cached_property
     def _powers(self) -> LieDerivatives:

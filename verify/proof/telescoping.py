@@ -104,7 +104,11 @@ def telescopes(jets: JetRing, leading: Poly) -> Telescoping:
     at an equilibrium, which rules out every smooth G, or one that linear algebra finds.
     """
     if jets.timed:
-        return _without_time()
+        reason = (
+            "for an H without t, D·G would be X·G, and that is `L` for no smooth G: where such a "
+            "motion rests, X·G = 0 and `L` is not"
+        )
+        return Telescoping(False, read_prose(reason))
     at_rest = leading.subs({"H_p": 0, "H_q": 0})
     if not at_rest.is_zero():
         return Telescoping(
@@ -131,14 +135,6 @@ def telescopes(jets: JetRing, leading: Poly) -> Telescoping:
             )
         total += found
     return Telescoping(True, prose("X·G = L, solved for G by linear algebra"), total)
-
-
-def _without_time() -> Telescoping:
-    reason = (
-        "for an H without t, D·G would be X·G, and that is `L` for no smooth G: where such a "
-        "motion rests, X·G = 0 and `L` is not"
-    )
-    return Telescoping(False, read_prose(reason))
 
 
 def _grade(jets: JetRing, monomial: Sequence[int]) -> tuple[int, int, int]:

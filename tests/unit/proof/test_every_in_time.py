@@ -7,8 +7,7 @@ import pytest
 from tests.helpers.lie_derivatives import lie_derivatives
 from verify import schemes
 from verify.algebra.generator import terms_of
-from verify.algebra.series.jets import JetRing, Jets, Poly
-from verify.algebra.series.timed_jets import TimedJets
+from verify.algebra.series.jets import JetRing, Jets, Poly, TimedJets
 from verify.claims.findings import Findings
 from verify.claims.kinds import models
 from verify.errors import InputError

@@ -4,7 +4,7 @@ At a point the derivatives of a smooth H up to any order may take any values (th
 are free already). So a polynomial in the H_ij vanishes for every H at every point exactly where it
 is the zero polynomial, and zero needs no decision. ∂/∂p sends H_ij to H_(i+1)j, ∂/∂q to H_i(j+1),
 and X = H_p ∂_q − H_q ∂_p is the derivative along the flow. For separable H = T(p) + V(q) the mixed
-derivatives are 0.
+derivatives are 0. Of an H that depends on t, D = ∂_t + X takes the place of X.
 
 A scheme for every H is a pair of series in h over these polynomials: lists of the coefficients of
 h⁰, h¹, …, cut off at the same power.
@@ -14,7 +14,7 @@ from collections.abc import Iterator, Sequence
 
 import flint
 
-from verify.algebra.series.jets_in_degrees import JetsInDegrees
+from verify.algebra.series.jets_in_degrees import Index, JetsInDegrees
 
 Poly = flint.fmpq_mpoly
 Series = list[Poly]
@@ -53,6 +53,18 @@ class Jets(JetRing):
 
     def __init__(self, order: int, *, separable: bool = False) -> None:
         super().__init__(order, separable=separable)
+
+
+class TimedJets(JetRing):
+    """Those of H(p, q, t): the ring of p, q, t and H_ijk = ∂_pⁱ∂_q^j∂_t^k H, i + j ≥ 1, i + j + k ≤
+    `order`; KeyError for another one."""
+
+    def __init__(self, order: int) -> None:
+        super().__init__(order, timed=True)
+
+    def _of_order(self, n: int) -> Iterator[Index]:
+        """Those by t alone occur in no derivative along the flow."""
+        return ((n - k - j, j, k) for k in range(n) for j in range(n - k + 1))
 
 
 def shown(x: Poly) -> str:

@@ -27,7 +27,7 @@ def print_symplectic(
         long = proof.formula or proof.leading_text
         shown = proof.leading_text if len(proof.leading_text) < _LONG else long
         line("S", f"({cut(shown)})·h^{proof.order} + O(h^{proof.order + 1})")
-    if getattr(proof, "enclosure", ""):  # of one H
+    if getattr(proof, "witness", None) or getattr(proof, "enclosure", ""):  # of one H
         line("witness", _witness(cast("SymplecticProof", proof)))
     line("det J", _of_volume(proof))
     if proof.telescopes is not None and not proof.symplectic:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from verify.proof.every_proof import EveryProof
     from verify.proof.order_proof import Proof
     from verify.proof.potential import Potential
+    from verify.proof.special_values import SpecialValue
     from verify.proof.symplectic.proof import SymplecticProof
     from verify.scenes.frozen import Frozen
     from verify.scenes.results.report import Report
@@ -102,20 +103,22 @@ def checks_json(proof: "SymplecticProof | EveryProof") -> dict[str, Any]:
     """How the leading coefficient is known, and what was checked; of S what is said beside."""
     from dataclasses import asdict
 
-    of_form = ("degrees", "entry", "volume_order", "volume_leading") if proof.degrees > 1 else ()
+    of_form = ("degrees", "entry", "volume_order", "volume_leading")
+    point = {"witness": point_json(getattr(proof, "witness", {}))}  # there is none of every H
     return {
-        **picked(proof, *of_form, "telescopes", "why", "checked"),
+        **({**picked(proof, *of_form), **point} if proof.degrees > 1 else {}),
+        **picked(proof, "telescopes", "why", "checked"),
         "formula": proof.formula or None,
         "potential": proof.potential or None,
         "conditions": [asdict(condition) for condition in proof.conditions],
     }
 
 
-def witness_json(witness: "Mapping[str, Fraction]") -> dict[str, Any]:
+def point_json(point: "Mapping[str, Fraction]") -> dict[str, str]:
     """A point, as exact numbers."""
     from verify.arithmetic.exact import text
 
-    return {"witness": {name: text(value) for name, value in witness.items()}}
+    return {name: text(value) for name, value in point.items()}
 
 
 def line(name: str, text: str) -> None:
@@ -144,7 +147,13 @@ def print_head(
     click.echo(f"  scheme   {scheme}")
 
 
-def print_proof(exact: "Hamiltonian", scheme: str, proof: "Proof", potential: "Potential") -> None:
+def print_proof(
+    exact: "Hamiltonian",
+    scheme: str,
+    proof: "Proof",
+    potential: "Potential",
+    special: "Iterable[SpecialValue]" = (),
+) -> None:
     from verify.arithmetic.exact import text
 
     print_head(exact, scheme, proof)
@@ -165,6 +174,8 @@ def print_proof(exact: "Hamiltonian", scheme: str, proof: "Proof", potential: "P
     if proof.domain:
         click.echo(f"  where    {proof.domain.prose}")
     click.echo(f"  the map  agrees with the exact flow {agreement(proof)}")
+    for each in special:
+        click.echo(f"  but at   {each.parameter} = {each.value}: {each.proof.reason}")
 
 
 def run_json(result: "RunResult") -> dict[str, Any]:

@@ -28,6 +28,10 @@ number is a text such as "-3/2".
   of its coefficients c₀, c₁, …, whole numbers. A coefficient of `stages` or `tableau` is a number,
   or a polynomial in these names.
 
+In n degrees of freedom: `degrees` n; `next` has the coefficients of each coordinate's new value, by
+its name; `leading` and `potential` are 2-forms, lists of [coordinate, coordinate, polynomial]. What
+has to be zero is called `p1 0`, `S 3 p1 q2`, `potential p1 q2`.
+
 `verify.proof.certificates.checker` recomputes derivatives, flow and determinant from these alone.
 """
 

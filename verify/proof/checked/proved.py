@@ -7,8 +7,7 @@ from typing import Literal
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.certificates.every import of_every
 from verify.proof.certificates.file import Certificate
-from verify.proof.certificates.one import of_one
-from verify.proof.certificates.several import of_one_in_degrees
+from verify.proof.certificates.one import of_one, of_one_in_degrees
 from verify.proof.every import prove_every
 from verify.proof.every_proof import EveryProof
 from verify.proof.order_proof import Proof

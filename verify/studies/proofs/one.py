@@ -54,6 +54,7 @@ class ProofTask(SchemeTask):
             verdict=proof.verdict,
             reason=proof.reason,
             order=proof.order,
+            leading=proof.leading_text,
             area_preserving=proof.area_preserving,
             convergence_order=proof.convergence_order,
             convergence_decided=proof.convergence_decided,
@@ -85,7 +86,7 @@ def _in_plane(
     proof = prove(step_map, scheme)
     written = _written(step_map) if formulas else dict.fromkeys(_FORMULAS)
     symbolic = _symbolic(hamiltonian, scheme, proof.order) if formulas else None
-    return proof, {"leading": proof.first.text, **written, "symbolic": symbolic}
+    return proof, {**written, "symbolic": symbolic}
 
 
 def _in_degrees(
@@ -109,7 +110,7 @@ def _in_degrees(
         why=proof.why,
     )
     written = dict.fromkeys(_FORMULAS) | {"delta_j": "0" if proof.symplectic else None}
-    return proof, {"leading": proof.leading_text, **written, "form": form}
+    return proof, {**written, "form": form}
 
 
 def _written(step_map: StepMap) -> dict[str, Any]:

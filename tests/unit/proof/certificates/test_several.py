@@ -11,7 +11,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.certificates.checker import check
 from verify.proof.certificates.established import Established, established
 from verify.proof.certificates.every import of_every as certificate_of_every
-from verify.proof.certificates.several import of_one_in_degrees
+from verify.proof.certificates.one import of_one_in_degrees
 from verify.proof.every import prove_every
 from verify.proof.symplectic.order import prove_symplectic
 from verify.schemes import get
