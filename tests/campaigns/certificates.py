@@ -27,7 +27,6 @@ from verify.proof.certificates.established import established
 from verify.proof.certificates.every import of_every
 from verify.proof.certificates.one import of_one
 from verify.proof.every import prove_every
-from verify.proof.every_in_time import prove_every_in_time
 from verify.proof.order import prove
 from verify.proof.potential import potential_of
 from verify.schemes import get, names
@@ -71,7 +70,7 @@ def seeds(longest: int = 12_000) -> tuple[Data, ...]:
                 found.append(of_every(prove_every(name, separable)))
         if scheme.order <= 4 or not scheme.explicit:  # others are longer in time, and take long
             with suppress(InputError):
-                found.append(of_every(prove_every_in_time(name)))
+                found.append(of_every(prove_every(name, timed=True)))
     texts = dict.fromkeys(map(json.dumps, found))
     return tuple(json.loads(text) for text in texts if len(text) <= longest)
 

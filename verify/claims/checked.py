@@ -8,7 +8,6 @@ from verify.claims.findings import Findings
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.prose import Prose
 from verify.schemes import get
-from verify.studies.proofs.every import proof_of_every
 
 if TYPE_CHECKING:
     from verify.proof.checked.proved import About
@@ -24,17 +23,14 @@ def of_scene(claim: Claim, findings: Findings, about: "AboutAll") -> tuple[Prose
 @lru_cache(maxsize=64)
 def of_hamiltonian(hamiltonian: Hamiltonian, name: str, about: "AboutAll") -> tuple[Prose, ...]:
     """The marks of the proof for this H."""
-    from verify.claims.formulas import step_map_of
-    from verify.claims.orders_in_degrees import proof_of
+    from verify.claims.formulas import proof_of, step_map_of
     from verify.proof.checked import marks
-    from verify.proof.checked.proved import of_degrees, of_one_hamiltonian
+    from verify.proof.checked.proved import of_one_hamiltonian
     from verify.proof.order import prove
 
-    scheme = get(name)
-    if hamiltonian.planar:
-        proof = prove(step_map_of(hamiltonian, name), scheme)
-        return marks(of_one_hamiltonian(proof, scheme, about))
-    return marks(of_degrees(proof_of(hamiltonian, name), scheme, about, hamiltonian))
+    scheme, planar = get(name), hamiltonian.planar
+    proof = prove(step_map_of(hamiltonian, name), scheme) if planar else proof_of(hamiltonian, name)
+    return marks(of_one_hamiltonian(proof, hamiltonian, scheme, about))
 
 
 @lru_cache(maxsize=64)
@@ -44,6 +40,7 @@ def of_every(
     """The marks of the proof for every H that is meant; `least` as for `prove_every`."""
     from verify.proof.checked import marks
     from verify.proof.checked.proved import of_every_hamiltonian
+    from verify.proof.every import prove_every
 
-    proof = proof_of_every(name, separable=separable, timed=timed, least=least)
+    proof = prove_every(name, separable=separable, timed=timed, least=least)
     return marks(of_every_hamiltonian(proof, get(name), about))

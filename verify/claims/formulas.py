@@ -27,6 +27,8 @@ from verify.claims.findings import Findings
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import Expansion
+from verify.proof.symplectic.order import prove_symplectic
+from verify.proof.symplectic.proof import SymplecticProof
 from verify.prose import Formula, Number, Prose, joined, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.scene import Scene
@@ -154,6 +156,12 @@ def gaps(
 def within(domain: Domain) -> Prose:
     """`, where q ≥ 0`; nothing where that is everywhere."""
     return prose(", where ", domain.prose) if domain else prose("")
+
+
+@lru_cache(maxsize=64)
+def proof_of(hamiltonian: Hamiltonian, scheme: str) -> SymplecticProof:
+    """The proof in n degrees of freedom; several claims speak of one."""
+    return prove_symplectic(hamiltonian, get(scheme))
 
 
 @lru_cache(maxsize=64)

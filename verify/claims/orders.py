@@ -5,22 +5,23 @@ from typing import TYPE_CHECKING, Annotated, Self
 
 from pydantic import Field
 
-from verify.algebra.domain import EVERYWHERE
+from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.expressions.formula_text import to_text
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
-from verify.claims.formulas import step_map_of, within, witness_of
-from verify.claims.orders_in_degrees import defect_order, flow_order, volume_order
+from verify.claims.formulas import proof_of, step_map_of, within, witness_of
 from verify.claims.proved_order import ProvedOrder, told_of
 from verify.claims.quantified import QuantifiedClaim
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.proof.claimed import Convergence
 from verify.proof.expansion import MOST_ORDERS
 from verify.proof.order import convergence_of_scheme, leading_of, nearby_defect_of
 from verify.proof.printed_formulas import told_defect
+from verify.proof.symplectic.proof import SymplecticProof
 from verify.prose import Formula, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.schemes import get
-from verify.schemes.scheme import Scheme
+from verify.schemes.conditions import NearbyOrder
 from verify.schemes.step_map import StepMap
 
 if TYPE_CHECKING:
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from verify.proof.every_proof import EveryProof
 
 Order = Annotated[int, Field(ge=1, le=64, strict=True)]
+_BEYOND = MOST_ORDERS + 1  # an order of what vanishes
 OF_DELTA_J: "AboutAll" = frozenset({"volume"})
 OF_S: "AboutAll" = frozenset({"defect"})
 OF_MAP: "AboutAll" = frozenset({"map"})
@@ -64,21 +66,21 @@ def every_delta_j(proof: "EveryProof") -> ProvedOrder:
 
 def delta_j_of(claim: Claim, findings: Findings) -> ProvedOrder:
     """The order of ΔJ of the claim's scheme for its scene's H, in any number of degrees."""
-    hamiltonian = findings.scene_of(claim).exact_hamiltonian()
-    if hamiltonian.planar:
-        known = delta_j_order(step_map_of(hamiltonian, claim.scheme))
-    else:
-        known = volume_order(hamiltonian, claim.scheme)
-    return _with_printed(known, claim.scheme, hamiltonian, "ΔJ")
+    return _order_of(claim, findings, "ΔJ")
 
 
 def defect_of(claim: Claim, findings: Findings) -> ProvedOrder:
     """The order of S = JᵀΩJ − Ω, which in the plane is ΔJ·Ω."""
+    return _order_of(claim, findings, "S")
+
+
+def _order_of(claim: Claim, findings: Findings, form: str) -> ProvedOrder:
     hamiltonian = findings.scene_of(claim).exact_hamiltonian()
     if hamiltonian.planar:
-        return delta_j_of(claim, findings)
-    known = defect_order(hamiltonian, claim.scheme)
-    return _with_printed(known, claim.scheme, hamiltonian, "S")
+        form, known = "ΔJ", _delta_j_order(step_map_of(hamiltonian, claim.scheme))
+    else:
+        known = _order_in_degrees(proof_of(hamiltonian, claim.scheme), of_s=form == "S")
+    return _with_printed(known, claim.scheme, hamiltonian, form)
 
 
 def _with_printed(
@@ -100,22 +102,28 @@ def _with_printed(
     )
 
 
-def flow_of(claim: Claim, findings: Findings) -> ProvedOrder:
-    """Up to which power of h its map agrees with the exact flow, in any number of degrees."""
-    hamiltonian = findings.scene_of(claim).exact_hamiltonian()
-    if hamiltonian.planar:
-        return convergence_order(step_map_of(hamiltonian, claim.scheme), get(claim.scheme))
-    return flow_order(hamiltonian, claim.scheme)
+def _order_in_degrees(proof: SymplecticProof, *, of_s: bool) -> ProvedOrder:
+    """The order of S, or of det J − 1."""
+    vanishes, order = proof.area_preserving, proof.volume_order
+    if of_s:
+        vanishes, order = proof.symplectic, proof.order
+    if order is None:
+        said = prose("det J ≡ 1" if vanishes else "the order of det J − 1 is not decided")
+        evidence = proof.reason if of_s else said
+        return ProvedOrder(_BEYOND if vanishes else 0, False, vanishes, evidence, proof.domain)
+    what, shown = ("S", f", by {proof.entry}") if of_s else ("det J − 1", "")
+    evidence = prose(f"{what} has order exactly ", Formula(f"h^{order}"), shown)
+    return ProvedOrder(order, True, False, evidence, proof.domain)
 
 
-def delta_j_order(step_map: StepMap) -> ProvedOrder:
+def _delta_j_order(step_map: StepMap) -> ProvedOrder:
     """The order of ΔJ in h."""
     leading = leading_of(step_map).within(step_map.domain)
-    beyond, decision = MOST_ORDERS + 1, leading.decision
+    decision = leading.decision
     if decision.zero is True:
         evidence = prose("ΔJ is the zero function: det J ≡ 1")
-        return ProvedOrder(beyond, False, True, evidence, step_map.domain)
-    power = beyond if leading.power is None else leading.power
+        return ProvedOrder(_BEYOND, False, True, evidence, step_map.domain)
+    power = _BEYOND if leading.power is None else leading.power
     if decision.zero is None or leading.power is None:
         evidence = prose(
             "ΔJ = O(", Formula(f"h^{power}"), "), and whether of higher order is not decided",
@@ -129,18 +137,30 @@ def delta_j_order(step_map: StepMap) -> ProvedOrder:
     return ProvedOrder(power, True, False, evidence, step_map.domain, leading.domain)
 
 
-def convergence_order(step_map: StepMap, scheme: Scheme | None = None) -> ProvedOrder:
-    """To which power of h the map agrees with the exact flow."""
-    found, near = convergence_of_scheme(step_map, scheme)
+def flow_of(claim: Claim, findings: Findings) -> ProvedOrder:
+    """Up to which power of h its map agrees with the exact flow, in any number of degrees."""
+    hamiltonian = findings.scene_of(claim).exact_hamiltonian()
+    if hamiltonian.planar:
+        step_map = step_map_of(hamiltonian, claim.scheme)
+        found, near = convergence_of_scheme(step_map, get(claim.scheme))
+        return _flow_order(found, near, step_map.domain, MOST_ORDERS)
+    proof = proof_of(hamiltonian, claim.scheme)
+    found = Convergence(proof.convergence_order, proof.convergence_decided)
+    return _flow_order(found, proof.nearby, proof.domain)
+
+
+def _flow_order(
+    found: Convergence, near: NearbyOrder | None, domain: Domain, most: int = 0
+) -> ProvedOrder:
+    """`most`: up to which power of h all agree where all do that were looked at; 0: not known."""
     if found.order is None:
-        evidence = f"the map agrees with the exact flow in all orders looked at, {MOST_ORDERS}"
-        return ProvedOrder(MOST_ORDERS, False, None, evidence, step_map.domain)
+        orders = f"all orders looked at{f', {most}' if most else ''}"
+        evidence = prose(f"the map agrees with the exact flow in {orders}")
+        return ProvedOrder(most, False, None, evidence, domain)
     agrees = prose("the map agrees with the exact flow up to ", Formula(f"h^{found.order}"))
     if found.order < 0:
         agrees = prose("the map does not agree with the exact flow even at h = 0")
     more = " and no further" if found.decided else "; whether further is not decided"
     exact_for = found.exact_for() if found.decided else EVERYWHERE
-    known = ProvedOrder(
-        found.order, found.decided, False, agrees + more, step_map.domain, exact_for
-    )
+    known = ProvedOrder(found.order, found.decided, False, agrees + more, domain, exact_for)
     return told_of(known, near)

@@ -18,11 +18,10 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.prose import Prose
 from verify.scenes.results.claim import ClaimResult
 from verify.schemes import get
-from verify.studies.proofs.every import proof_of_every
 
 if TYPE_CHECKING:
     from verify.claims.checked import AboutAll
-    from verify.proof.every import EveryProof
+    from verify.proof.every_proof import EveryProof
 
 EVERY_SEPARABLE = "separable hamiltonian"
 _IN_TIME = " in time"
@@ -52,7 +51,9 @@ class QuantifiedClaim(Claim):
         """By the proof for every H that it is made of, or for the scene's."""
         if self.every is None:
             return self.judge_one(findings)
-        return self.judge_every(proof_of_every(self.scheme, **self._of_which))
+        from verify.proof.every import prove_every
+
+        return self.judge_every(prove_every(self.scheme, **self._of_which))
 
     def checked_by(self, found: ClaimResult, findings: Findings) -> Sequence[Prose]:
         """By the proof for every H that it is made of, or for the scene's."""

@@ -1,7 +1,7 @@
 """The command `verify prove`, for one Hamiltonian or for every one."""
 
 import time
-from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,21 +11,15 @@ from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering, picked
 from verify.commands.shared.destinations import OUT_FILE
 from verify.commands.shared.input import hamiltonian_of, hamiltonian_options, scheme_option
-from verify.commands.shared.output import (
-    agreement,
-    agreement_json,
-    cut,
-    line,
-    order_json,
-    print_checks,
-)
+from verify.commands.shared.output import agreement, cut, line, order_json, print_checks
 from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from verify.hamiltonians.hamiltonian import Hamiltonian
-    from verify.proof.every import EveryProof
+    from verify.proof.every_proof import EveryProof
     from verify.proof.order_proof import Proof
-    from verify.proof.potential import Potential
     from verify.proof.special_values import SpecialValue
     from verify.proof.symplectic.proof import SymplecticProof
     from verify.schemes.scheme import Scheme
@@ -94,21 +88,27 @@ def prove(
         raise InputError(
             "--every-hamiltonian", NOT_GIVEN, "goes without --system, --hamiltonian, --param"
         )
-    if degrees is not None and degrees != 1:
-        return _every_in_degrees(scheme, degrees, separable, time_dependent, certificate)
+    return _prove_every(scheme, separable, time_dependent, degrees, certificate)
+
+
+def _prove_every(
+    scheme: str, separable: bool, timed: bool, degrees: int | None, certificate: Path | None
+) -> Answer:
+    from verify.commands.shared.in_degrees import print_symplectic
     from verify.proof.every import prove_every
-    from verify.proof.every_in_time import prove_every_in_time
 
     begun = time.perf_counter()
-    proof = prove_every_in_time(scheme) if time_dependent else prove_every(scheme, separable)
+    proof = prove_every(scheme, separable, timed=timed, degrees=1 if degrees is None else degrees)
     seconds = f"{time.perf_counter() - begun:.6f}"
     if certificate is not None:
         from verify.proof.certificates.every import of_every
 
         _write(of_every(proof), certificate)
+    texts = {"hamiltonian": proof.quantifier}
+    shown = partial(print_symplectic, texts, proof.scheme)
     return Answer(
-        lambda: _every_json(proof, seconds),
-        lambda: _print_every(proof),
+        lambda: show.proof_json(texts, proof.scheme, proof, seconds, **show.checks_json(proof)),
+        lambda: (_print_every if proof.planar else shown)(proof),
         failed=proof.verdict == "REFUTED",
     )
 
@@ -128,20 +128,24 @@ def _prove_one(exact: "Hamiltonian", scheme: str, certificate: Path | None) -> A
     special = special_values(proof, chosen)
     seconds = f"{time.perf_counter() - begun:.6f}"
     if certificate is not None:
-        _write(_certificate(proof, potential, chosen), certificate)
+        from verify.proof.certificates.one import of_one
+
+        _write(_certificate(lambda: of_one(proof, potential), proof, exact, chosen), certificate)
     return Answer(
-        lambda: {
-            **show.proof_json(exact, chosen.name, proof, potential, seconds),
-            "special_values": list(map(_special_json, special)),
-        },
-        lambda: _print_one(exact, chosen.name, proof, potential, special),
+        lambda: show.proof_json(
+            exact.texts, chosen.name, proof, seconds,
+            delta_j=proof.step_map.delta_j_text, telescopes=potential.holds,
+            potential=potential.text, special_values=list(map(_special_json, special)),
+            witness=show.point_json(proof.witness),
+        ),
+        lambda: show.print_proof(exact, chosen.name, proof, potential, special),
         failed=proof.verdict == "REFUTED",
-    )
+    )  # fmt: skip
 
 
 def _prove_in_degrees(exact: "Hamiltonian", scheme: str, certificate: Path | None) -> Answer:
     """Of p1 … pn and q1 … qn: S in place of ΔJ."""
-    from verify.commands.shared.in_degrees import print_symplectic, symplectic_json
+    from verify.commands.shared.in_degrees import print_symplectic
     from verify.proof.symplectic.order import prove_symplectic
     from verify.schemes import get
 
@@ -149,52 +153,15 @@ def _prove_in_degrees(exact: "Hamiltonian", scheme: str, certificate: Path | Non
     proof = prove_symplectic(exact, chosen)
     seconds = f"{time.perf_counter() - begun:.6f}"
     if certificate is not None:
-        _write(_certificate_in_degrees(proof, exact, chosen), certificate)
+        from verify.proof.certificates.one import of_one_in_degrees
+
+        made = partial(of_one_in_degrees, proof, exact, chosen)
+        _write(_certificate(made, proof, exact, chosen), certificate)
     return Answer(
-        lambda: symplectic_json(exact.texts, chosen.name, proof, seconds),
+        lambda: show.proof_json(
+            exact.texts, chosen.name, proof, seconds, **show.checks_json(proof)
+        ),
         lambda: print_symplectic(exact.texts, chosen.name, proof),
-        failed=proof.verdict == "REFUTED",
-    )
-
-
-def _certificate_in_degrees(
-    proof: "SymplecticProof", exact: "Hamiltonian", scheme: "Scheme"
-) -> dict[str, Any]:
-    """Of this proof; or of that for every H, as `_certificate`."""
-    from verify.proof.certificates.several import of_every_in_degrees, of_one_in_degrees
-    from verify.proof.symplectic.every import prove_every_in_degrees
-
-    try:
-        return of_one_in_degrees(proof, exact, scheme)
-    except InputError as error:
-        if scheme.every_h is None or proof.verdict != "PROVED":
-            raise
-        click.echo(f"the certificate is of the proof for every H: {error}", err=True)
-        timed = exact.time_dependent
-        every = prove_every_in_degrees(scheme.name, exact.degrees, timed=timed)
-        return of_every_in_degrees(every, scheme, separable=False, timed=timed)
-
-
-def _every_in_degrees(
-    scheme: str, degrees: int, separable: bool, timed: bool, certificate: Path | None
-) -> Answer:
-    """For every H of so many degrees of freedom."""
-    from verify.commands.shared.in_degrees import print_symplectic, symplectic_json
-    from verify.proof.symplectic.every import prove_every_in_degrees, quantifier
-    from verify.schemes import get
-
-    begun, chosen = time.perf_counter(), get(scheme)
-    proof = prove_every_in_degrees(chosen.name, degrees, separable=separable, timed=timed)
-    seconds = f"{time.perf_counter() - begun:.6f}"
-    if certificate is not None:
-        from verify.proof.certificates.several import of_every_in_degrees
-
-        made = of_every_in_degrees(proof, chosen, separable=separable, timed=timed)
-        _write(made, certificate)
-    texts = {"hamiltonian": quantifier(chosen, degrees, separable=separable, timed=timed)}
-    return Answer(
-        lambda: symplectic_json(texts, chosen.name, proof, seconds),
-        lambda: print_symplectic(texts, chosen.name, proof),
         failed=proof.verdict == "REFUTED",
     )
 
@@ -207,33 +174,24 @@ def _special_json(special: "SpecialValue") -> dict[str, Any]:
             **picked(proof, *keys), "domain": proof.domain.texts}  # fmt: skip
 
 
-def _print_one(
+def _certificate(
+    made: "Callable[[], dict[str, Any]]",
+    proof: "Proof | SymplecticProof",
     exact: "Hamiltonian",
-    scheme: str,
-    proof: "Proof",
-    potential: "Potential",
-    special: "list[SpecialValue]",
-) -> None:
-    show.print_proof(exact, scheme, proof, potential)
-    for each in special:
-        click.echo(f"  but at   {each.parameter} = {each.value}: {each.proof.reason}")
-
-
-def _certificate(proof: "Proof", potential: "Potential", scheme: "Scheme") -> dict[str, Any]:
+    scheme: "Scheme",
+) -> dict[str, Any]:
     """Of this proof; or, where the checker does not know H's functions, of that for every H."""
     from verify.proof.certificates.every import of_every
-    from verify.proof.certificates.one import of_one
     from verify.proof.every import prove_every
-    from verify.proof.every_in_time import prove_every_in_time
 
     try:
-        return of_one(proof, potential)
+        return made()
     except InputError as error:
         if scheme.every_h is None or proof.verdict != "PROVED":
             raise
         click.echo(f"the certificate is of the proof for every H: {error}", err=True)
-        timed = proof.step_map.hamiltonian.time_dependent
-        return of_every(prove_every_in_time(scheme.name) if timed else prove_every(scheme.name))
+        timed, degrees = exact.time_dependent, exact.degrees
+        return of_every(prove_every(scheme.name, timed=timed, degrees=degrees))
 
 
 def _write(data: dict[str, Any], path: Path) -> None:
@@ -247,30 +205,6 @@ def _write(data: dict[str, Any], path: Path) -> None:
     except ValueError as reason:
         raise InputError("certificate", str(path), f"would be refused: {reason}") from None
     write_atomically(path, json.dumps(data, ensure_ascii=False, indent=1) + "\n")
-
-
-# -- of every H -----------------------------------------------------------------------------------
-
-
-def _every_json(proof: "EveryProof", seconds: str) -> dict[str, Any]:
-    return {
-        **picked(proof, "verdict", "reason"),
-        "hamiltonian": proof.quantifier,
-        **order_json(proof.order),
-        **picked(proof, "scheme"),
-        "leading": proof.leading or None,
-        "formula": proof.formula or None,
-        "delta_j": "0" if proof.area_preserving else None,  # there is no closed form in the jets
-        "area_preserving": proof.area_preserving,
-        **agreement_json(proof),
-        **picked(proof, "telescopes", "potential"),
-        "symplectic": proof.area_preserving,  # in the plane that is the same
-        **picked(proof, "why", "checked"),
-        "conditions": [asdict(condition) for condition in proof.conditions],
-        "domain": proof.domain.texts,
-        "special_values": [],
-        "seconds": seconds,
-    }
 
 
 def _print_every(proof: "EveryProof") -> None:

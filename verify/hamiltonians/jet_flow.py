@@ -1,9 +1,10 @@
 """The vector field of every H at once, over the ring of its derivatives."""
 
 from collections.abc import Mapping
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 from verify.algebra.ring import Poly
+from verify.algebra.series.jets import Jets, TimedJets
 from verify.algebra.series.jets_in_degrees import JetsInDegrees
 from verify.hamiltonians.canonical_field import Flow
 from verify.hamiltonians.coordinates import numbered
@@ -19,8 +20,16 @@ class JetFlow(Flow):
     @classmethod
     def of_degrees(cls, degrees: int, order: int, *, separable: bool, timed: bool) -> "JetFlow":
         """In so many degrees of freedom, with derivatives of H up to this order."""
+        if degrees == 1:
+            return cls.over(TimedJets(order) if timed else Jets(order, separable=separable))
         names = numbered(degrees)
-        return cls(JetsInDegrees(names, order, separable=separable, timed=timed))
+        return cls.over(JetsInDegrees(names, order, separable=separable, timed=timed))
+
+    @classmethod
+    @lru_cache(maxsize=4)
+    def over(cls, jets: JetsInDegrees) -> "JetFlow":
+        """In these jets; what is derived along it is kept for who asks again."""
+        return cls(jets)
 
     @property
     def ring(self) -> JetsInDegrees:

@@ -25,3 +25,7 @@ class PlaneFlow(Flow):
     def slopes(self) -> tuple[Poly, ...]:
         """−H_q and H_p."""
         return -self.field.h_q, self.field.h_p
+
+    def power(self, n: int) -> tuple[Poly, ...]:
+        """Xⁿz, which the field keeps."""
+        return self.field.power("p", n), self.field.power("q", n)

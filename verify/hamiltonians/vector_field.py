@@ -1,6 +1,5 @@
 """The vector field of a planar Hamiltonian in a ring, and what is derived along it."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -55,13 +54,6 @@ class VectorField:
         """Whether H depends on t."""
         return "t" in self.ring.places
 
-    def powers(self, y: Poly, most: int) -> Sequence[Poly]:
-        """[y, X y, …, X^most y]."""
-        result = [y]
-        for _ in range(most):
-            result.append(self.derive(result[-1]))
-        return result
-
     @cached_property
     def _powers(self) -> LieDerivatives:
         return LieDerivatives(self.ring, self.h_p, self.h_q)
@@ -69,10 +61,6 @@ class VectorField:
     def power(self, name: str, n: int) -> Poly:
         """Xⁿ y of y = p or q, made once."""
         return self._powers.power(name, n)
-
-    def lie_derivatives(self, name: str, most: int) -> Sequence[Poly]:
-        """[y, X y, …, X^most y] of y = p or q, each made once."""
-        return [self._powers.power(name, n) for n in range(most + 1)]
 
     def taylor(self, name: str, most: int) -> dict[int, Poly]:
         """{n: Xⁿy/n!} of y = p or q, n = 0 … most, those that are not 0."""
@@ -90,11 +78,6 @@ class VectorField:
     def delta_j(self, n: int, eta: int) -> Poly:
         """The coefficient of hⁿ in ΔJ of the map `truncated(eta)`, by direct expansion."""
         return self._powers.delta_j(n, eta)
-
-    def bracket(self, x: Poly, y: Poly) -> Poly:
-        """∂(x, y)/∂(p, q)."""
-        diff, multiply = self.ring.diff, self.ring.multiply
-        return multiply(diff(x, "p"), diff(y, "q")) - multiply(diff(x, "q"), diff(y, "p"))
 
     def separable(self) -> bool:
         """Whether H = T(p) + V(q): the mixed derivative H_pq is the zero function."""

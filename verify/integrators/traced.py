@@ -83,10 +83,7 @@ def proved_in_plane(trace: Trace, hamiltonian: Hamiltonian) -> Finding:
     proof = prove(traced.step_map)
     return replace(
         _of_proof(proof, trace, 1, f"traced with symbols; the map {traced.how}"),
-        symplectic=proof.area_preserving,
-        order_decided=proof.convergence_decided,
         area_at_least=proof.first.power or MOST_ORDERS + 1,
-        leading=proof.first.text,
         delta_j=proof.step_map.delta_j_text,
     )
 
@@ -99,8 +96,11 @@ def _of_proof(proof: Proof | SymplecticProof, trace: Trace, degrees: int, said: 
         degrees,
         order=proof.order,
         proof=proof,
+        symplectic=proof.symplectic,
         area_preserving=proof.area_preserving,
+        leading=proof.leading_text,
         convergence_order=proof.convergence_order,
+        order_decided=proof.convergence_decided,
         domain=(proof.domain & domain_of(trace.tape)).texts,
         notes=(prose(said), *_notes(trace.tape)),
     )
@@ -114,10 +114,7 @@ def proved_in_degrees(trace: Trace, hamiltonian: Hamiltonian) -> Finding:
     proof = prove_map(_canonical(list(trace.roots), hamiltonian), Claimed())
     return replace(
         _of_proof(proof, trace, hamiltonian.degrees, "traced with symbols"),
-        symplectic=proof.symplectic,
-        order_decided=True,
         entry=proof.entry,
-        leading=proof.leading_text,
     )
 
 

@@ -22,25 +22,33 @@ def prove_by_conditions(scheme: Scheme, every_h: ByConditions, least: int = 0) -
     one of the former fails, with the first that does; UNDECIDED where one is not decided, or where
     det J is not; `order` (of ΔJ) is always None.
     """
-    agreed, wrong = agreed_order(every_h, max(scheme.order, least))
-    near = nearby_order(every_h, max(scheme.order, least))
-    if near is not None and near.order > agreed:
-        return _of_nearby(scheme, every_h, near, agreed)
+    least = max(scheme.order, least)
+    agreed, wrong = agreed_order(every_h, least)
+    near = nearby_order(every_h, least)
     asked = tuple(c for c in every_h.order_conditions(scheme.order) if c.order)
     area = every_h.area_conditions()
-    preserved = bool(area) and all(condition.holds for condition in area)
     verdict, reason = _verdict(scheme, asked, area)
+    said = prose(f"order {agreed}, {_count(every_h, agreed)}")
+    if near is None or near.order <= agreed:
+        near = None
+    else:  # the digits of the coefficients leave residues: of a splitting, whose det J ≡ 1
+        said = told_nearby(near)
+        verdict = near.verdict if agreed < scheme.order else Verdict.PROVED
+        reason = prose("det J ≡ 1, and ", said)
+        agreed, wrong = near.order, near.wrong
+        if agreed < scheme.order:
+            verdict, reason = _verdict(scheme, [wrong] if wrong else [], area)
     return EveryProof(
         scheme.name,
         every_h.separable,
         verdict,
         reason,
-        order=None,
-        area_preserving=True if preserved else None,
+        area_preserving=(bool(area) and all(condition.holds for condition in area)) or None,
         convergence_order=agreed,
         convergence_decided=wrong is not None and wrong.holds is False,
-        checked=(prose(f"order {agreed}, {_count(every_h, agreed)}"), *_no_further(wrong)),
+        checked=(said, *_no_further(wrong)),
         conditions=(*asked, *area),
+        nearby=near,
     )
 
 
@@ -55,28 +63,6 @@ def nearby_order(every_h: object, least: int) -> NearbyOrder | None:
 def told_nearby(near: NearbyOrder) -> Prose:
     """Of which coefficients the order is, and what the digits leave."""
     return prose(f"order {near.order} of exact coefficients near the printed ones: ", near.said)
-
-
-def _of_nearby(scheme: Scheme, every_h: ByConditions, near: NearbyOrder, agreed: int) -> EveryProof:
-    """Where the digits of the coefficients leave residues: of a splitting, whose det J ≡ 1."""
-    area, asked = every_h.area_conditions(), every_h.order_conditions(scheme.order)
-    verdict = near.verdict if agreed < scheme.order else Verdict.PROVED
-    reason = prose("det J ≡ 1, and ", told_nearby(near))
-    if near.order < scheme.order:
-        verdict, reason = _verdict(scheme, [near.wrong] if near.wrong else [], area)
-    return EveryProof(
-        scheme.name,
-        every_h.separable,
-        verdict,
-        reason,
-        order=None,
-        area_preserving=all(condition.holds for condition in area) or None,
-        convergence_order=near.order,
-        convergence_decided=near.wrong is not None,
-        checked=(told_nearby(near), *_no_further(near.wrong)),
-        conditions=(*(c for c in asked if c.order), *area),
-        nearby=near,
-    )
 
 
 def agreed_order(every_h: ByConditions, least: int) -> tuple[int, Condition | None]:

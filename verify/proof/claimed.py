@@ -52,6 +52,10 @@ class Words:
     claim: str
 
 
+IN_PLANE = Words("ΔJ", "ΔJ is the zero function: det J ≡ 1", "function", "det J ≡ 1")
+IN_DEGREES = Words("S", "S is the zero form: the map is symplectic", "form", "to be symplectic")
+
+
 def held_to(
     claimed: Claimed,
     convergence: Convergence,

@@ -15,66 +15,108 @@ and G is −(−D)^(η/2)/η! at an equilibrium, as all η+1 terms of its sum ar
 for H = p²/2 + V(q), V with two maxima of one height and different V'', then G would be constant
 along the orbit that joins them, and yet has different values at its ends. ∎
 
+Where H depends on t both arguments hold in the jets of H(p, q, t) for D = ∂_t + X in place of X:
+the two-forms [a, b] of Dᵃp and D^b q are taken at one t, and D, which is X in the extended phase
+space, commutes with d and takes [a, b] to [a+1, b] + [a, b+1]. For odd η the leading coefficient
+is D·G for no G in the jets: an H without t is one of these H, for which D·G is X·G. Splittings and
+stages are proved by conditions on sizes, coefficients and times, `verify.schemes.timed`, which are
+necessary, too.
+
+In n degrees of freedom S = JᵀΩJ − Ω stands for ΔJ; see `verify.proof.every_by_series`. The order of
+a splitting and that of a Gauss method follow from conditions on their coefficients. They suffice in
+any number of degrees of freedom; and H1(p1, q1) + H2(p2, q2) + … are such H, so that what is needed
+in the plane is needed in n.
+
 Stages. Where A J = B with det A = det B, det J = 1; see `StageEquations.determinants`.
 
 Coefficients. Conditions on them, exact; see `verify.proof.by_conditions`.
 """
 
-import math
-from collections.abc import Callable
+from collections.abc import Iterator
 from dataclasses import replace
 
-from verify.algebra.series.jets import Jets, Poly, Series, shown
-from verify.algebra.series.timed_jets import TimedJets
-from verify.errors import InputError
+from verify.errors import InputError, LimitError
+from verify.hamiltonians.coordinates import check_degrees
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.by_conditions import prove_by_conditions
-from verify.proof.every_proof import EveryProof as EveryProof
-from verify.proof.order import leading_of
-from verify.proof.telescoping import (
-    EveryJets,
-    Telescoping,
-    along,
-    telescopes,
-    telescopes_of_lie,
+from verify.proof.by_conditions import (
+    agreed_order,
+    first_wrong,
+    prove_by_conditions,
+    told_nearby,
 )
-from verify.prose import Formula, Prose, joined, prose, read_prose
+from verify.proof.every_by_series import is_long, prove_by_series
+from verify.proof.every_proof import NONE, EveryProof
+from verify.proof.order import leading_of
+from verify.prose import Formula, Prose, prose, read_prose
 from verify.schemes import get
 from verify.schemes.conditions import ByConditions
-from verify.schemes.every_hamiltonian import BySeries, StageEquations, TaylorSeries
+from verify.schemes.degrees import kind_of
+from verify.schemes.every_hamiltonian import BySeries, TaylorSeries
 from verify.schemes.scheme import Scheme
-from verify.schemes.tree_conditions import TreeConditions
+from verify.schemes.timed.for_scheme import conditions_for
+from verify.schemes.timed.mistakes import mistakes_of_splitting
+from verify.schemes.timed.splitting import TimedSplitting
+from verify.schemes.tree_conditions import TreeConditions, all_trees_hold
+from verify.schemes.words.kinetic import Kinetic
 from verify.verdict import Verdict
 
 _MOST_ORDER = 14  # the terms of L double with every order; lie14 takes 20 s
-_MORE = 4  # orders beyond the claimed one that are looked at
+_MOST_ETA = 8  # in time the terms triple with every order; lie8 takes 2 s
 
 
-def prove_every(name: str, separable: bool = False, least: int = 0) -> EveryProof:
-    """The order of ΔJ and of the map of the scheme of that name, for every H that it takes.
+def prove_every(
+    name: str, separable: bool = False, least: int = 0, *, timed: bool = False, degrees: int = 1
+) -> EveryProof:
+    """The order of ΔJ, or S, and of the map of the scheme of that name, for every H that it takes.
 
     `separable`: only for every H = T(p) + V(q), of which more may be true. `least`: as far as that
     the map's order is looked at, of a scheme that is given by coefficients and may state none.
-    Raises InputError for a scheme that is known for one H at a time only, or of an order above 14.
+    `timed`: for every such H that depends on t. `degrees`: of freedom.
+    Raises InputError for a scheme that is known for one H at a time or in the plane only, or of too
+    high an order, LimitError for polynomials that are too long.
     """
+    check_degrees(degrees)
     scheme = get(name)
-    if scheme.every_h is None:
-        raise InputError("scheme", name, "is given for one H; it cannot be proved for every H")
-    if scheme.order > _MOST_ORDER:
+    if degrees > 1:
+        kind_of(scheme)
+    every_h = scheme.every_h
+    if every_h is None:
+        which = f"every H{' in t' * timed}"
+        raise InputError("scheme", name, f"is given for one H; it cannot be proved for {which}")
+    separable = every_h.separable or (separable and (degrees > 1 or not timed))
+    blank = EveryProof(
+        scheme.name, separable, Verdict.UNDECIDED, NONE, timed=timed, degrees=degrees
+    )
+    _check_length(blank, scheme, every_h)
+    if degrees == 1 and timed and not isinstance(every_h, TaylorSeries):
+        return _in_time(scheme, conditions_for(every_h), least)
+    if isinstance(every_h, ByConditions) and (degrees == 1 or not isinstance(every_h, BySeries)):
+        by_conditions = _in_plane if degrees == 1 else _in_degrees
+        return by_conditions(blank, scheme, every_h, least)
+    return prove_by_series(blank, scheme, every_h)
+
+
+def _check_length(blank: EveryProof, scheme: Scheme, every_h: BySeries | ByConditions) -> None:
+    """Refuses polynomials that would be too long."""
+    name, order, taylor = scheme.name, scheme.order, isinstance(every_h, TaylorSeries)
+    if not blank.planar:
+        if isinstance(every_h, BySeries) and is_long(blank.degrees, blank.timed, order):
+            problem = f"are too many for {name}: its polynomials are too long"
+            raise LimitError("degrees", blank.degrees, problem)
+    elif not blank.timed and order > _MOST_ORDER:
         problem = f"of order {_MOST_ORDER} at most: its polynomials have too many terms"
         raise InputError("scheme", name, f"for every H a scheme is proved {problem}")
-    separable = separable or scheme.every_h.separable
-    if isinstance(scheme.every_h, ByConditions):
-        return _of_conditions(scheme, scheme.every_h, separable, least)
-    if isinstance(scheme.every_h, StageEquations):
-        return _of_stages(scheme, scheme.every_h, separable)
-    return _of_series(scheme, scheme.every_h, separable)
+    elif blank.timed and taylor and order > _MOST_ETA:
+        told = f"up to lie{_MOST_ETA}: its polynomials are too long"
+        raise InputError("scheme", name, f"is proved for every H in t {told}")
 
 
-def _of_conditions(
-    scheme: Scheme, every_h: ByConditions, separable: bool, least: int
-) -> EveryProof:
+# -- by conditions on coefficients ----------------------------------------------------------------
+
+
+def _in_plane(blank: EveryProof, scheme: Scheme, every_h: ByConditions, least: int) -> EveryProof:
     """By its coefficients; where they leave det J open, by the series, if the scheme has one."""
+    separable = blank.separable
     if separable and isinstance(every_h, TreeConditions):
         every_h = replace(every_h, separable=True)
     proof = prove_by_conditions(scheme, every_h, least)
@@ -94,147 +136,7 @@ def _of_conditions(
             return replace(proof, verdict=Verdict.REFUTED, reason=reason, area_preserving=False)
     if proof.verdict is not Verdict.UNDECIDED or not isinstance(every_h, BySeries):
         return proof
-    return replace(_of_series(scheme, every_h, separable), conditions=proof.conditions)
-
-
-def _convergence(jets: EveryJets, series: tuple[Series, Series]) -> int:
-    """p', q' agree with the exact flow up to this power of h, as far as the series reach."""
-    most = len(series[0]) - 1
-    flows = jets.lie_derivatives("p", most), jets.lie_derivatives("q", most)
-    for n in range(most + 1):
-        if any(s[n] * math.factorial(n) != x[n] for s, x in zip(series, flows, strict=True)):
-            return n - 1
-    return most
-
-
-def _of_stages(scheme: Scheme, every_h: StageEquations, separable: bool) -> EveryProof:
-    most = scheme.order + 2
-    jets = Jets(most + 2, separable=separable)
-    agreed = _convergence(jets, every_h.taylor(jets, most))
-    preserved = all(a == b and not a.is_zero() for a, b in every_h.determinants())
-    verdict, reason = Verdict.PROVED, prose("ΔJ is the zero function: det J ≡ 1, stage by stage")
-    if agreed < scheme.order:
-        verdict, reason = Verdict.REFUTED, missed(scheme, agreed)
-    elif not preserved:
-        return _of_series(scheme, every_h, separable)
-    ratios = joined(", ", dict.fromkeys(Formula(str(a)) for a, _ in every_h.determinants()))
-    names = read_prose(" (a, b, c = `H_pp`, `H_pq`, `H_qq`)")
-    return EveryProof(
-        scheme.name,
-        separable,
-        verdict,
-        reason,
-        order=None,
-        area_preserving=True,
-        convergence_order=agreed,
-        convergence_decided=agreed < most,
-        checked=(prose("A J = B with det A = det B = ", ratios, names),),
-    )
-
-
-def _of_series(scheme: Scheme, every_h: BySeries, separable: bool) -> EveryProof:
-    def jets_for(most: int) -> Jets:
-        return Jets(most + 2, separable=separable)
-
-    return _over(jets_for, scheme, every_h, separable)
-
-
-def prove_lie_in_time(scheme: Scheme, every_h: TaylorSeries) -> EveryProof:
-    """Of `lieη`, for every H(p, q, t)."""
-    found = _over(lambda most: TimedJets(most + 1), scheme, every_h, separable=False)
-    return replace(found, timed=True)
-
-
-def _over(
-    jets_for: Callable[[int], EveryJets], scheme: Scheme, every_h: BySeries, separable: bool
-) -> EveryProof:
-    """By the series over the jets that are enough up to a power of h."""
-    most = scheme.order + 1
-    while True:
-        jets = jets_for(most)
-        series = every_h.taylor(jets, most)
-        coefficients = list(jets.delta_j(*series))
-        order = next((n for n, x in enumerate(coefficients, 1) if not x.is_zero()), None)
-        if order is not None or most == scheme.order + _MORE:
-            break
-        most += 1
-    agreed = _convergence(jets, series)
-    if order is None:
-        verdict = Verdict.UNDECIDED
-        reason = read_prose(
-            f"the coefficients of ΔJ up to `h^{most}` vanish; whether all do is not decided"
-        )
-        if agreed < scheme.order:
-            verdict, reason = Verdict.REFUTED, missed(scheme, agreed)
-        return EveryProof(
-            scheme.name, separable, verdict, reason, None, None, agreed, agreed < most
-        )
-    leading = coefficients[order - 1]
-    verdict, reason = _verdict(scheme, order, agreed)
-    found, formula, checked = _telescoping(jets, every_h, leading, order)
-    below = f"the coefficients of h¹ … `h^{order - 1}` in det J are the zero polynomial"
-    return EveryProof(
-        scheme.name,
-        separable,
-        verdict,
-        reason,
-        order=order,
-        area_preserving=False,
-        convergence_order=agreed,
-        convergence_decided=agreed < most,
-        leading=shown(leading),
-        formula=formula,
-        telescopes=found.holds,
-        potential=None if found.potential is None else shown(found.potential),
-        why=found.reason,
-        checked=(*([read_prose(below)] if order > 1 else []), *checked),
-    )
-
-
-def _verdict(scheme: Scheme, order: int, agreed: int) -> tuple[Verdict, Prose]:
-    if agreed < scheme.order:
-        return Verdict.REFUTED, missed(scheme, agreed)
-    if scheme.area_preserving:
-        return Verdict.REFUTED, prose(f"{scheme.name} claims det J ≡ 1; ΔJ has order {order}")
-    return Verdict.PROVED, read_prose(
-        f"the coefficients of ΔJ below `h^{order}` vanish for every H, that of `h^{order}` does not"
-    )
-
-
-def missed(scheme: Scheme, agreed: int) -> Prose:
-    """That it claims a higher order than the map's for every H."""
-    return read_prose(
-        f"{scheme.name} claims order {scheme.order}; for a generic H the map agrees with the exact "
-        f"flow up to `h^{agreed}` only"
-    )
-
-
-def telescoping_of(jets: EveryJets, every_h: object, leading: Poly) -> Telescoping:
-    """Whether the leading coefficient is X·G; of `lieη` by the formula where there is one."""
-    if isinstance(every_h, TaylorSeries):
-        return telescopes_of_lie(jets, leading, every_h.eta)
-    return telescopes(jets, leading)
-
-
-def _telescoping(
-    jets: EveryJets, every_h: object, leading: Poly, order: int
-) -> tuple[Telescoping, str, tuple[Prose, ...]]:
-    """Whether the leading coefficient is X·G, its formula, and the identities checked for that."""
-    found = telescoping_of(jets, every_h, leading)
-    if not isinstance(every_h, TaylorSeries):
-        return found, "", ()
-    eta, by = every_h.eta, along(jets)
-    end = [jets.lie_derivatives(name, eta + 1)[-1] for name in ("p", "q")]
-    divergence = jets.diff(end[0], "p") + jets.diff(end[1], "q")
-    formula = ""
-    checked: tuple[Prose, ...] = ()
-    if order == eta + 1 and leading * math.factorial(eta + 1) == -divergence:
-        formula = f"-div({by}^{eta} f)/{eta + 1}!, f = (-H_q, H_p)"
-        told = f"that of `h^{eta + 1}` is −div(`{by}^{eta}` f)/{eta + 1}!"
-        checked = (read_prose(told),)
-    if found.holds:
-        checked = (*checked, prose(f"{by}·G is that coefficient"))
-    return found, formula, checked
+    return replace(prove_by_series(blank, scheme, every_h), conditions=proof.conditions)
 
 
 # Polynomials, so that all is decided; with cubic terms, as a quadratic H makes too much vanish.
@@ -253,3 +155,78 @@ def counterexample(scheme: Scheme, separable: bool) -> tuple[str, int] | None:
         if leading.decision.zero is False and leading.power is not None:
             return text, leading.power
     return None
+
+
+# -- where H depends on time ----------------------------------------------------------------------
+
+
+def _in_time(scheme: Scheme, timed: ByConditions, least: int) -> EveryProof:
+    """By the coefficients and the times; where they leave det J open, by an H without t."""
+    found = replace(prove_by_conditions(scheme, timed, least), timed=True)
+    if isinstance(timed, TimedSplitting):
+        named = mistakes_of_splitting(timed) if found.verdict is Verdict.REFUTED else []
+        reason = prose(found.reason, f"; it is {'; '.join(named)}") if named else found.reason
+        checked = (*found.checked, *_of_fewer(scheme, timed, found.convergence_order or 0))
+        return replace(found, reason=reason, checked=checked)
+    agreed = found.convergence_order or 0
+    if agreed < scheme.order or found.verdict is not Verdict.UNDECIDED:
+        return found
+    without = prove_every(scheme.name)  # t, which are some of these H
+    if without.area_preserving is not False:
+        return found
+    order = agreed + 1  # at least: the flow, with which the map agrees, has det ≡ 1
+    exact = without.order == order
+    reason = read_prose(
+        f"order {scheme.order}: every condition on the coefficients holds exactly; ΔJ is "
+        f"O(`h^{order}`), and {'that coefficient is ' * exact}not 0 for an H without t"
+    )
+    found = replace(found, order=order, leading="") if exact else found
+    return replace(found, verdict=Verdict.PROVED, reason=reason, area_preserving=False)
+
+
+def _of_fewer(scheme: Scheme, timed: TimedSplitting, general: int) -> Iterator[Prose]:
+    """The order where fewer H are asked for, where it is a higher one."""
+    for kinetic in Kinetic:
+        order, _ = agreed_order(replace(timed, kinetic=kinetic), scheme.order)
+        if order > general:
+            yield prose(f"for every H = {kinetic.value} + V(q, t) the map has order {order}")
+
+
+# -- in n degrees of freedom ----------------------------------------------------------------------
+
+
+def _in_degrees(blank: EveryProof, scheme: Scheme, every_h: ByConditions, least: int) -> EveryProof:
+    """What the plane's proof says of the order, and the conditions that suffice for S ≡ 0."""
+    planar = prove_every(scheme.name, blank.separable, least, timed=blank.timed)
+    own = kind_of(scheme).conditions(every_h)
+    verdict, reason = planar.verdict, planar.reason
+    symplectic = True if own and first_wrong(own) is None else None
+    if planar.nearby is not None and verdict is planar.nearby.verdict and symplectic:
+        reason = prose("symplectic, and ", told_nearby(planar.nearby))
+    elif verdict is Verdict.PROVED:
+        held = "every condition on the coefficients holds exactly"
+        reason = prose(f"symplectic, and of order {scheme.order}: {held}")
+        if not symplectic:
+            verdict = Verdict.UNDECIDED
+            reason = prose("of what suffices for a symplectic map one condition does not hold")
+        elif not _suffices(every_h, scheme.order):
+            verdict = Verdict.UNDECIDED
+            reason = prose("symplectic; its order is known in the plane, where fewer trees count")
+    return replace(
+        blank,
+        verdict=verdict,
+        reason=reason,
+        area_preserving=symplectic,
+        convergence_order=planar.convergence_order,
+        convergence_decided=planar.convergence_decided,
+        conditions=(*(c for c in planar.conditions if c.order), *own),
+        checked=planar.checked,
+        telescopes=symplectic,
+        potential="0" if symplectic else None,
+        nearby=planar.nearby,
+    )
+
+
+def _suffices(every_h: object, order: int) -> bool:
+    """Whether the conditions that hold in the plane are those of n degrees of freedom."""
+    return not isinstance(every_h, TreeConditions) or all_trees_hold(every_h.tableau, order)

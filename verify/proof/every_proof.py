@@ -1,12 +1,14 @@
 """What is proved of one scheme for every H; see `verify.proof.every`."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.proof.lie_argument import paragraph
 from verify.prose import Prose
 from verify.schemes import get
 from verify.schemes.conditions import Condition, NearbyOrder
+from verify.schemes.degrees import canonical_map
+from verify.schemes.degrees.two_form import TwoForm
 from verify.schemes.every_hamiltonian import TaylorSeries
 from verify.schemes.step_map import SOLVABLE
 from verify.verdict import Verdict
@@ -27,16 +29,21 @@ class EveryProof:
     scheme that is given by them. `timed`: for every such H that depends on t, with D = ∂_t + X in
     place of X. `nearby`: of which coefficients it is, where those of the scheme are printed with
     digits that leave residues.
+
+    In several `degrees` of freedom order, leading coefficient and potential are those of S, and
+    `leading` is the formula where it has too many terms; `entry` is one of S that is not 0,
+    `volume_order` and `volume_leading` are of det J − 1. `form` and `potential_form` are the
+    leading coefficient and its potential as 2-forms.
     """
 
     scheme: str
     separable: bool
     verdict: Verdict
     reason: Prose
-    order: int | None
-    area_preserving: bool | None
-    convergence_order: int | None
-    convergence_decided: bool
+    order: int | None = None
+    area_preserving: bool | None = None
+    convergence_order: int | None = None
+    convergence_decided: bool = True
     leading: str = "0"
     formula: str = ""
     telescopes: bool | None = None
@@ -46,22 +53,47 @@ class EveryProof:
     conditions: tuple[Condition, ...] = ()
     timed: bool = False
     nearby: NearbyOrder | None = None
+    degrees: int = 1
+    entry: str = ""
+    volume_order: int | None = None
+    volume_leading: str = "0"
+    form: TwoForm | None = field(default=None, repr=False, compare=False)
+    potential_form: TwoForm | None = field(default=None, repr=False, compare=False)
+
+    @property
+    def leading_text(self) -> str:
+        """`leading`, by the name that proofs for one H have for it."""
+        return self.leading
+
+    @property
+    def planar(self) -> bool:
+        """Whether it is of one degree of freedom."""
+        return self.degrees == 1
+
+    @property
+    def symplectic(self) -> bool | None:
+        """Whether S ≡ 0, which in the plane is that area is preserved."""
+        return self.area_preserving if self.order is None else False
 
     @property
     def argument(self) -> Prose:
         """What is proved on paper, for every η, beside what the machine checked of this one."""
         taylor = isinstance(get(self.scheme).every_h, TaylorSeries)
-        return paragraph() if taylor and not self.timed else NONE
+        return paragraph() if taylor and self.planar and not self.timed else NONE
 
     @property
     def domain(self) -> Domain:
         """Where it holds, beside that H is smooth at every point and time at which it is read."""
-        return EVERYWHERE if get(self.scheme).explicit else Domain.of((), SOLVABLE)
+        solvable = SOLVABLE if self.planar else canonical_map.SOLVABLE
+        return EVERYWHERE if get(self.scheme).explicit else Domain.of((), solvable)
 
     @property
     def quantifier(self) -> str:
         """For which H it is proved, in words."""
-        if self.timed:
-            form = "T(p, t) + V(q, t)" if self.separable else "H(p, q, t)"
-            return f"every smooth {'H = ' * self.separable}{form}"
-        return "every smooth H = T(p) + V(q)" if self.separable else "every smooth H"
+        t = ", t" * self.timed
+        if not self.planar:
+            both = f"H = T(p{t}) + V(q{t})" if self.separable else f"H(p, q{t})"
+            return f"every smooth {both} in {self.degrees} degrees of freedom"
+        if self.separable:
+            return f"every smooth H = T(p{t}) + V(q{t})"
+        return "every smooth H(p, q, t)" if self.timed else "every smooth H"

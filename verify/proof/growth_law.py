@@ -52,6 +52,7 @@ from functools import lru_cache
 from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.plane_flow import PlaneFlow
 from verify.proof.expansion import MOST_ORDERS
 from verify.proof.order import prove
 from verify.proof.order_proof import Proof
@@ -108,7 +109,7 @@ def growth_law(hamiltonian: Hamiltonian, scheme: str) -> GrowthLaw:
     if eta is None or eta % 2:
         return _plain_law(prove(step_map, chosen), chosen)
     step = step_map.flat
-    ring, potential = step.ring, potential_of_lie(step.field, eta)
+    ring, potential = step.ring, potential_of_lie(PlaneFlow(step.field), eta).divergence
     g, leading = step.coefficient(eta + 2), step.coefficient(eta + 1)
     return GrowthLaw(eta + 1, (ring, g), (ring, potential), (ring, leading), _FOR_EVERY_H)
 

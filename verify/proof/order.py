@@ -7,45 +7,46 @@ p' and q' in h are held against those of the exact flow, Xⁿp/n! and Xⁿq/n!.
 import math
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from functools import cached_property, partial
+from functools import lru_cache, partial
 
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.embedding import embed
 from verify.algebra.ring import Decision, Poly, Ring
-from verify.algebra.series.power_series import delta_j
+from verify.hamiltonians.canonical_field import CanonicalField
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.plane_flow import PlaneFlow
 from verify.hamiltonians.vector_field import VectorField
 from verify.late import sympy
 from verify.proof.by_conditions import nearby_order, told_nearby
-from verify.proof.claimed import Claimed, Convergence, Words, held_to
+from verify.proof.claimed import IN_PLANE, Claimed, Convergence, held_to
 from verify.proof.expansion import MOST_ORDERS, VANISHES, Expansion, Leading, first_nonzero
 from verify.proof.order_proof import Proof
 from verify.proof.parameters import almost_all, not_zero_for
 from verify.proof.printed_formulas import nearby_defect, nearby_of_formulas, told_defect
 from verify.prose import Formula, Prose, prose
 from verify.schemes.conditions import Condition, NearbyOrder
+from verify.schemes.degrees.defect import DefectSeries
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import splitting
 from verify.schemes.splitting_conditions import Splitting
-from verify.schemes.step_map import Expanded, StepMap, Substep
+from verify.schemes.step_algebra import State
+from verify.schemes.step_map import StepMap
 from verify.schemes.timed.for_scheme import conditions_for
 from verify.verdict import Verdict
 
-_Coefficient = Callable[[str, int], tuple[VectorField, Ring, Poly]]
-_WORDS = Words("ΔJ", "ΔJ is the zero function: det J ≡ 1", "function", "det J ≡ 1")
 RESIDUE = Fraction(1, 2**100)  # and above it what the coefficients of the nearest leave
 _FIRST_ORDERS = 6  # of them, those that are made at once where no order is claimed
 
 
 def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
     """The order of ΔJ and of the map by exact algebra, and whether `scheme`'s claims hold."""
-    series = _BySeries(step_map, scheme.order + 1 if scheme else _FIRST_ORDERS)
-    convergence, near = convergence_of_scheme(step_map, scheme, series)
-    leading, domain = leading_of(step_map, series), step_map.domain
+    first = scheme.order + 1 if scheme else _FIRST_ORDERS
+    convergence, near = convergence_of_scheme(step_map, scheme, first)
+    leading, domain = leading_of(step_map, first), step_map.domain
     inside = leading.within(domain)
     claimed = Claimed.of(scheme) if scheme else Claimed()
     defect = inside.power, inside.decision.zero
-    verdict, reason = held_to(claimed, convergence, defect, MOST_ORDERS, _WORDS)
+    verdict, reason = held_to(claimed, convergence, defect, MOST_ORDERS, IN_PLANE)
     if inside.decision.zero is None and leading.decision.zero is not None:
         reason = prose("no point is found where all is defined: ", domain.prose)
     leading = inside
@@ -53,11 +54,8 @@ def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
         reason = prose(reason, ", ", _by_conditions(step_map.conditions))
     if verdict is Verdict.PROVED and leading.domain:
         reason = prose(reason, ", where ", leading.domain.prose)
-    if near is not None and verdict is Verdict.PROVED:
-        verdict, reason = near.verdict, prose(reason, "; ", told_nearby(near))
     without = nearby_defect_of(scheme, step_map.hamiltonian, leading.power)
-    if without is not None:
-        reason = prose(reason, "; ", told_defect(without, "ΔJ"))
+    verdict, reason = with_nearby((verdict, reason), near, without, "ΔJ")
     return Proof(
         verdict=verdict,
         reason=reason,
@@ -81,49 +79,33 @@ def _by_conditions(conditions: Sequence[Condition]) -> Prose:
     )
 
 
-class _BySeries:
-    """The Taylor coefficients of p', q' and ΔJ of a map of several parts, without its closed form.
+@lru_cache(maxsize=4)
+def _series_of(step_map: StepMap, first: int) -> DefectSeries[PlaneFlow] | None:
+    """The coefficients of a map of several parts, without its closed form; None where it has none.
 
     They are made as far as they are looked at; `first`: those of them that are made at once.
     """
+    start = step_map.taylor(first) if step_map.of_parts else None
+    if start is None:
+        return None
 
-    def __init__(self, step_map: StepMap, first: int = _FIRST_ORDERS) -> None:
-        self.map, self.first = step_map, first
-        self.made: Expanded | None = None
+    def made(most: int) -> tuple[PlaneFlow, State]:
+        more = min(most, MOST_ORDERS)  # terms multiply with every order
+        expanded = start if most == first else step_map.taylor(more)
+        assert expanded is not None  # noqa: S101 - it has had fewer terms
+        field, p, q = expanded
+        return PlaneFlow(field), (p, q)
 
-    @cached_property
-    def usable(self) -> bool:
-        return self.map.of_parts and self.reach(self.first)
-
-    def reach(self, n: int) -> bool:
-        """Makes the coefficients up to hⁿ, and a few more; False where the map has none."""
-        if self.made is None or self.made[1].most < n:
-            most = max(self.first, min(n + 1, MOST_ORDERS))  # terms multiply with every order
-            self.made = self.map.taylor(most)
-        return self.made is not None
-
-    def up_to(self, n: int) -> Expanded:
-        """The vector field, and p' and q' as series up to hⁿ at least."""
-        self.reach(n)
-        assert self.made is not None  # noqa: S101 - the caller looks at `usable`
-        return self.made
-
-    def coefficient(self, name: str, n: int) -> tuple[VectorField, Ring, Poly]:
-        """That of hⁿ in p' or q', with its ring, and the vector field."""
-        field, *series = self.up_to(n)
-        return field, field.ring, series["pq".index(name)].coefficients[n]
-
-    def of_delta_j(self, n: int) -> tuple[Ring, Poly]:
-        field, p, q = self.up_to(n)
-        return field.ring, delta_j(p, q).coefficients[n]
+    return DefectSeries(made, first)
 
 
-def leading_of(step_map: StepMap, series: _BySeries | None = None) -> Leading:
-    """The first coefficient in h of ΔJ that is not shown to vanish."""
+def leading_of(step_map: StepMap, first: int = _FIRST_ORDERS) -> Leading:
+    """The first coefficient in h of ΔJ that is not shown to vanish; `first`: so many are made at
+    once."""
     if step_map.preserves_area:
         return VANISHES
-    series = series or _BySeries(step_map)
-    if series.usable:
+    series = _series_of(step_map, first)
+    if series is not None:
         return _leading_by(series, step_map)
     step = step_map.flat
     if step.preserves_area:
@@ -137,8 +119,12 @@ def leading_of(step_map: StepMap, series: _BySeries | None = None) -> Leading:
     return found or VANISHES
 
 
-def _leading_by(series: _BySeries, step_map: StepMap) -> Leading:
-    found = first_nonzero(series.of_delta_j, MOST_ORDERS + 1)
+def _leading_by(series: DefectSeries[PlaneFlow], step_map: StepMap) -> Leading:
+    def coefficient(n: int) -> tuple[Ring, Poly]:
+        x = series.form(n).divergence
+        return series.flow.ring, x
+
+    found = first_nonzero(coefficient, MOST_ORDERS + 1)
     if found is not None:
         return found
     whole = step_map.whole
@@ -158,7 +144,7 @@ def _beyond(ring: Ring, delta_j: Poly) -> Leading:
 
 
 def convergence_of(
-    step_map: StepMap, series: _BySeries | None = None, residues: bool = False
+    step_map: StepMap, first: int = _FIRST_ORDERS, residues: bool = False
 ) -> Convergence:
     """The order to which the map agrees with the exact flow; with `residues`, up to such."""
     known = step_map.known_order()
@@ -167,13 +153,16 @@ def convergence_of(
         exact, what = step_map.hamiltonian, f"the difference at h^{known + 1}"
         almost = almost_all(exact.symbols, what, exact.time_dependent) if exact.symbols else ""
         return Convergence(known, True, lambda: Domain.of((), almost) if almost else EVERYWHERE)
-    series = series or _BySeries(step_map)
-    by_series: tuple[_Coefficient, int] = series.coefficient, MOST_ORDERS
-    coefficient, most = by_series if series.usable else _by_expansions(step_map.flat)
-    for n in range(_first_to_look_at(step_map), most + 1):
-        for name in ("p", "q"):
-            field, own, x = coefficient(name, n)
-            ring, gap = _gap(field, own, x, name, n)
+    begin, series = _first_to_look_at(step_map), _series_of(step_map, first)
+    if series is not None:
+        return convergence_by(series, begin, MOST_ORDERS, residues)
+    step = step_map.flat
+    pairs = zip((step.p_next, step.q_next), step.terms or (None, None), strict=True)
+    expansions = [Expansion(step.ring, x, terms) for x, terms in pairs]
+    for n in range(begin, max(MOST_ORDERS, *(x.length for x in expansions)) + 1):
+        for name, expansion in zip(("p", "q"), expansions, strict=True):
+            own, x = expansion.coefficient(n)
+            ring, gap = _gap(step.field, own, x, name, n)
             if residues and own is ring and is_residue(ring.reduce(gap), x):
                 continue
             agrees = ring.vanishes(gap)
@@ -183,11 +172,26 @@ def convergence_of(
     return Convergence(None, True)
 
 
+def convergence_by(
+    series: "DefectSeries[PlaneFlow] | DefectSeries[CanonicalField]",
+    begin: int,
+    most: int,
+    residues: bool = False,
+) -> Convergence:
+    """By the coefficients of h^begin … h^most of a map, in any number of degrees of freedom."""
+    for n in range(begin, most + 1):
+        agrees, gap = series.agrees(n, is_residue if residues else None)
+        if agrees is not True:
+            exact_for = partial(not_zero_for, series.flow.ring, gap, f"the difference at h^{n}")
+            return Convergence(n - 1, agrees is False, exact_for)
+    return Convergence(None, True)
+
+
 def convergence_of_scheme(
-    step_map: StepMap, scheme: Scheme | None, series: _BySeries | None = None
+    step_map: StepMap, scheme: Scheme | None, first: int = _FIRST_ORDERS
 ) -> tuple[Convergence, NearbyOrder | None]:
     """As `convergence_of`, of exact coefficients where those of the scheme are printed."""
-    printed = convergence_of(step_map, series)
+    printed = convergence_of(step_map, first)
     exact = step_map.hamiltonian
     return nearby_convergence(scheme, printed, exact, partial(_of_scheme, exact))
 
@@ -244,6 +248,16 @@ def _of_scheme(hamiltonian: Hamiltonian, scheme: Scheme) -> Convergence:
     return convergence_of(scheme.step_map(hamiltonian), residues=True)
 
 
+def with_nearby(
+    judged: tuple[Verdict, Prose], near: NearbyOrder | None, without: NearbyOrder | None, form: str
+) -> tuple[Verdict, Prose]:
+    """With what exact coefficients near printed ones have: a higher order, or no such term."""
+    verdict, reason = judged
+    if near is not None and verdict is Verdict.PROVED:
+        verdict, reason = near.verdict, prose(reason, "; ", told_nearby(near))
+    return verdict, reason if without is None else prose(reason, "; ", told_defect(without, form))
+
+
 def is_residue(gap: Poly, term: Poly) -> bool:
     """Whether a difference from a term is of coefficients that are right to some 90 digits."""
     return size_of(gap) < RESIDUE * max(size_of(term), size_of(term - gap))
@@ -259,17 +273,6 @@ def _first_to_look_at(step_map: StepMap) -> int:
     first, *more = step_map.substeps
     eta = None if more else first.field.truncated_at(first.p_next, first.q_next)
     return 0 if eta is None else eta + 1
-
-
-def _by_expansions(step: Substep) -> tuple[_Coefficient, int]:
-    """The coefficients of p' and q' in closed form, and how many there are to look at."""
-    pairs = zip((step.p_next, step.q_next), step.terms or (None, None), strict=True)
-    p, q = (Expansion(step.ring, x, terms) for x, terms in pairs)
-
-    def coefficient(name: str, n: int) -> tuple[VectorField, Ring, Poly]:
-        return step.field, *(p if name == "p" else q).coefficient(n)
-
-    return coefficient, max(MOST_ORDERS, p.length, q.length)
 
 
 def _gap(field: VectorField, own: Ring, x: Poly, name: str, n: int) -> tuple[Ring, Poly]:

@@ -44,6 +44,16 @@ class Proof:
         return self.first.coefficient
 
     @property
+    def leading_text(self) -> str:
+        """The same as a formula."""
+        return self.first.text
+
+    @property
+    def symplectic(self) -> bool | None:
+        """Whether det J ≡ 1, which in the plane is that."""
+        return self.area_preserving
+
+    @property
     def delta_j(self) -> sympy.Expr | None:
         """ΔJ in closed form, written out when it is asked for; None where it is too large."""
         return self.step_map.delta_j if self.step_map.has_closed_form else None

@@ -23,6 +23,7 @@ from verify.algebra.ring import Poly, Ring
 from verify.algebra.symbols import P, Q
 from verify.effort import unless_long
 from verify.errors import InputError
+from verify.hamiltonians.plane_flow import PlaneFlow
 from verify.hamiltonians.vector_field import VectorField
 from verify.proof.order_proof import Proof
 from verify.proof.telescoping import potential_of_lie
@@ -73,7 +74,7 @@ def potential_of(proof: Proof, scheme: Scheme) -> Potential:
         )
     every_h = scheme.every_h
     if isinstance(every_h, TaylorSeries) and every_h.eta % 2 == 0:
-        found: Poly | None = potential_of_lie(field, every_h.eta)
+        found: Poly | None = potential_of_lie(PlaneFlow(field), every_h.eta).divergence
         how = "by the formula for every H"
     else:
         used = field.h_p, field.h_q, leading

@@ -1,63 +1,91 @@
-"""Whether the leading coefficient of ΔJ is X·G, so that along an orbit it telescopes to [G]₀ᵀ.
+"""Whether the leading coefficient of ΔJ, or S, is a derivative along the flow, and so telescopes.
 
-For `lieη` the leading coefficient is L = −div(X^η f)/(η + 1)!, f = (−H_q, H_p), of h^(η+1).
+In the plane that is X·G, whose sum along an orbit is [G]₀ᵀ; in n degrees of freedom it is the Lie
+derivative of a 2-form, and M_kᵀ (S_k/h) M_k adds up to the difference of that form at the ends.
 
-Even η: it is X·G for every smooth H, with G = −1/(η+1)! Σ_{k=0}^{η} (−1)^k P_{η−k,k}, where
-P_{a,b} = ∂(Xᵃp, X^b q)/∂(p, q). Proof: the two-forms [a, b] = d(Xᵃp)∧d(X^b q) + d(X^b p)∧d(Xᵃq)
-are symmetric in a and b, and the Lie derivative along X commutes with d, so that
-X[a, b] = [a+1, b] + [a, b+1]. In the alternating sum over a + b = η of X[a, b] all but the ends
-cancel: X Σ (−1)^k [η−k, k] = [η+1, 0] + (−1)^η [0, η+1] = 2 [η+1, 0] for even η, and
-[η+1, 0] = div(X^η f) dp∧dq. In the plane every two-form is F dp∧dq, and X(F dp∧dq) = (X F) dp∧dq
+Let [a, b] = Σ_i d(Xᵃp_i)∧d(X^b q_i). The Lie derivative L commutes with d, so that L[a, b] =
+[a+1, b] + [a, b+1], and L[0, 0] = LΩ = 0. S of `lieη` begins with −h^(η+1)/(η+1)! ([η+1, 0] +
+[0, η+1]), which in the plane is −div(X^η f)/(η + 1)! dp∧dq, f = (−H_q, H_p).
+
+Even η: it is Lβ for every smooth H, β = −1/(η+1)! Σ_k (−1)^k [η−k, k], k = 0 … η, in whose
+alternating sum all but the ends cancel. In the plane β = G dp∧dq, and L(G dp∧dq) = (X G) dp∧dq,
 since the flow preserves dp∧dq. ∎
 
-Odd η: it is not, for any smooth G, where H has an equilibrium with det Hess H ≠ 0. For X·G vanishes
-where f does, and there div(X^η f) = tr A^(η+1) = 2 (−det Hess H)^((η+1)/2), A = f'. ∎
+Odd η: it is none, of any smooth form, where H has an equilibrium at which that has a divergence.
+Where f vanishes, L of a form B is AᵀB + BA, A = f'. From AᵀΩ = −ΩA, tr Ω⁻¹(AᵀB + BA) = 0, for any
+B. So where that trace of a coefficient of S, which is twice its divergence, is not 0 at an
+equilibrium, it is no Lie derivative of a smooth form. In the plane X·G vanishes where f does, and
+there div(X^η f) = tr A^(η+1) = 2 (−det Hess H)^((η+1)/2). ∎
 """
 
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from fractions import Fraction
 
 import flint
+import sympy
 
+from verify.algebra.embedding import embed
+from verify.algebra.formula import symbol
 from verify.algebra.generator import terms_of
 from verify.algebra.linear_combination import combination
-from verify.algebra.series.jets import Jets, Poly, shown
+from verify.algebra.series.jets import JetRing, Poly, shown
 from verify.algebra.series.jets_in_degrees import Index
-from verify.algebra.series.timed_jets import TimedJets
+from verify.algebra.substitution import substitute
+from verify.errors import InputError
+from verify.hamiltonians.canonical_field import CanonicalField, Flow
 from verify.prose import Formula, Prose, prose, read_prose
+from verify.schemes.degrees.two_form import TwoForm, lie_derivative, wedge
 
 
-class Derivation(Protocol):
-    """p and q with their derivatives along the flow: `verify.hamiltonians.vector_field.VectorField`
-    is one.
-    """
-
-    def lie_derivatives(self, name: str, most: int) -> Sequence[Poly]:
-        """[y, X y, …, X^most y] of y = p or q."""
-
-    def bracket(self, x: Poly, y: Poly) -> Poly:
-        """∂(x, y)/∂(p, q)."""
-
-
-def potential_of_lie(field: Derivation, eta: int) -> Poly:
-    """G with X·G = L, the coefficient of h^(η+1) in ΔJ of `lieη`, for even η."""
+def potential_of_lie(flow: Flow, eta: int) -> TwoForm:
+    """β of lieη, for even η."""
     if eta % 2:
         raise ValueError("for odd η the leading coefficient does not telescope")
-    p, q = field.lie_derivatives("p", eta), field.lie_derivatives("q", eta)
-    signed = ((-1) ** k * field.bracket(p[eta - k], q[k]) for k in range(eta + 1))
-    return sum(signed, p[0] * 0) / -math.factorial(eta + 1)
+    n, ring = flow.degrees, flow.ring
+    rows = [[flow.gradient(x) for x in flow.power(k)] for k in range(eta + 1)]
+    factor = ring.constant(Fraction(-1, math.factorial(eta + 1)))
+
+    def entry(a: int, b: int) -> Poly:
+        total = ring.zero
+        for k in range(eta + 1):
+            both = (wedge(rows[eta - k][i], rows[k][n + i], a, b) for i in range(n))
+            total += (-1) ** k * sum(both, ring.zero)
+        return factor * total
+
+    return TwoForm.of(ring, flow.names, entry)
 
 
-# -- for a leading coefficient in the jets --------------------------------------------------------
+def telescopes_of_lie(flow: CanonicalField, eta: int, leading: TwoForm) -> tuple[bool | None, str]:
+    """Whether the leading coefficient of lieη's S is a Lie derivative, and β as a formula.
 
-EveryJets = Jets | TimedJets
+    None where neither is found.
+    """
+    if eta % 2 == 0:
+        potential = potential_of_lie(flow, eta)
+        gap, _ = (lie_derivative(flow, potential) - leading).decide()
+        return (True, potential.text) if gap.zero is True else (None, "")
+    return (False if _shown_at_rest(flow, leading) else None), ""
 
 
-def along(jets: EveryJets) -> str:
-    """What the derivative along the flow is called."""
-    return "D" if isinstance(jets, TimedJets) else "X"
+def _shown_at_rest(flow: CanonicalField, leading: TwoForm) -> bool:
+    """Whether the origin is an equilibrium at which the divergence is not 0."""
+    ring = flow.ring
+    if flow.timed:  # f vanishes at all times where D of what does not depend on t is X of it
+        return False
+    origin = {symbol(name): sympy.S.Zero for name in flow.names}
+    elements = [*flow.slopes, leading.divergence]
+    try:
+        there = [substitute(ring.expression(x), origin, "z0") for x in elements]
+        constants, found = embed(there, [n for n in ring.variables if n not in flow.names])
+    except (InputError, ArithmeticError, KeyError):
+        return False
+    *slopes, divergence = (constants.vanishes(x) for x in found)
+    return all(x is True for x in slopes) and divergence is False
+
+
+# -- for a leading coefficient in the jets of the plane -------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -69,14 +97,18 @@ class Telescoping:
     potential: Poly | None = None
 
 
-def telescopes(jets: EveryJets, leading: Poly) -> Telescoping:
+def telescopes(jets: JetRing, leading: Poly) -> Telescoping:
     """Whether the polynomial L in the jets is X·G with a polynomial G in the jets.
 
     False is shown by a linear functional that vanishes on all X·G and not on L: to take the value
     at an equilibrium, which rules out every smooth G, or one that linear algebra finds.
     """
-    if isinstance(jets, TimedJets):
-        return _without_time()
+    if jets.timed:
+        reason = (
+            "for an H without t, D·G would be X·G, and that is `L` for no smooth G: where such a "
+            "motion rests, X·G = 0 and `L` is not"
+        )
+        return Telescoping(False, read_prose(reason))
     at_rest = leading.subs({"H_p": 0, "H_q": 0})
     if not at_rest.is_zero():
         return Telescoping(
@@ -105,28 +137,7 @@ def telescopes(jets: EveryJets, leading: Poly) -> Telescoping:
     return Telescoping(True, prose("X·G = L, solved for G by linear algebra"), total)
 
 
-def _without_time() -> Telescoping:
-    reason = (
-        "for an H without t, D·G would be X·G, and that is `L` for no smooth G: where such a "
-        "motion rests, X·G = 0 and `L` is not"
-    )
-    return Telescoping(False, read_prose(reason))
-
-
-def telescopes_of_lie(jets: EveryJets, leading: Poly, eta: int) -> Telescoping:
-    """The same for `lieη`: by the formula for even η, where it gives this L."""
-    if eta % 2 == 0:
-        potential, by = potential_of_lie(jets, eta), along(jets)
-        if jets.derive(potential) == leading:
-            reason = (
-                f"G = −1/{eta + 1}! `Σ_k` `(−1)^k` ∂(`{by}^({eta}−k)` p, `{by}^k` q)/∂(p, q), "
-                f"k = 0 … {eta}"
-            )
-            return Telescoping(True, read_prose(reason), potential)
-    return telescopes(jets, leading)
-
-
-def _grade(jets: Jets, monomial: Sequence[int]) -> tuple[int, int, int]:
+def _grade(jets: JetRing, monomial: Sequence[int]) -> tuple[int, int, int]:
     """(factors H_ij, derivatives by p, by q), each of which X raises by one."""
     powers = [int(n) for n in monomial[2:]]
     return (
@@ -137,7 +148,7 @@ def _grade(jets: Jets, monomial: Sequence[int]) -> tuple[int, int, int]:
 
 
 def _solve_for_potential(
-    jets: Jets, grade: tuple[int, int, int], x: Poly
+    jets: JetRing, grade: tuple[int, int, int], x: Poly
 ) -> tuple[Poly | None, int, int]:
     """(G with X·G = x, the rank of X on such G, their number of monomials).
 
@@ -157,7 +168,7 @@ def _solve_for_potential(
     return sum(terms, jets.zero), rank, len(candidates)
 
 
-def _monomial(jets: Jets, factors: Sequence[tuple[int, int]]) -> Poly:
+def _monomial(jets: JetRing, factors: Sequence[tuple[int, int]]) -> Poly:
     return math.prod((jets.h(i, j) for i, j in factors), start=jets.one)
 
 

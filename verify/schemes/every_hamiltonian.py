@@ -1,12 +1,13 @@
 """A scheme as it is for every H: what gives its step map where H is not known.
 
-`taylor(jets, most)`: the coefficients of h⁰ … h^most of p' and q', as series over the jets.
+`taylor(jets, most)`: the coefficients of h⁰ … h^most of z', as series over the jets, in as many
+degrees of freedom as these have.
 `StageEquations` have more: their equations, which give det J without solving them.
 """
 
 from __future__ import annotations
 
-import math
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -14,12 +15,13 @@ from typing import Any, Protocol, TypeVar, runtime_checkable
 
 import flint
 
-from verify.algebra.series.jets import JetRing, Poly, Series
+from verify.algebra.series.jets import Poly, Series
+from verify.algebra.series.jets_in_degrees import JetsInDegrees
 from verify.hamiltonians.jet_flow import JetFlow
 from verify.late import sympy
 from verify.prose import count
 from verify.schemes.conditions import Condition
-from verify.schemes.step_algebra import Step, StepAlgebra, series_of
+from verify.schemes.step_algebra import StepAlgebra, series_of
 
 At = TypeVar("At")
 Slope = TypeVar("Slope")
@@ -35,11 +37,24 @@ class BySeries(Protocol):
     @property
     def separable(self) -> bool: ...
 
-    def taylor(self, jets: JetRing, most: int) -> tuple[Series, Series]: ...
+    def taylor(self, jets: JetsInDegrees, most: int) -> tuple[Series, ...]: ...
+
+
+class ByChanges(ABC):
+    """A scheme whose step is made of the operations of a step, and so its series."""
+
+    @abstractmethod
+    def changes(self, algebra: StepAlgebra[Any]) -> list[Any]:
+        """z' − z."""
+
+    def taylor(self, jets: JetsInDegrees, most: int) -> tuple[Series, ...]:
+        """z' as series up to h^most; see `BySeries`."""
+        state = series_of(JetFlow.over(jets), self.changes, most)
+        return tuple(list(x.coefficients) for x in state)
 
 
 @dataclass(frozen=True)
-class TaylorSeries:
+class TaylorSeries(ByChanges):
     """The exact flow's series, cut off after h^eta (Eq. 2)."""
 
     eta: int
@@ -50,19 +65,13 @@ class TaylorSeries:
         """What it costs, in words."""
         return f"derivatives of p and q along the flow, up to X^{self.eta}"
 
-    def taylor(self, jets: JetRing, most: int) -> tuple[Series, Series]:
-        """p' and q' as series up to h^most; see `BySeries`."""
-        kept = min(self.eta, most)
-
-        def cut(name: str) -> Series:
-            terms = [x / math.factorial(n) for n, x in enumerate(jets.lie_derivatives(name, kept))]
-            return terms + [jets.zero] * (most - kept)
-
-        return cut("p"), cut("q")
+    def changes(self, algebra: StepAlgebra[Any]) -> list[Any]:
+        """z' − z, by the flow's own terms."""
+        return algebra.along_flow(self.eta)
 
 
 @dataclass(frozen=True)
-class RungeKutta:
+class RungeKutta(ByChanges):
     """An explicit Runge–Kutta method: k_i = f(z + h Σ a_ij k_j), j < i, and z' = z + h Σ b_i k_i.
 
     `rows[i]`: a_ij for j < i, which has as many entries as there are stages before; `weights`:
@@ -125,10 +134,6 @@ class RungeKutta:
 
         return self.step(slope, moved)[0]
 
-    def taylor(self, jets: JetRing, most: int) -> tuple[Series, Series]:
-        """p' and q' as series up to h^most; see `BySeries`."""
-        return _over(jets, self.changes, most)
-
 
 @dataclass(frozen=True)
 class Stage:
@@ -142,7 +147,7 @@ class Stage:
 
 
 @dataclass(frozen=True)
-class StageEquations:
+class StageEquations(ByChanges):
     """One stage after the other."""
 
     stages: tuple[Stage, ...]
@@ -169,10 +174,6 @@ class StageEquations:
             change = outer.solved(outer.size, _right(stage, found))
             found = [outer.between(x, y, Fraction(1)) for x, y in zip(found, change, strict=True)]
         return found
-
-    def taylor(self, jets: JetRing, most: int) -> tuple[Series, Series]:
-        """p' and q' as series up to h^most; see `BySeries`."""
-        return _over(jets, self.changes, most)
 
     def conditions(self) -> tuple[Condition, ...]:
         """det A = det B of each stage, which together suffice for det J ≡ 1."""
@@ -233,9 +234,3 @@ def _right(
         return [algebra.moved(algebra.nothing, [w], [slope]) for w, slope in each]
 
     return right
-
-
-def _over(jets: JetRing, changes: Step, most: int) -> tuple[Series, Series]:
-    """p' and q' of a step of every H, as series up to h^most."""
-    p, q = series_of(JetFlow(jets), changes, most)
-    return list(p.coefficients), list(q.coefficients)

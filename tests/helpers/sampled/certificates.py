@@ -14,7 +14,6 @@ from verify.proof.certificates.established import established
 from verify.proof.certificates.every import of_every
 from verify.proof.certificates.one import of_one
 from verify.proof.every import prove_every
-from verify.proof.every_in_time import prove_every_in_time
 from verify.proof.order import prove
 from verify.proof.potential import potential_of
 from verify.schemes import get
@@ -61,7 +60,7 @@ def of_text(text: str, name: str) -> Data:
 
 def of_every_in_time(name: str) -> Data:
     """That of the scheme for every H(p, q, t)."""
-    return as_read(of_every(prove_every_in_time(name)))
+    return as_read(of_every(prove_every(name, timed=True)))
 
 
 @st.composite

@@ -14,10 +14,9 @@ from itertools import combinations
 from typing import Any
 
 import sympy
-from mpmath.ctx_mp import MPContext
+from mpmath import mp
 
-mp = MPContext()
-mp.dps = 120
+DIGITS = 120
 H, T = sympy.Symbol("h"), sympy.Symbol("t")
 
 
@@ -75,7 +74,8 @@ def several(degrees: int) -> Callable[[random.Random], Shape]:
 def one_step(draw: random.Random) -> Shape:
     a, b = draw.randint(2, 9), draw.randint(2, 9)
     return Shape(f"p**2/{a} - cos({b}*q)/{b} + p*q**2/{a}", draw.choice([1, 2, 3]),
-                 (("p", Fraction(draw.randint(-30, 30), 7)), ("q", Fraction(draw.randint(-30, 30), 9))),
+                 (("p", Fraction(draw.randint(-30, 30), 7)),
+                  ("q", Fraction(draw.randint(-30, 30), 9))),
                  Fraction(draw.randint(1, 60), 40), Fraction(0), 1)  # fmt: skip
 
 
@@ -98,9 +98,10 @@ def late(draw: random.Random) -> Shape:
 
 def late_in_two_degrees(draw: random.Random) -> Shape:
     t0 = Fraction(draw.randint(-(10**4), 10**4), 3)
-    text = f"p1**2/2 + p2**2/2 - cos(q1)*(1 + cos(t)/{draw.randint(2, 5)}) + (q1 - q2)**2/2 + q2**3*t/10**5"
+    drive = f"cos(q1)*(1 + cos(t)/{draw.randint(2, 5)})"
+    text = f"p1**2/2 + p2**2/2 - {drive} + (q1 - q2)**2/2 + q2**3*t/100000"
     place = [(f"{x}{k}", Fraction(draw.randint(-9, 9), 17)) for x in "pq" for k in (1, 2)]
-    return Shape(text.replace("10**5", "100000"), draw.choice([1, 2]), tuple(place),
+    return Shape(text, draw.choice([1, 2]), tuple(place),
                  Fraction(1, draw.randint(9, 30)), t0, draw.randint(3, 15))  # fmt: skip
 
 
@@ -124,20 +125,25 @@ def _map(formula: str, order: int, names: tuple[str, ...]) -> Callable[..., Any]
                  for x in terms]  # fmt: skip
         after = [x + H**k * y / sympy.factorial(k) for x, y in zip(after, terms, strict=True)]
     rows = [x.diff(z) for x in after for z in symbols]
-    return sympy.lambdify([*symbols, H, T], [*after, *rows], modules=mp, cse=True)  # type: ignore[no-any-return]
+    return sympy.lambdify([*symbols, H, T], [*after, *rows], modules="mpmath", cse=True)  # type: ignore[no-any-return]
 
 
 def number(x: Fraction) -> Any:
     return mp.mpf(x.numerator) / x.denominator
 
 
-def _exact(x: Any) -> Fraction:
+def exact(x: Any) -> Fraction:
     mantissa, exponent = mp.frexp(x)
     return Fraction(int(mp.ldexp(mantissa, 450))) * Fraction(2) ** (int(exponent) - 450)
 
 
 def values(shape: Shape) -> dict[str, Fraction]:
     """Everything that may be asked of the run, right to 80 digits and more."""
+    with mp.workdps(DIGITS):
+        return _values(shape)
+
+
+def _values(shape: Shape) -> dict[str, Fraction]:
     size, n = len(shape.start), len(shape.start) // 2
     step, h = _map(shape.formula, shape.order, tuple(shape.names)), number(shape.h)
     z = [number(x) for _, x in shape.start]
@@ -157,7 +163,7 @@ def values(shape: Shape) -> dict[str, Fraction]:
     made |= {"delta_j_max": top, "mse": squares / shape.steps, "lambda": product - 1,
              "lambda_max": highest, "symplectic_defect_max": defects,
              "symplectic_defect": max(_defect(tangent, n))}  # fmt: skip
-    return {name: _exact(x) for name, x in made.items()}
+    return {name: exact(x) for name, x in made.items()}
 
 
 def _defect(m: Any, n: int) -> list[Any]:

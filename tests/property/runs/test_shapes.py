@@ -9,7 +9,7 @@ from fractions import Fraction
 
 import pytest
 
-from tests.helpers.sampled.shapes import SHAPES, Shape, values
+from tests.helpers.sampled.shapes import DIGITS, SHAPES, Shape, exact, mp, number, values
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.arithmetic.systems import fixed, mpfr, mpmath
 from verify.errors import InputError
@@ -53,7 +53,7 @@ def systems(draw: random.Random) -> list[Arithmetic]:
     return [fixed.at_bits(112), mpfr.at_bits(bits), mpmath.at_bits(bits + 3)]
 
 
-@pytest.mark.sample(24)
+@pytest.mark.sample(8)
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("name", SHAPES)
 def test_what_is_certified_or_estimated_holds_the_true_value(name: str, seed: int) -> None:
@@ -83,7 +83,8 @@ def test_what_is_certified_or_estimated_holds_the_true_value(name: str, seed: in
     assert certificates or name in ("increments", "one step", "small denominators")
 
 
-@pytest.mark.sample(16)
+@pytest.mark.left_to_ci
+@pytest.mark.sample(8)
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("name", SHAPES)
 def test_what_a_run_tells_holds_the_true_value(name: str, seed: int) -> None:
@@ -99,8 +100,8 @@ def test_what_a_run_tells_holds_the_true_value(name: str, seed: int) -> None:
             told = run(hamiltonian, f"lie{shape.order}", **given, step_size=shape.h,
                        steps=shape.steps, t0=shape.t0, arithmetic=system, digits=20,
                        observables=asked)  # fmt: skip
-        except InputError as error:
-            assert "float64" in str(error), system
+        except InputError:
+            assert system == "float64", "of the others each takes all of these"
             continue
         assert told.status == "finished" or system == "float64", system
         values_of = {name: Fraction(x.value) for name, x in told.values.items()}
@@ -112,7 +113,7 @@ def test_what_a_run_tells_holds_the_true_value(name: str, seed: int) -> None:
 @pytest.mark.left_to_ci
 @pytest.mark.parametrize("seed", range(3))
 def test_a_million_steps_of_a_linear_map_are_within_their_bounds(seed: int) -> None:
-    """lie2 of H = p²/2 + c q²/2, of which the map's powers are had by squaring in fractions of 2."""
+    """lie2 of H = p²/2 + c q²/2, a matrix of which the power is had by squaring."""
     draw = random.Random(f"million {seed}")  # noqa: S311 - no secret
     c, h, steps = Fraction(draw.randint(1, 9), 10), Fraction(1, draw.choice([64, 256])), 10**6
     text = f"p**2/2 + {c}*q**2/2"
@@ -132,8 +133,13 @@ def values_of_linear(
     c: Fraction, h: Fraction, steps: int, start: dict[str, Fraction]
 ) -> dict[str, Fraction]:
     """By powers of the matrix in mpmath's numbers, of which 120 digits lose a dozen."""
-    from tests.helpers.sampled.shapes import _exact, mp, number
+    with mp.workdps(DIGITS):
+        return _values_of_linear(c, h, steps, start)
 
+
+def _values_of_linear(
+    c: Fraction, h: Fraction, steps: int, start: dict[str, Fraction]
+) -> dict[str, Fraction]:
     a, b = 1 - c * h**2 / 2, h
     matrix = mp.matrix([[number(a), number(-c * b)], [number(b), number(a)]])
     power = matrix**steps
@@ -141,9 +147,9 @@ def values_of_linear(
     determinant = number(a * a + c * b * b)
     change = determinant - 1
     return {
-        "p": _exact(power[0, 0] * p + power[0, 1] * q),
-        "q": _exact(power[1, 0] * p + power[1, 1] * q),
-        "lambda": _exact(determinant**steps - 1),
-        "mse": _exact(change**2),
-        "delta_j_max": _exact(abs(change)),
+        "p": exact(power[0, 0] * p + power[0, 1] * q),
+        "q": exact(power[1, 0] * p + power[1, 1] * q),
+        "lambda": exact(determinant**steps - 1),
+        "mse": exact(change**2),
+        "delta_j_max": exact(abs(change)),
     }

@@ -187,7 +187,7 @@ def proofs(monkeypatch: pytest.MonkeyPatch) -> dict[tuple[str, bool], Stub]:
     known = {("lie2", False): Stub(), ("lie2", True): Stub(),
              ("symplectic-euler", True): EULER, ("lie3", False): OPEN}  # fmt: skip
     module = ModuleType("verify.proof.every")
-    module.prove_every = lambda name, separable=False, least=0: known[name, separable]  # type: ignore[attr-defined]
+    module.prove_every = lambda name, separable=False, **_: known[name, separable]  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "verify.proof.every", module)
     return known
 

@@ -4,23 +4,23 @@ from dataclasses import replace
 
 import pytest
 
+from tests.helpers.lie_derivatives import lie_derivatives
 from verify import schemes
 from verify.algebra.generator import terms_of
-from verify.algebra.series.jets import JetRing, Jets, Poly
-from verify.algebra.series.timed_jets import TimedJets
+from verify.algebra.series.jets import JetRing, Jets, Poly, TimedJets
 from verify.claims.findings import Findings
 from verify.claims.kinds import models
 from verify.errors import InputError
-from verify.proof import every_in_time
+from verify.hamiltonians.jet_flow import JetFlow
+from verify.proof import every
 from verify.proof.certificates.every import of_every
-from verify.proof.every_in_time import prove_every_in_time
-from verify.proof.symplectic.every import prove_every_in_degrees
+from verify.proof.every import prove_every
 from verify.verdict import Verdict
 
 
 @pytest.mark.parametrize("eta", range(1, 7))
 def test_lie_for_every_h_in_time(eta: int) -> None:
-    found = prove_every_in_time(f"lie{eta}")
+    found = prove_every(f"lie{eta}", timed=True)
     assert (found.verdict, found.order, found.convergence_order) == (Verdict.PROVED, eta + 1, eta)
     assert found.formula == f"-div(D^{eta} f)/{eta + 1}!, f = (-H_q, H_p)"
     assert found.telescopes is (eta % 2 == 0)
@@ -38,7 +38,7 @@ def terms(jets: JetRing, x: Poly) -> dict[frozenset[tuple[str, int]], str]:
 @pytest.mark.parametrize("eta", range(1, 6))
 def test_where_h_does_not_depend_on_time_it_is_the_proof_for_every_h(eta: int) -> None:
     def divergence(jets: Jets | TimedJets) -> Poly:
-        p, q = (jets.lie_derivatives(name, eta + 1)[-1] for name in ("p", "q"))
+        p, q = (lie_derivatives(jets, name, eta + 1)[-1] for name in ("p", "q"))
         return jets.diff(p, "p") + jets.diff(q, "q")
 
     timed, plain = TimedJets(eta + 2), Jets(eta + 2)
@@ -51,13 +51,16 @@ def test_where_h_does_not_depend_on_time_it_is_the_proof_for_every_h(eta: int) -
 def test_d_without_the_derivative_by_time_is_another_one(monkeypatch: pytest.MonkeyPatch) -> None:
     """The planted error: the flow's terms with X in place of D are of order 1."""
     jets = TimedJets(4)
-    right = jets.lie_derivatives("p", 2)
+    right = lie_derivatives(jets, "p", 2)
     monkeypatch.setattr(
-        TimedJets,
+        JetFlow,
         "derive",
-        lambda self, x: self.h(1, 0) * self.diff(x, "q") - self.h(0, 1) * self.diff(x, "p"),
+        lambda self, x: sum(
+            slope * self.ring.diff(x, name)
+            for slope, name in zip(self.slopes, self.names, strict=True)
+        ),
     )
-    wrong = TimedJets(4).lie_derivatives("p", 2)
+    wrong = lie_derivatives(TimedJets(4), "p", 2)
     assert right[1] == wrong[1]
     assert right[2] - wrong[2] == -jets.h(0, 1, 1)
 
@@ -65,7 +68,7 @@ def test_d_without_the_derivative_by_time_is_another_one(monkeypatch: pytest.Mon
 @pytest.mark.sample(5)
 @pytest.mark.parametrize("name", [n for n in schemes.names() if schemes.get(n).needs_separable])
 def test_with_right_clocks_every_splitting_is_of_its_order(name: str) -> None:
-    found = prove_every_in_time(name)
+    found = prove_every(name, timed=True)
     assert (found.verdict, found.area_preserving) == (Verdict.PROVED, True)
     assert found.convergence_order >= schemes.get(name).order
     assert found.quantifier == "every smooth H = T(p, t) + V(q, t)"
@@ -89,7 +92,7 @@ def test_wrong_clocks_are_refuted_with_their_condition_and_named(
 ) -> None:
     first, middle, last = (part.strip() for part in times.split(","))
     scheme = f"kick 1/2 {first}; drift 1 {middle}; kick 1/2 {last}; order 2"
-    found = prove_every_in_time(scheme)
+    found = prove_every(scheme, timed=True)
     assert found.convergence_order == order
     if order == 2:
         assert found.verdict is Verdict.PROVED
@@ -101,7 +104,7 @@ def test_wrong_clocks_are_refuted_with_their_condition_and_named(
 
 
 def test_a_drifts_time_does_not_count_where_t_does_not_depend_on_it() -> None:
-    found = prove_every_in_time("kick 1/2 at 0; drift 1 at 7/3; kick 1/2 at 1; order 2")
+    found = prove_every("kick 1/2 at 0; drift 1 at 7/3; kick 1/2 at 1; order 2", timed=True)
     assert (found.verdict, found.convergence_order) == (Verdict.REFUTED, 1)
     told = [str(line) for line in found.checked if "the map has order" in str(line)]
     assert told == [
@@ -111,16 +114,17 @@ def test_a_drifts_time_does_not_count_where_t_does_not_depend_on_it() -> None:
 
 def test_kicks_commute_and_conditions_of_kicks_alone_are_not_asked_for() -> None:
     """Of order 3, though K_1 and K_0 have another coefficient than in the exact flow."""
-    found = prove_every_in_time(
+    found = prove_every(
         "kick 7/24 at 0; drift 2/3; kick -1/12 at 0; kick 2/3 at 1/2; kick 1/6 at 1; drift -2/3; "
-        "kick -1/24 at 0; drift 1; order 3"
+        "kick -1/24 at 0; drift 1; order 3",
+        timed=True,
     )
     assert (found.verdict, found.convergence_order) == (Verdict.PROVED, 3)
 
 
 @pytest.mark.parametrize("name", ["rk4", "explicit-midpoint", "implicit-midpoint", "gauss4"])
 def test_stages_at_their_times_keep_the_order_for_every_h(name: str) -> None:
-    found, claims = prove_every_in_time(name), schemes.get(name)
+    found, claims = prove_every(name, timed=True), schemes.get(name)
     assert (found.verdict, found.convergence_order) == (Verdict.PROVED, claims.order)
     assert found.area_preserving is claims.area_preserving
     assert found.quantifier == "every smooth H(p, q, t)"
@@ -128,24 +132,24 @@ def test_stages_at_their_times_keep_the_order_for_every_h(name: str) -> None:
 
 def test_a_higher_claim_of_a_method_is_refuted(monkeypatch: pytest.MonkeyPatch) -> None:
     claimed = replace(schemes.get("gauss4"), order=5)
-    monkeypatch.setattr(every_in_time, "get", lambda _: claimed)
-    found = prove_every_in_time("gauss4")
+    monkeypatch.setattr(every, "get", lambda _: claimed)
+    found = prove_every("gauss4", timed=True)
     assert (found.verdict, found.convergence_order) == (Verdict.REFUTED, 4)
 
 
 def test_stages_one_after_the_other_are_proved_too() -> None:
-    found = prove_every_in_time("implicit-symplectic-euler")
+    found = prove_every("implicit-symplectic-euler", timed=True)
     assert (found.verdict, found.area_preserving) == (Verdict.PROVED, True)
     assert found.quantifier == "every smooth H(p, q, t)"
 
 
 def test_other_schemes_are_refused_in_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(InputError, match="up to lie8"):
-        prove_every_in_time("lie9")
+        prove_every("lie9", timed=True)
     for_one = replace(schemes.get("rk4"), every_h=None)
-    monkeypatch.setattr(every_in_time, "get", lambda _: for_one)
+    monkeypatch.setattr(every, "get", lambda _: for_one)
     with pytest.raises(InputError, match="it cannot be proved for every H in t"):
-        prove_every_in_time("rk4")
+        prove_every("rk4", timed=True)
 
 
 @pytest.mark.parametrize(("scheme", "order"), [("rk4", 5), ("explicit-midpoint", 3)])
@@ -153,7 +157,7 @@ def test_explicit_stages_have_the_order_that_the_prover_in_n_degrees_has(
     scheme: str, order: int
 ) -> None:
     """By an H without t, of which no higher order is true; the other prover makes S itself."""
-    found, made = prove_every_in_time(scheme), prove_every_in_degrees(scheme, 1, timed=True)
+    found, made = prove_every(scheme, timed=True), prove_every(scheme, degrees=2, timed=True)
     assert (found.verdict, found.order, found.leading) == ("PROVED", order, "")
     assert (made.verdict, made.order, made.volume_order) == ("PROVED", order, order)
     with pytest.raises(InputError, match="the checker knows"):

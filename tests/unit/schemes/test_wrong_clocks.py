@@ -9,7 +9,6 @@ from verify import schemes
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.every import prove_every
-from verify.proof.every_in_time import prove_every_in_time
 from verify.proof.order import convergence_of
 from verify.schemes.splitting import right_times
 from verify.schemes.splitting_conditions import Splitting
@@ -37,7 +36,7 @@ def test_the_times_of_verlet(clock: str, wanted: tuple[object, ...]) -> None:
 @pytest.mark.parametrize("base", ["stormer-verlet", "forest-ruth", "blanes-moan4"])
 def test_they_keep_their_order_without_time_and_have_order_1_with_it(base: str, clock: str) -> None:
     name, claimed = f"{base}, clock {clock}", schemes.get(base).order
-    still, timed = prove_every(name), prove_every_in_time(name)
+    still, timed = prove_every(name), prove_every(name, timed=True)
     assert (still.verdict, still.convergence_order) == ("PROVED", claimed)
     assert (timed.verdict, timed.convergence_order) == ("REFUTED", 1)
     assert "as if" in str(timed.reason)

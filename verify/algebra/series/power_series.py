@@ -137,12 +137,3 @@ def _taylor_terms(
         yield from _taylor_terms(x, rest, power, share)
         n += 1
         x, power, share = x.by(name), power * by, share / n
-
-
-def delta_j(p_next: Series, q_next: Series) -> Series:
-    """ΔJ of the map with these series, by its increments."""
-    ring = p_next.ring
-    u = p_next - Series.of(ring, [ring.variable("p")], p_next.most)
-    v = q_next - Series.of(ring, [ring.variable("q")], q_next.most)
-    u_p, u_q, v_p, v_q = u.diff("p"), u.diff("q"), v.diff("p"), v.diff("q")
-    return u_p + v_q + u_p * v_q - u_q * v_p

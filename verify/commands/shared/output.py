@@ -9,13 +9,15 @@ import click
 from verify.commands.shared.answer import picked
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
+    from fractions import Fraction
 
     from verify.hamiltonians.hamiltonian import Hamiltonian
     from verify.integrators.results import Finding
-    from verify.proof.every import EveryProof
+    from verify.proof.every_proof import EveryProof
     from verify.proof.order_proof import Proof
     from verify.proof.potential import Potential
+    from verify.proof.special_values import SpecialValue
     from verify.proof.symplectic.proof import SymplecticProof
     from verify.scenes.frozen import Frozen
     from verify.scenes.results.report import Report
@@ -73,26 +75,50 @@ def cut(formula: str) -> str:
 
 
 def proof_json(
-    exact: "Hamiltonian", scheme: str, proof: "Proof", potential: "Potential", seconds: str
+    texts: "Mapping[str, Any]",
+    scheme: str,
+    proof: "Proof | SymplecticProof | EveryProof",
+    seconds: str,
+    **differs: Any,
 ) -> dict[str, Any]:
-    from verify.arithmetic.exact import text
-
+    """The keys of every proof; `texts`: H and its parameters, or for which H it is; `differs`: more
+    of them, or other values."""
     return {
         **picked(proof, "verdict", "reason"),
-        **exact.texts,
+        **texts,
         "scheme": scheme,
         **order_json(proof.order),
-        "leading": proof.first.text,
-        "delta_j": proof.step_map.delta_j_text,
-        "area_preserving": proof.area_preserving,
+        "leading": proof.leading_text or None,
+        "delta_j": "0" if proof.area_preserving else None,
+        **picked(proof, "symplectic", "area_preserving"),
         **agreement_json(proof),
-        "symplectic": proof.area_preserving,  # in the plane that is the same
-        "witness": {name: text(value) for name, value in proof.witness.items()},
-        "telescopes": potential.holds,
-        "potential": potential.text,
         "domain": proof.domain.texts,
+        "special_values": [],
+        **differs,
         "seconds": seconds,
     }
+
+
+def checks_json(proof: "SymplecticProof | EveryProof") -> dict[str, Any]:
+    """How the leading coefficient is known, and what was checked; of S what is said beside."""
+    from dataclasses import asdict
+
+    of_form = ("degrees", "entry", "volume_order", "volume_leading")
+    point = {"witness": point_json(getattr(proof, "witness", {}))}  # there is none of every H
+    return {
+        **({**picked(proof, *of_form), **point} if proof.degrees > 1 else {}),
+        **picked(proof, "telescopes", "why", "checked"),
+        "formula": proof.formula or None,
+        "potential": proof.potential or None,
+        "conditions": [asdict(condition) for condition in proof.conditions],
+    }
+
+
+def point_json(point: "Mapping[str, Fraction]") -> dict[str, str]:
+    """A point, as exact numbers."""
+    from verify.arithmetic.exact import text
+
+    return {name: text(value) for name, value in point.items()}
 
 
 def line(name: str, text: str) -> None:
@@ -121,7 +147,13 @@ def print_head(
     click.echo(f"  scheme   {scheme}")
 
 
-def print_proof(exact: "Hamiltonian", scheme: str, proof: "Proof", potential: "Potential") -> None:
+def print_proof(
+    exact: "Hamiltonian",
+    scheme: str,
+    proof: "Proof",
+    potential: "Potential",
+    special: "Iterable[SpecialValue]" = (),
+) -> None:
     from verify.arithmetic.exact import text
 
     print_head(exact, scheme, proof)
@@ -142,6 +174,8 @@ def print_proof(exact: "Hamiltonian", scheme: str, proof: "Proof", potential: "P
     if proof.domain:
         click.echo(f"  where    {proof.domain.prose}")
     click.echo(f"  the map  agrees with the exact flow {agreement(proof)}")
+    for each in special:
+        click.echo(f"  but at   {each.parameter} = {each.value}: {each.proof.reason}")
 
 
 def run_json(result: "RunResult") -> dict[str, Any]:

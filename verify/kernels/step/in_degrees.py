@@ -19,7 +19,7 @@ from verify.kernels.step.pfaffian import Pfaffian, change_of_volume
 from verify.kernels.step.program import Evaluator, Program
 from verify.kernels.step.program_algebra import ProgramAlgebra
 from verify.kernels.step.tangent_map import Tangent
-from verify.proof.symplectic.closed_defect import ClosedDefect
+from verify.proof.symplectic.closed_form import ClosedDefect
 from verify.schemes import get
 from verify.schemes.degrees import map_in_degrees
 from verify.schemes.degrees.canonical_map import CanonicalMap

@@ -28,48 +28,52 @@ number is a text such as "-3/2".
   of its coefficients c₀, c₁, …, whole numbers. A coefficient of `stages` or `tableau` is a number,
   or a polynomial in these names.
 
+In n degrees of freedom: `degrees` n; `next` has the coefficients of each coordinate's new value, by
+its name; `leading` and `potential` are 2-forms, lists of [coordinate, coordinate, polynomial]. What
+has to be zero is called `p1 0`, `S 3 p1 q2`, `potential p1 q2`.
+
 `verify.proof.certificates.checker` recomputes derivatives, flow and determinant from these alone.
 """
 
-from verify.algebra.series.jets import Jets
-from verify.algebra.series.timed_jets import TimedJets
 from verify.errors import InputError
-from verify.hamiltonians.coordinates import PLANE
 from verify.proof.certificates.by_coefficients import by_coefficients
 from verify.proof.certificates.file import FORMAT, Certificate
-from verify.proof.certificates.statement import Statement, in_the_plane
-from verify.proof.every import EveryProof, telescoping_of
+from verify.proof.certificates.statement import Statement, entries_of
+from verify.proof.every_by_series import series_in_jets
+from verify.proof.every_proof import EveryProof
 from verify.schemes import get
 from verify.schemes.every_hamiltonian import BySeries
 from verify.verdict import Verdict
 
-NOT_KNOWN = "the checker knows coefficients of what preserves area, and Taylor polynomials"
+_NOT_KNOWN = "the checker knows coefficients of what preserves area, and Taylor polynomials"
 
 
 def of_every(proof: EveryProof) -> Certificate:
     """The certificate of a proof for every H; InputError where nothing is proved."""
-    scheme = get(proof.scheme)
+    scheme, agreed = get(proof.scheme), proof.convergence_order
     every_h = scheme.every_h
-    if proof.verdict is not Verdict.PROVED or every_h is None or proof.convergence_order is None:
+    if proof.verdict is not Verdict.PROVED or every_h is None or agreed is None:
         raise InputError("scheme", proof.scheme, f"{proof.verdict}: there is nothing to certify")
-    data: Certificate = {"format": FORMAT, "hamiltonian": "every", "separable": proof.separable}
-    data |= {"time_dependent": True} if proof.timed else {}
-    given = by_coefficients(scheme, timed=proof.timed) if proof.area_preserving else None
+    data: Certificate = {
+        "format": FORMAT,
+        **({} if proof.planar else {"degrees": proof.degrees}),
+        "hamiltonian": "every",
+        "separable": proof.separable,
+        **({"time_dependent": True} if proof.timed else {}),
+    }
+    given = by_coefficients(scheme, timed=proof.timed) if proof.symplectic else None
     if given is not None:
         return data | given
-    if proof.order is None or not proof.leading or not isinstance(every_h, BySeries):
-        raise InputError("scheme", proof.scheme, NOT_KNOWN)
-    most = proof.order
-    jets = TimedJets(most + 2) if proof.timed else Jets(most + 2, separable=proof.separable)
-    series = every_h.taylor(jets, most)
-    *_, leading = jets.delta_j(*series)
-    found = telescoping_of(jets, every_h, leading) if proof.telescopes else None
+    if proof.order is None or proof.form is None or not isinstance(every_h, BySeries):
+        raise InputError("scheme", proof.scheme, _NOT_KNOWN)
+    series, potential = series_in_jets(proof, every_h, proof.order), proof.potential_form
+    flow, powers = series.flow, range(proof.order + 1)
     statement = Statement(
-        PLANE,
-        series,
-        most,
-        proof.convergence_order,
-        in_the_plane(leading),
-        None if found is None or found.potential is None else in_the_plane(found.potential),
+        flow.names,
+        list(zip(*map(series.coefficient, powers), strict=True)),
+        proof.order,
+        agreed,
+        entries_of(proof.form),
+        None if potential is None else entries_of(potential),
     )
-    return data | statement.written(dict(enumerate(jets.names)))
+    return data | statement.written(dict(enumerate(flow.ring.context.names())))

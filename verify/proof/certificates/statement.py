@@ -1,7 +1,6 @@
 """What a certificate says of a map, as its JSON has it, and what has to be zero for that.
 
-The formats are told in `every` and, of n degrees of freedom, in `several`. In the plane a 2-form is
-its one entry.
+The formats are told in `every`. In the plane a 2-form is its one entry.
 """
 
 import math

@@ -7,14 +7,11 @@ from typing import Literal
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.certificates.every import of_every
 from verify.proof.certificates.file import Certificate
-from verify.proof.certificates.one import of_one
-from verify.proof.certificates.several import of_every_in_degrees, of_one_in_degrees
+from verify.proof.certificates.one import of_one, of_one_in_degrees
 from verify.proof.every import prove_every
-from verify.proof.every_in_time import prove_every_in_time
 from verify.proof.every_proof import EveryProof
 from verify.proof.order_proof import Proof
 from verify.proof.potential import Potential
-from verify.proof.symplectic.every import prove_every_in_degrees
 from verify.proof.symplectic.proof import SymplecticProof
 from verify.schemes.scheme import Scheme
 
@@ -53,61 +50,44 @@ class Proved:
 
 
 def of_every_hamiltonian(proof: EveryProof, scheme: Scheme, about: frozenset[About]) -> Proved:
-    """By a proof for every H of the plane."""
+    """By a proof for every H."""
     short = len(proof.leading) <= _LONGEST
     return Proved(
-        scheme, _in_plane(about), proof.area_preserving, every=True, timed=proof.timed, degrees=1,
-        telescopes=proof.telescopes, certificates=(lambda: of_every(proof),) if short else (),
+        scheme, _asked(about, proof.degrees), proof.symplectic, every=True, timed=proof.timed,
+        degrees=proof.degrees, telescopes=proof.telescopes,
+        certificates=(lambda: of_every(proof),) if short else (),
     )  # fmt: skip
 
 
-def of_one_hamiltonian(proof: Proof, scheme: Scheme, about: frozenset[About]) -> Proved:
-    """By a proof for one H of the plane.
-
-    Where its own map has no certificate, that of every H tells as much if area is preserved.
-    """
-    timed = proof.step_map.hamiltonian.time_dependent
-    makers: list[Callable[[], Certificate]] = [lambda: of_one(proof, _NOT_LOOKED_FOR)]
-    if proof.area_preserving and scheme.every_h is not None:
-        every = prove_every_in_time if timed else prove_every
-        makers.append(lambda: of_every(every(scheme.name)))
-    short = proof.area_preserving or len(proof.first.text) <= _LONGEST
-    return Proved(
-        scheme, _in_plane(about), proof.area_preserving, every=False, timed=timed, degrees=1,
-        certificates=tuple(makers) if short else (),
-    )  # fmt: skip
-
-
-def of_degrees(
-    proof: SymplecticProof,
+def of_one_hamiltonian(
+    proof: Proof | SymplecticProof,
+    hamiltonian: Hamiltonian,
     scheme: Scheme,
     about: frozenset[About],
-    hamiltonian: Hamiltonian | None = None,
-    *,
-    separable: bool = False,
-    timed: bool = False,
 ) -> Proved:
-    """By a proof in n degrees of freedom, for this H or for every one."""
-    timed = hamiltonian.time_dependent if hamiltonian is not None else timed
+    """By a proof for this H.
+
+    Where its own map has no certificate, that of every H tells as much if the map is symplectic.
+    """
+    timed, degrees = hamiltonian.time_dependent, hamiltonian.degrees
 
     def own() -> Certificate:
-        if hamiltonian is not None:
+        if isinstance(proof, SymplecticProof):
             return of_one_in_degrees(proof, hamiltonian, scheme)
-        return of_every_in_degrees(proof, scheme, separable=separable, timed=timed)
+        return of_one(proof, _NOT_LOOKED_FOR)
 
     def every() -> Certificate:
-        general = prove_every_in_degrees(scheme.name, proof.degrees, timed=timed)
-        return of_every_in_degrees(general, scheme, separable=False, timed=timed)
+        return of_every(prove_every(scheme.name, timed=timed, degrees=degrees))
 
-    fallback = hamiltonian is not None and proof.symplectic and scheme.every_h is not None
-    short = proof.leading is None or len(proof.leading_text) <= _LONGEST
+    fallback = proof.symplectic and scheme.every_h is not None
+    short = proof.symplectic or len(proof.leading_text) <= _LONGEST
     return Proved(
-        scheme, about, proof.symplectic, every=hamiltonian is None, timed=timed,
-        degrees=proof.degrees, telescopes=proof.telescopes,
+        scheme, _asked(about, degrees), proof.symplectic, every=False, timed=timed, degrees=degrees,
+        telescopes=proof.telescopes if isinstance(proof, SymplecticProof) else None,
         certificates=(own, *(every,) * bool(fallback)) if short else (),
     )  # fmt: skip
 
 
-def _in_plane(about: frozenset[About]) -> frozenset[About]:
-    """There S is ΔJ, and one certificate tells of both."""
-    return (about - {"volume"}) | DEFECT if "volume" in about else about
+def _asked(about: frozenset[About], degrees: int) -> frozenset[About]:
+    """In the plane S is ΔJ, and one certificate tells of both."""
+    return (about - {"volume"}) | DEFECT if degrees == 1 and "volume" in about else about

@@ -76,7 +76,7 @@ def _series_of(every_h: BySeries | ByConditions) -> BySeries | None:
 
 def _taylor(
     name: str, every_h: BySeries | ByConditions, series: BySeries | None, jets: Jets, most: int
-) -> tuple[Series, Series]:
+) -> tuple[Series, ...]:
     if series is not None:
         return series.taylor(jets, most)
     if isinstance(every_h, TreeConditions):

@@ -12,25 +12,20 @@ from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.ring import Decision, Poly, Ring
 from verify.hamiltonians.canonical_field import CanonicalField
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.by_conditions import told_nearby
-from verify.proof.claimed import Claimed, Convergence, Words, held_to
+from verify.proof.claimed import IN_DEGREES, Claimed, Convergence, held_to
 from verify.proof.expansion import series_of
-from verify.proof.order import is_residue, nearby_convergence, nearby_defect_of
+from verify.proof.order import convergence_by, nearby_convergence, nearby_defect_of, with_nearby
 from verify.proof.parameters import not_zero_for
-from verify.proof.printed_formulas import told_defect
 from verify.proof.symplectic import closed_form
 from verify.proof.symplectic.proof import SymplecticProof
-from verify.proof.symplectic.telescoping import telescopes_of_lie
-from verify.prose import prose
+from verify.proof.telescoping import telescopes_of_lie
 from verify.schemes.degrees import map_in_degrees
 from verify.schemes.degrees.canonical_map import CanonicalMap
 from verify.schemes.degrees.defect import DefectSeries
 from verify.schemes.degrees.two_form import Place, TwoForm
 from verify.schemes.scheme import Scheme
-from verify.verdict import Verdict
 
 _MOST = 8  # powers of h that are looked at; more where a scheme claims a higher order
-_WORDS = Words("S", "S is the zero form: the map is symplectic", "form", "to be symplectic")
 
 
 @dataclass(frozen=True)
@@ -65,18 +60,15 @@ def prove_map(
     """The same of a map that is made, by a scheme if by one."""
     series = series_of(step, claimed.order + 1)
     most = max(_MOST, claimed.order + 1)
-    printed = _convergence(step, series, most)
+    printed = convergence_by(series, step.flow_up_to + 1, most)
     convergence, near = nearby_convergence(
         scheme, printed, step.hamiltonian, partial(_of_scheme, step, most)
     )
     defect = _within(step.domain, _defect(step, series, most))
     first = defect.power, defect.decision.zero
-    verdict, reason = held_to(claimed, convergence, first, most, _WORDS)
-    if near is not None and verdict is Verdict.PROVED:
-        verdict, reason = near.verdict, prose(reason, "; ", told_nearby(near))
     without = nearby_defect_of(scheme, step.hamiltonian, defect.power)
-    if without is not None:
-        reason = prose(reason, "; ", told_defect(without, "S"))
+    judged = held_to(claimed, convergence, first, most, IN_DEGREES)
+    verdict, reason = with_nearby(judged, near, without, "S")
     found = _Rest(step, series, defect, most)
     return SymplecticProof(
         verdict=verdict,
@@ -100,19 +92,7 @@ def prove_map(
 
 def _of_scheme(step: CanonicalMap, most: int, scheme: Scheme) -> Convergence:
     made = map_in_degrees(scheme, step.hamiltonian)
-    return _convergence(made, series_of(made, most), most, residues=True)
-
-
-def _convergence(
-    step: CanonicalMap, series: DefectSeries[CanonicalField], most: int, residues: bool = False
-) -> Convergence:
-    """The order to which the map agrees with the exact flow; with `residues`, up to such."""
-    for n in range(step.flow_up_to + 1, most + 1):
-        agrees, gap = series.agrees(n, is_residue if residues else None)
-        if agrees is not True:
-            exact_for = partial(not_zero_for, series.flow.ring, gap, f"the difference at h^{n}")
-            return Convergence(n - 1, agrees is False, exact_for)
-    return Convergence(None, True)
+    return convergence_by(series_of(made, most), made.flow_up_to + 1, most, residues=True)
 
 
 # -- S ---------------------------------------------------------------------------------------------

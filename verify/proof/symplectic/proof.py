@@ -7,10 +7,8 @@ from verify.algebra.domain import Domain
 from verify.notebook import cut
 from verify.prose import Prose
 from verify.schemes.conditions import Condition, NearbyOrder
-from verify.schemes.degrees.two_form import TwoForm
+from verify.schemes.degrees.two_form import MOST_TERMS, TwoForm
 from verify.verdict import Verdict
-
-MOST_TERMS = 2000  # of a form that is written out
 
 
 @dataclass(frozen=True)

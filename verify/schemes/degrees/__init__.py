@@ -1,9 +1,8 @@
 """Step maps in n degrees of freedom, from the coefficients that a scheme has for every H.
 
 A file of `kinds/` has `KIND`, a class of coefficients; `build(coefficients, hamiltonian)`, the map
-that they make; `conditions(coefficients)`, which suffice for a symplectic one, for every H; and
-where the coefficients are rational `step(coefficients)`, how the map is made over any ring. Adding
-a kind is adding one file.
+that they make; and `conditions(coefficients)`, which suffice for a symplectic one, for every H.
+Adding a kind is adding one file.
 """
 
 from functools import cache

@@ -12,6 +12,7 @@ from verify.algebra.series.coefficient_ring import CoefficientRing
 from verify.hamiltonians.canonical_field import Flow
 
 Place = tuple[int, int]
+MOST_TERMS = 2000  # of a form that is written out
 
 
 @dataclass(frozen=True)
@@ -84,9 +85,9 @@ class TwoForm:
 
 def lie_derivative(flow: Flow, form: TwoForm) -> TwoForm:
     """Along the flow, of D = ∂_t + X where H depends on time: D applied to the entries, and with
-    A = f' AᵀB + BA."""
+    A = f' AᵀB + BA, which is tr A = 0 times the entry in the plane."""
     ring, slopes = flow.ring, [flow.gradient(x) for x in flow.slopes]
-    size = range(len(flow.names))
+    size = range(len(flow.names)) if flow.degrees > 1 else ()
 
     def entry(a: int, b: int) -> Poly:
         total = flow.derive(form.at(a, b))

@@ -13,10 +13,11 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
 from verify.proof.order_proof import Proof
 from verify.proof.symplectic.order import prove_symplectic
-from verify.proof.symplectic.proof import MOST_TERMS, SymplecticProof
+from verify.proof.symplectic.proof import SymplecticProof
 from verify.prose import Prose
 from verify.scenes.results.proof import FormResult, Formulas, ProofResult
 from verify.schemes import get
+from verify.schemes.degrees.two_form import MOST_TERMS
 from verify.schemes.scheme import Scheme
 from verify.schemes.step_map import StepMap, grouped
 
@@ -53,6 +54,7 @@ class ProofTask(SchemeTask):
             verdict=proof.verdict,
             reason=proof.reason,
             order=proof.order,
+            leading=proof.leading_text,
             area_preserving=proof.area_preserving,
             convergence_order=proof.convergence_order,
             convergence_decided=proof.convergence_decided,
@@ -71,11 +73,9 @@ def _marks(
 ) -> tuple[Prose, ...]:
     """Who else checked it."""
     from verify.proof.checked import marks
-    from verify.proof.checked.proved import DEFECT, MAP, of_degrees, of_one_hamiltonian
+    from verify.proof.checked.proved import DEFECT, MAP, of_one_hamiltonian
 
-    if isinstance(proof, SymplecticProof):
-        return marks(of_degrees(proof, scheme, DEFECT | MAP, hamiltonian))
-    return marks(of_one_hamiltonian(proof, scheme, DEFECT | MAP))
+    return marks(of_one_hamiltonian(proof, hamiltonian, scheme, DEFECT | MAP))
 
 
 def _in_plane(
@@ -86,7 +86,7 @@ def _in_plane(
     proof = prove(step_map, scheme)
     written = _written(step_map) if formulas else dict.fromkeys(_FORMULAS)
     symbolic = _symbolic(hamiltonian, scheme, proof.order) if formulas else None
-    return proof, {"leading": proof.first.text, **written, "symbolic": symbolic}
+    return proof, {**written, "symbolic": symbolic}
 
 
 def _in_degrees(
@@ -110,7 +110,7 @@ def _in_degrees(
         why=proof.why,
     )
     written = dict.fromkeys(_FORMULAS) | {"delta_j": "0" if proof.symplectic else None}
-    return proof, {"leading": proof.leading_text, **written, "form": form}
+    return proof, {**written, "form": form}
 
 
 def _written(step_map: StepMap) -> dict[str, Any]:

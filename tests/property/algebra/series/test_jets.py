@@ -16,11 +16,15 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
+from tests.helpers.lie_derivatives import lie_derivatives
 from tests.helpers.sampled.formulas import P, Q, plain, polynomials, rationals
 from verify.algebra.linear_combination import combination
 from verify.algebra.series.jets import Jets, shown
 from verify.algebra.series.power_series import Derivatives, Series, at_moved
-from verify.proof.telescoping import potential_of_lie, telescopes, telescopes_of_lie
+from verify.hamiltonians.jet_flow import JetFlow
+from verify.proof.every import prove_every
+from verify.proof.telescoping import potential_of_lie, telescopes
+from verify.schemes.degrees.two_form import wedge
 
 ORDER = 3
 T = sympy.Symbol("t")
@@ -89,7 +93,9 @@ def test_derivatives_of_jets_are_those_of_every_h(
     assert same(put_in(jets, jets.diff(x, "q"), h), a.diff(Q))
     assert same(put_in(jets, jets.derive(x), h), h.diff(P) * a.diff(Q) - h.diff(Q) * a.diff(P))
     bracket = a.diff(P) * b.diff(Q) - a.diff(Q) * b.diff(P)
-    assert same(put_in(jets, jets.bracket(x, y), h), bracket)
+    flow = JetFlow.over(jets)
+    area = wedge(flow.gradient(x), flow.gradient(y), 0, 1)
+    assert same(put_in(jets, area, h), bracket)
 
 
 @drawn(8)
@@ -158,8 +164,8 @@ def test_the_jets_are_all_derivatives_up_to_their_order(order: int, separable: b
         with pytest.raises(OverflowError):
             jets.h(i, j)
     assert [shown(x) for x in (jets.p, jets.q, jets.zero, jets.one)] == ["p", "q", "0", "1"]
-    assert jets.lie_derivatives("p", 1) == [jets.p, -jets.h(0, 1)]
-    assert jets.lie_derivatives("q", 1) == [jets.q, jets.h(1, 0)]
+    assert lie_derivatives(jets, "p", 1) == [jets.p, -jets.h(0, 1)]
+    assert lie_derivatives(jets, "q", 1) == [jets.q, jets.h(1, 0)]
 
 
 # -- what telescopes ------------------------------------------------------------------------------
@@ -223,21 +229,23 @@ def test_one_product_of_derivatives_telescopes_where_the_ranks_say_so(
 @pytest.mark.parametrize("eta", [1, 2, 3, 4])
 def test_the_truncated_flow_telescopes_for_even_eta_alone(eta: int) -> None:
     jets = Jets(eta + 2)
-    end = [jets.derive(jets.lie_derivatives(name, eta)[-1]) for name in "pq"]
+    end = [jets.derive(lie_derivatives(jets, name, eta)[-1]) for name in "pq"]
     leading = -(jets.diff(end[0], "p") + jets.diff(end[1], "q")) / math.factorial(eta + 1)
-    found = telescopes_of_lie(jets, leading, eta)
-    assert found.holds == (eta % 2 == 0)
-    if found.holds:
-        assert found.potential == potential_of_lie(jets, eta)
-        assert jets.derive(found.potential) == leading
-        assert f"G = −1/{eta + 1}!" in found.reason
-        assert f"X^({eta}−k)" in found.reason
-        twice = telescopes_of_lie(jets, leading * 2, eta)  # another L, and another G
+    found = prove_every(f"lie{eta}")
+    assert found.telescopes is (eta % 2 == 0)
+    assert found.leading == shown(leading)
+    if found.telescopes:
+        potential = potential_of_lie(JetFlow.over(jets), eta).divergence
+        assert found.potential == shown(potential)
+        assert jets.derive(potential) == leading
+        assert f"G = −1/{eta + 1}!" in found.why
+        assert f"X^({eta}−k)" in found.why
+        twice = telescopes(jets, leading * 2)  # another L, and another G
         assert twice.holds
         assert jets.derive(twice.potential) == leading * 2
     else:
         with pytest.raises(ValueError, match="odd"):
-            potential_of_lie(jets, eta)
+            potential_of_lie(JetFlow.over(jets), eta)
 
 
 # -- linear algebra -------------------------------------------------------------------------------

@@ -8,9 +8,11 @@ import sympy
 from tests.helpers.sampled.formulas import P, Q, plain
 from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
-from verify.algebra.series.power_series import Derivatives, Series, at_moved, delta_j
+from verify.algebra.series.power_series import Derivatives, Series, at_moved
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.plane_flow import PlaneFlow
 from verify.schemes import get
+from verify.schemes.degrees.defect import DefectSeries
 
 H = plain("h")
 MOST = 4
@@ -78,5 +80,7 @@ def test_delta_j_of_a_series_is_that_of_the_closed_form(name: str) -> None:
     assert expanded is not None
     field, p, q = expanded
     closed = sympy.Poly(step_map.delta_j, H)
-    for n, coefficient in enumerate(delta_j(p, q).coefficients):
+    made = DefectSeries(lambda _: (PlaneFlow(field), (p, q)), MOST)
+    for n in range(MOST + 1):
+        coefficient = made.form(n).divergence
         assert sympy.expand(field.ring.expression(coefficient) - closed.coeff_monomial(H**n)) == 0

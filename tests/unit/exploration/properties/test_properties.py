@@ -16,6 +16,7 @@ from verify.proof import growth_law as growth
 from verify.proof.order import prove
 from verify.scenes.scene import scene_from
 from verify.schemes import get
+from verify.schemes.degrees.two_form import TwoForm
 from verify.schemes.step_map import StepMap
 from verify.schemes.substep import Substep
 
@@ -126,7 +127,12 @@ def a_part_twice(sample: Sample, patch: Patch) -> Sample:
 def twice_the_potential(sample: Sample, patch: Patch) -> Sample:
     growth.growth_law.cache_clear()
     true = growth.potential_of_lie
-    patch.setattr(growth, "potential_of_lie", lambda field, eta: 2 * true(field, eta))
+
+    def twice(flow: Any, eta: int) -> TwoForm:
+        form = true(flow, eta)
+        return TwoForm.of(form.ring, form.names, lambda a, b: 2 * form.at(a, b))
+
+    patch.setattr(growth, "potential_of_lie", twice)
     return sample
 
 

@@ -16,9 +16,7 @@ from verify.proof.certificates import by_coefficients as written
 from verify.proof.certificates.checker import check
 from verify.proof.certificates.established import Established, established
 from verify.proof.certificates.every import of_every
-from verify.proof.certificates.several import of_every_in_degrees
 from verify.proof.every import prove_every
-from verify.proof.symplectic.every import prove_every_in_degrees
 from verify.schemes import get, names
 from verify.schemes.implicit_tableau import ImplicitTableau
 from verify.schemes.splitting_conditions import Splitting
@@ -104,15 +102,13 @@ def test_what_preserves_area_has_a_certificate_of_its_own_coefficients(name: str
 @pytest.mark.sample(5)
 @pytest.mark.parametrize("name", SYMPLECTIC)
 def test_so_it_has_in_time_separable_and_in_several_degrees(name: str) -> None:
-    scheme, separable = get(name), get(name).needs_separable
+    separable = get(name).needs_separable
     said = accepted(of_every_in_time(name))
     form = "T(p, t) + V(q, t)" if separable else "H(p, q, t)"
     assert said.statement.startswith(f"det J = 1 for every smooth {'H = ' * separable}{form} and")
     alone = accepted(as_read(of_every(prove_every(name, True))))
     assert alone.statement.startswith(f"det J = 1 for {FORM[True]} and")
-    proof = prove_every_in_degrees(name, 3)
-    data = of_every_in_degrees(proof, scheme, separable=False, timed=False)
-    said = accepted(as_read(data))
+    said = accepted(as_read(of_every(prove_every(name, degrees=3))))
     where = f"{FORM[separable]} in 3 degrees of freedom"
     assert said.statement.startswith(f"S = JᵀΩJ − Ω = 0 for {where} and the")
     assert (said.degrees, said.symplectic) == (3, True)

@@ -10,8 +10,9 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.certificates.checker import check
 from verify.proof.certificates.established import Established, established
-from verify.proof.certificates.several import of_every_in_degrees, of_one_in_degrees
-from verify.proof.symplectic.every import prove_every_in_degrees
+from verify.proof.certificates.every import of_every as certificate_of_every
+from verify.proof.certificates.one import of_one_in_degrees
+from verify.proof.every import prove_every
 from verify.proof.symplectic.order import prove_symplectic
 from verify.schemes import get
 
@@ -41,8 +42,7 @@ def of_one(formula: str, scheme: str) -> dict[str, Any]:
 
 @cache
 def of_every(scheme: str, degrees: int, timed: bool) -> dict[str, Any]:
-    proof = prove_every_in_degrees(scheme, degrees, timed=timed)
-    return of_every_in_degrees(proof, get(scheme), separable=False, timed=timed)
+    return certificate_of_every(prove_every(scheme, degrees=degrees, timed=timed))
 
 
 def accepted(data: dict[str, Any]) -> Established:

@@ -12,12 +12,9 @@ from verify.proof.checked.proved import (
     DEFECT,
     MAP,
     Proved,
-    of_degrees,
     of_every_hamiltonian,
 )
 from verify.proof.every import prove_every
-from verify.proof.every_in_time import prove_every_in_time
-from verify.proof.symplectic.every import prove_every_in_degrees
 from verify.schemes import get
 from verify.schemes.every_hamiltonian import Stage, StageEquations
 
@@ -81,19 +78,21 @@ def test_a_mark_has_the_order_of_its_scheme() -> None:
     assert "no term below h^5" in mark
     assert "−div(X^4 f)/5!" in mark
     (timed,) = in_theory.marks(
-        of_every_hamiltonian(prove_every_in_time("lie4"), get("lie4"), DEFECT)
+        of_every_hamiltonian(prove_every("lie4", timed=True), get("lie4"), DEFECT)
     )
     assert "H(p, q, t)" in timed
     assert "−div(D^4 f)/5!" in timed
 
 
 def test_in_degrees_s_and_det_j_have_theorems_of_their_own() -> None:
-    proof = prove_every_in_degrees("lie2", 2)
-    assert names(of_degrees(proof, get("lie2"), DEFECT)) == ["Theorems.defect_of_lie"]
+    proof = prove_every("lie2", degrees=2)
+    assert names(of_every_hamiltonian(proof, get("lie2"), DEFECT)) == ["Theorems.defect_of_lie"]
     volume = frozenset({"volume"})
-    assert names(of_degrees(proof, get("lie2"), volume)) == ["Theorems.determinant_of_lie"]
-    verlet = prove_every_in_degrees("stormer-verlet", 2)
-    assert names(of_degrees(verlet, get("stormer-verlet"), volume)) == []
+    assert names(of_every_hamiltonian(proof, get("lie2"), volume)) == [
+        "Theorems.determinant_of_lie"
+    ]
+    verlet = prove_every("stormer-verlet", degrees=2)
+    assert names(of_every_hamiltonian(verlet, get("stormer-verlet"), volume)) == []
 
 
 def test_odd_eta_is_shown_by_an_h_without_time_for_every_h_alone() -> None:

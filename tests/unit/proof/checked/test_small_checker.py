@@ -13,14 +13,11 @@ from verify.proof.checked.proved import (
     ALL,
     DEFECT,
     Proved,
-    of_degrees,
     of_every_hamiltonian,
     of_one_hamiltonian,
 )
 from verify.proof.every import prove_every
-from verify.proof.every_in_time import prove_every_in_time
 from verify.proof.order import prove
-from verify.proof.symplectic.every import prove_every_in_degrees
 from verify.proof.symplectic.order import prove_symplectic
 from verify.schemes import get
 
@@ -31,9 +28,8 @@ def marks(proved: Proved) -> list[str]:
 
 def one(system: str, scheme: str, **values: int) -> Proved:
     hamiltonian = systems.get(system).hamiltonian().with_values(values)
-    return of_one_hamiltonian(
-        prove(get(scheme).step_map(hamiltonian), get(scheme)), get(scheme), ALL
-    )
+    proof = prove(get(scheme).step_map(hamiltonian), get(scheme))
+    return of_one_hamiltonian(proof, hamiltonian, get(scheme), ALL)
 
 
 def every(scheme: str) -> Proved:
@@ -59,14 +55,15 @@ def test_the_mark_is_what_the_certificate_establishes() -> None:
     assert marks(every("symplectic-euler")) == [
         "small checker: det J = 1 for every smooth H = T(p) + V(q) and the scheme of these stages"
     ]
-    (timed,) = marks(of_every_hamiltonian(prove_every_in_time("lie2"), get("lie2"), ALL))
+    (timed,) = marks(of_every_hamiltonian(prove_every("lie2", timed=True), get("lie2"), ALL))
     assert "for every smooth H(p, q, t)" in timed
 
 
 def test_a_parameter_without_a_value_is_a_symbol_in_the_mark() -> None:
     hamiltonian = Hamiltonian(systems.get("duffing").hamiltonian().expression)
     scheme = get("lie2")
-    (mark,) = marks(of_one_hamiltonian(prove(scheme.step_map(hamiltonian), scheme), scheme, ALL))
+    proof = prove(scheme.step_map(hamiltonian), scheme)
+    (mark,) = marks(of_one_hamiltonian(proof, hamiltonian, scheme, ALL))
     assert mark.endswith("L = 3*delta*p*q")
 
 
@@ -83,11 +80,11 @@ def test_a_map_that_is_no_polynomial_in_h_and_changes_area_has_no_mark() -> None
 def test_in_degrees_s_is_certified_and_of_det_j_nothing() -> None:
     hamiltonian = systems.get("henon-heiles").hamiltonian()
     proof, scheme = prove_symplectic(hamiltonian, get("lie2")), get("lie2")
-    (mark,) = marks(of_degrees(proof, scheme, DEFECT, hamiltonian))
+    (mark,) = marks(of_one_hamiltonian(proof, hamiltonian, scheme, DEFECT))
     assert "S = JᵀΩJ − Ω = L h^3" in mark
-    assert marks(of_degrees(proof, scheme, frozenset({"volume"}), hamiltonian)) == []
-    verlet = prove_every_in_degrees("stormer-verlet", 2)
-    (mark,) = marks(of_degrees(verlet, get("stormer-verlet"), frozenset({"volume"})))
+    assert marks(of_one_hamiltonian(proof, hamiltonian, scheme, frozenset({"volume"}))) == []
+    verlet = prove_every("stormer-verlet", degrees=2)
+    (mark,) = marks(of_every_hamiltonian(verlet, get("stormer-verlet"), frozenset({"volume"})))
     assert "S = JᵀΩJ − Ω = 0" in mark
 
 

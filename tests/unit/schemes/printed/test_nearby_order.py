@@ -8,9 +8,7 @@ from verify import modified_hamiltonian, schemes
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.every import prove_every
-from verify.proof.every_in_time import prove_every_in_time
 from verify.proof.order import prove
-from verify.proof.symplectic.every import prove_every_in_degrees
 from verify.proof.symplectic.order import prove_symplectic
 from verify.schemes.printed.nearby_order import nearby_of
 from verify.verdict import Verdict
@@ -44,9 +42,9 @@ def test_the_order_of_exact_sizes_near_the_printed_ones_is_told_everywhere(
     for proof in (
         prove(scheme.step_map(PENDULUM), scheme),
         prove_every(name),
-        prove_every_in_time(name),
+        prove_every(name, timed=True),
         prove_symplectic(HENON, scheme),
-        prove_every_in_degrees(name, 2),
+        prove_every(name, degrees=2),
     ):
         assert (proof.verdict, proof.convergence_order) == (ENCLOSED, 4), proof
         assert proof.convergence_decided
@@ -122,7 +120,7 @@ def test_times_that_are_given_count_where_h_depends_on_time() -> None:
         assert prove(scheme.step_map(PENDULUM), scheme).verdict is ENCLOSED
     found = {name: schemes.get(name) for name in (right, frozen)}
     verdicts = {
-        name: {prove(x.step_map(DRIVEN), x).verdict, prove_every_in_time(name).verdict}
+        name: {prove(x.step_map(DRIVEN), x).verdict, prove_every(name, timed=True).verdict}
         for name, x in found.items()
     }
     assert verdicts == {right: {ENCLOSED}, frozen: {REFUTED}}
@@ -151,7 +149,7 @@ def test_times_with_many_digits_stand_for_those_near_them(
 ) -> None:
     name = GAUSS.format(first, second)
     scheme = schemes.get(name)
-    proofs = prove(scheme.step_map(DRIVEN), scheme), prove_every_in_time(name)
+    proofs = prove(scheme.step_map(DRIVEN), scheme), prove_every(name, timed=True)
     assert {proof.verdict for proof in proofs} == {verdict}
     orders = {proof.convergence_order for proof in proofs}
     assert orders == ({1} if verdict is REFUTED else {2})
@@ -162,7 +160,7 @@ def test_times_with_many_digits_stand_for_those_near_them(
 )
 def test_a_time_alone_may_be_printed_with_many_digits(time: str, verdict: Verdict) -> None:
     name = f"drift 1/2; kick 1 at {time}; drift 1/2; order 2"
-    assert prove_every_in_time(name).verdict is verdict
+    assert prove_every(name, timed=True).verdict is verdict
 
 
 @pytest.mark.parametrize("system", ["pendulum", None])

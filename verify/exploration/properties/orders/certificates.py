@@ -13,8 +13,7 @@ from verify.exploration.property import Violation, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.proof.certificates.checker import check
-from verify.proof.certificates.one import of_one
-from verify.proof.certificates.several import of_one_in_degrees
+from verify.proof.certificates.one import of_one, of_one_in_degrees
 from verify.proof.potential import potential_of
 
 _IN = 10  # one in so many samples

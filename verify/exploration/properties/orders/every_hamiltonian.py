@@ -7,11 +7,9 @@ from verify.exploration.property import Violation, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.proof.every import prove_every
-from verify.proof.every_in_time import prove_every_in_time
 from verify.proof.every_proof import EveryProof
 from verify.proof.order_proof import Proof
 from verify.proof.potential import potential_of
-from verify.proof.symplectic.every import prove_every_in_degrees
 from verify.proof.symplectic.proof import SymplecticProof
 from verify.verdict import Verdict
 
@@ -21,8 +19,8 @@ _IN = 3  # one in so many samples is asked whether its leading coefficient teles
 
 
 @lru_cache(maxsize=128)
-def _proved(scheme: str, timed: bool) -> EveryProof:
-    return prove_every_in_time(scheme) if timed else prove_every(scheme)
+def _proved(scheme: str, timed: bool, degrees: int = 1) -> EveryProof:
+    return prove_every(scheme, timed=timed, degrees=degrees)
 
 
 def holds(sample: Sample) -> None:
@@ -41,21 +39,17 @@ def holds(sample: Sample) -> None:
             raise Violation(f"L is not X·G: {found.reason}; it is for {every.quantifier}")
 
 
-def _contradiction(every: EveryProof, proof: Proof) -> str:
+def _contradiction(every: EveryProof, proof: Proof | SymplecticProof) -> str:
     """In words; empty where there is none. None, as an order, is beyond all that are looked at."""
-    if every.area_preserving and proof.area_preserving is False:
-        return f"ΔJ has order {proof.order}"
+    defect = "ΔJ" if every.planar else "S"
+    if every.symplectic and proof.symplectic is False:
+        return f"{defect} has order {proof.order}"
     if every.order is not None and proof.order is not None and proof.order < every.order:
-        return f"ΔJ has order {proof.order}, not {every.order}"
+        return f"{defect} has order {proof.order}, not {every.order}"
     own, agreed = proof.convergence_order, every.convergence_order
     if own is not None and agreed is not None and own < agreed:
         return f"the map agrees with the flow up to h^{own}, not h^{agreed}"
     return ""
-
-
-@lru_cache(maxsize=128)
-def _proved_in_degrees(scheme: str, degrees: int, timed: bool) -> SymplecticProof:
-    return prove_every_in_degrees(scheme, degrees, timed=timed)
 
 
 def holds_in_degrees(sample: SampleInDegrees) -> None:
@@ -63,18 +57,11 @@ def holds_in_degrees(sample: SampleInDegrees) -> None:
     scheme = sample.scheme
     only_if(scheme.every_h is not None and scheme.order <= _MOST_IN_DEGREES and sample.ordinary)
     with silent_at(LimitError):
-        every = _proved_in_degrees(scheme.name, sample.hamiltonian.degrees, sample.timed)
+        every = _proved(scheme.name, sample.timed, sample.hamiltonian.degrees)
     only_if(every.verdict is Verdict.PROVED)
     proof = sample.proof
-    wrong = ""
-    if every.symplectic and proof.symplectic is False:
-        wrong = f"S has order {proof.order}"
-    elif every.order is not None and proof.order is not None and proof.order < every.order:
-        wrong = f"S has order {proof.order}, not {every.order}"
-    elif every.convergence_order is not None and proof.convergence_order is not None:
-        if proof.convergence_order < every.convergence_order:
-            wrong = f"the map agrees with the flow up to h^{proof.convergence_order}"
-    elif every.telescopes and proof.order == every.order and proof.telescopes is False:
-        wrong = "S does not begin with a Lie derivative"
+    wrong = _contradiction(every, proof)
+    if every.telescopes and proof.order == every.order and proof.telescopes is False:
+        wrong = wrong or "S does not begin with a Lie derivative"
     if wrong:
-        raise Violation(f"{wrong}, against what is proved for every H")
+        raise Violation(f"{wrong}, against what is proved for {every.quantifier}")

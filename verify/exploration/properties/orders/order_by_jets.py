@@ -12,8 +12,7 @@ import flint
 
 from verify.algebra.enclosure import enclose
 from verify.algebra.generator import terms_of
-from verify.algebra.series.jets import Jets, Poly
-from verify.algebra.series.timed_jets import TimedJets
+from verify.algebra.series.jets import Jets, Poly, TimedJets
 from verify.arithmetic.arb import Ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.oracles.ball_steps import BITS, sharp, unlike

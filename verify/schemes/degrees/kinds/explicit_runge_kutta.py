@@ -5,7 +5,6 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.conditions import Condition
 from verify.schemes.degrees.canonical_map import CanonicalMap
 from verify.schemes.every_hamiltonian import RungeKutta
-from verify.schemes.step_algebra import Step
 
 KIND = RungeKutta
 
@@ -13,14 +12,9 @@ KIND = RungeKutta
 def build(coefficients: RungeKutta, hamiltonian: Hamiltonian) -> CanonicalMap:
     """The map for any H."""
     field, _ = canonical_field(hamiltonian)
-    return CanonicalMap(hamiltonian, field, step(coefficients))
+    return CanonicalMap(hamiltonian, field, coefficients.changes)
 
 
 def conditions(_: RungeKutta) -> tuple[Condition, ...]:
     """None: no explicit method is symplectic for every H."""
     return ()
-
-
-def step(coefficients: RungeKutta) -> Step:
-    """How z' is made."""
-    return coefficients.changes

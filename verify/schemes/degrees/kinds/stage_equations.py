@@ -15,7 +15,6 @@ from verify.schemes.degrees.canonical_map import CanonicalMap
 from verify.schemes.degrees.kinds import splittings
 from verify.schemes.every_hamiltonian import Stage, StageEquations
 from verify.schemes.splitting_conditions import Splitting
-from verify.schemes.step_algebra import Step
 
 KIND = StageEquations
 
@@ -33,7 +32,7 @@ def build(coefficients: StageEquations, hamiltonian: Hamiltonian) -> CanonicalMa
     return CanonicalMap(
         hamiltonian,
         field,
-        step(coefficients),
+        coefficients.changes,
         conditions=conditions(coefficients),
         implicit=True,
     )
@@ -42,11 +41,6 @@ def build(coefficients: StageEquations, hamiltonian: Hamiltonian) -> CanonicalMa
 def conditions(coefficients: StageEquations) -> tuple[Condition, ...]:
     """Those of each stage; see the module's text."""
     return tuple(map(_condition, coefficients.stages))
-
-
-def step(coefficients: StageEquations) -> Step:
-    """How z' is made."""
-    return coefficients.changes
 
 
 def _condition(stage: Stage) -> Condition:

@@ -5,7 +5,6 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.conditions import Condition
 from verify.schemes.degrees.canonical_map import CanonicalMap
 from verify.schemes.every_hamiltonian import TaylorSeries
-from verify.schemes.step_algebra import Step
 
 KIND = TaylorSeries
 
@@ -18,7 +17,7 @@ def build(coefficients: TaylorSeries, hamiltonian: Hamiltonian) -> CanonicalMap:
     return CanonicalMap(
         hamiltonian,
         field,
-        step(coefficients),
+        coefficients.changes,
         closed=tuple(sum(own, field.ring.zero) for own in zip(*powers, strict=True)),
         flow_up_to=eta,
     )
@@ -27,8 +26,3 @@ def build(coefficients: TaylorSeries, hamiltonian: Hamiltonian) -> CanonicalMap:
 def conditions(_: TaylorSeries) -> tuple[Condition, ...]:
     """None: no Taylor polynomial is symplectic for every H."""
     return ()
-
-
-def step(coefficients: TaylorSeries) -> Step:
-    """How z' is made."""
-    return lambda algebra: algebra.along_flow(coefficients.eta)

@@ -11,9 +11,8 @@ from verify.algebra.formula import parse, symbol
 from verify.algebra.series.jets_in_degrees import JetsInDegrees
 from verify.errors import InputError, LimitError
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.proof import every_by_series as module
 from verify.proof.every import prove_every
-from verify.proof.symplectic import every as module
-from verify.proof.symplectic.every import prove_every_in_degrees, quantifier
 from verify.proof.symplectic.order import prove_symplectic
 from verify.schemes import get
 from verify.schemes.degrees.two_form import TwoForm
@@ -61,16 +60,16 @@ CASES = [
 @pytest.mark.parametrize(("scheme", "formula", "timed"), CASES)
 def test_it_is_that_of_one_h(scheme: str, formula: str, timed: bool) -> None:
     hamiltonian = Hamiltonian.parse(formula)
-    every = prove_every_in_degrees(scheme, hamiltonian.degrees, timed=timed)
+    every = prove_every(scheme, degrees=hamiltonian.degrees, timed=timed)
     one = prove_symplectic(hamiltonian, get(scheme))
     assert (every.verdict, every.order, every.convergence_order) == (
         one.verdict, one.order, one.convergence_order)  # fmt: skip
-    assert every.leading is not None
+    assert every.form is not None
     assert one.leading is not None
-    jets, names = every.leading.ring, [*hamiltonian.coordinates, *(["t"] if timed else [])]
+    jets, names = every.form.ring, [*hamiltonian.coordinates, *(["t"] if timed else [])]
     assert isinstance(jets, JetsInDegrees)
     for a, b in product(range(2), range(2, 4)):
-        ours = in_numbers(jets, every.leading.at(a, b), hamiltonian.exact)
+        ours = in_numbers(jets, every.form.at(a, b), hamiltonian.exact)
         theirs = at_point(one.leading.ring.expression(one.leading.at(a, b)), names)
         assert ours == theirs
 
@@ -78,9 +77,8 @@ def test_it_is_that_of_one_h(scheme: str, formula: str, timed: bool) -> None:
 @pytest.mark.sample(7)
 @pytest.mark.parametrize("scheme", ["lie1", "lie2", "lie3", "lie4", "rk4", "gauss4", "ruth3",
                                     "implicit-midpoint", "blanes-moan4"])  # fmt: skip
-@pytest.mark.parametrize("degrees", [1, 2])
-def test_what_is_needed_in_the_plane_is_needed_in_more(scheme: str, degrees: int) -> None:
-    plane, more = prove_every(scheme), prove_every_in_degrees(scheme, degrees)
+def test_what_is_needed_in_the_plane_is_needed_in_more(scheme: str) -> None:
+    plane, more = prove_every(scheme), prove_every(scheme, degrees=2)
     assert (more.verdict, more.order) == (plane.verdict, plane.order)
     assert more.symplectic == plane.area_preserving
     assert more.convergence_order == plane.convergence_order
@@ -90,7 +88,7 @@ def test_what_is_needed_in_the_plane_is_needed_in_more(scheme: str, degrees: int
 
 @pytest.mark.parametrize(("scheme", "degrees"), [("lie4", 2), ("lie3", 2), ("lie2", 3)])
 def test_telescoping_is_checked_identity_by_identity(scheme: str, degrees: int) -> None:
-    found = prove_every_in_degrees(scheme, degrees)
+    found = prove_every(scheme, degrees=degrees)
     even = get(scheme).order % 2 == 0
     assert found.telescopes is even
     said = " ".join(map(str, found.checked))
@@ -107,26 +105,25 @@ def test_a_wrong_potential_is_not_accepted(monkeypatch: pytest.MonkeyPatch) -> N
         return TwoForm.of(form.ring, form.names, lambda a, b: form.at(a, b) * (2 - (a == 1)))
 
     monkeypatch.setattr(module, "potential_of_lie", wrong)
-    assert prove_every_in_degrees("lie2", 2).telescopes is None
+    assert prove_every("lie2", degrees=2).telescopes is None
 
 
 def test_a_wrong_clock_is_refuted_and_symplectic_all_the_same() -> None:
-    found = prove_every_in_degrees("stormer-verlet, clock frozen", 3, timed=True)
+    found = prove_every("stormer-verlet, clock frozen", degrees=3, timed=True)
     assert (found.verdict, found.symplectic, found.convergence_order) == ("REFUTED", True, 1)
-    assert prove_every_in_degrees("stormer-verlet", 3, timed=True).verdict == "PROVED"
+    assert prove_every("stormer-verlet", degrees=3, timed=True).verdict == "PROVED"
 
 
 def test_a_splitting_that_claims_too_much_is_refuted() -> None:
-    found = prove_every_in_degrees("kick 1/2; drift 1; kick 1/2; order 3", 4)
+    found = prove_every("kick 1/2; drift 1; kick 1/2; order 3", degrees=4)
     assert (found.verdict, found.convergence_order) == ("REFUTED", 2)
 
 
 def test_for_which_h_it_is_said() -> None:
-    lie2, verlet = get("lie2"), get("stormer-verlet")
-    assert quantifier(lie2, 2, separable=False, timed=False) == (
-        "every smooth H(p, q) in 2 degrees of freedom"
-    )
-    assert "H = T(p, t) + V(q, t) in 3" in quantifier(verlet, 3, separable=False, timed=True)
+    lie1 = prove_every("lie1", degrees=2)
+    assert lie1.quantifier == "every smooth H(p, q) in 2 degrees of freedom"
+    verlet = prove_every("stormer-verlet", degrees=3, timed=True)
+    assert "H = T(p, t) + V(q, t) in 3" in verlet.quantifier
 
 
 @pytest.mark.parametrize(
@@ -141,7 +138,7 @@ def test_for_which_h_it_is_said() -> None:
 )
 def test_what_is_too_much_is_one_line(scheme: str, degrees: int, words: str) -> None:
     with pytest.raises((InputError, LimitError), match=words):
-        prove_every_in_degrees(scheme, degrees)
+        prove_every(scheme, degrees=degrees)
 
 
 def test_derivatives_of_h_are_what_sympy_finds() -> None:
