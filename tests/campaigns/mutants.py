@@ -29,22 +29,25 @@ RESULTS = ROOT / "tests/mutants/campaign.jsonl"
 _MOST = 90.0  # seconds of tests, as they take with the sound code
 _SLOWER = 6  # times that, after which a mutant is said to hang
 _START = 40.0  # seconds that a process may take beside its tests
-_MEMORY = 6 << 20  # KiB
+_MEMORY = 24 << 20  # KiB
 
 
 def reaching(mutant: Mutant, reach: Reach, most: float = _MOST) -> list[str]:
-    """The tests that reach the mutant's line: those of its room first, and as many as fit."""
-    lines = range(mutant.line, mutant.line + 1)
-    found = reach.tests(mutant.module, lines)
+    """The tests that reach the mutant's line: those of its room first, and as many as fit.
+
+    Then some that reach the module. What is run at its import is in no test, and what is made once
+    for a process is in the first of them alone.
+    """
     room = "/".join(mutant.module.split(".")[1:-1])
-    near = [t for t in found if f"/{room}/" in t or t.split("/test_")[0].endswith(f"/{room}")]
-    chosen, spent = [], 0.0
-    for test in [*near, *(t for t in found if t not in set(near))]:
-        seconds = reach.seconds[test]
-        if spent + seconds <= most:
-            chosen.append(test)
-            spent += seconds
-    return chosen
+    chosen: dict[str, None] = {}
+    spent = 0.0
+    for line, limit in ((mutant.line, most), (None, most / 3)):
+        found = reach.tests(mutant.module, line)
+        for test in sorted(found, key=lambda name: f"/{room}/" not in name):
+            if test not in chosen and spent + reach.seconds[test] <= limit:
+                chosen[test] = None
+                spent += reach.seconds[test]
+    return list(chosen)
 
 
 def attempt(mutant: Mutant, reach: Reach) -> Record:
@@ -82,7 +85,7 @@ def _run(mutant: Mutant, chosen: list[str], limit: float) -> tuple[int | None, s
             "TMPDIR": made,
             "XDG_CACHE_HOME": made,
         }
-        command = ["bash", "-c", f'ulimit -v {4 * _MEMORY}; exec "$@"', "-", sys.executable, "-m",
+        command = ["bash", "-c", f'ulimit -v {_MEMORY}; exec "$@"', "-", sys.executable, "-m",
                    "pytest", "-x", "-q", "-n0", "-p", "no:cacheprovider", "--tb=no", "-rfE",
                    f"@{listed}"]  # fmt: skip
         with subprocess.Popen(

@@ -15,7 +15,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 
 import pytest
@@ -73,17 +73,22 @@ class Reach:
         ]
         return {str(name): float(spent) for name, spent in lines}
 
-    def tests(self, module: str, lines: range) -> list[str]:
-        """Those that run one of these lines of the module, the cheapest first."""
+    def tests(self, module: str, line: int | None = None) -> list[str]:
+        """Those that run this line of the module, or any of it, the cheapest first."""
+        found: set[str] = set()
+        for each, tests in self._lines(module).items():
+            if line in (None, each):
+                found |= tests
+        return sorted(found, key=lambda name: self.seconds[name])
+
+    @cache  # noqa: B019 - of one object
+    def _lines(self, module: str) -> dict[int, set[str]]:
         import coverage
 
         data = coverage.CoverageData(str(self.folder / "data"))
         data.read()
-        found: set[str] = set()
-        for line, contexts in data.contexts_by_lineno(str(path_of(module))).items():
-            if line in lines:
-                found |= {_plain(x) for x in contexts}
-        return sorted(found & set(self.seconds), key=lambda name: self.seconds[name])
+        by_line = data.contexts_by_lineno(str(path_of(module)))
+        return {n: {_plain(x) for x in tests} & self.seconds.keys() for n, tests in by_line.items()}
 
 
 def _plain(context: str) -> str:
