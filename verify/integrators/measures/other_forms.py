@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 _SAME = 1e-13  # of J at two places, of a linear map
 _MOST_DIGITS = 14
 _TURNS = 40  # of a search for the least largest change
+_LEAST_WEIGHT = 1e-3  # of an entry in it
 _NOTHING, _SOMETHING = 1e-9, 1e-5  # parts of the largest singular value
 _MOST_MASS = 10**6
 
@@ -80,6 +81,8 @@ def _change(matrix: "np.ndarray") -> float:
         if largest == 0:
             return 0.0
         weights *= (np.abs(change) / largest + 0.05) ** -0.3
+        # An entry that need not change would else outgrow all others, which were then left out.
+        weights = np.maximum(weights / weights.max(), _LEAST_WEIGHT)
     return float(least)
 
 

@@ -9,7 +9,7 @@ import pytest
 from verify.arithmetic.arb import Ball, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.schemes.printed.nearby import AnyNumbers, Nearby
-from verify.schemes.printed.nearest import HELD, _solution, nearest
+from verify.schemes.printed.nearest import HELD, _solution, _upper, nearest
 
 Function = Callable[[Sequence[Ball]], Ball]
 
@@ -99,3 +99,10 @@ def test_a_condition_that_depends_on_another_has_to_hold_there_too() -> None:
         assert found.shown == 2
         assert found.rest < HELD
         assert nearest(conditions(flint.arb(2) ** -190), [0, 1, 2]) is None
+
+
+def test_how_far_a_solution_is_counts_the_ball_that_it_is_known_in() -> None:
+    """The end of the ball that is farther away, of either sign."""
+    with working_precision(100):
+        for middle in (3, -3):
+            assert 0 <= _upper(flint.arb(middle, 0.5)) - Fraction(7, 2) < Fraction(1, 2**25)
