@@ -7,8 +7,10 @@ import pytest
 
 from tests.helpers.sampled.formulas import evaluate, is_real, outcome
 from verify.algebra.embedding import embed
+from verify.algebra.enclosure import enclose
 from verify.algebra.formula import parse
 from verify.algebra.ring import Decision
+from verify.algebra.zero_test import clear_inverses
 from verify.errors import InputError
 
 
@@ -191,3 +193,28 @@ HOSTILE = [
 @pytest.mark.parametrize("text", HOSTILE)
 def test_what_is_out_of_reach_ends_soon(text: str) -> None:
     assert outcome(lambda: decide(text)) == "done"
+
+
+INVERSES = ["1/(1+q**2) + q", "p/(1+q**2)**3 - q/(1+q**2)", "1/(2+sin(q)) - 1/(1+q**2)**2 + p",
+            "1/(1+exp(q))**2 + 1/(1+q**2) + 1/(3+p**2)",
+            "q/(1+1/(1+q**2))**2 - 1/(1+q**2)"]  # fmt: skip
+
+
+@pytest.mark.parametrize("text", INVERSES)
+def test_what_is_cleared_of_denominators_is_the_element_times_powers_of_them(text: str) -> None:
+    """At points: the quotient of the two is a product of powers of what was divided by."""
+    expression = parse(text)
+    ring, (x,) = embed([expression], ["p", "q"])
+    cleared = clear_inverses(ring, x)
+    assert not cleared.is_zero()
+    denominators = [g.inner for g in ring.generators if g.kind == "inverse"]
+    for p, q in ((Fraction(1, 3), Fraction(2, 7)), (Fraction(-2), Fraction(5, 3))):
+        point = {"p": p, "q": q}
+        values = [enclose(ring, y, point, 128) for y in (cleared, x, *denominators)]
+        assert all(value is not None for value in values)
+        above, below, *factors = [float(value) for value in values if value is not None]
+        # Each denominator is there as often as it was divided by: no more than six times.
+        reached = {1.0}
+        for factor in factors:
+            reached = {y * factor**k for y in reached for k in range(7)}
+        assert any(abs(above / below / y - 1) < 1e-9 for y in reached)

@@ -55,3 +55,26 @@ def test_what_is_lost_on_the_way_is_in_the_bound(
     monkeypatch.setattr(known_flows, "closed_form", lambda *_: None)
     monkeypatch.setattr(solution_error, "solution_in_degrees", careless)
     assert all(Fraction(x.bound) > lost for _, x in solution_errors(run, 4))
+
+
+@pytest.mark.parametrize("t0", ["0", "1/3", "-2"])
+@pytest.mark.parametrize("closed", [True, False])
+def test_in_time_the_solution_is_that_from_t0_on(
+    t0: str, closed: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """p' = t, q' = p: from (q, p) = (1, 0) p is (t² − t₀²)/2, whatever the scheme makes of it."""
+    found = verify.run("p**2/2 - q*t", "lie1", q=1, p=0, step_size="1/10", steps=6, t0=t0,
+                       digits=25)  # fmt: skip
+    if not closed:
+        monkeypatch.setattr(known_flows, "closed_form", lambda *_: None)
+    errors = solution_errors(found, 10)
+    begun, h = Fraction(t0), Fraction(1, 10)
+    assert [t for t, _ in errors] == [begun + k * h for k in range(7)]
+    p = q = Fraction(0)
+    for t, error in errors:
+        s = t - begun
+        true_p = (t * t - begun * begun) / 2
+        true_q = begun * s * s / 2 + s**3 / 6
+        size = float((p - true_p) ** 2 + (q - true_q) ** 2) ** 0.5
+        assert abs(float(error) - size) <= 1e-9 * size + float(Fraction(error.bound)) + 1e-15
+        p, q = p + h * t, q + h * p

@@ -106,3 +106,16 @@ def test_how_far_a_solution_is_counts_the_ball_that_it_is_known_in() -> None:
     with working_precision(100):
         for middle in (3, -3):
             assert 0 <= _upper(flint.arb(middle, 0.5)) - Fraction(7, 2) < Fraction(1, 2**25)
+
+
+@pytest.mark.parametrize(("off", "shown"), [("1/40", True), ("1/20", False), ("1/10", False)])
+def test_a_solution_beyond_where_derivatives_are_bounded_is_not_shown(
+    off: str, shown: bool
+) -> None:
+    """Beyond a quarter of the radius of Cauchy's bound nothing is known of the second ones."""
+    with working_precision(600):
+        conditions = Conditions(
+            [Fraction(0)], [lambda x: x[0] - rational_ball(Fraction(off))],
+            [[lambda _: flint.arb(1)]], [0],
+        )  # fmt: skip
+        assert (nearest(conditions, [0]) is not None) is shown

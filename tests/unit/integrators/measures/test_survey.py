@@ -1,0 +1,34 @@
+"""The unit in which a map is looked at: how far from 0 its Jacobian has changed."""
+
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+
+from verify.integrators.measures.survey import _changed, unit_of_map
+from verify.integrators.user_code.loading import callee_from
+
+
+def test_one_entry_that_moves_by_a_tenth_of_the_largest_is_a_change() -> None:
+    still = [[1.0, 0.0], [2.0, 1.0]]
+    for row in (0, 1):
+        for column in (0, 1):
+            moved = [list(x) for x in still]
+            moved[row][column] += 0.3
+            assert _changed(still, moved)
+            moved[row][column] = still[row][column] + 0.1
+            assert not _changed(still, moved)
+    assert not _changed(still, still)
+
+
+@pytest.mark.parametrize("unit", ["1/1000", "1", "300"])
+def test_the_unit_of_a_map_is_its_own_length(unit: str) -> None:
+    """q + a² sin(q/a) bends where q is of the size of a."""
+    length = float(Fraction(unit))
+
+    def turned(p: Any, q: Any) -> tuple[Any, Any]:
+        return p + length * np.sin(q / length), q
+
+    found = unit_of_map(callee_from(turned, ("p", "q"), stepped=False).step)
+    assert length / 8 <= float(found) <= 8 * length
