@@ -73,3 +73,16 @@ def test_a_mistake_of_the_state_is_told_by_the_same_rule(
         monkeypatch.setattr(diagnosis, where, names)
     found = list(Diagnosis(judge, RunFindings("a run"))._fitting(["lambda"]))  # type: ignore[arg-type]
     assert found == ([late] if times >= 30 else [])
+
+
+def test_the_place_of_a_fit_is_the_first_at_which_rounding_does_not_usually_explain_it() -> None:
+    fit = Fit(dict.fromkeys(("p", "q", "mse"), Verdict.AGREES))
+    assert fit.place is None
+    for step, name, verdict in [
+        (1, "mse", Verdict.ROUNDING), (3, "q", Verdict.PERHAPS), (5, "p", Verdict.MORE),
+        (7, "q", Verdict.MORE), (9, "q", Verdict.AGREES),
+    ]:  # fmt: skip
+        fit.take(step, name, verdict)
+    assert (fit.place, fit.parts) == ((3, "q"), {"q": 3, "p": 5})
+    assert fit.verdicts == {"p": Verdict.MORE, "q": Verdict.MORE, "mse": Verdict.ROUNDING}
+    assert not fit.fits
