@@ -98,6 +98,7 @@ def test_each_row_of_the_page_is_tried() -> None:
     assert names == set(CASES) | ELSEWHERE
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.usefixtures("_folder")
 @pytest.mark.parametrize("name", CASES)
 def test_a_command_ends_with_the_status_that_the_manual_says(

@@ -40,6 +40,7 @@ def test_a_proof_is_the_same_without_docstrings(tmp_path: Path) -> None:
     assert json.loads(optimized(tmp_path, *words))["leading"] == "-p*sin(q)/2"
 
 
+@pytest.mark.left_to_ci
 def test_an_exploration_looks_at_every_property_without_docstrings(tmp_path: Path) -> None:
     words = ["-m", "verify", "explore", "--examples", "1", "--workers", "1", "--seed", "1"]
     said = optimized(tmp_path, *words)

@@ -53,6 +53,7 @@ def systems(draw: random.Random) -> list[Arithmetic]:
     return [fixed.at_bits(112), mpfr.at_bits(bits), mpmath.at_bits(bits + 3)]
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(8)
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("name", SHAPES)

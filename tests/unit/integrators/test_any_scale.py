@@ -30,6 +30,7 @@ BOTH = Claims(order=2, symplectic=True)
 # -- units ----------------------------------------------------------------------------------------
 
 
+@pytest.mark.left_to_ci
 def test_euler_in_kilometres_and_seconds_is_of_order_1_and_not_symplectic() -> None:
     found = judged(steps.euler_of_earth, hamiltonian=steps.EARTH)
     assert (found.verdict, found.convergence_order, found.symplectic) == ("MEASURED", 1, False)
@@ -179,6 +180,7 @@ void step(int n, double t, double h, double *p, double *q)
 """
 
 
+@pytest.mark.left_to_ci
 def test_velocities_of_three_bodies_in_c_are_named(tmp_path: Path) -> None:
     path = library(tmp_path, "chain.c", CHAIN, "-lm")
     energy = (
@@ -297,6 +299,7 @@ def test_what_returns_another_shape_is_told_what_came() -> None:
 # -- other forms ----------------------------------------------------------------------------------
 
 
+@pytest.mark.left_to_ci
 def test_velocities_are_refuted_and_told_what_they_are_in_momenta() -> None:
     def step(x: Any, v: Any, dt: Any) -> Any:
         v, x = steps.in_velocities(v, x, dt)

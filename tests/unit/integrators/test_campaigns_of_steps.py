@@ -87,6 +87,7 @@ def test_what_is_wrong_is_called_wrong() -> None:
     assert Judged(right, order, "").wrong_order
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("index", [14, 17, 19])
 def test_a_sample_of_steps_is_not_answered_wrongly(index: int, tmp_path: Path) -> None:
     result = judged(case_of(index, 1, 0), tmp_path, ["--time-limit", "10"])

@@ -97,6 +97,7 @@ def test_an_iteration_that_stops_early_does_not_preserve_area_exactly() -> None:
     assert found.area_preserving is False
 
 
+@pytest.mark.left_to_ci
 def test_newton_with_three_corrections_preserves_area_to_the_noise_where_h_is_small() -> None:
     """Its ΔJ of h^13 drowns in doubles below h = 1/2, and is seen at h = 1, where that is asked."""
     assert found_of(own_steps.newton_thrice, Claims(order=2, area_order=12)).verdict == "MEASURED"

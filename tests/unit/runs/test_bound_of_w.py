@@ -34,6 +34,7 @@ def started(formula: str, scheme: str, h: str, steps: int) -> KernelRun:
     return KernelRun(hamiltonian, scheme, start, steps, frozenset({W}), 0)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(8)
 @pytest.mark.parametrize("name", ["mpfr", "fixed", "mpmath"])
 @pytest.mark.parametrize("steps", [1, 10, 100, 1000])

@@ -136,6 +136,7 @@ def test_functions_are_right_at_the_ends_of_the_format_and_around_0(kind: str) -
             fixed_checks.check_function(form, kind, raw)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("sign", [-1, 1])
 @pytest.mark.parametrize("away", [Fraction(0), *(Fraction(1, 2**e) for e in (20, 30, 60, 100))])
 def test_functions_are_given_up_to_their_borders_and_refused_beyond(

@@ -58,6 +58,7 @@ def test_a_program_that_does_not_flush_is_told_to(language: str, tmp_path: Path)
             assert "0.31" in said(result), "its answer is shown"
 
 
+@pytest.mark.left_to_ci
 def test_the_first_answer_is_waited_for_5_seconds_where_nothing_computes() -> None:
     with program(UNFLUSHED["python"]) as function:
         begun = time.monotonic()

@@ -422,6 +422,7 @@ def test_digits_of_numbers_that_the_order_leaves_free_are_not_judged() -> None:
     assert claims(wrong)["order"].verdict is Verdict.REFUTED, "of these the sum is not 1"
 
 
+@pytest.mark.left_to_ci
 def test_a_table_of_order_8_with_a_wrong_digit_takes_seconds() -> None:
     """The row sums fail by 1e-9, so that 1,540 conditions with times would be looked at."""
     a = [list(row) for row in ORDER_8["a"]]

@@ -122,6 +122,7 @@ def test_a_wrong_clock_is_named(
     assert named(found) == [{mistake}]
 
 
+@pytest.mark.left_to_ci
 def test_a_clock_that_is_wrong_in_no_known_way_has_no_name(ours: Published, tmp_path: Path) -> None:
     text = table(rk4(well, (0, 1, 1, 1)), (-0.5, 0.5), 0)
     found = of(ours, tmp_path, text, scheme="rk4", **WELL)
