@@ -262,7 +262,7 @@ def test_an_interrupted_run_goes_on_with_the_same_bits(name: str) -> None:
     start |= {"t": Fraction(T0)} if exact.time_dependent else {}
     keeper = KeepsAll()
     whole = form_chains(exact, "lie2", start, steps, 17, keeper=keeper)
-    beside = [label for label in keeper.kept if label.startswith("form beside")]
+    beside = [label for label in keeper.kept if label.startswith("beside ")]
     assert beside
     for label in beside:
         keeper.kept[label] = {"found": keeper.kept[label]["found"][: steps // 2]}
