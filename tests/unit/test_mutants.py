@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.campaigns import mutants as campaign
 from tests.mutants import battery, forked, killers, records, table
 from tests.mutants.mutate import ROOT, Mutant, mutants, mutants_of, mutated, mutated_source, path_of
 from tests.mutants.run import ordered
@@ -51,6 +52,25 @@ def made(source: str, operator: str | None = None) -> list[str]:
         ("arguments", "max(a, b)", []),
         ("arguments", "f(a, a)", []),
         ("arguments", "f(*a, b)", []),
+        ("term-dropped", "a + b", ["a", "b"]),
+        ("term-dropped", "a - b", ["a"]),
+        ("term-dropped", "f'{a}' + b", []),
+        ("factor-dropped", "a * b", ["a", "b"]),
+        ("factor-dropped", "a / b", ["a"]),
+        ("square-dropped", "a ** 2 + b * b", ["a + b * b", "a ** 2 + b"]),
+        ("rounding", "x.abs_upper()", ["x.abs_lower()"]),
+        ("rounding", "math.floor(x)", ["math.ceil(x)"]),
+        (
+            "other-of-two",
+            "f(p, s.h_q, 'q')",
+            ["f(q, s.h_q, 'q')", "f(p, s.h_p, 'q')", "f(p, s.h_q, 'p')"],
+        ),
+        ("element-dropped", "f([a, b, c])", ["f([b, c])", "f([a, b])"]),
+        (
+            "returned",
+            "def f() -> bool:\n    return a",
+            ["def f() -> bool:\n    return True", "def f() -> bool:\n    return False"],
+        ),
         ("statement-dropped", "a += b", ["pass"]),
         ("statement-dropped", "a.append(b)", ["pass"]),
         (
@@ -321,3 +341,40 @@ def test_the_page_shows_each_property_with_a_mutant_and_each_survivor_with_its_r
     assert "battery |" not in page, "a hang is no property"
     assert found_in(results, {"a:2"}).killed == 0
     assert share(899, 1000) == "899 of 1000 (89.9 %)"
+
+
+# -- the campaign ---------------------------------------------------------------------------------
+
+
+class Reached:
+    """Which tests reach what, made up: by module and line, with their seconds."""
+
+    def __init__(self, lines: dict[int, list[str]], seconds: dict[str, float]) -> None:
+        self.lines, self.seconds = lines, seconds
+
+    def tests(self, module: str, line: int | None = None) -> list[str]:
+        found = {t for n, tests in self.lines.items() if line in (None, n) for t in tests}
+        return sorted(found, key=lambda name: self.seconds[name])
+
+
+def test_the_tests_of_a_mutants_room_that_reach_its_line_come_first() -> None:
+    mutant = Mutant("verify.runs.orbit", 0, 7, 0, "constant", "1 → 2", 5)
+    near, far, room, dear = (
+        "tests/unit/runs/test_a.py::test_x", "tests/unit/pages/test_b.py::test_y",
+        "tests/unit/runs/test_a.py::test_z", "tests/unit/runs/test_a.py::test_dear",
+    )  # fmt: skip
+    reached = Reached(
+        {7: [near, far, dear], 90: [room]}, {near: 2.0, far: 1.0, room: 0.5, dear: 99}
+    )
+    assert campaign.reaching(mutant, reached) == [near, far, room]  # type: ignore[arg-type]
+    assert campaign.reaching(mutant, reached, 1.5) == [far]  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("planted", "killed"), [(True, True), (False, False)])
+def test_a_mutant_is_planted_in_the_process_of_the_tests(planted: bool, killed: bool) -> None:
+    """One that the test has to see, and one of another module."""
+    test = "tests/unit/kernels/test_eliminated.py::test_the_solution_is_that_of_the_system"
+    module = "verify.kernels.step.program_algebra" if planted else "verify.pages.wrong"
+    chosen = next(m for m in mutants(module) if not planted or m.change.startswith("pivots +="))
+    status, said = campaign._run(chosen, [test], 120)
+    assert (status not in (0, None)) is killed, said
