@@ -87,3 +87,18 @@ def test_what_has_no_value_or_no_derivative_is_refused() -> None:
                 broken()
         with pytest.raises(UntraceableError, match="root of a number that is not positive"):
             minus ** Fraction(1, 2)
+
+
+def test_finite_numbers_are_told_from_others() -> None:
+    kind = Duals()
+    with kind.running():
+        (one,) = kind.state(Fraction(1))
+        endless = np.exp(one * 10**12) * np.exp(one * 10**12)
+        for number in (one, -one, one - one):
+            assert np.isfinite(number)
+            assert not np.isnan(number)
+        huge = endless
+        for _ in range(40):
+            huge = huge * huge
+        assert not np.isfinite(huge)
+        assert np.isnan(huge - huge)
