@@ -261,6 +261,25 @@ def test_a_method_with_stages_twice_is_not_refuted_though_what_suffices_fails() 
     assert claims(doubled)["symplectic"].verdict is Verdict.UNDECIDED
 
 
+@pytest.mark.parametrize("split", [("1/4", "0"), ("3/8", "-1/8"), ("1/5", "1/20")])
+def test_nor_is_a_nystrom_method_with_a_stage_twice(split: tuple[str, str]) -> None:
+    """Two position-Verlet steps of h/2, the first stage twice; what it puts into p, into q and into
+    the other stage is divided otherwise than Suris's conditions want."""
+    first, second = split
+    doubled = {
+        "name": "x", "kind": "runge-kutta-nystrom", "order": 2, "symplectic": True,
+        "c": ["1/4", "1/4", "3/4"], "a": [[0, 0, 0], [0, 0, 0], [first, second, 0]],
+        "b": ["1/3", "1/6", "1/2"], "b_bar": ["1/2", "-1/8", "1/8"],
+    }  # fmt: skip
+    assert claims(doubled)["symplectic"].verdict is Verdict.UNDECIDED
+    once = {**doubled, "c": ["1/4", "3/4"], "a": [[0, 0], ["1/4", 0]], "b": ["1/2", "1/2"],
+            "b_bar": ["3/8", "1/8"]}  # fmt: skip
+    assert claims(once)["symplectic"].verdict is Verdict.PROVED
+    for wrong in ({"b_bar": ["1/2", "-1/8", "1/7"]}, {"b": ["1/3", "1/7", "1/2"]},
+                  {"a": [[0, 0, 0], [0, 0, 0], ["1/5", "1/10", 0]]}):  # fmt: skip
+        assert claims({**doubled, **wrong})["symplectic"].verdict is Verdict.REFUTED
+
+
 # -- digits ---------------------------------------------------------------------------------------
 
 
