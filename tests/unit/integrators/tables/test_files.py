@@ -75,6 +75,19 @@ def test_pasted_tableaus_and_files_are_the_same_tables(tmp_path: Path) -> None:
     assert {"a/order", "a/row sums", "b/order in time", "c/order in time"} <= set(found)
 
 
+def test_the_weights_of_a_composition_may_be_in_a_csv_file(tmp_path: Path) -> None:
+    """Three times as many steps of a third: of order 2; what stands beside the file is refused."""
+    (tmp_path / "w.csv").write_text("size\n1/3\n1/3\n1/3\n", encoding="utf-8")
+    path = tmp_path / "t.toml"
+    entry = '[[table]]\nname = "a"\nkind = "composition"\norder = 2\ncsv = "w.csv"\n'
+    path.write_text(entry, encoding="utf-8")
+    found = {each.id: each.claim.verdict for each in check_table(path)}
+    assert found["a/order"] is Verdict.PROVED
+    path.write_text(entry + 'sizes = ["1"]\n', encoding="utf-8")
+    with pytest.raises(InputError, match="stands alone"):
+        check_table(path)
+
+
 @pytest.mark.parametrize("name", ["../t.csv", "/etc/passwd", "sub/t.csv", "none.csv"])
 def test_a_csv_file_lies_beside_the_table(tmp_path: Path, name: str) -> None:
     path = tmp_path / "t.toml"
