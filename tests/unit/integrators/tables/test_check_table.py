@@ -261,6 +261,26 @@ def test_a_method_with_stages_twice_is_not_refuted_though_what_suffices_fails() 
     assert claims(doubled)["symplectic"].verdict is Verdict.UNDECIDED
 
 
+def test_a_partitioned_method_is_of_the_order_that_it_has_for_what_it_claims_to_take() -> None:
+    """Ruth's third order as two tableaus: for T(p) + V(q), and of a lower one otherwise."""
+    kicks, drifts = ["7/24", "3/4", "-1/24"], ["2/3", "-2/3", "1"]
+    rows_p = [kicks[: k + 1] + [0] * (2 - k) for k in range(3)]
+    rows_q = [drifts[:k] + [0] * (3 - k) for k in range(3)]
+    table = {"name": "x", "kind": "partitioned", "order": 3, "p": {"a": rows_p, "b": kicks},
+             "q": {"a": rows_q, "b": drifts}}  # fmt: skip
+    assert claims({**table, "separable": True})["order"].verdict is Verdict.PROVED
+    assert claims(table)["order"].verdict is Verdict.REFUTED
+
+
+@pytest.mark.parametrize("kind", ["runge-kutta", "partitioned", "runge-kutta-nystrom"])
+def test_a_table_that_claims_nothing_is_asked_for_its_order(kind: str) -> None:
+    one = {"a": [["1/2"]], "b": ["1"]}
+    tables = {"runge-kutta": one, "partitioned": {"p": one, "q": one},
+              "runge-kutta-nystrom": {**one, "c": ["1/2"], "b_bar": ["1/2"]}}  # fmt: skip
+    with pytest.raises(InputError, match="order"):
+        claims({"name": "x", "kind": kind, **tables[kind]})
+
+
 @pytest.mark.parametrize("split", [("1/4", "0"), ("3/8", "-1/8"), ("1/5", "1/20")])
 def test_nor_is_a_nystrom_method_with_a_stage_twice(split: tuple[str, str]) -> None:
     """Two position-Verlet steps of h/2, the first stage twice; what it puts into p, into q and into
