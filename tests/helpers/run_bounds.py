@@ -5,14 +5,21 @@ Every formula is written here as it stands in the docstrings of `verify.runs.a_p
 is loose says nothing by holding the true value; it is held to its formula, term by term.
 """
 
+import random
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import flint
 from mpmath.ctx_mp import MPContext
+
+from verify.arithmetic.arb import rational_ball
+from verify.arithmetic.exact import of_mpf
+from verify.arithmetic.flint_precision import working_precision
 
 ctx = MPContext()
 ctx.dps = 50
+CLOSE = ctx.mpf(10) ** -20  # as near as a ball of 96 bits is to what it stands for
 Real = Any
 
 
@@ -152,3 +159,65 @@ def of_defect(noted: Noted) -> Real:
         + 4 * m.top**2 * slope * total
         + noted.steps * noted.of_entry
     )
+
+
+# -- numbers to try them with ---------------------------------------------------------------------
+
+
+def ball(x: Real) -> flint.arb:
+    """The number as a ball, in the present precision."""
+    return rational_ball(of_mpf(x))
+
+
+def number(x: flint.arb) -> Real:
+    """A ball's middle, to 40 digits."""
+    with working_precision(200):
+        return ctx.mpf(x.mid().str(40, radius=False))
+
+
+def drawn(seed: int, size: int) -> Noted:
+    """Sizes at which every term of every bound is a part of it that counts.
+
+    The rounding of M's numbers, 2⁻⁴⁸, is seen at 20 digits; no other term is that small.
+    """
+    draw = random.Random(f"{seed} {size}")  # noqa: S311 - sizes, no secret
+
+    def between(low: float, high: float) -> Real:
+        return ctx.mpf(draw.uniform(low, high))
+
+    n = draw.randint(1, 12)
+    squares = between(1.1, 3) * size
+    seen = {
+        "growth_top": squares,
+        "growth": between(1, n + 1) * squares,
+        "det_low": between(0.7, 1),
+        "form_top": between(1, 1.3) * size / 2,
+        "least": -between(0.01, 0.5),
+        "most": between(0.01, 0.5) * draw.choice([1, 3]),
+    }
+    rate = between(0.05, 0.2)
+    m = grown(n, size, seen, rate * least(size, seen) / seen["growth"])
+    tiny = ctx.mpf(10) ** -draw.randint(5, 7)
+    start, state = tiny * between(0.2, 1), tiny * between(0.2, 1) * m.least / m.path
+    linear = ctx.exp(m.rate) * (start + m.path / m.least * state)
+    moved = 1 / (linear * m.path)  # about 1/Σ ‖e_k‖
+    curved = between(0.1, 0.3) / (ctx.exp(m.rate) * m.path / m.least * 2 * m.top**2 * linear)
+    steep, size_of_form, slope_of_form = between(0.02, 0.05), between(0.05, 0.1), between(0.05, 0.1)
+    scale = ctx.ldexp(1, -draw.randint(0, 5))
+
+    def wider(x: Real) -> Callable[[Real], Real]:
+        """x, and more over a wider box."""
+        return lambda margin: x * (1 + margin / (1000 * tiny * m.top))
+
+    forms = wider(size_of_form / n), wider(slope_of_form * moved)
+    return Noted(
+        size=size, steps=n, seen=seen, start=start, state=state,
+        delta_j=between(0.02, 0.05) / n / scale, tangent=rate * m.least / seen["growth"],
+        largest=between(0.05, 0.2) / scale, defect=between(0.01, 0.1) * slope_of_form / scale,
+        second=wider(curved), slope=wider(steep * moved / scale),
+        form=lambda margin: (forms[0](margin), forms[1](margin)),
+        of_matrix=between(0.02, 0.1) * m.least / m.path,
+        of_entry=between(0.05, 0.2) * m.top**2 / n,
+        squares=between(0.1, 0.5), scale=scale, unit=between(0.005, 0.02) / n,
+        absolute=draw.random() < 0.5,
+    )  # fmt: skip

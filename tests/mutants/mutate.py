@@ -16,7 +16,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from tests.mutants.operators import Change, called, changes_of, is_text
+from tests.mutants.of_the_field import Change, is_text
+from tests.mutants.operators import called, changes_of
 
 ROOT = Path(__file__).parents[2]
 _QUIET = {"__repr__", "__str__", "_repr_html_", "_repr_latex_"}

@@ -7,7 +7,7 @@ an element of a list of conditions.
 import ast
 from collections.abc import Iterator
 
-Change = tuple[str, ast.AST, ast.AST]
+Change = tuple[str, ast.AST, ast.AST]  # a word, the node that goes, the node that comes
 
 _OTHER_END = {
     "upper": "lower", "lower": "upper", "abs_upper": "abs_lower", "abs_lower": "abs_upper",
@@ -43,7 +43,7 @@ def changes_of(node: ast.AST) -> Iterator[Change]:
 def _of_operation(
     node: ast.BinOp, left: ast.expr, op: ast.operator, right: ast.expr
 ) -> Iterator[Change]:
-    if _is_text(left) or _is_text(right):
+    if is_text(left) or is_text(right):
         return
     match op:
         case ast.Add():
@@ -62,7 +62,8 @@ def _of_operation(
             yield "square-dropped", node, left
 
 
-def _is_text(node: ast.expr) -> bool:
+def is_text(node: ast.expr) -> bool:
+    """Whether it is a text, formatted or not: texts are put together by + and %."""
     return isinstance(node, ast.JoinedStr) or (
         isinstance(node, ast.Constant) and isinstance(node.value, str | bytes)
     )

@@ -9,8 +9,7 @@ import copy
 from collections.abc import Iterator
 
 from tests.mutants import of_the_field
-
-Change = tuple[str, ast.AST, ast.AST]  # a word, the node that goes, the node that comes
+from tests.mutants.of_the_field import Change, is_text
 
 _ARITHMETIC: dict[type[ast.operator], type[ast.operator]] = {
     ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.Pow: ast.Mult,
@@ -57,12 +56,6 @@ def _of_operation(node: ast.AST) -> Iterator[Change]:
             yield "truth", node, ast.Constant(not value)
         case ast.Constant(int() | float() as value):
             yield from (("constant", node, ast.Constant(value + d)) for d in (1, -1))
-
-
-def is_text(node: ast.expr) -> bool:
-    return isinstance(node, ast.JoinedStr) or (
-        isinstance(node, ast.Constant) and isinstance(node.value, str | bytes)
-    )
 
 
 def _of_condition(node: ast.AST) -> Iterator[Change]:

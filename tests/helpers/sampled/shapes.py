@@ -16,6 +16,8 @@ from typing import Any
 import sympy
 from mpmath import mp
 
+from verify.arithmetic.exact import of_mpf
+
 DIGITS = 120
 H, T = sympy.Symbol("h"), sympy.Symbol("t")
 
@@ -132,11 +134,6 @@ def number(x: Fraction) -> Any:
     return mp.mpf(x.numerator) / x.denominator
 
 
-def exact(x: Any) -> Fraction:
-    mantissa, exponent = mp.frexp(x)
-    return Fraction(int(mp.ldexp(mantissa, 450))) * Fraction(2) ** (int(exponent) - 450)
-
-
 def values(shape: Shape) -> dict[str, Fraction]:
     """Everything that may be asked of the run, right to 80 digits and more."""
     with mp.workdps(DIGITS):
@@ -163,7 +160,7 @@ def _values(shape: Shape) -> dict[str, Fraction]:
     made |= {"delta_j_max": top, "mse": squares / shape.steps, "lambda": product - 1,
              "lambda_max": highest, "symplectic_defect_max": defects,
              "symplectic_defect": max(_defect(tangent, n))}  # fmt: skip
-    return {name: exact(x) for name, x in made.items()}
+    return {name: of_mpf(x) for name, x in made.items()}
 
 
 def _defect(m: Any, n: int) -> list[Any]:

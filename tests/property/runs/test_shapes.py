@@ -9,7 +9,8 @@ from fractions import Fraction
 
 import pytest
 
-from tests.helpers.sampled.shapes import DIGITS, SHAPES, Shape, exact, mp, number, values
+from tests.helpers.sampled.shapes import DIGITS, SHAPES, Shape, mp, number, values
+from verify.arithmetic.exact import of_mpf
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.arithmetic.systems import fixed, mpfr, mpmath
 from verify.errors import InputError
@@ -148,9 +149,9 @@ def _values_of_linear(
     determinant = number(a * a + c * b * b)
     change = determinant - 1
     return {
-        "p": exact(power[0, 0] * p + power[0, 1] * q),
-        "q": exact(power[1, 0] * p + power[1, 1] * q),
-        "lambda": exact(determinant**steps - 1),
-        "mse": exact(change**2),
-        "delta_j_max": exact(abs(change)),
+        "p": of_mpf(power[0, 0] * p + power[0, 1] * q),
+        "q": of_mpf(power[1, 0] * p + power[1, 1] * q),
+        "lambda": of_mpf(determinant**steps - 1),
+        "mse": of_mpf(change**2),
+        "delta_j_max": of_mpf(abs(change)),
     }

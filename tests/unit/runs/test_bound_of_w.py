@@ -7,8 +7,7 @@ from typing import Any
 import pytest
 
 from tests.helpers import run_bounds
-from tests.helpers.run_bounds import ctx
-from tests.unit.runs.test_formulas_of_bounds import drawn
+from tests.helpers.run_bounds import ctx, drawn
 from verify import arithmetic
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun

@@ -16,8 +16,9 @@ import flint
 import pytest
 
 from tests.helpers import run_bounds
-from tests.helpers.run_bounds import Noted, Real, ctx
+from tests.helpers.run_bounds import CLOSE, Noted, Real, ball, ctx, drawn, number
 from verify.arithmetic.arb import rational_ball
+from verify.arithmetic.exact import of_mpf
 from verify.arithmetic.flint_precision import working_precision
 from verify.kernels.rounding import PRECISION, Rounded
 from verify.runs import form_bound, inverse_norm
@@ -28,72 +29,9 @@ from verify.runs.step_rounding import StepErrors
 
 SEEDS = range(40)
 SIZES = 2, 4, 6, 8
-CLOSE = ctx.mpf(10) ** -20
 ALL = frozenset(
     {"delta_j_max", "mse", "lambda", "lambda_max", "symplectic_defect_max", "symplectic_defect"}
 )
-
-
-def drawn(seed: int, size: int) -> Noted:
-    """Sizes at which every term of every bound is a part of it that counts.
-
-    The rounding of M's numbers, 2⁻⁴⁸, is seen at 20 digits; no other term is that small.
-    """
-    draw = random.Random(f"{seed} {size}")  # noqa: S311 - sizes, no secret
-
-    def between(low: float, high: float) -> Real:
-        return ctx.mpf(draw.uniform(low, high))
-
-    n = draw.randint(1, 12)
-    squares = between(1.1, 3) * size
-    seen = {
-        "growth_top": squares,
-        "growth": between(1, n + 1) * squares,
-        "det_low": between(0.7, 1),
-        "form_top": between(1, 1.3) * size / 2,
-        "least": -between(0.01, 0.5),
-        "most": between(0.01, 0.5) * draw.choice([1, 3]),
-    }
-    rate = between(0.05, 0.2)
-    m = run_bounds.grown(n, size, seen, rate * run_bounds.least(size, seen) / seen["growth"])
-    tiny = ctx.mpf(10) ** -draw.randint(5, 7)
-    start, state = tiny * between(0.2, 1), tiny * between(0.2, 1) * m.least / m.path
-    linear = ctx.exp(m.rate) * (start + m.path / m.least * state)
-    moved = 1 / (linear * m.path)  # about 1/Σ ‖e_k‖
-    curved = between(0.1, 0.3) / (ctx.exp(m.rate) * m.path / m.least * 2 * m.top**2 * linear)
-    steep, size_of_form, slope_of_form = between(0.02, 0.05), between(0.05, 0.1), between(0.05, 0.1)
-    scale = ctx.ldexp(1, -draw.randint(0, 5))
-
-    def wider(x: Real) -> Callable[[Real], Real]:
-        """x, and more over a wider box."""
-        return lambda margin: x * (1 + margin / (1000 * tiny * m.top))
-
-    forms = wider(size_of_form / n), wider(slope_of_form * moved)
-    return Noted(
-        size=size, steps=n, seen=seen, start=start, state=state,
-        delta_j=between(0.02, 0.05) / n / scale, tangent=rate * m.least / seen["growth"],
-        largest=between(0.05, 0.2) / scale, defect=between(0.01, 0.1) * slope_of_form / scale,
-        second=wider(curved), slope=wider(steep * moved / scale),
-        form=lambda margin: (forms[0](margin), forms[1](margin)),
-        of_matrix=between(0.02, 0.1) * m.least / m.path,
-        of_entry=between(0.05, 0.2) * m.top**2 / n,
-        squares=between(0.1, 0.5), scale=scale, unit=between(0.005, 0.02) / n,
-        absolute=draw.random() < 0.5,
-    )  # fmt: skip
-
-
-def ball(x: Real) -> flint.arb:
-    return rational_ball(exact(x))
-
-
-def exact(x: Real) -> Fraction:
-    mantissa, exponent = ctx.frexp(x)
-    return Fraction(int(ctx.ldexp(mantissa, 200))) * Fraction(2) ** (int(exponent) - 200)
-
-
-def number(x: flint.arb) -> Real:
-    with working_precision(200):
-        return ctx.mpf(x.mid().str(40, radius=False))
 
 
 class Told(DerivativesInDegrees):
@@ -136,14 +74,14 @@ def certificate(noted: Noted) -> tuple[_Certificate, StepErrors]:
     values["dm"], values["dw_1"] = (Rounded(flint.arb(k), flint.arb(0)) for k in (1, 2))
     # The first error, as two coordinates that are off by 3/5 and 4/5 of it.
     off = dict(zip(names, (Fraction(3, 5), Fraction(-4, 5)), strict=False))
-    start, first = {n: Fraction(k) for k, n in enumerate(names)}, exact(noted.start)
+    start, first = {n: Fraction(k) for k, n in enumerate(names)}, of_mpf(noted.start)
     rounded = {Fraction(k): k + first * off.get(n, Fraction(0)) for k, n in enumerate(names)}
     vars(made).update(
         run=SimpleNamespace(observables=ALL, start=start),
         arithmetic=SimpleNamespace(
             absolute=noted.absolute, number=rounded.__getitem__, exact=lambda x: x
         ),
-        values={"mse": exact(noted.squares)},
+        values={"mse": of_mpf(noted.squares)},
         rounding=SimpleNamespace(
             fixed=dict,
             box=lambda margin: {"widened": margin},

@@ -10,8 +10,7 @@ import flint
 import pytest
 
 from tests.helpers.exact_orbits import case
-from tests.helpers.run_bounds import ctx
-from tests.unit.runs.test_formulas_of_bounds import CLOSE, ball, number
+from tests.helpers.run_bounds import CLOSE, ball, ctx, number
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import fixed, mpfr, mpmath
