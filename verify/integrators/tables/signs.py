@@ -13,7 +13,7 @@ _SIGNS = {
     **dict.fromkeys("−–‒‐‑﹣－", "-"),
     **dict.fromkeys("⁄∕÷", "/"),
     **dict.fromkeys("×·⋅∗•", "*"),
-    **dict.fromkeys("  \u2009\u202f\u2002\u2003", " "),
+    **dict.fromkeys(" \u00a0\u2009\u202f\u2002\u2003", " "),
     "＋": "+", "π": "pi",
 }  # fmt: skip
 _RAISED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺", "0123456789-+")

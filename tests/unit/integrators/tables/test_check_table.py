@@ -342,6 +342,23 @@ def test_digits_below_a_double_are_told_apart_and_cost_nothing() -> None:
     assert found.cost.double is False
 
 
+def test_a_wrong_digit_of_order_2_says_how_far_off_it_is_and_below_which_h_it_is_seen() -> None:
+    """a = 2/3 + 10⁻¹⁰, b = (1/4, 3/4): b·c − 1/2 is 0.75·10⁻¹⁰, which counts as h²; and of the
+    trees of order 3 the tall one leaves 1/6 and the other 0."""
+    found = claims(
+        {"name": "Ralston", "kind": "runge-kutta", "order": 2, "a": [[], ["0.66666666676667"]],
+         "b": ["1/4", "3/4"]}
+    )  # fmt: skip
+    assert str(found["order"].evidence) == (
+        "all 2 conditions hold but for residues up to 7.50e-11, of wrong digits; "
+        "the nearest exact ones are up to 1.0e-10 away"
+    )
+    cost = found["digits"].cost
+    assert cost is not None
+    assert cost.below == pytest.approx(0.75e-10 * 6, rel=1e-3)
+    assert "below h = 4.5e-10 it is wrong digits that make the error" in str(cost.said)
+
+
 @pytest.mark.left_to_ci
 def test_an_order_8_tableau_of_doubles_is_judged_and_its_wrong_digit_named() -> None:
     table = dict(ORDER_8)
