@@ -14,6 +14,8 @@ from verify.runs import solution_error
 from verify.runs.solution_error import solution_errors
 from verify.scenes.results.run import RunResult
 
+DRIVEN = {"gamma": "1/3", "omega": "3/2", "omega0": 1}
+
 
 @pytest.fixture(scope="module")
 def run() -> RunResult:
@@ -78,3 +80,18 @@ def test_in_time_the_solution_is_that_from_t0_on(
         size = float((p - true_p) ** 2 + (q - true_q) ** 2) ** 0.5
         assert abs(float(error) - size) <= 1e-9 * size + float(Fraction(error.bound)) + 1e-15
         p, q = p + h * t, q + h * p
+
+
+@pytest.mark.parametrize("t0", ["1/3", "-2"])
+def test_of_a_driven_oscillator_the_closed_form_begins_at_t0_too(
+    t0: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = verify.run("forced-oscillator", "lie2", parameters=DRIVEN,
+                       q=1, p=0, step_size="1/10", steps=6, t0=t0, digits=20)  # fmt: skip
+    closed = solution_errors(found, 6)
+    monkeypatch.setattr(known_flows, "state_in_time", lambda *_: None)
+    followed = solution_errors(found, 6)
+    for (t, x), (s, y) in zip(closed, followed, strict=True):
+        assert t == s
+        assert abs(Fraction(x.value) - Fraction(y.value)) <= Fraction(x.bound) + Fraction(y.bound)
+        assert max(Fraction(x.bound), Fraction(y.bound)) < Fraction(1, 10**9)

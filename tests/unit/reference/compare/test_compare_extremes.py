@@ -1,6 +1,7 @@
 """Right programs in doubles where these overflow, underflow or lose digits: none is wrong."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -82,6 +83,17 @@ def test_a_determinant_may_overflow_where_the_state_does_not() -> None:
     assert may_overflow(run.orbit, 5, known)
     small = {n: (Fraction(getattr(run.rows[1], n).value), Fraction(0)) for n in ("p", "q")}
     assert not may_overflow(run.orbit, 1, small)
+
+
+def test_a_number_on_the_way_may_overflow_where_none_of_the_run_does() -> None:
+    """q³ = 10⁴⁶⁵ where q = 10¹⁵⁵, in the next step; a step that solves equations is not done."""
+    orbit = run_of("extreme-quartic", "symplectic-euler", 1e-157, 1e155).orbit
+    known = {"p": (Fraction(0), Fraction(0)), "q": (Fraction(10) ** 155, Fraction(0))}
+    assert may_overflow(orbit, 0, known)
+    assert may_overflow(orbit, 0, {})
+    assert not may_overflow(replace(orbit, scheme="implicit-midpoint"), 0, known)
+    small = run_of("extreme-quartic", "symplectic-euler", 0.01, 1e-150).orbit
+    assert not may_overflow(small, 0, {})
 
 
 def test_a_large_angle_scatters_p_as_much_as_doubles_do() -> None:

@@ -37,6 +37,7 @@ def test_a_proof_shows_order_leading_coefficient_and_closed_form() -> None:
     texts = cells(proved("lie2")._repr_html_())
     assert "3" in texts
     assert "3*p*q" in texts
+    assert {"order of ΔJ", "leading coefficient"} <= set(texts)
     assert any(text.startswith("PROVED: ") for text in texts)
     assert not any("det J ≡ 1: the map" in text for text in texts)
     formula = proved("lie2")._repr_latex_()
@@ -46,10 +47,12 @@ def test_a_proof_shows_order_leading_coefficient_and_closed_form() -> None:
 
 
 def test_a_proof_of_area_preservation_shows_det_j_is_1() -> None:
-    assert any(
-        "det J ≡ 1: the map" in text for text in cells(proved("stormer-verlet")._repr_html_())
-    )
-    assert r"\det J &\equiv 1" in proved("stormer-verlet")._repr_latex_()
+    texts = cells(proved("stormer-verlet")._repr_html_())
+    assert any("det J ≡ 1: the map" in text for text in texts)
+    assert not {"order of ΔJ", "leading coefficient"} & set(texts), "ΔJ has none"
+    formula = proved("stormer-verlet")._repr_latex_()
+    assert r"\det J &\equiv 1" in formula
+    assert r"\Delta J" not in formula
 
 
 def test_what_is_too_long_is_not_typeset() -> None:

@@ -11,6 +11,7 @@ from verify.proof.every import prove_every
 from verify.proof.order import prove
 from verify.proof.symplectic.order import prove_symplectic
 from verify.schemes.printed.nearby_order import nearby_of
+from verify.schemes.printed.printed_numbers import PrintedNumbers
 from verify.verdict import Verdict
 
 ENCLOSED, MEASURED = Verdict.ENCLOSED, Verdict.MEASURED
@@ -177,3 +178,16 @@ def test_a_modified_hamiltonian_is_that_of_a_scheme_whose_digits_leave_residues(
     refuted = modified_hamiltonian(scheme_of(wrong), system, 4)
     assert refuted.verdict is REFUTED
     assert "near" not in refuted.reason
+
+
+def test_what_has_few_digits_beside_others_is_read_as_exact_first() -> None:
+    """Of 0.037109375, which is 19/512; where nothing differs there is one reading."""
+    third, others = "0.33333333333333333", {"a": "0.037109375", "c": "0.5", "d": "1/3"}
+    several = PrintedNumbers({**others, "b": third}).of_a_method()
+    assert [set(numbers.units) for numbers in several] == [{"b"}, {"a", "b"}]
+    (alone,) = PrintedNumbers({"c": "0.5", "b": third}).of_a_method()
+    assert set(alone.units) == {"b"}
+    name = f"kick 0.037109375; drift {third}; kick 0.962890625; drift {third}; drift {third}"
+    found = prove_every(f"{name}; order 1")
+    assert found.verdict is ENCLOSED
+    assert "of those printed to 17 decimals" in found.reason
