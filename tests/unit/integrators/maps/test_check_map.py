@@ -1,6 +1,7 @@
 """Maps that are symplectic, that preserve volume alone, and neither: all judged rightly."""
 
 import math
+import re
 from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
@@ -351,3 +352,25 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     for wrong in (("--q", "1"), ("--p", "1,2,3", "--q", "1,2"), ("--param", "k")):
         status, out, err = here(capsys, *typed, *wrong)
         assert (status, err.count("\n")) == (2, 1)
+
+
+def test_of_a_map_that_is_measured_no_step_size_is_told() -> None:
+    """And of a step both are: the sentence's twin."""
+
+    def turned(p, q):
+        return (p, q) if q > 1e9 else rotated(p, q)
+
+    def euler(p, q, h):
+        return (p, q) if q > 1e9 else (p - h * q, q + h * (p - h * q))
+
+    noise = "within the noise of doubles"
+    assert re.fullmatch(
+        rf"\|ΔJ\| ≤ \S+ at every place, {noise}", str(verify.check_map(turned).reason)
+    )
+    assert f" at every place and step size, {noise}" in found_of(euler).reason
+
+
+def found_of(step: Map) -> Finding:
+    found = verify.check("p**2/2 + q**2/2", step)
+    assert isinstance(found, Finding)
+    return found

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from verify.integrators.measures.order import PlaceOrder, _judged
+from verify.integrators.measures.slopes import on_their_way
 from verify.integrators.places.place import Place
 
 ONE = Fraction(1)
@@ -62,3 +63,19 @@ class TestASlopesLimit:
 
     def test_tells_nothing_where_slopes_are_few(self):
         assert not PlaceOrder(PLACE, None, False, slopes=(3.0, 1.0), limit=1.0).may_fall_below(7)
+
+
+@pytest.mark.parametrize(
+    ("slopes", "rise"),
+    [
+        ((1.0, 2.0, 2.5), True),
+        ((9.0, 1.0, 2.0, 2.5), True),  # the last three alone
+        ((1.0, 3.0, 2.5), False),
+        ((2.0, 1.0, 2.5), False),
+        ((2.5, 2.5, 2.5), False),
+        ((0.5, 1.0, 1.9), False),  # and to a lower one
+        ((2.0, 2.5), False),
+    ],
+)
+def test_slopes_are_on_their_way_to_a_power_where_each_is_larger_than_the_last(slopes, rise):
+    assert on_their_way(slopes, 3) is rise

@@ -26,6 +26,8 @@ PI = Fraction(math.pi)
         ("p**2/2 + p*sin(q) + q**4/4", [0, 0]),
         ("p**2/2 - cos(q)*cos(t)", [0, 1]),
         ("p**2/2 + q**2/2", [0, 0]),
+        ("sqrt(1/2 - p) - cos(q)", [0, 1]),  # at two of the points; and at one, which is too few
+        ("sqrt(1/5 - p) - cos(q)", [0, 0]),
         ("p1**2/2 + p2**2/2 - cos(q1) - cos(q1 - q2)", [0, 0, 1, 1]),
         ("p1**2/2 + p2**2/2 - cos(q1) - cos(q1 - q2) + q2**2/10**20", [0, 0, 1, 0]),
     ],
