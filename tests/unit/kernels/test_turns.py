@@ -1,5 +1,6 @@
 """Whole periods of H are taken off a large t in fixed point, and nothing of the result is lost."""
 
+import math
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -127,3 +128,16 @@ def test_no_period_is_made_up(formula: str) -> None:
 def test_where_t_is_small_nothing_is_taken_off() -> None:
     assert turns_of(DRIVEN, (Fraction(0), Fraction(100)), H) is None
     assert turns_of(DRIVEN, (Fraction(-5000), Fraction(0)), H) is not None
+
+
+@pytest.mark.parametrize(
+    ("hamiltonian", "period"), [(DRIVEN, 2 * math.pi / 5), (TURNED, 3), (TWO, 2 * math.pi)]
+)
+def test_a_loops_times_are_those_of_a_period_and_its_steps_and_hardly_more(
+    hamiltonian: Hamiltonian, period: float
+) -> None:
+    found = turns_of(hamiltonian, (Fraction(0), Fraction(10**6)), H)
+    assert found is not None
+    first, last = found.times
+    assert period <= -first < 1.001 * period
+    assert last == found.steps * H - first

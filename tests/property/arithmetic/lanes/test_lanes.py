@@ -61,6 +61,22 @@ def test_products_next_to_the_end_of_the_range_too(width: int, way: str) -> None
 
 
 @pytest.mark.parametrize("way", IN_LANES)
+def test_a_range_ends_where_it_does_of_one_orbit(way: str) -> None:
+    """The leading 64 bits are looked at: at the limit and beside it, on both sides of 0."""
+    width, limit = 192, 3 << 45  # of these bits, as `both` has it
+    pair = both("def f(x):\n    i = 0\n    if inside(x, limit): i = 1\n    return i\n", width, way)
+    raws = [
+        ((sign * limit + k) << (width - 64)) + beneath
+        for sign in (-1, 0, 1)
+        for k in (-2, -1, 0, 1, 2)
+        for beneath in (-1, 0, 1)
+    ]
+    rows = [(number(raw, width),) for raw in raws]
+    assert not first_differing(pair, rows)
+    assert [pair.of_one(row) for row in rows] == [abs(x >> (width - 64)) < limit for x in raws]
+
+
+@pytest.mark.parametrize("way", IN_LANES)
 def test_carries_of_long_sums_are_moved_in_time(way: str) -> None:
     assert not first_differing(both(LONG_SUM, 192, way), small_squares(192))
 
