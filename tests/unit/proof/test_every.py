@@ -18,7 +18,9 @@ from verify.errors import InputError
 from verify.hamiltonians.jet_flow import JetFlow
 from verify.proof import every
 from verify.proof.every import prove_every
+from verify.proof.lie_argument import STEPS
 from verify.proof.telescoping import potential_of_lie, telescopes
+from verify.prose import read_prose
 from verify.schemes.every_hamiltonian import RungeKutta, Stage, StageEquations, TaylorSeries
 from verify.schemes.scheme import Scheme
 from verify.verdict import Verdict
@@ -253,3 +255,17 @@ def test_all_named_schemes_hold_what_they_claim_for_every_hamiltonian() -> None:
     for name in schemes.names():
         if schemes.get(name).every_h is not None:
             assert prove_every(name).verdict is Verdict.PROVED, name
+
+
+def test_the_argument_for_every_eta_is_told_whole_and_of_taylors_schemes_in_the_plane_alone() -> (
+    None
+):
+    told = str(prove_every("lie2").argument)
+    assert told.startswith("The exact flow has det 1: the coefficients of h, h², … in the ")
+    assert told.endswith(" there, η = 2j + 1. ∎")
+    assert told.count("∎") == 1
+    places = [told.find(str(read_prose(text))) for text, _ in STEPS]
+    assert places == sorted(places)
+    assert places[0] == 0
+    others = (prove_every("rk4"), prove_every("lie2", timed=True), prove_every("lie2", degrees=2))
+    assert not any(str(proof.argument) for proof in others)

@@ -1,8 +1,10 @@
 """Proofs in n degrees of freedom, held against steps in mpmath that share no code with them."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
 from itertools import product
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -25,6 +27,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.symplectic.order import prove_symplectic
 from verify.proof.symplectic.proof import SymplecticProof
 from verify.schemes import get
+from verify.schemes.degrees.two_form import MOST_TERMS
 from verify.verdict import Verdict
 
 HENON = "(p1**2 + p2**2 + q1**2 + q2**2)/2 + q1**2*q2 - q2**3/3"
@@ -197,3 +200,16 @@ def test_what_does_not_fit_is_one_line(formula: str, scheme: str, words: str) ->
     with pytest.raises(InputError, match=words) as error:
         proved(formula, scheme)
     assert "\n" not in str(error.value)
+
+
+def test_a_leading_form_of_too_many_terms_is_told_by_its_formula_where_it_has_one() -> None:
+    found = proved(HENON, "lie2")
+
+    def told(terms: int, formula: str) -> str:
+        form: Any = SimpleNamespace(length=terms, text="its terms")
+        return replace(found, leading=form, formula=formula).leading_text
+
+    assert told(MOST_TERMS, "of lieη") == "its terms"
+    assert told(MOST_TERMS + 1, "of lieη") == "of lieη"
+    assert told(MOST_TERMS + 1, "") == "its terms"
+    assert replace(found, leading=None, formula="of lieη").leading_text == "0"
