@@ -6,9 +6,10 @@ from types import SimpleNamespace
 
 import pytest
 
-from verify.integrators.measures.order import PlaceOrder, _judged
-from verify.integrators.measures.slopes import on_their_way
+from verify.integrators.measures.order import PlaceOrder, Tail, _judged, _row, _settled
+from verify.integrators.measures.slopes import Run, Slopes, on_their_way
 from verify.integrators.places.place import Place
+from verify.integrators.probes.duals import DualProbe
 
 ONE = Fraction(1)
 PLACE = Place((ONE, ONE), Fraction(0), (ONE, ONE), (ONE, ONE), ONE)
@@ -79,3 +80,44 @@ class TestASlopesLimit:
 )
 def test_slopes_are_on_their_way_to_a_power_where_each_is_larger_than_the_last(slopes, rise):
     assert on_their_way(slopes, 3) is rise
+
+
+SIZES = (1.0, 0.75, 0.5, 0.25, 0.1875, 0.125)
+ROWS = [(h, h**6 + 1e-9 * h, 1e-18) for h in SIZES]
+ABOVE, BELOW = Run(6, 1.0, 0.5, ROWS[2][1], 5), Run(1, 0.25, 0.125, ROWS[5][1], 3)
+
+
+def left(slopes, rows=ROWS, counts=(0,) * 6):
+    """The power and the tail, of floats at a place of two units."""
+    power, _, tail = _settled(slopes, rows, counts, (1.0,) * 6, "floats", 2.0)
+    return power, tail
+
+
+def test_what_a_loop_leaves_is_told_from_the_step_size_at_which_it_begins():
+    small = [(h, error * 1e-6 if h < 0.5 else error, noise) for h, error, noise in ROWS]
+    both, loose = Slopes((ABOVE, BELOW), True), Slopes((ABOVE,), True, (3.0, 1.0, 2.0))
+    assert left(both, small) == (6, Tail(1, 0.25, small[3][1] / 2))
+    assert left(loose, small) == (6, Tail(None, 0.5, small[3][1] / 2))
+    assert left(Slopes((ABOVE,), True), small) == (6, None)
+    fewer = (9, 9, 9, 8, 8, 8)  # turns; and the error grows as one is left out
+    assert left(Slopes((BELOW,), True), [*ROWS[:2], (0.5, 1e-10, 1e-18), *ROWS[3:]], fewer) == (
+        None, Tail(1, 0.25, ROWS[3][1] / 2),
+    )  # fmt: skip
+
+
+def test_a_rounded_coefficient_moves_a_step_by_an_ulp_of_its_length_or_of_its_unit():
+    """At least: q, which hardly moves here, has an eighth of what p does, in its own units."""
+
+    class Exact(DualProbe):
+        def __init__(self):
+            pass
+
+        def noise(self, place, state):
+            return [1e-30, 3e-30]
+
+    place = Place((ONE, ONE), Fraction(0), (4 * ONE, ONE), (ONE, ONE), ONE)
+    ended, exact = [Fraction(5, 2), Fraction(9, 8)], [3 * ONE, ONE]
+    step = SimpleNamespace(periods=())
+    errors, noise, moved = _row(step, Exact(), place, ONE, [ONE, ONE], ended, exact)
+    assert (errors, moved) == ([-0.5, 0.125], 0.5)
+    assert noise == pytest.approx([2.0**-52 * (2 + 4 / 16), 2.0**-52 / 16], rel=1e-12, abs=0)

@@ -355,7 +355,7 @@ def test_a_wrong_digit_of_order_2_says_how_far_off_it_is_and_below_which_h_it_is
     )
     cost = found["digits"].cost
     assert cost is not None
-    assert cost.below == pytest.approx(0.75e-10 * 6, rel=1e-3)
+    assert cost.below == pytest.approx(0.75e-10 * 6, rel=1e-3, abs=0)
     assert "below h = 4.5e-10 it is wrong digits that make the error" in str(cost.said)
 
 
