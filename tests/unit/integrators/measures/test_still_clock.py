@@ -1,4 +1,4 @@
-"""What a measured step's clock looks like, with numbers that are just near, and noise that hides."""
+"""What a measured step's clock looks like: numbers that are just near, and noise that hides."""
 
 from fractions import Fraction
 
