@@ -9,6 +9,7 @@ import pytest
 from verify.errors import InputError
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.runs import digits_on_demand
 from verify.runs.orbit import orbit_of
 from verify.runs.run import run
 from verify.scenes.results.orbit import COLUMNS, OrbitTable
@@ -152,3 +153,20 @@ def test_a_long_table_shows_its_ends_in_a_notebook() -> None:
     assert "<td>" not in shown
     assert "21 states, one every 1 steps" in shown
     assert repr(orbit_of(duffing(), 4)).startswith("OrbitTable(5 states, t = 0 … 2;")
+
+
+def test_an_orbit_that_fixed_point_has_no_room_for_is_found_in_floating_point(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """It begins at 1, where all fits, and ends at e¹³ = 442,413."""
+    monkeypatch.setattr(digits_on_demand, "WORTH_COMPILING", 100)
+    h, steps = Fraction(13, 200), 200
+    saddle = Hamiltonian.parse("p**2/2 - q**2/2")
+    found = run(saddle, "symplectic-euler", q=1, p=1, step_size=h, steps=steps, arithmetic="auto")
+    last = orbit_of(found, 2).rows[-1]
+    p = q = Fraction(1)
+    for _ in range(steps):
+        p += h * q
+        q += h * p
+    for text, true in zip(last[1:3], (p, q), strict=True):
+        assert abs(Fraction(text) - true) <= abs(true) / 10**16
