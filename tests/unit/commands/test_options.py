@@ -45,6 +45,11 @@ def test_an_option_is_told_in_one_style(name: str, option: click.Option) -> None
         assert str(option.metavar).startswith(("DIR", "FILE"))
 
 
+def test_commands_that_check_claims_may_allow_undecided() -> None:
+    having = {name for name, option in OPTIONS if "--allow-undecided" in option.opts}
+    assert having == {"check", "check-integrator", "check-map", "check-table"}
+
+
 @pytest.mark.parametrize(
     ("given", "option"),
     [
