@@ -149,6 +149,10 @@ COMMANDS: dict[str, tuple[str, ...]] = {
         ("lie2 pendulum: not allowed here; write --scheme lie2 --system pendulum",),
     "prove --system pendulum lie7": ("lie7: not allowed here; write --scheme lie7",),
     "prove pendulum 'kick 1; drift 1'": ("--system pendulum --scheme 'kick 1; drift 1'",),
+    "prove 'p**2/2 + q**4' lie2":
+        ("write --hamiltonian 'p**2/2 + q**4' --scheme lie2",),
+    "prove 'p_next = p - h*q**3; q_next = q' pendulum":
+        ("write --scheme 'p_next = p - h*q**3; q_next = q' --system pendulum",),
     "prove pendulum --scheme lie2": ("pendulum: not allowed here; write --system pendulum",),
     "prove pendulum nonsense": ("--scheme: is missing; write --scheme NAME",),
     f"prove {PENDULUM} duffing": ("duffing: not allowed here; write a value with spaces",),

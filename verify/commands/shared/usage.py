@@ -31,6 +31,7 @@ _COMMANDS = {
     "methods": "schemes", "split": "separate", "benchmark": "bench", "plot": "report",
     "make": "reference", "compare": "reference", "export": "certificate",
 }  # fmt: skip
+_FORMULA = re.compile(r"[^=;]*\b[pq]\d*\*\*[^=;]*")  # with a power of p or q
 
 
 def usage_mistake(error: click.ClickException, typed: Sequence[str]) -> str:
@@ -148,6 +149,7 @@ def _with_options(
     free = [(_name(x), x.type) for x in command.params if x not in order]
     fits = [
         [name for name, kind in free if isinstance(kind, Named) and kind.takes(word)]
+        or [name for name, _ in free if name == "--hamiltonian" and _FORMULA.fullmatch(word)]
         for word in words
     ]
     pairs = zip(fits, words, strict=True)
