@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from tests.end_to_end.test_command_line import here
+from tests.helpers.sampled.identities.drawn import HIDDEN
 
 PAGE = Path(__file__).parents[2] / "docs" / "reference" / "exit-statuses.md"
 CLAIM = (
@@ -16,13 +17,26 @@ TABLE = (
     '[[table]]\nname = "verlet"\nkind = "splitting"\nfirst = "kick"\n'
     'sizes = ["1/2", "1", "{}"]\norder = 2\n'
 )
+OPEN_CLAIM = (
+    '[[claim]]\nid = "a"\nkind = "delta_j"\nhamiltonian = "p**2/2 + q**2/2"\n'
+    f'scheme = "lie2"\nformula = "h**4/4 + h*({HIDDEN})"\n'
+)
+FREE_NUMBERS = (
+    '[[table]]\nname = "x"\nkind = "splitting"\nfirst = "kick"\norder = 2\n'
+    'sizes = ["0.123456789", "0.5", "0.753086422", "0.5", "0.123456789"]\n'
+)
 FILES = {
+    "open.toml": OPEN_CLAIM,
+    "free.toml": FREE_NUMBERS,
     "true.toml": CLAIM.format(2),
     "false.toml": CLAIM.format(3),
     "right.toml": TABLE.format("1/2"),
     "wrong.toml": TABLE.format("1/3"),
     "code.py": "def step(p, q, h):\n    p = p - h*q\n    return p, q + h*p\n\n\n"
     "def turn(p, q):\n    return -q, p\n\n\ndef stretch(p, q):\n    return 2*p, q\n",
+    "random_code.py": "from random import Random\n\nDRAWN = Random(1)\n\n\ndef move(p, q):\n"
+    "    return p + DRAWN.random(), q\n"
+    "\n\ndef step(p, q, h):\n    return p + DRAWN.random(), q\n",
     "made.toml": 'hamiltonian = "p**2/2 + q**4/4"\nschemes = ["lie1"]\n[[reference]]\n'
     "step_sizes = [0.1]\ninitial_values = [{ q = 1, p = 0 }]\nsteps = [0, 1, 2]\ndigits = 9\n"
     "flow = false\n",
@@ -59,6 +73,13 @@ CASES = {
                                  f"reference compare right.csv {COMPARED}",
                                  f"reference compare missing.csv {COMPARED}"),
 }  # fmt: skip
+# What is asked for and UNDECIDED, by the name on the page.
+OPEN = {
+    "verify check": "check open.toml",
+    "verify check-integrator": f"check-integrator random_code.py:step {OSCILLATOR} --order 1",
+    "verify check-map": "check-map random_code.py:move",
+    "verify check-table": "check-table free.toml",
+}
 # A property that fails is a mistake of the toolkit: a planted one, in test_explore_command.py.
 ELSEWHERE = {"verify explore"}
 
@@ -113,3 +134,41 @@ def test_a_command_ends_with_the_status_that_the_manual_says(
         status(capsys, [*(x.split() if isinstance(x, str) else x), flag])
         for x in (failed, done, refused)
     ] == [1, 0, 2]
+
+
+@pytest.mark.usefixtures("_folder")
+@pytest.mark.parametrize("name", OPEN)
+def test_undecided_is_no_pass_unless_it_is_allowed(
+    capsys: pytest.CaptureFixture[str], name: str
+) -> None:
+    typed = OPEN[name].split()
+    for more in ([], ["--json"]):
+        status, out, _ = here(capsys, *typed, *more)
+        assert (status, "UNDECIDED" in out, "REFUTED" in out) == (1, True, False)
+        allowed = here(capsys, *typed, *more, "--allow-undecided")
+        assert (allowed[0], told(allowed[1])) == (0, told(out)), "the output is the same"
+
+
+@pytest.mark.usefixtures("_folder")
+@pytest.mark.parametrize("name", OPEN)
+def test_what_is_refuted_fails_where_undecided_is_allowed(
+    capsys: pytest.CaptureFixture[str], name: str
+) -> None:
+    failed = CASES[name][0]
+    assert isinstance(failed, str)
+    assert status(capsys, f"{failed} --allow-undecided") == 1
+
+
+@pytest.mark.usefixtures("_folder")
+def test_a_step_of_which_nothing_is_claimed_may_be_undecided(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    typed = OPEN["verify check-integrator"].removesuffix(" --order 1").split()
+    for more in ([], ["--json"], ["--allow-undecided"]):
+        status, out, _ = here(capsys, *typed, *more)
+        assert (status, "UNDECIDED" in out) == (0, True)
+
+
+def told(out: str) -> str:
+    """The output without the time that it took."""
+    return re.sub(r'"seconds": "[^"]*"', "", out)

@@ -70,8 +70,20 @@ def whole(name: str, value: object, least: int, most: int | None = None) -> int:
     count = int(value) if isinstance(value, Integral) and not isinstance(value, bool) else None
     if count is None or count < least or (most is not None and count > most):
         allowed = f"{least} or more" if most is None else f"{least} … {most}"
-        raise InputError(name, value, f"must be a whole number, {allowed}")
+        raise InputError(
+            name, value, f"must be a whole number, {allowed}{as_whole(value, least, most)}"
+        )
     return count
+
+
+def as_whole(value: Any, least: int = 1, most: int | None = None) -> str:
+    """What to write for 1e6, 10.0 and 1,000; empty where that is no whole number of the range."""
+    try:
+        number = rational(re.sub("[,_]", "", value) if isinstance(value, str) else value)
+    except InputError:
+        return ""
+    fits = number.denominator == 1 and least <= number <= (most or 10**15)
+    return f"; write {number}" if fits and str(number) != value else ""
 
 
 def _from_text(text: str, name: str) -> Fraction:

@@ -36,8 +36,16 @@ def check(file: Path) -> Answer:
     return Answer(lambda: {"accepted": True, **asdict(found)}, lambda: _print(found))
 
 
+def _opened(context: click.Context, parameter: click.Parameter, file: Path) -> Path:
+    """The file, where it can be opened: it is looked for before an option is missed."""
+    from verify.files import opened
+
+    with opened(file):
+        return file
+
+
 @certificate.command()
-@click.argument("file", type=PATH, metavar="FILE")
+@click.argument("file", type=PATH, metavar="FILE", callback=_opened)
 @click.option("--coq", type=OUT_FILE, required=True, metavar="OUT.v", help="Write it there.")
 @click.option(
     "--beside-theory",

@@ -283,3 +283,20 @@ def test_no_known_digit_prints_as_zero_within_all_that_it_may_be() -> None:
 def test_upper_is_never_below_and_at_most_one_per_cent_above(bound: Fraction) -> None:
     printed = Fraction(upper(bound))
     assert bound <= printed <= bound * Fraction(101, 100)
+
+
+@pytest.mark.parametrize("written", ["1e3", "1,000", "1_000.0", 1000.0, Decimal("1e3")])
+def test_a_count_that_is_no_whole_number_in_print_is_told_as_one(written: object) -> None:
+    with pytest.raises(InputError, match=r"whole number, 1 … 2000; write 1000$"):
+        whole("steps", written, 1, 2000)
+
+
+@pytest.mark.parametrize("written", ["1.5", "-1e3", "1e4", "1e2000", "x", 0, 2001, True, None])
+def test_of_what_is_no_count_of_the_range_none_is_told(written: object) -> None:
+    with pytest.raises(InputError, match=r"must be a whole number, 1 … 2000$"):
+        whole("steps", written, 1, 2000)
+
+
+def test_a_count_of_too_many_digits_to_print_is_refused_all_the_same() -> None:
+    with pytest.raises(InputError, match=r"must be a whole number, 1 … 2000$"):
+        whole("steps", 10**5000, 1, 2000)

@@ -45,21 +45,39 @@ def test_an_option_is_told_in_one_style(name: str, option: click.Option) -> None
         assert str(option.metavar).startswith(("DIR", "FILE"))
 
 
+def test_commands_that_check_claims_may_allow_undecided() -> None:
+    having = {name for name, option in OPTIONS if "--allow-undecided" in option.opts}
+    assert having == {"check", "check-integrator", "check-map", "check-table"}
+
+
 @pytest.mark.parametrize(
-    ("given", "option"),
+    ("given", "said"),
     [
-        ("run --scheme lie2 --scheme lie3 --system pendulum --step-size 1 --steps 1 --q 1 --p 0",
-         "--scheme"),
-        ("prove --scheme lie2 --system pendulum --system=duffing", "--system"),
-        ("reference check --seed 1 --seed 2", "--seed"),
-        ("report paper -o here --output there", "--output"),
+        ("prove --scheme lie2 --system pendulum --system=duffing",
+         "--system=pendulum, duffing: verify prove takes one; call it once for each"),
+        ("reference check --seed 1 --seed 2",
+         "--seed=1, 2: verify reference check takes one; call it once for each"),
+        ("report paper -o here --output there",
+         "--output=here, there: verify report takes one; call it once for each"),
     ],
 )  # fmt: skip
 def test_an_option_that_stands_once_is_not_given_twice(
-    capsys: pytest.CaptureFixture[str], given: str, option: str
+    capsys: pytest.CaptureFixture[str], given: str, said: str
 ) -> None:
-    told = (2, "", f"verify: {option}: is given 2 times; it stands once\n")
-    assert here(capsys, *given.split()) == told
+    assert here(capsys, *given.split()) == (2, "", f"verify: {said}\n")
+
+
+def test_who_compares_schemes_is_told_the_commands_that_take_several(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    given = "run --scheme lie2 --scheme lie3 --system pendulum --step-size 1 --steps 1 --q 1 --p 0"
+    status, _, err = here(capsys, *given.split())
+    assert (status, err.count("\n")) == (2, 1)
+    said, _, several = err.strip().partition("; several go with ")
+    assert said == "verify: --scheme=lie2, lie3: verify run takes one"
+    having = {f"verify {n}" for n, x in OPTIONS if "--scheme" in x.opts and x.multiple}
+    assert set(several.split(", ")) == having
+    assert "verify bench" in having
 
 
 def test_what_is_repeatable_and_what_is_refused_anyhow_are_as_before(

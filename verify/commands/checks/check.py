@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from verify.commands.checks.failing import allow_undecided_option, fails
 from verify.commands.shared.answer import Answer, picked
 from verify.commands.shared.input import CLAIMS, paper_folder
 from verify.commands.shared.tasks import kept_tasks, with_tasks
@@ -26,9 +27,18 @@ _OF_STATEMENTS = ("id", "source", "statement", "outcome", "readings")
 @click.option(
     "--only", multiple=True, metavar="ID", help="Only this claim, or eq-* for several; repeatable."
 )
+@allow_undecided_option
 @with_tasks
-def check(claims: str, only: tuple[str, ...], keep: Path | None, where: "Placement") -> Answer:
-    """Check the claims in CLAIMS (a TOML file, or `paper`); exit status 1 where one is refuted.
+def check(
+    claims: str,
+    only: tuple[str, ...],
+    allow_undecided: bool,
+    keep: Path | None,
+    where: "Placement",
+) -> Answer:
+    """Check the claims in CLAIMS (a TOML file, or `paper`).
+
+    Exit status 1 where one is REFUTED, or UNDECIDED without --allow-undecided.
 
     \b
     [defaults]                        # what the claims share
@@ -76,7 +86,7 @@ def check(claims: str, only: tuple[str, ...], keep: Path | None, where: "Placeme
             "statements": [picked(each, *_OF_STATEMENTS) for each in statements],
         },
         lambda: _print(found, statements),
-        failed=any(claim.verdict == "REFUTED" for claim in found),
+        failed=fails((claim.verdict for claim in found), allow_undecided=allow_undecided),
     )
 
 

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from verify.commands.checks.failing import allow_undecided_option, fails
 from verify.commands.checks.looking import (
     looking_options,
     places_json,
@@ -56,6 +57,7 @@ _CLAIMED = click.IntRange(1, 12)
 @click.option("--symplectic", is_flag=True, help="Claimed: JᵀΩJ ≡ Ω; in the plane det J ≡ 1.")
 @click.option("--area-order", type=_CLAIMED, metavar="K", help="Claimed: ΔJ = O(h^K).")
 @time_limit_option
+@allow_undecided_option
 @answering
 def check_integrator(
     target: str | None,
@@ -68,6 +70,7 @@ def check_integrator(
     symplectic: bool,
     area_order: int | None,
     time_limit: float,
+    allow_undecided: bool,
     **looking: str | None,
 ) -> Answer:
     """Check a step of your own, in Python or any language: its order and that of ΔJ.
@@ -85,7 +88,8 @@ def check_integrator(
     too, or file.py:FUNCTION is loaded, and the function is called.
 
     Where its code allows it, the function is called with symbols, and all is proved; else it is
-    measured. Exit status 1 where the verdict is REFUTED, or what is claimed is not decided.
+    measured. Exit status 1 where the verdict is REFUTED, or what an option claims is UNDECIDED,
+    without --allow-undecided.
 
     \b
     verify check-integrator mine:step --system pendulum
@@ -109,8 +113,7 @@ def check_integrator(
     return Answer(
         lambda: _json(exact, called, finding, seconds),
         lambda: _print(exact, called, finding),
-        failed=finding.verdict.value == "REFUTED"
-        or (claims != Claims() and not finding.verdict.holds),
+        failed=fails([finding.verdict], allow_undecided=allow_undecided or claims == Claims()),
     )
 
 

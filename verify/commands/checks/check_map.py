@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from verify.commands.checks.failing import allow_undecided_option, fails
 from verify.commands.checks.looking import (
     looking_options,
     places_json,
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
 )
 @looking_options
 @time_limit_option
+@allow_undecided_option
 @answering
 def check_map(
     target: str,
@@ -45,6 +47,7 @@ def check_map(
     arguments: str | None,
     params: tuple[str, ...],
     time_limit: float,
+    allow_undecided: bool,
     **looking: str | None,
 ) -> Answer:
     """Check whether a Python function map(p, q) → (p', q') of your own is symplectic, without an H.
@@ -56,7 +59,7 @@ def check_map(
     loaded, and the function is called.
 
     Where its code allows it, the function is called with symbols, and all is proved; else it is
-    measured. Exit status 1 where it is REFUTED, or nothing is found out.
+    measured. Exit status 1 where it is REFUTED, or UNDECIDED without --allow-undecided.
 
     \b
     verify check-map mine.py:henon --degrees 1
@@ -82,7 +85,7 @@ def check_map(
     return Answer(
         lambda: _json(target, names, finding, seconds),
         lambda: _print(target, finding),
-        failed=not finding.verdict.holds,
+        failed=fails([finding.verdict], allow_undecided=allow_undecided),
     )
 
 

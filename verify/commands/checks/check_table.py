@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from verify.commands.checks.failing import allow_undecided_option, fails
 from verify.commands.shared.answer import Answer, answering
 
 if TYPE_CHECKING:
@@ -16,9 +17,12 @@ if TYPE_CHECKING:
 
 @click.command("check-table")
 @click.argument("tables", type=click.Path(path_type=Path), metavar="FILE.toml")
+@allow_undecided_option
 @answering
-def check_table(tables: Path) -> Answer:
-    """Judge printed tables of coefficients by what they claim; exit status 1 where one is refuted.
+def check_table(tables: Path, allow_undecided: bool) -> Answer:
+    """Judge printed tables of coefficients by what they claim.
+
+    Exit status 1 where a claim is REFUTED, or UNDECIDED without --allow-undecided.
 
     \b
     [[table]]
@@ -49,7 +53,7 @@ def check_table(tables: Path) -> Answer:
     return Answer(
         lambda: {"claims": [_json(each) for each in found], "seconds": seconds},
         lambda: _print(found),
-        failed=any(each.claim.verdict == "REFUTED" for each in found),
+        failed=fails((each.claim.verdict for each in found), allow_undecided=allow_undecided),
     )
 
 

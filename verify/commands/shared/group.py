@@ -4,6 +4,7 @@ click takes the last of several and says nothing of the others.
 """
 
 from collections import Counter
+from collections.abc import Sequence
 
 import click
 
@@ -31,4 +32,17 @@ def _given_once(command: click.Command, context: click.Context, given: list[str]
     for option, times in Counter(order).items():
         single = isinstance(option, click.Option) and not (option.multiple or option.is_flag)
         if single and times > 1:
-            raise InputError(option.opts[-1], NOT_GIVEN, f"is given {times} times; it stands once")
+            from verify.commands.shared.usage import commands_with
+
+            several = commands_with(set(option.opts), several=True)
+            instead = f"several go with {several}" if several else "call it once for each"
+            problem = f"{context.command_path} takes one; {instead}"
+            values = ", ".join(_values(option, given)) or NOT_GIVEN
+            raise InputError(option.opts[-1], values, problem)
+
+
+def _values(option: click.Parameter, given: Sequence[str]) -> list[str]:
+    """The values that stand after the option, or behind its =."""
+    parts = [word.partition("=") for word in given]
+    pairs = zip(parts, [*given[1:], ""], strict=True)
+    return [x if equals else after for (name, equals, x), after in pairs if name in option.opts]

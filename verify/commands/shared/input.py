@@ -28,7 +28,7 @@ class GivenPath(click.Path):
         return super().convert(value, param, ctx)
 
 
-class _Named(click.ParamType[str]):
+class Named(click.ParamType[str]):
     """A name of a catalogue, in any case or an alias; a shell completes it."""
 
     def __init__(self, name: str, catalogue: Callable[[], Any]) -> None:
@@ -36,6 +36,13 @@ class _Named(click.ParamType[str]):
 
     def convert(self, value: Any, param: Any, ctx: Any) -> Any:
         return self.catalogue().canonical(str(value))
+
+    def takes(self, value: str) -> bool:
+        """True where the catalogue has it."""
+        try:
+            return bool(self.catalogue().get(value))
+        except InputError:
+            return False
 
     def shell_complete(self, ctx: Any, param: Any, incomplete: str) -> "list[CompletionItem]":
         from click.shell_completion import CompletionItem
@@ -79,8 +86,8 @@ PATH = GivenPath(path_type=Path)
 SCENE = _FileOr(lambda: ("paper", *suites()))
 CLAIMS = _FileOr(lambda: ("paper",))
 FILE = _FileOr(tuple)
-SCHEME = _Named("scheme", _schemes)
-_SYSTEM = _Named("system", _systems)
+SCHEME = Named("scheme", _schemes)
+_SYSTEM = Named("system", _systems)
 Command = Callable[..., Any]
 
 

@@ -1,10 +1,14 @@
 """A command line that click refuses, in one line: what was typed, and what to type instead."""
 
 import re
+import shlex
 from collections.abc import Sequence
 
 import click
 
+from verify.arithmetic.exact import as_whole
+from verify.commands import Commands
+from verify.commands.shared.input import Named
 from verify.errors import plain_name, unknown
 
 # What others call an option, by what it is called here.
@@ -27,6 +31,7 @@ _COMMANDS = {
     "methods": "schemes", "split": "separate", "benchmark": "bench", "plot": "report",
     "make": "reference", "compare": "reference", "export": "certificate",
 }  # fmt: skip
+_FORMULA = re.compile(r"[^=;]*\b[pq]\d*\*\*[^=;]*")  # with a power of p or q
 
 
 def usage_mistake(error: click.ClickException, typed: Sequence[str]) -> str:
@@ -53,19 +58,18 @@ def usage_mistake(error: click.ClickException, typed: Sequence[str]) -> str:
         names = context.command.list_commands(context)
         return str(unknown("command", found[1], names, aliases=_COMMANDS))
     if found := re.match(r"Got unexpected extra arguments? \((.*)\)", message):
-        return _one_too_many(found[1], context, typed)
+        return _bare_words(context, typed) or _too_much(found[1], context, typed)
     return f"{message} `{context.command_path} --help` lists what is allowed"
 
 
 def _no_such_option(name: str, context: click.Context, typed: Sequence[str]) -> str:
+    capital = name in ("-H", "--H")  # the Hamiltonian's letter; h is a step size
     if len(name) == 2:  # click takes -system for -s -y …
         name = next((x for x in typed if x.startswith(name)), name).partition("=")[0]
     allowed = _options(context.command)
-    plain = plain_name(name.lstrip("-"))
+    plain = "hamiltonian" if capital else plain_name(name.lstrip("-"))
     aliases = {other: ours for ours, others in _OPTIONS.items() if ours in allowed
                for other in others}  # fmt: skip
-    if name == "--H" and "--hamiltonian" in allowed:
-        aliases["h"] = "--hamiltonian"
     known = {**aliases, **{option.lstrip("-"): option for option in allowed}}
     if plain in known:
         return f"{name}: no such option; write {known[plain]}"
@@ -87,11 +91,18 @@ def _options(command: click.Command) -> list[str]:
 def _elsewhere(plain: str, context: click.Context) -> str:
     """The other commands that have the option, under its name or another that it goes by."""
     ours = {f"--{plain}", *(name for name, others in _OPTIONS.items() if plain in others)}
-    root = context.find_root().command
-    if not isinstance(root, click.Group) or context.command is root:
-        return ""
-    having = [each.name for each in root.commands.values() if ours & set(_options(each))]
-    return ", ".join(f"verify {name}" for name in having)
+    return "" if context.parent is None else commands_with(ours)
+
+
+def commands_with(names: set[str], *, several: bool = False) -> str:
+    """The commands that have an option of these names; `several`: that may stand several times."""
+    having = [
+        f"verify {command.name}"
+        for command in Commands().values()
+        for each in command.params
+        if names & set(each.opts) and (getattr(each, "multiple", False) or not several)
+    ]
+    return ", ".join(dict.fromkeys(having))
 
 
 def _missing(parameter: click.Parameter, context: click.Context, typed: Sequence[str]) -> str:
@@ -99,6 +110,8 @@ def _missing(parameter: click.Parameter, context: click.Context, typed: Sequence
     if name in typed[1:]:  # it was taken for the value of the option before it
         before = typed[typed.index(name) - 1]
         return f"{before}={name}: has no value; write {_written(_option(before, context))}"
+    if bare := _bare_words(context, typed):
+        return bare
     if isinstance(parameter, click.Option):
         return f"{name}: is missing; write {_written(parameter)}"
     return f"{name}: is missing; write {context.command_path} {name}"
@@ -111,40 +124,54 @@ def _bad_value(parameter: click.Parameter, message: str) -> str:
         whole = isinstance(kind, click.types.IntParamType)
         allowed = "" if low is None else f", {low} or more" if high is None else f", {low} … {high}"
         must = f"must be a {'whole ' if whole else ''}number{allowed}"
-        return f"{name}={found[1]}: {must}{_as_whole(found[1]) if whole else ''}"
+        return f"{name}={found[1]}: {must}{as_whole(found[1], low or 1, high) if whole else ''}"
     if isinstance(kind, click.Choice):
         value = message.partition("'")[2].partition("'")[0]
         return str(unknown(name, value, list(map(str, kind.choices))))
     return f"{name}: {message}"
 
 
-def _as_whole(value: str) -> str:
-    """What to write for 1e6, 10.0 and 1,000; nothing where it is no whole number."""
-    from verify.arithmetic.exact import rational
-    from verify.errors import InputError
-
-    try:
-        number = rational(value.replace(",", "").replace("_", ""))
-    except InputError:
-        return ""
-    written = str(number)
-    return f"; write {written}" if number.denominator == 1 and written != value else ""
+def _bare_words(context: click.Context, typed: Sequence[str]) -> str:
+    """The mistake of words without their options, which it writes before them; else empty."""
+    command, rest = context.command, typed[len(context.command_path.split()) - 1 :]
+    _, words, order = command.make_parser(context).parse_args(list(rest))
+    written = _with_options(words, command, order)
+    return f"{' '.join(words)}: not allowed here; write {written}" if written else ""
 
 
-def _one_too_many(extra: str, context: click.Context, typed: Sequence[str]) -> str:
+def _with_options(
+    words: Sequence[str], command: click.Command, order: Sequence[click.Parameter] = ()
+) -> str:
+    """Each word after the option that takes it; empty where one fits none.
+
+    `order`: the options that the command line has already.
+    """
+    free = [(_name(x), x.type) for x in command.params if x not in order]
+    fits = [
+        [name for name, kind in free if isinstance(kind, Named) and kind.takes(word)]
+        or [name for name, _ in free if name == "--hamiltonian" and _FORMULA.fullmatch(word)]
+        for word in words
+    ]
+    pairs = zip(fits, words, strict=True)
+    return " ".join(f"{n[0]} {shlex.quote(x)}" for n, x in pairs) if all(fits) else ""
+
+
+def _too_much(extra: str, context: click.Context, typed: Sequence[str]) -> str:
     at = next((k for k, x in enumerate(typed) if extra == x or extra.startswith(f"{x} ")), 0)
     option = _option(typed[at - 2], context) if at >= 2 else None
     if isinstance(option, click.Option) and not option.is_flag:
         value = typed[at - 1]
         if option.opts[0] == "--param":
             meant = extra if "=" in extra else f"{value}={extra}"
-            return f"{extra}: is one too many; write --param {meant}"
+            return f"{extra}: not allowed here; write --param {meant}"
         again = f", and {option.opts[0]} again for another" if option.multiple else ""
         write = f"write a value with spaces in quotation marks{again}"
-        return f"{extra}: is one too many; {write}, and nothing without its option"
+        return f"{extra}: not allowed here; {write}, and nothing without its option"
     arguments = [_name(each) for each in context.command.params if isinstance(each, click.Argument)]
     takes = " ".join([context.command_path, *arguments, "[OPTIONS]"])
-    return f"{extra}: is one too many; write {takes}"
+    about = "" if arguments else _with_options([extra], Commands()["prove"])
+    takes += about and f" for all of them, or verify prove {about} … for this one"
+    return f"{extra}: not allowed here; write {takes}"
 
 
 def _option(name: str, context: click.Context) -> click.Parameter | None:

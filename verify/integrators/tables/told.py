@@ -137,26 +137,24 @@ def nearest_texts(found: Judged) -> dict[str, str] | None:
 class Hints:
     """At what would be right in one table: told only where all that it claims holds with them.
 
+    Where each of several numbers alone would do, all of them are told, and none is blamed.
+
     `again`: its claims with these numbers in place of printed ones."""
 
     def __init__(self, again: Callable[[Mapping[str, str]], Iterable[TableClaim]] | None) -> None:
         self._again = again
-        self.one: Misprint | None = None
+        self.some: tuple[Misprint, ...] = ()
 
     def kept(self, found: Judged) -> Judged:
         """What was found, with the hint that explains all claims, and without one that does not."""
         refuted = found.verdict is Verdict.REFUTED
         if self._again is None or not (refuted or found.digits is False):
             return found
-        if self.one is not None:
-            return replace(found, misprint=self.one)
-        m = found.misprint
-        if m is not None:
-            if self._holds({m.name: mended_text(found, m)}):
-                self.one = m
-                return found
-            found = replace(found, misprint=None)
-        if not refuted or found.nearest is None:
+        if not self.some:
+            each = ((m, mended_text(found, m)) for m in found.misprints)
+            self.some = tuple(m for m, text in each if self._holds({m.name: text}))
+        found = replace(found, misprints=self.some)
+        if self.some or not refuted or found.nearest is None:
             return found
         if self._holds(nearest_texts(found) or {}):
             return found

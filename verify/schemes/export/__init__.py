@@ -11,6 +11,10 @@ if TYPE_CHECKING:
 _FILES = Catalogue(f"{__name__}.languages", [f"{folder}/languages" for folder in __path__])
 
 
+_C = dict.fromkeys(("c++", "cpp", "cxx"), "c")
+_OF_C = '; what c writes is C++ too; check-integrator checks a C++ step that is extern "C"'
+
+
 class Language(Protocol):
     """A language's file: `SUFFIX`, that of its files; `RESERVED`, words that are no names there;
     and `written(program)`, the whole text."""
@@ -30,6 +34,6 @@ def get(name: str) -> Language:
     """The language of that name, in any case; InputError where there is none."""
     plain = name.strip().lower() if isinstance(name, str) else name
     if plain not in _FILES:
-        raise unknown("language", name, names())
+        raise unknown("language", name, names(), _OF_C if plain in _C else "", _C)
     found: Language = _FILES.module(plain)
     return found

@@ -20,7 +20,7 @@ from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.arb import in_reach, middle_and_radius
 from verify.arithmetic.flint_precision import working_precision
 from verify.schemes.printed.asked import BITS, Asked, Equation
-from verify.schemes.printed.misprint import Misprint, exact_misprint, misprint
+from verify.schemes.printed.misprint import Misprint, exact_misprints, misprints
 from verify.schemes.printed.nearby import Nearby
 from verify.schemes.printed.nearest import far, nearest
 from verify.schemes.printed.printed_numbers import PrintedNumbers
@@ -43,6 +43,7 @@ class Judged:
     it, in units of its last digit, and `nearest` the solution's numbers; None where none is known.
     `shown`: how many conditions are shown to hold there, of `checked`; the others do to 60 digits.
     `digits`: whether all digits are right to one unit of the last; None where it is not known.
+    `misprints`: the numbers of which each alone explains it.
     `residues`: all of them as printed, with their orders. `read`: the numbers as they were read.
     """
 
@@ -56,10 +57,15 @@ class Judged:
     nearest: Mapping[str, Fraction] | None = None
     shown: int | None = None
     digits: bool | None = None
-    misprint: Misprint | None = None
+    misprints: tuple[Misprint, ...] = ()
     residues: tuple[tuple[Equation, Fraction], ...] = ()
     read: PrintedNumbers | None = None
     lower: tuple[Equation, Fraction] | None = None
+
+    @property
+    def misprint(self) -> Misprint | None:
+        """The one number that alone explains it; None where none does, or each of several."""
+        return self.misprints[0] if len(self.misprints) == 1 else None
 
     @property
     def holds(self) -> bool:
@@ -75,7 +81,7 @@ def judge(numbers: PrintedNumbers, asked: Asked, order: int) -> Judged:
     if not asked.equations:  # they hold by the form of the table
         return Judged(Verdict.PROVED, order, asked.by_form, read=numbers)
     if not numbers.units:
-        return replace(_exactly(asked, order), read=numbers)
+        return replace(_exactly(asked, order, numbers.tentative), read=numbers)
     with working_precision(BITS):
         return replace(_of(Nearby(numbers, asked), order, numbers), read=numbers)
 
@@ -102,9 +108,8 @@ def _of(near: Nearby, order: int, numbers: PrintedNumbers) -> Judged:
         seen = replace(seen, verdict=Verdict.REFUTED, digits=False)
         if numbers.tentative:
             return seen
-        one = misprint(near, own) if near.asked.labels else None
-        seen = replace(seen, misprint=one)
-        found = nearest(near, own) or (far(near, own) if one is None else None)
+        seen = replace(seen, misprints=misprints(near, own) if near.asked.labels else ())
+        found = nearest(near, own) or (far(near, own) if seen.misprint is None else None)
         return seen if found is None else replace(seen, off=found.off, nearest=found.numbers)
     return _with_nearest(seen, near, own, order, numbers.slack)
 
@@ -114,11 +119,11 @@ def _with_nearest(seen: Judged, near: Nearby, own: Sequence[int], order: int, sl
     found = nearest(near, own)
     if found is None:  # some conditions alone may show wrong digits
         digits = False if near.excluded(own, slack) else None
-        one = misprint(near, own) if allowed < order else None
-        return replace(seen, digits=digits, misprint=one)
+        some = misprints(near, own, single=True) if allowed < order else ()
+        return replace(seen, digits=digits, misprints=some)
     off = found.off
     wrong_digits = off > slack and (allowed < order or near.apart(own, slack))
-    one = misprint(near, own) if wrong_digits and off > WITHIN else None
+    some = misprints(near, own, single=True) if wrong_digits and off > WITHIN else ()
     digits = True if off <= slack else False if wrong_digits else None
     if off < AS_PRINTED and found.shown < len(near.names):
         digits = None  # any others of those that are free would do as well
@@ -129,15 +134,15 @@ def _with_nearest(seen: Judged, near: Nearby, own: Sequence[int], order: int, sl
     order_found = max(allowed, order) if verdict is Verdict.ENCLOSED else allowed
     if verdict is Verdict.ENCLOSED and found.shown < len(own):
         verdict = Verdict.MEASURED
-    told = replace(seen, verdict=verdict, order=order_found, digits=digits, misprint=one)
+    told = replace(seen, verdict=verdict, order=order_found, digits=digits, misprints=some)
     return replace(told, off=off, nearest=found.numbers, shown=found.shown + near.asked.by_form)
 
 
 # -- exactly --------------------------------------------------------------------------------------
 
 
-def _exactly(asked: Asked, order: int) -> Judged:
-    """Of exact coefficients."""
+def _exactly(asked: Asked, order: int, tentative: bool) -> Judged:
+    """Of exact coefficients; `tentative`: without a look for one that is misprinted."""
     equations, gaps = asked.equations, exact_residues(asked)
     checked = len(asked.up_to(order)) + asked.by_form
     wrong = [k for k, (zero, _) in enumerate(gaps) if zero is False]
@@ -152,9 +157,10 @@ def _exactly(asked: Asked, order: int) -> Judged:
     largest = max((abs(x) for e, x in sizes if e.order <= order), default=Fraction(0))
     if failing is None:
         return Judged(verdict, allowed, checked, largest=largest, residues=sizes)
-    one = exact_misprint(asked, order) if verdict is Verdict.REFUTED else None
+    looked = verdict is Verdict.REFUTED and not tentative
+    some = exact_misprints(asked, order) if looked else ()
     seen = Judged(verdict, allowed, checked, equations[failing], gaps[failing][1], largest)
-    return replace(seen, residues=sizes, misprint=one)
+    return replace(seen, residues=sizes, misprints=some)
 
 
 def exact_residues(asked: Asked) -> list[tuple[bool | None, Fraction]]:

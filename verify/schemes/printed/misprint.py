@@ -1,4 +1,4 @@
-"""One number alone that is misprinted: which, and what it would have to be."""
+"""One number alone that is misprinted: which it can be, and what it would have to be."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -28,12 +28,15 @@ class Misprint:
     value: Fraction
 
 
-def misprint(near: Nearby, rows: Sequence[int]) -> Misprint | None:
-    """The one number whose change alone would do; None where none or several would."""
+def misprints(near: Nearby, rows: Sequence[int], single: bool = False) -> tuple[Misprint, ...]:
+    """The numbers of which the change of each alone would do; `single`: none where several would.
+
+    Where only last digits are wrong, several seem to do: the digits of the others leave room.
+    """
     failing = [i for i in rows if not _is_small(near, i, near.value[i])]
     few, every = failing[:_FEW] or list(rows[:_FEW]), range(len(near.names))
-    found = [m for k in every if (m := _single(near, k, rows, few)) is not None]
-    return found[0] if len(found) == 1 else None
+    each = tuple(m for k in every if (m := _single(near, k, rows, few)) is not None)
+    return () if single and len(each) > 1 else each
 
 
 def _single(near: Nearby, k: int, rows: Sequence[int], few: Sequence[int]) -> Misprint | None:
@@ -77,27 +80,30 @@ def _least_squares(slope: Sequence[Ball], value: Sequence[Ball]) -> Ball | None:
 # -- of exact tables ------------------------------------------------------------------------------
 
 
-def exact_misprint(asked: Asked, order: int) -> Misprint | None:
-    """The one rational entry, of those that are not 0, and the quotient it would have to be."""
+def exact_misprints(asked: Asked, order: int) -> tuple[Misprint, ...]:
+    """Of rational entries that are not 0: each that alone would do, with the quotient for it."""
     labels = asked.labels
     if not labels or len(labels) > _MOST or not all(x.is_Rational for x in asked.entries):
-        return None
+        return ()
     names = [f"x{k}" for k in range(len(labels))]
     values = {n: Fraction(int(x.p), int(x.q)) for n, x in zip(names, asked.entries, strict=True)}
     texts = dict(zip(names, map(str, asked.entries), strict=True))
     unknowns = AnyNumbers(texts, values, dict.fromkeys(names, _CLOSE**2))
     free = replace(asked, entries=tuple(map(symbol, names)))
     with working_precision(BITS):
-        found = misprint(Nearby(unknowns, free), asked.up_to(order))
-    if found is None:
-        return None
-    value = found.value.limit_denominator(_LARGEST)
-    k = names.index(found.name)
-    if abs(value - found.value) > _CLOSE or value == values[found.name]:
+        near = misprints(Nearby(unknowns, free), asked.up_to(order))
+    each = (_by_quotient(asked, order, names.index(m.name), m.value) for m in near)
+    return tuple(m for m in each if m is not None)
+
+
+def _by_quotient(asked: Asked, order: int, k: int, near: Fraction) -> Misprint | None:
+    """Entry k with the quotient near that value; None where the conditions do not hold with it."""
+    value = near.limit_denominator(_LARGEST)
+    if abs(value - near) > _CLOSE or value == asked.entries[k]:
         return None
     entries = [flint.fmpq(int(x.p), int(x.q)) for x in asked.entries]
     entries[k] = flint.fmpq(value.numerator, value.denominator)
     residues = asked.residues(entries, flint.fmpq(1))
     if any(residues[i] != 0 for i in asked.up_to(order)):
         return None
-    return Misprint(labels[k], str(asked.entries[k]), value)
+    return Misprint(asked.labels[k], str(asked.entries[k]), value)

@@ -11,6 +11,7 @@ from verify.verdict import Verdict
 
 Details = tuple[tuple[str, ...], ...]
 Judgement = tuple[Verdict, Prose, Details]
+_MOST = 8  # numbers of which each would explain what is found
 
 
 def of_printed(found: Judged, claimed: int) -> Judgement:
@@ -91,14 +92,17 @@ def _none_near(found: Judged) -> str:
 
 
 def _alone(found: Judged) -> str:
-    """The one misprinted number, where one alone explains what is found."""
-    m = found.misprint
-    if m is None:
-        return ""
-    return (
-        f". One number alone explains it: `{m.name}`, printed `{m.printed.strip()}`, would be "
-        f"`{mended_text(found, m)}`"
+    """The one misprinted number that explains what is found; or that each of several does."""
+    m, several = (
+        found.misprint,
+        [f"`{m.name}` = `{mended_text(found, m)}`" for m in found.misprints],
     )
+    if m is not None:
+        printed = f"`{m.name}`, printed `{m.printed.strip()}`, would be `{mended_text(found, m)}`"
+        return f". One number alone explains it: {printed}"
+    listed = ", ".join(several[:_MOST]) + (", …" if len(several) > _MOST else "")
+    said = f"Each of {len(several)} numbers alone would explain it, and none is singled out"
+    return f". {said}: {listed}" if several else ""
 
 
 def mended_text(found: Judged, m: Misprint) -> str:

@@ -83,7 +83,7 @@ class PrintedTable:
             return self.read(self.printed.with_number(name, text))
         parts = ((kind, text if name == f"{kind} {k + 1}" else size) for k, (kind, size) in
                  enumerate(self.parts))  # fmt: skip
-        return replace(self, parts=tuple(parts))
+        return replace(self, parts=tuple(parts), printed=replace(self.printed, tentative=True))
 
     def read(self, numbers: PrintedNumbers) -> "PrintedTable":
         """The same with its numbers read so."""

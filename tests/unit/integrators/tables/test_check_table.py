@@ -450,6 +450,106 @@ def test_a_hint_that_breaks_another_claim_is_not_given(order: int | None) -> Non
     assert "alone" not in claims(table)["symplectic"].evidence
 
 
+MIDPOINT = {"name": "x", "kind": "runge-kutta", "order": 2,
+            "a": [[], ["1/2"]], "b": ["0", "1"], "c": ["0", "1/2"]}  # fmt: skip
+KUTTA_ROW = {**KUTTA, "a": [*KUTTA["a"][:3], ["0", "0", "1", "1"]]}
+WITHOUT_ORDER = {"name": "x", "kind": "runge-kutta", "a": [[], ["1/3"]], "b": ["0", "1"],
+                 "c": ["0", "1/2"]}  # fmt: skip
+KICKS = {"name": "x", "kind": "splitting", "first": "kick", "sizes": ["1/2", "1", "1/3"]}
+
+
+@pytest.mark.parametrize(
+    ("table", "kind", "each"),
+    [
+        ({**MIDPOINT, "order": 1, "a": [[], ["1/3"]]}, "row sums", {"a21": "1/2", "c2": "1/3"}),
+        (WITHOUT_ORDER, "row sums", {"a21": "1/2", "c2": "1/3"}),
+        ({**MIDPOINT, "order": 1, "b": ["1/2", "1"]}, "order", {"b1": "0", "b2": "1/2"}),
+        ({**KUTTA_ROW, "order": 1}, "row sums", {"a43": "0", "a44": "0", "c4": "2"}),
+        ({**KUTTA_ROW, "order": 2}, "order", {"a43": "0", "a44": "0"}),
+        ({**KUTTA_ROW, "order": 2}, "row sums", {"a43": "0", "a44": "0"}),
+        ({**KICKS, "order": 1}, "order", {"kick 1": "2/3", "kick 3": "1/2"}),
+    ],
+)
+def test_where_each_of_several_entries_would_do_none_is_blamed(
+    table: dict[str, Any], kind: str, each: dict[str, str]
+) -> None:
+    claim = claims(table)[kind]
+    assert claim.verdict is Verdict.REFUTED
+    assert (claim.nearest, "One number alone" in claim.evidence) == (None, False)
+    said = f"Each of {len(each)} numbers alone would explain it, and none is singled out: "
+    listed = ", ".join(f"{name} = {text}" for name, text in each.items())
+    assert str(claim.evidence).endswith(said + listed)
+    for name, text in each.items():
+        assert all(x.verdict.holds for x in judged(with_entry(table, name, text))), name
+
+
+def with_entry(table: dict[str, Any], name: str, text: str) -> dict[str, Any]:
+    """The table with that text for one entry, such as a21, c2 or kick 3."""
+    key, i = name.rstrip("0123456789 "), int(name[-1]) - 1
+    if key == "a":
+        a, row = [list(each) for each in table["a"]], int(name[1]) - 1
+        a[row][i] = text
+        return {**table, "a": a}
+    numbers = list(table[key if key in table else "sizes"])
+    numbers[i] = text
+    return {**table, (key if key in table else "sizes"): numbers}
+
+
+def test_of_a_row_with_one_wrong_entry_the_time_is_not_blamed() -> None:
+    """Of order 1 nothing tells which of the row is wrong, and the right one is among them."""
+    a = [*FEHLBERG["a"][:5], ["-8/27", "2", "-3554/2565", "1859/4104", "-11/40"]]
+    claim = claims({**FEHLBERG, "order": 1, "a": a})["row sums"]
+    assert "Each of 6 numbers alone" in claim.evidence
+    assert "a63 = -3544/2565" in claim.evidence
+    assert "c6 = 509/1026" in claim.evidence
+    assert claim.nearest is None
+
+
+def test_another_claim_tells_which_of_several_entries_is_wrong() -> None:
+    """Kick 1 or kick 3 for the order; for an equal first and last kick, kick 3."""
+    table = {**KICKS, "order": 1, "symmetric": True}
+    found = claims(table)
+    for kind in ("order", "symmetric"):
+        assert "One number alone explains it: kick 3, printed 1/3, would be 1/2" in (
+            found[kind].evidence
+        )
+    assert hints(table) == {("kick 3", "1/2")}
+
+
+@pytest.mark.parametrize(
+    ("table", "hint"),
+    [
+        ({**FEHLBERG, "c": [*FEHLBERG["c"][:5], "1/3"]}, ("c6", "1/2")),
+        ({**KICKS, "order": 2, "sizes": ["1/2", "1", "1/2"], "times": ["0", "-", "1/2"]},
+         ("time of kick 3", "1")),
+    ],
+)  # fmt: skip
+def test_a_wrong_time_is_the_one_hint_of_the_order_in_time(
+    table: dict[str, Any], hint: tuple[str, str]
+) -> None:
+    found = claims(table)
+    assert found["order"].verdict is Verdict.PROVED
+    assert found["order in time"].nearest == dict([hint])
+    assert found["order in time"].evidence.count("alone explains it") == 1
+    assert hints(table) == {hint}
+
+
+def test_a_time_that_is_printed_as_0_is_the_one_hint_where_the_order_holds() -> None:
+    assert hints({**MIDPOINT, "c": ["0", "0"]}) == {("c2", "1/2")}
+
+
+def test_no_number_is_named_of_digits_that_several_seem_to_explain() -> None:
+    """Yoshida's solution B as it is copied: the digits of the others leave room for each."""
+    numbers = {"w1": "-0.213228522200144E1", "w2": "0.426068187079180E-2",
+               "w3": "0.143984816797678E1"}  # fmt: skip
+    table = {"name": "x", "kind": "composition", "order": 6, "numbers": numbers,
+             "half": ["w3", "w2", "w1", "1-2*(w1+w2+w3)"]}  # fmt: skip
+    claim = claims(table)["digits"]
+    assert claim.verdict is Verdict.REFUTED
+    assert "up to 22 units of the last digit away" in claim.evidence
+    assert "alone" not in claim.evidence
+
+
 def test_a_hint_at_a_weight_of_the_embedded_method_is_called_so() -> None:
     right = RIGHT["Bogacki–Shampine 3(2)"]
     wrong = {**right, "embedded": [*right["embedded"][:3], "1/7"]}

@@ -238,6 +238,7 @@ def _in_time(timed: TimedTable, order: int, refuted: bool, hints: Hints) -> Iter
     severity = Severity.WRONG_CLOCK if wrong_clock else Severity.WRONG_ORDER
     claim = next(order_claims("order in time", statement, found, order, severity=severity))
     if claim.verdict is right.verdict is Verdict.REFUTED:
+        right = replace(right, misprints=())  # they are told with the order
         clocks = next(condition_claims("clock", "", "the right clock", right, severity))
         more = prose(claim.evidence, "; ", clocks.evidence)
         claim = replace(claim, evidence=more, nearest=claim.nearest or clocks.nearest)

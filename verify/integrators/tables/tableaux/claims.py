@@ -198,10 +198,12 @@ def _claims(
             yield _in_time(table, entry.order, known, sums, hints)
     if claimed:
         sums = sums or best_reading(table, judge_row_sums)
-        if sums.verdict is Verdict.REFUTED and not table.nystrom and sums.misprint is None:
-            sums = replace(sums, misprint=wrong_time(table))
+        if sums.verdict is Verdict.REFUTED and not table.nystrom and (m := wrong_time(table)):
+            others = (each for each in sums.misprints if each.name != m.name)
+            sums = replace(sums, misprints=(*others, m))
         sums = hints.kept(sums)
-        of_time = sums.misprint is None or sums.misprint.name.startswith("c")
+        named = [each.name for each in sums.misprints]
+        of_time = not named or any(name.startswith("c") for name in named)
         severity = Severity.WRONG_CLOCK if of_time else Severity.WRONG_ORDER
         form = (
             "Σ_j a_ij = c_i^2/2" if table.nystrom else "the times are the row sums, c_i = Σ_j a_ij"

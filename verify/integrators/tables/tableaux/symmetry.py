@@ -52,7 +52,7 @@ def _by_two(table: TableauTable, enough: Asked, needed: Asked) -> Judged:
         return found
     against = judge(table.printed, needed, 1)
     if against.verdict is Verdict.REFUTED:
-        return replace(against, misprint=found.misprint)
+        return replace(against, misprints=found.misprints)
     return replace(found, verdict=Verdict.UNDECIDED)
 
 

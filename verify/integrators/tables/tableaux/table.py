@@ -89,7 +89,8 @@ class TableauTable:
         if name in self.printed.numbers:
             return replace(self, printed=self.printed.with_number(name, text))
         pairs = zip(self._every_label(), self.blocks, strict=True)
-        return replace(self, blocks=tuple(_put(x, told, name, text) for told, x in pairs))
+        blocks = tuple(_put(x, told, name, text) for told, x in pairs)
+        return replace(self, blocks=blocks, printed=replace(self.printed, tentative=True))
 
     def filled(self, entries: Sequence[E]) -> list[Block[E]]:
         """The blocks with these numbers for the entries."""
