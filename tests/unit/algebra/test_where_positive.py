@@ -58,6 +58,9 @@ SIGNS = {  # the sign, and the sign if 0 is left out
     "sinh(q)": (None, None),
     "sinh(1+q**2)": (1, 1),
     "atan(q)": (None, None),
+    "sin(1+q**2)": (None, None),
+    "cos(1+q**2)": (None, None),
+    "tan(1+q**2)": (None, None),
     "tanh(q)": (None, None),
     "tanh(1+q**2)": (1, 1),
 }
