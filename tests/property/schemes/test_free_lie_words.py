@@ -15,6 +15,7 @@ from verify.schemes.free_lie_words import (
     MOST_ORDER,
     conditions,
     lyndon,
+    majorant,
     of_logarithm,
     residue,
     step,
@@ -100,6 +101,22 @@ def test_a_residue_is_the_combination_of_the_logarithms_words_less_its_value(
     for condition in conditions(kind, 6):
         total = sum(n * wanted.get(word, Fraction(0)) for n, word in condition.terms)
         assert residue(series, condition) == total - condition.value
+
+
+@drawn(20)
+@given(st.sampled_from(KINDS), st.lists(rationals(4), min_size=3, max_size=5))
+def test_no_residue_is_larger_than_its_majorant_at_the_sizes_of_the_parts(
+    kind: str, given_: list[Fraction]
+) -> None:
+    """Of a combination with signs all of its words count, whatever theirs are."""
+    most = MOST_ORDER["nystrom"]
+    series = step(kind, parts_of(kind, given_), most, Fraction(1))
+    large = step(kind, parts_of(kind, [*map(abs, given_)]), most, Fraction(1))
+    for condition in conditions(kind, most):
+        bound = majorant(large, condition)
+        assert abs(residue(series, condition)) <= bound, condition.name
+        alone = (abs(n) * of_logarithm(large, word, 1) for n, word in condition.terms)
+        assert bound == 1 + sum(alone)
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -46,6 +46,23 @@ SIGNS = {  # the sign, and the sign if 0 is left out
     "1/q": (None, None),
     "cosh(q)-sqrt(2)": (None, None),
     "p**2*cosh(q)+pi": (1, 1),
+    # Of what is positive a function may not be, and it may be of what is not.
+    "log(1/2+q**2)": (None, None),
+    "log(1/2+exp(q))": (None, None),
+    "1+p**2*log(1/2+q**2)": (None, None),
+    "log(log(2+q**2))": (None, None),
+    "log(2+q**2)": (1, 1),
+    "exp(q)*log(3+q**2)": (1, 1),
+    "sqrt(1/2+q**2)-1": (None, None),
+    "1/(q**2-1)": (None, None),
+    "sinh(q)": (None, None),
+    "sinh(1+q**2)": (1, 1),
+    "atan(q)": (None, None),
+    "sin(1+q**2)": (None, None),
+    "cos(1+q**2)": (None, None),
+    "tan(1+q**2)": (None, None),
+    "tanh(q)": (None, None),
+    "tanh(1+q**2)": (1, 1),
 }
 
 

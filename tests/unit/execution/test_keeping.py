@@ -9,6 +9,7 @@ import pytest
 from tests.helpers.constructed.plans import kept_in
 from tests.paths import ROOT
 from verify import content as shipped
+from verify.execution import keeping, machine
 from verify.execution.execute import execute
 from verify.execution.executors import THIS_PROCESS
 from verify.execution.keeping import fingerprint
@@ -76,6 +77,26 @@ def test_what_python_writes_itself_does_not_count(copy: Path) -> None:
     (copy / "verify" / "algebra" / "__pycache__").mkdir()
     (copy / "verify" / "algebra" / "__pycache__" / "ring.pyc").write_bytes(b"compiled")
     assert fresh() == first
+
+
+LIBRARIES = (
+    "areaproof", "gmpy2", "hypothesis", "llvmlite", "mpmath", "numba", "numpy", "python-flint",
+    "sympy",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("library", LIBRARIES)
+def test_another_version_of_a_library_has_another_fingerprint(
+    library: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """hypothesis too: what a seed draws depends on it."""
+    first = fresh()
+    for module in (keeping, machine):
+        own = module.version
+        monkeypatch.setattr(module, "version", lambda x, own=own: own(x) + "1" * (x == library))
+    other = fresh()
+    monkeypatch.undo()
+    assert other != first == fresh()
 
 
 def test_another_source_does_not_take_up_the_results_of_this_one(

@@ -116,3 +116,27 @@ def test_every_reader_refuses_it(reader: Callable[[Path], object], tmp_path: Pat
 def test_there_is_no_other_reader() -> None:
     readers = [x.name for x in (ROOT / "verify").rglob("*.py") if "tomllib" in x.read_text()]
     assert sorted(readers) == ["toml_file.py", "toml_lines.py"]  # the second reads what was read
+
+
+# -- what a terminal would act on -----------------------------------------------------------------
+
+PLACES = {
+    "key": '"a{}" = 1',
+    "dotted key": 'a."b{}" = 1',
+    "header": '["a{}"]\nx = 1',
+    "array of tables": '[["a{}"]]\nx = 1',
+    "inline": 'x = {{ "a{}" = 1 }}',
+    "key inside an array": 'x = [1, {{ "a{}" = 1 }}]',
+    "text": 'x = "a{}"',
+    "text in an array": 'x = ["b", "a{}"]',
+    "text in a table": '[a]\nb = {{ c = "a{}" }}',
+}
+
+
+@pytest.mark.parametrize("character", ["001b", "0007", "0000", "007f", "009b"])
+@pytest.mark.parametrize("text", PLACES.values(), ids=PLACES)
+def test_a_control_character_is_refused_wherever_it_stands(text: str, character: str) -> None:
+    with pytest.raises(InputError, match=f"U\\+{character.upper()}, a control character") as told:
+        toml_data(text.format(f"\\u{character}"), "x.toml")
+    assert str(told.value).isprintable()
+    assert toml_data(text.format(r"\\"), "x.toml")

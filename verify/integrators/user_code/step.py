@@ -20,7 +20,7 @@ Theirs: TypeAlias = Any  # what a user's code takes, holds or returns: it may be
 TIME_LIMIT = 60.0  # seconds for all of the user's code
 # Python drops what is raised within a finalizer or a callback of its garbage collector, and a bare
 # `except:` of the user's catches it: the alarm rings again after so many seconds.
-_AGAIN = 1.0
+_AGAIN, _SOONEST = 1.0, 0.01
 
 
 class StepError(Exception):
@@ -101,9 +101,10 @@ def within(seconds: float, problem: str) -> Iterator[None]:
     if before is None:
         yield
         return
-    signal.setitimer(signal.ITIMER_REAL, seconds, _AGAIN)
     begun = time.perf_counter()
     try:
+        # Sooner it could ring before what is done here has begun, where nobody would take it.
+        signal.setitimer(signal.ITIMER_REAL, max(seconds, _SOONEST), _AGAIN)
         yield
         done = True
     except _OverTimeError as raised:
@@ -116,7 +117,7 @@ def within(seconds: float, problem: str) -> Iterator[None]:
         signal.signal(signal.SIGALRM, before)
         if outer:
             spent = time.perf_counter() - begun
-            signal.setitimer(signal.ITIMER_REAL, max(outer - spent, 1e-3), _AGAIN)
+            signal.setitimer(signal.ITIMER_REAL, max(outer - spent, _SOONEST), _AGAIN)
 
 
 def single(x: Theirs) -> Theirs:

@@ -1,5 +1,7 @@
 """Rows of printed numbers: of a time that is not told, and powers of the step size in them."""
 
+from fractions import Fraction
+
 import mpmath
 import pytest
 from pydantic import ValidationError
@@ -38,6 +40,24 @@ def test_a_row_that_a_shorter_run_might_have_is_not_refuted() -> None:
 def test_a_greatest_square_that_is_not_known_refutes_nothing() -> None:
     unknown: dict[str, Given] = {**FLAT, "delta_j_max": ("0", "1")}
     assert check(until(*ROW), lambda _h, _k: unknown).verdict is UNDECIDED
+
+
+def alone(h: Fraction, _: int) -> dict[str, Given]:
+    """The same from every start: max |ΔJ| = h³."""
+    return {**FLAT, "delta_j_max": h**3}
+
+
+@pytest.mark.parametrize("places", [0, 1, 4])
+def test_a_value_that_rounds_to_the_greatest_square_is_not_refuted(places: int) -> None:
+    """lg (max ΔJ²) = 6 lg h and what is printed may lie half a unit above it."""
+    most = [6 * mpmath.log10(mpmath.mpf(h)) for h in STEP_SIZES]
+    unit = mpmath.mpf(10) ** -places
+
+    def row(units: int) -> list[str]:
+        return [f"{float(mpmath.nint(x / unit + units) * unit):.{places}f}" for x in most]
+
+    assert check(until(*row(0)), alone).verdict is UNDECIDED
+    assert check(until(*row(1)), alone).verdict is REFUTED
 
 
 # -- powers of the step size in printed numbers ---------------------------------------------------

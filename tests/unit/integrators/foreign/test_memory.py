@@ -35,6 +35,20 @@ def test_what_is_no_number_of_the_type_is_rounded(x: Fraction, y: Fraction) -> N
         assert read_digits(digits_of([exact], kind), 1, kind) == [kind.rounded(exact)]
 
 
+@pytest.mark.parametrize("power", [-1000, -1, 0, 1, 52])
+@pytest.mark.parametrize("kind", [DOUBLE, LONG_DOUBLE, FLOAT128])
+def test_what_is_just_below_a_power_of_two_is_rounded_up_to_it(
+    kind: NumberType, power: int
+) -> None:
+    """All bits of its significand carry, and it has one bit more."""
+    two = Fraction(2) ** power
+    for more in (2, 3, 100):
+        above = two * (1 - Fraction(1, 2 ** (kind.bits + more)))
+        assert read_digits(digits_of([above, -above], kind), 2, kind) == [two, -two]
+    last = two * (1 - Fraction(1, 2**kind.bits))  # the number before it
+    assert read_digits(digits_of([last, -last], kind), 2, kind) == [last, -last]
+
+
 def test_a_long_double_is_that_of_c() -> None:
     """By ctypes, which knows it, though it gives it to Python as a double."""
     for x in (1.5, -0.1, 3e100, 2.0**-1000, 0.0):

@@ -1,11 +1,13 @@
-"""How far a coordinate is followed to look beyond comparisons: as a run of 1,000 steps leads."""
+"""How far a coordinate is followed to look beyond comparisons: as a run of 1,000 steps leads; and
+whether S is within what is allowed, or hidden."""
 
+from fractions import Fraction
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-from verify.integrators.measures.structure import _farthest
+from verify.integrators.measures.structure import Structure, _farthest
 
 NAMES = ("q", "p")
 
@@ -52,3 +54,25 @@ def test_what_runs_away_is_left_where_it_is_beyond_all_units() -> None:
         return 10 * z[0], z[1]
 
     assert followed(failing, place((1.0, 0.5), (1.0, 1.0)))["q"] == 1e6
+
+
+@pytest.mark.parametrize(
+    ("defect", "blur", "kept"),
+    [
+        (1e-5, 1e-8, True),
+        (9e-4, 1e-6, True),
+        (2e-3, 1e-6, False),
+        (2e-3, 5e-4, False),
+        (1e-5, 2e-3, None),
+        (2.5e-3, 2e-3, None),
+        (0.0, 1.1e-3, None),
+    ],
+)
+def test_what_the_user_allows_is_kept_only_where_so_little_would_be_seen(
+    defect: float, blur: float, kept: bool | None
+) -> None:
+    """Within a thousandth; beside a place at which all is known, and in either order."""
+    here, clear = SimpleNamespace(defect=defect, blur=blur), SimpleNamespace(defect=0.0, blur=1e-12)
+    for readings in ((here,), (here, clear), (clear, here)):
+        structure = Structure("floats", readings)  # type: ignore[arg-type]
+        assert structure.kept(Fraction(1, 1000)) is kept

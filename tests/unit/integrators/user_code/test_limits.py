@@ -83,6 +83,16 @@ def test_an_outer_limit_goes_on_after_an_inner_one() -> None:
     assert seconds_until(outer, "outer") < 5
 
 
+@pytest.mark.parametrize("seconds", [1e-9, 1e-6, 6e-6, 1e-5, 1e-4])
+def test_however_little_time_is_left_an_alarm_is_a_step_error(seconds: float) -> None:
+    """As where a call begins that has some microseconds left of all the time that there is."""
+    for _ in range(3):
+        with suppress(StepError), within(seconds, "it takes too long"):
+            pass
+        with pytest.raises(StepError, match="too long"), within(seconds, "it takes too long"):
+            busy(10)
+
+
 def test_no_alarm_rings_after_the_end() -> None:
     def slow() -> None:
         with within(0.05, "it takes too long"):

@@ -162,6 +162,21 @@ def test_symplectic_volume_alone_and_neither_are_told_apart(formulas: str) -> No
     assert (found.order, found.entry) == (order, entry)
 
 
+@pytest.mark.parametrize(
+    ("terms", "more", "kept"),
+    [(3, "0", True), (3, "p1*h**9", False), (18, "0", None), (18, "p1*h**9", None)],
+)
+def test_beyond_the_powers_looked_at_volume_is_kept_only_where_that_is_decided(
+    terms: int, more: str, kept: bool | None
+) -> None:
+    """A kick by what is no gradient has det J ≡ 1, or 1 + h⁹ beyond all powers that are looked at;
+    of a long one det J is not multiplied out."""
+    kick = f"p1_next = p1 + h*(1 + q1 + q2)**{terms} + {more}"
+    found = proved(LINEAR, f"{kick}; p2_next = p2; q1_next = q1; q2_next = q2")
+    assert (found.symplectic, found.order) == (False, 1)
+    assert (found.area_preserving, found.volume_order) == (kept, None)
+
+
 def test_a_map_that_does_nothing_is_refuted_though_it_is_symplectic() -> None:
     found = proved(LINEAR, "p1_next = p1; p2_next = p2; q1_next = q1; q2_next = q2")
     assert (found.verdict, found.symplectic, found.convergence_order) == ("REFUTED", True, 0)
@@ -213,3 +228,11 @@ def test_a_leading_form_of_too_many_terms_is_told_by_its_formula_where_it_has_on
     assert told(MOST_TERMS + 1, "of lieη") == "of lieη"
     assert told(MOST_TERMS + 1, "") == "its terms"
     assert replace(found, leading=None, formula="of lieη").leading_text == "0"
+
+
+@pytest.mark.parametrize("eta", [1, 3])
+def test_of_odd_order_an_equilibrium_rules_telescoping_out_where_h_is_without_t(eta: int) -> None:
+    """In time a form may change where the motion rests: D of it is ∂/∂t there, and not 0."""
+    still = "(p1**2 + p2**2)/2 + {}*(q1**2 + q2**2)/2 + q1**2*q2"
+    assert proved(still.format(2), f"lie{eta}").telescopes is False
+    assert proved(still.format("(2 + cos(t))"), f"lie{eta}").telescopes is None

@@ -11,8 +11,8 @@ import pytest
 from tests.helpers.constructed.reference import SCENES, changed, flipped, made, put, repaired
 from verify.errors import InputError
 from verify.reference.check.check import Checked, check
-from verify.reference.make.models import DATA_FORMAT, Data
-from verify.reference.make.writing import MANIFEST, digest
+from verify.reference.make.models import DATA_FORMAT, Data, Manifest
+from verify.reference.make.writing import MANIFEST, digest, json_text
 
 FLIPS = 12  # of each kind of file
 
@@ -181,6 +181,19 @@ def test_a_file_and_its_line_in_the_manifest_that_go_together_are_missed(folder:
     path.write_text("\n".join(lines))
     (folder / "mine-flow.csv").unlink()
     assert "mine-flow.csv: should be listed, is not listed" in first(folder)
+
+
+@pytest.mark.parametrize("name", ["notes.txt", "other.json", "mine-flaw.csv", "mine.parquet"])
+def test_a_file_of_no_scene_is_told_though_the_manifest_lists_it(folder: Path, name: str) -> None:
+    """As it would be read with the others, and stand there for as good as they are."""
+    source = "mine.json" if name.endswith(".json") else "mine-flow.csv"
+    shutil.copy(folder / source, folder / name)
+    path = folder / MANIFEST
+    data, content = json.loads(path.read_text()), (folder / name).read_bytes()
+    own = {"name": name, "bytes": len(content), "sha256": digest(content)}
+    data["files"] = sorted([*data["files"], own], key=lambda x: x["name"])
+    path.write_text(json_text(Manifest.model_validate(data)))
+    assert f"{name}: should be not listed, is listed" in first(folder)
 
 
 def test_hash_and_size_are_those_of_the_file(folder: Path) -> None:

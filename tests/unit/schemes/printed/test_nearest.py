@@ -63,6 +63,40 @@ def test_a_parabola_that_stays_above_0_has_no_zero_near_its_lowest_point(
         assert nearest(conditions, [0]) is None
 
 
+def square_of_sum(start: Fraction, count: int, shift: Fraction) -> Conditions:
+    """(x0 + x1 + …)² + shift = 0, all of whose second derivatives are 2."""
+
+    def total(x: Sequence[Ball]) -> Ball:
+        return sum(x, flint.arb(0))
+
+    return Conditions(
+        [start / count] * count, [lambda x: total(x) ** 2 + rational_ball(shift)],
+        [[lambda x: 2 * total(x)] * count], [2],
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 8])
+@pytest.mark.parametrize("near", [10, 40])
+def test_of_several_numbers_the_second_derivatives_bend_along_all_of_them(
+    near: int, count: int
+) -> None:
+    with working_precision(600):
+        start = Fraction(1, 2**near)
+        conditions = square_of_sum(start, count, start / 2**100)
+        assert _solution(conditions, [0], conditions.start) is None
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 8])
+def test_what_several_numbers_within_their_units_make_is_not_excluded(count: int) -> None:
+    """At its lowest point a square of a sum of n numbers of unit u reaches (n u)², and no more."""
+    with working_precision(600):
+        reached = (Fraction(count) / 10**8) ** 2
+        for share, beyond in ((Fraction(9, 10), False), (Fraction(11, 10), True)):
+            conditions = square_of_sum(Fraction(0), count, -share * reached)
+            assert conditions._excludes({0: flint.arb(1)}, 1) is beyond
+            assert conditions._excludes({0: flint.arb(-3)}, 1) is beyond
+
+
 @pytest.mark.parametrize("off", [12, 30, 60])
 def test_a_zero_that_is_near_is_shown_and_where_it_is(off: int) -> None:
     with working_precision(600):

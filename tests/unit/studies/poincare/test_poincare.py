@@ -1,5 +1,6 @@
 """Poincaré sections: where they are known exactly, how far they are known, and bad input."""
 
+from collections.abc import Sequence
 from fractions import Fraction
 from math import asin, cos, pi, sin, sqrt
 from pathlib import Path
@@ -20,8 +21,8 @@ from verify.scenes.scene import load_scene
 from verify.studies.kinds.poincare import STUDY
 from verify.studies.plan import plan_scenes
 from verify.studies.poincare import by_exact_flow, by_scheme
-from verify.studies.poincare.sections import Asked, sections_of
-from verify.studies.poincare.surface import Surface
+from verify.studies.poincare.sections import Asked, _together, sections_of
+from verify.studies.poincare.surface import Passes, Surface
 
 OSCILLATORS = Hamiltonian.parse("(p1**2 + q1**2)/2 + p2**2/2 + q2**2")
 HENON_HEILES = get("henon-heiles").hamiltonian({})
@@ -114,6 +115,25 @@ def test_what_a_second_reckoning_does_not_confirm_is_not_called_known() -> None:
     for one, other in zip(wild.points[: wild.known], clear.points, strict=False):
         for x, y in zip(one, other, strict=True):
             assert abs(Fraction(x) - Fraction(y)) <= Fraction(4, 10**6)
+
+
+@pytest.mark.parametrize(
+    ("again", "known", "apart"),
+    [
+        ((1, 2, 3), 3, 0),
+        ((1, 2), 2, 0),
+        ((), 0, 0),
+        ((1, 2, 3, 4), 3, 0),
+        ((1, Fraction(21, 10), 3), 3, Fraction(1, 10)),
+        ((1, 2, 4), 2, 0),
+        ((1, Fraction(23, 10), 3), 1, 0),
+    ],
+)
+def test_passes_are_known_as_far_as_both_reckonings_have_them(
+    again: Sequence[Fraction], known: int, apart: Fraction
+) -> None:
+    one, other = (Passes([{"q": Fraction(x)} for x in xs]) for xs in ((1, 2, 3), again))
+    assert _together(one, other, Fraction(1, 5)) == (known, apart)
 
 
 def test_a_pass_elsewhere_is_no_longer_the_same_point(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -101,6 +101,28 @@ def test_on_a_saddle_no_step_stays_bounded() -> None:
 
 
 @pytest.mark.parametrize(
+    "formula",
+    [
+        "(p1**2 + p2**2 + q1**2)/2 + q2**4",
+        "(p1**2 + p2**2 + q2**2)/2 + q1**4",
+        "(p1**2 + p2**2)/2 + (q1 - q2)**2",
+        "(p1**2 + q1**2 + q2**2)/2 + p2**4",
+        "(p1**2 + p2**2 + p3**2)/2 + (q1 - q2)**2 + (q2 - q3)**2",
+    ],
+)
+def test_where_a_coordinate_is_free_there_is_no_interval_and_no_step_stays_bounded(
+    formula: str,
+) -> None:
+    """What moves evenly goes on: a quadratic part that is ≥ 0 alone is no sum of oscillators."""
+    free = Hamiltonian.parse(formula)
+    found = at(free, "stormer-verlet", "1/2")
+    assert (found.interval, found.step_size, found.oscillates) == (None, None, False)
+    assert list(found.decided.values()) == [False]
+    with pytest.raises(InputError, match="step_sizes: is needed"):
+        at(free, "stormer-verlet")
+
+
+@pytest.mark.parametrize(
     ("rows", "stays"),
     [
         ([["3/5", "-4/5"], ["4/5", "3/5"]], True),
