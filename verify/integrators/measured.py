@@ -52,7 +52,8 @@ def finding_of(trial: Trial, structure: Structure, distances: Distances | None) 
 def _of_map(step: UserMap, structure: Structure, kept: bool | None, said: str) -> Finding:
     verdict = {True: Verdict.MEASURED, False: Verdict.REFUTED, None: Verdict.UNDECIDED}[kept]
     if kept is False:
-        volume = "; det J is 1 all the same" if structure.volume_kept else ""
+        alone = step.degrees > 1 and structure.volume_kept  # in the plane S is det J − 1
+        volume = "; det J is 1 all the same" if alone else ""
         said = f"it is not symplectic: the entry {_entry(step, structure)} of S is not 0{volume}"
     return _base(step, structure, verdict, said, kept)
 

@@ -62,7 +62,7 @@ class Structure:
             allowed, readings = float(within), self.readings
             if any(x.defect - x.blur > allowed for x in readings):
                 return False
-            return all(max(x.defect - x.blur, x.blur) <= allowed for x in readings) or None
+            return all(max(x.defect, x.blur) <= allowed for x in readings) or None
         return self._vanishes(self.worst.beyond)
 
     @property

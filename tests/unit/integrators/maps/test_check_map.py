@@ -374,3 +374,18 @@ def found_of(step: Map) -> Finding:
     found = verify.check("p**2/2 + q**2/2", step)
     assert isinstance(found, Finding)
     return found
+
+
+def shrinking(p: float, q: float) -> tuple[float, float]:
+    """det J is 1 − 3e-14; the branch keeps it from being proved."""
+    a = 0.0 if q > 1e9 else p - 0.5 * math.sin(q)
+    return a * (1 - 3e-14), q + 0.5 * a
+
+
+@pytest.mark.parametrize(
+    ("within", "verdict"), [("4e-14", "MEASURED"), ("2.4e-14", "UNDECIDED"), ("1.5e-14", "REFUTED")]
+)
+def test_a_defect_beyond_what_is_allowed_is_not_within_it(within: str, verdict: str) -> None:
+    found = verify.check_map(shrinking, within=within)
+    assert found.verdict == verdict
+    assert "det J is 1 all the same" not in str(found), "in the plane S is det J − 1"

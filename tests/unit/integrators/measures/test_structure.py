@@ -66,6 +66,7 @@ def test_what_runs_away_is_left_where_it_is_beyond_all_units() -> None:
         (1e-5, 2e-3, None),
         (2.5e-3, 2e-3, None),
         (0.0, 1.1e-3, None),
+        (1.2e-3, 5e-4, None),  # more than is allowed, and by less than the noise
     ],
 )
 def test_what_the_user_allows_is_kept_only_where_so_little_would_be_seen(
