@@ -76,8 +76,9 @@ def convergence(shift: int = 0) -> Argument:
         holds; T = `t_end` − t₀. Write Φ for the step and `z̄_k` for the exact solution at
         t₀ + kh.""",
         remark="""What fails on the way as it is printed: Eq. 7 calls |p̃ − p| the global
-        error, which is |p̄ − p|; Eq. 9 has the p-difference alone on its right side; Eq.
-        10 has `e_n` for `e_k`; and n in the exponents of Eq. 10 and 11 is η.""",
+        error, which is |p̄ − p|; Eq. 9 has the p-difference alone on its right side, and
+        `p̃_k` in it for `p̄_k`; Eq. 10 and 11 are of p alone and of q alone; Eq. 10 has
+        `e_n` for `e_k`; and n in the exponents of Eq. 10 and 11 is η.""",
     )
 
 

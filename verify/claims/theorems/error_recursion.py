@@ -1,4 +1,7 @@
-"""Eq. 6–8, 10 and 11 apart from Eq. 9: what is called an error, and how errors are summed up."""
+"""Eq. 6–8, 10 and 11 apart from Eq. 9: what is called an error, and how errors are summed up.
+
+Eq. 10 and 11 in one norm of the plane; by components: `verify.claims.theorems.by_components`.
+"""
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
@@ -207,12 +210,12 @@ def eq_10_meant(slope: int = 1) -> Argument:
     )
 
 
-def eq_11(factor: Callable[[Fraction, int], Fraction] | None = None) -> Argument:
+def eq_11_norm(factor: Callable[[Fraction, int], Fraction] | None = None) -> Argument:
     """Eq. 11 for every sequence with the first inequality of Eq. 10; `factor`: in place of
     (1 + hL)^k, to see that the sum notices."""
     power = factor or (lambda rate, k: rate**k)
     return concluded(
-        "eq-11",
+        "eq-11-norm",
         Verdict.PROVED,
         "for every sequence with `e_{k+1}` ≤ (1 + hL) `e_k` + C `h^(n+1)`, n = η, both "
         "inequalities hold, with C̃ = (`e^(LT)` − 1)/L + h `e^(LT)` (the term m = 1 of the sum "
@@ -276,5 +279,5 @@ THEOREMS = {
     "eq-7-meant": eq_7_meant,
     "eq-8": eq_8,
     "eq-10-meant": eq_10_meant,
-    "eq-11": eq_11,
+    "eq-11-norm": eq_11_norm,
 }

@@ -42,8 +42,7 @@ def printed_step(hamiltonian: Hamiltonian, eta: int) -> tuple[sympy.Expr, sympy.
 
 def lie_exponential(recursion: Recursion = eq_4, eta: int = 4) -> Argument:
     """Eq. 2 with Eq. 4 and 5 is the exponential series of hX, cut off after h^η."""
-    flow = flow_of_every_hamiltonian(MOST)
-    powers = [_for_every_hamiltonian(flow, name, recursion) for name in ("p", "q")]
+    powers = [powers_of(name, recursion) for name in ("p", "q")]
     for_systems = []
     for name in SYSTEMS:
         hamiltonian = Hamiltonian(systems.get(name).hamiltonian().expression)
@@ -97,7 +96,9 @@ def _operators(recursion: Recursion) -> Check:
     )
 
 
-def _for_every_hamiltonian(flow: Flow, name: str, recursion: Recursion) -> Check:
+def powers_of(name: str, recursion: Recursion = eq_4) -> Check:
+    """Eq. 4 and 5 give the n-th time derivative of p or q, for a generic H."""
+    flow = flow_of_every_hamiltonian(MOST)
     powers = flow.lie_derivatives(name, MOST)
     gaps = [recursion(flow, powers[n - 1]) - powers[n] for n in range(1, MOST + 1)]
     return vanishes(f"Eq. 4 and 5 give Lⁿ = Xⁿ {name} for a generic H, n = 1 … {MOST}", *gaps)

@@ -154,9 +154,9 @@ def of_the_plane(norm: float = 1.0) -> Argument:
     return concluded(
         "eq-9-plane",
         Verdict.PROVED,
-        "|Φ(z̄) − Φ(z)| ≤ (1 + hL) |z̄ − z| for both components together, with L the greatest "
-        "norm of ψ', Φ = z + hψ, on a convex compact set around the solution: one L for all 0 < h "
-        "≤ h₀",
+        "repaired, with `z̄_k` for `z̃_k` and both components together, it holds: |Φ(`z̄_k`) − "
+        "Φ(`z_k`)| ≤ (1 + hL) |`z̄_k` − `z_k`|, with L the greatest norm of ψ', Φ = z + hψ, on a "
+        "convex compact set around the solution: one L for all 0 < h ≤ h₀",
         [
             step(
                 "Φ(z) = z + hψ(z, h) with ``ψ = Σ_{n=1}^{η} h^(n−1)/n! X^n z``, of class C¹ in z, "
@@ -170,7 +170,8 @@ def of_the_plane(norm: float = 1.0) -> Argument:
         ],
         given="Let H be of class `C^(η+1)` near the solution and K a convex compact set in which "
         "that holds.",
-        remark="For η = 1, “the first-order truncated”, ψ = f, and L is the greatest norm of f'.",
+        remark="For η = 1, “the first-order truncated”, ψ = f, and L is the greatest norm of f'. "
+        "Eq. 9 prints `p̃_k` on the right; Eq. 8 and 10 need `p̄_k`, as here.",
     )
 
 

@@ -16,7 +16,9 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.methods.taylor.lie import lie_map
 from verify.verdict import Verdict
 
+_EDGE = Fraction(2, 3)  # of |δ|q²
 STRETCHED = Point(p=Fraction(0), q=Fraction(2))
+_BESIDE = ((1, 10), (1, 2), (80, 100), (83, 100), (3, 2))  # q, on both sides of √(2/3)
 _STRETCHES = {"duffing": "3*delta*q**2/2", "pendulum": "(1 - cos(q))/2"}
 
 
@@ -62,11 +64,32 @@ def two_norm(point: Point = STRETCHED, h: Fraction = Fraction(1, 10)) -> Argumen
                 "pendulum s = (1 − cos q)/2 ≤ 1.)",
                 *(_stretch_of(name) for name in _STRETCHES),
             ),
+            step(
+                "Where |δ|q² < 2/3 it holds for small h: of the paper’s five initial values along "
+                "the orbits from (q, p) = (0.1, 0) and (0.5, 0), which stay there, and from no "
+                "other.",
+                tried=[_is_a_factor(Fraction(*q)) for q in _BESIDE],
+            ),
         ],
         given="‖J‖₂ is the local Lipschitz constant of the step map itself, Φ, whose factor in Eq. "
         "9 is 1 + hL. To put L = ‖J‖₂ counts it twice.",
         remark="What Eq. 9 needs in a norm is L = max (‖J‖₂ − 1)/h, or any bound of ‖ψ'‖, Φ = z + "
         "hψ, which stays bounded as h → 0; with it the conclusion of Section 2.2 stands.",
+    )
+
+
+def _is_a_factor(q: Fraction, h: Fraction = Fraction(1, 100), edge: Fraction = _EDGE) -> Check:
+    """‖J‖₂ ≤ 1 + h‖J‖₂ for Duffing with δ = 1 at p = 0, exactly where q² < `edge`."""
+    a, b, c, d = jacobian(lie_map(duffing(), 2), Point(Fraction(0), q), h)
+    trace, square = a * a + b * b + c * c + d * d, (a * d - b * c) ** 2
+    most = 1 / (1 - h) ** 2  # what the greater zero of x² − trace x + square may be at most
+    holds = most**2 - trace * most + square >= 0 and 2 * most >= trace
+    return Check(
+        f"Duffing, δ = 1, lie2, h = {text(h)}, (p, q) = (0, `{text(q)}`): ‖J‖₂ ≤ 1 + h‖J‖₂, if and "
+        "only if q² < 2/3",
+        holds is (q * q < edge),
+        "it holds" if holds else "it does not hold",
+        NUMBERS,
     )
 
 

@@ -8,8 +8,6 @@ import pytest
 from tests.helpers.planted.theorem_controls import refused
 from verify.algebra.symbols import P, Q
 from verify.claims.theorems import (
-    area_criteria,
-    criteria,
     determinant,
     lipschitz,
     matrix_vector,
@@ -18,6 +16,7 @@ from verify.claims.theorems import (
 from verify.claims.theorems.checks import developables, families, matrices, sums, triangle
 from verify.claims.theorems.checks.check import Check, same
 from verify.claims.theorems.convergence import _lengthened
+from verify.claims.theorems.criteria import area, connections
 from verify.claims.theorems.criteria_examples import (
     COMPENSATED,
     FRICTION,
@@ -88,11 +87,11 @@ def test_an_h_with_a_second_derivative_does_not_decouple_the_components() -> Non
 
 
 def test_an_h_whose_step_has_no_such_inverse_is_no_example_of_criterion_1() -> None:
-    assert refused(area_criteria.criterion_1("p**2*q"))
+    assert refused(area.criterion_1("p**2*q"))
 
 
 def test_a_run_that_does_not_cancel_is_no_example_of_a_weaker_criterion() -> None:
-    assert refused(criteria.stronger(compensated=FRICTION))
+    assert refused(connections.against_2(compensated=FRICTION))
 
 
 def test_formulas_are_the_same_by_algebra_and_not_by_their_text() -> None:

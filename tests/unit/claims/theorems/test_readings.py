@@ -8,11 +8,8 @@ import pytest
 
 from tests.helpers.planted.theorem_controls import refused
 from verify.claims.theorems import (
-    area_criteria,
     check_theorem,
     consistency,
-    criteria_of_the_scheme,
-    criteria_read_otherwise,
     error_measures,
     error_recursion,
     lie_series,
@@ -21,6 +18,7 @@ from verify.claims.theorems import (
     motion,
     two_norm,
 )
+from verify.claims.theorems.criteria import area, of_the_scheme, read_otherwise
 from verify.claims.theorems.criteria_examples import COMPENSATED, FRICTION, TO_AND_FRO
 
 # -- smooth consistency ---------------------------------------------------------------------------
@@ -98,7 +96,7 @@ def test_eq_10_with_a_steeper_line_than_the_exponential_is_not_proved() -> None:
 
 
 def test_eq_11_with_a_factor_less_is_not_proved() -> None:
-    assert refused(error_recursion.eq_11(lambda rate, k: rate ** max(k - 2, 0)))
+    assert refused(error_recursion.eq_11_norm(lambda rate, k: rate ** max(k - 2, 0)))
 
 
 @pytest.mark.parametrize("norm", [0.1, 0.5])
@@ -124,12 +122,12 @@ def test_the_terms_of_the_step_in_h_are_not_the_identity() -> None:
 @pytest.mark.left_to_ci
 @pytest.mark.parametrize("formula", ["p**2/2 + q**2/2", "p**2/2 + q**4/4"])
 def test_a_step_that_changes_areas_is_no_example_of_criterion_1(formula: str) -> None:
-    assert refused(area_criteria.definition(formula))
-    assert refused(area_criteria.criterion_1(formula))
+    assert refused(area.definition(formula))
+    assert refused(area.criterion_1(formula))
 
 
 def test_the_identity_neither_changes_the_flow_nor_areas() -> None:
-    assert refused(area_criteria.unchanged_flow(factor=1))
+    assert refused(area.unchanged_flow(factor=1))
 
 
 @pytest.mark.parametrize(
@@ -143,7 +141,7 @@ def test_the_identity_neither_changes_the_flow_nor_areas() -> None:
 def test_a_map_that_is_one_to_one_or_changes_areas_says_nothing_against_criterion_1(
     formulas: tuple[str, str],
 ) -> None:
-    assert refused(area_criteria.any_map(formulas))
+    assert refused(area.any_map(formulas))
 
 
 # -- Eq. 14–16 and the criteria -------------------------------------------------------------------
@@ -163,11 +161,9 @@ def test_the_chain_rule_notices_another_determinant() -> None:
 
 
 def test_criteria_2_and_3_are_not_those_of_another_field_or_map() -> None:
-    assert refused(criteria_of_the_scheme.criterion_3(hamiltonian=False))
-    assert refused(criteria_of_the_scheme.criterion_2(_planted(FRICTION, q_next="q")))
-    assert refused(
-        criteria_of_the_scheme.criterion_3_of_any_map(_planted(FRICTION, p_next="p - h*q"))
-    )
+    assert refused(of_the_scheme.criterion_3(hamiltonian=False))
+    assert refused(of_the_scheme.criterion_2(_planted(FRICTION, q_next="q")))
+    assert refused(of_the_scheme.criterion_3_of_any_map(_planted(FRICTION, p_next="p - h*q")))
 
 
 def test_the_smaller_lambda_is_the_worse_only_where_areas_change_more_in_each_step() -> None:
@@ -176,11 +172,14 @@ def test_the_smaller_lambda_is_the_worse_only_where_areas_change_more_in_each_st
 
 
 def test_maps_that_are_small_for_each_k_and_at_once_do_not_tell_the_senses_apart() -> None:
-    assert refused(criteria_read_otherwise.pointwise_two_not_three(COMPENSATED))
-    assert refused(criteria_read_otherwise.pointwise_two_not_three(FRICTION))
-    assert refused(criteria_read_otherwise.pointwise_connection(COMPENSATED))
-    assert refused(criteria_read_otherwise.pointwise_connection(alternating=[FRICTION]))
-    assert refused(criteria_read_otherwise.stronger_for_smooth_steps(hamiltonian=True))
+    assert refused(read_otherwise.pointwise_two_not_three(COMPENSATED))
+    assert refused(read_otherwise.pointwise_two_not_three(FRICTION))
+    assert refused(read_otherwise.pointwise_connection(COMPENSATED))
+    assert refused(read_otherwise.pointwise_connection(alternating=[FRICTION]))
+    assert refused(read_otherwise.as_strong_as_2(hamiltonian=True))
+    assert refused(read_otherwise.stronger_than_3(hamiltonian=True))
+    planted = _planted(FRICTION, p_next="p", q_next="q + h*p")
+    assert refused(read_otherwise.stronger_than_3(friction=planted))
 
 
 def _planted(example: Any, **changes: Any) -> Any:

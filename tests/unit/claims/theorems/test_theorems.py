@@ -3,6 +3,7 @@
 from fractions import Fraction
 from typing import Any
 
+import flint
 import pytest
 import sympy
 
@@ -11,10 +12,11 @@ from tests.paths import ROOT
 from verify.claims.file import load_claims
 from verify.claims.findings import Findings
 from verify.claims.theorems import (
+    beside_equations,
+    by_components,
     check_theorem,
     consistency,
     convergence,
-    criteria,
     criteria_examples,
     lie_series,
     lipschitz,
@@ -26,6 +28,7 @@ from verify.claims.theorems import (
 from verify.claims.theorems.argument import Argument, concluded, step
 from verify.claims.theorems.checks.check import Check, vanishes
 from verify.claims.theorems.checks.differential import Flow, flow_of_every_hamiltonian
+from verify.claims.theorems.criteria import connections
 from verify.claims.theorems.criteria_examples import ExampleMap
 from verify.claims.theorems.exact_maps import Areas, Point, value
 from verify.errors import InputError
@@ -51,7 +54,20 @@ VERDICTS = {
     "eq-9-plane": PROVED,
     "eq-10": REFUTED,
     "eq-10-meant": PROVED,
-    "eq-11": PROVED,
+    "eq-9-kept": REFUTED,
+    "eq-10-components": REFUTED,
+    "eq-11": REFUTED,
+    "eq-11-norm": PROVED,
+    "taylor-method": PROVED,
+    "partitioned": PROVED,
+    "partitioned-separable": REFUTED,
+    "higher-derivatives": PROVED,
+    "higher-derivatives-nonlinearity": REFUTED,
+    "mse-quantifies": PROVED,
+    "mse-quantifies-solution": REFUTED,
+    "errors-in-every-step": PROVED,
+    "errors-in-every-step-exactly": REFUTED,
+    "duffing-criteria-inference": REFUTED,
     "two-norm": REFUTED,
     "two-norm-of-the-step": PROVED,
     "eq-12": REFUTED,
@@ -77,11 +93,14 @@ VERDICTS = {
     "determinant-of-the-examples": PROVED,
     "determinant-classification": PROVED,
     "criterion-2-implies-3": PROVED,
-    "criterion-4-connection": REFUTED,
+    "criterion-4-and-2": REFUTED,
+    "criterion-4-and-3": PROVED,
     "criterion-2-implies-3-pointwise": REFUTED,
-    "criterion-4-connection-pointwise": PROVED,
-    "criterion-4-stronger": REFUTED,
-    "criterion-4-stronger-smooth": PROVED,
+    "criterion-4-and-2-pointwise": PROVED,
+    "criterion-4-against-2": REFUTED,
+    "criterion-4-against-2-smooth": REFUTED,
+    "criterion-4-against-3": REFUTED,
+    "criterion-4-against-3-smooth": PROVED,
     "criteria-of-consistent-schemes": PROVED,
     "consistency-is-not-enough": PROVED,
     "total-error-increases": REFUTED,
@@ -218,6 +237,27 @@ def test_a_pair_with_different_p_or_the_same_q_does_not_refute_eq_9(
     assert refused(lipschitz.eq_9(pair))
 
 
+@pytest.mark.parametrize(
+    "formula",
+    [
+        "-(q - p**3)",  # lie2 steps it exactly
+        "-(q - p**2) + (q - p**2)**2/2",
+        "-(q - p**3) + (q - p**3)**2",
+        "p**2/2 + q**2/2",
+    ],
+)
+def test_eq_10_and_11_are_refuted_by_components_for_that_h_alone(formula: str) -> None:
+    assert refused(by_components.eq_11(formula))
+    assert refused(by_components.eq_10_components(formula))
+
+
+def test_eq_9_with_z_tilde_is_not_refuted_by_a_step_without_a_local_error(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(by_components, "errors", lambda eta, h, steps: [flint.acb(0)] * (steps + 1))
+    assert refused(by_components.eq_9_kept())
+
+
 def test_the_two_norm_is_not_refuted_where_the_step_does_not_stretch() -> None:
     assert refused(two_norm.two_norm(Point(Fraction(0), Fraction(0))))
     assert refused(two_norm.two_norm(Point(Fraction(0), Fraction(1, 2))))
@@ -265,12 +305,17 @@ def test_each_number_said_of_an_example_is_held_against_its_run(
 
 def test_the_criteria_are_not_told_apart_by_maps_with_other_numbers() -> None:
     area_preserving = planted(criteria_examples.FRICTION, p_next="p", q_next="q + h*p")
-    assert refused(criteria.two_implies_three(planted(criteria_examples.NOT_UNIFORM, q_next="q")))
-    assert refused(criteria.connection(friction=area_preserving))
-    assert refused(criteria.connection(alternating=[area_preserving]))
-    assert refused(criteria.stronger(compensated=area_preserving))
+    assert refused(
+        connections.two_implies_three(planted(criteria_examples.NOT_UNIFORM, q_next="q"))
+    )
+    assert refused(connections.connection_with_3(friction=area_preserving))
+    assert refused(connections.connection_with_3(alternating=[area_preserving]))
+    assert refused(connections.against_2(compensated=area_preserving))
+    assert refused(connections.against_2(alternating=[area_preserving]))
+    assert refused(connections.against_3(friction=area_preserving))
+    assert refused(connections.against_3(alternating=[area_preserving]))
     drifting = planted(criteria_examples.COMPENSATED, p_next="p*(1 + h*(3/4 - q))")
-    assert refused(criteria.stronger(compensated=drifting))
+    assert refused(connections.against_2(compensated=drifting))
 
 
 def test_the_inequalities_hold_for_every_run_and_not_for_made_up_numbers() -> None:
@@ -278,13 +323,39 @@ def test_the_inequalities_hold_for_every_run_and_not_for_made_up_numbers() -> No
         mse = Fraction(0)
 
     values = (Fraction(1, 2), Fraction(-1, 3), Fraction(2))
-    assert criteria.inequalities_hold(Areas(values))
-    assert not criteria.inequalities_hold(Wrong(values))
+    assert connections.inequalities_hold(Areas(values))
+    assert not connections.inequalities_hold(Wrong(values))
 
 
 def test_a_map_for_another_field_has_a_delta_j_of_order_h() -> None:
     assert refused(consistency.of_smooth_schemes(hamiltonian=False))
     assert 1 not in consistency.consistent_map()
+
+
+@pytest.mark.parametrize("q", [Fraction(1, 2), Fraction(82, 100), Fraction(83, 100), Fraction(2)])
+def test_one_plus_h_times_the_norm_is_a_factor_up_to_an_edge_and_not_beyond(q: Fraction) -> None:
+    assert two_norm._is_a_factor(q, Fraction(1, 1000)).holds is True
+    wrong = Fraction(1, 10) if q * q < Fraction(2, 3) else Fraction(10)
+    assert two_norm._is_a_factor(q, Fraction(1, 1000), wrong).holds is False
+
+
+def test_no_other_examples_pass_for_the_sentences_beside_equations() -> None:
+    assert refused(beside_equations.partitioned(sign=1))
+    assert refused(beside_equations.separable_alone("p**2 + q**3"))
+    assert refused(beside_equations.nonlinearity(linear="p**2/2 + q**2"))
+    assert refused(beside_equations.nonlinearity(linear="p**2*q + p*q"))
+    assert refused(beside_equations.nonlinearity(curved="p**2/2 + q**2"))
+    assert refused(beside_equations.nonlinearity(curved="p**3 + q**4"))
+    assert refused(beside_equations.of_the_solution(("p - h*q", "q + h*p")))
+    assert refused(beside_equations.in_every_step(share=Fraction(4, 3)))
+    assert refused(beside_equations.in_every_step(q=Fraction(2)))
+    for p_next, q_next in (
+        ("-p*(1 + h*(q + 1/20)/10**8)", "-q"),  # depends on h
+        ("-p*(1 + (q - 1/20)/10**11)", "-q"),  # areas shrink
+        ("-p*(1 + (q + 1/2)/10**11)", "-q"),  # too fast
+        ("-p*(1 + (q + 1/20)/10**9)", "-q"),
+    ):
+        assert refused(beside_equations.from_one_step_size((p_next, q_next)))
 
 
 def test_a_start_from_which_the_total_error_grows_does_not_refute_that_it_grows() -> None:

@@ -1,16 +1,18 @@
 """Sentences on the criteria in another sense: for each fixed k, or for smooth steps and all times.
 
-In `verify.claims.theorems.criteria` criterion 2 is read as max |ΔJ_k| = o(h). Here it is read to
-the letter, of each k by itself, which is weaker; and criterion 4 of all [0, t], t ≤ T, at once.
+In `verify.claims.theorems.criteria.connections` criterion 2 is read as max |ΔJ_k| = o(h). Here it
+is read to the letter, of each k by itself, which is weaker; and criterion 4 of all [0, t], t ≤ T,
+at once.
 """
 
 from collections.abc import Sequence
 from fractions import Fraction
 
-from verify.claims.theorems.argument import Argument, concluded, step
+from verify.claims.theorems.argument import Argument, Step, concluded, step
 from verify.claims.theorems.checks.check import NUMBERS, Check, vanishes
 from verify.claims.theorems.checks.sums import mean_of_fourth_powers, squares_of_times
 from verify.claims.theorems.consistency import consistent_map
+from verify.claims.theorems.criteria.connections import BY_MANY_STEPS
 from verify.claims.theorems.criteria_examples import (
     FRICTION,
     NOT_UNIFORM,
@@ -84,20 +86,19 @@ def pointwise_two_not_three(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
 
 def pointwise_connection(
     not_uniform: ExampleMap = NOT_UNIFORM,
-    friction: ExampleMap = FRICTION,
     alternating: Sequence[ExampleMap] = (TO_AND_FRO, TO_AND_FRO_ODD),
 ) -> Argument:
-    """Of each k alone: 2 does not imply 4, nor does 3; and 4 implies neither."""
+    """Of each k alone: 2 does not imply 4, nor 4 2."""
     first = [abs(e.run(n).delta_j[0]) ** 2 * n >= 1 for e in alternating for n in e.steps]
     at_first = Check(
         "to and fro: |`ΔJ_0`| ≥ √h", all(first), f"{len(first)} step sizes, exactly", NUMBERS
     )
     return concluded(
-        "criterion-4-connection-pointwise",
+        "criterion-4-and-2-pointwise",
         Verdict.PROVED,
         "read for each fixed k, criterion 2 does not imply criterion 4 (p' = p(1 + q²), q' = q + "
-        "h), criterion 3 does not (friction), and 4 implies neither: none of the four "
-        "implications holds",
+        "h), nor 4 criterion 2; but neither map is lieη, for which the two senses agree and 2 "
+        "implies 4",
         [
             step(
                 "2 and not 4: for p' = p(1 + q²), q' = q + h from (0, 0) each `ΔJ_k` = (kh)² = "
@@ -113,15 +114,8 @@ def pointwise_connection(
                 _grows(not_uniform),
             ),
             step(
-                "3 and not 4: p' = p − h(q + p), q' = q + hp has ``MSE = h^2(1 − h)^2 = o(h)``, "
-                "and Λ → 1/e − 1.",
-                friction.changes(),
-                shrinks_to(),
-                friction.check(),
-            ),
-            step(
-                "4, and neither 2 nor 3: p' = −p (1 − √h q)/(1 + √h q), q' = −q from q = 1 has Λ → "
-                "0, ``|ΔJ_0| = 2√h/(1 + √h) ≥ √h``, and MSE > 4h for even N.",
+                "4 and not 2: p' = −p (1 − √h q)/(1 + √h q), q' = −q from q = 1 has Λ → 0 and "
+                "``|ΔJ_0| = 2√h/(1 + √h) ≥ √h``.",
                 *(each.changes() for each in alternating[:1]),
                 turns_to_and_fro(),
                 *(example.check() for example in alternating),
@@ -131,40 +125,37 @@ def pointwise_connection(
     )
 
 
-def stronger_for_smooth_steps(
-    hamiltonian: bool = False, friction: ExampleMap = FRICTION
-) -> Argument:
-    """For steps z + hg + h²r: 4 on every [0, t] implies 2 and 3, and 3 does not imply 4.
+def as_strong_as_2(hamiltonian: bool = False) -> Argument:
+    """For steps z + hg + h²r criterion 4 on every [0, t] and criterion 2 say the same.
 
-    `hamiltonian`: whether g is a Hamiltonian's, for which div g = 0 and there is nothing to show.
+    `hamiltonian`: as for `_of_every_time`.
     """
-    powers = consistent_map(hamiltonian)
-    ring = next(iter(powers.values())).context()
-    divergence = ring.gens()[ring.names().index("a_p")] + ring.gens()[ring.names().index("b_q")]
-    none = divergence - divergence
     return concluded(
-        "criterion-4-stronger-smooth",
+        "criterion-4-against-2-smooth",
+        Verdict.REFUTED,
+        "for steps z + hg(z) + h²r(z, h) with smooth g and r, criterion 4 on [0, t] for every t ≤ "
+        "T implies criterion 2, and criterion 2 implies it: 4 is as strong as 2, and no stronger",
+        [
+            *_of_every_time(hamiltonian),
+            step(
+                "Criterion 2 implies criterion 4 on every [0, t]: ``|Λ| ≤ e^(t m/h) − 1 → 0``, m = "
+                "max |`ΔJ_k`|.",
+                BY_MANY_STEPS,
+            ),
+        ],
+        given="Let the orbit of z' = g(z) exist on [0, T].",
+    )
+
+
+def stronger_than_3(hamiltonian: bool = False, friction: ExampleMap = FRICTION) -> Argument:
+    """For steps z + hg + h²r: 4 on every [0, t] implies 3, and 3 does not imply 4."""
+    return concluded(
+        "criterion-4-against-3-smooth",
         Verdict.PROVED,
         "for steps z + hg(z) + h²r(z, h) with smooth g and r, criterion 4 on [0, t] for every t ≤ "
-        "T implies criteria 2 and 3, and criterion 3, which always holds then, does not imply it: "
-        "4 is as strong as 2 and stronger than 3",
+        "T implies criterion 3, which always holds then, and is not implied by it",
         [
-            step(
-                "``ΔJ = h div g + O(h^2)``, for any g.",
-                vanishes(
-                    "ΔJ of a generic map z + hg + h²r is h div g + O(h²), g generic",
-                    powers.get(1, none) - divergence,
-                    powers.get(0, none),
-                ),
-            ),
-            step(
-                "So Σ log(1 + `ΔJ_k`) = Σ h div g(`z_k`) + O(h), and, as Φ converges to the orbit, "
-                "over [0, t] ``Λ → e^(∫_0^t div g dt) − 1``.",
-            ),
-            step(
-                "If that is 0 for every t ≤ T, then div g = 0 along the orbit, div g(`z_k`) = "
-                "O(h), and `ΔJ_k` = O(h²) uniformly: criteria 2 and 3 follow.",
-            ),
+            *_of_every_time(hamiltonian),
             step(
                 "Criterion 3 always holds: the mean of `ΔJ_k²` is at most its maximum, O(h²).",
                 Shipped("Sums", "sum_of_less"),
@@ -180,8 +171,38 @@ def stronger_for_smooth_steps(
     )
 
 
+def _of_every_time(hamiltonian: bool) -> list[Step]:
+    """Criterion 4 on every [0, t] gives ΔJ = O(h²), for steps z + hg + h²r.
+
+    `hamiltonian`: whether g is a Hamiltonian's, for which div g = 0 and there is nothing to show.
+    """
+    powers = consistent_map(hamiltonian)
+    ring = next(iter(powers.values())).context()
+    divergence = ring.gens()[ring.names().index("a_p")] + ring.gens()[ring.names().index("b_q")]
+    none = divergence - divergence
+    return [
+        step(
+            "``ΔJ = h div g + O(h^2)``, for any g.",
+            vanishes(
+                "ΔJ of a generic map z + hg + h²r is h div g + O(h²), g generic",
+                powers.get(1, none) - divergence,
+                powers.get(0, none),
+            ),
+        ),
+        step(
+            "So Σ log(1 + `ΔJ_k`) = Σ h div g(`z_k`) + O(h), and, as Φ converges to the orbit, "
+            "over [0, t] ``Λ → e^(∫_0^t div g dt) − 1``.",
+        ),
+        step(
+            "If that is 0 for every t ≤ T, then div g = 0 along the orbit, div g(`z_k`) = "
+            "O(h), and `ΔJ_k` = O(h²) uniformly: criteria 2 and 3 follow.",
+        ),
+    ]
+
+
 THEOREMS = {
     "criterion-2-implies-3-pointwise": pointwise_two_not_three,
-    "criterion-4-connection-pointwise": pointwise_connection,
-    "criterion-4-stronger-smooth": stronger_for_smooth_steps,
+    "criterion-4-and-2-pointwise": pointwise_connection,
+    "criterion-4-against-2-smooth": as_strong_as_2,
+    "criterion-4-against-3-smooth": stronger_than_3,
 }

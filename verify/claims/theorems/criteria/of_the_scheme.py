@@ -6,7 +6,7 @@ from verify.claims.theorems.checks.differential import flow_of_every_hamiltonian
 from verify.claims.theorems.checks.matrices import product_of_determinants
 from verify.claims.theorems.checks.sums import squares_of_times
 from verify.claims.theorems.consistency import small_determinant
-from verify.claims.theorems.criteria import BY_MANY_STEPS, inequalities_of
+from verify.claims.theorems.criteria.connections import BY_MANY_STEPS, inequalities_of
 from verify.claims.theorems.criteria_examples import (
     FRICTION,
     NOT_UNIFORM,
