@@ -159,13 +159,14 @@ class RunClaim(Claim):
     def compare(self, findings: Findings) -> ClaimResult:
         """The verdict by the values of its runs: MEASURED where it holds."""
 
-    def run_rows(self, findings: Findings) -> list[list[RunResult]]:
+    def run_rows(self, findings: Findings, other: Scene | None = None) -> list[list[RunResult]]:
         """The grid's runs: one row an initial value, its runs by increasing step size.
 
+        Of the claim's scene, or of an `other`.
         Raises InputError where the scene does not run what the claim speaks of, and NoValueError
         where a run ended without values.
         """
-        scene = findings.scene(self.scene)
+        scene = other or findings.scene(self.scene)
         runs = findings.runs(scene, self.scheme)
         if not runs or scene.grid is None:
             raise InputError("claim", self.id, "its scene has no runs of that scheme")

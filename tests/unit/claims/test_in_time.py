@@ -72,6 +72,9 @@ def test_the_distance_from_the_exact_solution_is_that_from_its_t0(tmp_path: Path
     assert verdict(tmp_path, f'{still}within = "1/100"') is REFUTED
 
 
+LESS = '{ kind = "less", quantity = "mse", than = "abs_lambda" }'
+
+
 @pytest.mark.parametrize(
     ("keys", "problem"),
     [
@@ -80,7 +83,7 @@ def test_the_distance_from_the_exact_solution_is_that_from_its_t0(tmp_path: Path
         (f'kind = "order"\norder = 3\n{EVERY}\nscheme = "stormer-verlet"',
          "say 'separable hamiltonian in time'"),
         (f'kind = "order"\norder = 3\n{SEPARABLE}\nscheme = "lie2"', "say 'hamiltonian in time'"),
-        (f'kind = "no_pattern"\nwithin = "1/10"\n{H}\n{RUN}', "and so of no H that depends on t"),
+        (f'kind = "shifted"\nagain = [{LESS}]\n{H}\n{RUN}', "and so of no H that depends on t"),
         (f'kind = "lambda"\n{H}\n{RUN}printed = "1"'.replace('"1/3"', '"soon"'), "soon"),
     ],
 )  # fmt: skip

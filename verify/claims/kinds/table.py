@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from fractions import Fraction
 from itertools import product, repeat
-from typing import Annotated, Literal, Self
+from typing import Annotated, Literal, NamedTuple, Self
 
 from pydantic import Field, model_validator
 
@@ -20,6 +20,14 @@ from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene
 from verify.scenes.values import StepSize
 from verify.verdict import Verdict
+
+
+class Entries(NamedTuple):
+    """Verdicts on printed values, the values that were computed, and both as a table."""
+
+    verdicts: list[list[bool | None]]
+    values: list[Ball]
+    details: list[list[str]]
 
 
 class TableClaim(RunClaim):
@@ -63,33 +71,52 @@ class TableClaim(RunClaim):
 
     def compare(self, findings: Findings) -> ClaimResult:
         rows = self.run_rows(findings)
+        verdicts, values, details = self.entries(rows)
+        every = [verdict for row in verdicts for verdict in row]
+        if False not in every:
+            evidence = self.seen(values) + ", as printed"
+            return self.result(all_hold(every), evidence, details)
+        grid = findings.scene(self.scene).grid
+        evidence = prose(
+            self._wrong(verdicts), ": ", self.seen(values),
+            self._named(rows[0], grid.time if grid else None),
+        )  # fmt: skip
+        return self.result(Verdict.REFUTED, evidence, details)
+
+    def entries(self, rows: Sequence[Sequence[RunResult]]) -> Entries:
+        """What holds of the printed values, a row an initial value, with what was computed."""
         printed_rows = self.rows or (self.printed or (),) * len(rows)
         if len(printed_rows) != len(rows):
             raise InputError(f"claim {self.id}: rows", len(printed_rows), f"give {len(rows)} rows")
         details: list[list[str]] = [["initial value", *(f"h = {text(h)}" for h in self.step_sizes)]]
         if self.printed is not None:
             details.append(["printed, for all", *self.printed])
-        verdicts: list[bool | None] = []
+        verdicts: list[list[bool | None]] = []
         values: list[Ball] = []
         for row, printed in zip(rows, printed_rows, strict=True):
             runs = [self.run_at(row, h) for h in self.step_sizes]
-            verdicts += map(holds, runs, repeat(self.quantity), printed)
+            verdicts.append([*map(holds, runs, repeat(self.quantity), printed)])
             if self.rows is not None:
                 details.append([prose("printed, ", start_of(row[0])), *printed])
             own = map(cell, runs, repeat(self.quantity), map(places, printed))
             details.append([start_of(row[0]), *own])
             values += [QUANTITIES[self.quantity](run) for run in runs]
-        if False not in verdicts:
-            evidence = self._seen(values) + ", as printed"
-            return self.result(all_hold(verdicts), evidence, details)
-        grid = findings.scene(self.scene).grid
-        evidence = prose(
-            f"{verdicts.count(False)} of {len(verdicts)} entries are wrong: ", self._seen(values),
-            self._named(rows[0], grid.time if grid else None),
-        )  # fmt: skip
-        return self.result(Verdict.REFUTED, evidence, details)
+        return Entries(verdicts, values, details)
 
-    def _seen(self, values: Sequence[Ball]) -> Prose:
+    def _wrong(self, verdicts: Sequence[Sequence[bool | None]]) -> str:
+        """How many of the entries, which are as many as are printed, are wrong."""
+        if self.printed is None:
+            every = [verdict for row in verdicts for verdict in row]
+            return f"{every.count(False)} of {len(every)} entries are wrong"
+        columns, label = list(zip(*verdicts, strict=True)), QUANTITIES[self.quantity].label
+        several = f" from any of the {len(verdicts)} initial values" if len(verdicts) > 1 else ""
+        if all(verdict is False for column in columns for verdict in column):
+            return f"none of the {len(columns)} printed values is the {label}{several}"
+        wrong = sum(False in column for column in columns)
+        of_each = " from each of the initial values" if several else ""
+        return f"{wrong} of the {len(columns)} printed values are not the {label}{of_each}"
+
+    def seen(self, values: Sequence[Ball]) -> Prose:
         label = QUANTITIES[self.quantity].label
         known = sorted((v for v in values if in_reach(v)), key=middle)
         if not known:

@@ -12,6 +12,7 @@ from verify.claims.theorems.argument import Argument
 from verify.claims.theorems.task import TheoremTask
 from verify.errors import unknown
 from verify.execution.task import Task
+from verify.prose import joined
 from verify.scenes.results.claim import ClaimResult
 
 
@@ -43,7 +44,8 @@ class TheoremClaim(Claim):
         known = findings.results.get(self._task.key)
         found = known if isinstance(known, Argument) else theorems.check_theorem(self.name)
         result = self.result(found.verdict, found.evidence, found.details, found.proof)
-        own = {name: getattr(found, name) for name in ("checked_by", "given", "steps", "remark")}
+        own = {name: getattr(found, name) for name in ("checked_by", "given", "steps")}
+        own["remark"] = joined(" ", [*filter(None, (found.remark, result.remark))])
         return result.model_copy(update=own)
 
 

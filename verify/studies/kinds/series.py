@@ -12,7 +12,8 @@ from verify.scenes.run_sections import Series
 from verify.scenes.scene import Scene
 
 
-def _task(scene: Scene, scheme: str, series: Series) -> RunTask:
+def series_task(scene: Scene, scheme: str, series: Series) -> RunTask:
+    """The run of a `[[series]]`."""
     at = series.initial_value
     return RunTask(
         **scene.hamiltonian_fields(), scheme=scheme,
@@ -28,14 +29,14 @@ def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
         if preserves:
             plan.leave_out(what, "ΔJ ≡ 0 is proved: it is a line at 0")
         else:
-            plan.need(_task(scene, scheme, series), f"{what}, for its plot")
+            plan.need(series_task(scene, scheme, series), f"{what}, for its plot")
 
 
 def _runs(scene: Scene, results: Results) -> Iterator[RunResult]:
     """The series that were run, each with what the scene says it repeats."""
     for scheme in scene.schemes:
         for asked in scene.series:
-            for run in known_results(RunResult, [_task(scene, scheme, asked)], results):
+            for run in known_results(RunResult, [series_task(scene, scheme, asked)], results):
                 yield run.model_copy(update={"source": asked.source})
 
 

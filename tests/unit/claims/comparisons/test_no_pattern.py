@@ -1,64 +1,66 @@
-"""Claims that values have no pattern, which those of a growth law refute."""
+"""Claims that values have no pattern, which one order of the initial values refutes."""
 
+from fractions import Fraction
 from typing import Any
 
 import pytest
 
-from verify.claims.check import prepare
-from verify.claims.file import load_claims
-from verify.claims.findings import Findings
+from tests.helpers.constructed.runs import CLAIM, FLAT, Given, check, growing
 from verify.claims.kinds.comparisons.no_pattern import NoPatternClaim
-from verify.execution.execute import Store
-from verify.execution.executors import THIS_PROCESS
 from verify.verdict import Verdict
 
-REFUTED, UNDECIDED = Verdict.REFUTED, Verdict.UNDECIDED
+ENCLOSED, REFUTED, UNDECIDED = Verdict.ENCLOSED, Verdict.REFUTED, Verdict.UNDECIDED
+NONE = NoPatternClaim(**CLAIM, kind="no_pattern")
 
-PATTERN = """
-[[claim]]
-id = "c"
-kind = "no_pattern"
-scheme = "{scheme}"
-system = "duffing"
-parameters = {{ delta = 1 }}
-step_sizes = [0.01, 0.02]
-initial_values = [{{ q = 0.5, p = 0 }}, {{ q = 0, p = 1.5 }}]
-time = 20
-within = {within}
-"""
+
+def turned(h: Fraction, k: int) -> dict[str, Given]:
+    """As `growing`, but that the first two initial values change places at the last step size."""
+    return growing(h, 1 - k if h == Fraction(1, 100) and k < 2 else k)
+
+
+def test_one_order_at_every_step_size_is_a_pattern() -> None:
+    found = check(NONE, growing)
+    assert found.verdict is REFUTED
+    assert "at all 6 step sizes the initial values stand in one order by |Λ|: (q₀ = 0.1" in (
+        found.evidence
+    )
 
 
 @pytest.mark.parametrize(
-    ("scheme", "within", "expected"), [("lie2", "0.1", REFUTED), ("lie2", "1e-9", UNDECIDED)]
+    ("starts", "said"),
+    [
+        ([("0.1", "0"), ("0.5", "0"), ("1", "0")], True),
+        ([("0.5", "0"), ("0.1", "0"), ("1", "0")], False),
+    ],
 )
-def test_values_that_follow_their_growth_law_have_a_pattern(
-    tmp_path: Any, scheme: str, within: str, expected: Verdict
-) -> None:
-    path = tmp_path / "claims.toml"
-    path.write_text(PATTERN.format(scheme=scheme, within=within))
-    found = prepare(load_claims(path)).run(Store(None), where=THIS_PROCESS)
-    assert [claim.verdict for claim in found] == [expected]
+def test_that_it_is_the_order_of_h_is_said_where_it_is(starts: Any, said: bool) -> None:
+    assert ("which is that of H" in check(NONE, growing, starts=starts).evidence) is said
 
 
-@pytest.mark.left_to_ci
-def test_values_that_do_not_follow_the_law_are_not_refuted(tmp_path: Any) -> None:
-    """The same runs with another Λ at the end of one of them."""
-    path = tmp_path / "claims.toml"
-    path.write_text(PATTERN.format(scheme="lie2", within="0.1"))
-    check_ = prepare(load_claims(path))
-    (claim,) = check_.claims
-    assert isinstance(claim, NoPatternClaim)
-    store = Store(None)
-    check_.run(store, where=THIS_PROCESS)
-    from verify.execution.execute import execute
-    from verify.scenes.results.run import RunResult
+def test_two_orders_at_two_step_sizes_are_none() -> None:
+    found = check(NONE, turned)
+    assert found.verdict in (Verdict.MEASURED, ENCLOSED)
+    assert "1, 2, 3 with h = 0.008 and 2, 1, 3 with h = 0.01" in found.evidence
 
-    results = dict(execute(check_.plan, store, where=THIS_PROCESS))
-    key = next(k for k, each in results.items() if isinstance(each, RunResult))
-    run = results[key]
-    assert isinstance(run, RunResult)
-    lam = run.values["lambda"]
-    doubled = lam.model_copy(update={"value": f"{float(lam.value) * 2:.12f}"})
-    values = {**run.values, "lambda": doubled}
-    results[key] = run.model_copy(update={"values": values})
-    assert claim.judge(Findings(check_.file.scenes, results)).verdict is UNDECIDED
+
+def test_values_that_are_not_told_apart_have_no_known_order() -> None:
+    def flat(h: Fraction, k: int) -> dict[str, Given]:
+        return FLAT
+
+    def wide(h: Fraction, k: int) -> dict[str, Given]:
+        return {**growing(h, k), "lambda": (growing(h, k)["lambda"], h**3)}
+
+    assert check(NONE, flat).verdict is UNDECIDED
+    assert check(NONE, wide).verdict is UNDECIDED
+
+
+def test_one_initial_value_shows_no_pattern() -> None:
+    assert check(NONE, growing, starts=[("0.1", "0")]).verdict is UNDECIDED
+
+
+def test_an_unknown_order_between_two_that_differ_hides_neither() -> None:
+    def between(h: Fraction, k: int) -> dict[str, Given]:
+        values = turned(h, k)
+        return {**values, "lambda": (values["lambda"], 1)} if h == Fraction(8, 1000) else values
+
+    assert check(NONE, between).verdict in (Verdict.MEASURED, ENCLOSED)

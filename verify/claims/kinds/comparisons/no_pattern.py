@@ -1,84 +1,89 @@
-"""At one step size Λ goes up and down over the initial values without any pattern.
+"""Over the initial values the quantity goes up and down without any pattern.
 
-Refuted by one pattern, its growth law (see `verify.proof.growth_law`): a boundary term, and one
-that grows with T at a rate that is an average over the orbit. Where it predicts every Λ up to
-`within` of |Λ|, the values follow it. Where it does not, that shows nothing of other patterns, and
-the claim is UNDECIDED.
+The pattern that is looked for is plain to see in a plot: one order of the initial values by |Λ|
+that is the same at every step size. Where there is one, the claim is refuted; where two step sizes
+have different orders, there is none. Any computed number has a law: that one is known (see
+`verify.proof.growth_law`) is no pattern of this kind.
 """
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from fractions import Fraction
-from typing import Annotated, Literal
+from itertools import pairwise
+from typing import Literal
 
-from pydantic import Field
-
-from verify.arithmetic.arb import shown
-from verify.arithmetic.exact import decimal, text
+from verify.algebra.enclosure import enclose_over
+from verify.arithmetic.arb import Ball, rational_ball
 from verify.claims.findings import Findings
 from verify.claims.on_runs import RunClaim
-from verify.claims.runs import QUANTITIES, start_of
-from verify.execution.task import Task
-from verify.prose import Formula, Number, number, prose
+from verify.claims.runs import QUANTITIES, middle, start_of, table_of
+from verify.hamiltonians.energy import energy_of
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.prose import Number, Prose, joined, prose
+from verify.runs.start import Start
 from verify.scenes.results.claim import ClaimResult
-from verify.scenes.results.growth import AverageResult, PredictionResult
-from verify.scenes.scene import Scene
-from verify.scenes.values import Number as ExactNumber
-from verify.studies.growth.prediction import predictions
-from verify.studies.growth.task import GrowthTask
+from verify.scenes.results.run import RunResult
 from verify.verdict import Verdict
 
-_DIGITS = 30  # of the time averages, as a scene’s own growth laws have them
+_QUANTITY = "abs_lambda"
 
 
 class NoPatternClaim(RunClaim):
-    """No law in Λ over the initial values."""
+    """No one order of the initial values by |Λ|."""
 
     only_here = "a pattern is over the initial values of its own scene"
-    autonomous = planar = True
     kind: Literal["no_pattern"]
-    within: Annotated[ExactNumber, Field(gt=0, lt=1)]
-    """A law that predicts every Λ to this part of it is a pattern."""
 
     def quantities(self) -> tuple[str, ...]:
-        return ("lambda",)
-
-    def _laws(self, scene: Scene) -> list[GrowthTask]:
-        given, starts = scene.hamiltonian_fields(), scene.grid.in_the_plane if scene.grid else ()
-        return [
-            GrowthTask(**given, scheme=self.scheme, q=at.q, p=at.p, digits=_DIGITS) for at in starts
-        ]
-
-    def tasks(self, scene: Scene) -> Iterable[Task]:
-        yield from super().tasks(scene)
-        yield from self._laws(scene)
+        return (_QUANTITY,)
 
     def compare(self, findings: Findings) -> ClaimResult:
-        scene = findings.scene(self.scene)
-        exact = scene.exact_hamiltonian()
-        found: list[PredictionResult] = []
-        details = [["initial value", "h", "Λ by its law", "Λ", "(law − Λ)/|Λ|"]]
-        for row, task in zip(self.run_rows(findings), self._laws(scene), strict=True):
-            law = findings.results[task.key]
-            assert isinstance(law, AverageResult)  # noqa: S101 - the key is a law's
-            for run, each in zip(row, predictions(exact, law, row), strict=True):
-                lam = shown(QUANTITIES["lambda"](run), 4)
-                gap = each.difference.value if each.difference else "unknown"
-                details.append([start_of(run), run.step_size, each.predicted.value, lam, gap])
-                found.append(each)
-        gaps = [abs(Fraction(x.difference.value)) for x in found if x.difference is not None]
-        near = sum(gap <= self.within for gap in gaps)
-        if not gaps or near < sum(len(row) for row in self.run_rows(findings)):
-            evidence = prose(
-                f"its growth law predicts {near} of {len(details) - 1} values of Λ up to ",
-                Number(text(self.within)), " of them; another pattern was not looked for",
-            )  # fmt: skip
+        rows = self.run_rows(findings)
+        columns = list(zip(*rows, strict=True))
+        orders = [_order([QUANTITIES[_QUANTITY](run) for run in column]) for column in columns]
+        details = table_of(rows, _QUANTITY)
+        certain = [(c, order) for c, order in zip(columns, orders, strict=True) if order]
+        for (column, one), (other, two) in pairwise(certain):
+            if one != two:
+                told = prose(
+                    "by |Λ| the initial values stand in the order ", _told(one), " with h = ",
+                    Number(column[0].step_size), " and ", _told(two), " with h = ",
+                    Number(other[0].step_size), ", as they are counted in the table: none is that "
+                    "of every step size",
+                )  # fmt: skip
+                return self.result(Verdict.MEASURED, told, details)
+        if len(rows) < 2 or len(certain) < len(columns):
+            evidence = f"the order is known at {len(certain)} of {len(columns)} step sizes alone"
             return self.result(Verdict.UNDECIDED, evidence, details)
+        order = certain[0][1]
+        exact = findings.scene(self.scene).exact_hamiltonian()
+        energies = [_energy(exact, row[0]) for row in rows]
+        of_h = ", which is that of H" if order == _order(energies) else ""
+        first = joined(", ", [prose("(", start_of(rows[k][0]), ")") for k in order])
         evidence = prose(
-            "each Λ is a boundary term and ", Formula("h^(η+1)"), " T times an average over the "
-            f"orbit: this law predicts all {len(gaps)} values up to ",
-            number(decimal(max(gaps), 2)), " of them, whatever the initial value",
+            f"at all {len(columns)} step sizes the initial values stand in one order by |Λ|: ",
+            first, of_h,
         )  # fmt: skip
         return self.result(Verdict.REFUTED, evidence, details)
+
+
+def _order(values: Sequence[Ball]) -> tuple[int, ...]:
+    """The places of the values by their size; none where two of them are not told apart."""
+    if any(not value.is_finite() for value in values):
+        return ()
+    places = sorted(range(len(values)), key=lambda k: middle(values[k]))
+    apart = all(bool(values[j] < values[k]) for j, k in pairwise(places))
+    return tuple(places) if apart else ()
+
+
+def _told(order: Sequence[int]) -> Prose:
+    return prose(", ".join(str(k + 1) for k in order))
+
+
+def _energy(hamiltonian: Hamiltonian, run: RunResult) -> Ball:
+    ring, element = energy_of(hamiltonian)
+    at = {**Start.of(run).point, "t": Fraction(run.t0)}
+    value = enclose_over(ring, element, {name: rational_ball(x) for name, x in at.items()})
+    return Ball("nan") if value is None else value
 
 
 CLAIM = NoPatternClaim

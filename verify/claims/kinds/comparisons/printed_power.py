@@ -58,8 +58,8 @@ class PrintedPowerClaim(Claim):
         if max(lows) <= min(highs):
             evidence = prose(
                 "each printed value divided by ", Formula(power), " has the same logarithm, ",
-                Number(constant), f", to all its digits, for all {len(quotients)} step sizes: the "
-                "printed numbers do not fall faster",
+                Number(constant), ", within the rounding of what is printed, for all "
+                f"{len(quotients)} step sizes: the printed numbers do not fall faster",
             )  # fmt: skip
             return self.result(Verdict.REFUTED, evidence)
         evidence = prose("the printed values divided by ", Formula(power), " are not all the same")

@@ -6,9 +6,7 @@ end of the run instead: Λ' = (1 + Λ)(1 + ΔJ_N)/(1 + ΔJ_0) − 1 and MSE' = M
 
 from collections.abc import Callable
 from fractions import Fraction
-from typing import Annotated, Any, Literal, Self
-
-from pydantic import Field, model_validator
+from typing import Any, Literal
 
 from verify.algebra.enclosure import enclose_over
 from verify.arithmetic.arb import (
@@ -19,9 +17,9 @@ from verify.arithmetic.arb import (
     rational_ball,
     shown,
 )
+from verify.claims.again import AgainClaim
 from verify.claims.findings import Findings
 from verify.claims.formulas import step_map_of
-from verify.claims.kinds import models
 from verify.claims.on_runs import RunClaim
 from verify.claims.runs import QUANTITIES, NoValueError, all_hold, middle
 from verify.errors import InputError
@@ -36,34 +34,16 @@ _SHIFTED = ("lambda", "mse")
 DeltaJ = Callable[[Ball, Ball, Ball], Ball]
 
 
-class ShiftedClaim(RunClaim):
-    """`again`: claims of the same scene and scheme, each its kind and its keys."""
+class ShiftedClaim(AgainClaim):
+    """Claims that do not depend on which step is counted first."""
 
     autonomous = planar = True
-    only_here = "which claims are made again is a matter of their own scene"
     kind: Literal["shifted"]
-    again: Annotated[tuple[dict[str, Any], ...], Field(min_length=1, max_length=100)]
-    """Claims of the same scene and scheme, each its kind and its keys."""
 
-    @model_validator(mode="after")
-    def _check(self) -> Self:
-        for claim in self._claims():
-            beyond = set(claim.observables()) - set(_SHIFTED)
-            if beyond or claim.always_own:
-                problem = f"is not made of {' and '.join(_SHIFTED)} of the scene’s runs alone"
-                raise InputError("again", claim.kind, problem)
-        return self
-
-    def _claims(self) -> list[RunClaim]:
-        found = []
-        for n, table in enumerate(self.again, start=1):
-            kind = table.get("kind")
-            model = models().get(kind) if isinstance(kind, str) else None
-            if model is None or not issubclass(model, RunClaim) or model is ShiftedClaim:
-                raise InputError("again", kind, "is no kind of claim on runs")
-            own = {"id": f"{self.id}-{n}", "scene": self.scene, "scheme": self.scheme}
-            found.append(model.model_validate({**table, **own}))
-        return found
+    def refuses(self, claim: RunClaim) -> str:
+        if claim.always_own or set(claim.observables()) - set(_SHIFTED):
+            return f"is not made of {' and '.join(_SHIFTED)} of the scene’s runs alone"
+        return ""
 
     def quantities(self) -> tuple[str, ...]:
         return _SHIFTED
@@ -75,7 +55,7 @@ class ShiftedClaim(RunClaim):
         again = Findings(findings.scenes, {**findings.results, **changed})
         details = [["claim", "k = 0 … N − 1", "k = 1 … N"]]
         verdicts: list[bool | None] = []
-        for claim, table in zip(self._claims(), self.again, strict=True):
+        for claim, table in zip(self.claims(), self.again, strict=True):
             before, after = claim.compare(findings).verdict, claim.compare(again).verdict
             verdicts.append(before is after)
             # Which side of its question a claim is on; how sure it is, its own result says.

@@ -1,0 +1,78 @@
+"""A printed table is right for some of these values of a parameter that it does not name."""
+
+from collections.abc import Iterable
+from fractions import Fraction
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from verify.arithmetic.exact import text
+from verify.claims.findings import Findings
+from verify.claims.kinds.table import TableClaim
+from verify.claims.runs import NoValueError, all_hold
+from verify.errors import InputError, unknown
+from verify.execution.task import Task
+from verify.prose import Number, joined, prose
+from verify.scenes.results.claim import ClaimResult
+from verify.scenes.scene import Scene
+from verify.scenes.values import Number as ExactNumber
+from verify.studies.kinds.grid import grid_tasks
+from verify.verdict import Verdict
+
+
+class TableForSomeClaim(TableClaim):
+    """REFUTED where the table is refuted for each of the values; of others it says nothing."""
+
+    only_here = "a printed table is that of its own runs"
+    kind: Literal["table_for_some"]  # type: ignore[assignment]
+    parameter: str
+    """A parameter of H."""
+    values: Annotated[tuple[ExactNumber, ...], Field(min_length=1, max_length=100)]
+    """The values of it for which the runs are done."""
+
+    def check_scene(self, scene: Scene) -> None:
+        super().check_scene(scene)
+        if self.parameter not in scene.parameters:
+            raise unknown("parameter", self.parameter, scene.parameters)
+        if scene.grid is None:
+            raise InputError("values", self.parameter, "are of runs; give step_sizes and time")
+
+    def _scenes(self, scene: Scene) -> list[Scene]:
+        return [
+            scene.model_copy(update={"parameters": {**scene.parameters, self.parameter: value}})
+            for value in self.values
+        ]
+
+    def tasks(self, scene: Scene) -> Iterable[Task]:
+        return [task for each in self._scenes(scene) for task in grid_tasks(each, self.scheme)]
+
+    def compare(self, findings: Findings) -> ClaimResult:
+        verdicts: list[Verdict] = []
+        details: list[list[str]] = []
+        said = []
+        for value, scene in zip(self.values, self._scenes(findings.scene(self.scene)), strict=True):
+            named = prose(f"{self.parameter} = ", Number(text(Fraction(value))))
+            try:
+                found = self.entries(self.run_rows(findings, scene))
+            except NoValueError as error:
+                verdicts.append(Verdict.UNDECIDED)
+                said.append(prose(named, ": ", error.reason))
+                continue
+            verdicts.append(all_hold([each for row in found.verdicts for each in row]))
+            said.append(prose(named, ": ", self.seen(found.values)))
+            head, *rows = found.details
+            printed = [rows.pop(0)] if self.printed else []
+            details += [] if details else [head, *printed]
+            details += [[prose(row[0], ", ", named), *row[1:]] for row in rows]
+        evidence = joined("; ", said)
+        for best in (Verdict.MEASURED, Verdict.UNDECIDED):
+            if best in verdicts:
+                return self.result(best, evidence, details)
+        return self.result(Verdict.REFUTED, evidence, details)
+
+    def judge(self, findings: Findings) -> ClaimResult:
+        """MEASURED at best: bounds of the runs for other values are not looked at."""
+        return self.compared(findings)
+
+
+CLAIM = TableForSomeClaim
