@@ -63,6 +63,10 @@ class Claim(Frozen):
     """How that reading takes the statement, in words."""
     standing: Standing = "fair"
     """How close the reading is to what is printed."""
+    remark: str = ""
+    """What a reader of the verdict should know beside it; formulas as in `statement`."""
+    confirmed_by: str = ""
+    """What computes it again with other code, such as the name of a test."""
     scene: str = ""
     """The scene that it speaks of: a `[[scene]]` of the file, or a file beside it."""
     scheme: SchemeName
@@ -136,6 +140,8 @@ class Claim(Frozen):
             domain=domain.texts,
             details=tuple(tuple(map(prose, row)) for row in details),
             proof=prose(proof),
+            remark=read_prose(self.remark),
+            confirmed_by=self.confirmed_by,
         )
 
     # -- the same of other scenes -----------------------------------------------------------------

@@ -16,14 +16,14 @@
 
 `title` names the whole; `about` lines say what it is, before all else, and `[[left_out]]` tables
 name with `what` and `why` what of the paper is not claimed. See `verify.claims.readings` for claims
-that are readings of one statement.
-See `verify.claims.kinds` for the kinds, `verify.claims.scenes` for what a claim may speak of, and
-`verify.scenes.paper_figures` for `[[figure]]`. A scene that a claim names is a `[[scene]]` of this
-file, or the file of that name beside it.
+See `verify.claims.kinds` for the kinds, `verify.claims.scenes` for what a claim may speak of,
+`verify.scenes.paper_figures` for `[[figure]]`, and `verify.scenes.causes` for `[[cause]]`. A scene
+that a claim names is a `[[scene]]` of this file, or the file of that name beside it.
 """
 
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -36,16 +36,18 @@ from verify.claims.on_runs import RunKeys
 from verify.claims.outside import outside
 from verify.claims.quantified import QuantifiedClaim
 from verify.claims.readings import settled
-from verify.claims.scenes import HAMILTONIAN_KEYS, HAMILTONIAN_SOURCES, scene_for
+from verify.claims.scenes import HAMILTONIAN_KEYS, HAMILTONIAN_SOURCES, NamedScenes, scene_for
 from verify.errors import NOT_GIVEN, InputError, LimitError, unknown
 from verify.files import read_text
+from verify.prose import read_prose
+from verify.scenes.causes import Cause
 from verify.scenes.mistakes.values import one_line
 from verify.scenes.paper_figures import PaperFigure
-from verify.scenes.scene import Scene, load_scene, scene_from
+from verify.scenes.scene import Scene
 from verify.scenes.toml_file import read_toml
 from verify.scenes.toml_lines import Lines, lines_of
 
-_ROOT = ("title", "about", "defaults", "scene", "claim", "figure", "left_out")
+_ROOT = ("title", "about", "defaults", "scene", "claim", "cause", "figure", "left_out")
 # Of each group a claim needs one: where it gives one itself, it takes none from the defaults.
 _GROUPS = (
     HAMILTONIAN_KEYS,
@@ -70,6 +72,7 @@ class ClaimsFile:
     left_out: tuple[tuple[str, str], ...] = ()
     claims: list[Claim] = field(default_factory=list)
     scenes: dict[str, Scene] = field(default_factory=dict)
+    causes: list[Cause] = field(default_factory=list)
     figures: list[PaperFigure] = field(default_factory=list)
     lines: Lines = field(default_factory=lambda: Lines({}))
 
@@ -117,7 +120,7 @@ def load_claims(path: Path) -> ClaimsFile:
     found.about = _texts(found, "about", data.get("about", []))
     found.left_out = _left_out(found, data.get("left_out", []))
     defaults = _defaults(found, data.get("defaults", {}))
-    scenes = _Scenes(path, data.get("scene", []), found.lines)
+    scenes = NamedScenes(path, data.get("scene", []), found.lines)
     for index, table in enumerate(tables):
         name = table.get("id") if isinstance(table, dict) else None
         name = name if isinstance(name, str) and name else f"number {index + 1}"
@@ -130,6 +133,7 @@ def load_claims(path: Path) -> ClaimsFile:
                 raise told from None
             _append(found, outside({**defaults, **table}, str(told)))
     _settle_readings(found)
+    _add_causes(found, data.get("cause", []))
     _add_figures(found, data.get("figure", []), scenes)
     return found
 
@@ -164,22 +168,44 @@ def _settle_readings(file: ClaimsFile) -> None:
     file.claims = found
 
 
-def _add_figures(file: ClaimsFile, tables: Any, scenes: "_Scenes") -> None:
+def _add_causes(file: ClaimsFile, tables: Any) -> None:
+    """What explains several statements, after the claims that it speaks of."""
+    if not isinstance(tables, list):
+        raise InputError(f"{file.name}: cause", tables, "write [[cause]] tables")
+    ids = {claim.id for claim in file.claims}
+    statements = {claim.reading_of for claim in file.claims if claim.reading_of}
+    for index, table in enumerate(tables):
+        with _named(f"{file.name}:{file.lines.of('cause', index)}: cause"):
+            says = table.get("says") if isinstance(table, dict) else None
+            if not isinstance(says, str) or not says:
+                raise InputError("says", says or NOT_GIVEN, "is a sentence; none stands here")
+            cause = Cause.model_validate({**table, "says": read_prose(says)})
+            cause.check(statements, ids)
+            file.causes.append(cause)
+
+
+@contextmanager
+def _named(where: str) -> Iterator[None]:
+    """Says of an error in a table of the file where it stands."""
+    try:
+        yield
+    except ValidationError as error:
+        raise one_line(error, where) from None
+    except InputError as error:
+        raise InputError(f"{where}: {error.name}", error.value, error.problem) from None
+
+
+def _add_figures(file: ClaimsFile, tables: Any, scenes: NamedScenes) -> None:
     """The figures to be made again, after the claims that they speak of."""
     if not isinstance(tables, list):
         raise InputError(f"{file.name}: figure", tables, "write [[figure]] tables")
     ids = {claim.id for claim in file.claims}
     for index, table in enumerate(tables):
-        where = f"{file.name}:{file.lines.of('figure', index)}: figure"
-        try:
+        with _named(f"{file.name}:{file.lines.of('figure', index)}: figure"):
             figure = PaperFigure.model_validate(table)
             if figure.label in {other.label for other in file.figures}:
                 raise InputError("label", figure.label, "stands twice")
             figure.check(scenes.get(figure.scene), ids)
-        except ValidationError as error:
-            raise one_line(error, where) from None
-        except InputError as error:
-            raise InputError(f"{where}: {error.name}", error.value, error.problem) from None
         file.figures.append(figure)
 
 
@@ -195,7 +221,7 @@ def _defaults(file: ClaimsFile, table: Any) -> dict[str, Any]:
     return table
 
 
-def _add(file: ClaimsFile, table: Any, defaults: Mapping[str, Any], scenes: "_Scenes") -> None:
+def _add(file: ClaimsFile, table: Any, defaults: Mapping[str, Any], scenes: NamedScenes) -> None:
     """Adds one claim with its scene, checked as far as that is possible before anything runs."""
     if not isinstance(table, dict):
         raise InputError("", table, "is not a table")
@@ -262,28 +288,3 @@ def _with_defaults(
     if not set(HAMILTONIAN_SOURCES) & set(table):
         taken |= {key for key in HAMILTONIAN_SOURCES if key != "every" or "every" in fields}
     return {**{key: value for key, value in defaults.items() if key in taken}, **table}
-
-
-class _Scenes:
-    """The scenes by name: the file's own `[[scene]]` tables, then the files beside it."""
-
-    def __init__(self, path: Path, tables: Any, lines: Lines) -> None:
-        self.folder, self.found = path.parent, dict[str, Scene]()
-        if not isinstance(tables, list):
-            raise InputError(f"{path.name}: scene", tables, "write [[scene]] tables")
-        for index, table in enumerate(tables):
-            where = f"{path.name}:{lines.of('scene', index)}: scene"
-            name = table.get("name") if isinstance(table, dict) else None
-            if not isinstance(name, str) or not name or name in self.found:
-                raise InputError(where, name or NOT_GIVEN, "each [[scene]] has a name of its own")
-            self.found[name] = scene_from(table, where)
-
-    def get(self, name: Any) -> Scene:
-        if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z0-9_-]{1,80}", name):
-            raise InputError("scene", name, "is no name of a scene: letters, digits, _ and -")
-        if name not in self.found:
-            path = self.folder / f"{name}.toml"
-            if not path.is_file():
-                raise InputError("scene", name, f"there is no {name}.toml beside the claims file")
-            self.found[name] = load_scene(path)
-        return self.found[name]

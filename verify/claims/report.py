@@ -13,10 +13,12 @@ from verify.execution.executors import ANYWHERE, Placement
 from verify.execution.plan import Plan
 from verify.execution.provenance import provenance
 from verify.hamiltonians import systems
+from verify.scenes.causes import Cause
 from verify.scenes.paper_figures import PaperFigure
+from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.exploration import Gallery
 from verify.scenes.results.report import Report, SceneResult
-from verify.scenes.results.statement import statements_of
+from verify.scenes.results.statement import Outcome, statements_of
 from verify.scenes.scene import Scene
 from verify.studies.plan import found_of, plan_scenes
 
@@ -29,6 +31,7 @@ def make_report(
     *,
     command: str,
     claim_scenes: Mapping[str, Scene] | None = None,
+    causes: Sequence[Cause] = (),
     figures: Sequence[PaperFigure] = (),
     preface: Sequence[str] = (),
     not_claimed: Sequence[tuple[str, str]] = (),
@@ -39,7 +42,8 @@ def make_report(
     """Compute what the scenes and claims need, and judge.
 
     A claim speaks of one of the scenes, or of `claim_scenes`, which the report does not show.
-    `figures` and `preface` are passed on to what makes a page; `not_claimed`, what of the paper no
+    `figures` and `preface` are passed on to what makes a page, and those of the `causes` whose
+    claims hold; `not_claimed`, what of the paper no
     claim is of, stands with what was left out.
     """
     begun = time.perf_counter()
@@ -58,6 +62,7 @@ def make_report(
         claims=judged,
         statements=statements_of(judged),
         scenes=tuple(_scene_result(scene, findings) for scene in scenes),
+        causes=tuple(each for each in causes if _shown(each, judged)),
         figures=tuple(figures),
         preface=tuple(preface),
         left_out=(*not_claimed, *plan.left_out),
@@ -82,6 +87,15 @@ def gallery_report(
         provenance=provenance(
             command, begun, kept=kept, computed=computed, where=_where(where, computed)
         ),
+    )
+
+
+def _shown(cause: Cause, judged: Sequence[ClaimResult]) -> bool:
+    """Whether the claims that show it hold, and nothing that it explains holds as meant."""
+    holding = {each.id for each in statements_of(judged) if each.outcome is Outcome.HOLDS}
+    verdicts = {claim.id: claim.verdict for claim in judged}
+    return not holding & {*cause.explains} and all(
+        name in verdicts and verdicts[name].holds for name in cause.shown_by
     )
 
 

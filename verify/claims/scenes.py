@@ -4,8 +4,10 @@ Keys that say of which H: one of `scene`, `system`, `hamiltonian`, `every`, with
 `verify.claims.on_runs` for the keys of runs.
 """
 
+import re
 from collections.abc import Callable, Mapping
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 from pydantic import Field
@@ -13,7 +15,8 @@ from pydantic import Field
 from verify.claims.claim import Claim
 from verify.errors import NOT_GIVEN, InputError
 from verify.scenes.frozen import Frozen
-from verify.scenes.scene import Scene
+from verify.scenes.scene import Scene, load_scene, scene_from
+from verify.scenes.toml_lines import Lines
 from verify.scenes.values import Number, SystemName
 
 HAMILTONIAN_SOURCES = ("scene", "system", "hamiltonian", "every")
@@ -85,3 +88,28 @@ def slug(name: str) -> str:
     'Eq--21--b-'
     """
     return "".join(c if c.isascii() and (c.isalnum() or c in "-_") else "-" for c in name)[:80]
+
+
+class NamedScenes:
+    """The scenes by name: the file's own `[[scene]]` tables, then the files beside it."""
+
+    def __init__(self, path: Path, tables: Any, lines: Lines) -> None:
+        self.folder, self.found = path.parent, dict[str, Scene]()
+        if not isinstance(tables, list):
+            raise InputError(f"{path.name}: scene", tables, "write [[scene]] tables")
+        for index, table in enumerate(tables):
+            where = f"{path.name}:{lines.of('scene', index)}: scene"
+            name = table.get("name") if isinstance(table, dict) else None
+            if not isinstance(name, str) or not name or name in self.found:
+                raise InputError(where, name or NOT_GIVEN, "each [[scene]] has a name of its own")
+            self.found[name] = scene_from(table, where)
+
+    def get(self, name: Any) -> Scene:
+        if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z0-9_-]{1,80}", name):
+            raise InputError("scene", name, "is no name of a scene: letters, digits, _ and -")
+        if name not in self.found:
+            path = self.folder / f"{name}.toml"
+            if not path.is_file():
+                raise InputError("scene", name, f"there is no {name}.toml beside the claims file")
+            self.found[name] = load_scene(path)
+        return self.found[name]

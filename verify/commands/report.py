@@ -170,6 +170,7 @@ def _scene(
             store,
             command=f"verify report {asked.typed} -o {folder.name}{more}",
             claim_scenes=claim_scenes,
+            causes=file.causes if file else (),
             figures=file.figures if file else (),
             preface=file.about if file else (),
             not_claimed=file.left_out if file else (),

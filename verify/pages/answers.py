@@ -8,6 +8,7 @@ not asked.
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from verify.pages.sections.claim_view import ClaimView
 from verify.pages.text.typography import listed
@@ -24,28 +25,46 @@ _MOST_LINKS = 12
 _LONGEST = 100  # characters of a leading coefficient that is shown here; the proof shows any
 # Of one statement, and of several; those that are refuted stand last, before their links.
 _OUTCOMES = {
-    Outcome.HOLDS: ("holds", "hold"),
+    Outcome.HOLDS: ("holds as meant", "hold as meant"),
     Outcome.IN_SOME: ("holds in some readings", "hold in some readings"),
     Outcome.UNDECIDED: ("is undecided", "are undecided"),
     Outcome.REFUTED: ("is refuted in every reading", "are refuted in every reading"),
 }
 
 
+class Line(NamedTuple):
+    """A line that ends with links: names of claims with their anchors."""
+
+    said: Prose
+    links: tuple[tuple[str, str], ...] = ()
+
+
 @dataclass(frozen=True)
 class Answer:
-    """`links`: names of claims with their anchors, which the last line ends with."""
+    """A question with the lines that answer it."""
 
     question: str
-    lines: tuple[Prose, ...]
-    links: tuple[tuple[str, str], ...] = ()
+    lines: tuple[Line, ...]
 
 
 def answers(report: Report, claims: Sequence[ClaimView]) -> tuple[Answer, ...]:
     """The questions that are answered; of many proofs alone the page below says more."""
     area = list(_area(report))
-    found = [*_theory(claims), *area, *_tables(claims), *_use(report)]
+    found = [*_causes(report, claims), *_theory(claims), *area, *_tables(claims), *_use(report)]
     few = len(report.scenes) <= _FEW and all(len(each.lines) <= _FEW for each in area)
     return tuple(found) if len(found) >= _LEAST or (area and few) else ()
+
+
+def _causes(report: Report, claims: Sequence[ClaimView]) -> Iterator[Answer]:
+    """What explains several statements, each with links to them."""
+    lines = []
+    for cause in report.causes:
+        first = [c for c in claims if c.of and c.of.id in cause.explains and not c.again]
+        names = {c.name: c.anchor for c in reversed(first)}  # of one name the first
+        links = tuple((c.name, names[c.name]) for c in first if names[c.name] == c.anchor)
+        lines.append(Line(cause.says, links))
+    if lines:
+        yield Answer("What is wrong, and why?", tuple(lines))
 
 
 def _theory(claims: Sequence[ClaimView]) -> Iterator[Answer]:
@@ -61,7 +80,7 @@ def _theory(claims: Sequence[ClaimView]) -> Iterator[Answer]:
     end = ":" if 0 < len(refuted) <= _MOST_LINKS else "."
     links = tuple((c.name, c.anchor) for c in refuted) if end == ":" else ()
     line = f"Of {len(general)} statements on every H, {listed(told)}{end}"
-    yield Answer("Is the theory right?", (Prose(line),), links)
+    yield Answer("Is the theory right?", (Line(Prose(line), links),))
 
 
 def _area(report: Report) -> Iterator[Answer]:
@@ -73,7 +92,7 @@ def _area(report: Report) -> Iterator[Answer]:
                 if proof.what == what:
                     named = scene.title or scene.name, proof
                     by_scheme.setdefault(proof.scheme, []).append(named)
-        lines = tuple(_line_of(scheme, found) for scheme, found in by_scheme.items())
+        lines = tuple(Line(_line_of(scheme, found)) for scheme, found in by_scheme.items())
         if lines:
             yield Answer(question, lines)
 
@@ -110,17 +129,22 @@ def _size(proof: ProofResult, power: int) -> list[str | Prose]:
 
 def _tables(claims: Sequence[ClaimView]) -> Iterator[Answer]:
     """How much of each printed table is refuted, as its evidence begins."""
-    tables = [c for c in claims if c.is_table and c.result.standing != "ours"]
-    wrong = [c for c in tables if c.result.verdict is Verdict.REFUTED]
-    if not tables:
-        return
-    lines = []
-    for claim in tables:
-        share = str(claim.result.evidence).partition(":")[0]
-        told = share if claim.result.verdict is Verdict.REFUTED else claim.result.verdict.lower()
-        lines.append(Prose(f"{claim.name}: {told}"))
-    links = tuple((claim.name, claim.anchor) for claim in wrong)
-    yield Answer("Do the printed tables stand?", tuple(dict.fromkeys(lines)), links)
+    by_share: dict[str, list[ClaimView]] = {}
+    for claim in claims:
+        if claim.is_table and claim.result.standing != "ours" and not claim.again:
+            share = str(claim.result.evidence).partition(":")[0]
+            refuted = claim.result.verdict is Verdict.REFUTED
+            by_share.setdefault(share if refuted else claim.result.verdict.lower(), []).append(
+                claim
+            )
+    if by_share:
+        lines = (
+            Line(
+                Prose(f"{share[:1].upper()}{share[1:]}:"), tuple((c.name, c.anchor) for c in tables)
+            )
+            for share, tables in by_share.items()
+        )
+        yield Answer("Do the printed tables stand?", tuple(lines))
 
 
 def _use(report: Report) -> Iterator[Answer]:
@@ -131,7 +155,7 @@ def _use(report: Report) -> Iterator[Answer]:
         for each in scene.work_precision.comparisons if scene.work_precision else ():
             if each.error is not None and {each.one, each.other} & judged:
                 name = scene.title or scene.name
-                lines.append(prose(f"{name}: ", _first_sentence(each.sentence)))
+                lines.append(Line(prose(f"{name}: ", _first_sentence(each.sentence))))
     if lines:
         yield Answer("Which scheme at equal cost?", tuple(lines))
 

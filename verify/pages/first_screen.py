@@ -38,9 +38,11 @@ _RUN_SIGNS: dict[Kind, tuple[str, Verdict]] = {
 }
 # A statement's outcome: its sign, its word, what it means.
 _OUTCOMES = {
-    Outcome.HOLDS: ("✓", "hold", "every reading of the statement holds"),
+    Outcome.HOLDS: (
+        "✓", "hold as meant", "every fair reading holds; a strict or misprinted one may not",
+    ),
     Outcome.IN_SOME: (
-        "≈", "hold in some readings", "one reading holds; another is refuted, or not decided",
+        "≈", "hold in some readings", "one reading holds; a fair one is refuted, or not decided",
     ),
     Outcome.REFUTED: ("✗", "refuted", "every reading is refuted, also the most favourable one"),
     Outcome.UNDECIDED: (
@@ -241,7 +243,8 @@ def _refutation(claims: Sequence[ClaimView]) -> Refutation | None:
         return None
     tables = [c for c in refuted if c.is_table]
     claim = next(iter(tables), refuted[0])
-    same = [c for c in tables if c is not claim and c.printed == claim.printed]
+    others = (c for c in tables if c is not claim and not c.again)
+    same = [c for c in others if c.printed == claim.printed]
     return Refutation(claim, tuple(same))
 
 

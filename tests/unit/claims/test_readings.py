@@ -10,6 +10,7 @@ from verify.claims.file import load_claims
 from verify.errors import InputError
 from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS
+from verify.scenes.results.claim import Standing
 from verify.scenes.results.statement import Outcome, counted, outcome_of, statements_of
 from verify.verdict import Verdict
 
@@ -35,23 +36,32 @@ def written(tmp_path: Path) -> Callable[..., Path]:
 
 # -- what holds of a statement --------------------------------------------------------------------
 
-OUTCOMES = [
-    ((PROVED,), Outcome.HOLDS),
-    ((PROVED, Verdict.MEASURED, Verdict.ENCLOSED), Outcome.HOLDS),
-    ((REFUTED, PROVED), Outcome.IN_SOME),
-    ((PROVED, UNDECIDED), Outcome.IN_SOME),
-    ((REFUTED, REFUTED), Outcome.REFUTED),
-    ((REFUTED, UNDECIDED), Outcome.UNDECIDED),
-    ((UNDECIDED,), Outcome.UNDECIDED),
+OUTCOMES = [  # of fair readings, and of a strict or a misprinted one
+    ((PROVED,), (), Outcome.HOLDS),
+    ((PROVED, Verdict.MEASURED, Verdict.ENCLOSED), (), Outcome.HOLDS),
+    ((REFUTED, PROVED), (), Outcome.IN_SOME),
+    ((PROVED, UNDECIDED), (), Outcome.IN_SOME),
+    ((REFUTED, REFUTED), (), Outcome.REFUTED),
+    ((REFUTED, UNDECIDED), (), Outcome.UNDECIDED),
+    ((UNDECIDED,), (), Outcome.UNDECIDED),
+    ((PROVED,), (REFUTED,), Outcome.HOLDS),
+    ((PROVED,), (UNDECIDED,), Outcome.HOLDS),
+    ((REFUTED, PROVED), (PROVED,), Outcome.IN_SOME),
+    ((REFUTED,), (PROVED,), Outcome.IN_SOME),
+    ((UNDECIDED,), (PROVED,), Outcome.IN_SOME),
+    ((REFUTED,), (REFUTED,), Outcome.REFUTED),
+    ((REFUTED,), (UNDECIDED,), Outcome.UNDECIDED),
 ]
 
 
-@pytest.mark.parametrize(("verdicts", "outcome"), OUTCOMES)
-def test_a_statement_is_refuted_only_where_every_reading_is(
-    verdicts: tuple[Verdict, ...], outcome: Outcome
+@pytest.mark.parametrize("standing", ["strict", "misprint"])
+@pytest.mark.parametrize(("fair", "others", "outcome"), OUTCOMES)
+def test_a_statement_holds_as_it_is_meant_and_is_refuted_only_where_every_reading_is(
+    fair: tuple[Verdict, ...], others: tuple[Verdict, ...], outcome: Outcome, standing: Standing
 ) -> None:
-    assert outcome_of(verdicts) is outcome
-    assert outcome_of(verdicts[::-1]) is outcome
+    readings = [*((v, "fair") for v in fair), *((v, standing) for v in others)]
+    assert outcome_of(readings) is outcome  # type: ignore[arg-type]
+    assert outcome_of(readings[::-1]) is outcome  # type: ignore[arg-type]
 
 
 def test_readings_have_the_texts_of_their_statement_and_are_counted_with_it(
@@ -74,12 +84,28 @@ def test_readings_have_the_texts_of_their_statement_and_are_counted_with_it(
     )  # fmt: skip
     statements = check.statements(found)
     assert [(s.id, s.outcome, s.readings) for s in statements] == [
-        ("a", Outcome.IN_SOME, ("a", "b")),
+        ("a", Outcome.HOLDS, ("a", "b")),
         ("c", Outcome.REFUTED, ("c",)),
     ]
     assert counted(statements, found) == (
-        "2 statements of the paper, in 3 readings: 1 holds in some readings, 1 is refuted in every "
+        "2 statements of the paper, in 3 readings: 1 holds as meant, 1 is refuted in every "
         "reading; 1 more claim is ours"
+    )
+
+
+def test_misprints_of_what_holds_as_meant_are_counted(written: Callable[..., Path]) -> None:
+    path = written(
+        claim("a", 3, standing="misprint", reading="as printed"),
+        claim("b", reading_of="a", reading="as meant"),
+        claim("c"),
+        claim("d", 3, standing="misprint", reading="as printed"),
+        claim("e", 3, reading_of="d", reading="otherwise"),
+    )
+    check = prepare(load_claims(path))
+    results = check.run(Store(None), where=THIS_PROCESS)
+    assert counted(check.statements(results), results) == (
+        "3 statements of the paper, in 5 readings: 2 hold as meant, 1 of them with a misprint, 1 "
+        "is refuted in every reading"
     )
 
 

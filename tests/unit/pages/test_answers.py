@@ -6,6 +6,8 @@ from tests.unit.pages.test_page import claim, proof, real, report, scene
 from verify.pages.answers import Answer, answers
 from verify.pages.page import render
 from verify.pages.page_view import page_view
+from verify.prose import read_prose
+from verify.scenes.causes import Cause
 from verify.scenes.results.report import Report
 from verify.scenes.results.statement import statements_of
 from verify.verdict import Verdict
@@ -31,16 +33,29 @@ def statements(*readings: tuple[str, Verdict, str], **more: Any) -> Report:
 def test_the_theory_is_what_is_said_of_every_h() -> None:
     found = answered(statements(("A", P, ""), ("B", R, ""), ("B", P, ""), ("C", R, "mine")))
     (line,) = found["Is the theory right?"].lines
-    assert line == (
-        "Of 2 statements on every H, 1 holds, 1 holds in some readings and none is refuted in every"
-        " reading."
+    assert line.said == (
+        "Of 2 statements on every H, 1 holds as meant, 1 holds in some readings and none is "
+        "refuted in every reading."
     )
     found = answered(statements(("A", P, ""), ("B", R, ""), ("B", R, "")))
-    theory = found["Is the theory right?"]
-    assert theory.lines == (
-        "Of 2 statements on every H, 1 holds and 1 is refuted in every reading:",
+    (line,) = found["Is the theory right?"].lines
+    assert line.said == (
+        "Of 2 statements on every H, 1 holds as meant and 1 is refuted in every reading:"
     )
-    assert theory.links == (("B", "claim-c1"),)
+    assert line.links == (("B", "claim-c1"),)
+
+
+def test_what_explains_several_statements_stands_first_with_a_link_to_each() -> None:
+    cause = Cause(says=read_prose("It is `1/N`."), explains=("B", "C"))
+    made = statements(
+        ("A", P, ""), ("B", R, ""), ("C", R, "mine"), ("C", R, "mine"), causes=(cause,)
+    )
+    question, *_ = answered(made).values()
+    assert question.question == "What is wrong, and why?"
+    assert [(line.said, line.links) for line in question.lines] == [
+        ("It is 1/N.", (("B", "claim-c1"), ("C", "claim-c2"))),
+    ]
+    assert "What is wrong, and why?" in render(made)
 
 
 def test_a_scheme_preserves_area_only_where_every_proof_says_so() -> None:
@@ -53,29 +68,34 @@ def test_a_scheme_preserves_area_only_where_every_proof_says_so() -> None:
         statements=statements_of((claim(statement_id="A", scene=""),)),
     )
     lie2, euler = answered(made)["Is area preserved?"].lines
-    assert lie2 == ("lie2: no; ΔJ = (3*a*p*q)*h**3 + O(h**4) (My oscillator); det J ≡ 1 (Other)")
-    assert euler == "symplectic-euler: yes, det J ≡ 1 is proved"
+    assert lie2.said == (
+        "lie2: no; ΔJ = (3*a*p*q)*h**3 + O(h**4) (My oscillator); det J ≡ 1 (Other)"
+    )
+    assert euler.said == "symplectic-euler: yes, det J ≡ 1 is proved"
 
 
 def test_of_a_long_leading_term_its_order_is_told() -> None:
     """The page would be wider than any window; the proof itself shows it whole."""
     long = " + ".join(f"{k}*a*p*q**{k}" for k in range(2, 30))
     found = answered(report((scene(proofs=(proof(leading=long),)),)))
-    assert found["Is area preserved?"].lines == ("lie2: no; ΔJ = O(h**3), no smaller",)
+    assert found["Is area preserved?"].lines == (("lie2: no; ΔJ = O(h**3), no smaller", ()),)
 
 
 def test_what_is_not_decided_is_no_no() -> None:
     open_ = proof(order=None, area_preserving=None, verdict=Verdict.UNDECIDED)
     made = statements(("A", P, ""))
     made = made.model_copy(update={"scenes": (scene(proofs=(open_,)),)})
-    assert answered(made)["Is area preserved?"].lines == ("lie2: not decided",)
+    assert answered(made)["Is area preserved?"].lines == (("lie2: not decided", ()),)
 
 
 def test_a_refuted_table_is_linked() -> None:
     tables = answered(real())["Do the printed tables stand?"]
     assert tables.lines
-    assert all(": 4 of 4 entries are wrong" in line for line in tables.lines)
-    assert tables.links
+    (line,) = tables.lines
+    assert (
+        line.said == "None of the 2 printed values is the lg MSE from any of the 2 initial values:"
+    )
+    assert [name for name, _ in line.links] == ["Table 9"]
     assert 'class="answers"' in render(real())
 
 

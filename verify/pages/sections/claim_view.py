@@ -20,7 +20,7 @@ _STANDINGS: dict[Standing, str] = {
     "ours": "ours, not the paper’s",
 }
 _OUTCOMES = {
-    Outcome.HOLDS: "holds in each",
+    Outcome.HOLDS: "holds as meant",
     Outcome.IN_SOME: "holds in some",
     Outcome.REFUTED: "refuted in each",
     Outcome.UNDECIDED: "undecided",

@@ -31,7 +31,8 @@ class ClaimResult(WithProse):
     of its steps a machine checked. None where nobody did.
     `proof`: the argument on paper that stands beside what the machine checked, where there is one,
     as one paragraph; `steps`: the same step by step, with who checked each, after what is `given`
-    and before a `remark`.
+    and before a `remark`, which other claims may have too. `confirmed_by`: what computes it again,
+    with code that shares nothing with this.
     `statement_id`: of which statement of its paper it is a reading, `reading` how it is read there
     and `standing` how it stands to what is printed; empty where statements are not counted.
     `reproduction`: a few lines of code that show what is said of someone else's code; `severity`:
@@ -57,5 +58,6 @@ class ClaimResult(WithProse):
     given: Said = Prose("")
     steps: tuple[StepResult, ...] = ()
     remark: Said = Prose("")
+    confirmed_by: str = ""
     reproduction: str = ""
     severity: str = ""

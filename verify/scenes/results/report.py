@@ -8,6 +8,7 @@ from pydantic import ValidationError
 from verify.errors import InputError
 from verify.formats import read_json
 from verify.notebook import html_table
+from verify.scenes.causes import Cause
 from verify.scenes.frozen import Frozen, Seconds
 from verify.scenes.paper_figures import PaperFigure
 from verify.scenes.results.claim import ClaimResult, CriterionResult
@@ -96,7 +97,8 @@ class Provenance(Frozen):
 class Report(Frozen):
     """A whole report; its JSON is `results.json`. `figures`: those of the paper, made again.
 
-    `statements`: those of the paper whose readings the claims are, where statements are counted.
+    `statements`: those of the paper whose readings the claims are, where statements are counted;
+    `causes`: what explains that several of them do not hold.
     `gallery`: the worst scenes that a hunt found. `preface`: what is said before all else, such as
     which libraries are installed.
     """
@@ -106,6 +108,7 @@ class Report(Frozen):
     claims: tuple[ClaimResult, ...]
     statements: tuple[StatementResult, ...] = ()
     scenes: tuple[SceneResult, ...]
+    causes: tuple[Cause, ...] = ()
     figures: tuple[PaperFigure, ...] = ()
     gallery: Gallery | None = None
     left_out: tuple[tuple[str, str], ...]

@@ -4,10 +4,10 @@ A statement is what the paper prints; a reading is one precise meaning of it, an
 verdict. A sentence that asserts several things makes several statements.
 
 **When a statement is refuted.** It is read in its most favourable sense first. It `holds` where
-every one of its readings holds, holds `in some readings` where one does and another is not shown
-to, and is `refuted` where every reading is refuted; else it is `undecided`. So one reading in which
-it is true is enough for it not to be refuted; a statement has at least one `fair` reading, or it is
-no statement of the paper.
+every `fair` reading holds, which is how it is meant, whatever a strict or misprinted one says;
+holds `in some readings` where one does and a fair one is not shown to; and is `refuted` where every
+reading is refuted; else it is `undecided`. So one reading in which it is true is enough for it not
+to be refuted; a statement has at least one `fair` reading, or it is no statement of the paper.
 
 **Thus, therefore, hence.** A sentence “A, thus B” asserts B: B has a verdict by itself, however it
 is derived. That B follows from A is a second reading of the same statement, “the inference”, with
@@ -24,7 +24,7 @@ from collections.abc import Sequence
 from enum import StrEnum
 
 from verify.scenes.frozen import Said, WithProse
-from verify.scenes.results.claim import ClaimResult
+from verify.scenes.results.claim import ClaimResult, Standing
 from verify.verdict import Verdict
 
 
@@ -48,14 +48,14 @@ class StatementResult(WithProse):
     readings: tuple[str, ...]
 
 
-def outcome_of(verdicts: Sequence[Verdict]) -> Outcome:
-    """What holds of a statement whose readings have these verdicts."""
-    holding = [verdict.holds for verdict in verdicts]
-    if all(holding):
+def outcome_of(readings: Sequence[tuple[Verdict, Standing]]) -> Outcome:
+    """What holds of a statement whose readings have these verdicts, and stand to it so."""
+    fair = [verdict.holds for verdict, standing in readings if standing == "fair"]
+    if fair and all(fair):
         return Outcome.HOLDS
-    if any(holding):
+    if any(verdict.holds for verdict, _ in readings):
         return Outcome.IN_SOME
-    refuted = all(verdict is Verdict.REFUTED for verdict in verdicts)
+    refuted = all(verdict is Verdict.REFUTED for verdict, _ in readings)
     return Outcome.REFUTED if refuted else Outcome.UNDECIDED
 
 
@@ -71,7 +71,7 @@ def statements_of(claims: Sequence[ClaimResult]) -> tuple[StatementResult, ...]:
             source=own[0].source,
             section=own[0].section,
             statement=own[0].statement,
-            outcome=outcome_of([claim.verdict for claim in own]),
+            outcome=outcome_of([(claim.verdict, claim.standing) for claim in own]),
             readings=tuple(claim.id for claim in own),
         )
         for name, own in readings.items()
@@ -82,8 +82,10 @@ def counted(statements: Sequence[StatementResult], claims: Sequence[ClaimResult]
     """How many statements there are, in how many readings, and what holds of how many of them."""
     found = Counter(statement.outcome for statement in statements)
     readings, count = sum(len(each.readings) for each in statements), len(statements)
+    printed = misprinted(statements, claims)
+    slips = f", {printed} of them with a misprint" if printed else ""
     told = (
-        (found[Outcome.HOLDS], "{} in every reading", ("holds", "hold")),
+        (found[Outcome.HOLDS], "{} as meant" + slips, ("holds", "hold")),
         (found[Outcome.IN_SOME], "{} in some readings", ("holds", "hold")),
         (found[Outcome.REFUTED], "{} refuted in every reading", ("is", "are")),
         (found[Outcome.UNDECIDED], "{} undecided", ("is", "are")),
@@ -93,3 +95,11 @@ def counted(statements: Sequence[StatementResult], claims: Sequence[ClaimResult]
     more = f"; {ours} more {'claims are' if ours > 1 else 'claim is'} ours" if ours else ""
     of = f"{count} statement{'s' if count > 1 else ''} of the paper"
     return f"{of}, in {readings} reading{'s' if readings > 1 else ''}: {', '.join(parts)}{more}"
+
+
+def misprinted(statements: Sequence[StatementResult], claims: Sequence[ClaimResult]) -> int:
+    """How many of the statements that hold as meant are misprinted."""
+    slips = {claim.id for claim in claims if claim.standing == "misprint"}
+    return sum(
+        each.outcome is Outcome.HOLDS and bool(slips & {*each.readings}) for each in statements
+    )
