@@ -23,6 +23,8 @@ def notation(text: str) -> Markup:
     'L<sub>H<sub>p</sub></sub>(q<sub>k</sub>) + O(h¹²)'
     >>> str(notation("Lⁿ_{H_p} = H_p ∂_q"))
     'Lⁿ<sub>H<sub>p</sub></sub> = H<sub>p</sub> ∂<sub>q</sub>'
+    >>> str(notation("e^p_{k+1} + C̃_p"))
+    'e<sup>p</sup><sub>k+1</sub> + C̃<sub>p</sub>'
     >>> str(notation("10^-6.3010"))
     '10<sup>−6.3010</sup>'
     """
@@ -42,7 +44,8 @@ def applied(text: str, rules: Sequence[Rule]) -> Markup:
 
 
 def _lowered(match: re.Match[str]) -> Markup:
-    return Markup("{}<sub>{}</sub>").format(match[1], notation(_unbracketed(match[2])))
+    above = Markup("<sup>{}</sup>").format(match[2]) if match[2] else ""
+    return Markup("{}{}<sub>{}</sub>").format(match[1], above, notation(_unbracketed(match[3])))
 
 
 def _interval(match: re.Match[str]) -> Markup:
@@ -64,10 +67,11 @@ def _unbracketed(text: str) -> str:
     return text[1:-1] if text[0] in "({" else text
 
 
-# A letter, with an accent or not, and its index: H_qq, z̄_(k+1), L_{H_p}.
+# A letter, with an accent or not, and its index: H_qq, z̄_(k+1), L_{H_p}, e^p_k.
 INDEX: Rule = (
     re.compile(
-        r"((?<![A-Za-z0-9_.])(?:ΔJ|[A-Za-zΔΣ∇∂])[\u0300-\u036f]?ⁿ?|(?<=[a-z])[A-Z])_"
+        r"((?<![A-Za-z0-9_.])(?:ΔJ|[A-Za-zΔΣ∇∂])[\u0300-\u036f]?ⁿ?|(?<=[a-z])[A-Z])"
+        r"(?:\^([a-z]))?_"
         r"(\{[^{}]*\}|\([^()]*\)|[A-Za-z0-9]{1,3}(?![A-Za-z0-9_]))"
     ),
     _lowered,

@@ -123,6 +123,12 @@ class SolutionErrorClaim(RunClaim):
             )
         least, most = (pick(known, key=lambda e: e.high or 0) for pick in (min, max))
         allowed = f"{'within' if self.within else 'beyond'} "
+        if len(errors) == 1:
+            evidence = prose(
+                "the largest error over the last period is ", Number(_shown(most)),
+                " of the orbit’s reach, half of how far p and q go along it (", _place(most), ")",
+            )  # fmt: skip
+            return self.result(all_hold(holds), evidence, details)
         evidence = prose(
             f"{holds.count(True)} of {len(holds)} errors, each the largest over the last period, "
             f"lie {allowed}", Number(text(self.within or self.beyond or Fraction(0))),
