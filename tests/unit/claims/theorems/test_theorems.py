@@ -12,7 +12,6 @@ from tests.paths import ROOT
 from verify.claims.file import load_claims
 from verify.claims.findings import Findings
 from verify.claims.theorems import (
-    beside_equations,
     by_components,
     check_theorem,
     consistency,
@@ -22,6 +21,8 @@ from verify.claims.theorems import (
     lipschitz,
     matrix_vector,
     names,
+    sentences_of_section_2,
+    sentences_of_section_3,
     total_error,
     two_norm,
 )
@@ -340,22 +341,22 @@ def test_one_plus_h_times_the_norm_is_a_factor_up_to_an_edge_and_not_beyond(q: F
 
 
 def test_no_other_examples_pass_for_the_sentences_beside_equations() -> None:
-    assert refused(beside_equations.partitioned(sign=1))
-    assert refused(beside_equations.separable_alone("p**2 + q**3"))
-    assert refused(beside_equations.nonlinearity(linear="p**2/2 + q**2"))
-    assert refused(beside_equations.nonlinearity(linear="p**2*q + p*q"))
-    assert refused(beside_equations.nonlinearity(curved="p**2/2 + q**2"))
-    assert refused(beside_equations.nonlinearity(curved="p**3 + q**4"))
-    assert refused(beside_equations.of_the_solution(("p - h*q", "q + h*p")))
-    assert refused(beside_equations.in_every_step(share=Fraction(4, 3)))
-    assert refused(beside_equations.in_every_step(q=Fraction(2)))
+    assert refused(sentences_of_section_2.partitioned(sign=1))
+    assert refused(sentences_of_section_2.separable_alone("p**2 + q**3"))
+    assert refused(sentences_of_section_2.nonlinearity(linear="p**2/2 + q**2"))
+    assert refused(sentences_of_section_2.nonlinearity(linear="p**2*q + p*q"))
+    assert refused(sentences_of_section_2.nonlinearity(curved="p**2/2 + q**2"))
+    assert refused(sentences_of_section_2.nonlinearity(curved="p**3 + q**4"))
+    assert refused(sentences_of_section_3.of_the_solution(("p - h*q", "q + h*p")))
+    assert refused(sentences_of_section_3.in_every_step(share=Fraction(4, 3)))
+    assert refused(sentences_of_section_3.in_every_step(q=Fraction(2)))
     for p_next, q_next in (
         ("-p*(1 + h*(q + 1/20)/10**8)", "-q"),  # depends on h
         ("-p*(1 + (q - 1/20)/10**11)", "-q"),  # areas shrink
         ("-p*(1 + (q + 1/2)/10**11)", "-q"),  # too fast
         ("-p*(1 + (q + 1/20)/10**9)", "-q"),
     ):
-        assert refused(beside_equations.from_one_step_size((p_next, q_next)))
+        assert refused(sentences_of_section_3.from_one_step_size((p_next, q_next)))
 
 
 def test_a_start_from_which_the_total_error_grows_does_not_refute_that_it_grows() -> None:
