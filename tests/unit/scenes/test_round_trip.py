@@ -11,6 +11,8 @@ from verify.claims.file import load_claims
 from verify.claims.report import make_report
 from verify.execution import execute
 from verify.execution.executors import THIS_PROCESS
+from verify.prose import read_prose
+from verify.scenes.causes import Cause
 from verify.scenes.frozen import Frozen, OfScheme, WithProse
 from verify.scenes.results import bounded_value as value
 from verify.scenes.results import claim, growth, proof, separation, separation_in_degrees
@@ -209,7 +211,9 @@ def full_report(tmp_path_factory: pytest.TempPathFactory) -> Report:
     )  # fmt: skip
     first, *more = made.scenes
     scenes = (_with_symbols(_with_ratio(first)), *more)
-    return made.model_copy(update={"gallery": gallery(shown()), "scenes": scenes})
+    causes = (Cause(says=read_prose("It is `1/N`."), explains=("a",)),)
+    told = {"gallery": gallery(shown()), "scenes": scenes, "causes": causes}
+    return made.model_copy(update=told)
 
 
 def _with_symbols(scene: SceneResult) -> SceneResult:
