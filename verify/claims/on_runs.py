@@ -138,14 +138,17 @@ class RunClaim(Claim):
     def judge(self, findings: Findings) -> ClaimResult:
         """ENCLOSED for what was measured where all runs have rigorous bounds."""
         found = self.compared(findings)
-        runs = findings.runs(findings.scene(self.scene), self.scheme)
-        enclosed = all(run.error_kind == "enclosed" for run in runs)
+        enclosed = all(run.error_kind == "enclosed" for run in self.runs(findings))
         if found.verdict is Verdict.MEASURED and enclosed:
             return found.model_copy(update={"verdict": Verdict.ENCLOSED})
         if found.verdict is Verdict.REFUTED and not enclosed:
             said = found.evidence + " (by estimated error bounds)"
             return found.model_copy(update={"evidence": said})
         return found
+
+    def runs(self, findings: Findings) -> list[RunResult]:
+        """The runs whose bounds decide."""
+        return findings.runs(findings.scene(self.scene), self.scheme)
 
     def compared(self, findings: Findings) -> ClaimResult:
         """As `compare`, and UNDECIDED where a run that it needs has no values."""

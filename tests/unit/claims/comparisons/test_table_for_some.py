@@ -49,7 +49,7 @@ def judged(folder: Path, values: str, first: str, second: str) -> ClaimResult:
 
 def test_one_of_the_values_is_enough(tmp_path: Path) -> None:
     row = (lg_mse(2, 0.1), lg_mse(2, 0.2))
-    assert judged(tmp_path, "[0.5, 2]", *row).verdict is Verdict.MEASURED
+    assert judged(tmp_path, "[0.5, 2]", *row).verdict is Verdict.ENCLOSED
     assert judged(tmp_path, "[0.5, 3]", *row).verdict is Verdict.REFUTED
     shown = judged(tmp_path, "[0.5, 3]", *row)
     assert "delta = 0.5: computed lg MSE lies between" in shown.evidence

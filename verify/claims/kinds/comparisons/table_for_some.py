@@ -14,6 +14,7 @@ from verify.errors import InputError, unknown
 from verify.execution.task import Task
 from verify.prose import Number, joined, prose
 from verify.scenes.results.claim import ClaimResult
+from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene
 from verify.scenes.values import Number as ExactNumber
 from verify.studies.kinds.grid import grid_tasks
@@ -70,9 +71,9 @@ class TableForSomeClaim(TableClaim):
                 return self.result(best, evidence, details)
         return self.result(Verdict.REFUTED, evidence, details)
 
-    def judge(self, findings: Findings) -> ClaimResult:
-        """MEASURED at best: bounds of the runs for other values are not looked at."""
-        return self.compared(findings)
+    def runs(self, findings: Findings) -> list[RunResult]:
+        scenes = self._scenes(findings.scene(self.scene))
+        return [run for each in scenes for run in findings.runs(each, self.scheme)]
 
 
 CLAIM = TableForSomeClaim
