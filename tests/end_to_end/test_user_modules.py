@@ -49,6 +49,7 @@ def written(folder: Path, **modules: str) -> None:
         folder.joinpath(f"{name}.py").write_text(text)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize(
     ("arguments", "status", "said"),
     [
@@ -69,6 +70,7 @@ def test_no_library_is_taken_from_the_folder_of_the_user(
     assert (done.returncode, said in done.stdout + done.stderr) == (status, True), done.stderr
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(6)
 @pytest.mark.parametrize("name", ["queue", "statistics", "test", "click", "tests", "difflib"])
 @pytest.mark.parametrize("suffix", ["", ".py"])

@@ -178,6 +178,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.left_to_ci
 def test_an_interruption_between_two_results_ends_the_workers_at_once(tmp_path: Path) -> None:
     """One worker is at a task of an hour while the results of the other are taken in."""
     script = tmp_path / "interrupted.py"

@@ -334,6 +334,7 @@ BRANCHES = {
 }
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("name", BRANCHES)
 def test_a_fault_on_the_other_side_of_a_comparison_is_seen(name: str) -> None:
     found = judged(steps.faulty(BRANCHES[name]), Claims(symplectic=True))
@@ -376,6 +377,7 @@ def test_all_signs_are_looked_at_in_pairs(degrees: int) -> None:
 # -- limits and requests --------------------------------------------------------------------------
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("limit", [1.0, 3.0])
 def test_the_time_limit_holds_for_all_that_is_done(limit: float) -> None:
     def step(p: Any, q: Any, h: Any) -> Any:

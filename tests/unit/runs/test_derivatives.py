@@ -71,6 +71,7 @@ def bounds_of(formula: str, order: int, box: dict[str, flint.arb], h: Fraction) 
         return {name: float(x.upper()) for name, x in found.items()}
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize(("formula", "order"), [*PLANE, *SEVERAL])
 def test_at_a_point_they_are_those_of_sympy(formula: str, order: int) -> None:
     found, draw = derived(formula, order), random.Random(formula)  # noqa: S311 - no secret

@@ -227,6 +227,7 @@ def noted_by(rows: list[list[Fraction]]) -> dict[str, flint.arb]:
     }
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("size", SIZES)
 def test_the_inverse_is_no_larger_than_is_said(size: int) -> None:
     """‖M‖/‖M⁻¹‖ ≥ d in Frobenius' norms, up to the n that these two may differ by."""

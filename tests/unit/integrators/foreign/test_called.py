@@ -213,6 +213,7 @@ def test_a_program_of_order_1_is_refuted_with_a_counterexample() -> None:
     assert found.counterexample is not None
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(3)
 @pytest.mark.parametrize(
     ("mode", "said"),

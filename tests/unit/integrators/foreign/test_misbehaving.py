@@ -40,6 +40,7 @@ def buffered(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("PYTHONUNBUFFERED", raising=False)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("language", UNFLUSHED)
 @pytest.mark.usefixtures("impatient")
 def test_a_program_that_does_not_flush_is_told_to(language: str, tmp_path: Path) -> None:
@@ -79,6 +80,7 @@ def test_a_program_that_computes_before_its_first_answer_is_waited_for(
 READS = "import sys, os, time, signal\nline = sys.stdin.readline()\n"
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize(
     ("source", "words"),
     [

@@ -58,6 +58,7 @@ def seconds_until(slow: Callable[[], None], problem: str) -> float:
     return time.perf_counter() - begun
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 @pytest.mark.parametrize("first", [in_a_finalizer, in_a_collection, in_a_bare_except])
 def test_an_alarm_that_is_dropped_rings_again(first: Callable[[], None]) -> None:
@@ -69,6 +70,7 @@ def test_an_alarm_that_is_dropped_rings_again(first: Callable[[], None]) -> None
     assert seconds_until(slow, "it takes too long") < 5
 
 
+@pytest.mark.left_to_ci
 def test_an_outer_limit_goes_on_after_an_inner_one() -> None:
     def inner() -> None:
         with within(0.05, "inner"):

@@ -40,6 +40,7 @@ def finals(chain: Chain) -> dict[str, Fraction]:
     return {name: chain.final(name)[0] for name in QUANTITIES}
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(4)
 @pytest.mark.parametrize("hamiltonian", [DUFFING, PENDULUM], ids=["duffing", "pendulum"])
 @pytest.mark.parametrize("scheme", ["lie2", "rk4", "explicit-midpoint"])

@@ -65,6 +65,7 @@ def never(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(finding, "reference", refuse)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("changes", CASES.values(), ids=CASES)
 def test_the_result_is_the_same_where_another_process_has_found_the_errors(
     changes: dict[str, Any], monkeypatch: pytest.MonkeyPatch
@@ -134,6 +135,7 @@ def plan_of(folder: Path) -> Plan:
     return plan_scenes([load(folder, text + (GRID if k else "")) for k, text in enumerate(texts)])
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("store", [kept_in, lambda _: Store(None)], ids=["folder", "none"])
 def test_workers_find_the_errors_and_leave_nothing_else_behind(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, store: Callable[[Path], Store]
