@@ -6,12 +6,7 @@ import click
 
 from verify.commands.shared.answer import Answer, answering
 from verify.commands.shared.cache import cache_option
-from verify.commands.shared.input import (
-    listed,
-    scheme_option,
-    start_options,
-    with_kept_hamiltonian,
-)
+from verify.commands.shared.input import listed, scheme_option, start_options, with_kept_hamiltonian
 from verify.commands.shared.output import print_once
 from verify.commands.shared.separation import print_separation, separation_json
 

@@ -98,11 +98,7 @@ def _in_closed_form(end: closed_form.Evaluation, method: str) -> Solution:
 
 
 def numerical_solution(
-    hamiltonian: Hamiltonian,
-    point: Point,
-    time: Fraction,
-    digits: int,
-    t0: Fraction = _FROM_START,
+    hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int, t0: Fraction = _FROM_START
 ) -> Solution:
     """By the numerical flow with more and more digits, until two of them agree."""
     check_poles(hamiltonian, t0, time)

@@ -30,14 +30,7 @@ from llvmlite import ir
 from verify.arithmetic import processor
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.lanes.double_double import Pair, exact_sum, plus, times
-from verify.arithmetic.lanes.vectors import (
-    DOUBLES,
-    WORDS,
-    absolute,
-    fused,
-    splat,
-    splat_double,
-)
+from verify.arithmetic.lanes.vectors import DOUBLES, WORDS, absolute, fused, splat, splat_double
 from verify.arithmetic.processor import LANES
 from verify.arithmetic.wide.functions import arb_integer
 from verify.arithmetic.wide.limbs import I64, Value, constant

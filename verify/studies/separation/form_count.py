@@ -37,11 +37,7 @@ _ENTRY = flint.arb(2) ** -44  # of an entry of MᵀΩM in float64, relative to �
 
 
 def counted(
-    kernel: FormKernel,
-    arithmetic: Arithmetic,
-    inputs: Mapping[str, float],
-    last: State,
-    steps: int,
+    kernel: FormKernel, arithmetic: Arithmetic, inputs: Mapping[str, float], last: State, steps: int
 ) -> Mapping[str, Fraction | None]:
     """Bounds of the error of every entry of W at every checkpoint, by the letters of what was
     carried; None where there is none. `last`: what the kernel carried in the end."""

@@ -55,12 +55,7 @@ from verify.hamiltonians.start import Given, point_of
 from verify.hamiltonians.times_on_the_way import check_times
 from verify.runs.run import AskedRun, check
 from verify.runs.start import Start
-from verify.scenes.results.separation import (
-    WAYS,
-    CrossoverResult,
-    SeparationGrid,
-    SeparationResult,
-)
+from verify.scenes.results.separation import WAYS, CrossoverResult, SeparationGrid, SeparationResult
 from verify.scenes.results.separation_in_degrees import SeparationGridInDegrees, SeparationInDegrees
 from verify.schemes import canonical
 from verify.studies.separation.chain import Chains, separated_chains
