@@ -27,8 +27,7 @@ from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.clock import clock_inputs, first_rest
 from verify.kernels.kernel import Kernel, kernel_for
-from verify.kernels.reach import limits
-from verify.kernels.stepping import KernelRun
+from verify.kernels.stepping import KernelRun, limits
 
 _MOST = 1 << 16  # numbers that are kept of one kernel with its inputs: some 10 MB
 _WORTH = 500  # steps: fewer are taken again as soon as looked up

@@ -2,8 +2,8 @@
 
 A number has 16 integer bits, the sign among them, and all others after the point: its precision is
 absolute. Nothing overflows unseen: before a run, interval arithmetic finds limits of p and q within
-which no operation of a step can leave the format (`verify.kernels.reach`), and the loop ends where
-the orbit leaves them, or a function has no value.
+which no operation of a step can leave the format (`verify.kernels.stepping`), and the loop ends
+where the orbit leaves them, or a function has no value.
 """
 
 import math
