@@ -14,7 +14,7 @@ from pathlib import Path
 
 from verify.execution.execute import Store
 from verify.execution.keeping import NOTHING, Keeper
-from verify.studies.kinds.every import EveryTask
+from verify.studies.proofs.every import EveryTask
 
 TASKS = [EveryTask(scheme=name) for name in ("lie1", "lie2", "symplectic-euler", "rk4")]
 

@@ -21,7 +21,7 @@ from verify.reference.make.make import PUBLISHED
 from verify.reference.make.models import DATA_FORMAT, MANIFEST_FORMAT
 from verify.scenes.results import report as reports
 from verify.scenes.results.report import Provenance, Report, read_report
-from verify.studies.kinds.every import EveryTask
+from verify.studies.proofs.every import EveryTask
 
 Reader = Callable[[Path], object]
 REPORT = Report(

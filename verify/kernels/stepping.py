@@ -28,8 +28,7 @@ from verify.kernels.chunked_loop import ChunkedLoop, Progress, Reached
 from verify.kernels.kernel import Kernel, kernel_for
 from verify.kernels.notes import LazyNote
 from verify.kernels.rounding import PRECISION, Ball, Rounded, analyse
-from verify.kernels.run_inputs import RunInputs
-from verify.kernels.turns import Times
+from verify.kernels.run_inputs import RunInputs, Times
 
 _TOP = Fraction(2) ** 15 * (1 - Fraction(1, 2**20))  # numbers are below 2^15 in size
 _MATRIX_LIMITS = tuple(Fraction(2) ** n for n in (12, 10, 8, 6, 4, 3, 2))

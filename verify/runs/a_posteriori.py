@@ -11,7 +11,7 @@ B a bound of the second derivatives of Φ over that box, widened by the error. B
 multiply norms of A_k here and lose digits like e^(cT). Instead take any matrices M_k, M_0 = 1, that
 nearly follow the tangent map: M_{k+1} = A_k M_k + R_k with ‖R_k‖ ≤ ρ ‖M_k‖
 (`verify.kernels.step.tangent_map` carries them in float64; ρ is counted as ε is). With
-e_k = M_k x_k, ‖M⁻¹‖ = ‖M‖/|det M| for 2 × 2 (for more, `verify.runs.a_posteriori`),
+e_k = M_k x_k, ‖M⁻¹‖ = ‖M‖/|det M| for 2 × 2 (for more, `least_of`),
 
     x_{k+1} = x_k + M_{k+1}⁻¹ (s_k − R_k x_k),
 
@@ -55,8 +55,7 @@ from verify.kernels.rounding import PRECISION, Ball
 from verify.kernels.statements import CLOSED_FORM
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs import form_bound
-from verify.runs.derivatives import Derivatives, norm
-from verify.runs.derivatives_in_degrees import DerivativesInDegrees
+from verify.runs.derivatives import Derivatives, DerivativesInDegrees, norm
 from verify.runs.step_rounding import StepErrors, StepRounding
 from verify.scenes.observables import OF_FORM
 

@@ -23,8 +23,7 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.kernels.rounding import PRECISION, Rounded
 from verify.runs import a_posteriori, form_bound
 from verify.runs.a_posteriori import _Certificate
-from verify.runs.derivatives import norm
-from verify.runs.derivatives_in_degrees import DerivativesInDegrees
+from verify.runs.derivatives import DerivativesInDegrees, norm
 from verify.runs.step_rounding import StepErrors
 
 SEEDS = range(40)

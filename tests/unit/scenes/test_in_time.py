@@ -15,8 +15,8 @@ from verify.scenes.results.proof import EveryResult, ProofResult
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import scene_from_toml
 from verify.scenes.toml_text import scene_text
-from verify.studies.kinds.every import EveryTask
 from verify.studies.plan import plan_scenes
+from verify.studies.proofs.every import EveryTask
 
 FROZEN = "kick 1/2 at 0; drift 1; kick 1/2 at 0; order 2"
 HEAD = f"""

@@ -115,7 +115,7 @@ def test_every_reader_refuses_it(reader: Callable[[Path], object], tmp_path: Pat
 
 def test_there_is_no_other_reader() -> None:
     readers = [x.name for x in (ROOT / "verify").rglob("*.py") if "tomllib" in x.read_text()]
-    assert sorted(readers) == ["toml_file.py", "toml_lines.py"]  # the second reads what was read
+    assert sorted(readers) == ["toml_file.py"]
 
 
 # -- what a terminal would act on -----------------------------------------------------------------

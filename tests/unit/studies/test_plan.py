@@ -15,7 +15,7 @@ from verify.runs.task import RunTask
 from verify.scenes.results.proof import ProofResult
 from verify.scenes.scene import load_scene
 from verify.scenes.values import CLOSED_FORM
-from verify.studies.kinds.growth import GrowthTask
+from verify.studies.growth.task import GrowthTask
 from verify.studies.plan import plan_scenes
 from verify.studies.proofs.one import ProofTask
 

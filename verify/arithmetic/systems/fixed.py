@@ -105,7 +105,7 @@ def _walk(
     kernel: Any, every: int, stops: int, fixed: Sequence[Any], state: Sequence[Any], beyond: int
 ) -> Any:
     """In one call, and in lanes where others walk in the same kernel."""
-    from verify.arithmetic.compiled.walking import Walk
+    from verify.arithmetic.compiled.engine import Walk
 
     try:
         return lockstep.meet(kernel, Walk(every, stops, fixed, state, beyond)).result

@@ -10,8 +10,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
 
+from verify.arithmetic.systems.float64 import nearest_double
 from verify.errors import NOT_GIVEN, InputError
-from verify.kernels.step.tangent_map import nearest_double
 from verify.reference.compare.published import Inputs, Published, PublishedRun
 from verify.reference.compare.rows import (
     COUNTED,

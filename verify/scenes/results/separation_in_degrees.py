@@ -88,7 +88,7 @@ class FormAt(Frozen):
 
 
 class PowerLawResult(WithProse):
-    """A `verify.studies.separation.form_growth.PowerLaw`: measured, not proved."""
+    """A `verify.studies.separation.form_result.PowerLaw`: measured, not proved."""
 
     exponent: str | None
     standard_error: str | None

@@ -8,7 +8,7 @@ Lyndon words suffice, 2, 2, 4, 7, 15, 28, 62, 126 of weights 1 … 8 where T dep
 of letters, K_n standing for any V_n(q) and D_n for any T_n(p), are independent in the plane up to
 weight 8 (a test has their rank). Without letters of n > 0 these are the conditions of
 `verify.schemes.splitting_conditions`; and where the clocks are right they are all that is asked
-(`verify.schemes.timed.splitting`).
+(below).
 
 For quadratic T brackets vanish or are equal from weight 4 on. There the conditions are those
 combinations of coefficients in the generator of the step (`verify.schemes.words.step_words`) that

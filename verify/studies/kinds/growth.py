@@ -1,41 +1,14 @@
-"""Λ of the grid's runs against its growth law.
-
-The task of the growth law of Λ on one orbit.
-"""
+"""Λ of the grid's runs against its growth law."""
 
 from fractions import Fraction
-from typing import Any, Literal
+from typing import Any
 
-from verify.execution.keeping import Keeper
 from verify.execution.plan import Plan
 from verify.execution.study import Results, Section, Study, called, known_results
-from verify.execution.task import InitialValueTask
 from verify.scenes.results.growth import AverageResult, GrowthLawResult
 from verify.scenes.scene import Scene
+from verify.studies.growth.task import GrowthTask
 from verify.studies.kinds.grid import grid_runs
-
-_COST = 25_000_000  # of its law and time average, about
-
-
-class GrowthTask(InitialValueTask):
-    """The growth law of Λ on one orbit, with the time average in it."""
-
-    result = AverageResult
-    imports = ("verify.studies.growth.prediction",)
-    kind: Literal["growth"] = "growth"
-    digits: int
-
-    @property
-    def cost(self) -> int:
-        """About how many float64 steps it is worth."""
-        return _COST
-
-    def compute(self, keeper: Keeper) -> AverageResult:
-        """The law, its average enclosed."""
-        from verify.studies.growth.prediction import average_of
-
-        return average_of(self.exact_hamiltonian(), **self.asked())
-
 
 _DIGITS = 30  # of the time average
 

@@ -1,52 +1,15 @@
-"""Orbits at multiples of a period of H.
-
-The task of one scheme's orbits at multiples of a period.
-"""
+"""Orbits at multiples of a period of H."""
 
 from collections.abc import Iterator
-from typing import Literal
 
-from verify.arithmetic import step_cost
 from verify.arithmetic.exact import text
-from verify.execution.keeping import Keeper
 from verify.execution.plan import Plan
 from verify.execution.study import Results, Section, Study, called, known_results
-from verify.execution.task import SchemeTask
 from verify.hamiltonians.periods import is_angle
 from verify.scenes.results.stroboscopic import SchemeSections, StroboscopicResult
 from verify.scenes.scene import Scene
 from verify.scenes.stroboscopic_section import Stroboscopic
-from verify.scenes.values import InitialValue, Number, StepSize
-
-_TIMES = 2  # with many digits, beside float64
-
-
-class StroboscopicTask(SchemeTask):
-    """Orbits from these initial values, looked at every `steps` steps, `periods` times."""
-
-    result = SchemeSections
-    imports = ("verify.studies.stroboscopic.sections",)
-    kind: Literal["stroboscopic"] = "stroboscopic"
-    initial_values: tuple[InitialValue, ...]
-    t0: Number | None
-    step_size: StepSize
-    steps: int
-    periods: int
-    digits: int
-
-    @property
-    def cost(self) -> int:
-        return _TIMES * len(self.initial_values) * self.steps * self.periods * step_cost("mpfr")
-
-    def compute(self, keeper: Keeper) -> SchemeSections:
-        from verify.studies.stroboscopic.sections import sections_of
-
-        common = {"h": self.step_size} | ({} if self.t0 is None else {"t": self.t0})
-        starts = [{"p": at.p, "q": at.q} | common for at in self.initial_values]
-        return sections_of(
-            self.exact_hamiltonian(), self.scheme, starts,
-            steps=self.steps, periods=self.periods, digits=self.digits,
-        )  # fmt: skip
+from verify.studies.stroboscopic.task import StroboscopicTask
 
 
 def _tasks(scene: Scene, asked: Stroboscopic) -> Iterator[StroboscopicTask]:

@@ -33,7 +33,7 @@ trajectory are the same for both.
 In n degrees of freedom W is split so, entry by entry (`verify.studies.separation.form_chain`):
 `plain` is what a program does that multiplies the steps' Jacobians and takes MᵀΩM − Ω at the end,
 `closed_form` is that of `verify run` (`verify.studies.separation.form_run`). How W and the tangent
-map grow is told in `verify.studies.separation.form_growth`.
+map grow is told in `verify.studies.separation.form_result`.
 
 How far the parts are known is told in `verify.studies.separation.working` and
 `verify.runs.estimated`, what is made of a run's checkpoints and of a grid of step sizes in

@@ -5,7 +5,7 @@ from fractions import Fraction
 import pytest
 
 from verify.execution.keeping import NOTHING
-from verify.reference.make.scene_plan import OrbitTask, SolutionTask
+from verify.reference.make.tasks import OrbitTask, SolutionTask
 from verify.scenes.results.reference import OrbitPoint, Rounded
 
 H = Fraction(1, 10)

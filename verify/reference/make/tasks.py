@@ -1,0 +1,136 @@
+"""The tasks of reference data: an orbit and the exact flow, every number correctly rounded."""
+
+from fractions import Fraction
+from typing import Any, ClassVar, Literal
+
+from verify.arithmetic import automatic
+from verify.arithmetic.exact import text
+from verify.execution.keeping import Keeper
+from verify.execution.task import HamiltonianTask
+from verify.hamiltonians.start import point_of
+from verify.kernels.orbit import Orbit
+from verify.scenes.results.reference import OrbitResult, SolutionResult
+from verify.scenes.results.reference_in_degrees import OrbitInDegreesResult, SolutionInDegreesResult
+from verify.scenes.values import Coordinates, Number, StepSize
+
+ROW_COST = 1_000_000  # of a row of reference data, however few its steps
+FLOW_ROW_COST = 10 * ROW_COST
+
+
+class AtSteps(HamiltonianTask):
+    """What is asked for from an initial value, after each of these numbers of steps."""
+
+    imports = ("verify.reference.make.orbit_points",)
+    q: Coordinates
+    p: Coordinates
+    t0: Number | None = None
+    step_size: StepSize
+    steps: tuple[int, ...]
+    digits: int
+
+    @property
+    def inputs(self) -> dict[str, Any]:
+        """Step size, initial value, t₀ and digits, as the files have them: in several degrees of
+        freedom they have lists, and a t₀ of every H."""
+        exact = {"step_size": self.step_size, "q": self.q, "p": self.p, "t0": self.t0}
+        if isinstance(self.q, Fraction) and self.t0 is None:
+            exact.pop("t0")
+        return {**{name: _texts(x) for name, x in exact.items()}, "digits": self.digits}
+
+
+def _texts(x: Fraction | tuple[Fraction, ...] | None) -> str | tuple[str, ...] | None:
+    if x is None:
+        return None
+    return text(x) if isinstance(x, Fraction) else tuple(map(text, x))
+
+
+class OrbitAtSteps(AtSteps):
+    """A scheme's orbit after each of these numbers of steps, correctly rounded."""
+
+    numbers: ClassVar[str]
+    scheme: str
+
+    @property
+    def cost(self) -> int:
+        return ROW_COST * len(self.steps) + automatic()[-1].cost * sum(self.steps)
+
+    @property
+    def orbit(self) -> Orbit:
+        """What is run."""
+        exact, t0 = self.exact_hamiltonian(), self.t0 or Fraction()
+        return Orbit(exact, self.scheme, self.step_size, self.q, self.p, t0=t0)
+
+
+class OrbitTask(OrbitAtSteps):
+    """State, ΔJ, MSE and Λ."""
+
+    result = OrbitResult
+    numbers = "ΔJ, MSE and Λ"
+    kind: Literal["orbit"] = "orbit"
+
+    @property
+    def ensemble(self) -> str | None:
+        """Orbits of one scheme's map, whatever the step size and the initial value."""
+        return f"{self.kind} {self.scheme} {self.hamiltonian}"
+
+    def compute(self, keeper: Keeper) -> OrbitResult:
+        from verify.reference.make.orbit_points import orbit_points
+
+        points = orbit_points(self.orbit, self.steps, self.digits)
+        return OrbitResult.model_validate({"points": tuple(points)})
+
+
+class OrbitInDegreesTask(OrbitAtSteps):
+    """State, H, S, W and Λ."""
+
+    result = OrbitInDegreesResult
+    numbers = "H, S, W and Λ"
+    kind: Literal["orbit in degrees"] = "orbit in degrees"
+
+    def compute(self, keeper: Keeper) -> OrbitInDegreesResult:
+        from verify.reference.make.orbit_points import orbit_points
+
+        points = orbit_points(self.orbit, self.steps, self.digits)
+        return OrbitInDegreesResult.model_validate({"points": tuple(points)})
+
+
+class SolutionAtSteps(AtSteps):
+    """The exact flow at the times N·h for each of these N, correctly rounded."""
+
+    @property
+    def cost(self) -> int:
+        return FLOW_ROW_COST * len(self.steps)
+
+    @property
+    def times(self) -> dict[str, Any]:
+        """Where the exact flow begins, and the times after it by their N."""
+        exact = self.exact_hamiltonian()
+        after = {n: n * self.step_size for n in self.steps}
+        start = point_of(exact, self.q, self.p)
+        return {"hamiltonian": exact, "start": start, "t0": self.t0 or Fraction(), "times": after}
+
+
+class SolutionTask(SolutionAtSteps):
+    """p and q."""
+
+    result = SolutionResult
+    kind: Literal["solution"] = "solution"
+
+    def compute(self, keeper: Keeper) -> SolutionResult:
+        from verify.reference.make.orbit_points import solution_points
+
+        points = solution_points(**self.times, digits=self.digits)
+        return SolutionResult.model_validate({"points": tuple(points)})
+
+
+class SolutionInDegreesTask(SolutionAtSteps):
+    """p1 … pn, q1 … qn."""
+
+    result = SolutionInDegreesResult
+    kind: Literal["solution in degrees"] = "solution in degrees"
+
+    def compute(self, keeper: Keeper) -> SolutionInDegreesResult:
+        from verify.reference.make.orbit_points import solution_points
+
+        points = solution_points(**self.times, digits=self.digits)
+        return SolutionInDegreesResult.model_validate({"points": tuple(points)})
