@@ -20,8 +20,7 @@ from verify import arithmetic
 from verify.arithmetic.float_context import FLOAT
 from verify.execution.keeping import NOTHING
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.many_points import PointMap
-from verify.kernels.waypoints import waypoints
+from verify.kernels.many_points import PointMap, waypoints
 from verify.scenes.region_sections import PlacedShape
 from verify.scenes.shapes import named as shapes
 from verify.studies.regions.task import FlowTask

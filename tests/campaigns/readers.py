@@ -30,7 +30,7 @@ from verify.proof.certificates.every import of_every
 from verify.proof.certificates.file import checked
 from verify.proof.every import prove_every
 from verify.reference.compare.published import load
-from verify.reference.compare.table import opened
+from verify.reference.compare.rows import opened
 from verify.reference.make.make import PUBLISHED
 from verify.reference.make.parquet import parquet_bytes, parquet_rows
 from verify.scenes.results.report import Provenance, Report, read_report

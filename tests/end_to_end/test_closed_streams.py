@@ -127,7 +127,7 @@ def test_a_run_answers_with_either_closed(which: str, folder: Path) -> None:
 
 
 OPENED = "a, b = open('/dev/null'), open('/dev/null'); print(min(a.fileno(), b.fileno()) > 2)"
-HELD = "from verify.commands.shared.streams import printable_streams as held\nwith held(): "
+HELD = "from verify.commands.main import printable_streams as held\nwith held(): "
 
 
 @pytest.mark.parametrize(("code", "apart"), [(OPENED, "False"), (HELD + OPENED, "True")])

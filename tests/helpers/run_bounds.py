@@ -1,7 +1,7 @@
 """The bounds of a run by their formulas, worked out again with mpmath's numbers.
 
 Every formula is written here as it stands in the docstrings of `verify.runs.a_posteriori`,
-`verify.runs.form_bound` and `verify.runs.inverse_norm`, and shares no code with them. A bound that
+`verify.runs.form_bound` and `verify.runs.a_posteriori`, and shares no code with them. A bound that
 is loose says nothing by holding the true value; it is held to its formula, term by term.
 """
 

@@ -69,7 +69,7 @@ BY_NAME = {
     "verify.frames": {"import_module"},  # pandas and xarray, where they are installed
     "verify.from_type": {"modules"},  # hypothesis, where it is imported
     "verify.integrators.user_code.faults": {"modules"},  # numpy, where it is imported
-    "verify.integrators.user_code.kept_state": {"modules"},  # numpy, and where a function is from
+    "verify.integrators.user_code.repeated": {"modules"},  # numpy, and where a function is from
     "verify.integrators.tracing.functions": {"builtins", "__import__"},  # what the user's code does
     "verify.integrators.tracing.purity": {"modules"},  # numpy and others, where they are imported
     "verify.integrators.others.report": {"import_module"},  # a library that may be broken

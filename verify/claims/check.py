@@ -8,8 +8,7 @@ from operator import not_
 
 from verify.claims.claim import Claim
 from verify.claims.file import ClaimsFile
-from verify.claims.judging import judged
-from verify.claims.plan import add_claims
+from verify.claims.judging import add_claims, judged
 from verify.errors import InputError, is_meant, nearest
 from verify.execution.execute import OnResult, Store, execute
 from verify.execution.executors import ANYWHERE, Placement

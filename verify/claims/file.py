@@ -44,8 +44,7 @@ from verify.scenes.causes import Cause
 from verify.scenes.mistakes.values import one_line
 from verify.scenes.paper_figures import PaperFigure
 from verify.scenes.scene import Scene
-from verify.scenes.toml_file import read_toml
-from verify.scenes.toml_lines import Lines, lines_of
+from verify.scenes.toml_file import Lines, lines_of, read_toml
 
 _ROOT = ("title", "about", "defaults", "scene", "claim", "cause", "figure", "left_out")
 # Of each group a claim needs one: where it gives one itself, it takes none from the defaults.

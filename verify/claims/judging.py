@@ -1,10 +1,15 @@
-"""Claims and what was found for them → verdicts, asking for more where that may decide one."""
+"""Claims and what was found for them → verdicts, asking for more where that may decide one.
 
-from collections.abc import Iterable, Mapping
+What claims need computed, and nothing else: the tasks of their runs and proofs.
+
+What algebra decides on the spot needs no task. Where a proof gives what a claim asks of a run,
+that run is not made.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
 
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
-from verify.claims.plan import add_claims
 from verify.errors import InputError, LimitError
 from verify.execution.execute import Store, execute
 from verify.execution.executors import ANYWHERE, Placement
@@ -14,6 +19,27 @@ from verify.scenes.frozen import Frozen
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.scene import Scene
 from verify.verdict import Verdict
+
+
+def add_claims(
+    plan: Plan, claims: Sequence[Claim], scenes: Mapping[str, Scene]
+) -> dict[str, Frozen]:
+    """Adds to the plan what the claims need; returns what needs no run, by the task's key.
+
+    A claim whose scene is not among them needs what it does without one.
+    """
+    known: dict[str, Frozen] = {}
+    for claim in claims:
+        own = scenes.get(claim.scene)
+        for task in claim.tasks_without_scene() if own is None else claim.tasks(own):
+            name = task.key
+            found = known.get(name) or task.proved()
+            if found is None:
+                plan.need(task, f"claim {claim.id}")
+            elif name not in plan.tasks:
+                known[name] = found
+                plan.leave_out(f"the run of claim {claim.id}", "a proof gives what it asks for")
+    return known
 
 
 def judged(

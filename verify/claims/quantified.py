@@ -26,10 +26,7 @@ if TYPE_CHECKING:
 EVERY_SEPARABLE = "separable hamiltonian"
 _IN_TIME = " in time"
 Every = Literal[
-    "hamiltonian",
-    "separable hamiltonian",
-    "hamiltonian in time",
-    "separable hamiltonian in time",
+    "hamiltonian", "separable hamiltonian", "hamiltonian in time", "separable hamiltonian in time"
 ]
 
 

@@ -6,8 +6,7 @@ from collections.abc import Mapping, Sequence
 from verify.arithmetic.exact import text
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
-from verify.claims.judging import all_judged
-from verify.claims.plan import add_claims
+from verify.claims.judging import add_claims, all_judged
 from verify.execution.execute import OnResult, Store, execute
 from verify.execution.executors import ANYWHERE, Placement
 from verify.execution.plan import Plan

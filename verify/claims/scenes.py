@@ -16,7 +16,7 @@ from verify.claims.claim import Claim
 from verify.errors import NOT_GIVEN, InputError
 from verify.scenes.frozen import Frozen
 from verify.scenes.scene import Scene, load_scene, scene_from
-from verify.scenes.toml_lines import Lines
+from verify.scenes.toml_file import Lines
 from verify.scenes.values import Number, SystemName
 
 HAMILTONIAN_SOURCES = ("scene", "system", "hamiltonian", "every")

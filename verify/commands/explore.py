@@ -33,12 +33,7 @@ _SEEDS = 2**32
 @click.option("--examples", type=int, default=1000, metavar="N", help="Scenes.")
 @click.option("--seed", type=int, metavar="S", help="The same seed draws the same scenes.")
 @click.option(
-    "--scheme",
-    "schemes",
-    type=SCHEME,
-    multiple=True,
-    metavar="NAME",
-    help="Only this; repeatable.",
+    "--scheme", "schemes", type=SCHEME, multiple=True, metavar="NAME", help="Only this; repeatable."
 )
 @click.option(
     "--kind",

@@ -35,11 +35,7 @@ if TYPE_CHECKING:
     "--separable", is_flag=True, help="With --every-hamiltonian: for every H = T(p) + V(q)."
 )
 def modified(
-    scheme: str,
-    order: int,
-    every_hamiltonian: bool,
-    separable: bool,
-    **named: Any,
+    scheme: str, order: int, every_hamiltonian: bool, separable: bool, **named: Any
 ) -> Answer:
     """Find the energy that a scheme keeps, H̃ = H + h H_2 + …, by exact algebra.
 

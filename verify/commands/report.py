@@ -151,7 +151,7 @@ def _sections(
 def _scene(
     asked: _Asked, output: Path | None, more: str, where: "Placement", force: bool
 ) -> "tuple[Path, Report]":
-    from verify.claims.plan import add_claims
+    from verify.claims.judging import add_claims
     from verify.claims.report import make_report
     from verify.studies.plan import plan_scenes
 

@@ -12,12 +12,7 @@ from verify.commands.shared import output as show
 from verify.commands.shared.answer import Answer, answering
 from verify.commands.shared.cache import cache_option
 from verify.commands.shared.destinations import OUT_FILE, OUT_FOLDER, STANDARD_OUTPUT, keepable
-from verify.commands.shared.input import (
-    listed,
-    scheme_option,
-    start_options,
-    with_kept_hamiltonian,
-)
+from verify.commands.shared.input import listed, scheme_option, start_options, with_kept_hamiltonian
 from verify.errors import InputError
 
 if TYPE_CHECKING:

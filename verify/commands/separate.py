@@ -1,19 +1,156 @@
-"""The command `verify separate`: truncation and four kinds of rounding in Λ, or in W."""
+"""The command `verify separate`: truncation and four kinds of rounding in Λ, or in W.
 
+Truncation and rounding in Λ, or in n degrees of freedom in W, as `verify separate` tells it.
+"""
+
+import textwrap
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.shared.answer import Answer, answering
+from verify.commands.shared.answer import Answer, answering, picked
 from verify.commands.shared.cache import cache_option
-from verify.commands.shared.input import (
-    listed,
-    scheme_option,
-    start_options,
-    with_kept_hamiltonian,
-)
-from verify.commands.shared.output import print_once
-from verify.commands.shared.separation import print_separation, separation_json
+from verify.commands.shared.input import listed, scheme_option, start_options, with_kept_hamiltonian
+from verify.commands.shared.output import plain_json, print_once
+
+if TYPE_CHECKING:
+    from verify.scenes.results.separation import (
+        CrossoverResult,
+        EvaluationResult,
+        Parts,
+        SeparationGrid,
+        SeparationResult,
+    )
+    from verify.scenes.results.separation_in_degrees import (
+        FormEvaluation,
+        FormParts,
+        SeparationGridInDegrees,
+        SeparationInDegrees,
+    )
+
+    Grid = SeparationGrid | SeparationGridInDegrees
+    Point = SeparationResult | SeparationInDegrees
+    Evaluation = EvaluationResult | FormEvaluation
+
+_WIDTH = 88  # of a line of prose
+_LABELS = {"plain": "plain", "closed_form": "closed form"}
+
+
+def separation_json(found: "Grid") -> dict[str, Any]:
+    """The first step size's parts, and those of all of them as `grid`; of W each is a matrix."""
+    points = [_separated(point) for point in found.points]
+    crossover = {way: getattr(found, way).model_dump(mode="json") for way in _LABELS}
+    seconds = f"{sum(point.seconds for point in found.points):.6f}"
+    return {**points[0], "crossover": crossover, "grid": points, "seconds": seconds}
+
+
+def _separated(point: "Point") -> dict[str, Any]:
+    from verify.scenes.results.separation import Parts, SeparationResult
+    from verify.scenes.results.separation_in_degrees import FormParts
+
+    parts: type[Parts | FormParts] = Parts
+    names: dict[str, Any] = {}
+    motion: dict[str, Any] = {}
+    if not isinstance(point, SeparationResult):
+        parts, names = FormParts, {"coordinates": list(point.coordinates)}
+        motion = {"tangent": plain_json(point.tangent) if point.tangent else None}
+    return {
+        **names,
+        **_evaluated(point.plain, parts),
+        "closed_form": _evaluated(point.closed_form, parts),
+        **motion,
+        **picked(point, "step_size", "steps", "digits"),
+        "working_arithmetic": "float64",
+        **picked(point, "arithmetic", "error_method", "status", "failed_step", "reason"),
+        "seconds": f"{point.seconds:.6f}",
+    }
+
+
+def _evaluated(way: "Evaluation | None", parts: "type[Parts | FormParts]") -> dict[str, Any]:
+    """`parts`: how they are called where there are none."""
+    names = (type(way.parts) if way else parts).model_fields
+    values = {n: getattr(way.parts, n) if way else None for n in names}
+    working, *_ = names
+    shown = {n: value.value if value else None for n, value in values.items()}
+    law = getattr(way, "law", None)  # of W alone
+    return {
+        working: shown.pop(working),
+        "truncation": shown.pop("truncation"),
+        "rounding": shown,
+        "error_bound": {n: value.bound for n, value in values.items() if value},
+        "error_kind": way.error_kind if way else None,
+        "largest": way.largest if way else None,
+        "growth": {n: plain_json(g) for n, g in way.growth.items()} if way else None,
+        **({"law": law and plain_json(law)} if working == "w_working" else {}),
+        "series": [point.model_dump(mode="json") for point in way.series] if way else [],
+    }
+
+
+def print_separation(found: "Grid") -> None:
+    """Each step size, and where rounding overtakes truncation."""
+    for point in found.points:
+        click.echo(f"h = {point.step_size}, {point.steps} steps")
+        if point.status != "finished":
+            at = f" at step {point.failed_step}" if point.failed_step else ""
+            click.echo(f"  {point.status}{at}: {point.reason}")
+        else:
+            _print_parts(point)
+    if len(found.points) > 1:
+        for way, label in _LABELS.items():
+            click.echo(f"rounding overtakes truncation, {label}: {_crossed(getattr(found, way))}")
+
+
+def _print_parts(point: "Point") -> None:
+    from verify.scenes.results.separation import SHOWN, SeparationResult
+    from verify.scenes.results.separation_in_degrees import FORM_SHOWN
+
+    planar = isinstance(point, SeparationResult)
+    ways = {label: way for key, label in _LABELS.items() if (way := getattr(point, key))}
+    first, kinds = ways["plain"], dict.fromkeys(way.error_kind for way in ways.values())
+    shown, head, width = (SHOWN, "", 26) if planar else (FORM_SHOWN, "greatest entry", 38)
+    click.echo(f"  {head:16}{'plain':{width}}{'closed form' if len(ways) > 1 else ''}")
+    for name, label in (shown | {name: f"  {name}" for name in first.parts.of_rounding}).items():
+        cells = (_cell(point, getattr(way.parts, name)) for way in ways.values())
+        click.echo(f"  {label:16}" + "".join(f"{cell:{width}}" for cell in cells).rstrip())
+    for label, way in ways.items():
+        click.echo(f"  {_grows(way, label)}")
+    if len(ways) < 2:
+        click.echo("  no closed form: some det J ≤ 0, which has no logarithm")
+    if tangent := getattr(point, "tangent", None):
+        click.echo(
+            f"  tangent map: ‖M‖² = {float(tangent.norm_squared):.3g}, "
+            f"‖∧²M‖ = {float(tangent.areas):.3g}, finite-time Lyapunov exponent "
+            f"{tangent.finite_time_lyapunov} over T = {tangent.time}"
+        )
+        meaning = textwrap.fill(str(tangent.meaning), _WIDTH, subsequent_indent="  ")
+        click.echo(f"  {meaning}")
+    click.echo(
+        f"  {point.arithmetic} as exact arithmetic, {point.seconds:.3g} s; "
+        f"bounds {first.error_kind if planar else ', '.join(kinds)} ({point.error_method})"
+    )
+
+
+def _cell(point: Any, value: Any) -> str:
+    """A number; of a matrix the greatest entry, and which that is."""
+    if not hasattr(value, "largest"):
+        return str(value.value)
+    at = point.name_of(value.place) if value.largest.exact else ""
+    return f"{value.largest.value:24} {at}"
+
+
+def _grows(way: "Evaluation", label: str) -> str:
+    """How rounding grows with N; in n degrees of freedom how W does."""
+    law, growth = getattr(way, "law", None), way.growth["total"]
+    if law is None:
+        return f"rounding with N, {label}: {growth.name} ({growth.reason})"
+    return f"max |W| with N, {label}: {law.name} ({law.reason}; measured, not proved)"
+
+
+def _crossed(way: "CrossoverResult") -> str:
+    if way.bracket is None:
+        return way.reason
+    return f"h* = {way.step_size or '?'}, {way.bracket[0]} … {way.bracket[1]} ({way.reason})"
+
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian

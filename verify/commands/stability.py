@@ -1,17 +1,147 @@
-"""The command `verify stability`: the runs of a scene, judged, and linear theory, exactly."""
+"""The command `verify stability`: the runs of a scene, judged, and linear theory, exactly.
+
+`verify stability --linear`: a scheme on the harmonic oscillator, or at an equilibrium of H.
+"""
 
 import textwrap
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from verify.commands.shared.answer import Answer
-from verify.commands.shared.linear_theory import linear_answer
+from verify.commands.shared.input import hamiltonian_of, listed
 from verify.commands.shared.one_line import scenes_of, start_options, with_one_line
 from verify.commands.shared.output import print_once
 from verify.commands.shared.tasks import perform, with_tasks
 from verify.errors import NOT_GIVEN, InputError
+
+if TYPE_CHECKING:
+    from verify.studies.stability.linear import LinearStability
+    from verify.studies.stability.linear_in_degrees import LinearInDegrees
+
+_OF_H = ("system", "hamiltonian", "params", "q", "p", "step_sizes")
+_SHOWN = 12  # digits on a terminal
+_MOST_SHOWN = 12  # frequencies there
+_SAID = {True: "bounded", False: "unbounded", None: "undecided: its coefficients are irrational"}
+
+
+def linear_answer(scene: str | None, given: Mapping[str, Any]) -> Answer:
+    """What linear theory says; InputError for what does not go with it."""
+    if scene is not None:
+        raise InputError("SCENE", scene, "does not go with --linear; leave it out")
+    of_h = given["system"] is not None or given["hamiltonian"] is not None
+    for name, x in given.items():
+        takes = name == "schemes" or (of_h and name in _OF_H)
+        if not takes and x not in (None, ()):
+            shown = x[0] if isinstance(x, tuple) else x
+            raise InputError(name, shown, "does not go with --linear; leave it out")
+    if len(given["schemes"]) != 1:
+        shown = ", ".join(given["schemes"]) or NOT_GIVEN
+        raise InputError("schemes", shown, "give one with --linear")
+    scheme = str(given["schemes"][0])
+    return _at_equilibrium(scheme, given) if of_h else _of_oscillator(scheme)
+
+
+def _of_oscillator(scheme: str) -> Answer:
+    from verify.algebra.expressions.formula_text import to_text
+    from verify.studies.stability.nearby_linear import linear_stability
+
+    found = linear_stability(scheme)
+    data = {
+        "scheme": found.scheme,
+        "interval": found.decimal(),
+        "interval_exact": found.exact,
+        "note": found.note,
+        "delta_j": to_text(found.delta_j),
+    }
+    return Answer(lambda: data, lambda: _print_oscillator(found, data["delta_j"]))
+
+
+def _print_oscillator(found: "LinearStability", delta_j: str) -> None:
+    ends = {"infinite": "for every hω > 0", "0": "for no hω > 0"}
+    shown = ends.get(found.exact, f"for 0 < hω < {found.decimal(_SHOWN)}")
+    click.echo(f"{found.scheme} on the harmonic oscillator is stable {shown}")
+    if found.exact and found.exact not in ends and not found.exact.isdecimal():
+        click.echo(f"  exactly  {found.exact}")
+    if found.note:
+        click.echo(f"  note     {found.note}")
+    click.echo(f"  ΔJ       {delta_j}, y = hω")
+
+
+def _at_equilibrium(scheme: str, given: Mapping[str, Any]) -> Answer:
+    from verify.arithmetic.exact import positive
+    from verify.hamiltonians.start import point_of
+    from verify.studies.stability.linear_in_degrees import linear_in_degrees
+
+    exact = hamiltonian_of(given["system"], given["hamiltonian"], given["params"])
+    origin = ",".join(["0"] * exact.degrees)
+    q, p = (listed(given[name] or origin, exact) for name in ("q", "p"))
+    sizes = [positive(h, "step_size") for h in given["step_sizes"]]
+    found = linear_in_degrees(exact, scheme, point_of(exact, q, p), sizes)
+    return Answer(lambda: _data(found), lambda: _print_equilibrium(found))
+
+
+def _data(found: "LinearInDegrees") -> dict[str, Any]:
+    from verify.arithmetic.exact import text
+    from verify.hamiltonians.start import shown_of
+
+    exact, interval = found.hamiltonian, found.interval
+    return {
+        "scheme": found.scheme,
+        **exact.texts,
+        "q": shown_of(exact, found.point, "q"),
+        "p": shown_of(exact, found.point, "p"),
+        "frequencies": [
+            {"value": f.decimal(), "exact": f.exact, "multiplicity": f.multiplicity}
+            for f in found.frequencies
+        ],
+        "oscillates": found.oscillates,
+        "interval": None if interval is None else interval.decimal(),
+        "interval_exact": None if interval is None else interval.exact,
+        "note": "" if interval is None else interval.note,
+        "step_size": found.step_size,
+        "step_size_exact": found.step_size_exact,
+        "decided": [
+            {"step_size": text(h), "bounded": bounded} for h, bounded in found.decided.items()
+        ],
+    }
+
+
+def _print_equilibrium(found: "LinearInDegrees") -> None:
+    from verify.arithmetic.exact import plain, rational, text
+
+    at = ", ".join(f"{name} = {text(x)}" for name, x in found.point.items() if x) or "the origin"
+    click.echo(f"{found.scheme} on the quadratic part of H at {at}")
+    click.echo(f"  ω          {_frequencies(found)}")
+    if found.interval is not None:
+        limit = found.step_size
+        ends = {"infinite": "every h > 0", "0": "no h > 0"}
+        if limit in ends:
+            click.echo(f"  bounded    for {ends[limit]}")
+        else:
+            reach = f"hω = {found.interval.decimal(_SHOWN)} with the greatest ω"
+            least = plain(rational(limit or 0), _SHOWN)
+            click.echo(f"  bounded    for 0 < h < {least}, until {reach}")
+        if found.step_size_exact:
+            click.echo(f"  exactly    {found.step_size_exact}")
+        if found.interval.note:
+            click.echo(f"  note       {found.interval.note}")
+    for h, bounded in found.decided.items():
+        click.echo(f"  h = {text(h):6} {_SAID[bounded]}")
+
+
+def _frequencies(found: "LinearInDegrees") -> str:
+    each = [
+        f.decimal(_SHOWN) + f" ({f.multiplicity} times)" * (f.multiplicity > 1)
+        for f in found.frequencies
+    ]
+    if len(each) > _MOST_SHOWN:
+        each = [each[0], each[1], "…", *each[-2:]]
+    rest = "" if found.oscillates else "none for the other degrees of freedom"
+    return ", ".join(filter(None, (*each, rest)))
+
 
 if TYPE_CHECKING:
     from verify.execution.executors import Placement

@@ -13,8 +13,8 @@ from typing import Any
 
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
+from verify.claims.judging import add_claims
 from verify.claims.kinds import models
-from verify.claims.plan import add_claims
 from verify.claims.quantified import QuantifiedClaim
 from verify.claims.scenes import scene_for
 from verify.errors import InputError

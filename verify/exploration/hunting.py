@@ -12,12 +12,7 @@ from verify.execution.execute import OnResult, Store, execute
 from verify.execution.executors import ANYWHERE, Placement
 from verify.execution.plan import Plan
 from verify.exploration.different_scenes import by_shape, different
-from verify.exploration.island_search import (
-    KEPT,
-    MOST_EXAMPLES,
-    by_value,
-    hunted_scenes,
-)
+from verify.exploration.island_search import KEPT, MOST_EXAMPLES, by_value, hunted_scenes
 from verify.exploration.measures import MEASURES
 from verify.exploration.sample_space import SampleSpace
 from verify.exploration.tasks import HuntTask

@@ -7,9 +7,11 @@ faster than the Lie series: to t = 100 with 30 and 60 digits 0.2 and 0.7 s again
 the Duffing oscillator, 0.2 and 1.1 s against 0.4 and 2.2 s on the pendulum, 0.9 and 3.5 s against
 10 and 56 s on Lennard-Jones (tests/bench/exact_flows.py; the Lie series as power series in t, of
 order 43 and 76, with steps as long as its last terms allow).
+
+The numerical flow with more and more digits, until two agree; poles in t are found before.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -17,11 +19,50 @@ from verify.arithmetic.exact import plain
 from verify.errors import InputError
 from verify.flows import closed_form
 from verify.flows.closed_orbit import at_rest, closed_orbit
-from verify.flows.confirmed import METHOD, check_poles, confirmed
-from verify.flows.extrapolation import NoFlowError
+from verify.flows.extrapolation import Flow, NoFlowError
 from verify.hamiltonians import known_flows
-from verify.hamiltonians.canonical_field import canonical_field
+from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.times_on_the_way import first_fault
+from verify.hamiltonians.vector_field import VectorField
+
+METHOD = "numerical flow: Gragg's method, extrapolated"
+_GUARD = 6  # digits beyond those asked for with which the first flow is followed
+_MORE = 10  # and how many more the next one has
+_TRIES = 6
+_SAFETY = 2  # the better of two flows is nearer to the truth than they are to each other
+_PARTS = 1024  # of the time, in which poles of H are looked for
+
+
+def check_poles(hamiltonian: Hamiltonian, t0: Fraction, time: Fraction) -> None:
+    """NoFlowError where H is not smooth at some time on the way."""
+    part = time / _PARTS
+    passed, words = first_fault(hamiltonian, t0, part, _PARTS)
+    if words:
+        between = f"t = {plain(t0 + passed * part, 6)} and {plain(t0 + (passed + 1) * part, 6)}"
+        raise NoFlowError(f"between {between} H is not smooth; it is where `{words}`")
+
+
+def confirmed(
+    field: VectorField | CanonicalField, start: Sequence[Fraction], time: Fraction, digits: int
+) -> tuple[list[Fraction], Fraction]:
+    """The coordinates after the time and a bound of the error of each, an estimate; NoFlowError.
+
+    `start`: the coordinates, and t where H depends on it.
+    """
+    coordinates = len(field.names)
+    before: list[Fraction] | None = None
+    for k in range(_TRIES):
+        flow = Flow(field, digits + _GUARD + k * _MORE)
+        z = flow.follow(tuple(map(flow.number, start)), time)
+        after = [flow.arithmetic.exact(x) for x in z[:coordinates]]
+        if before is not None:
+            bound = _SAFETY * max(abs(x - y) for x, y in zip(after, before, strict=True))
+            if bound * 10**digits <= max(map(abs, (*start[:coordinates], *after))):
+                return after, bound
+        before = after
+    raise NoFlowError("the digits asked for are lost along the orbit")
+
 
 _TOLD = 12  # digits of a time at which a solution ends
 _ROUGH, _POINTS = 12, 8  # digits and points with which a closed orbit is looked for
@@ -98,11 +139,7 @@ def _in_closed_form(end: closed_form.Evaluation, method: str) -> Solution:
 
 
 def numerical_solution(
-    hamiltonian: Hamiltonian,
-    point: Point,
-    time: Fraction,
-    digits: int,
-    t0: Fraction = _FROM_START,
+    hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int, t0: Fraction = _FROM_START
 ) -> Solution:
     """By the numerical flow with more and more digits, until two of them agree."""
     check_poles(hamiltonian, t0, time)

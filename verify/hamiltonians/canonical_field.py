@@ -13,8 +13,7 @@ from functools import cached_property, lru_cache
 
 from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
-from verify.algebra.series.coefficient_ring import CoefficientRing
-from verify.algebra.series.power_series import Derivatives
+from verify.algebra.series.power_series import CoefficientRing, Derivatives
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.late import sympy
 

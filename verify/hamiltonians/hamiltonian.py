@@ -16,14 +16,7 @@ from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.embedding import MAX_TERMS, embed
 from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.expressions.monomials import names_in, reads_back
-from verify.algebra.formula import (
-    MAX_DEPTH,
-    MAX_LENGTH,
-    parameter_name,
-    parse,
-    read,
-    symbol,
-)
+from verify.algebra.formula import MAX_DEPTH, MAX_LENGTH, parameter_name, parse, read, symbol
 from verify.algebra.requirement import of_expression
 from verify.algebra.ring import Poly
 from verify.algebra.substitution import substitute
@@ -81,9 +74,7 @@ class Hamiltonian:
 
     @classmethod
     def parse(
-        cls,
-        formula: str,
-        parameters: Mapping[str, Exact | None] | None = None,
+        cls, formula: str, parameters: Mapping[str, Exact | None] | None = None
     ) -> Hamiltonian:
         """From a formula (see `verify.algebra.formula`) and parameter values; None leaves a symbol.
 

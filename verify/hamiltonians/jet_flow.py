@@ -4,8 +4,7 @@ from collections.abc import Mapping
 from functools import cached_property, lru_cache
 
 from verify.algebra.ring import Poly
-from verify.algebra.series.jets import Jets, TimedJets
-from verify.algebra.series.jets_in_degrees import JetsInDegrees
+from verify.algebra.series.jets import Jets, JetsInDegrees, TimedJets
 from verify.hamiltonians.canonical_field import Flow
 from verify.hamiltonians.coordinates import numbered
 

@@ -113,8 +113,7 @@ def proved_in_degrees(trace: Trace, hamiltonian: Hamiltonian) -> Finding:
     """By the prover of n degrees of freedom. Raises InputError where it has no series."""
     proof = prove_map(_canonical(list(trace.roots), hamiltonian), Claimed())
     return replace(
-        _of_proof(proof, trace, hamiltonian.degrees, "traced with symbols"),
-        entry=proof.entry,
+        _of_proof(proof, trace, hamiltonian.degrees, "traced with symbols"), entry=proof.entry
     )
 
 

@@ -14,6 +14,7 @@ from verify import lockstep
 from verify.arithmetic.exact import decimal
 from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic, State
+from verify.arithmetic.systems.float64 import nearest_double
 from verify.execution.keeping import fraction_of, fraction_text
 from verify.kernels.clock import clock_inputs, first_rest
 from verify.kernels.kernel import Kernel
@@ -122,7 +123,7 @@ class ChunkedLoop:
         carried = (*self.kernel.coordinates, *self.kernel.start)
         for kind, first in zip(self.kernel.kinds, carried, strict=True):
             value = start[first] if isinstance(first, str) else Fraction(first)
-            state.append(tangent_map.nearest_double(value) if kind == "float" else number(value))
+            state.append(nearest_double(value) if kind == "float" else number(value))
         return tuple(state)
 
     def _clock_after(self, done: int) -> dict[str, Fraction]:

@@ -13,10 +13,11 @@ from functools import lru_cache
 
 from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
+from verify.arithmetic.systems.float64 import nearest_double
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.clock import clock_of
 from verify.kernels.statements import CLOSED_FORM, Statements
-from verify.kernels.step import newton, tangent_map
+from verify.kernels.step import newton
 from verify.kernels.step.computation import Computation, Observed, computed
 from verify.kernels.step.in_degrees import computed_in_degrees, map_of
 from verify.kernels.step.lowering import Lowering
@@ -151,9 +152,7 @@ class Writer:
     def constants_of_tangent(self) -> dict[str, Number]:
         """The constants of the tangent map's lines, as doubles by their names."""
         made = self.tangent
-        return (
-            made.lowering.named_constants(tangent_map.nearest_double, made.change) if made else {}
-        )
+        return made.lowering.named_constants(nearest_double, made.change) if made else {}
 
     # -- how it is written --------------------------------------------------------------------
 

@@ -11,8 +11,7 @@ from verify.pages.figures.axes import grid_lines, line_style, scaled_ticks, time
 from verify.pages.figures.notebook_figure import canvas_on, legend
 from verify.pages.plotting import shown
 from verify.pages.text.typography import superscript
-from verify.scenes.results.energy_drift import EnergyDrift
-from verify.scenes.results.run import RunResult
+from verify.scenes.results.run import EnergyDrift, RunResult
 
 PHASE = "phase"
 QUANTITIES = {

@@ -38,12 +38,7 @@ from dataclasses import replace
 from verify.errors import InputError, LimitError
 from verify.hamiltonians.coordinates import check_degrees
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.by_conditions import (
-    agreed_order,
-    first_wrong,
-    prove_by_conditions,
-    told_nearby,
-)
+from verify.proof.by_conditions import agreed_order, first_wrong, prove_by_conditions, told_nearby
 from verify.proof.every_by_series import is_long, prove_by_series
 from verify.proof.every_proof import NONE, EveryProof
 from verify.proof.order import leading_of

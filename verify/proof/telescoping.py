@@ -30,8 +30,7 @@ from verify.algebra.embedding import embed
 from verify.algebra.formula import symbol
 from verify.algebra.generator import terms_of
 from verify.algebra.linear_combination import combination
-from verify.algebra.series.jets import JetRing, Poly, shown
-from verify.algebra.series.jets_in_degrees import Index
+from verify.algebra.series.jets import Index, JetRing, Poly, shown
 from verify.algebra.substitution import substitute
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import CanonicalField, Flow

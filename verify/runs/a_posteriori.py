@@ -11,7 +11,7 @@ B a bound of the second derivatives of Φ over that box, widened by the error. B
 multiply norms of A_k here and lose digits like e^(cT). Instead take any matrices M_k, M_0 = 1, that
 nearly follow the tangent map: M_{k+1} = A_k M_k + R_k with ‖R_k‖ ≤ ρ ‖M_k‖
 (`verify.kernels.step.tangent_map` carries them in float64; ρ is counted as ε is). With
-e_k = M_k x_k, ‖M⁻¹‖ = ‖M‖/|det M| for 2 × 2 (for more, `verify.runs.inverse_norm`),
+e_k = M_k x_k, ‖M⁻¹‖ = ‖M‖/|det M| for 2 × 2 (for more, `least_of`),
 
     x_{k+1} = x_k + M_{k+1}⁻¹ (s_k − R_k x_k),
 
@@ -34,8 +34,16 @@ Observables: |D̂_k − D(z_k)| ≤ G ‖e_k‖ + η, with G the greatest gradie
 and η its rounding; their sum bounds how log(1 + Λ) moves. The product itself is computed as
 P_{k+1} = P_k (1 + ΔĴ_k) + τ_k, so that 1 + ΔĴ_k = P_{k+1}/P_k · (1 − τ_k/P_{k+1}): the
 product of the first k factors is P_k but for a factor within exp(± N max |τ|/min P).
+
+How large the inverse of a tangent map may be, from what was noted of it in float64.
+
+For 2 × 2, ‖M⁻¹‖ = ‖M‖/|det M|. In n degrees of freedom M⁻¹ = B⁻¹ MᵀΩ with B = MᵀΩM, which is
+antisymmetric: its singular values come in pairs, |Pf B| is the product of one of each, and det M is
+Pf B/Pf Ω. So ‖M⁻¹‖ ≤ ‖M‖ ‖B‖ⁿ⁻¹/|det M|, and ‖B‖² is at most the sum of the squares of its entries
+above the diagonal. Where the map is nearly symplectic B stays near Ω, however large M grows.
 """
 
+from collections.abc import Mapping
 from fractions import Fraction
 
 import flint
@@ -47,11 +55,37 @@ from verify.kernels.rounding import PRECISION, Ball
 from verify.kernels.statements import CLOSED_FORM
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs import form_bound
-from verify.runs.derivatives import Derivatives, norm
-from verify.runs.derivatives_in_degrees import DerivativesInDegrees
-from verify.runs.inverse_norm import least_of, square_of_norm
+from verify.runs.derivatives import Derivatives, DerivativesInDegrees, norm
 from verify.runs.step_rounding import StepErrors, StepRounding
 from verify.scenes.observables import OF_FORM
+
+_ROUNDED = flint.arb(2) ** -48  # of an entry of MᵀΩM or of det M, relative to ‖M‖²
+
+
+def least_of(size: int, seen: Mapping[str, Ball]) -> Ball:
+    """d > 0 with ‖M‖/‖M⁻¹‖ ≥ d for all M that were carried; at most 0 where there is none."""
+    lost = _ROUNDED * seen["growth_top"]
+    if size == 2:
+        return seen["det_low"] - lost
+    n = size // 2
+    largest = seen["form_top"].abs_upper().sqrt() * (1 + _ROUNDED)  # entry of the computed B
+    terms = flint.arb(1)
+    for k in range(1, n + 1):
+        terms *= 2 * k - 1  # so many products in a Pfaffian
+    # Each product of n entries, computed from entries that are off by `lost`.
+    own = (largest + lost) ** n
+    apart = terms * (own - largest**n + _ROUNDED * n * own)
+    norm = largest + size * lost
+    return (seen["det_low"] - apart) / norm ** (n - 1)
+
+
+def square_of_norm(size: int, squares: Ball, least: Ball) -> Ball:
+    """A bound of ‖M‖², from those of the sum of its entries' squares and of its determinant; or one
+    of the mean of ‖M‖² over several M, from that of those sums."""
+    if size > 2:
+        return squares.abs_upper()
+    return ((squares + (squares * squares - 4 * least * least).abs_upper().sqrt()) / 2).abs_upper()
+
 
 _MOST_GROWTH = 50  # of Q: beyond it e^Q says nothing
 METHOD = "a-posteriori bound with the tangent map carried along"

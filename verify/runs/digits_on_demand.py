@@ -21,13 +21,7 @@ from verify.kernels.chunked_loop import Progress
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.a_posteriori import METHOD, certify
 from verify.runs.enclosed import enclosed
-from verify.runs.estimated import (
-    Bounds,
-    digits_of,
-    missing_digits,
-    resolved,
-    working_digits,
-)
+from verify.runs.estimated import Bounds, digits_of, missing_digits, resolved, working_digits
 
 _ATTEMPTS = 5
 WORTH_COMPILING = (

@@ -20,9 +20,8 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.modified.equation import ModifiedEquation
 from verify.proof.modified.one import MOST_ORDER, modified_of
 from verify.runs.orbit import orbit_of
-from verify.scenes.results.energy_drift import EnergyDrift
 from verify.scenes.results.orbit import MOST_POINTS
-from verify.scenes.results.run import RunResult
+from verify.scenes.results.run import EnergyDrift, RunResult
 
 _GUARD = 60  # bits, of what cancels in a difference
 _POINTS = 1000

@@ -5,6 +5,12 @@ in `verify.runs.estimated`; for float64, which is under test, in `verify.runs.fl
 
 What a proof already gives is not run: where ΔJ ≡ 0, ΔJ, MSE and Λ are exactly 0; where ΔJ does not
 depend on (p, q), Λ = (1 + ΔJ)^N − 1 is enclosed by ball arithmetic.
+
+Whether a run has left where H is defined: a scheme may step over a pole, or beyond it.
+
+Störmer-Verlet of log(q) evaluates 1/q, which is defined for q < 0 as well; no solution goes there.
+What is looked at are the states that the run has noted, so that what lies between two of them is
+not seen.
 """
 
 from collections.abc import Mapping, Sequence
@@ -30,7 +36,6 @@ from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.digits_on_demand import Measured, choose, measure
 from verify.runs.estimated import Bounded, Bounds
 from verify.runs.float64 import bounded
-from verify.runs.left_domain import left_domain
 from verify.runs.start import Start
 from verify.scenes.observables import OF_DEFECT, check_observables, observed
 from verify.scenes.results.bounded_value import Value
@@ -39,6 +44,29 @@ from verify.scenes.values import AUTO, MAX_DIGITS, MAX_STEPS
 from verify.schemes import canonical
 from verify.schemes.degrees.canonical_map import CanonicalMap
 from verify.schemes.step_map import StepMap
+
+_MOST = 64  # states that are looked at
+
+
+def left_domain(hamiltonian: Hamiltonian, run: KernelRun, outcome: Outcome) -> str:
+    """By which step it has, and what then no longer holds; empty where none is seen to."""
+    domain, start, count = hamiltonian.domain, run.start, len(outcome.trail)
+    if not domain.requirements or not count:
+        return ""
+    signs = domain.signs(start)
+    for k in _looked_at(count):
+        done = min(k * run.section, run.steps)
+        note = outcome.trail[k - 1]
+        state = {name: note[name] for name in hamiltonian.coordinates}
+        left = domain.left_since(signs, {**state, "t": start["t"] + done * start["h"]})
+        if left:
+            return f"by step {done} the orbit has left where H is defined: {', '.join(left)}"
+    return ""
+
+
+def _looked_at(count: int) -> list[int]:
+    """The numbers of some notes, the last among them."""
+    return sorted({-(-count * k // _MOST) for k in range(1, _MOST + 1)})
 
 
 class AskedRun:

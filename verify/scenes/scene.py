@@ -82,11 +82,7 @@ from verify.scenes.sections import Reference, WorkPrecision
 from verify.scenes.stability_sections import LargestStepOver, Stability, StabilityMap
 from verify.scenes.stroboscopic_section import Stroboscopic
 from verify.scenes.toml_file import check_depth, read_toml, toml_data
-from verify.scenes.values import (
-    Number,
-    SchemeName,
-    SystemName,
-)
+from verify.scenes.values import Number, SchemeName, SystemName
 from verify.schemes.degrees import check_takes
 
 _OF_THE_PLANE = ("criteria", "stroboscopic")

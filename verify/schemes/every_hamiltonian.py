@@ -15,8 +15,7 @@ from typing import Any, Protocol, TypeVar, runtime_checkable
 
 import flint
 
-from verify.algebra.series.jets import Poly, Series
-from verify.algebra.series.jets_in_degrees import JetsInDegrees
+from verify.algebra.series.jets import JetsInDegrees, Poly, Series
 from verify.hamiltonians.jet_flow import JetFlow
 from verify.late import sympy
 from verify.prose import count

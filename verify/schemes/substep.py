@@ -35,10 +35,7 @@ class Substep:
     @property
     def increments(self) -> tuple[Poly, Poly]:
         """p' − p and q' − q."""
-        return (
-            self.p_next - self.ring.variable("p"),
-            self.q_next - self.ring.variable("q"),
-        )
+        return (self.p_next - self.ring.variable("p"), self.q_next - self.ring.variable("q"))
 
     @cached_property
     def jacobian(self) -> tuple[Poly, Poly, Poly, Poly]:

@@ -175,10 +175,7 @@ def _formulas(
 def _scene(formula: Formula, scheme: Scheme, run: Mapping[str, Any]) -> Scene:
     """What is valid by how it was made: looking at it again would make the step map of each."""
     return Scene.model_construct(
-        hamiltonian=formula.text,
-        parameters=dict(formula.parameters),
-        schemes=(scheme.name,),
-        **run,
+        hamiltonian=formula.text, parameters=dict(formula.parameters), schemes=(scheme.name,), **run
     )
 
 

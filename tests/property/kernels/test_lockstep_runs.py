@@ -12,7 +12,7 @@ import pytest
 from tests.helpers.lanes import IN_LANES, PATHS, path
 from verify import arithmetic, code_cache, lockstep
 from verify.arithmetic import processor
-from verify.arithmetic.compiled import engine, paths, walking
+from verify.arithmetic.compiled import engine, paths
 from verify.arithmetic.processor import LANES
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -99,7 +99,7 @@ def test_a_series_is_the_same() -> None:
 def seen(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """How many lanes were used, call by call."""
     seen: list[int] = []
-    true = walking.step_together
+    true = engine.step_together
 
     def noting(orbits: Any, kernel: Any, lanes: int) -> None:
         seen.append(lanes)
@@ -121,7 +121,7 @@ def test_who_waits_longest_goes_on_with_those_that_have_the_longest_way(
 ) -> None:
     """Where a kernel is called for no part of the way, with those that have the same."""
     stepped: list[list[int]] = []
-    true = walking.step_together
+    true = engine.step_together
 
     def noting(orbits: Any, kernel: Any, lanes: int) -> None:
         stepped.append([orbit.walk.every for orbit in orbits])
@@ -131,7 +131,7 @@ def test_who_waits_longest_goes_on_with_those_that_have_the_longest_way(
     loop = f"    for k in range(steps):\n{LOOPS[called_for]}    return steps, x\n"
     kernel = engine.compiled("def f(steps: 'int', x: 'wide'):\n" + loop, 112, {})
     state = (engine.Fixed(1, 112),)
-    ways = [walking.Walk(5 + k % 2, 3, (), state, beyond=10 * k) for k in range(2 * LANES + 2)]
+    ways = [engine.Walk(5 + k % 2, 3, (), state, beyond=10 * k) for k in range(2 * LANES + 2)]
     pending = [lockstep.Pending(way) for way in ways]
     waiting = pending
     with path(IN_LANES[0]):
@@ -184,14 +184,14 @@ def test_lanes_are_compiled_for_long_work_only(
 
 def test_a_lane_that_takes_its_neighbours_place_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
     alone = [told(x) for x in done(runs("duffing"), 33, in_lockstep=False)]
-    true = walking.Orbit.take
+    true = engine.Orbit.take
 
     def swapped(self: Any, result: Any, steps: int) -> None:
         result = result.copy()
         result[1] ^= 1  # the lowest bit of p
         true(self, result, steps)
 
-    monkeypatch.setattr(walking.Orbit, "take", swapped)
+    monkeypatch.setattr(engine.Orbit, "take", swapped)
     with path(IN_LANES[0]):
         assert [told(x) for x in done(runs("duffing"), 33, in_lockstep=True)] != alone
 

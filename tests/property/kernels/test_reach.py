@@ -20,7 +20,7 @@ from verify.arithmetic.wide.one_orbit import OneOrbit
 from verify.code_cache import OFF, VARIABLE
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels import reach, stepping
+from verify.kernels import stepping
 from verify.kernels.kernel import Writer, kernel_for
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.a_posteriori import certify
@@ -285,5 +285,5 @@ def test_a_function_without_a_value_that_does_not_say_so_is_caught(
 
 def test_limits_beyond_the_format_are_caught(monkeypatch: pytest.MonkeyPatch) -> None:
     anew(monkeypatch)
-    monkeypatch.setattr(reach, "_TOP", Fraction(2**40))
+    monkeypatch.setattr(stepping, "_TOP", Fraction(2**40))
     assert wrong_kernel_runs()

@@ -21,7 +21,7 @@ from tests.paths import ROOT
 from verify.claims.claim import Claim
 from verify.claims.file import load_claims
 from verify.claims.findings import Findings
-from verify.claims.plan import add_claims
+from verify.claims.judging import add_claims
 from verify.errors import InputError
 from verify.execution.execute import Store, execute
 from verify.execution.executors import THIS_PROCESS

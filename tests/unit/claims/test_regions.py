@@ -8,9 +8,9 @@ import pytest
 
 from verify.claims.file import load_claims
 from verify.claims.findings import Findings
+from verify.claims.judging import add_claims
 from verify.claims.kinds.flow_area import FlowAreaClaim, conserves_area
 from verify.claims.kinds.flow_distance import FlowDistanceClaim
-from verify.claims.plan import add_claims
 from verify.errors import InputError
 from verify.execution.keeping import NOTHING
 from verify.execution.plan import Plan

@@ -17,8 +17,8 @@ from verify.execution.keeping import NOTHING
 from verify.exploration import hunting, island_search
 from verify.exploration.different_scenes import by_shape, different, scene_of
 from verify.exploration.hunting import Hunt, hunt
+from verify.exploration.island_search import neighbours
 from verify.exploration.measures import MEASURES, Measure
-from verify.exploration.neighbouring_scenes import neighbours
 from verify.exploration.sample import Sample
 from verify.exploration.sample_space import SampleSpace
 from verify.exploration.tasks import HuntTask

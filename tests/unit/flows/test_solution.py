@@ -11,7 +11,7 @@ from verify.arithmetic.arb import around
 from verify.arithmetic.exact import plain
 from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
-from verify.flows import confirmed
+from verify.flows import solution as solution_module
 from verify.flows.closed_form import MOST_DIGITS, evaluate
 from verify.flows.extrapolation import Flow, NoFlowError
 from verify.flows.solution import NOT_KNOWN, Solution, exact_solution, leaves
@@ -296,6 +296,6 @@ def test_a_numerical_flow_that_is_cut_short_is_not_an_answer(
             off = Fraction(1) + Fraction(self.arithmetic.bits, 10**27)
             return super().follow(z, time * off, most_steps)
 
-    monkeypatch.setattr(confirmed, "Flow", Wrong)
+    monkeypatch.setattr(solution_module, "Flow", Wrong)
     with pytest.raises(NoFlowError, match="digits asked for are lost"):
         solve("p**2/2 + q**6", 1, 1, 1, 30)

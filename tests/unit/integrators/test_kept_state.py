@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from tests.helpers.programs import impure_maps, pure_maps
-from verify.integrators.user_code.kept_state import changed, kept_by
+from verify.integrators.user_code.repeated import changed, kept_by
 
 
 @pytest.fixture(autouse=True)

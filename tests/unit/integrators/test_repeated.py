@@ -8,7 +8,7 @@ from tests.helpers.programs import remembering_steps as steps
 from tests.helpers.programs import user_steps as own_steps
 from tests.helpers.programs.judged import judged as found_of
 from verify.integrators.results import Claims
-from verify.integrators.user_code.kept_state import changed, kept_by
+from verify.integrators.user_code.repeated import changed, kept_by
 
 
 @pytest.mark.parametrize("period", [2, 37, 100, 500])

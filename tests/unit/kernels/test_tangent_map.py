@@ -22,7 +22,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.chunked_loop import ChunkedLoop
 from verify.kernels.kernel import kernel_for
 from verify.kernels.stepping import KernelRun
-from verify.runs.inverse_norm import square_of_norm
+from verify.runs.a_posteriori import square_of_norm
 from verify.runs.step_rounding import StepRounding
 
 ORBITS = {

@@ -12,9 +12,9 @@ from verify import arithmetic
 from verify.execution.keeping import Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.periods import period_in
-from verify.kernels import turns as module
+from verify.kernels import run_inputs as module
 from verify.kernels.many_points import PointMap
-from verify.kernels.turns import Turns, turns_of
+from verify.kernels.run_inputs import Turns, turns_of
 from verify.runs.run import run
 from verify.scenes.results.run import RunResult
 

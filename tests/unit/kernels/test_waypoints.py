@@ -8,9 +8,8 @@ import pytest
 from tests.helpers.known_areas import DUFFING
 from verify import arithmetic
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels import waypoints
-from verify.kernels.many_points import PointMap
-from verify.kernels.waypoints import Waypoints
+from verify.kernels import many_points
+from verify.kernels.many_points import PointMap, Waypoints
 
 DRIVEN = Hamiltonian.parse("p**2/2 + q**4/4 - q*cos(t)")
 SHORT, LONG = 600, 1300
@@ -64,7 +63,7 @@ def test_a_short_way_is_not_noted() -> None:
 
 
 def test_no_more_points_are_kept_than_there_is_room_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(waypoints, "_MOST", 2 * 2)  # numbers, of which a point has two
+    monkeypatch.setattr(many_points, "_MOST", 2 * 2)  # numbers, of which a point has two
     known, points = Waypoints(True), cloud(3)
     asked(known, points, SHORT)
     assert asked(known, points, LONG) == [(LONG - SHORT, 2), (LONG, 1)]
@@ -98,9 +97,9 @@ def test_a_map_after_another_one_has_the_bits_that_it_has_alone(
         )  # fmt: skip
         return list(made(q=q, p=p).values())
 
-    waypoints.waypoints.cache_clear()
+    many_points.waypoints.cache_clear()
     alone = states(LONG)
-    waypoints.waypoints.cache_clear()
+    many_points.waypoints.cache_clear()
     states(SHORT)
     assert all(map(np.array_equal, states(LONG), alone))
 
@@ -114,8 +113,8 @@ def test_other_step_sizes_are_other_ways() -> None:
         )
         return np.asarray(made(q=q, p=p)["q"])
 
-    waypoints.waypoints.cache_clear()
+    many_points.waypoints.cache_clear()
     small, large = ends(Fraction(1, 100)), ends(Fraction(1, 50))
-    waypoints.waypoints.cache_clear()
+    many_points.waypoints.cache_clear()
     assert np.array_equal(ends(Fraction(1, 50)), large)
     assert not np.array_equal(small, large)

@@ -4,8 +4,7 @@ from typing import Any
 
 from tests.unit.pages.test_page import claim, proof, real, report, scene
 from verify.pages.answers import Answer, answers
-from verify.pages.page import render
-from verify.pages.page_view import page_view
+from verify.pages.page import page_view, render
 from verify.prose import read_prose
 from verify.scenes.causes import Cause
 from verify.scenes.results.report import Report

@@ -6,8 +6,7 @@ from typing import Any
 import pytest
 
 from tests.unit.pages.test_page import claim, page_of, proof, report, run, scene
-from verify.pages.page import render
-from verify.pages.page_view import page_view
+from verify.pages.page import page_view, render
 from verify.pages.sections.claim_view import Anchors, groups
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.statement import statements_of

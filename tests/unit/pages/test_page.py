@@ -19,8 +19,7 @@ from verify.claims.kinds.table import TableClaim
 from verify.claims.report import make_report
 from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS
-from verify.pages.environment import TEMPLATES
-from verify.pages.page import render, write
+from verify.pages.page import TEMPLATES, render, write
 from verify.pages.text.typography import number
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.claim import ClaimResult

@@ -1,8 +1,7 @@
 """What is wrong stands first, by library, where refuted claims have a severity."""
 
 from tests.unit.pages.test_page import claim, report
-from verify.pages.page import render
-from verify.pages.page_view import page_view
+from verify.pages.page import page_view, render
 from verify.pages.wrong import wrong_of
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict

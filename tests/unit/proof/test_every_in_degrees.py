@@ -8,7 +8,7 @@ import pytest
 import sympy
 
 from verify.algebra.formula import parse, symbol
-from verify.algebra.series.jets_in_degrees import JetsInDegrees
+from verify.algebra.series.jets import JetsInDegrees
 from verify.errors import InputError, LimitError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof import every_by_series as module

@@ -9,8 +9,8 @@ from verify import schemes
 from verify.algebra.symbols import H_STEP
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.modified import hamiltonian_of_field
 from verify.proof.modified import one as modified
+from verify.proof.modified import one as module
 from verify.proof.modified.equation import ModifiedEquation, Term, judged
 from verify.proof.modified.field import Vector
 from verify.proof.modified.one import modified_of
@@ -163,16 +163,16 @@ def test_a_wrong_term_is_seen_by_the_leading_term_of_delta_j(
 
 def test_a_wrong_hamiltonian_is_not_taken(monkeypatch: pytest.MonkeyPatch) -> None:
     right = found(DUFFING, "stormer-verlet").text
-    way = hamiltonian_of_field._by_integration
+    way = module._by_integration
 
     def wrong(field, vector, factors):
         own = way(field, vector, factors)
         return own + field.ring.variable("q")
 
-    monkeypatch.setattr(hamiltonian_of_field, "_by_integration", wrong)
+    monkeypatch.setattr(module, "_by_integration", wrong)
     assert found(DUFFING, "stormer-verlet").text == right, "found in another way"
-    monkeypatch.setattr(hamiltonian_of_field, "_among_products", wrong)
-    monkeypatch.setattr(hamiltonian_of_field, "_among_all", wrong)
+    monkeypatch.setattr(module, "_among_products", wrong)
+    monkeypatch.setattr(module, "_among_all", wrong)
     result = found(DUFFING, "stormer-verlet")
     assert (result.reach, result.terms[2].hamiltonian, result.text) == (-1, None, "0")
     assert result.terms[2].is_hamiltonian is True, "its divergence is 0 all the same"

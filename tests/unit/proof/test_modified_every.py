@@ -13,10 +13,9 @@ from verify.algebra.symbols import H_STEP
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.modified import every as modified_every
-from verify.proof.modified.every import modified_for_every
+from verify.proof.modified.every import Logarithm, modified_for_every, terms_of_splitting
 from verify.proof.modified.field import field_of
 from verify.proof.modified.one import modified_of
-from verify.proof.modified.splitting_logarithm import Logarithm, terms_of_splitting
 from verify.schemes.splitting_conditions import Splitting
 from verify.verdict import Verdict
 

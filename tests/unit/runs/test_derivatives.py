@@ -14,8 +14,7 @@ import sympy
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.runs.derivatives import Derivatives
-from verify.runs.derivatives_in_degrees import DerivativesInDegrees
+from verify.runs.derivatives import Derivatives, DerivativesInDegrees
 
 PLANE = [("p**2*(1 + q**2)/2 + q**4/4 + p*q", 2), ("p**2/2 + q**3 + p**3*q/5", 1)]
 SEVERAL = [("(p1**2 + p2**2)/2 + q1**2*q2 + p1*q2**2/3", 2),

@@ -21,10 +21,9 @@ from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.exact import of_mpf
 from verify.arithmetic.flint_precision import working_precision
 from verify.kernels.rounding import PRECISION, Rounded
-from verify.runs import form_bound, inverse_norm
+from verify.runs import a_posteriori, form_bound
 from verify.runs.a_posteriori import _Certificate
-from verify.runs.derivatives import norm
-from verify.runs.derivatives_in_degrees import DerivativesInDegrees
+from verify.runs.derivatives import DerivativesInDegrees, norm
 from verify.runs.step_rounding import StepErrors
 
 SEEDS = range(40)
@@ -239,7 +238,7 @@ def test_the_inverse_is_no_larger_than_is_said(size: int) -> None:
         if not seen["det_low"] > 0:
             continue
         with working_precision(PRECISION):
-            least = inverse_norm.least_of(size, seen)
+            least = a_posteriori.least_of(size, seen)
         if not least > 0:
             continue
         exact_rows = ctx.matrix([[ctx.mpf(x.numerator) / x.denominator for x in r] for r in rows])
@@ -255,7 +254,7 @@ def test_the_inverses_bound_is_what_its_formula_says(size: int) -> None:
     for seed in SEEDS:
         seen = drawn(seed, size).seen
         with working_precision(PRECISION):
-            found = inverse_norm.least_of(size, {n: ball(x) for n, x in seen.items()})
+            found = a_posteriori.least_of(size, {n: ball(x) for n, x in seen.items()})
         assert abs(number(found) / run_bounds.least(size, seen) - 1) < CLOSE
 
 

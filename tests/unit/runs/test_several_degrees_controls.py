@@ -12,7 +12,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import kernel_for
 from verify.kernels.step import tangent_map
 from verify.kernels.stepping import KernelRun
-from verify.runs import form_bound, inverse_norm
+from verify.runs import a_posteriori, form_bound
 from verify.runs.a_posteriori import certify
 
 Patch = pytest.MonkeyPatch
@@ -103,7 +103,7 @@ def test_the_inverse_of_a_matrix_is_no_larger_than_is_said() -> None:
         "det_low": flint.arb(int(exact.det().p)),
         "form_top": flint.arb(sum(x * x for x in above)),
     }
-    least = inverse_norm.least_of(4, seen)
+    least = a_posteriori.least_of(4, seen)
     assert least > 0
     inverse = exact.inv()
     size = sum(float(int(x.p)) ** 2 / float(int(x.q)) ** 2 for x in inverse.entries()) ** 0.5

@@ -13,7 +13,7 @@ from tests.paths import ROOT
 from verify.claims.file import load_claims
 from verify.errors import InputError
 from verify.exploration.different_scenes import scene_of
-from verify.integrators.others.findings import described
+from verify.integrators.others.findings import confirmed
 from verify.integrators.tables.check import check_table
 from verify.scenes.results.exploration import Worst
 from verify.scenes.scene import load_scene, scene_from_toml
@@ -100,7 +100,7 @@ def in_results(path: Path) -> object:
 
 
 READERS = [
-    read_toml, load_scene, load_claims, check_table, described.read, in_results,
+    read_toml, load_scene, load_claims, check_table, confirmed.read, in_results,
     lambda path: scene_from_toml(path.read_text(), path.name),
 ]  # fmt: skip
 
@@ -115,7 +115,7 @@ def test_every_reader_refuses_it(reader: Callable[[Path], object], tmp_path: Pat
 
 def test_there_is_no_other_reader() -> None:
     readers = [x.name for x in (ROOT / "verify").rglob("*.py") if "tomllib" in x.read_text()]
-    assert sorted(readers) == ["toml_file.py", "toml_lines.py"]  # the second reads what was read
+    assert sorted(readers) == ["toml_file.py"]
 
 
 # -- what a terminal would act on -----------------------------------------------------------------

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from tests.examples import drawn
 from verify.claims.file import load_claims
 from verify.errors import InputError
-from verify.scenes.toml_lines import lines_of
+from verify.scenes.toml_file import lines_of
 
 # -- lines ----------------------------------------------------------------------------------------
 

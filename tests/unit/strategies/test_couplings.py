@@ -8,8 +8,8 @@ import sympy
 from hypothesis import strategies as st
 
 from tests.helpers.sampled.drawing import fuzzed
-from verify.strategies.couplings import Coupling, Form, forms
 from verify.strategies.formulas import KINDS
+from verify.strategies.formulas_in_degrees import Coupling, Form, forms
 from verify.strategies.terms import Drawer, Limits
 
 NAMES = sympy.symbols("p q P Q")

@@ -13,9 +13,8 @@ from verify.flows.degrees.solution import uncoupled
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.scenes.values import InitialState
 from verify.schemes.degrees import check_takes
-from verify.strategies.couplings import forms
 from verify.strategies.formulas import KINDS
-from verify.strategies.formulas_in_degrees import numbered
+from verify.strategies.formulas_in_degrees import forms, numbered
 
 every_n = pytest.mark.parametrize("degrees", [2, 3])
 

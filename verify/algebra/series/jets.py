@@ -8,16 +8,128 @@ derivatives are 0. Of an H that depends on t, D = ∂_t + X takes the place of X
 
 A scheme for every H is a pair of series in h over these polynomials: lists of the coefficients of
 h⁰, h¹, …, cut off at the same power.
+
+In n degrees of freedom the partial derivatives of a smooth H(p1 … pn, q1 … qn) are independent
+variables for the same reason.
 """
 
+import math
 from collections.abc import Iterator, Sequence
+from fractions import Fraction
 
 import flint
 
-from verify.algebra.series.jets_in_degrees import Index, JetsInDegrees
+from verify.algebra.zero_test import Decision
+from verify.errors import LimitError
 
+_MOST_JETS = 4000
 Poly = flint.fmpq_mpoly
 Series = list[Poly]
+Index = tuple[int, ...]  # how often by each variable
+
+
+class JetsInDegrees:
+    """The ring of the variables and of H's derivatives of orders 1 … `order`.
+
+    `separable`: H = T(p) + V(q), whose mixed derivatives are 0. `timed`: t is one more variable.
+    Raises LimitError for more derivatives than a computer can hold polynomials in. It is a
+    `verify.algebra.series.power_series.CoefficientRing`.
+    """
+
+    def __init__(
+        self, names: Sequence[str], order: int, *, separable: bool = False, timed: bool = False
+    ) -> None:
+        self.variables = (*names, "t") if timed else tuple(names)
+        self.order, self._half, self.separable = order, len(names) // 2, separable
+        kinds, by = (2, self._half + timed) if separable else (1, len(self.variables))
+        count = kinds * math.comb(by + order, order)
+        if count > _MOST_JETS:
+            problem = f"about {count} derivatives of H would be needed; allowed: {_MOST_JETS}"
+            raise LimitError("degrees", self._half, problem)
+        self.indices = [x for n in range(1, order + 1) for x in self._of_order(n)]
+        written = [self._called(index) for index in self.indices]
+        self.context = flint.fmpq_mpoly_ctx.get(
+            [*self.variables, *written], flint.Ordering.degrevlex
+        )
+        self.gens = self.context.gens()
+        self.zero, self.one = self.context.constant(0), self.context.constant(1)
+        self.places = {name: k for k, name in enumerate(self.variables)}
+        self._at = {index: len(self.variables) + k for k, index in enumerate(self.indices)}
+
+    def _of_order(self, n: int) -> Iterator[Index]:
+        for index in _partitions(n, len(self.variables)):
+            if not self._vanishes(index):
+                yield index
+
+    def _vanishes(self, index: Index) -> bool:
+        half = self._half
+        return self.separable and any(index[:half]) and any(index[half : 2 * half])
+
+    def _called(self, index: Index) -> str:
+        return "H_" + "".join(name * n for name, n in zip(self.variables, index, strict=True))
+
+    def of(self, index: Index) -> Poly:
+        """That derivative of H."""
+        if self._vanishes(index):
+            return self.zero
+        if sum(index) > self.order:
+            raise OverflowError(f"a derivative of order {sum(index)} of H; there are {self.order}")
+        return self.gens[self._at[index]]
+
+    def first(self, name: str) -> Poly:
+        """∂H/∂name."""
+        return self.of(tuple(int(other == name) for other in self.variables))
+
+    # -- as a ring ----------------------------------------------------------------------------
+
+    def reduce(self, x: Poly) -> Poly:
+        """x itself: between jets there are no relations."""
+        return x
+
+    def multiply(self, x: Poly, y: Poly) -> Poly:
+        """The product."""
+        return x * y
+
+    def constant(self, value: Fraction) -> Poly:
+        """A rational number as an element."""
+        return self.context.constant(flint.fmpq(value.numerator, value.denominator))
+
+    def variable(self, name: str) -> Poly:
+        """A variable as an element."""
+        return self.gens[self.places[name]]
+
+    def diff(self, x: Poly, name: str) -> Poly:
+        """The partial derivative by a variable, which sends H's derivatives to the next."""
+        by, count = self.places[name], len(self.variables)
+        total = x.derivative(by)
+        for at, degree in enumerate(x.degrees()[count:], count):
+            if degree > 0:  # −1 of zero
+                index = list(self.indices[at - count])
+                index[by] += 1
+                total += x.derivative(at) * self.of(tuple(index))
+        return total
+
+    def decide(self, x: Poly) -> Decision:
+        """Zero where x is the zero polynomial; else some polynomial H gives it another value."""
+        return Decision(bool(x.is_zero()))
+
+    def vanishes(self, x: Poly) -> bool:
+        """Whether x is the zero polynomial."""
+        return bool(x.is_zero())
+
+    def text(self, x: Poly) -> str:
+        """x as a formula."""
+        return str(x).replace("^", "**")
+
+
+def _partitions(total: int, parts: int) -> Iterator[Index]:
+    """All tuples of so many numbers ≥ 0 with that sum."""
+    if parts == 1:
+        yield (total,)
+        return
+    for first in range(total, -1, -1):
+        for rest in _partitions(total - first, parts - 1):
+            yield (first, *rest)
 
 
 class JetRing(JetsInDegrees):

@@ -82,10 +82,7 @@ def one_point(source: str, names: Mapping[str, Any], *, anew: bool = False) -> C
 
 
 def _source(
-    source: str,
-    names: Mapping[str, Any],
-    target: str,
-    make: Callable[[int], Target] | None = None,
+    source: str, names: Mapping[str, Any], target: str, make: Callable[[int], Target] | None = None
 ) -> Source:
     """The kernel with the numbers among its names, which are all that a target asks for."""
     constants = tuple(sorted((n, x) for n, x in names.items() if isinstance(x, float)))

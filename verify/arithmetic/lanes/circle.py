@@ -28,14 +28,7 @@ from llvmlite import ir
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.lanes import vectors
 from verify.arithmetic.lanes.carries import Number
-from verify.arithmetic.lanes.fractions import (
-    Fractions,
-    added,
-    constant,
-    negated,
-    settled,
-    taken,
-)
+from verify.arithmetic.lanes.fractions import Fractions, added, constant, negated, settled, taken
 from verify.arithmetic.lanes.numbers import Numbers
 from verify.arithmetic.lanes.reduction import Reduction
 from verify.arithmetic.lanes.table import Table, rows_of

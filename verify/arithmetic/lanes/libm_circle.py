@@ -15,6 +15,11 @@ z U is within as much, and z³ U at most 0.0005 of the cosine; what the series l
 0.0011 u; r, which is not below 2^−12, is within 2^−37 u, and pairs lose as little. Together it is
 less than 0.016 u, and that only of sines from ½ to 0.7072, where u of the value is 0.7072 units at
 most; of all others, less than 0.005 u. So it is less than 0.012 units in the last place.
+
+Unevaluated sums of two float64 in lanes, high + low with |low| far below |high|.
+
+Of a product, and of a sum whose first term is the larger one, what is lost is some units of 2^−104
+of it. Low may be some units in the last place of high: what takes high alone must allow for that.
 """
 
 import os
@@ -29,20 +34,38 @@ from llvmlite import ir
 
 from verify.arithmetic import processor
 from verify.arithmetic.flint_precision import working_precision
-from verify.arithmetic.lanes.double_double import Pair, exact_sum, plus, times
-from verify.arithmetic.lanes.vectors import (
-    DOUBLES,
-    WORDS,
-    absolute,
-    fused,
-    splat,
-    splat_double,
-)
+from verify.arithmetic.lanes.vectors import DOUBLES, WORDS, absolute, fused, splat, splat_double
 from verify.arithmetic.processor import LANES
 from verify.arithmetic.wide.functions import arb_integer
 from verify.arithmetic.wide.limbs import I64, Value, constant
 from verify.arithmetic.wide.newton import DOUBLE
 from verify.arithmetic.wide.one_orbit import BOOL, float_function
+
+
+class Pair(NamedTuple):
+    """high + low, a vector of float64 each."""
+
+    high: Value
+    low: Value
+
+
+def exact_sum(b: ir.IRBuilder, x: Value, y: Value) -> Pair:
+    """x + y, |x| ≥ |y|: rounded, and what that leaves out."""
+    total = b.fadd(x, y)
+    return Pair(total, b.fadd(b.fsub(x, total), y))
+
+
+def plus(b: ir.IRBuilder, x: Value, y: Pair) -> Pair:
+    """x + y, |x| ≥ |y|."""
+    total = exact_sum(b, x, y.high)
+    return Pair(total.high, b.fadd(total.low, y.low))
+
+
+def times(b: ir.IRBuilder, x: Pair, y: Pair) -> Pair:
+    product = b.fmul(x.high, y.high)
+    rest = fused(b, x.high, y.high, b.fneg(product))
+    return Pair(product, fused(b, x.low, y.high, fused(b, x.high, y.low, rest)))
+
 
 NAMES = ("sin", "cos")
 SURE, SURE_NEAR_0 = 0.47, 0.44  # of a unit in the last place, the latter for a sine

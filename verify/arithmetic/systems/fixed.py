@@ -2,8 +2,8 @@
 
 A number has 16 integer bits, the sign among them, and all others after the point: its precision is
 absolute. Nothing overflows unseen: before a run, interval arithmetic finds limits of p and q within
-which no operation of a step can leave the format (`verify.kernels.reach`), and the loop ends where
-the orbit leaves them, or a function has no value.
+which no operation of a step can leave the format (`verify.kernels.stepping`), and the loop ends
+where the orbit leaves them, or a function has no value.
 """
 
 import math
@@ -105,7 +105,7 @@ def _walk(
     kernel: Any, every: int, stops: int, fixed: Sequence[Any], state: Sequence[Any], beyond: int
 ) -> Any:
     """In one call, and in lanes where others walk in the same kernel."""
-    from verify.arithmetic.compiled.walking import Walk
+    from verify.arithmetic.compiled.engine import Walk
 
     try:
         return lockstep.meet(kernel, Walk(every, stops, fixed, state, beyond)).result

@@ -27,7 +27,7 @@ def make(digits: int) -> Arithmetic:
     return Arithmetic(
         name=NAME,
         bits=53,
-        number=_number,
+        number=nearest_double,
         exact=Fraction,
         finite=math.isfinite,
         context=nullcontext,
@@ -61,7 +61,8 @@ NUMBER_SYSTEM = NumberSystem(
 )
 
 
-def _number(value: Fraction) -> float:
+def nearest_double(value: Fraction) -> float:
+    """The nearest float64; infinite beyond their range, where a run then ends."""
     try:
         return float(value)
     except OverflowError:

@@ -7,8 +7,7 @@ from pydantic import Field
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.claims.findings import Findings
 from verify.claims.formulas import within
-from verify.claims.orders import OF_DELTA_J, delta_j_of
-from verify.claims.proved_order import as_claimed
+from verify.claims.orders import OF_DELTA_J, as_claimed, delta_j_of
 from verify.claims.quantified import QuantifiedClaim
 from verify.scenes.results.claim import ClaimResult
 

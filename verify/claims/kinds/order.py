@@ -6,8 +6,14 @@ In n degrees of freedom it is the order of det J − 1, and not of S.
 from typing import TYPE_CHECKING, Literal
 
 from verify.claims.findings import Findings
-from verify.claims.orders import OF_DELTA_J, Order, OrderedClaim, delta_j_of, every_delta_j
-from verify.claims.proved_order import ProvedOrder
+from verify.claims.orders import (
+    OF_DELTA_J,
+    Order,
+    OrderedClaim,
+    ProvedOrder,
+    delta_j_of,
+    every_delta_j,
+)
 from verify.prose import prose
 from verify.scenes.results.claim import ClaimResult
 

@@ -9,8 +9,7 @@ from verify.claims.checked import of_scene
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
 from verify.claims.formulas import within
-from verify.claims.orders import OF_S, defect_of
-from verify.claims.proved_order import as_claimed
+from verify.claims.orders import OF_S, as_claimed, defect_of
 from verify.prose import Prose
 from verify.scenes.results.claim import ClaimResult
 

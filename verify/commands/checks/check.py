@@ -30,11 +30,7 @@ _OF_STATEMENTS = ("id", "source", "statement", "outcome", "readings")
 @allow_undecided_option
 @with_tasks
 def check(
-    claims: str,
-    only: tuple[str, ...],
-    allow_undecided: bool,
-    keep: Path | None,
-    where: "Placement",
+    claims: str, only: tuple[str, ...], allow_undecided: bool, keep: Path | None, where: "Placement"
 ) -> Answer:
     """Check the claims in CLAIMS (a TOML file, or `paper`).
 

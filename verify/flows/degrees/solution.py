@@ -25,11 +25,7 @@ _ELLIPSE = "closed form of Kepler's ellipse"
 
 
 def solution_in_degrees(
-    hamiltonian: Hamiltonian,
-    point: Point,
-    time: Fraction,
-    digits: int,
-    t0: Fraction = Fraction(0),
+    hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int, t0: Fraction = Fraction(0)
 ) -> Solution:
     """φ_time(point), whose bound is at most 10^−digits times the largest coordinate at both ends.
 

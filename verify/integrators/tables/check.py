@@ -21,8 +21,7 @@ from verify.integrators.tables import kinds
 from verify.integrators.tables.entry import TableEntry
 from verify.integrators.tables.told import TableClaim
 from verify.scenes.mistakes.values import one_line
-from verify.scenes.toml_file import read_toml
-from verify.scenes.toml_lines import Lines, lines_of
+from verify.scenes.toml_file import Lines, lines_of, read_toml
 
 MOST_TABLES = 1000
 _ROOT = ("table", "title", "about", "left_out")

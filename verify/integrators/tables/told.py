@@ -10,8 +10,7 @@ from verify.errors import InputError
 from verify.integrators.tables.cost import Cost, Severity, cost_of, exact_numbers, severity_of
 from verify.prose import Prose
 from verify.schemes.printed.asked import Asked
-from verify.schemes.printed.judged import Judged
-from verify.schemes.printed.misprint import Misprint
+from verify.schemes.printed.judged import Judged, Misprint
 from verify.schemes.printed.printed_numbers import PrintedNumbers, rounded_to
 from verify.schemes.printed.sentences import (
     Details,

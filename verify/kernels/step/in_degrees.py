@@ -14,10 +14,9 @@ from itertools import combinations
 from verify.algebra.ring import Poly
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.step.computation import Computation, Observed, step_map_of
-from verify.kernels.step.partials import Partials
 from verify.kernels.step.pfaffian import Pfaffian, change_of_volume
 from verify.kernels.step.program import Evaluator, Program
-from verify.kernels.step.program_algebra import ProgramAlgebra
+from verify.kernels.step.program_algebra import Partials, ProgramAlgebra
 from verify.kernels.step.tangent_map import Tangent
 from verify.proof.symplectic.closed_form import ClosedDefect
 from verify.schemes import get

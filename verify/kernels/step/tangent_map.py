@@ -9,7 +9,6 @@ which Λ has been. In n degrees of freedom det M is Pf(MᵀΩM)/Pf Ω, and `form
 of squares of MᵀΩM's entries above the diagonal.
 """
 
-import math
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from itertools import combinations
@@ -39,14 +38,6 @@ def carried(coordinates: Sequence[str]) -> list[tuple[str, int | str]]:
     if size > 2:
         found.append(("form_top", size // 2))
     return found + [(f"{name}_{end}", name) for name in coordinates for end in ("low", "high")]
-
-
-def nearest_double(value: Fraction) -> float:
-    """The nearest float64; infinite beyond their range, where the run then ends."""
-    try:
-        return float(value)
-    except OverflowError:
-        return math.inf if value > 0 else -math.inf
 
 
 def product(program: Program, x: Sequence[int], y: Sequence[int]) -> list[int]:

@@ -38,12 +38,7 @@ class Plot:
 
 
 def plotted(
-    draw: "Callable[[], Figure]",
-    *,
-    name: str,
-    lead: str,
-    caption: str,
-    label: str = "",
+    draw: "Callable[[], Figure]", *, name: str, lead: str, caption: str, label: str = ""
 ) -> Plot:
     """What `draw` draws, under the lead as a sentence, which is its text alternative too.
 

@@ -126,10 +126,7 @@ def _frame(axes: Any, layout: _Layout, names: tuple[str, str], *, left: bool, bo
     axes.set_ylim(layout.low[1], layout.high[1])
     axes.set_aspect("equal")
     grid_lines(axes, "both")
-    for axis, name, shown in (
-        (axes.xaxis, names[0], bottom),
-        (axes.yaxis, names[1], left),
-    ):
+    for axis, name, shown in ((axes.xaxis, names[0], bottom), (axes.yaxis, names[1], left)):
         axis.set_major_locator(_ticks())
         axis.set_major_formatter(FuncFormatter(_tick))
         axis.set_tick_params(label1On=shown)

@@ -5,12 +5,7 @@ from decimal import Decimal
 from fractions import Fraction
 
 from verify.pages.text.typography import NBSP, between, interval, number, step, whole
-from verify.scenes.results.separation import (
-    WAYS,
-    CrossoverResult,
-    SeparationGrid,
-    SeparationResult,
-)
+from verify.scenes.results.separation import WAYS, CrossoverResult, SeparationGrid, SeparationResult
 from verify.scenes.results.separation_in_degrees import SeparationInDegrees
 
 PLAIN, CLOSED_FORM = "plain", "closed_form"

@@ -9,12 +9,10 @@ from pathlib import Path
 from markupsafe import Markup
 
 from verify.files import write_atomically
-from verify.pages.environment import environment
 from verify.pages.figures.captioned_plot import Plot
 from verify.pages.markdown.blocks import document
 from verify.pages.markdown.markup import tree
-from verify.pages.page import DATA
-from verify.pages.page_view import page_view
+from verify.pages.page import DATA, environment, page_view
 from verify.scenes.results.report import Report
 
 _CONTENT = '{% include "content.html" %}{% include "footer.html" %}'

@@ -87,7 +87,7 @@ SEPARATED = {
         "parameters and initial values rounded; <code>trajectory</code>, the states stepped in "
         "float64; <code>determinant</code>, det J (or ΔJ) of each step rounded; "
         "<code>product</code>, their product (or sum of logarithms) rounded."
-    ),
+    )
 }
 SEPARATED_FORM = {
     "Truncation, rounding in W": Markup(
@@ -96,7 +96,7 @@ SEPARATED_FORM = {
         "step size, parameters and initial values rounded; <code>trajectory</code>, the states "
         "stepped in float64; <code>derivatives</code>, J (or S) of each step rounded; "
         "<code>product</code>, products of matrices and their sums rounded."
-    ),
+    )
 }
 RAN = {
     "Enclosed, estimated": Markup(

@@ -7,8 +7,8 @@ from verify.errors import InputError
 from verify.hamiltonians.coordinates import PLANE
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.certificates.file import Certificate
-from verify.proof.certificates.plain import Plain
 from verify.proof.certificates.statement import (
+    Plain,
     Statement,
     certificate_of_one,
     entries_of,

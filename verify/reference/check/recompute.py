@@ -203,11 +203,7 @@ def _reached(known: Field, flow: AnyFlow, row: AnyFlowPoint, state: Vector, at: 
 
 
 def _not_reached(
-    known: Field,
-    flow: AnyFlow,
-    row: AnyFlowPoint,
-    why: Exception | None,
-    at: Place,
+    known: Field, flow: AnyFlow, row: AnyFlowPoint, why: Exception | None, at: Place
 ) -> None:
     """A row whose time was not reached: it may blow up; if it does not, H is still what it was."""
     if row.status == "blows up" and isinstance(why, BlowsUpError):

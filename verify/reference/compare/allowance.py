@@ -2,7 +2,7 @@
 
 A few roundings of the state in each step are there in any case. What comes from earlier steps is
 followed where a difference is larger (`verify.reference.compare.scatter`, and in n degrees of
-freedom `verify.reference.compare.carried`). A program that finds ΔJ as a d − b c − 1 rounds the
+freedom `verify.reference.compare.scatter`). A program that finds ΔJ as a d − b c − 1 rounds the
 products, however small ΔJ is; and so each factor of Λ.
 """
 

@@ -134,9 +134,4 @@ _DEFECT: tuple[tuple[str, str, Reading], ...] = (
     ("defects", "your symplectic_defect is that of one step, the greatest, and not that of N",
      _shifted("symplectic_defect_max", 0)),
 )  # fmt: skip
-_OF_COLUMN = {
-    "lambda": _LAMBDA,
-    "mse": _MSE,
-    "delta_j": _DELTA_J,
-    "symplectic_defect": _DEFECT,
-}
+_OF_COLUMN = {"lambda": _LAMBDA, "mse": _MSE, "delta_j": _DELTA_J, "symplectic_defect": _DEFECT}

@@ -74,9 +74,7 @@ class Compared:
 
 
 def compare(
-    ours: Published,
-    theirs: Theirs,
-    done: Callable[[int, int], None] = lambda *_: None,
+    ours: Published, theirs: Theirs, done: Callable[[int, int], None] = lambda *_: None
 ) -> Compared:
     """Everything of the table that the reference data have; `done` hears of runs, of how many.
 

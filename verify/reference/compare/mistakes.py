@@ -15,10 +15,10 @@ from typing import Any
 from verify import schemes
 from verify.algebra.expressions.formula_text import to_text
 from verify.arithmetic.exact import short
+from verify.arithmetic.systems.float64 import nearest_double
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.orbit import Orbit
-from verify.kernels.step.tangent_map import nearest_double
 from verify.reference.compare.agreement import nearest_single
 from verify.reference.compare.setting import Setting
 from verify.schemes.splitting_conditions import Part, Splitting

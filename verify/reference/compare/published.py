@@ -11,13 +11,13 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from verify.arithmetic.exact import rational
+from verify.arithmetic.systems.float64 import nearest_double
 from verify.errors import InputError, unknown
 from verify.files import opened, read_bytes
 from verify.formats import check_format
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import point_of
 from verify.kernels.orbit import Orbit
-from verify.kernels.step.tangent_map import nearest_double
 from verify.reference.compare.setting import numbers_of
 from verify.reference.make.columns import (
     AnyOrbitPoint,

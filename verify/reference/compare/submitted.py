@@ -2,7 +2,7 @@
 
 Its columns are those of the reference data's runs, in the plane or in n degrees of freedom. Only
 what is compared is kept, so that memory does not grow with the file (see
-`verify.reference.compare.table`).
+`verify.reference.compare.rows`).
 """
 
 import re
@@ -10,19 +10,20 @@ from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
 
+from verify.arithmetic.systems.float64 import nearest_double
 from verify.errors import NOT_GIVEN, InputError
-from verify.kernels.step.tangent_map import nearest_double
 from verify.reference.compare.published import Inputs, Published, PublishedRun
 from verify.reference.compare.rows import (
     COUNTED,
     Row,
+    Table,
     Theirs,
     number_of,
+    opened,
     places_of,
     printable,
     step_of,
 )
-from verify.reference.compare.table import Table, opened
 
 _MOST_KNOWN = 10_000  # of the inputs' texts that are remembered
 _BEGINS = "t0"  # of an H in time; a scene has one, so that it need not be told

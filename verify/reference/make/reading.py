@@ -28,10 +28,7 @@ def json_of(content: bytes, name: str) -> Any:
         raise InputError("file", name, "is not JSON in UTF-8: it has half a character, as \\ud800")
     try:
         return json.loads(
-            text,
-            object_pairs_hook=unique,
-            parse_float=_no_float,
-            parse_constant=_no_float,
+            text, object_pairs_hook=unique, parse_float=_no_float, parse_constant=_no_float
         )
     except RecursionError:
         raise InputError("file", name, "is nested too deep") from None

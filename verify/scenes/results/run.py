@@ -1,5 +1,9 @@
-"""What one run gave, and how it shows itself in a notebook."""
+"""What one run gave, and how it shows itself in a notebook.
 
+How an energy changes along a run.
+"""
+
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from typing import Literal, Self
@@ -11,8 +15,25 @@ from verify.lateral import compute
 from verify.notebook import aligned_latex, html_table, number_latex
 from verify.scenes.frozen import Frozen, OfScheme, Seconds
 from verify.scenes.results.bounded_value import Value
-from verify.scenes.results.energy_drift import EnergyDrift
 from verify.scenes.results.orbit import MOST_POINTS, OrbitTable
+
+
+@dataclass(frozen=True)
+class EnergyDrift:
+    """H̃ − H̃₀ at the times of `t`, for H̃ up to h^`power`; None where H̃ is not defined there.
+
+    `power` 0 is H itself. All without units; the values are the nearest float64 numbers.
+    """
+
+    power: int
+    t: tuple[Fraction, ...]
+    values: tuple[float | None, ...]
+
+    @property
+    def largest(self) -> float:
+        """The largest |H̃ − H̃₀|."""
+        return max((abs(x) for x in self.values if x is not None), default=0.0)
+
 
 _SHOWN = {
     "lambda": ("Λ", r"\Lambda"),

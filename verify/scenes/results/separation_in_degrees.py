@@ -88,7 +88,7 @@ class FormAt(Frozen):
 
 
 class PowerLawResult(WithProse):
-    """A `verify.studies.separation.form_growth.PowerLaw`: measured, not proved."""
+    """A `verify.studies.separation.form_result.PowerLaw`: measured, not proved."""
 
     exponent: str | None
     standard_error: str | None
@@ -119,7 +119,7 @@ class TangentGrowth(WithProse):
     2 × 2 minors, as which a 2-form grows, and which is below ‖M_N‖². `finite_time_lyapunov`:
     ln(‖M_N‖/√(2n))/T per unit of time, `time` T. `motion`: whether ‖M‖ grew exponentially in this
     run, and then `cause`, whose that growth is: `at_half_step` is the exponent over the same time
-    with half the step size (`verify.studies.separation.form_motion`). `law`, `law_of_areas`: those
+    with half the step size (`verify.studies.separation.form_result`). `law`, `law_of_areas`: those
     of ‖M‖² and ‖∧²M‖ where it did not. `per_area`: the greatest |entry| of the truncation of W_N,
     over ‖∧²M_N‖.
     """

@@ -9,8 +9,7 @@ from fractions import Fraction
 from typing import Generic, TypeVar
 
 from verify.algebra.generator import Poly
-from verify.algebra.series.coefficient_ring import CoefficientRing
-from verify.algebra.series.power_series import Series
+from verify.algebra.series.power_series import CoefficientRing, Series
 from verify.hamiltonians.canonical_field import Flow
 from verify.schemes.degrees.two_form import TwoForm, wedge
 from verify.schemes.step_algebra import State

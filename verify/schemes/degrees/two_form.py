@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from itertools import combinations
 
 from verify.algebra.ring import Decision, Poly
-from verify.algebra.series.coefficient_ring import CoefficientRing
+from verify.algebra.series.power_series import CoefficientRing
 from verify.hamiltonians.canonical_field import Flow
 
 Place = tuple[int, int]

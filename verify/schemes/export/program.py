@@ -124,10 +124,7 @@ def _renamed(names: Sequence[str], taken: set[str]) -> dict[sympy.Symbol, sympy.
 
 class _Writer:
     def __init__(
-        self,
-        step_map: StepMap,
-        renamed: dict[sympy.Symbol, sympy.Symbol],
-        variables: Sequence[str],
+        self, step_map: StepMap, renamed: dict[sympy.Symbol, sympy.Symbol], variables: Sequence[str]
     ) -> None:
         self.map = step_map
         self.renamed = renamed

@@ -96,10 +96,7 @@ class Nearby:
     # -- none exist -------------------------------------------------------------------------------
 
     def _excludes(
-        self,
-        weights: Mapping[int, Ball],
-        units: Fraction | int,
-        slopes: Slopes | None = None,
+        self, weights: Mapping[int, Ball], units: Fraction | int, slopes: Slopes | None = None
     ) -> bool:
         """Whether Σ weight · residue is not 0 at any numbers within so many units.
 

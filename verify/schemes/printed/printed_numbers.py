@@ -233,9 +233,7 @@ def evaluated(expression: sympy.Expr, at: Mapping[str, E], number: Callable[[sym
 
 
 @lru_cache(maxsize=4096)
-def _terms(
-    expression: sympy.Expr,
-) -> tuple[tuple[tuple[tuple[str, int], ...], sympy.Expr], ...]:
+def _terms(expression: sympy.Expr) -> tuple[tuple[tuple[tuple[str, int], ...], sympy.Expr], ...]:
     """((number, exponent), …) and the coefficient, of each term."""
     if not expression.free_symbols:
         return (((), expression),)

@@ -4,8 +4,7 @@ from fractions import Fraction
 
 from verify.arithmetic.exact import decimal
 from verify.prose import Prose, count, prose, read_prose
-from verify.schemes.printed.judged import AS_PRINTED, WITHIN, Judged
-from verify.schemes.printed.misprint import Misprint
+from verify.schemes.printed.judged import AS_PRINTED, WITHIN, Judged, Misprint
 from verify.schemes.printed.printed_numbers import PrintedNumbers, rounded_to
 from verify.verdict import Verdict
 

@@ -2,7 +2,7 @@
 
 Where each is the right one, the sum of the other kind's parts before it, the conditions without
 time are all that is asked, but of a quadratic T that depends on time
-(`verify.schemes.timed.clocks`).
+(`verify.schemes.timed.splitting`).
 Where one is not, those of words with time tell (`verify.schemes.words.equations`).
 """
 

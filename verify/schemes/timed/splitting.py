@@ -8,14 +8,30 @@ Lyndon words suffice, 2, 2, 4, 7, 15, 28, 62, 126 of weights 1 … 8 where T dep
 of letters, K_n standing for any V_n(q) and D_n for any T_n(p), are independent in the plane up to
 weight 8 (a test has their rank). Without letters of n > 0 these are the conditions of
 `verify.schemes.splitting_conditions`; and where the clocks are right they are all that is asked
-(`verify.schemes.timed.clocks`).
+(below).
 
 For quadratic T brackets vanish or are equal from weight 4 on. There the conditions are those
 combinations of coefficients in the generator of the step (`verify.schemes.words.step_words`) that
 count (`verify.schemes.words.quadratic`): 2, 2, 4, 6, 12, 20, 39, 67 for p²/(2m), and 2, 3, 6, 11,
 23, 45, 93, 182 for p²/(2m(t)).
+
+The time at which each part of a splitting reads its force or its velocity.
+
+The right clock of a kick is advanced by the drifts, that of a drift by the kicks: a kick reads the
+force at t + h·(drifts before it), a drift the velocity at t + h·(kicks before it). For then the
+step is that of a splitting without time. With times x and y as further coordinates and X, Y their
+momenta, H = T(p, y) + X + V(q, x) + Y is a sum of A = V(q, x) + Y, whose flow is the kick and
+advances y, and of B = T(p, y) + X, whose flow is the drift and advances x. After the canonical
+change (y, Y) → (Y, −y) A is a function of coordinates and B one of momenta. The conditions for
+T(p) + V(q) hold in any number of degrees of freedom; so with right clocks every splitting keeps
+its order for every H = T(p, t) + V(q, t). Nyström methods, which have theirs for quadratic T alone,
+do not where T depends on t: that B is not quadratic in the momenta.
+
+Where the drifts do not add up to 1, the kicks' clock does not reach the step's end. That is no
+fault of the clock: the condition Σ drifts = 1 fails, of order 1.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import ClassVar
@@ -33,10 +49,22 @@ from verify.schemes.splitting_conditions import (
     Splitting,
     WordConditions,
 )
-from verify.schemes.timed.clocks import Times, right_clocks
 from verify.schemes.words.equations import equations_of
 from verify.schemes.words.kinetic import Kinetic
 from verify.schemes.words.step_words import StepWords, TimedPart
+
+Times = tuple[sympy.Expr | None, ...]  # of the parts, as parts of h; None where it is the right one
+
+
+def right_clocks(ring: Ring, parts: Sequence[tuple[str, Poly]]) -> list[Poly]:
+    """The times that keep the order, of letters K and D with sizes: for each part the sum of the
+    other kind's before it."""
+    clocks, found = {"K": ring.zero, "D": ring.zero}, []
+    for kind, size in parts:
+        found.append(clocks[kind])
+        other = "D" if kind == "K" else "K"
+        clocks[other] = ring.reduce(clocks[other] + size)
+    return found
 
 
 @dataclass(frozen=True)

@@ -31,7 +31,6 @@ from verify.prose import Number, Prose, prose, read_prose
 from verify.scenes.results.regions import EXACT_FLOW, CarriedOutline, FlowImage, Projection
 from verify.scenes.shapes.outline import Outline, Shape
 from verify.studies.regions.area import Goal, Measured, NoAreaError, Probe
-from verify.studies.regions.distance import distance_from_exact
 from verify.studies.regions.mean_lambda import mean_over, middle_of
 from verify.studies.regions.place import ITSELF, Place
 from verify.studies.regions.point_carriers import (
@@ -39,6 +38,7 @@ from verify.studies.regions.point_carriers import (
     FloatCarrier,
     SchemeCarrier,
     WideCarrier,
+    distance_from_exact,
     smaller_than_one,
 )
 from verify.studies.regions.polyline import dense, to_draw

@@ -29,19 +29,14 @@ from verify.arithmetic.number_system import Arithmetic
 from verify.kernels.rounding import PRECISION, Ball, analyse, rounding_of
 from verify.runs.derivatives import norm
 from verify.studies.separation.form_kernel import FormKernel
-from verify.studies.separation.mixed_run import visited
-from verify.studies.separation.stepper import State
+from verify.studies.separation.mixed_run import State, visited
 
 _FLOAT = flint.arb(2) ** -45  # of sums of squares in float64, relative
 _ENTRY = flint.arb(2) ** -44  # of an entry of MᵀΩM in float64, relative to ‖M‖²
 
 
 def counted(
-    kernel: FormKernel,
-    arithmetic: Arithmetic,
-    inputs: Mapping[str, float],
-    last: State,
-    steps: int,
+    kernel: FormKernel, arithmetic: Arithmetic, inputs: Mapping[str, float], last: State, steps: int
 ) -> Mapping[str, Fraction | None]:
     """Bounds of the error of every entry of W at every checkpoint, by the letters of what was
     carried; None where there is none. `last`: what the kernel carried in the end."""

@@ -1,15 +1,38 @@
-"""What chains of W's entries become in a result: matrices, greatest entries, and how W grew."""
+"""What chains of W's entries become in a result: matrices, greatest entries, and how W grew.
 
+Whether an exponential growth of the tangent map is the motion's, or the scheme's at this step.
+
+A scheme may amplify by itself, as lie2 does a harmonic oscillator, by 1 + h⁴/8 a step. What a
+scheme does so depends on h; what the motion does, does not. So the run's tangent map is carried
+along once more, in float64 beside 20 digits, with half the step size over the same time: where it
+grows exponentially there too, at a rate within a factor of 2, the growth is the motion's. That is
+measured, and not proved.
+
+How W_N and the tangent map grow with N, as one run shows it: measured, and not proved.
+
+W_N = Σ_k M_kᵀ S_k M_k, M_k the tangent map of k steps, so that W can grow though no step's S does:
+it is a 2-form, and grows as areas do under M, like σ₁σ₂ of M's two greatest singular values, which
+is ‖M‖² at most. Where motion is quasi-periodic ‖M‖ grows like N at most; a fit of the envelope of
+max |W| over the checkpoints, in logarithms, says whether W stays bounded or grows like N or N². In
+chaos ‖M‖ grows exponentially and no power is fitted: what W grows by then is the motion's.
+
+Whether it grew exponentially is told as everywhere (`verify.runs.tangent_growth`), and of an M that
+has hardly grown nothing is said.
+"""
+
+import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
-from math import isqrt, log, log10
-from typing import Any
+from math import isqrt, log10
+from typing import Any, Literal
 
 from verify.arithmetic.exact import decimal, magnitude, text
+from verify.kernels.stepping import KernelRun
 from verify.prose import Number, Prose, prose
 from verify.runs.start import Start
-from verify.runs.tangent_growth import finite_time_lyapunov
+from verify.runs.tangent_growth import finite_time_lyapunov, is_exponential
 from verify.scenes.results.separation_in_degrees import (
     FormAt,
     FormEvaluation,
@@ -21,10 +44,86 @@ from verify.scenes.results.separation_in_degrees import (
 )
 from verify.studies.separation.chain import Chain
 from verify.studies.separation.form_chain import FormChains
-from verify.studies.separation.form_growth import Kind, PowerLaw, motion_of, power_law
-from verify.studies.separation.form_motion import Cause, Halved, halved
-from verify.studies.separation.form_run import Size
+from verify.studies.separation.form_run import POINTS, Size
+from verify.studies.separation.growth import LEAST, WIDTH, Envelope, Fit, log, with_error
+from verify.studies.separation.links import last_system
+from verify.studies.separation.mixed_run import marks_of
 from verify.studies.separation.way import Way
+
+Law = Literal["bounded", "N", "N²", "exponential", "undecided"]
+Kind = Literal["exponential", "polynomial", "undecided"]
+_LAWS: tuple[Law, ...] = ("bounded", "N", "N²")
+_NEAR = 0.25  # of a whole exponent, at least
+_GROWN = 10  # times ‖M‖² has grown where something is said of how
+_DECADES = 1.2
+_SHORT = "too few checkpoints above noise for a fit"
+
+
+@dataclass(frozen=True)
+class PowerLaw(Fit):
+    """That of a greatest size."""
+
+    name: Law
+
+
+def motion_of(marks: Sequence[int], squares: Sequence[Fraction]) -> Kind:
+    """Whether ‖M‖ grew exponentially in this run; from ‖M‖²."""
+    if len(marks) < LEAST or max(squares) < _GROWN * squares[0]:
+        return "undecided"
+    found = is_exponential([float(n) for n in marks], [log(x) / 2 for x in squares])
+    return "undecided" if found is None else "exponential" if found else "polynomial"
+
+
+def power_law(
+    marks: Sequence[int], values: Sequence[Fraction], noise: Fraction, motion: Kind
+) -> PowerLaw:
+    """The law of sizes at equidistant numbers of steps, each known to within `noise`."""
+    envelope = Envelope(marks, values, noise)
+    if not envelope.tops[-1]:
+        return PowerLaw(None, None, "bounded", prose("exactly 0 at every checkpoint"))
+    if motion == "exponential":
+        return PowerLaw(None, None, "exponential", prose("‖M‖ grows exponentially: no power fits"))
+    if not envelope.reaches(_DECADES):
+        return PowerLaw(None, None, "undecided", prose(_SHORT))
+    exponent, error = envelope.slope()
+    width = max(_NEAR, WIDTH * error)
+    held = [k for k in range(len(_LAWS)) if abs(exponent - k) <= width]
+    name: Law = _LAWS[held[0]] if len(held) == 1 else "undecided"
+    near = f" is near {held[0]}" if len(held) == 1 else " is near no whole exponent, or near two"
+    shown = with_error(exponent, WIDTH * error)
+    return PowerLaw(exponent, error, name, prose("fitted exponent ", *shown, near))
+
+
+_DIGITS = 20
+_ALIKE = 2  # rates within this factor of each other
+
+Cause = Literal["motion", "scheme", "undecided"]
+
+
+@dataclass(frozen=True)
+class Halved:
+    """Whose the growth is, and the finite-time Lyapunov exponent at half the step size; None where
+    that run left its range."""
+
+    cause: Cause
+    rate: float | None
+
+
+def halved(begun: Start, steps: int, rate: float) -> Halved:
+    """Of a run whose tangent map grew exponentially at that `rate`."""
+    hamiltonian, h = begun.hamiltonian, begun.step_size
+    half = {**begun.point, "h": h / 2} | ({"t": begun.t0} if hamiltonian.time_dependent else {})
+    run = KernelRun(hamiltonian, begun.scheme, half, 2 * steps, frozenset(), 0, sections=POINTS)
+    outcome = run.run(last_system().make(_DIGITS), tangent=True)
+    if outcome.done < 2 * steps:
+        return Halved("undecided", None)
+    tops = [note["growth_top"] for note in outcome.tangents]
+    size, time = len(hamiltonian.coordinates), steps * h
+    own = finite_time_lyapunov(math.log(float(tops[-1])) / 2, size, float(time))
+    alike = rate < _ALIKE * own and own < _ALIKE * rate
+    grows = motion_of(marks_of(2 * steps, POINTS), tops) == "exponential"
+    return Halved("motion" if alike and grows else "undecided" if alike else "scheme", own)
+
 
 _SHOWN = 7  # digits of what a figure shows
 _SO_W = (
@@ -73,7 +172,7 @@ class FormWay(Way):
     def tangent(self, time: Fraction, half: Callable[[float], Halved]) -> TangentGrowth:
         """How M grew, and what follows for W; `half` tells of an exponential rate whose it is."""
         last, size = self.sizes[-1], _size(len(self.chains))
-        rate = finite_time_lyapunov(log(float(_root(last.norm))), size, float(time))
+        rate = finite_time_lyapunov(math.log(float(_root(last.norm))), size, float(time))
         halved = half(rate) if self.motion == "exponential" else None
         areas = [_root(x.areas) for x in self.sizes]
         laws = [

@@ -28,9 +28,9 @@ from verify.studies.separation.mixed_run import (
     RERUN,
     Advance,
     MixedRun,
+    State,
     as_rational,
 )
-from verify.studies.separation.stepper import State
 from verify.studies.separation.trail import Trail
 from verify.studies.separation.working import Link, Working, exact_link
 

@@ -33,7 +33,7 @@ trajectory are the same for both.
 In n degrees of freedom W is split so, entry by entry (`verify.studies.separation.form_chain`):
 `plain` is what a program does that multiplies the steps' Jacobians and takes MᵀΩM − Ω at the end,
 `closed_form` is that of `verify run` (`verify.studies.separation.form_run`). How W and the tangent
-map grow is told in `verify.studies.separation.form_growth`.
+map grow is told in `verify.studies.separation.form_result`.
 
 How far the parts are known is told in `verify.studies.separation.working` and
 `verify.runs.estimated`, what is made of a run's checkpoints and of a grid of step sizes in
@@ -55,12 +55,7 @@ from verify.hamiltonians.start import Given, point_of
 from verify.hamiltonians.times_on_the_way import check_times
 from verify.runs.run import AskedRun, check
 from verify.runs.start import Start
-from verify.scenes.results.separation import (
-    WAYS,
-    CrossoverResult,
-    SeparationGrid,
-    SeparationResult,
-)
+from verify.scenes.results.separation import WAYS, CrossoverResult, SeparationGrid, SeparationResult
 from verify.scenes.results.separation_in_degrees import SeparationGridInDegrees, SeparationInDegrees
 from verify.schemes import canonical
 from verify.studies.separation.chain import Chains, separated_chains

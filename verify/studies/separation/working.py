@@ -28,9 +28,8 @@ from verify.arithmetic.arb import bounds, in_reach
 from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.arithmetic.systems import float64
-from verify.kernels.reach import limits
 from verify.kernels.rounding import PRECISION, analyse, rounding_of
-from verify.kernels.stepping import KernelRun
+from verify.kernels.stepping import KernelRun, limits
 from verify.runs.estimated import digits_of
 from verify.studies.separation.kernel import MixedKernel, mixed_kernel
 from verify.studies.separation.mixed_run import (
@@ -39,11 +38,11 @@ from verify.studies.separation.mixed_run import (
     RERUN,
     Advance,
     MixedRun,
+    State,
     Stopped,
     named_inputs,
     visited,
 )
-from verify.studies.separation.stepper import State
 from verify.studies.separation.trail import Trail
 
 Kind = Literal["enclosed", "estimated"]

@@ -15,12 +15,7 @@ from verify.arithmetic.exact import quotient
 from verify.flows.orbit import ExactOrbit
 from verify.studies.stability.exact_motion import ExactMotion
 from verify.studies.stability.run_motion import Motion, RunMotion
-from verify.studies.stability.trail import (
-    MOST_INTERPRETED,
-    MOST_SECTIONS,
-    Trail,
-    follow_precisely,
-)
+from verify.studies.stability.trail import MOST_INTERPRETED, MOST_SECTIONS, Trail, follow_precisely
 
 AnyMotion = Motion[ExactOrbit] | Motion[ExactMotion]
 _STRETCHES = 8

@@ -2,7 +2,7 @@
 
 Linear theory says of a step size h that h ω has to lie in the scheme's interval (see
 `verify.studies.stability.linear`), ω being the greatest frequency on the exact orbit, where that is
-stiffest (`verify.studies.stability.frequency`). What bounded motion is, is told in
+stiffest (`verify.studies.stability.held`). What bounded motion is, is told in
 `verify.studies.stability.run_motion` and `verify.studies.stability.verdict_in_degrees`.
 """
 

@@ -112,10 +112,7 @@ def _limit(
 
 
 def _known(
-    table: PrintedTable,
-    numbers: Mapping[str, Fraction],
-    said: Prose,
-    narrow: Fraction = _NARROW,
+    table: PrintedTable, numbers: Mapping[str, Fraction], said: Prose, narrow: Fraction = _NARROW
 ) -> NearbyLimit | None:
     """The end, to what changes of each number by a unit of its last digit leave of it."""
     value, radius = _end(table, numbers, narrow), Fraction(1, 10 ** (_DIGITS - 2))

@@ -7,8 +7,7 @@ from verify.arithmetic.exact import plain, text
 from verify.hamiltonians.start import shown_of
 from verify.prose import Number, Prose, prose
 from verify.scenes.results.stability import StabilityResult
-from verify.studies.stability.frequency import frequency
-from verify.studies.stability.held import verdict
+from verify.studies.stability.held import frequency, verdict
 from verify.studies.stability.limits import linear_limit, shortened
 from verify.studies.stability.run_motion import RunMotion
 from verify.studies.stability.trail import Run

@@ -18,13 +18,7 @@ from verify.flows.energies import energies_at
 from verify.flows.orbit import ExactOrbit, exact_orbit
 from verify.flows.orbit_search import initial_value_digits
 from verify.studies.stability.exact_motion import ExactMotion
-from verify.studies.stability.trail import (
-    Point,
-    Run,
-    Trail,
-    follow,
-    follow_precisely,
-)
+from verify.studies.stability.trail import Point, Run, Trail, follow, follow_precisely
 
 _BEYOND = 10  # times the reach
 _ENERGY = 100  # times the energy scale

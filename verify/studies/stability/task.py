@@ -32,10 +32,7 @@ class StabilityTask(_FromATime):
     """Judge one run: stable, drifting, unstable, and whose fault it is."""
 
     result = StabilityResult
-    imports = (
-        "verify.studies.stability.results",
-        "verify.studies.stability.trail",
-    )
+    imports = ("verify.studies.stability.results", "verify.studies.stability.trail")
     kind: Literal["stability"] = "stability"
     step_size: StepSize
     steps: int

@@ -29,12 +29,7 @@ from verify.studies.stability.exact_motion import (
     moved,
 )
 from verify.studies.stability.run_motion import Motion
-from verify.studies.stability.trail import (
-    Run,
-    first_apart,
-    first_step,
-    follow_precisely,
-)
+from verify.studies.stability.trail import Run, first_apart, first_step, follow_precisely
 from verify.studies.stability.verdict_on_run import Judgement
 
 _NEAR = Fraction(1, 10**20)  # of the reach, a neighbour of the scheme's own orbit

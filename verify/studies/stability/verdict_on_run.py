@@ -27,13 +27,7 @@ from verify.schemes import get
 from verify.studies.stability.energy_drift import drift_of, too_short
 from verify.studies.stability.rounded_start import describe_rounded_start
 from verify.studies.stability.run_motion import RunMotion, float64
-from verify.studies.stability.trail import (
-    Trail,
-    first_apart,
-    first_step,
-    follow,
-    follow_precisely,
-)
+from verify.studies.stability.trail import Trail, first_apart, first_step, follow, follow_precisely
 
 _MOST_DIGITS = 400
 _FLOAT_BITS = 53

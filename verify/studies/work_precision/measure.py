@@ -27,14 +27,7 @@ from verify.studies.work_precision import peers as peer_catalogue
 from verify.studies.work_precision.errors import Advance, Errors
 from verify.studies.work_precision.lines import comparisons, lg, line
 from verify.studies.work_precision.peer_interface import Answer, PeerError, Solver
-from verify.studies.work_precision.runs import (
-    ROUNDING_SHARE,
-    SHOWN,
-    Ladder,
-    Problem,
-    failed,
-    size,
-)
+from verify.studies.work_precision.runs import ROUNDING_SHARE, SHOWN, Ladder, Problem, failed, size
 from verify.studies.work_precision.timing import Timed, above, clock, interleaved, nothing
 
 

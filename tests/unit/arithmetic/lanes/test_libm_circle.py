@@ -11,7 +11,7 @@ from llvmlite import ir
 
 from verify.arithmetic.compiled import doubles, native
 from verify.arithmetic.lanes import libm_circle
-from verify.arithmetic.lanes.double_double import Pair
+from verify.arithmetic.lanes.libm_circle import Pair
 from verify.arithmetic.lanes.vectors import CONDITIONS, DOUBLES, splat_double
 from verify.arithmetic.processor import LANES
 from verify.arithmetic.wide.limbs import Value, constant

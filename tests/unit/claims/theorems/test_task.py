@@ -4,9 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from verify.claims.judging import judged
+from verify.claims.judging import add_claims, judged
 from verify.claims.kinds.theorem import TheoremClaim
-from verify.claims.plan import add_claims
 from verify.claims.theorems import check_theorem
 from verify.claims.theorems.argument import Argument
 from verify.claims.theorems.task import TheoremTask

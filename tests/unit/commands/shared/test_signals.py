@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from verify.commands.shared.signals import TERMINATED, heard_signals
+from verify.commands.main import TERMINATED, heard_signals
 
 WAIT = 10  # seconds
 

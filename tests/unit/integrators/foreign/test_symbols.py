@@ -7,8 +7,7 @@ import pytest
 from tests.helpers.programs.compilers import library
 from tests.unit.integrators.foreign.programs import HERE, library_step, said
 from verify.errors import InputError
-from verify.integrators.foreign.called import of_library, prototype
-from verify.integrators.foreign.symbols import functions_of
+from verify.integrators.foreign.called import functions_of, of_library, prototype
 from verify.integrators.user_code.number_type import (
     DOUBLE,
     DOUBLE_DOUBLE,

@@ -9,9 +9,18 @@ import pytest
 from tests.paths import ROOT
 from verify.errors import InputError
 from verify.integrators.others import libraries as others
-from verify.integrators.others.findings.changes import changed, entry_of
-from verify.integrators.others.findings.confirmed import NotConfirmedError, _shown, confirm, run
-from verify.integrators.others.findings.described import Changed, Description, descriptions, read
+from verify.integrators.others.findings.confirmed import (
+    Changed,
+    Description,
+    NotConfirmedError,
+    _shown,
+    changed,
+    confirm,
+    descriptions,
+    entry_of,
+    read,
+    run,
+)
 from verify.integrators.others.findings.markdown import note
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict

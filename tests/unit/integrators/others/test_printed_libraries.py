@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from tests.helpers.tables.by_series import gap
-from verify.integrators.others.findings.described import descriptions
+from verify.integrators.others.findings.confirmed import descriptions
 from verify.integrators.others.printed_libraries import claims_of, files
 from verify.integrators.tables.check import read_tables
 from verify.integrators.tables.cost import Severity

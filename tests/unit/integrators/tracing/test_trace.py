@@ -15,8 +15,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.tracing.functions import copied
 from verify.integrators.tracing.number import UntraceableError, constant, reading
 from verify.integrators.tracing.series import TracedSeries
-from verify.integrators.tracing.shears import shears_of
-from verify.integrators.tracing.step_map import traced_map
+from verify.integrators.tracing.step_map import shears_of, traced_map
 from verify.integrators.tracing.trace import Tape, expressions, in_order
 
 PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from verify.discovery import Catalogue
-from verify.pages.environment import TEMPLATES
+from verify.pages.page import TEMPLATES
 from verify.pages.sections import page, scene, scheme
 from verify.pages.sections.section import Place, sections, shown, terms
 

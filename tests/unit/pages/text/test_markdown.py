@@ -23,8 +23,8 @@ from tests.helpers.pages.imported_modules import imported_by
 from tests.unit.pages.test_page import EVIL, REPORTS, Reader, claim, proof, real, report, run, scene
 from verify.pages.markdown.from_markup import Markdown, escaped, markdown, table
 from verify.pages.markdown.page import render, write
+from verify.pages.page import page_view
 from verify.pages.page import render as page_as_html
-from verify.pages.page_view import page_view
 from verify.pages.text import mathml
 from verify.prose import read_prose
 from verify.scenes.results.report import Report

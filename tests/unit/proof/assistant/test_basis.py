@@ -3,7 +3,7 @@
 import pytest
 from flint import Ordering, fmpq_mpoly, fmpq_mpoly_ctx
 
-from verify.proof.assistant.basis import Basis
+from verify.proof.assistant.factors import Basis
 
 RING = fmpq_mpoly_ctx.get(["w", "u", "q"], Ordering.lex)
 W, U, Q = RING.gens()

@@ -6,8 +6,16 @@ from collections.abc import Iterable
 import pytest
 
 from tests.helpers.rocq.exports import ALL, export
-from verify.proof.assistant.needed import needed, parts_of, without_comments, words_of
-from verify.proof.assistant.shipped import as_modules, files, in_order, text_of
+from verify.proof.assistant.shipped import (
+    as_modules,
+    files,
+    in_order,
+    needed,
+    parts_of,
+    text_of,
+    without_comments,
+    words_of,
+)
 
 NUMBERS = """(** Numbers, and a comment (* within *) it. *)
 

@@ -12,7 +12,7 @@ from verify.errors import InputError
 from verify.reference.compare.agreement import is_single, number
 from verify.reference.compare.compare import Compared, compare
 from verify.reference.compare.findings import Verdict
-from verify.reference.compare.overflow import may_overflow
+from verify.reference.compare.judge import may_overflow
 from verify.reference.compare.published import PublishedRun, load
 from verify.reference.compare.scatter import Scatter
 from verify.reference.compare.submitted import read

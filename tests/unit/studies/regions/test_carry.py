@@ -14,8 +14,8 @@ from verify.execution.study import plan_of
 from verify.scenes.region_sections import PlacedShape
 from verify.scenes.results.regions import EXACT_FLOW, FlowImage, FlowResult
 from verify.studies.regions import carry as module
-from verify.studies.regions import distance as distance_module
 from verify.studies.regions import mean_lambda as region_mean
+from verify.studies.regions import point_carriers
 from verify.studies.regions.findings import flow_json, flows_of
 from verify.studies.regions.hausdorff import Distance
 from verify.studies.regions.plan import need_flows
@@ -242,9 +242,9 @@ def test_a_distance_is_that_of_the_exact_flow_for_the_same_time(
     still = {"hamiltonian": "p", "scheme": "lie1", "mean_lambda": False, "distance": True}
     found = carried(**still)  # q' = 1: the scheme is exact
     assert Fraction(found.distance or 1) <= Fraction(found.distance_error or 0) < 1e-5
-    right = distance_module.ExactFlowCarrier
+    right = point_carriers.ExactFlowCarrier
     monkeypatch.setattr(
-        distance_module, "ExactFlowCarrier", lambda h, t, *t0: right(h, t + Fraction(1, 8), *t0)
+        point_carriers, "ExactFlowCarrier", lambda h, t, *t0: right(h, t + Fraction(1, 8), *t0)
     )
     found = carried(**still)
     off = abs(Fraction(found.distance or 0) - Fraction(1, 8))
@@ -253,7 +253,7 @@ def test_a_distance_is_that_of_the_exact_flow_for_the_same_time(
 
 def test_the_greatest_distance_of_all_outlines_counts(monkeypatch: pytest.MonkeyPatch) -> None:
     told = iter([0.00025, 0.0005, 0.000125])  # less than of points that belong together
-    monkeypatch.setattr(distance_module, "hausdorff", lambda *_: Distance(next(told), 1e-9))
+    monkeypatch.setattr(point_carriers, "hausdorff", lambda *_: Distance(next(told), 1e-9))
     path = "M 0 0 L 1 0 L 0 1 Z M 2 0 L 3 0 L 2 1 Z M 4 0 L 5 0 L 4 1 Z"
     found = carried(shape={"path": path, "scale": "0.1"}, distance=True, mean_lambda=False)
     assert Fraction(found.distance or 0) == Fraction(1, 2000)

@@ -8,7 +8,7 @@ from tests.helpers.known_areas import linear_determinant
 from tests.unit.studies.regions.test_carry import OSCILLATOR, carried, within
 from verify.scenes.region_sections import PlacedShape
 from verify.studies.regions import area
-from verify.studies.regions.distance import _greatest
+from verify.studies.regions.point_carriers import _greatest
 
 FEWER_NODES = 20_000  # what no number of nodes follows these do not either
 TRUE = linear_determinant("lie2", Fraction(1, 10), 10)

@@ -9,7 +9,7 @@ from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.tangent_growth import finite_time_lyapunov
 from verify.scenes.results.separation_in_degrees import TangentGrowth
-from verify.studies.separation.form_growth import motion_of, power_law
+from verify.studies.separation.form_result import motion_of, power_law
 from verify.studies.separation.form_run import of_product, size_of
 from verify.studies.separation.separate import separate
 

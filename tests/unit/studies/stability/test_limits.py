@@ -6,7 +6,7 @@ import pytest
 
 from verify.flows.orbit import exact_orbit
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.studies.stability.frequency import frequency
+from verify.studies.stability.held import frequency
 from verify.studies.stability.limits import largest_step, linear_limit, stability_map
 
 ONE, NONE = Fraction(1), Fraction(0)

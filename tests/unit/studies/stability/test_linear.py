@@ -14,7 +14,7 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.step_map import StepMap
-from verify.studies.stability import linear, matrix_product
+from verify.studies.stability import linear
 from verify.studies.stability.linear import Y, of_map
 from verify.studies.stability.nearby_linear import linear_stability
 
@@ -147,8 +147,10 @@ def test_the_product_of_the_parts_gives_what_the_closed_form_does(
 
 
 def test_a_wrong_product_gives_another_interval(monkeypatch: pytest.MonkeyPatch) -> None:
+    right = linear.product
+
     def without_its_last_part(step: StepMap) -> object:
-        return matrix_product.product(replace(step, substeps=step.substeps[:-1]))
+        return right(replace(step, substeps=step.substeps[:-1]))
 
     assert linear_stability("stormer-verlet").interval == 2
     monkeypatch.setattr(linear, "product", without_its_last_part)
@@ -184,7 +186,7 @@ def test_a_splitting_of_many_parts_ends_where_powers_of_its_matrix_grow(parts: i
 
 def test_algebraic_coefficients_of_degree_fifteen_end_at_a_root_of_the_trace() -> None:
     found = linear_stability("triple-jump6")
-    made = matrix_product.product(schemes.get("triple-jump6").step_map(HARMONIC))
+    made = linear.product(schemes.get("triple-jump6").step_map(HARMONIC))
     assert made is not None
     ring, (a, _, _, e) = made
     point = {"p": Fraction(0), "q": Fraction(0), "h": Fraction(found.decimal(60))}
@@ -197,10 +199,10 @@ def test_algebraic_coefficients_of_degree_fifteen_end_at_a_root_of_the_trace() -
 
 def test_a_number_that_is_not_algebraic_has_no_product() -> None:
     step = schemes.get("kick pi; drift 1").step_map(HARMONIC)
-    made = matrix_product.product(step)
+    made = linear.product(step)
     assert made is not None
     ring, (a, _, _, e) = made
-    assert matrix_product.ring_polynomial(ring, a + e - 2) is None
+    assert linear.ring_polynomial(ring, a + e - 2) is None
 
 
 def test_many_parts_of_a_field_of_high_degree_are_refused_at_once() -> None:

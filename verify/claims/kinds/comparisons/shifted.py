@@ -9,14 +9,7 @@ from fractions import Fraction
 from typing import Any, Literal
 
 from verify.algebra.enclosure import enclose_over
-from verify.arithmetic.arb import (
-    Ball,
-    ball,
-    in_reach,
-    middle_and_radius,
-    rational_ball,
-    shown,
-)
+from verify.arithmetic.arb import Ball, ball, in_reach, middle_and_radius, rational_ball, shown
 from verify.claims.again import AgainClaim
 from verify.claims.findings import Findings
 from verify.claims.formulas import step_map_of

@@ -11,8 +11,5 @@ SYSTEM = System(
     formula="p**2/(2*(1 + q**2)) + q**2/2",
     source="kinetic energy (1 + q²) q'²/2 and potential y = q²/2",
     goes=lambda _, __, ___: None,  # |q| is bounded by H, and then p is
-    regimes={
-        "oscillation": {"p": "1/2", "q": "-3/2"},
-        "rest": {"p": "0", "q": "0"},
-    },
+    regimes={"oscillation": {"p": "1/2", "q": "-3/2"}, "rest": {"p": "0", "q": "0"}},
 )

@@ -11,8 +11,5 @@ SYSTEM = System(
     formula="p**2/2 + q**4/4",
     source="q'' = −q³: lemniscatic functions",
     flow=in_potential(lambda _: (*[Fraction(0)] * 4, Fraction(1, 4))),
-    regimes={
-        "oscillation": {"p": "1/3", "q": "-3/2"},
-        "rest": {"p": "0", "q": "0"},
-    },
+    regimes={"oscillation": {"p": "1/3", "q": "-3/2"}, "rest": {"p": "0", "q": "0"}},
 )

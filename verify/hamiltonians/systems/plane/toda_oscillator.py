@@ -8,8 +8,5 @@ SYSTEM = System(
     formula="p**2/2 + exp(q) - q - 1",
     source="one particle in M. Toda's potential; its period has no closed form",
     goes=lambda _, __, ___: None,  # V grows beyond every bound on both sides
-    regimes={
-        "oscillation": {"p": "1", "q": "-3/2"},
-        "rest": {"p": "0", "q": "0"},
-    },
+    regimes={"oscillation": {"p": "1", "q": "-3/2"}, "rest": {"p": "0", "q": "0"}},
 )

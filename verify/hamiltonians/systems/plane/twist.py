@@ -26,8 +26,5 @@ SYSTEM = System(
     formula="(p**2 + q**2)**2/4",
     source="H = I² of the action I = (p² + q²)/2: the least nonlinear integrable H",
     flow=_motion,
-    regimes={
-        "rotation": {"p": "6/5", "q": "-8/5"},
-        "rest": {"p": "0", "q": "0"},
-    },
+    regimes={"rotation": {"p": "6/5", "q": "-8/5"}, "rest": {"p": "0", "q": "0"}},
 )

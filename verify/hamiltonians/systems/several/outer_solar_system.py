@@ -77,6 +77,6 @@ SYSTEM = System(
             **_MASSES,
             "p": ", ".join(_momenta()),
             "q": ", ".join(_POSITIONS),
-        },
+        }
     },
 )

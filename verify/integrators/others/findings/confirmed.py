@@ -1,20 +1,162 @@
-"""A described mistake, with all that is measured of it; or why it is not told."""
+"""A described mistake, with all that is measured of it; or why it is not told.
+
+A table with entries changed, as a mend would have them.
+
+What a person has read of a mistake: the words that claim, the line to blame, and the mend.
+
+One TOML file a finding, `reports/audits/findings/NAME.toml`. Nothing in it is taken for true: the
+claims must be refuted where it is told, and the tables and programs are run again.
+"""
 
 import re
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from functools import cache
 from pathlib import Path
+from typing import Annotated, Any, Literal
 
+import sympy
+from pydantic import Field, ValidationError
+
+from verify.content import content
 from verify.errors import InputError
-from verify.integrators.others.findings.changes import changed, entry_of
-from verify.integrators.others.findings.described import Changed, Description
+from verify.integrators.others.printed_libraries import files
 from verify.integrators.others.second.look import at_table, claimed_of
 from verify.integrators.others.second.slopes import Slopes
+from verify.integrators.tables import kinds
+from verify.integrators.tables.check import read_tables
+from verify.integrators.tables.entry import TableEntry
+from verify.integrators.tables.splittings.claims import AlternatingEntry, parts_of
+from verify.scenes.frozen import Frozen
+from verify.scenes.mistakes.values import one_line
 from verify.scenes.results.claim import ClaimResult
+from verify.scenes.toml_file import read_toml
+from verify.schemes.printed.naming import Naming
 from verify.verdict import Verdict
+
+Text = Annotated[str, Field(min_length=1, max_length=20000)]
+
+
+class Changed(Frozen):
+    """A printed table, by the first word of its file's title and its name; which of its claims; and
+    the entries that the mend changes, by key, row and column from 1, to their texts."""
+
+    id: Text
+    kind: Text
+    changes: dict[str, str] = Field(default_factory=dict)
+
+
+class Description(Frozen):
+    """See the module. `claims`: ids of what is refuted, with * for any text. `program` is in the
+    library's `language`; `mended`, the same with the mend; `ran`: by whom it was run and when,
+    unless it is run here."""
+
+    title: Text
+    library: Text
+    claims: Annotated[tuple[Text, ...], Field(min_length=1)]
+    quote: Text
+    where: Text
+    holds: Text
+    blame: Text
+    mend: Text
+    language: Literal["python", "c", "c++", "julia"]
+    program: Text
+    mended: Text | None = None
+    ran: str = ""
+    output: str = ""
+    table: tuple[Changed, ...] = ()
+
+    def tells_of(self, claim: str) -> bool:
+        """Whether it is about the claim of that id."""
+        return any(fnmatchcase(_plain(claim), _plain(pattern)) for pattern in self.claims)
+
+
+def _plain(text: str) -> str:
+    """Without the brackets that stand for more than themselves in a pattern."""
+    return text.replace("[", "(").replace("]", ")")
+
+
+def folder() -> Path:
+    """Where they lie."""
+    return Path(content("reports", "audits", "findings"))
+
+
+def descriptions() -> dict[str, Description]:
+    """By name. InputError for a file that is none."""
+    return {path.stem: read(path) for path in sorted(folder().glob("*.toml"))}
+
+
+def read(path: Path) -> Description:
+    """One of them. InputError names the file."""
+    try:
+        return Description.model_validate(read_toml(path))
+    except ValidationError as error:
+        found = one_line(error, f"finding {path.stem}", Description)
+        raise found from None
+
+
+RIGHT = "right"
+
+
+def entry_of(name: str) -> TableEntry:
+    """The printed table of that id. InputError for none."""
+    found = _entries().get(name)
+    if found is None:
+        raise InputError("table", name, "is none of the printed tables in reports/audits")
+    return found
+
+
+@cache
+def _entries() -> dict[str, TableEntry]:
+    """All printed tables of libraries, by id; the files are read once."""
+    each = map(read_tables, files())
+    return {f"{x.title.split()[0]}/{entry.name}": entry for x in each for entry, _ in x.entries}
+
+
+def changed(entry: TableEntry, changes: Mapping[str, str]) -> TableEntry:
+    """The same with those entries. InputError for a key that it has not."""
+    data = entry.model_dump(exclude_unset=True)
+    for key, value in changes.items():
+        if key == "times" and value == RIGHT:
+            data["times"] = _right_times(entry)
+        else:
+            _put(data, key, value)
+    try:
+        made: TableEntry = kinds.get(entry.kind).Entry.model_validate(data)
+    except ValidationError as error:
+        raise one_line(error, "changes", type(entry)) from None
+    return made.in_folder(entry.folder)
+
+
+def _put(data: dict[str, Any], key: str, value: str) -> None:
+    *path, last = [int(x) - 1 if x.isdigit() else x for x in key.split(".")]
+    place: Any = data
+    for step in path:
+        place[step] = list(place[step]) if isinstance(place[step], tuple) else place[step]
+        place = place[step]
+    if isinstance(last, int) and not last < len(place):
+        raise InputError("changes", key, "is no entry of the table")
+    place[last] = value
+
+
+def _right_times(entry: TableEntry) -> list[str]:
+    """Each part reads the time that the other kind's parts before it add up to."""
+    if not isinstance(entry, AlternatingEntry):
+        raise InputError("changes", "times", "are made right of kicks and drifts alone")
+    naming = Naming(entry.numbers)
+    names, sizes, _ = parts_of(entry, naming)
+    totals = {"kick": sympy.S.Zero, "drift": sympy.S.Zero}
+    times = []
+    for name, size in zip(names, sizes, strict=True):
+        other = "drift" if name == "kick" else "kick"
+        times.append(str(sympy.N(totals[other], 60)))
+        totals[name] += naming.printed.at_print(naming.printed.entry(size))
+    return times
+
 
 _SECONDS = 300.0
 _ORDER = re.compile(r"^order on (.+): (-?\d+\.\d+)$", re.MULTILINE)

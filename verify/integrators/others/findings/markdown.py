@@ -12,8 +12,8 @@ from verify.integrators.others.findings.confirmed import (
     NotConfirmedError,
     Shown,
     confirm,
+    descriptions,
 )
-from verify.integrators.others.findings.described import descriptions
 from verify.integrators.others.second.slopes import Slopes
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.report import Report

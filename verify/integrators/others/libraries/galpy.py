@@ -16,10 +16,7 @@ from verify.integrators.others.methods.scripted import LONG, USUAL, by_script
 TITLE = "galpy"
 LIBRARY = "galpy"
 LEFT_OUT = (
-    (
-        "odeint, dop853, dop853_c, ias15_c",
-        "choose their steps by themselves: no map of a fixed h",
-    ),
+    ("odeint, dop853, dop853_c, ias15_c", "choose their steps by themselves: no map of a fixed h"),
     (
         "leapfrog (in Python)",
         "finds its own step from a tolerance of 10⁻¹² that Orbit.integrate does not let one set",

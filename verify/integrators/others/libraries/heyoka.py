@@ -77,10 +77,7 @@ def step(p, q, h):
     assert taken == h
     return np.array(y.state[:2]), np.array(y.state[2:])
 """
-_SYSTEMS = {
-    "pendulum": "p**2/2 - cos(q)",
-    "not separable": "p**2/2 + q**2/2 + p**2*q/4 + p*q**3/8",
-}
+_SYSTEMS = {"pendulum": "p**2/2 - cos(q)", "not separable": "p**2/2 + q**2/2 + p**2*q/4 + p*q**3/8"}
 _POINTS = [(Fraction(p, 8), Fraction(q, 8)) for p, q in ((4, 10), (-6, 3), (2, -12))]
 _STEP = Fraction(1, 128)
 _ORDERS = (2, 3, 4)

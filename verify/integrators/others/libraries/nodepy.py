@@ -15,11 +15,7 @@ from typing import Any
 
 import sympy
 
-from verify.integrators.others.methods.integrator import (
-    Compared,
-    ExactTableau,
-    ReleasedIntegrator,
-)
+from verify.integrators.others.methods.integrator import Compared, ExactTableau, ReleasedIntegrator
 from verify.integrators.others.methods.scripted import by_script
 from verify.integrators.others.methods.tableau import order_of
 from verify.schemes.implicit_tableau import ImplicitTableau

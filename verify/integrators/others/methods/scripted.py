@@ -92,10 +92,7 @@ POINTS = tuple(
     for p, q in (("1/3", "3/5"), ("-1/2", "7/8"), ("1/7", "6/5"), ("3/4", "-2/5"), ("-1/5", "-2/5"))
 )
 # Where a high order is seen in float64, between a step that is too large for it and rounding.
-AWAY = (
-    (Fraction(5, 4), Fraction(-1, 2)),
-    (Fraction(-1, 3), Fraction(9, 8)),
-)
+AWAY = ((Fraction(5, 4), Fraction(-1, 2)), (Fraction(-1, 3), Fraction(9, 8)))
 LONG = tuple(Fraction(k, 64) for k in (*range(64, 16, -4), *range(16, 3, -1)))
 USUAL = tuple(
     Fraction(x, 2**k) for k in range(3, 16) for x in ((4, 3) if k < 10 else (4,))

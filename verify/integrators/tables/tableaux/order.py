@@ -25,8 +25,7 @@ from verify.schemes.coloured_trees import (
     vertices,
 )
 from verify.schemes.printed.asked import Asked, Named, Residues, both
-from verify.schemes.printed.judged import Judged, judge
-from verify.schemes.printed.misprint import Misprint
+from verify.schemes.printed.judged import Judged, Misprint, judge
 from verify.schemes.tree_weights import Block, dot
 from verify.verdict import Verdict
 

@@ -12,9 +12,7 @@ def _entries(scenes: tuple[SceneView, ...]) -> Iterator[Entry]:
     for scene in scenes:
         inner = (entry for each in scene.sections for entry in each.entries)
         yield Entry(
-            scene.anchor,
-            scene.result.title,
-            inner=tuple(inner) if len(scenes) <= _FEW else (),
+            scene.anchor, scene.result.title, inner=tuple(inner) if len(scenes) <= _FEW else ()
         )
 
 

@@ -113,9 +113,5 @@ def _few(value: object) -> str:
 
 
 SECTION = Section(
-    order=9,
-    title="More than the plane",
-    anchor="beyond",
-    view=_view,
-    terms=lambda _: words.OF_FORM,
+    order=9, title="More than the plane", anchor="beyond", view=_view, terms=lambda _: words.OF_FORM
 )

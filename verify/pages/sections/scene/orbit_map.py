@@ -117,7 +117,7 @@ _TERMS = {
         "in float64, measured: where an orbit is sensitive, rounding decides when it leaves, and "
         "W, the symplectic defect of all steps, grows like the square of the tangent map, which is "
         "not the scheme’s fault."
-    ),
+    )
 }
 
 

@@ -5,13 +5,7 @@ from fractions import Fraction
 from markupsafe import Markup
 
 from verify.pages.figures.captioned_plot import plotted
-from verify.pages.sections.orbits_view import (
-    OrbitsView,
-    first_known,
-    left,
-    pictures,
-    title_from,
-)
+from verify.pages.sections.orbits_view import OrbitsView, first_known, left, pictures, title_from
 from verify.pages.sections.rows import Row
 from verify.pages.sections.section import Section
 from verify.pages.text.typography import IS, listed, map_name, number, step, whole
@@ -88,7 +82,7 @@ _TERMS = {
         "given energy: they are points of one closed curve where a second quantity is kept, and a "
         "sea of points where the motion is chaotic. A scheme’s orbit passes in the step from z to "
         "Φ_h(z) at that Φ_θ(z) which lies on the surface."
-    ),
+    )
 }
 
 

@@ -5,13 +5,7 @@ from collections.abc import Iterator
 from markupsafe import Markup
 
 from verify.pages.figures.captioned_plot import plotted
-from verify.pages.sections.orbits_view import (
-    OrbitsView,
-    first_known,
-    left,
-    pictures,
-    title_from,
-)
+from verify.pages.sections.orbits_view import OrbitsView, first_known, left, pictures, title_from
 from verify.pages.sections.rows import Row
 from verify.pages.sections.section import Section
 from verify.pages.text.typography import IS, listed, number, step, whole
@@ -84,7 +78,7 @@ _TERMS = {
         "The states of an orbit once in each period of H, all at the same phase of the drive: "
         "points of one closed curve where the motion is regular, and a sea of points where it is "
         "chaotic."
-    ),
+    )
 }
 
 

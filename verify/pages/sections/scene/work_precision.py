@@ -169,7 +169,7 @@ _TERMS = {
         "The float64 run differs from the same steps in exact arithmetic by a part of its error "
         "that counts: smaller steps make it no better. Such points are hollow, and no slope is "
         "fitted to them."
-    ),
+    )
 }
 SECTION = Section(
     order=10,

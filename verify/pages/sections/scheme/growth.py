@@ -238,6 +238,6 @@ _TERMS = {
         "order. X is the derivative along the exact flow; [F] is F at the end of the run minus F "
         "at its start; X G is the leading coefficient of ΔJ; ⟨g⟩ is the time average of g along "
         "the exact orbit, and B the bounded rest, X B = g − ⟨g⟩."
-    ),
+    )
 }
 SECTION = Section(order=60, title="Growth law of Λ", view=_view, terms=lambda _: _TERMS)

@@ -133,7 +133,7 @@ _CROSSED = {
     "Crossover h*": Markup(
         "The step size below which rounding is larger than truncation, interpolated in logarithms "
         "between the two step sizes that bracket it. Smaller steps than h* make Λ no better."
-    ),
+    )
 }
 SECTION = Section(
     order=70,

@@ -4,7 +4,7 @@ A kick moves p by −a h ∂V/∂q. The one block of its Jacobian that is neithe
 and S of a shear is that block less its transpose, which is 0.
 """
 
-from verify.algebra.series.jets_in_degrees import JetsInDegrees
+from verify.algebra.series.jets import JetsInDegrees
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian

@@ -30,11 +30,7 @@ def build(coefficients: StageEquations, hamiltonian: Hamiltonian) -> CanonicalMa
             Splitting(tuple((kind, sympy.Rational(size)) for kind, size in parts)), hamiltonian
         )
     return CanonicalMap(
-        hamiltonian,
-        field,
-        coefficients.changes,
-        conditions=conditions(coefficients),
-        implicit=True,
+        hamiltonian, field, coefficients.changes, conditions=conditions(coefficients), implicit=True
     )
 
 
