@@ -2,9 +2,11 @@
 
 import tomllib
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from tests.mutants.mutate import mutants, path_of
 from tests.mutants.records import Record, of_kind
 
 SURVIVORS = Path(__file__).parent / "survivors.toml"
@@ -59,20 +61,36 @@ def found_in(records: list[Record], wanted: set[str] | None = None) -> Found:
 
 
 def explanations(path: Path = SURVIVORS) -> dict[str, str]:
-    """Why a survivor lives, by its key, as written by hand."""
-    return {entry["key"]: entry["why"] for entry in _entries(path)}
+    """Why a survivor lives, by its key in today's source, as written by hand."""
+    return {key: entry["why"] for entry, keys in explained(path) for key in keys}
 
 
 def no_errors(path: Path = SURVIVORS) -> set[str]:
     """The keys of those that are explained as no error: no value or verdict depends on them."""
-    return {entry["key"] for entry in _entries(path) if entry.get("no_error", False)}
+    return {k for entry, keys in explained(path) if entry.get("no_error", False) for k in keys}
 
 
-def _entries(path: Path) -> list[Record]:
+def explained(path: Path = SURVIVORS) -> Iterator[tuple[Record, tuple[str, ...]]]:
+    """Each entry with the key of its mutant in today's source; none where that has no such line."""
     if not path.exists():
-        return []
+        return
     entries: list[Record] = tomllib.loads(path.read_text(encoding="utf-8")).get("survivor", [])
-    return entries
+    for entry in entries:
+        yield entry, _keys(entry)
+
+
+def _keys(entry: Record) -> tuple[str, ...]:
+    try:
+        lines = path_of(entry["module"]).read_text(encoding="utf-8").splitlines()
+    except LookupError:
+        return ()
+    alike = [
+        m.key
+        for m in mutants(entry["module"])
+        if f"{m.operator} {m.change}" == entry["change"]
+        and lines[m.line - 1].strip() == entry["line"]
+    ]
+    return tuple(alike[entry["nth"] : entry["nth"] + 1] if "nth" in entry else alike)
 
 
 def share(killed: int, total: int) -> str:

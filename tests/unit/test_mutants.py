@@ -4,6 +4,7 @@ import ast
 import json
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -12,7 +13,7 @@ from tests.campaigns import mutants as campaign
 from tests.mutants import battery, forked, killers, records, table
 from tests.mutants.mutate import ROOT, Mutant, mutants, mutants_of, mutated, mutated_source, path_of
 from tests.mutants.run import ordered
-from tests.mutants.summary import found_in, share
+from tests.mutants.summary import explained, found_in, share
 from tests.mutants.targets import modules, sample, shares
 
 pytestmark = pytest.mark.left_to_ci
@@ -175,6 +176,7 @@ def one(module: str, change: str) -> Mutant:
 COMBINATION = "verify.algebra.linear_combination"
 PLANTED = """
 import sys
+from collections import Counter
 from tests.mutants.planted import planted
 if {index} >= 0:
     planted({module!r}, {index})
@@ -341,6 +343,30 @@ def test_the_page_shows_each_property_with_a_mutant_and_each_survivor_with_its_r
     assert "battery |" not in page, "a hang is no property"
     assert found_in(results, {"a:2"}).killed == 0
     assert share(899, 1000) == "899 of 1000 (89.9 %)"
+
+
+def test_each_mutant_that_is_explained_is_one_of_todays_source() -> None:
+    gone = [entry["change"] for entry, keys in explained() if len(keys) != 1]
+    assert not gone
+
+
+def test_of_changes_that_read_alike_in_a_line_one_is_explained(tmp_path: Path) -> None:
+    """In `a = 2 * x + 2` two constants are changed alike."""
+    module = "verify.proof.certificates.numbers"
+    lines = path_of(module).read_text(encoding="utf-8").splitlines()
+    told = [(lines[m.line - 1].strip(), f"{m.operator} {m.change}") for m in mutants(module)]
+    (line, change), _ = next(x for x in Counter(told).items() if x[1] == 2)
+    path = tmp_path / "survivors.toml"
+
+    def keys(more: str) -> tuple[str, ...]:
+        entry = f"module = {json.dumps(module)}\nline = {json.dumps(line)}\n"
+        path.write_text(f'[[survivor]]\n{entry}change = {json.dumps(change)}\nwhy = "x"\n{more}')
+        ((_, found),) = explained(path)
+        return found
+
+    assert len(keys("")) == 2
+    assert keys("nth = 0") + keys("nth = 1") == keys("")
+    assert keys("nth = 2") == ()
 
 
 # -- the campaign ---------------------------------------------------------------------------------
