@@ -119,6 +119,7 @@ def test_a_command_answers_with_standard_input_and_error_closed(command: str, fo
     assert said.strip()
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("which", ["2>&-", "<&-"])
 def test_a_run_answers_with_either_closed(which: str, folder: Path) -> None:
     status, said = closed("run", folder, which)

@@ -109,6 +109,7 @@ def test_results_are_those_of_a_process_that_has_made_nothing_else(
     assert [one for one in ALL if together[one] != each_alone[one]] == []
 
 
+@pytest.mark.left_to_ci
 def test_results_of_another_parameter_value_are_others(each_alone: dict[Asked, str]) -> None:
     one, two = (text for text in HAMILTONIANS if text.startswith("p**2/2 + a*q**4"))
     assert each_alone[one, "lie2"] != each_alone[two, "lie2"]  # so that a mix-up would be seen

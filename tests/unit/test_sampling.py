@@ -57,6 +57,7 @@ def collected(folder: Path, *options: str, **variables: str) -> list[str]:
     return [line for line in done.stdout.splitlines() if "::" in line]
 
 
+@pytest.mark.left_to_ci
 def test_a_sample_has_so_many_and_each_value_of_a_parameter_if_it_can(tmp_path: Path) -> None:
     found = collected(tmp_path)
     much = [x.partition("[")[2].rstrip("]").split("-") for x in found if "much" in x]
@@ -68,6 +69,7 @@ def test_a_sample_has_so_many_and_each_value_of_a_parameter_if_it_can(tmp_path: 
     assert collected(tmp_path) == found, "the same each time"
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("option", ["--whole", "test_it.py::test_much[0-1]"])
 def test_all_are_run_where_they_are_asked_for(tmp_path: Path, option: str) -> None:
     much = [x for x in collected(tmp_path, option) if "much" in x]
@@ -90,6 +92,7 @@ def test_what_is_left_to_ci_is_run_where_it_is_asked_for(
     assert (len(found) == len(names)) == (options[0] != "--whole")
 
 
+@pytest.mark.left_to_ci
 def test_what_is_left_to_ci_is_run_there_and_samples_stay_samples(tmp_path: Path) -> None:
     by_hand, there = collected(tmp_path), collected(tmp_path, CI="true")
     assert {x.partition("::test_")[2] for x in set(there) - set(by_hand)} == {

@@ -64,6 +64,7 @@ def test_the_example_passes(said: str) -> None:
     assert re.search(r"test_right_step PASSED", said), said
 
 
+@pytest.mark.left_to_ci
 def test_a_flipped_sign_fails_and_shrinks_to_what_the_page_shows(said: str) -> None:
     assert "q=Fraction(1, 1)" in SHOWN
     assert values(SHOWN) in values(failure(said, "flipped")), said

@@ -289,6 +289,7 @@ def test_every_claim_on_the_papers_scenes_gets_a_verdict_with_evidence(short: An
     assert {found[id_].verdict for id_ in ("table-1", "table-2")} == {Verdict.REFUTED}
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("name", ["duffing", "pendulum"])
 def test_the_measured_verdicts_are_those_of_plain_floats(short: Any, name: str) -> None:
     findings, found = short

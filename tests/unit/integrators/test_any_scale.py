@@ -68,6 +68,7 @@ def test_the_order_of_a_right_method_on_stiff_h_is_seen(rate: int) -> None:
     assert wrong.verdict == "REFUTED"
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("speed", [1e-5, 1.0, 1e4])
 def test_a_body_near_the_speed_of_light_has_a_unit_of_p_and_one_of_q_by_it(speed: float) -> None:
     def step(p: Any, q: Any, h: Any) -> Any:
@@ -233,6 +234,7 @@ def test_an_iteration_to_the_noise_is_within_it() -> None:
     assert (found.verdict, "within the noise of doubles" in found.reason) == ("MEASURED", True)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("share", [1e-3, 1e-9, 1e-12])
 def test_a_map_that_loses_area_behind_a_comparison_is_refuted(share: float) -> None:
     found = verify.check_map(steps.losing(share))
@@ -252,6 +254,7 @@ def test_rounded_states_are_coarse_in_several_degrees_too() -> None:
     assert "its numbers are coarse" in found.reason
 
 
+@pytest.mark.left_to_ci
 def test_a_matrix_of_few_digits_is_told_that_a_symplectic_one_is_near() -> None:
     c, s = math.cos(0.7), math.sin(0.7)
     turn = np.array([[c + 0.4 * s, 2.3 * s], [-1.16 / 2.3 * s, c - 0.4 * s]])
@@ -356,6 +359,7 @@ def test_what_is_out_of_all_proportion_is_named_and_not_visited() -> None:
     assert "it compares, and may do something else, where q ≥ 1e+300: not looked at" in found.notes
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("degrees", [1, 2, 3])
 def test_all_signs_are_looked_at_in_pairs(degrees: int) -> None:
     def step(p: Any, q: Any, h: Any) -> Any:
@@ -455,6 +459,7 @@ def test_a_map_takes_h_as_a_parameter() -> None:
 # -- implicit, and long ---------------------------------------------------------------------------
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-8])
 def test_a_generalised_leapfrog_is_refuted_by_its_tolerance(tolerance: float) -> None:
     step = steps.generalised_leapfrog(tolerance)

@@ -122,6 +122,7 @@ def test_the_true_values_are_within_the_bounds(formula: str, scheme: str, name: 
         assert all(len(found.values[n].value.strip("-").partition("e")[0]) >= 20 for n in sure)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(4)
 @pytest.mark.parametrize(("formula", "scheme"), [(HENON, "lie2"), (CHAIN, "lie1"), (ARC, "lie2")])
 @pytest.mark.parametrize("name", ["mpfr", "fixed"])

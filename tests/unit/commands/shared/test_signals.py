@@ -93,6 +93,7 @@ def test_a_signal_that_an_import_would_clear_waits_for_its_end(
     assert time.monotonic() - begun < WAIT / 2
 
 
+@pytest.mark.left_to_ci
 def test_an_import_that_does_not_end_is_ended(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

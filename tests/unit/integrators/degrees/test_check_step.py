@@ -219,6 +219,7 @@ CLAIMS: list[tuple[Step, dict[str, Any], str, str]] = [
 ]
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize(("step", "claims", "verdict", "words"), CLAIMS)
 def test_claims(step: Step, claims: dict[str, Any], verdict: str, words: str) -> None:
     found = checked(step, **claims)

@@ -70,6 +70,7 @@ def test_the_order_is_seen(step: Step, order: int, symplectic: bool) -> None:
     assert f"up to h^{order} only" in str(more.reason)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("step", [known.wrong_weights, known.no_potential])
 def test_what_is_no_scheme_for_this_h_is_refuted(step: Step) -> None:
     said = found(blind(step))
@@ -77,6 +78,7 @@ def test_what_is_no_scheme_for_this_h_is_refuted(step: Step) -> None:
     assert "not a scheme for this H" in str(said.reason)
 
 
+@pytest.mark.left_to_ci
 def test_a_clock_that_stands_still_is_seen() -> None:
     driven = f"{known.HENON} - q1*cos(t)"
     assert found(in_time, driven).convergence_order == 2

@@ -243,6 +243,7 @@ def test_a_program_that_misbehaves_is_named_and_ends_nothing(
     assert time.perf_counter() - begun < 60
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.sample(2)
 @pytest.mark.parametrize(
     ("mode", "said"),

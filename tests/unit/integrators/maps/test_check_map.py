@@ -171,6 +171,7 @@ def judged(function: Map) -> Finding:
     return verify.check_map(function, CASES[function][0], arguments=order)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("function", CASES, ids=lambda f: f.__name__)
 def test_each_is_judged_rightly(function: Map) -> None:
     found = judged(function)

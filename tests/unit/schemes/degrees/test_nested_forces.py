@@ -51,6 +51,7 @@ def nystroem(name: str) -> str:
     return "; ".join(p + q)
 
 
+@pytest.mark.left_to_ci
 @pytest.mark.parametrize("name", FORCES)
 def test_one_step_of_two_nested_forces_takes_seconds(name: str) -> None:
     hamiltonian = Hamiltonian.parse(f"p1**2/2 + p2**2/2 + {FORCES[name][0]}")

@@ -106,6 +106,7 @@ def test_in_the_plane_the_separatrix_of_the_pendulum_parts_what_turns_over() -> 
     assert float(over.defects[0][0] or 0) == pytest.approx(known, rel=0.01)
 
 
+@pytest.mark.left_to_ci
 def test_where_h_is_not_defined_nothing_is_said() -> None:
     kepler = systems.get("kepler").hamiltonian({"mu": 1})
     over = found(
