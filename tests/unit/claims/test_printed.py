@@ -88,8 +88,12 @@ def test_the_papers_row_is_refuted_and_named_as_one_over_n() -> None:
     row = ["-7.3010", "-7.0000", "-6.6990", "-6.5229", "-6.3979", "-6.3010"]
     found = check(table(row), as_in_row())
     assert found.verdict is REFUTED
-    assert "lg(1/N)" in found.evidence
+    assert "the printed row is lg(1/N) = lg(h/T) to all its digits" in found.evidence
     assert "lg(1/N)" not in check(table([*row[:5], "-6.3011"]), as_in_row()).evidence
+    powers = ["-6.0000", "-5.3979", "-4.7959", "-4.4437", "-4.1938", "-4.0000"]
+    assert (
+        "the printed row is lg(h^2) = lg(T^2/N^2) to" in check(table(powers), as_in_row()).evidence
+    )
     shown = {cell for line in found.details for cell in line}
     assert set(row) | set(ROW) <= shown, "printed and computed values stand side by side"
 

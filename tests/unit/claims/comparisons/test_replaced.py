@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
-from tests.helpers.constructed.runs import CLAIM, Given, check, growing
+from tests.helpers.constructed.runs import CLAIM, Given, check, growing, made_findings, made_scene
 from verify.claims.kinds.comparisons.replaced import ReplacedClaim
 from verify.verdict import Verdict
 
@@ -53,6 +53,14 @@ def test_a_value_that_is_not_known_leaves_it_open() -> None:
 
     assert check(replaced("mse + 1/N", TABLE), wide).verdict is Verdict.UNDECIDED
     assert check(replaced("1/mse", TABLE), wide).verdict is Verdict.UNDECIDED
+
+
+def test_a_run_that_left_the_range_leaves_it_open() -> None:
+    scene = made_scene()
+    findings = made_findings(scene, growing, status="left range", failed_step=9)
+    result = replaced("1/N", TABLE).judge(findings)
+    assert result.verdict is Verdict.UNDECIDED
+    assert "left the range at step 9" in result.evidence
 
 
 @pytest.mark.parametrize(

@@ -31,6 +31,11 @@ step_sizes = [0.1]
 initial_values = [{ q = 1.5, p = 0 }]
 [[series]]
 step_size = 0.01
+time = 1
+initial_value = { q = 1.5, p = 0 }
+source = "A"
+[[series]]
+step_size = 0.01
 time = 20
 initial_value = { q = 1.5, p = 0 }
 source = "A"
@@ -119,7 +124,9 @@ def test_of_a_series_its_own_runs_are_spoken_of(tmp_path: Any) -> None:
     (tmp_path / "claims.toml").write_text(text)
     (found,) = prepare(load_claims(tmp_path / "claims.toml")).run(Store(None), where=THIS_PROCESS)
     assert found.verdict is MEASURED
-    assert [row[1:3] for row in found.details[1:]] == [("0.01", "20")]
+    assert [row[1:3] for row in found.details[1:]] == [("0.01", "20")], "the longest alone"
+    assert [len(row) for row in found.details] == [4, 4]
+    assert found.details[0][0] == "initial value"
     (tmp_path / "claims.toml").write_text(CLAIMS.format(series="B", within="1e-3"))
     with pytest.raises(InputError, match=r"series=B: the scene has no such .*it has A"):
         load_claims(tmp_path / "claims.toml")
@@ -139,6 +146,13 @@ def test_an_error_within_its_bounds_is_undecided() -> None:
         return {**exact, "q": (exact["q"], "1")}
 
     assert check(solution_error(within="0.1"), wide, **ONE).verdict is UNDECIDED
+
+
+def test_a_run_without_a_state_at_its_end_tells_no_error() -> None:
+    found = check(solution_error(within="1"), lambda h, k: FLAT, **ONE)
+    assert found.verdict is UNDECIDED
+    assert "no state at the end" in found.evidence
+    assert found.details[1][-1] == "unknown"
 
 
 def test_an_error_is_within_or_beyond_one_number() -> None:
