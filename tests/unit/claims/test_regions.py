@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from pydantic import ValidationError
 
 from verify.claims.file import load_claims
 from verify.claims.findings import Findings
@@ -152,6 +153,31 @@ def test_one_image_that_is_not_known_leaves_what_the_others_say_open_unless_they
 )  # fmt: skip
 def test_distances_by_hand(given: list[dict[str, Any]], expected: Verdict) -> None:
     assert verdict(near("0.2"), findings(made_scene(), given)) is expected
+    details = near("0.2").judge(findings(made_scene(), given)).details
+    assert {len(row) for row in details} == {len(details[0])}
+
+
+@pytest.mark.parametrize(
+    ("given", "expected"),
+    [
+        ([{"distance": "0.3", "distance_error": "0.01"}], MEASURED),
+        ([{"distance": "0.1", "distance_error": "0.01"}], REFUTED),
+        ([{"distance": "0.2", "distance_error": "0.01"}], UNDECIDED),
+        ([{"distance": "0.1", "distance_error": "0"}, {"distance": "0.3", "distance_error": "0"}],
+         MEASURED),
+        ([{"distance": "0.1", "distance_error": "0"}, {"distance": None}], UNDECIDED),
+        ([{"distance": "0.3", "distance_error": "0"}, {"distance": None}], MEASURED),
+    ],
+)  # fmt: skip
+def test_one_distance_beyond_is_enough(given: list[dict[str, Any]], expected: Verdict) -> None:
+    claim = near("0.2").model_copy(update={"within": None, "beyond": Fraction(1, 5)})
+    assert verdict(claim, findings(made_scene(), given)) is expected
+
+
+def test_a_distance_is_within_or_beyond_one_number() -> None:
+    for keys in ({}, {"within": 1, "beyond": 1}):
+        with pytest.raises(ValidationError, match="give one of the two"):
+            FlowDistanceClaim(**{**near("1").model_dump(exclude={"within", "beyond"}), **keys})
 
 
 def test_a_claim_without_results_is_undecided() -> None:

@@ -134,8 +134,8 @@ def _at_1(formula: str, steps: int) -> Check:
     low = abs(Fraction(value.value) - 1) - Fraction(value.bound)
     return Check(
         f"H = `{formula}`, lie2, h = {text(h)}, from (0, 0), N = {steps}: |p − 1| ≥ h²(1 − h)/2, "
-        "by a run with a rigorous bound",
-        run.error_kind == "enclosed" and low >= h * h * (1 - h) / 2,
+        "and at most h², by a run with a rigorous bound",
+        run.error_kind == "enclosed" and h * h * (1 - h) / 2 <= low <= h * h,
         f"`{decimal(low, 4)}` ≥ `{decimal(h * h * (1 - h) / 2, 4)}`",
         BALLS,
     )
