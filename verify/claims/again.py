@@ -1,13 +1,16 @@
 """The base of claims that make other claims again, of the same runs with other values in them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Annotated, Any, Self
 
 from pydantic import Field, model_validator
 
+from verify.claims.findings import Findings
 from verify.claims.kinds import models
 from verify.claims.on_runs import RunClaim
 from verify.errors import InputError
+from verify.scenes.results.claim import ClaimResult
+from verify.scenes.results.run import RunResult
 
 
 class AgainClaim(RunClaim):
@@ -37,6 +40,27 @@ class AgainClaim(RunClaim):
                 raise InputError("again", kind, "is no kind of claim on runs")
             stamp = {"id": f"{self.id}-{n}", "scene": self.scene, "scheme": self.scheme}
             yield model.model_validate({**table, **stamp})
+
+    def twice(
+        self, findings: Findings, changed: Mapping[str, RunResult]
+    ) -> list[tuple[ClaimResult, ClaimResult]]:
+        """Each claim's results by the runs as they are, and with the changed ones among them."""
+        again = Findings(findings.scenes, {**findings.results, **changed})
+        return [(claim.compare(findings), claim.compare(again)) for claim in self.claims()]
+
+    def rows(self, both: Sequence[tuple[ClaimResult, ClaimResult]]) -> list[list[str]]:
+        """For each claim its keys in words, and on which side of its question it is, twice.
+
+        How sure it is of that, its result says.
+        """
+        words = (
+            ", ".join(f"{k} {v}" for k, v in table.items() if isinstance(v, str | int))
+            for table in self.again
+        )
+        return [
+            [said, *("holds" if x.verdict.holds else x.verdict.lower() for x in pair)]
+            for said, pair in zip(words, both, strict=True)
+        ]
 
     def refuses(self, claim: RunClaim) -> str:
         """Why this claim cannot be made again; empty where it can."""

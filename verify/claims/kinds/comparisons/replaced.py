@@ -13,7 +13,8 @@ from pydantic import model_validator
 from verify.algebra.embedding import embed
 from verify.algebra.enclosure import enclose_over
 from verify.algebra.formula import parse
-from verify.arithmetic.arb import Ball, ball, middle_and_radius, rational_ball
+from verify.algebra.ring import Poly, Ring
+from verify.arithmetic.arb import ball, middle_and_radius, rational_ball
 from verify.claims.again import AgainClaim
 from verify.claims.findings import Findings
 from verify.claims.runs import NoValueError
@@ -47,46 +48,32 @@ class ReplacedClaim(AgainClaim):
 
     def compare(self, findings: Findings) -> ClaimResult:
         tasks = grid_tasks(findings.scene_of(self), self.scheme)
-        runs = {task.key: findings.results[task.key] for task in tasks}
-        changed = {
-            key: self._with_formula(run) if isinstance(run, RunResult) else run
-            for key, run in runs.items()
-        }
-        again = Findings(findings.scenes, {**findings.results, **changed})
-        both = [(each.compare(findings), each.compare(again)) for each in self.claims()]
+        runs = ((task.key, findings.results[task.key]) for task in tasks)
+        formula = embed([parse(self.mse, _NAMES, source="mse")], _NAMES)
+        changed = {k: _with_mse(run, *formula) for k, run in runs if isinstance(run, RunResult)}
+        both = self.twice(findings, changed)
         said = prose("with ", Formula(self.mse), " in place of MSE: ")
         if len(both) == 1:
             ((_, after),) = both
             return self.result(after.verdict, said + after.evidence, after.details)
-        details = [["claim", "of MSE", prose("of ", Formula(self.mse))]]
-        for table, (before, after) in zip(self.again, both, strict=True):
-            words = ", ".join(f"{k} {v}" for k, v in table.items() if isinstance(v, str | int))
-            details.append([words, *map(_short, (before, after))])
+        details = [["claim", "of MSE", prose("of ", Formula(self.mse))], *self.rows(both)]
         verdicts = [after.verdict for _, after in both]
         count = sum(verdict.holds for verdict in verdicts)
         evidence = said + f"{count} of {len(both)} of these claims hold"
         return self.result(_weakest(verdicts), evidence, details)
 
-    def _with_formula(self, run: RunResult) -> RunResult:
-        """The run with the formula's value as its MSE."""
-        if run.status != "finished":
-            raise NoValueError(run)
-        ring, (element,) = embed([parse(self.mse, _NAMES, source="mse")], _NAMES)
-        numbers = {"N": Fraction(run.steps), "h": Fraction(run.step_size)}
-        at = {name: rational_ball(x) for name, x in numbers.items()}
-        value = enclose_over(ring, element, {**at, "mse": ball(run.values["mse"])})
-        told = Value.of(*middle_and_radius(_finite(value, run)), run.digits)
-        return run.model_copy(update={"values": {**run.values, "mse": told}})
 
-
-def _finite(value: Ball | None, run: RunResult) -> Ball:
+def _with_mse(run: RunResult, ring: Ring, elements: Sequence[Poly]) -> RunResult:
+    """The run with the value of the one element, a formula in N, h and mse, as its MSE."""
+    if run.status != "finished":
+        raise NoValueError(run)
+    numbers = {"N": Fraction(run.steps), "h": Fraction(run.step_size)}
+    at = {name: rational_ball(x) for name, x in numbers.items()}
+    value = enclose_over(ring, elements[0], {**at, "mse": ball(run.values["mse"])})
     if value is None or not value.is_finite():
         raise NoValueError(run)
-    return value
-
-
-def _short(result: ClaimResult) -> str:
-    return "holds" if result.verdict.holds else result.verdict.lower()
+    mse = Value.of(*middle_and_radius(value), run.digits)
+    return run.model_copy(update={"values": {**run.values, "mse": mse}})
 
 
 def _weakest(verdicts: Sequence[Verdict]) -> Verdict:

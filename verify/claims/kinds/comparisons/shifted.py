@@ -45,15 +45,9 @@ class ShiftedClaim(AgainClaim):
         scene = findings.scene_of(self)
         tasks = grid_tasks(scene, self.scheme)
         changed, changes = _shifted(findings, tasks, scene.exact_hamiltonian(), self.scheme)
-        again = Findings(findings.scenes, {**findings.results, **changed})
-        details = [["claim", "k = 0 … N − 1", "k = 1 … N"]]
-        verdicts: list[bool | None] = []
-        for claim, table in zip(self.claims(), self.again, strict=True):
-            before, after = claim.compare(findings).verdict, claim.compare(again).verdict
-            verdicts.append(before is after)
-            # Which side of its question a claim is on; how sure it is, its own result says.
-            said = ", ".join(f"{k} {v}" for k, v in table.items() if isinstance(v, str | int))
-            details.append([said, *("holds" if x.holds else x.lower() for x in (before, after))])
+        both = self.twice(findings, changed)
+        details = [["claim", "k = 0 … N − 1", "k = 1 … N"], *self.rows(both)]
+        verdicts: list[bool | None] = [x.verdict is y.verdict for x, y in both]
         evidence = prose(
             f"{verdicts.count(True)} of {len(verdicts)} verdicts are the same; by the other count "
             "Λ changes by ", number(shown(changes["lambda"], 2)), " of itself at most, MSE by ",
