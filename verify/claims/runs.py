@@ -87,3 +87,10 @@ def all_hold(verdicts: Sequence[bool | None]) -> Verdict:
     if False in verdicts:
         return Verdict.REFUTED
     return Verdict.UNDECIDED if None in verdicts or not verdicts else Verdict.MEASURED
+
+
+def some_hold(verdicts: Sequence[bool | None]) -> Verdict:
+    """MEASURED by one True; REFUTED where all is False."""
+    if True in verdicts:
+        return Verdict.MEASURED
+    return Verdict.UNDECIDED if None in verdicts or not verdicts else Verdict.REFUTED

@@ -13,15 +13,12 @@ from verify.arithmetic.arb import lg, rational_ball, shown
 from verify.arithmetic.exact import text
 from verify.claims.findings import Findings
 from verify.claims.on_runs import RunClaim
-from verify.claims.runs import QUANTITIES, Quantity, sign, start_of
+from verify.claims.runs import QUANTITIES, Quantity, all_hold, sign, some_hold, start_of
 from verify.errors import InputError
 from verify.prose import Formula, Prose, joined, number, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.scene import Scene
 from verify.scenes.values import StepSize
-from verify.verdict import Verdict
-
-_VERDICTS = {True: Verdict.MEASURED, False: Verdict.REFUTED, None: Verdict.UNDECIDED}
 
 
 class MagnitudeClaim(RunClaim):
@@ -65,16 +62,12 @@ class MagnitudeClaim(RunClaim):
         yes = [start_of(row[0]) for row, held in zip(rows, holds, strict=True) if held is True]
         no = [said for said, held in zip(failing, holds, strict=True) if held is False]
         evidence = prose("holds for ", _list(yes), "; does not hold for ", _list(no))
-        decided = _some(holds) if self.quantifier == "some" else _every(holds)
-        return self.result(_VERDICTS[decided], evidence, details)
+        decide = some_hold if self.quantifier == "some" else all_hold
+        return self.result(decide(holds), evidence, details)
 
 
 def _every(answers: Sequence[bool | None]) -> bool | None:
     return False if False in answers else None if None in answers else True
-
-
-def _some(answers: Sequence[bool | None]) -> bool | None:
-    return True if True in answers else None if None in answers else False
 
 
 def _list(names: Sequence[Prose]) -> Prose:

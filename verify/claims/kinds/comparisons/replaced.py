@@ -17,7 +17,7 @@ from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.arb import ball, middle_and_radius, rational_ball
 from verify.claims.again import AgainClaim
 from verify.claims.findings import Findings
-from verify.claims.runs import NoValueError
+from verify.claims.runs import NoValueError, all_hold
 from verify.prose import Formula, prose
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.claim import ClaimResult
@@ -58,9 +58,9 @@ class ReplacedClaim(AgainClaim):
             return self.result(after.verdict, said + after.evidence, after.details)
         details = [["claim", "of MSE", prose("of ", Formula(self.mse))], *self.rows(both)]
         verdicts = [after.verdict for _, after in both]
-        count = sum(verdict.holds for verdict in verdicts)
-        evidence = said + f"{count} of {len(both)} of these claims hold"
-        return self.result(_weakest(verdicts), evidence, details)
+        holds = [None if v is Verdict.UNDECIDED else v.holds for v in verdicts]
+        evidence = said + f"{holds.count(True)} of {len(both)} of these claims hold"
+        return self.result(all_hold(holds), evidence, details)
 
 
 def _with_mse(run: RunResult, ring: Ring, elements: Sequence[Poly]) -> RunResult:
@@ -74,13 +74,6 @@ def _with_mse(run: RunResult, ring: Ring, elements: Sequence[Poly]) -> RunResult
         raise NoValueError(run)
     mse = Value.of(*middle_and_radius(value), run.digits)
     return run.model_copy(update={"values": {**run.values, "mse": mse}})
-
-
-def _weakest(verdicts: Sequence[Verdict]) -> Verdict:
-    for weak in (Verdict.REFUTED, Verdict.UNDECIDED):
-        if weak in verdicts:
-            return weak
-    return Verdict.MEASURED
 
 
 CLAIM = ReplacedClaim

@@ -19,7 +19,7 @@ from pydantic import Field, model_validator
 from verify.arithmetic.exact import known_text, text, upper
 from verify.claims.findings import Findings
 from verify.claims.on_runs import RunClaim
-from verify.claims.runs import all_hold, start_of
+from verify.claims.runs import all_hold, some_hold, start_of
 from verify.errors import NOT_GIVEN, InputError
 from verify.execution.study import known_results
 from verify.execution.task import Task
@@ -137,7 +137,7 @@ class SolutionErrorClaim(RunClaim):
             _place(most), ")",
         )  # fmt: skip
         every = self.quantifier == "every"
-        decided = all_hold(holds) if every else _some(holds)
+        decided = all_hold(holds) if every else some_hold(holds)
         return self.result(decided, evidence, details)
 
     def _runs(self, findings: Findings) -> list[RunResult]:
@@ -156,12 +156,6 @@ class SolutionErrorClaim(RunClaim):
             return True if error.high <= self.within else False if error.low > self.within else None
         limit = self.beyond or Fraction(0)
         return True if error.low > limit else False if error.high <= limit else None
-
-
-def _some(holds: Sequence[bool | None]) -> Verdict:
-    if True in holds:
-        return Verdict.MEASURED
-    return Verdict.UNDECIDED if None in holds else Verdict.REFUTED
 
 
 def _error_of(exact: Hamiltonian, run: RunResult) -> _Error:
