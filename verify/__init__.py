@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from verify.pages.plotting_orbits import plot_energy_drift as plot_energy_drift
     from verify.pages.plotting_orbits import plot_orbit as plot_orbit
     from verify.proof.modified.equation import ModifiedEquation as ModifiedEquation
-    from verify.proof.order_proof import Proof as Proof
+    from verify.proof.proof import Proof as Proof
     from verify.scenes.results.orbit import OrbitTable as OrbitTable
     from verify.scenes.results.report import Report as Report
     from verify.scenes.results.run import RunResult as RunResult
@@ -54,8 +54,8 @@ if TYPE_CHECKING:
     from verify.scenes.results.sweep import Sweep as Sweep
     from verify.scenes.scene import Scene as Scene
     from verify.scenes.scene import load_scene as load_scene
+    from verify.schemes.maps.step_map import StepMap as StepMap
     from verify.schemes.scheme import Scheme as Scheme
-    from verify.schemes.step_map import StepMap as StepMap
     from verify.verdict import Verdict as Verdict
 
 # Each public name with the module that it comes from, and in a line what it is: what help(verify)
@@ -86,10 +86,13 @@ _NAMES = {
     "systems": ("verify.hamiltonians.systems", "the named systems: names(), get(name)"),
     "Scheme": ("verify.schemes.scheme", "an integration scheme with its claims"),
     "schemes": ("verify.schemes", "the schemes: names(), get(name)"),
-    "StepMap": ("verify.schemes.step_map", "the exact map of one step; from_formulas(H, p', q')"),
+    "StepMap": (
+        "verify.schemes.maps.step_map",
+        "the exact map of one step; from_formulas(H, p', q')",
+    ),
     "Scene": ("verify.scenes.scene", "a declaration of what is to be verified"),
     "load_scene": ("verify.scenes.scene", "the scene in a TOML file"),
-    "Proof": ("verify.proof.order_proof", "what is proved of a step map"),
+    "Proof": ("verify.proof.proof", "what is proved of a step map"),
     "ModifiedEquation": ("verify.proof.modified.equation", "what is known of a scheme's H̃"),
     "RunResult": ("verify.scenes.results.run", "what a run gave"),
     "OrbitTable": ("verify.scenes.results.orbit", "the states of a run"),

@@ -15,6 +15,7 @@ import flint
 
 from verify.flows.extrapolation import Flow
 from verify.flows.solution import exact_solution
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
 END, Q0 = 100, Fraction(3, 2)
@@ -66,7 +67,7 @@ def lie_series(slopes: Slopes, digits: int) -> Any:
 
 
 def gragg(formula: str, digits: int) -> Any:
-    flow = Flow(Hamiltonian.parse(formula).field()[0], digits)
+    flow = Flow(canonical_field(Hamiltonian.parse(formula))[0], digits)
     return flow.follow((flow.number(Fraction(0)), flow.number(Q0)), Fraction(END))[1]
 
 

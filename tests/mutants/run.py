@@ -33,7 +33,7 @@ from tests.mutants.targets import modules, sample
 RESULTS = Path(__file__).parent / "results.jsonl"
 _SLOWER = 5  # times the sound code's processor time, after which a mutant is said to hang
 _TRIED = 200  # mutants at most for one property
-_OF_MAPS = "verify.schemes.methods.taylor.lie", "verify.schemes.step_map", "verify.schemes.substep"
+_OF_MAPS = "verify.schemes.methods.taylor.lie", "verify.schemes.maps.step_map"
 _SOUND = 1800.0  # seconds for a killer on the sound code
 
 

@@ -47,10 +47,10 @@ def theirs(name: str, precision: Precision, eta: int, at: Point, sign: int = 1) 
 @cache
 def ours(name: str, eta: int, at: Point) -> tuple[State, Fraction]:
     """p', q' and the Jacobian; and ΔJ by its own closed form. Enclosed to within 2^−380."""
-    (step,) = get(f"lie{eta}").step_map(SYSTEMS[name].hamiltonian).substeps
+    step = get(f"lie{eta}").step_map(SYSTEMS[name].hamiltonian).flat
     point = {"p": at[0], "q": at[1], "h": STEP_SIZE}
     found = []
-    for x in (step.p_next, step.q_next, *step.jacobian, step.delta_j):
+    for x in (*step.elements, *step.jacobian[0], *step.jacobian[1], step.delta_j):
         middle, radius = middle_and_radius(enclose(step.ring, x, point, 400))
         assert radius < Fraction(1, 2**380)
         found.append(middle)

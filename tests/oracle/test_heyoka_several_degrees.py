@@ -18,9 +18,8 @@ from tests.oracle.by_heyoka import PRECISIONS, STEP_SIZE, Precision, hy
 from verify.algebra.enclosure import enclose
 from verify.arithmetic.arb import middle_and_radius
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.symplectic.order import prove_symplectic
+from verify.proof.order import prove
 from verify.schemes import get
-from verify.schemes.degrees import map_in_degrees
 
 WIDEST = PRECISIONS.get("quad") or PRECISIONS.get("extended") or PRECISIONS["double"]
 TIME = Fraction(3, 8)
@@ -84,7 +83,7 @@ def theirs(name: str, eta: int) -> tuple[list[Fraction], list[list[Fraction]]]:
 @cache
 def ours(name: str, eta: int) -> tuple[list[Fraction], list[list[Fraction]]]:
     """The same of the map that is proved, enclosed to within 2^−200."""
-    made = map_in_degrees(get(f"lie{eta}"), Hamiltonian.parse(SYSTEMS[name].formula))
+    made = get(f"lie{eta}").step_map(Hamiltonian.parse(SYSTEMS[name].formula))
     assert made.closed is not None
     at = {**dict(zip(made.field.names, POINT, strict=False)), "h": STEP_SIZE, "t": TIME}
 
@@ -120,7 +119,8 @@ def test_and_so_is_the_symplectic_defect_which_has_the_order_that_is_proved(
     mine, other = (defect(found(name, eta)[1]) for found in (ours, theirs))
     allowed = 64 * WIDEST.rounding(max(abs(x) for row in ours(name, eta)[1] for x in row) ** 2)
     assert all(abs(mine[at] - other[at]) <= allowed for at in mine)
-    proof = prove_symplectic(Hamiltonian.parse(SYSTEMS[name].formula), get(f"lie{eta}"))
+    scheme = get(f"lie{eta}")
+    proof = prove(scheme.step_map(Hamiltonian.parse(SYSTEMS[name].formula)), scheme)
     assert proof.order == eta + 1
     largest = max(abs(x) for x in other.values())
     assert largest > 1000 * allowed, "it is seen above heyoka's rounding"

@@ -148,7 +148,7 @@ def test_every_mutant_compiles_differs_and_has_its_own_key() -> None:
 
 
 def test_mutants_are_enumerated_alike_in_every_process() -> None:
-    few = ("verify.arithmetic.exact", "verify.proof.order", "verify.schemes.step_map")
+    few = ("verify.arithmetic.exact", "verify.proof.order", "verify.schemes.maps.step_map")
     keys = f"print([m.key for m in sample(60, 7, {few})])"
     asked = f"from tests.mutants.targets import sample; {keys}"
     command = [sys.executable, "-c", asked]
@@ -287,8 +287,8 @@ def test_the_killers_are_all_files_of_properties_and_the_battery_where_it_is() -
     assert [k.name for k in found if k.stage == 1] == [killers.BATTERY] * battery.there()
     files = {p.name for p in (ROOT / "tests" / "property").rglob("test_*.py")}
     assert {Path(k.name).name for k in found if k.stage == 2} == files
-    assert "tests/unit/schemes/test_step_map.py" in {
-        k.name for k in killers.unit_killers("verify.schemes.step_map")
+    assert "tests/unit/schemes/maps/test_step_map.py" in {
+        k.name for k in killers.unit_killers("verify.schemes.maps.step_map")
     }
 
 
@@ -399,7 +399,7 @@ def test_the_tests_of_a_mutants_room_that_reach_its_line_come_first() -> None:
 @pytest.mark.parametrize(("planted", "killed"), [(True, True), (False, False)])
 def test_a_mutant_is_planted_in_the_process_of_the_tests(planted: bool, killed: bool) -> None:
     """One that the test has to see, and one of another module."""
-    test = "tests/unit/kernels/test_eliminated.py::test_the_solution_is_that_of_the_system"
+    test = "tests/unit/kernels/test_partials.py::test_the_solution_is_that_of_the_system"
     module = "verify.kernels.step.program_algebra" if planted else "verify.pages.wrong"
     chosen = next(m for m in mutants(module) if not planted or m.change.startswith("pivots +="))
     status, said = campaign._run(chosen, [test], 120)

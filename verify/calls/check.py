@@ -22,7 +22,7 @@ from verify.integrators.results import MOST_CLAIMED, Claims, Finding
 from verify.integrators.user_code.loading import callee_from
 from verify.integrators.user_code.step import TIME_LIMIT
 from verify.proof.order import prove
-from verify.proof.order_proof import Proof
+from verify.proof.proof import Proof
 from verify.schemes.scheme import Scheme
 
 

@@ -24,8 +24,8 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.named_system import System
 from verify.scenes.frozen import Frozen
 from verify.scenes.scene import Scene, scene_from
+from verify.schemes.maps.step_map import StepMap
 from verify.schemes.scheme import Scheme
-from verify.schemes.step_map import StepMap
 
 GivenSystem = Hamiltonian | System | str
 GivenScheme = Scheme | StepMap | str

@@ -16,8 +16,8 @@ from verify.proof.modified.equation import ModifiedEquation
 from verify.proof.modified.every import MOST_ORDER as MOST_FOR_EVERY
 from verify.proof.modified.every import modified_for_every
 from verify.proof.modified.one import MOST_ORDER, modified_of
+from verify.schemes.maps.step_map import StepMap
 from verify.schemes.scheme import Scheme
-from verify.schemes.step_map import StepMap
 
 
 def modified_hamiltonian(

@@ -10,11 +10,9 @@ from verify.calls.given import (
 )
 from verify.errors import NOT_GIVEN, InputError
 from verify.proof.order import prove as prove_map
-from verify.proof.order_proof import Proof
-from verify.proof.symplectic.order import prove_symplectic
-from verify.proof.symplectic.proof import SymplecticProof
+from verify.proof.proof import Proof
+from verify.schemes.maps.step_map import StepMap
 from verify.schemes.scheme import Scheme
-from verify.schemes.step_map import StepMap
 
 
 def prove(
@@ -22,10 +20,10 @@ def prove(
     scheme: GivenScheme | None = None,
     *,
     parameters: GivenParameters = None,
-) -> Proof | SymplecticProof:
+) -> Proof:
     """Prove the order in h of ΔJ = det J − 1, that of the map, and what the scheme claims.
 
-    Of an H in p1 … pn and q1 … qn that of S = JᵀΩJ − Ω is proved, in a SymplecticProof.
+    Of an H in p1 … pn and q1 … qn that of S = JᵀΩJ − Ω is proved.
 
     Parameters
     ----------
@@ -56,6 +54,4 @@ def prove(
     if scheme is None:
         raise InputError("scheme", NOT_GIVEN, "is missing; such as prove('duffing', 'lie2')")
     found = scheme_from(scheme)
-    if not exact.planar and isinstance(found, Scheme):
-        return prove_symplectic(exact, found)
     return prove_map(step_map_from(found, exact), found if isinstance(found, Scheme) else None)

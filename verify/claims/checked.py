@@ -23,14 +23,12 @@ def of_scene(claim: Claim, findings: Findings, about: "AboutAll") -> tuple[Prose
 @lru_cache(maxsize=64)
 def of_hamiltonian(hamiltonian: Hamiltonian, name: str, about: "AboutAll") -> tuple[Prose, ...]:
     """The marks of the proof for this H."""
-    from verify.claims.formulas import proof_of, step_map_of
+    from verify.claims.formulas import proof_of
     from verify.proof.checked import marks
     from verify.proof.checked.proved import of_one_hamiltonian
-    from verify.proof.order import prove
 
-    scheme, planar = get(name), hamiltonian.planar
-    proof = prove(step_map_of(hamiltonian, name), scheme) if planar else proof_of(hamiltonian, name)
-    return marks(of_one_hamiltonian(proof, hamiltonian, scheme, about))
+    proof = proof_of(hamiltonian, name)
+    return marks(of_one_hamiltonian(proof, hamiltonian, get(name), about))
 
 
 @lru_cache(maxsize=64)

@@ -25,15 +25,17 @@ from verify.algebra.symbols import H_STEP
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
 from verify.errors import InputError
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import Expansion
-from verify.proof.symplectic.order import prove_symplectic
-from verify.proof.symplectic.proof import SymplecticProof
+from verify.proof.order import prove
+from verify.proof.proof import Proof
 from verify.prose import Formula, Number, Prose, joined, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.scene import Scene
 from verify.schemes import get
-from verify.schemes.step_map import StepMap, grouped, h_inside
+from verify.schemes.maps.closed_form import h_inside
+from verify.schemes.maps.step_map import StepMap, grouped
 from verify.verdict import Verdict
 
 
@@ -145,7 +147,7 @@ def gaps(
 ) -> list[Gap]:
     """printed − computed for each (what, printed, computed), decided in one ring, in the domain."""
     differences = [printed - computed for _, printed, computed in pairs]
-    field, elements = step_map.hamiltonian.field(*differences)
+    field, elements = canonical_field(step_map.hamiltonian, *differences)
     ring = field.ring
     return [
         Gap(what, ring, x, domain.decide(ring, x))
@@ -159,9 +161,9 @@ def within(domain: Domain) -> Prose:
 
 
 @lru_cache(maxsize=64)
-def proof_of(hamiltonian: Hamiltonian, scheme: str) -> SymplecticProof:
-    """The proof in n degrees of freedom; several claims speak of one."""
-    return prove_symplectic(hamiltonian, get(scheme))
+def proof_of(hamiltonian: Hamiltonian, scheme: str) -> Proof:
+    """The proof for one H; several claims speak of one."""
+    return prove(step_map_of(hamiltonian, scheme), get(scheme))
 
 
 @lru_cache(maxsize=64)

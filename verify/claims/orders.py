@@ -20,12 +20,12 @@ from verify.proof.claimed import Convergence
 from verify.proof.expansion import MOST_ORDERS
 from verify.proof.order import convergence_of_scheme, leading_of, nearby_defect_of
 from verify.proof.printed_formulas import told_defect
-from verify.proof.symplectic.proof import SymplecticProof
+from verify.proof.proof import Proof
 from verify.prose import Formula, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.schemes import get
 from verify.schemes.conditions import NearbyOrder
-from verify.schemes.step_map import StepMap
+from verify.schemes.maps.step_map import StepMap
 from verify.verdict import Verdict
 
 
@@ -156,7 +156,7 @@ def _with_printed(
     )
 
 
-def _order_in_degrees(proof: SymplecticProof, *, of_s: bool) -> ProvedOrder:
+def _order_in_degrees(proof: Proof, *, of_s: bool) -> ProvedOrder:
     """The order of S, or of det J − 1."""
     vanishes, order = proof.area_preserving, proof.volume_order
     if of_s:

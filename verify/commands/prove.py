@@ -19,9 +19,8 @@ if TYPE_CHECKING:
 
     from verify.hamiltonians.hamiltonian import Hamiltonian
     from verify.proof.every_proof import EveryProof
-    from verify.proof.order_proof import Proof
+    from verify.proof.proof import Proof
     from verify.proof.special_values import SpecialValue
-    from verify.proof.symplectic.proof import SymplecticProof
     from verify.schemes.scheme import Scheme
 
 
@@ -119,11 +118,11 @@ def _prove_one(exact: "Hamiltonian", scheme: str, certificate: Path | None) -> A
     from verify.proof.special_values import special_values
     from verify.schemes import get
 
-    if not exact.planar:
-        return _prove_in_degrees(exact, scheme, certificate)
     begun = time.perf_counter()
     chosen = get(scheme)
     proof = prove_order(chosen.step_map(exact), chosen)
+    if not proof.planar:
+        return _of_form(proof, exact, chosen, begun, certificate)
     potential = potential_of(proof, chosen)
     special = special_values(proof, chosen)
     seconds = f"{time.perf_counter() - begun:.6f}"
@@ -143,20 +142,17 @@ def _prove_one(exact: "Hamiltonian", scheme: str, certificate: Path | None) -> A
     )  # fmt: skip
 
 
-def _prove_in_degrees(exact: "Hamiltonian", scheme: str, certificate: Path | None) -> Answer:
+def _of_form(
+    proof: "Proof", exact: "Hamiltonian", chosen: "Scheme", begun: float, certificate: Path | None
+) -> Answer:
     """Of p1 … pn and q1 … qn: S in place of ΔJ."""
     from verify.commands.shared.in_degrees import print_symplectic
-    from verify.proof.symplectic.order import prove_symplectic
-    from verify.schemes import get
 
-    begun, chosen = time.perf_counter(), get(scheme)
-    proof = prove_symplectic(exact, chosen)
     seconds = f"{time.perf_counter() - begun:.6f}"
     if certificate is not None:
-        from verify.proof.certificates.one import of_one_in_degrees
+        from verify.proof.certificates.one import of_one
 
-        made = partial(of_one_in_degrees, proof, exact, chosen)
-        _write(_certificate(made, proof, exact, chosen), certificate)
+        _write(_certificate(partial(of_one, proof), proof, exact, chosen), certificate)
     return Answer(
         lambda: show.proof_json(
             exact.texts, chosen.name, proof, seconds, **show.checks_json(proof)
@@ -176,7 +172,7 @@ def _special_json(special: "SpecialValue") -> dict[str, Any]:
 
 def _certificate(
     made: "Callable[[], dict[str, Any]]",
-    proof: "Proof | SymplecticProof",
+    proof: "Proof",
     exact: "Hamiltonian",
     scheme: "Scheme",
 ) -> dict[str, Any]:

@@ -13,16 +13,14 @@ from verify.errors import InputError
 from verify.flows.extrapolation import Flow
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.vector_field import VectorField
 from verify.kernels.stepping import KernelRun, Outcome
-from verify.proof.order_proof import Proof
-from verify.proof.symplectic.proof import SymplecticProof
+from verify.proof.order import prove
+from verify.proof.proof import Proof
 from verify.scenes.run_sections import Grid
 from verify.scenes.scene import Scene
 from verify.schemes import get
-from verify.schemes.degrees.canonical_map import CanonicalMap
+from verify.schemes.maps.step_map import StepMap
 from verify.schemes.scheme import Scheme
-from verify.schemes.step_map import StepMap
 
 
 @dataclass(frozen=True)
@@ -76,15 +74,15 @@ class AnySample(ABC):
     def point(self) -> dict[str, Fraction]:
         """The coordinates at the start, by name."""
 
-    @property
-    @abstractmethod
-    def step_map(self) -> StepMap | CanonicalMap:
+    @cached_property
+    def step_map(self) -> StepMap:
         """The map of one step, for this H; asked for where it is `brief`."""
+        return self.scheme.step_map(self.hamiltonian)
 
-    @property
-    @abstractmethod
-    def proof(self) -> Proof | SymplecticProof:
+    @cached_property
+    def proof(self) -> Proof:
         """What is proved of the map: orders, the leading coefficient of its defect."""
+        return prove(self.step_map, self.scheme)
 
     @property
     @abstractmethod
@@ -107,9 +105,9 @@ class AnySample(ABC):
         return self.terms <= self.most_of_points
 
     @property
-    @abstractmethod
-    def field(self) -> VectorField | CanonicalField:
+    def field(self) -> CanonicalField:
         """H's own, with its derivatives by the coordinates."""
+        return canonical_field(self.hamiltonian)[0]
 
     def flow(self, digits: int) -> Flow:
         """The exact flow, to so many digits."""
@@ -118,8 +116,7 @@ class AnySample(ABC):
     @property
     def slopes(self) -> tuple[Ring, Sequence[Poly]]:
         """The derivatives of the coordinates by t, in their order, and their ring."""
-        field, _ = canonical_field(self.hamiltonian)
-        return field.ring, field.slopes
+        return self.field.ring, self.field.slopes
 
     @property
     def polynomial(self) -> bool:

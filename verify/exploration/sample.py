@@ -7,13 +7,9 @@ from functools import cached_property
 from typing import Any, Self
 
 from verify.exploration.any_sample import AnySample
-from verify.hamiltonians.vector_field import VectorField
-from verify.proof.order import prove
-from verify.proof.order_proof import Proof
 from verify.scenes.run_sections import Grid
 from verify.scenes.scene import Scene
 from verify.schemes.every_hamiltonian import TaylorSeries
-from verify.schemes.step_map import StepMap
 
 _MOST_TERMS = 40  # of a map in all its parts, so that a proof is made in a moment
 
@@ -41,21 +37,6 @@ class Sample(AnySample):
         """p and q at the start."""
         return {"p": self.p, "q": self.q}
 
-    @property
-    def field(self) -> VectorField:
-        """H's own, with its derivatives by p and q."""
-        return self.hamiltonian.field()[0]
-
-    @cached_property
-    def step_map(self) -> StepMap:
-        """The map of one step, for this H."""
-        return self.scheme.step_map(self.hamiltonian)
-
-    @cached_property
-    def proof(self) -> Proof:
-        """What is proved of the map: orders, the leading coefficient of ΔJ."""
-        return prove(self.step_map, self.scheme)
-
     @cached_property
     def ordinary(self) -> bool:
         """Whether its map is short enough to be proved in a moment.
@@ -78,4 +59,4 @@ class Sample(AnySample):
 
     @cached_property
     def terms(self) -> int:
-        return sum(step.length for step in self.step_map.substeps)
+        return self.step_map.terms

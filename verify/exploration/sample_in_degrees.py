@@ -10,14 +10,9 @@ from typing import Any, Self
 from verify.errors import InputError
 from verify.exploration.any_sample import AnySample
 from verify.exploration.sample import Sample
-from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
-from verify.proof.symplectic.order import prove_symplectic
-from verify.proof.symplectic.proof import SymplecticProof
 from verify.scenes.run_sections import Grid
 from verify.scenes.scene import Scene
 from verify.scenes.values import InitialState
-from verify.schemes.degrees import map_in_degrees
-from verify.schemes.degrees.canonical_map import CanonicalMap
 from verify.schemes.every_hamiltonian import TaylorSeries
 
 _MOST_TERMS = 30  # of what a step is made of, so that a proof is made of it in a moment
@@ -48,21 +43,6 @@ class SampleInDegrees(AnySample):
     def point(self) -> dict[str, Fraction]:
         """p1 … pn, q1 … qn at the start."""
         return dict(zip(self.hamiltonian.coordinates, (*self.p, *self.q), strict=True))
-
-    @property
-    def field(self) -> CanonicalField:
-        """H's own."""
-        return canonical_field(self.hamiltonian)[0]
-
-    @cached_property
-    def step_map(self) -> CanonicalMap:
-        """The map of one step, for this H; asked for where it is `brief`."""
-        return map_in_degrees(self.scheme, self.hamiltonian)
-
-    @cached_property
-    def proof(self) -> SymplecticProof:
-        """What is proved of the map: orders, the leading coefficient of S."""
-        return prove_symplectic(self.hamiltonian, self.scheme)
 
     @property
     def ordinary(self) -> bool:

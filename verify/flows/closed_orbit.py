@@ -26,9 +26,9 @@ from verify.algebra.substitution import substitute
 from verify.errors import InputError
 from verify.flows.extrapolation import LOST, Flow, NoFlowError, Number, State
 from verify.flows.functions import functions_at
+from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.periods import period_in
-from verify.hamiltonians.vector_field import VectorField
 
 Element = tuple[Ring, Poly]
 Start = tuple[Fraction, Fraction]  # p, q
@@ -86,7 +86,8 @@ class Orbit:
 
 def closed_orbit(hamiltonian: Hamiltonian, start: Start, digits: int, count: int) -> Orbit:
     """The orbit through z₀ = (p, q) at `count` times. Raises NoFlowError where it is not closed."""
-    field, _ = hamiltonian.field()
+    hamiltonian.check_planar()
+    field, _ = canonical_field(hamiltonian)
     if at_rest(hamiltonian, field, start):
         flow = Flow(field, digits)
         zero = flow.number(Fraction(0))
@@ -103,12 +104,12 @@ def closed_orbit(hamiltonian: Hamiltonian, start: Start, digits: int, count: int
     )
 
 
-def at_rest(hamiltonian: Hamiltonian, field: VectorField, start: Start) -> bool:
+def at_rest(hamiltonian: Hamiltonian, field: CanonicalField, start: Start) -> bool:
     """Whether z₀ is an equilibrium, by algebra. Raises NoFlowError where H is not defined there."""
     ring = field.ring
     numbers = (sympy.Rational(x.numerator, x.denominator) for x in start)
     point = dict(zip((symbol("p"), symbol("q")), numbers, strict=True))
-    slopes = [ring.expression(x) for x in (field.h_p, field.h_q)]
+    slopes = [ring.expression(x) for x in field.slopes]
     try:
         _, *there = [substitute(x, point, "z0") for x in (hamiltonian.exact, *slopes)]
         constants, elements = embed(there, ())
@@ -147,7 +148,7 @@ class _Return:
 @lru_cache(maxsize=8)
 def _first_return(hamiltonian: Hamiltonian, start: Start) -> _Return:
     # An average asks for the same orbit twice and more, each time to other digits.
-    rough = Flow(hamiltonian.field()[0], _ROUGH)
+    rough = Flow(canonical_field(hamiltonian)[0], _ROUGH)
     return _ReturnSearch(rough, start, list(shifts(hamiltonian))).back()
 
 

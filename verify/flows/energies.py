@@ -7,7 +7,7 @@ from typing import Any
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import mpfr
 from verify.flows.functions import Function, defined_values, functions_at
-from verify.hamiltonians.energy import energy_of
+from verify.hamiltonians.canonical_field import energy_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
 

@@ -16,7 +16,6 @@ from typing import Any
 from verify.arithmetic.systems import mpfr
 from verify.flows.functions import Written
 from verify.hamiltonians.canonical_field import CanonicalField
-from verify.hamiltonians.vector_field import VectorField
 from verify.prose import read_prose
 
 Number = Any  # gmpy2.mpfr, which has no type stubs
@@ -52,7 +51,7 @@ class Flow:
     """The exact flow of a field without symbols, in the plane or in n degrees of freedom, to
     `digits` digits; a state has all its coordinates, and t where H depends on it."""
 
-    def __init__(self, field: VectorField | CanonicalField, digits: int) -> None:
+    def __init__(self, field: CanonicalField, digits: int) -> None:
         names, self.timed = field.names, field.timed
         self.arithmetic = mpfr.make(digits + GUARD)
         self.names = (*names, "t") if self.timed else tuple(names)

@@ -63,7 +63,7 @@ def follow(
 
 def slopes_of(hamiltonian: Hamiltonian) -> Slopes:
     """f at the coordinates and a t, which an H without time does not look at."""
-    field, _ = hamiltonian.field() if hamiltonian.planar else canonical_field(hamiltonian)
+    field, _ = canonical_field(hamiltonian)
     elements = [(field.ring, x) for x in field.slopes]
     names = hamiltonian.coordinates
     if hamiltonian.time_dependent:

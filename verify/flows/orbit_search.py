@@ -8,6 +8,7 @@ from typing import Literal
 from verify.flows.closed_orbit import shifts
 from verify.flows.extrapolation import Flow, NoFlowError, Number, State
 from verify.flows.functions import functions_at
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.prose import Prose, read_prose
 
@@ -56,20 +57,19 @@ class OrbitSearch:
         time: Fraction,
         t0: Fraction,
     ) -> None:
-        field, _ = hamiltonian.field()
+        field, _ = canonical_field(hamiltonian)
+        (force, speed), diff = field.slopes, field.ring.diff
         ring = field.ring
-        h_pp, h_pq = (ring.diff(field.h_p, n) for n in ("p", "q"))
-        stiffness = ring.reduce(h_pp * ring.diff(field.h_q, "q") - h_pq * h_pq)
+        h_pp, h_pq = diff(speed, "p"), diff(speed, "q")
+        stiffness = ring.reduce(-h_pp * diff(force, "q") - h_pq * h_pq)
         self.flow = Flow(field, _DIGITS + initial_value_digits(start))
         self.arithmetic = self.flow.arithmetic
-        elements = [(ring, x) for x in (-field.h_q, field.h_p, stiffness, field.energy)]
+        elements = [(ring, x) for x in (force, speed, stiffness, field.energy)]
         self.at = functions_at(self.arithmetic, elements, self.flow.names)
         self.start, self.time, self.timed = start, self.number(time), field.timed
         self.z0: State = tuple(map(self.number, (*start, t0)[: len(self.flow.names)]))
         self.shifts = [self.turned(s) for s in shifts(hamiltonian)]
-        self.free = tuple(
-            x.is_zero() for x in (field.h_p, field.h_q)
-        )  # whether q, p stay as they are
+        self.free = tuple(x.is_zero() for x in (speed, force))  # whether q, p stay as they are
         self.points: list[State] = [self.z0]
         self.rates: list[tuple[Number, Number, Number]] = []  # f and ω² at the points
         # From which on any time gives the same, where it closes by steps that its end never cuts.

@@ -24,7 +24,6 @@ from verify.hamiltonians import known_flows
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.times_on_the_way import first_fault
-from verify.hamiltonians.vector_field import VectorField
 
 METHOD = "numerical flow: Gragg's method, extrapolated"
 _GUARD = 6  # digits beyond those asked for with which the first flow is followed
@@ -44,7 +43,7 @@ def check_poles(hamiltonian: Hamiltonian, t0: Fraction, time: Fraction) -> None:
 
 
 def confirmed(
-    field: VectorField | CanonicalField, start: Sequence[Fraction], time: Fraction, digits: int
+    field: CanonicalField, start: Sequence[Fraction], time: Fraction, digits: int
 ) -> tuple[list[Fraction], Fraction]:
     """The coordinates after the time and a bound of the error of each, an estimate; NoFlowError.
 
@@ -126,7 +125,7 @@ def exact_solution(
             return _in_closed_form(closed_form.enclosed(state, (p, q), digits), _FORCED)
         return numerical_solution(hamiltonian, itself.point, time, digits, t0)
     known = known_flows.closed_form(hamiltonian, p, q)
-    rest = known.rest if known else at_rest(hamiltonian, hamiltonian.field()[0], (p, q))
+    rest = known.rest if known else at_rest(hamiltonian, canonical_field(hamiltonian)[0], (p, q))
     if rest:
         return itself
     if known is not None:
@@ -143,7 +142,7 @@ def numerical_solution(
 ) -> Solution:
     """By the numerical flow with more and more digits, until two of them agree."""
     check_poles(hamiltonian, t0, time)
-    field, _ = hamiltonian.field() if hamiltonian.planar else canonical_field(hamiltonian)
+    field, _ = canonical_field(hamiltonian)
     start = [*point.values(), *([t0] if field.timed else [])]
     after, bound = confirmed(field, start, time, digits)
     return Solution(dict(zip(point, after, strict=True)), bound, METHOD, enclosed=False)
@@ -177,7 +176,7 @@ def leaves_by_algebra(
         if end is None:
             return known.goes()
         return f"it blows up at t = {plain(end, 6)}" if closed_form.ends_by(known, time) else None
-    if at_rest(hamiltonian, hamiltonian.field()[0], (p, q)):
+    if at_rest(hamiltonian, canonical_field(hamiltonian)[0], (p, q)):
         return None
     for match in known_flows.named(hamiltonian):
         if match.system.goes is not None:

@@ -9,11 +9,13 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from fractions import Fraction
 from functools import cached_property, lru_cache
 
-from verify.algebra.embedding import embed
+from verify.algebra.embedding import MAX_TERMS
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.power_series import CoefficientRing, Derivatives
+from verify.hamiltonians.coordinates import PLANE
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.late import sympy
 
@@ -75,6 +77,16 @@ class Flow(ABC):
         """Xⁿz/n!, the coefficient of hⁿ in the exact flow."""
         return tuple(x / math.factorial(n) for x in self.power(n))
 
+    def gradients(self, n: int) -> tuple[tuple[Poly, ...], ...]:
+        """∂(Xⁿz/n!)/∂z by rows, made once."""
+        if n not in self._gradients:
+            self._gradients.setdefault(n, tuple(map(self.gradient, self.term(n))))
+        return self._gradients[n]
+
+    @cached_property
+    def _gradients(self) -> dict[int, tuple[tuple[Poly, ...], ...]]:
+        return {}
+
     def gradient(self, x: Poly) -> tuple[Poly, ...]:
         """∂x/∂z."""
         return tuple(self.ring.diff(x, name) for name in self.names)
@@ -99,6 +111,17 @@ class CanonicalField(Flow):
         forces = [-diff(self.energy, name) for name in self.names[n:]]
         return (*forces, *(diff(self.energy, name) for name in self.names[:n]))
 
+    def shears(self, size: Poly | Fraction, places: Sequence[int]) -> list[Poly]:
+        """h size f in these places."""
+        exact = self.ring.constant(size) if isinstance(size, Fraction) else size
+        share = self.ring.variable("h") * exact
+        return [self.ring.reduce(share * self.slopes[k]) for k in places]
+
+    @property
+    def planar(self) -> bool:
+        """Whether it is one of p and q."""
+        return self.names == PLANE
+
     @cached_property
     def separable(self) -> bool:
         """Whether H = T(p) + V(q): all its mixed derivatives are the zero function."""
@@ -108,28 +131,25 @@ class CanonicalField(Flow):
 
 
 def canonical_field(
-    hamiltonian: Hamiltonian, *others: sympy.Expr
+    hamiltonian: Hamiltonian, *others: sympy.Expr, most_terms: int = MAX_TERMS
 ) -> tuple[CanonicalField, list[Poly]]:
     """The field of `exact`, and other expressions as elements of its ring, in which each symbol
     that H does not have is a variable too. Raises InputError."""
-    if others:
-        return _made(hamiltonian, others)
-    return _made_once(hamiltonian), []
+    if not others and most_terms == MAX_TERMS:
+        return _shared(hamiltonian), []
+    ring, energy, elements = hamiltonian.embedded(*others, most_terms=most_terms)
+    return CanonicalField(ring, hamiltonian.coordinates, energy), elements
 
 
-def _made(
-    hamiltonian: Hamiltonian, others: Sequence[sympy.Expr]
-) -> tuple[CanonicalField, list[Poly]]:
-    time = ("t",) if hamiltonian.time_dependent else ()
-    names = hamiltonian.coordinates
-    variables = (*names, "h", *time, *hamiltonian.symbols)
-    symbols = {x.name for other in others for x in other.free_symbols}
-    variables = (*variables, *sorted(symbols.difference(variables)))
-    ring, (energy, *elements) = embed([hamiltonian.exact, *others], variables)
-    return CanonicalField(ring, names, energy), elements
-
-
-# Few, since a field keeps what was derived along it.
+# Several schemes are proved for one H after another: what they share is made once. Few, since a
+# field keeps what was derived along it.
 @lru_cache(maxsize=8)
-def _made_once(hamiltonian: Hamiltonian) -> CanonicalField:
-    return _made(hamiltonian, ())[0]
+def _shared(hamiltonian: Hamiltonian) -> CanonicalField:
+    ring, energy, _ = hamiltonian.embedded()
+    return CanonicalField(ring, hamiltonian.coordinates, energy)
+
+
+def energy_of(hamiltonian: Hamiltonian) -> tuple[Ring, Poly]:
+    """The ring of H's field, and H in it."""
+    field, _ = canonical_field(hamiltonian)
+    return field.ring, field.energy

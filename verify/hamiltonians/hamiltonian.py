@@ -1,12 +1,12 @@
-"""A Hamiltonian H(p, q), or H(p, q, t), with exact parameters, and its Lie derivative in the plane.
+"""A Hamiltonian H(p, q), or H(p, q, t), with exact parameters.
 
-In n degrees of freedom its coordinates are p1 … pn and q1 … qn; what is derived of such an H is in
-`verify.hamiltonians.canonical_field`.
+In n degrees of freedom its coordinates are p1 … pn and q1 … qn. What is derived along its flow is
+in `verify.hamiltonians.canonical_field`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
@@ -18,13 +18,12 @@ from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.expressions.monomials import names_in, reads_back
 from verify.algebra.formula import MAX_DEPTH, MAX_LENGTH, parameter_name, parse, read, symbol
 from verify.algebra.requirement import of_expression
-from verify.algebra.ring import Poly
+from verify.algebra.ring import Poly, Ring
 from verify.algebra.substitution import substitute
 from verify.arithmetic.exact import Exact, rational, text
 from verify.drawable import drawn_by
 from verify.errors import InputError
 from verify.hamiltonians.coordinates import PLANE, check_coordinates, coordinates_of
-from verify.hamiltonians.vector_field import VectorField
 from verify.late import sympy
 from verify.notebook import aligned_latex, cut, short_latex
 
@@ -223,31 +222,17 @@ class Hamiltonian:
         zeros = {symbol(n): sympy.S.Zero for n, v in self.values if v == 0}
         return Hamiltonian(self.expression.subs(zeros))
 
-    def field(
+    def embedded(
         self, *others: sympy.Expr, most_terms: int = MAX_TERMS
-    ) -> tuple[VectorField, list[Poly]]:
-        """The vector field of `exact`, and the other expressions as elements of its ring.
+    ) -> tuple[Ring, Poly, list[Poly]]:
+        """A ring with the coordinates, h, t where H has it and the parameters; `exact` as its
+        element, and other expressions, each symbol of which is a variable too.
 
-        Raises InputError where H is not of p and q: all that asks for it is of the plane.
+        Raises InputError where one has more than `most_terms` terms, or is not defined.
         """
-        self.check_planar()
-        if not others and most_terms == MAX_TERMS:
-            return _field_of(self), []
-        return embedded(self, others, most_terms)
-
-
-def embedded(
-    hamiltonian: Hamiltonian, others: Sequence[sympy.Expr], most_terms: int
-) -> tuple[VectorField, list[Poly]]:
-    """As `Hamiltonian.field`, in a ring of its own, made anew."""
-    time = ("t",) if hamiltonian.time_dependent else ()
-    variables = ("p", "q", "h", *time, *hamiltonian.symbols)
-    ring, elements = embed([hamiltonian.exact, *others], variables, most_terms)
-    return VectorField.of(ring, elements[0]), elements[1:]
-
-
-# Several schemes are proved for one H after another: what they share is made once. Few, since a
-# field keeps what was derived along it.
-@lru_cache(maxsize=8)
-def _field_of(hamiltonian: Hamiltonian) -> VectorField:
-    return embedded(hamiltonian, (), MAX_TERMS)[0]
+        time = ("t",) if self.time_dependent else ()
+        variables = (*self.coordinates, "h", *time, *self.symbols)
+        symbols = {x.name for other in others for x in other.free_symbols}
+        variables = (*variables, *sorted(symbols.difference(variables)))
+        ring, (energy, *elements) = embed([self.exact, *others], variables, most_terms)
+        return ring, energy, elements

@@ -23,14 +23,13 @@ from verify import code_cache
 from verify.algebra.domain import EVERYWHERE
 from verify.algebra.embedding import MAX_TERMS
 from verify.algebra.formula import parse
-from verify.algebra.ring import Poly
+from verify.algebra.ring import Poly, Ring
 from verify.algebra.ring_record import record_of, recorded
 from verify.arithmetic.exact import Exact, text
 from verify.content import digest_of
 from verify.errors import InputError
 from verify.hamiltonians.coordinates import PLANE
-from verify.hamiltonians.hamiltonian import Hamiltonian, embedded
-from verify.hamiltonians.vector_field import VectorField
+from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.late import sympy
 
 _FORMAT = "hamiltonian 1"
@@ -87,17 +86,13 @@ class KeptHamiltonian(Hamiltonian):
         """The same H with other values, which is read for that."""
         return self._read.with_values(parameters)
 
-    def field(
+    def embedded(
         self, *others: sympy.Expr, most_terms: int = MAX_TERMS
-    ) -> tuple[VectorField, list[Poly]]:
+    ) -> tuple[Ring, Poly, list[Poly]]:
         """As of one that was read."""
         if others or most_terms != MAX_TERMS:
-            return super().field(*others, most_terms=most_terms)
-        return self._field, []
-
-    @cached_property
-    def _field(self) -> VectorField:
-        return VectorField.of(*recorded(self._record["ring"]))
+            return super().embedded(*others, most_terms=most_terms)
+        return *recorded(self._record["ring"]), []
 
     @cached_property
     def _with_symbols(self) -> Hamiltonian:
@@ -130,7 +125,7 @@ def _record_of(hamiltonian: Hamiltonian) -> dict[str, Any] | None:
         return None
     try:
         # Anew, without what schemes have added to the ring that is shared.
-        field = embedded(hamiltonian, (), _MOST_TERMS)[0]
+        ring, energy, _ = hamiltonian.embedded(most_terms=_MOST_TERMS)
     except InputError:  # too large, or refused where it is asked for
         return None
     return {
@@ -138,7 +133,7 @@ def _record_of(hamiltonian: Hamiltonian) -> dict[str, Any] | None:
         "values": [(name, text(value)) for name, value in hamiltonian.values],
         "parameters": hamiltonian.parameters,
         "time_dependent": hamiltonian.time_dependent,
-        "ring": record_of(field.ring, field.energy),
+        "ring": record_of(ring, energy),
         "generic": _record_of(hamiltonian.with_symbols()) if hamiltonian.values else None,
     }
 

@@ -17,9 +17,8 @@ from verify.integrators.probes.agreement import trace_must_agree
 from verify.integrators.results import Finding
 from verify.integrators.traced import (
     Trace,
-    proved_in_degrees,
-    proved_in_plane,
     proved_of_map,
+    proved_step,
     trace_of,
 )
 from verify.integrators.tracing.clocks import clock_mistakes
@@ -67,8 +66,7 @@ def _must_be_pure(trace: Trace) -> None:
 def _proved(trial: Trial, trace: Trace) -> Finding:
     if trial.hamiltonian is None:
         return proved_of_map(trace, trial.step.names)
-    prove = proved_in_plane if trial.step.degrees == 1 else proved_in_degrees
-    return prove(trace, trial.hamiltonian)
+    return proved_step(trace, trial.hamiltonian)
 
 
 def _decided(finding: Finding, trial: Trial, trace: Trace) -> Finding:

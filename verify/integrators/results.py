@@ -5,9 +5,8 @@ from fractions import Fraction
 
 from verify.integrators.places.place import Place
 from verify.integrators.probes.reading import Reading
-from verify.proof.order_proof import Proof
 from verify.proof.potential import Potential, potential_of
-from verify.proof.symplectic.proof import SymplecticProof
+from verify.proof.proof import Proof
 from verify.prose import Prose, prose, read_prose
 from verify.schemes.scheme import Scheme
 from verify.verdict import Verdict
@@ -82,7 +81,7 @@ class Finding:
     order_decided: bool = False
     leading: str | None = None
     delta_j: str | None = None
-    proof: Proof | SymplecticProof | None = field(default=None, repr=False)
+    proof: Proof | None = field(default=None, repr=False)
     largest: float | None = None
     probe_error: float | None = None
     against: Reading | None = field(default=None, repr=False)
@@ -152,7 +151,7 @@ def _defect_told(finding: Finding) -> str:
 def _volume_power(finding: Finding) -> int | None:
     if finding.degrees == 1:
         return finding.order
-    return finding.proof.volume_order if isinstance(finding.proof, SymplecticProof) else None
+    return finding.proof.volume_order if finding.proof else None
 
 
 def _volume_told(finding: Finding) -> str:
@@ -176,7 +175,7 @@ def _area_order(claimed: int, finding: Finding, defect: str) -> tuple[str, bool 
 def potential_of_finding(finding: Finding) -> Potential:
     """As of a scheme that is known by its proof alone."""
     proof = finding.proof
-    if isinstance(proof, SymplecticProof) or proof is None:
+    if proof is None or not proof.planar:
         if finding.area_preserving and finding.how == "proof":
             return Potential(True, "ΔJ ≡ 0")
         return Potential(None, "the leading coefficient is not proved")

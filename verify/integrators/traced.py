@@ -1,9 +1,7 @@
 """From a user's map, called with symbols, to what is proved of it."""
 
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import partial
 
 import sympy
 
@@ -14,25 +12,17 @@ from verify.algebra.limits import checked
 from verify.algebra.requirement import Requirement, of_divisor, of_function, of_power
 from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.exact import text
-from verify.errors import InputError
-from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.results import Finding
 from verify.integrators.tracing.functions import copied
-from verify.integrators.tracing.series import TracedSeries
 from verify.integrators.tracing.step_map import traced_map
 from verify.integrators.tracing.trace import Node, Tape, written
 from verify.integrators.user_code.step import StepError, lifted
 from verify.integrators.user_code.user_map import UserMap
-from verify.proof.claimed import Claimed
 from verify.proof.expansion import MOST_ORDERS
 from verify.proof.order import prove
-from verify.proof.order_proof import Proof
-from verify.proof.symplectic import closed_form
-from verify.proof.symplectic.order import prove_map
-from verify.proof.symplectic.proof import SymplecticProof
 from verify.prose import Prose, prose, read_prose
-from verify.schemes.degrees.canonical_map import CanonicalMap
+from verify.schemes.maps import closed_form
 from verify.verdict import Verdict
 
 _MOST_WRITTEN, _MOST_OF_MAP = 3000, 4000  # operations of which a closed form is tried
@@ -74,26 +64,19 @@ def _notes(tape: Tape) -> list[Prose]:
     return notes
 
 
-# -- a step in the plane --------------------------------------------------------------------------
+# -- a step for an H ------------------------------------------------------------------------------
 
 
-def proved_in_plane(trace: Trace, hamiltonian: Hamiltonian) -> Finding:
-    """By the prover of the plane. Raises InputError where it has no series and no closed form."""
-    traced = traced_map(hamiltonian, *trace.roots)
+def proved_step(trace: Trace, hamiltonian: Hamiltonian) -> Finding:
+    """By the prover for one H. Raises InputError where it has no series and no closed form."""
+    traced = traced_map(hamiltonian, trace.roots)
     proof = prove(traced.step_map)
-    return replace(
-        _of_proof(proof, trace, 1, f"traced with symbols; the map {traced.how}"),
-        area_at_least=proof.first.power or MOST_ORDERS + 1,
-        delta_j=proof.step_map.delta_j_text,
-    )
-
-
-def _of_proof(proof: Proof | SymplecticProof, trace: Trace, degrees: int, said: str) -> Finding:
-    return Finding(
+    said = "traced with symbols" + f"; the map {traced.how}" * proof.planar
+    finding = Finding(
         proof.verdict,
         proof.reason,
         "proof",
-        degrees,
+        proof.degrees,
         order=proof.order,
         proof=proof,
         symplectic=proof.symplectic,
@@ -104,28 +87,13 @@ def _of_proof(proof: Proof | SymplecticProof, trace: Trace, degrees: int, said: 
         domain=(proof.domain & domain_of(trace.tape)).texts,
         notes=(prose(said), *_notes(trace.tape)),
     )
-
-
-# -- a step in several degrees of freedom ---------------------------------------------------------
-
-
-def proved_in_degrees(trace: Trace, hamiltonian: Hamiltonian) -> Finding:
-    """By the prover of n degrees of freedom. Raises InputError where it has no series."""
-    proof = prove_map(_canonical(list(trace.roots), hamiltonian), Claimed())
+    if not proof.planar:
+        return replace(finding, entry=proof.entry)
     return replace(
-        _of_proof(proof, trace, hamiltonian.degrees, "traced with symbols"), entry=proof.entry
+        finding,
+        area_at_least=proof.first.power or MOST_ORDERS + 1,
+        delta_j=proof.step_map.delta_j_text,
     )
-
-
-def _canonical(roots: list[Node], hamiltonian: Hamiltonian) -> CanonicalMap:
-    expand = TracedSeries(roots, partial(canonical_field, hamiltonian))
-    exact = written(roots, _MOST_WRITTEN)
-    with suppress(InputError):
-        if exact is not None:
-            smooth = [checked(x, "step", "its closed form") for x in exact]
-            field, closed = canonical_field(hamiltonian, *smooth)
-            return CanonicalMap(hamiltonian, field, closed=tuple(closed), expand=expand)
-    return CanonicalMap(hamiltonian, canonical_field(hamiltonian)[0], expand=expand)
 
 
 # -- a map without an H ---------------------------------------------------------------------------
@@ -134,7 +102,7 @@ def _canonical(roots: list[Node], hamiltonian: Hamiltonian) -> CanonicalMap:
 def proved_of_map(trace: Trace, names: tuple[str, ...]) -> Finding:
     """Whether S vanishes, decided by exact algebra. Raises StepError where it is too long."""
     ring, closed = _closed(trace, names)
-    form = closed_form.defect(ring, names, closed)
+    form = closed_form.defect_of(ring, names, closed)
     decision, place = form.decide()
     where = domain_of(trace.tape)
     base = Finding(
@@ -149,7 +117,8 @@ def proved_of_map(trace: Trace, names: tuple[str, ...]) -> Finding:
         )
     if decision.zero is None or place is None:
         return base
-    volume = closed_form.preserves_volume(ring, names, closed)
+    rows = [[ring.diff(x, name) for name in names] for x in closed]
+    volume = closed_form.preserves_volume(ring, rows)
     return replace(
         base,
         verdict=Verdict.REFUTED,

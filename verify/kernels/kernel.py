@@ -18,12 +18,10 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.clock import clock_of
 from verify.kernels.statements import CLOSED_FORM, Statements
 from verify.kernels.step import newton
-from verify.kernels.step.computation import Computation, Observed, computed
-from verify.kernels.step.in_degrees import computed_in_degrees, map_of
+from verify.kernels.step.computation import Computation, Observed, computed, step_map_of
 from verify.kernels.step.lowering import Lowering
 from verify.scenes.observables import OF_FORM
-from verify.schemes.degrees.canonical_map import CanonicalMap
-from verify.schemes.step_map import StepMap
+from verify.schemes.maps.step_map import StepMap
 
 PARTIAL = ("inverse", "root", "log", "exp", "sinh", "cosh")  # functions that may leave a range
 SCALES = ("kappa", "down", "shift")  # 2^s h^r, 2^−s and s itself
@@ -64,7 +62,7 @@ def kernel_for(
     compensated: bool = False,
 ) -> Kernel:
     """The kernel for a generic Hamiltonian (see `Hamiltonian.with_symbols`), compiled once."""
-    step_map = map_of(hamiltonian, scheme)
+    step_map = step_map_of(hamiltonian, scheme)
     return Writer(step_map, arithmetic, observables, compensated).kernel()
 
 
@@ -73,7 +71,7 @@ class Writer:
 
     def __init__(
         self,
-        step_map: StepMap | CanonicalMap,
+        step_map: StepMap,
         arithmetic: Arithmetic,
         observables: frozenset[str],
         compensated: bool,
@@ -92,10 +90,7 @@ class Writer:
             symplectic="symplectic_defect_max" in observables,
             carried="symplectic_defect" in observables,
         )
-        if isinstance(step_map, StepMap):
-            self.made: Computation = computed(step_map, asked)
-        else:
-            self.made = computed_in_degrees(step_map, asked)
+        self.made: Computation = computed(step_map, asked)
         self.coordinates = self.made.coordinates
         self.program, self.tangent = self.made.program, self.made.tangent
         self.lowering = Lowering(

@@ -24,7 +24,7 @@ from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.periods import period_in
 from verify.kernels.kernel import Kernel
-from verify.kernels.step.in_degrees import map_of
+from verify.kernels.step.computation import step_map_of
 from verify.late import sympy
 
 _LARGE = 2**12  # of t, and of the angle that it makes: in the format are numbers below 2^15
@@ -87,7 +87,7 @@ def _compilable(hamiltonian: Hamiltonian, scheme: str) -> Hamiltonian:
 @lru_cache(maxsize=256)
 def _takes(hamiltonian: Hamiltonian, scheme: str) -> bool:
     try:
-        map_of(hamiltonian, scheme)
+        step_map_of(hamiltonian, scheme)
     except InputError:
         return False
     return True
@@ -129,7 +129,7 @@ class RunInputs:
     @property
     def implicit(self) -> bool:
         """Whether a step solves equations; there is no certificate of such runs."""
-        return map_of(self.hamiltonian, self.scheme).implicit
+        return step_map_of(self.hamiltonian, self.scheme).implicit
 
     def observing(self, observables: frozenset[str]) -> Self:
         """The same run with other observables, and without a series."""

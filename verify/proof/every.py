@@ -45,8 +45,8 @@ from verify.proof.order import leading_of
 from verify.prose import Formula, Prose, prose, read_prose
 from verify.schemes import get
 from verify.schemes.conditions import ByConditions
-from verify.schemes.degrees import kind_of
 from verify.schemes.every_hamiltonian import BySeries, TaylorSeries
+from verify.schemes.maps import kind_of
 from verify.schemes.scheme import Scheme
 from verify.schemes.timed.for_scheme import conditions_for
 from verify.schemes.timed.mistakes import mistakes_of_splitting
@@ -73,7 +73,7 @@ def prove_every(
     check_degrees(degrees)
     scheme = get(name)
     if degrees > 1:
-        kind_of(scheme)
+        kind_of(scheme.every_h, scheme.name)
     every_h = scheme.every_h
     if every_h is None:
         which = f"every H{' in t' * timed}"
@@ -193,7 +193,7 @@ def _of_fewer(scheme: Scheme, timed: TimedSplitting, general: int) -> Iterator[P
 def _in_degrees(blank: EveryProof, scheme: Scheme, every_h: ByConditions, least: int) -> EveryProof:
     """What the plane's proof says of the order, and the conditions that suffice for S ≡ 0."""
     planar = prove_every(scheme.name, blank.separable, least, timed=blank.timed)
-    own = kind_of(scheme).conditions(every_h)
+    own = kind_of(every_h, scheme.name).conditions(every_h, blank.degrees)
     verdict, reason = planar.verdict, planar.reason
     symplectic = True if own and first_wrong(own) is None else None
     if planar.nearby is not None and verdict is planar.nearby.verdict and symplectic:

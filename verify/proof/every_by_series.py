@@ -24,10 +24,10 @@ from verify.proof.every_proof import EveryProof
 from verify.proof.telescoping import potential_of_lie, telescopes
 from verify.prose import Formula, Prose, joined, prose, read_prose
 from verify.schemes.conditions import Condition
-from verify.schemes.degrees import kind_of
-from verify.schemes.degrees.defect import DefectSeries
-from verify.schemes.degrees.two_form import MOST_TERMS, TwoForm, lie_derivative
 from verify.schemes.every_hamiltonian import BySeries, StageEquations, TaylorSeries
+from verify.schemes.maps import kind_of
+from verify.schemes.maps.defect import DefectSeries
+from verify.schemes.maps.two_form import MOST_TERMS, TwoForm, lie_derivative
 from verify.schemes.scheme import Scheme
 from verify.verdict import Verdict
 
@@ -100,7 +100,9 @@ def missed(scheme: Scheme, agreed: int) -> Prose:
 def _preserving(proof: EveryProof, scheme: Scheme, every_h: BySeries) -> tuple[Condition, ...]:
     """Those that suffice for S ≡ 0, none where none are known. Stages of the plane need less."""
     if not proof.planar:
-        conditions: tuple[Condition, ...] = kind_of(scheme).conditions(every_h)
+        conditions: tuple[Condition, ...] = kind_of(every_h, scheme.name).conditions(
+            every_h, proof.degrees
+        )
         return conditions
     return every_h.conditions() if isinstance(every_h, StageEquations) else ()
 

@@ -7,10 +7,9 @@ from verify.proof.lie_argument import paragraph
 from verify.prose import Prose
 from verify.schemes import get
 from verify.schemes.conditions import Condition, NearbyOrder
-from verify.schemes.degrees import canonical_map
-from verify.schemes.degrees.two_form import TwoForm
 from verify.schemes.every_hamiltonian import TaylorSeries
-from verify.schemes.step_map import SOLVABLE
+from verify.schemes.maps.step_map import solvable
+from verify.schemes.maps.two_form import TwoForm
 from verify.verdict import Verdict
 
 NONE = Prose()
@@ -84,8 +83,8 @@ class EveryProof:
     @property
     def domain(self) -> Domain:
         """Where it holds, beside that H is smooth at every point and time at which it is read."""
-        solvable = SOLVABLE if self.planar else canonical_map.SOLVABLE
-        return EVERYWHERE if get(self.scheme).explicit else Domain.of((), solvable)
+        explicit = get(self.scheme).explicit
+        return EVERYWHERE if explicit else Domain.of((), solvable(planar=self.planar))
 
     @property
     def quantifier(self) -> str:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property, lru_cache, partial
+from typing import TypeAlias
 
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.embedding import embed
@@ -16,13 +17,15 @@ from verify.algebra.ring_text import as_expression_at_0
 from verify.algebra.series.power_series import Series
 from verify.algebra.series.quotient_series import QuotientSeries
 from verify.errors import InputError, LimitError
-from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
+from verify.hamiltonians.canonical_field import CanonicalField
+from verify.hamiltonians.coordinates import PLANE
 from verify.late import sympy
 from verify.proof.parameters import not_zero_for
-from verify.schemes.degrees.canonical_map import CanonicalMap
-from verify.schemes.degrees.defect import DefectSeries
-from verify.schemes.step_algebra import State
-from verify.schemes.substep import h_inside
+from verify.schemes.maps.closed_form import ClosedForm, h_inside
+from verify.schemes.maps.defect import DefectSeries
+from verify.schemes.maps.step_algebra import State
+from verify.schemes.maps.step_map import StepMap
+from verify.schemes.maps.two_form import Place, TwoForm
 
 MOST_ORDERS = 12  # Taylor coefficients looked at where a map is not a polynomial in h
 
@@ -32,13 +35,25 @@ class Leading:
     """The first coefficient in h that is not shown to vanish: of h^`power`, as a ring's element.
 
     `decision.zero` is False at a proved leading term, None at an undecided one, and True where
-    every coefficient vanishes (`power` is None then). False with `power` None: ΔJ is not zero, but
-    its leading term lies beyond the orders looked at; `element` is then ΔJ itself.
+    every coefficient vanishes (`power` is None then). False with `power` None: what is expanded is
+    not zero, but its leading term lies beyond the orders looked at; `element` is then itself.
+
+    Of S it is a `form`, and `element` the entry at `place`, which decides.
     """
 
     power: int | None
     decision: Decision
     element: tuple[Ring, Poly] | None = None
+    form: TwoForm | None = field(default=None, repr=False)
+    place: Place | None = None
+
+    @classmethod
+    def of_form(cls, power: int | None, form: TwoForm, ring: Ring) -> Leading:
+        """The coefficient of h^power in S; or S itself, with None."""
+        decision, place = form.decide()
+        if place is None:
+            return VANISHES
+        return cls(power, decision, (ring, form.entries[place]), form, place)
 
     @cached_property
     def coefficient(self) -> sympy.Expr:
@@ -48,25 +63,44 @@ class Leading:
         ring, x = self.element
         return ring.factored(x)
 
+    @property
+    def entry(self) -> str:
+        """The name of the entry of S that decides, such as dp1∧dq2; empty in the plane."""
+        if self.form is None or self.place is None or self.form.names == PLANE:
+            return ""
+        return self.form.called(self.place)
+
     @cached_property
     def domain(self) -> Domain:
-        """The parameters for which the coefficient is not the zero function of p and q."""
-        if self.decision.zero is not False or self.element is None or self.power is None:
+        """The parameters for which the coefficient is not the zero function of the coordinates."""
+        if self.decision.zero is not False or self.element is None:
             return EVERYWHERE
-        return not_zero_for(*self.element, f"the coefficient of h^{self.power}")
+        if self.power is None and not self.entry:
+            return EVERYWHERE
+        what = f"the coefficient of h^{self.power}"
+        return not_zero_for(*self.element, f"the entry {self.entry} of S" if self.entry else what)
 
     def within(self, domain: Domain) -> Leading:
         """As it is in the domain: the witness lies there, and without a point nothing is said."""
         if self.decision.zero is None or not domain.requirements:
             return self
         ring, x = self.element or _ZERO  # what vanishes has no element
-        return replace(self, decision=domain.decide(ring, x))
+        if self.form is None:
+            return replace(self, decision=domain.decide(ring, x))
+        decision, place = self.form.decide(partial(domain.decide, ring))
+        if place is None:
+            return replace(self, decision=decision)
+        return replace(
+            self, decision=decision, place=place, element=(ring, self.form.entries[place])
+        )
 
     @property
     def text(self) -> str:
-        """As a formula."""
-        if self.element is None or self.power is None:
+        """As a formula; of S as a form, beyond the plane."""
+        if self.element is None or (self.power is None and not self.entry):
             return "0"
+        if self.entry and self.form is not None:
+            return self.form.text
         ring, x = self.element
         return ring.text(x)
 
@@ -161,21 +195,91 @@ def first_nonzero(coefficient: Callable[[int], tuple[Ring, Poly]], length: int) 
 # -- of a map --------------------------------------------------------------------------------------
 
 
-def series_of(step: CanonicalMap, first: int) -> DefectSeries[CanonicalField]:
-    """The coefficients of h⁰, h¹, … of one map in n degrees of freedom, S and ΔJ among them."""
-    return DefectSeries(partial(_state, step), first)
+class ClosedSeries:
+    """The coefficients of z', S and det J − 1 of a map that is written out and no polynomial in h.
+
+    Each is made when it is looked at, and has a ring of its own.
+    """
+
+    def __init__(self, closed: ClosedForm) -> None:
+        self.closed, self.flow = closed, closed.field
+        self._parts = [Expansion(closed.ring, x) for x in closed.elements]
+        self._entries: dict[Place, Expansion] | None = None
+        self._volume: Expansion | None = None
+
+    def agrees(
+        self, n: int, nearly: Callable[[Poly, Poly], bool] | None = None
+    ) -> tuple[bool | None, Ring, Poly]:
+        """As of `DefectSeries`."""
+        own = self.flow.ring
+        for k, expansion in enumerate(self._parts):
+            ring, gap = self._difference(k, n)
+            if nearly is not None and ring is own and nearly(gap, expansion.coefficient(n)[1]):
+                continue
+            zero = ring.vanishes(gap)
+            if zero is not True:
+                return zero, ring, gap
+        return True, own, own.zero
+
+    def differences(self, n: int) -> tuple[Ring, list[Poly]]:
+        """As of `DefectSeries`."""
+        parts = [self._difference(k, n) for k in range(len(self._parts))]
+        return _in_one_ring(parts, self.flow.ring)
+
+    def _difference(self, k: int, n: int) -> tuple[Ring, Poly]:
+        own, term = self.flow.ring, self.flow.term(n)[k]
+        ring, x = self._parts[k].coefficient(n)
+        if ring is own:
+            return ring, ring.reduce(x - term)
+        ring, (gap,) = embed([ring.expression(x) - own.expression(term)], own.variables)
+        return ring, gap
+
+    def coefficient(self, place: int, n: int) -> tuple[Ring, Poly]:
+        """That of hⁿ in a coordinate's new value, with its ring."""
+        return self._parts[place].coefficient(n)
+
+    def form(self, m: int) -> TwoForm:
+        """The coefficient of hᵐ in S."""
+        own, names = self.closed.ring, self.flow.names
+        if self._entries is None:
+            entries = self.closed.defect.entries
+            self._entries = {at: Expansion(own, x) for at, x in entries.items()}
+        parts = [x.coefficient(m) for x in self._entries.values()]
+        ring, elements = _in_one_ring(parts, own)
+        made = dict(zip(self._entries, elements, strict=True))
+        return TwoForm.of(ring, names, lambda a, b: made.get((a, b), ring.zero))
+
+    def volume(self, n: int) -> tuple[Ring, Poly]:
+        """The coefficient of hⁿ in det J − 1."""
+        if self._volume is None:
+            self._volume = Expansion(self.closed.ring, self.closed.delta_j)
+        return self._volume.coefficient(n)
 
 
-def _state(step: CanonicalMap, most: int) -> tuple[CanonicalField, State]:
-    if step.expand is not None:
-        return step.expand(most)
-    series = step.series(most)
-    if series is not None:
-        return step.field, series
-    assert step.closed is not None  # noqa: S101 - a map has one or the other
-    count, ring = most + 1, step.ring
-    expansions = [Expansion(ring, x) for x in step.closed]
-    parts = [each.coefficient(n) for each in expansions for n in range(count)]
-    flow, exact = canonical_field(step.hamiltonian, *(own.expression(x) for own, x in parts))
-    rows = (exact[count * i : count * (i + 1)] for i in range(len(expansions)))
-    return flow, tuple(Series.of(flow.ring, row, most) for row in rows)
+def _in_one_ring(parts: Sequence[tuple[Ring, Poly]], otherwise: Ring) -> tuple[Ring, list[Poly]]:
+    """Elements of several rings as elements of one."""
+    if not parts:
+        return otherwise, []
+    ring, _ = parts[0]
+    if all(other is ring for other, _ in parts):
+        return ring, [x for _, x in parts]
+    return embed([other.expression(x) for other, x in parts], otherwise.variables)
+
+
+AnySeries: TypeAlias = "DefectSeries[CanonicalField] | ClosedSeries"
+
+
+@lru_cache(maxsize=4)
+def series_of(step_map: StepMap, first: int) -> AnySeries:
+    """The coefficients of h⁰, h¹, … of one map, made as far as they are looked at; `first`: those
+    that are made at once, of one that is known by its step."""
+    begun = step_map.series(first)
+    if begun is None:
+        return ClosedSeries(step_map.flat)
+
+    def made(most: int) -> tuple[CanonicalField, State]:
+        more = begun if most == first else step_map.series(most)
+        assert more is not None  # noqa: S101 - it has had fewer terms
+        return more
+
+    return DefectSeries(made, first, step_map.flow_up_to)

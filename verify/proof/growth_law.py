@@ -52,11 +52,10 @@ from functools import lru_cache
 from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.plane_flow import PlaneFlow
 from verify.proof.expansion import MOST_ORDERS
 from verify.proof.order import prove
-from verify.proof.order_proof import Proof
 from verify.proof.potential import Potential, potential_of
+from verify.proof.proof import Proof
 from verify.proof.telescoping import potential_of_lie
 from verify.prose import read_prose
 from verify.schemes import get
@@ -101,6 +100,7 @@ def growth_law(hamiltonian: Hamiltonian, scheme: str) -> GrowthLaw:
         raise InputError(
             "parameter", hamiltonian.symbols[0], "has no value; a growth law needs one"
         )
+    hamiltonian.check_planar()
     chosen = get(scheme)
     step_map = chosen.step_map(hamiltonian)
     if step_map.preserves_area:
@@ -109,8 +109,8 @@ def growth_law(hamiltonian: Hamiltonian, scheme: str) -> GrowthLaw:
     if eta is None or eta % 2:
         return _plain_law(prove(step_map, chosen), chosen)
     step = step_map.flat
-    ring, potential = step.ring, potential_of_lie(PlaneFlow(step.field), eta).divergence
-    g, leading = step.coefficient(eta + 2), step.coefficient(eta + 1)
+    ring, potential = step.ring, potential_of_lie(step.field, eta).divergence
+    leading, g = (step.form(n).at(0, 1) for n in (eta + 1, eta + 2))
     return GrowthLaw(eta + 1, (ring, g), (ring, potential), (ring, leading), _FOR_EVERY_H)
 
 

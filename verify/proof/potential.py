@@ -23,9 +23,8 @@ from verify.algebra.ring import Poly, Ring
 from verify.algebra.symbols import P, Q
 from verify.effort import unless_long
 from verify.errors import InputError
-from verify.hamiltonians.plane_flow import PlaneFlow
-from verify.hamiltonians.vector_field import VectorField
-from verify.proof.order_proof import Proof
+from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
+from verify.proof.proof import Proof
 from verify.proof.telescoping import potential_of_lie
 from verify.schemes.every_hamiltonian import TaylorSeries
 from verify.schemes.scheme import Scheme
@@ -61,6 +60,7 @@ class Potential:
 
 def potential_of(proof: Proof, scheme: Scheme) -> Potential:
     """Whether the leading coefficient that was proved telescopes."""
+    proof.step_map.hamiltonian.check_planar()
     if proof.area_preserving:
         return Potential(True, "ΔJ ≡ 0")
     if proof.order is None or proof.first.element is None:
@@ -74,10 +74,10 @@ def potential_of(proof: Proof, scheme: Scheme) -> Potential:
         )
     every_h = scheme.every_h
     if isinstance(every_h, TaylorSeries) and every_h.eta % 2 == 0:
-        found: Poly | None = potential_of_lie(PlaneFlow(field), every_h.eta).divergence
+        found: Poly | None = potential_of_lie(field, every_h.eta).divergence
         how = "by the formula for every H"
     else:
-        used = field.h_p, field.h_q, leading
+        used = *field.slopes, leading
         found = among_polynomials(field.ring, used, field.derive, leading)
         how = "by linear algebra over monomials"
     if found is not None and field.ring.decide(field.derive(found) - leading).zero is True:
@@ -85,21 +85,21 @@ def potential_of(proof: Proof, scheme: Scheme) -> Potential:
     return Potential(None, "no G is found, and no equilibrium at which L is not zero")
 
 
-def _in_a_field(proof: Proof) -> tuple[VectorField, Poly]:
+def _in_a_field(proof: Proof) -> tuple[CanonicalField, Poly]:
     """The vector field of H and the leading coefficient, as elements of one ring."""
     assert proof.first.element is not None  # noqa: S101 - the caller's condition
     ring, leading = proof.first.element
-    own = proof.step_map.substeps[0].field
-    if own.ring is ring:
-        return own, leading
-    field, (leading,) = proof.step_map.hamiltonian.field(proof.leading)
+    for own in (proof.step_map.field, *(x.field for x in (proof.step_map.closed,) if x)):
+        if own.ring is ring:
+            return own, leading
+    field, (leading,) = canonical_field(proof.step_map.hamiltonian, proof.leading)
     return field, leading
 
 
-def _equilibrium_against(field: VectorField, leading: Poly) -> str | None:
+def _equilibrium_against(field: CanonicalField, leading: Poly) -> str | None:
     """An equilibrium at which L is shown not to vanish (for some values of the parameters)."""
     ring = field.ring
-    force = [ring.expression(x) for x in (field.h_p, field.h_q)]
+    force = [ring.expression(x) for x in field.slopes]
     for p, q in sorted(product(_PLACES, repeat=2), key=lambda at: _PLACES.index(at[0])):
         put = {P: p, Q: q}
         try:

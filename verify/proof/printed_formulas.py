@@ -27,13 +27,11 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number import E
 from verify.effort import limited
 from verify.errors import InputError, LimitError
-from verify.hamiltonians.canonical_field import CanonicalField
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.expansion import series_of
+from verify.proof.expansion import AnySeries, series_of
 from verify.prose import Formula, Prose, prose
 from verify.schemes.conditions import Condition, NearbyOrder
-from verify.schemes.degrees.by_formulas import map_by_formulas
-from verify.schemes.degrees.defect import DefectSeries
+from verify.schemes.maps.by_formulas import map_by_formulas
 from verify.schemes.printed.asked import BITS, Asked, Named, ball_of
 from verify.schemes.printed.judged import WITHIN, Judged, judge
 from verify.schemes.printed.naming import Naming
@@ -147,7 +145,7 @@ class _PrintedMap:
     """`series` over a ring in which the printed numbers are variables, called `names`; `readings`:
     the ways in which they may be read, that taken first before others."""
 
-    series: DefectSeries[CanonicalField]
+    series: AnySeries
     names: tuple[str, ...]
     readings: tuple[PrintedNumbers, ...]
 
@@ -165,14 +163,12 @@ class _PrintedMap:
 
     def differences(self, n: int) -> Elements:
         """Of hⁿ in z', from the exact flow."""
-        coefficient, flow = self.series.coefficient(n), self.series.flow
-        pairs = zip(coefficient, flow.term(n), strict=True)
-        return flow.ring, [flow.ring.reduce(x - y) for x, y in pairs]
+        return self.series.differences(n)
 
     def defects(self, n: int) -> Elements:
         """Of hⁿ in S."""
         form = self.series.form(n)
-        return self.series.flow.ring, list(form.entries.values())
+        return form.ring, list(form.entries.values())
 
     def _excluded(
         self, n: int, numbers: PrintedNumbers, elements: Callable[[int], Elements]

@@ -9,7 +9,7 @@ import sympy
 from verify.effort import unless_long
 from verify.errors import InputError
 from verify.proof.order import prove
-from verify.proof.order_proof import Proof
+from verify.proof.proof import Proof
 from verify.schemes.scheme import Scheme
 
 

@@ -6,10 +6,11 @@ symmetric. That all do, as far as they are looked at, shows nothing; the verdict
 
 from dataclasses import dataclass
 
-from verify.algebra.ring import Ring
 from verify.algebra.series.power_series import Derivatives, Series, at_moved
+from verify.hamiltonians.canonical_field import CanonicalField
 from verify.prose import Formula, Prose, prose, read_prose
-from verify.schemes.step_map import StepMap
+from verify.schemes.maps.step_algebra import State
+from verify.schemes.maps.step_map import StepMap
 from verify.verdict import Verdict
 
 
@@ -27,11 +28,11 @@ def by_series(step_map: StepMap, most: int) -> Symmetry:
     """The coefficients of Φ_(−h) ∘ Φ_h up to h^most, for one H."""
     seen = -1
     for reach in dict.fromkeys([*range(2, most, 2), most]):  # terms multiply with every order
-        expanded = step_map.taylor(reach)
+        expanded = step_map.series(reach)
         if expanded is None:
             return Symmetry(Verdict.UNDECIDED, prose("the map's Taylor series is not at hand"))
-        field, *step = expanded
-        gaps = [undone(field.ring, x, *step) for x in step]
+        field, step = expanded
+        gaps = [undone(field, x, step) for x in step]
         for n in range(seen + 1, reach + 1):
             zero = [field.ring.decide(x.coefficients[n]).zero for x in gaps]
             if False in zero:
@@ -47,16 +48,17 @@ def by_series(step_map: StepMap, most: int) -> Symmetry:
     return Symmetry(Verdict.UNDECIDED, alike)
 
 
-def undone(ring: Ring, x: Series, p: Series, q: Series) -> Series:
-    """Of x = p or q, Σ (−h)ⁿ xₙ at the point (p, q) that is given by its series, less its start.
+def undone(field: CanonicalField, x: Series, step: State) -> Series:
+    """Of a coordinate x, Σ (−h)ⁿ xₙ at the point z' that is given by its series, less its start.
 
     Where H depends on time, at t + h, at which the step of −h begins.
     """
+    ring = field.ring
     moves = [
-        (name, y - Series.of(ring, [ring.variable(name)], y.most))
-        for name, y in (("p", p), ("q", q))
+        (name, y - Series.of(ring, [z], y.most))
+        for name, y, z in zip(field.names, step, field.start, strict=True)
     ]
-    if "t" in ring.variables:
+    if field.timed:
         moves.append(("t", Series.of(ring, [ring.zero, ring.one], x.most)))
     total = Series.of(ring, [-x.coefficients[0]], x.most)
     for n, coefficient in enumerate(x.coefficients):

@@ -55,7 +55,7 @@ from verify.kernels.rounding import PRECISION, Ball
 from verify.kernels.statements import CLOSED_FORM
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs import form_bound
-from verify.runs.derivatives import Derivatives, DerivativesInDegrees, norm
+from verify.runs.derivatives import Derivatives, norm
 from verify.runs.step_rounding import StepErrors, StepRounding
 from verify.scenes.observables import OF_FORM
 
@@ -125,17 +125,14 @@ class _Certificate:
         error, summed = orbit
         found = dict.fromkeys(self.names, error)
         found |= self.observables(steps, derivatives, error, summed)
-        if isinstance(derivatives, DerivativesInDegrees):
-            found |= self.of_form(steps, derivatives, error, summed)
+        found |= self.of_form(steps, derivatives, error, summed)
         return {name: bounds(x)[1] for name, x in found.items() if in_reach(x)}
 
-    def derivatives(self) -> Derivatives | DerivativesInDegrees | None:
+    def derivatives(self) -> Derivatives | None:
         """Those of the step."""
         exact, scheme, asked = self.run.hamiltonian, self.run.scheme, self.run.observables
-        if exact.planar:
-            return Derivatives.of(exact, scheme)
         volume, form = bool(asked & CLOSED_FORM), bool(asked & {*OF_FORM})
-        return DerivativesInDegrees.of(exact, scheme, volume=volume, form=form)
+        return Derivatives.of(exact, scheme, volume=volume, form=form)
 
     def motion(self, steps: StepErrors) -> form_bound.Motion | None:
         """How M has grown; None where nothing follows from it."""
@@ -154,9 +151,7 @@ class _Certificate:
         mean = square_of_norm(size, growth / (count + 1), least)
         return form_bound.Motion(count, least, rate, top, (count * (count + 1) * mean).sqrt())
 
-    def orbit(
-        self, steps: StepErrors, derivatives: Derivatives | DerivativesInDegrees
-    ) -> tuple[Ball, Ball] | None:
+    def orbit(self, steps: StepErrors, derivatives: Derivatives) -> tuple[Ball, Ball] | None:
         """(a bound of ‖e_k‖ for all k, one of Σ ‖e_k‖)."""
         motion = self.motion(steps)
         if motion is None:
@@ -180,7 +175,7 @@ class _Certificate:
     # -- the observables ----------------------------------------------------------------------
 
     def of_form(
-        self, steps: StepErrors, derivatives: DerivativesInDegrees, error: Ball, summed: Ball
+        self, steps: StepErrors, derivatives: Derivatives, error: Ball, summed: Ball
     ) -> dict[str, Ball]:
         """S and W; see `verify.runs.form_bound`."""
         asked, scale = self.run.observables, self.scale
@@ -214,7 +209,7 @@ class _Certificate:
     def observables(
         self,
         steps: StepErrors,
-        derivatives: Derivatives | DerivativesInDegrees,
+        derivatives: Derivatives,
         error: Ball,
         summed: Ball,
     ) -> dict[str, Ball]:

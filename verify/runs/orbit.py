@@ -24,11 +24,11 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError, bits_for
 from verify.arithmetic.systems import ball, float64, mpfr
 from verify.errors import InputError
-from verify.hamiltonians.energy import energy_of
+from verify.hamiltonians.canonical_field import energy_of
 from verify.kernels.chunked_loop import Note, Progress
 from verify.kernels.clock import clock_inputs
 from verify.kernels.kernel import kernel_for
-from verify.kernels.step.in_degrees import map_of, preserves
+from verify.kernels.step.computation import step_map_of
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.digits_on_demand import choose
 from verify.runs.estimated import LINEAR, digits_of, spread, working_digits
@@ -87,7 +87,7 @@ def _states(
 ) -> _States:
     """The states of the run; in float64 where no digits are asked for."""
     start = orbit.inputs
-    nothing_lost = preserves(map_of(orbit.hamiltonian, orbit.scheme))
+    nothing_lost = step_map_of(orbit.hamiltonian, orbit.scheme).preserves_area
     asked = frozenset[str]() if nothing_lost else frozenset(_observed(orbit))
     while True:
         run = KernelRun(orbit.hamiltonian, orbit.scheme, start, steps, asked, 0, sections=points)
@@ -222,8 +222,8 @@ class _DeltaJ:
     """ΔJ at states, by one step of a kernel from Λ = 0: Λ is ΔJ after it."""
 
     def __init__(self, orbit: Start, digits: int) -> None:
-        step_map = map_of(orbit.hamiltonian, orbit.scheme)
-        self.vanishes, self.names = preserves(step_map), tuple(orbit.point)
+        step_map = step_map_of(orbit.hamiltonian, orbit.scheme)
+        self.vanishes, self.names = step_map.preserves_area, tuple(orbit.point)
         self.own = mpfr.make(2 * digits) if step_map.implicit else ball.make(digits + 25)
         run = KernelRun(orbit.hamiltonian, orbit.scheme, orbit.inputs, 1, frozenset({"lambda"}), 0)
         self.kernel = kernel_for(run.hamiltonian, run.scheme, self.own, run.observables)

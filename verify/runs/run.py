@@ -31,7 +31,7 @@ from verify.hamiltonians.start import Given, point_of
 from verify.hamiltonians.times_on_the_way import check_times
 from verify.kernels.chunked_loop import Progress
 from verify.kernels.run_inputs import SECTIONS
-from verify.kernels.step.in_degrees import map_of, preserves
+from verify.kernels.step.computation import step_map_of
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.digits_on_demand import Measured, choose, measure
 from verify.runs.estimated import Bounded, Bounds
@@ -42,8 +42,7 @@ from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.run import RunResult
 from verify.scenes.values import AUTO, MAX_DIGITS, MAX_STEPS
 from verify.schemes import canonical
-from verify.schemes.degrees.canonical_map import CanonicalMap
-from verify.schemes.step_map import StepMap
+from verify.schemes.maps.step_map import StepMap
 
 _MOST = 64  # states that are looked at
 
@@ -99,7 +98,7 @@ class AskedRun:
         check(hamiltonian, steps, digits, self.wanted)
         check_times(hamiltonian, self.begun.t0, h, steps)
         whole("points", points, 0)
-        step_map = map_of(hamiltonian, scheme)
+        step_map = step_map_of(hamiltonian, scheme)
         self.known = proved(step_map, h, steps, digits) if self.wanted or points else {}
         needed = frozenset(o for o in self.wanted if o not in self.known)
         self.kernel_run = KernelRun(
@@ -177,7 +176,7 @@ def proved_run(
     """
     wanted = observed(hamiltonian, observables)
     check(hamiltonian, steps, digits, wanted)
-    known = proved(map_of(hamiltonian, scheme), step_size, steps, digits)
+    known = proved(step_map_of(hamiltonian, scheme), step_size, steps, digits)
     if not wanted or not set(wanted) <= set(known):
         return None
     found = Bounds({}, "a proof, and no run", rigorous=True)
@@ -249,14 +248,14 @@ def _series_needs(known: Mapping[str, object], points: int) -> frozenset[str]:
 # -- what a proof gives ---------------------------------------------------------------------------
 
 
-def proved(step_map: StepMap | CanonicalMap, h: Fraction, steps: int, digits: int) -> Bounded:
+def proved(step_map: StepMap, h: Fraction, steps: int, digits: int) -> Bounded:
     """max |ΔJ|, MSE and Λ with their bounds, where no run is needed for them; S and W too."""
     zero = Fraction(0), Fraction(0)
-    if preserves(step_map):
+    if step_map.preserves_area:
         return dict.fromkeys(OF_DEFECT, zero)
-    if isinstance(step_map, CanonicalMap) or len(step_map.substeps) > 1:
+    step = step_map.written_defect
+    if step is None or step_map.degrees > 1:
         return {}
-    step = step_map.substeps[0]
     if any(step.ring.depends(step.delta_j, name) for name in ("p", "q", "t")):
         return {}
     bits = int(4 * digits) + 64 + 2 * steps.bit_length()

@@ -83,7 +83,6 @@ from verify.scenes.stability_sections import LargestStepOver, Stability, Stabili
 from verify.scenes.stroboscopic_section import Stroboscopic
 from verify.scenes.toml_file import check_depth, read_toml, toml_data
 from verify.scenes.values import Number, SchemeName, SystemName
-from verify.schemes.degrees import check_takes
 
 _OF_THE_PLANE = ("criteria", "stroboscopic")
 _IDENTITY = ("name", "title", "system", "hamiltonian", "parameters", "t0", "schemes")
@@ -144,7 +143,7 @@ class Scene(Frozen):
         sections = self.sections()
         also = (name for section in sections for name in getattr(section, "schemes", ()))
         for name in dict.fromkeys((*self.schemes, *also)):
-            check_takes(scheme_catalogue.get(name), exact)
+            scheme_catalogue.get(name).step_map(exact)
         self._check_degrees(exact)
         if exact.time_dependent:
             if self.grid is not None and self.grid.growth:

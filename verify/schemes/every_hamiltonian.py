@@ -11,6 +11,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from typing import Any, Protocol, TypeVar, runtime_checkable
 
 import flint
@@ -20,7 +21,7 @@ from verify.hamiltonians.jet_flow import JetFlow
 from verify.late import sympy
 from verify.prose import count
 from verify.schemes.conditions import Condition
-from verify.schemes.step_algebra import StepAlgebra, series_of
+from verify.schemes.maps.step_algebra import StepAlgebra, series_of
 
 At = TypeVar("At")
 Slope = TypeVar("Slope")
@@ -167,12 +168,16 @@ class StageEquations(ByChanges):
         return cls(tuple(stages), separable=True)
 
     def changes(self, outer: StepAlgebra[Any]) -> list[Any]:
-        """z' − z: of each stage the change that it makes is solved for."""
-        found = [outer.nothing] * outer.size
+        """z' − z: of each stage the change that it makes is solved for, as far as it reads it."""
+        result = [outer.nothing] * outer.size
         for stage in self.stages:
-            change = outer.solved(outer.size, _right(stage, found))
-            found = [outer.between(x, y, Fraction(1)) for x, y in zip(found, change, strict=True)]
-        return found
+            half = outer.size // 2
+            count = outer.size if stage.at_q else half if stage.at_p else 0
+            right = partial(_moves, stage, result)
+            solved = outer.solved(count, partial(right, count)) if count else []
+            moves = right(outer.size, outer, solved)
+            result = [outer.between(x, y, Fraction(1)) for x, y in zip(result, moves, strict=True)]
+        return result
 
     def conditions(self) -> tuple[Condition, ...]:
         """det A = det B of each stage, which together suffice for det J ≡ 1."""
@@ -219,17 +224,19 @@ def _exact(x: Fraction) -> flint.fmpq:
     return flint.fmpq(x.numerator, x.denominator)
 
 
-def _right(
-    stage: Stage, before: Sequence[Any]
-) -> Callable[[StepAlgebra[Any], Sequence[Any]], list[Any]]:
-    """h times the slopes that a stage takes, at a share of the change that they make."""
-
-    def right(algebra: StepAlgebra[Any], change: Sequence[Any]) -> list[Any]:
-        n = algebra.size // 2
-        shares, weights = [stage.at_p] * n + [stage.at_q] * n, [stage.kick] * n + [stage.drift] * n
-        at = [algebra.between(*each) for each in zip(before, change, shares, strict=True)]
-        slopes = algebra.slopes(at, stage.at_q, range(2 * n))  # t goes with q
-        each = zip(weights, slopes, strict=True)
-        return [algebra.moved(algebra.nothing, [w], [slope]) for w, slope in each]
-
-    return right
+def _moves(
+    stage: Stage,
+    before: Sequence[Any],
+    count: int,
+    algebra: StepAlgebra[Any],
+    change: Sequence[Any],
+) -> list[Any]:
+    """h times the first slopes that a stage takes, so many, at a share of the change that they make
+    as far as that is known."""
+    n = algebra.size // 2
+    shares, weights = [stage.at_p] * n + [stage.at_q] * n, [stage.kick] * n + [stage.drift] * n
+    moved = zip(before, change, shares, strict=False)
+    at = [*(algebra.between(*each) for each in moved), *before[len(change) :]]
+    slopes = algebra.slopes(at, stage.at_q, range(count))  # t goes with q
+    each = zip(weights, slopes, strict=False)
+    return [algebra.moved(algebra.nothing, [w], [slope]) for w, slope in each]

@@ -15,8 +15,8 @@ import sympy
 from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
 from verify.schemes.conditions import Condition
+from verify.schemes.maps.step_algebra import Number, Step, StepAlgebra
 from verify.schemes.residue import condition_of
-from verify.schemes.step_algebra import Number, Step, StepAlgebra
 from verify.schemes.tree_weights import RingWeights, Tableau
 
 SHOWN = 5  # digits of a residue

@@ -8,7 +8,9 @@ from verify.drawable import drawn_by
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.conditions import ByConditions
 from verify.schemes.every_hamiltonian import BySeries
-from verify.schemes.step_map import StepMap
+from verify.schemes.maps import kind_of
+from verify.schemes.maps.by_formulas import map_by_formulas
+from verify.schemes.maps.step_map import StepMap
 
 
 @drawn_by("schemes")
@@ -19,9 +21,10 @@ class Scheme:
     `order`: the claimed order of convergence. `area_preserving`: claimed det J ≡ 1 for every H
     that the scheme takes. `explicit`: no equation is solved. `symmetric`: claimed that the step of
     −h undoes that of h. `source`: where it is defined.
-    `build` raises InputError for an H that the scheme does not take. `every_h`: the scheme as it is
-    for every H; None where it is known for one H at a time. `formulas`: those of a user's own map,
-    by what they give: p_next and q_next, or p1_next, ….
+    `every_h`: the scheme as it is for every H; None where it is known for one H at a time.
+    `formulas`: those of a user's own map, by what they give: p_next and q_next, or p1_next, ….
+    `build`: how its map is made, where that is not by `every_h` or by `formulas`; it raises
+    InputError for an H that the scheme does not take.
     """
 
     name: str
@@ -30,7 +33,7 @@ class Scheme:
     explicit: bool
     symmetric: bool
     source: str
-    build: Callable[[Hamiltonian], StepMap]
+    build: Callable[[Hamiltonian], StepMap] | None = None
     every_h: BySeries | ByConditions | None = None
     formulas: Mapping[str, str] = field(default_factory=dict, hash=False)
 
@@ -50,11 +53,18 @@ class Scheme:
 
     def step_map(self, hamiltonian: Hamiltonian) -> StepMap:
         """The scheme's map for H. Raises InputError for an H that it does not take."""
-        return _step_map(self.build, hamiltonian)
+        return _step_map(self, hamiltonian)
 
 
 # A scene asks for the same map when it is read, when it is proved and when it is run, and what is
 # made of a map is found again by the map. Few, since a map keeps what was derived of it.
 @lru_cache(maxsize=32)
-def _step_map(build: Callable[[Hamiltonian], StepMap], hamiltonian: Hamiltonian) -> StepMap:
-    return build(hamiltonian)
+def _step_map(scheme: Scheme, hamiltonian: Hamiltonian) -> StepMap:
+    if scheme.build is not None:
+        return scheme.build(hamiltonian)
+    if scheme.formulas:
+        return map_by_formulas(hamiltonian, scheme.formulas)
+    made: StepMap = kind_of(scheme.every_h, scheme.name).build(
+        scheme.every_h, hamiltonian, scheme.name
+    )
+    return made

@@ -14,17 +14,11 @@ from fractions import Fraction
 from itertools import cycle
 from typing import Any, TypeAlias
 
-from verify.algebra.formula import symbol
 from verify.algebra.ring import Poly
-from verify.effort import limited
-from verify.errors import InputError
-from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.vector_field import VectorField
 from verify.late import sympy
+from verify.schemes.maps.step_algebra import Step, StepAlgebra
 from verify.schemes.scheme import Scheme
-from verify.schemes.splitting_conditions import LETTERS, Nearby, Part, Parts, Splitting, expressed
-from verify.schemes.step_algebra import Step, StepAlgebra, series_in_plane
-from verify.schemes.step_map import Expanded, StepMap, Substep
+from verify.schemes.splitting_conditions import LETTERS, Nearby, Part, Splitting
 
 Times: TypeAlias = "tuple[sympy.Expr | None, ...]"  # those that are given, None for one that is not
 
@@ -53,7 +47,6 @@ def splitting(
         explicit=True,
         symmetric=symmetric,
         source=source,
-        build=lambda hamiltonian: shears(hamiltonian, name, parts, times),
         every_h=Splitting(
             tuple(parts), times=tuple(own), nearby=nearby, nearby_in_time=nearby_in_time
         ),
@@ -114,87 +107,15 @@ def all_times(parts: Sequence[Part], given: Times = ()) -> tuple[sympy.Expr, ...
     return tuple(right if time is None else time for time, right in both)
 
 
-def shears(
-    hamiltonian: Hamiltonian, scheme: str, parts: Sequence[Part], times: Times = ()
-) -> StepMap:
-    """The map that kicks and drifts by these parts of h in turn, `scheme` being its name.
-
-    Raises InputError unless H = T(p) + V(q), or T(p, t) + V(q, t).
-    """
-    field, sizes = _with_sizes(hamiltonian, parts)
-    if not field.separable():
-        raise InputError(
-            "hamiltonian",
-            str(hamiltonian.expression),
-            f"{scheme} is explicit only for H = T(p) + V(q)",
-        )
-    if field.timed:
-        return _at_times(hamiltonian, expressed(parts), all_times(parts, times))
-    h = field.ring.variable("h")
-    moves = [_move(field, kind) for kind, _ in parts]
-    steps = [
-        _shear(field, kind, h * size * move)
-        for (kind, _), size, move in zip(parts, sizes, moves, strict=True)
-    ]
-    return StepMap(hamiltonian, tuple(steps))
-
-
-def _with_sizes(
-    hamiltonian: Hamiltonian, parts: Sequence[Part]
-) -> tuple[VectorField, Sequence[Poly]]:
-    """The field of H, and the sizes of the parts in its ring."""
-    rational = [size for _, size in parts if isinstance(size, Fraction)]
-    if len(rational) < len(parts):
-        return hamiltonian.field(*(size for _, size in expressed(parts)))
-    field = hamiltonian.field()[0]
-    return field, [field.ring.constant(size) for size in rational]
-
-
-def _move(field: VectorField, kind: str) -> Poly:
-    """−H_q of a kick, H_p of a drift."""
-    return -field.h_q if kind == "kick" else field.h_p
-
-
-def _shear(field: VectorField, kind: str, by: Poly) -> Substep:
-    p, q = (field.ring.variable(name) for name in ("p", "q"))
-    return Substep(field, p + by, q) if kind == "kick" else Substep(field, p, q + by)
-
-
-def _at_times(hamiltonian: Hamiltonian, parts: Parts, times: Sequence[sympy.Expr]) -> StepMap:
-    """The shears of H(p, q, t), each with H's derivative at its own time."""
-    p, q, t, h = map(symbol, "pqth")
-    slopes = {"kick": -hamiltonian.exact.diff(q), "drift": hamiltonian.exact.diff(p)}
-    both = zip(parts, times, strict=True)
-    with limited("hamiltonian", str(hamiltonian.expression), "to put the parts' times into it"):
-        moves = [slopes[kind].subs(t, t + h * at) for (kind, _), at in both]
-    field, elements = hamiltonian.field(
-        *(h * size * move for (_, size), move in zip(parts, moves, strict=True))
-    )
-    steps = [_shear(field, kind, by) for (kind, _), by in zip(parts, elements, strict=True)]
-    return StepMap(hamiltonian, tuple(steps), lambda most: _taylor(hamiltonian, parts, times, most))
-
-
-def _taylor(
-    hamiltonian: Hamiltonian, parts: Parts, times: Sequence[sympy.Expr], most: int
-) -> Expanded:
-    """p' and q' up to h^most."""
-    numbers = [x for (_, size), time in zip(parts, times, strict=True) for x in (size, time)]
-    field, exact = hamiltonian.field(*numbers)
-    step = shears_step([kind for kind, _ in parts], exact[0::2], exact[1::2])
-    return series_in_plane(field, step, most)
-
-
 def shears_step(kinds: Sequence[str], sizes: Sequence[Poly], times: Sequence[Poly]) -> Step:
     """How z' is made: the sizes and times of kicks and drifts in the ring of H's field."""
 
     def changes(algebra: StepAlgebra[Any]) -> list[Any]:
         n = algebra.size // 2
         moves = {"kick": range(n), "drift": range(n, 2 * n)}
-        found = [algebra.nothing] * algebra.size
+        result = [algebra.nothing] * algebra.size
         for kind, size, time in zip(kinds, sizes, times, strict=True):
-            slopes = algebra.slopes(found, time, moves[kind])
-            for place, slope in zip(moves[kind], slopes, strict=True):
-                found[place] = algebra.moved(found[place], [size], [slope])
-        return found
+            result = algebra.sheared(result, size, time, moves[kind])
+        return result
 
     return changes

@@ -16,7 +16,7 @@ import flint
 from verify.algebra.enclosure import enclose, enclosed, points
 from verify.algebra.series.power_series import partials
 from verify.arithmetic.flint_precision import working_precision
-from verify.hamiltonians.vector_field import VectorField
+from verify.hamiltonians.canonical_field import CanonicalField
 from verify.schemes.coloured_trees import symmetry
 from verify.schemes.elementary_differentials import Differentials
 from verify.schemes.implicit_tableau import ImplicitTableau
@@ -26,7 +26,7 @@ _POINTS = 8
 _PRECISION = 192
 
 
-def order_of(tableau: ImplicitTableau, field: VectorField) -> int | None:
+def order_of(tableau: ImplicitTableau, field: CanonicalField) -> int | None:
     """The order for this H; None where no point shows what it is."""
     for order in range(1, MOST_ORDER + 1):
         gaps = gaps_of(tableau, order)
@@ -38,7 +38,7 @@ def order_of(tableau: ImplicitTableau, field: VectorField) -> int | None:
     return None
 
 
-def _differ(tableau: ImplicitTableau, field: VectorField, order: int) -> bool:
+def _differ(tableau: ImplicitTableau, field: CanonicalField, order: int) -> bool:
     """Whether map and flow differ at h^order in some point, shown by balls."""
     ring = tableau.numbers.ring
     names = [n for n in field.ring.variables if n != "h"]
@@ -61,10 +61,10 @@ def _differ(tableau: ImplicitTableau, field: VectorField, order: int) -> bool:
 class _AtPoint:
     """The derivatives of H at a point, as balls, in the jets' place."""
 
-    def __init__(self, field: VectorField, point: Mapping[str, Fraction]) -> None:
+    def __init__(self, field: CanonicalField, point: Mapping[str, Fraction]) -> None:
         self.field, self.point, self.defined = field, point, True
         self.zero = flint.arb(0)
-        self._of_p, self._of_q = (partials(field.ring, x) for x in (field.h_p, field.h_q))
+        self._of_p, self._of_q = (partials(field.ring, x) for x in field.gradient(field.energy))
         self._known: dict[tuple[int, int], flint.arb] = {}
 
     def h(self, i: int, j: int, k: int = 0) -> flint.arb:

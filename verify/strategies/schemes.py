@@ -10,7 +10,6 @@ from verify.algebra.formula import symbol
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.schemes.degrees import check_takes
 from verify.schemes.methods.taylor.lie import eta_of
 from verify.schemes.scheme import Scheme
 from verify.strategies.arguments import whole, yes_no_either
@@ -81,7 +80,7 @@ def takes(scheme: Scheme, hamiltonian: Hamiltonian, separable: bool) -> bool:
     if scheme.every_h is not None:
         return separable or not scheme.needs_separable
     try:  # a scheme of the user's own: nothing else is known of it
-        check_takes(scheme, hamiltonian)
+        scheme.step_map(hamiltonian)
     except InputError:
         return False
     return True
@@ -102,6 +101,4 @@ def is_separable(hamiltonian: Hamiltonian) -> bool:
     terms = sympy.Add.make_args(hamiltonian.exact)
     if not any(momenta & term.free_symbols and places & term.free_symbols for term in terms):
         return True
-    if hamiltonian.planar:
-        return hamiltonian.field()[0].separable()
     return canonical_field(hamiltonian)[0].separable

@@ -4,7 +4,7 @@ from typing import Any
 
 from verify.execution.plan import Plan
 from verify.execution.study import Results, called, plan_of
-from verify.kernels.step.in_degrees import map_of, preserves
+from verify.kernels.step.computation import step_map_of
 from verify.scenes.scene import Scene
 from verify.studies.kinds import studies
 
@@ -25,7 +25,7 @@ def found_of(scene: Scene, results: Results) -> dict[str, Any]:
 def _plan_scene(plan: Plan, scene: Scene) -> None:
     found = studies()
     for scheme in scene.schemes:
-        preserved = preserves(map_of(scene.exact_hamiltonian(), scheme))
+        preserved = step_map_of(scene.exact_hamiltonian(), scheme).preserves_area
         for study in found:
             if study.need_of_scheme:
                 study.need_of_scheme(plan, scene, scheme, preserved)

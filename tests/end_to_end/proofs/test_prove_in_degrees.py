@@ -94,6 +94,5 @@ def test_certificates_are_written_and_checked(
 def test_from_python() -> None:
     found = verify.prove(HENON, "lie2")
     assert repr(found) == (
-        "SymplecticProof(PROVED: the coefficients of S below h^3 vanish identically, that of h^3 "
-        "does not)"
+        "Proof(PROVED: the coefficients of S below h^3 vanish identically, that of h^3 does not)"
     )

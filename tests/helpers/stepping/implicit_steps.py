@@ -20,8 +20,8 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import Kernel, Writer
 from verify.schemes import get
 from verify.schemes.implicit_tableau import ImplicitTableau
+from verify.schemes.maps.step_map import StepMap
 from verify.schemes.methods.runge_kutta import gauss4, gauss6, implicit_midpoint
-from verify.schemes.step_map import StepMap
 
 TABLEAUS = {
     "implicit-midpoint": implicit_midpoint.TABLEAU,

@@ -18,6 +18,7 @@ from verify.flows.closed_orbit import Orbit
 from verify.flows.extrapolation import Flow, NoFlowError
 from verify.flows.functions import functions_at
 from verify.flows.orbit_average import average, bounded_part, phase
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
 few = drawn(8)
@@ -31,7 +32,7 @@ few = drawn(8)
 def test_the_flow_is_followed_for_any_time_forth_and_back(
     a: int, b: int, p: Fraction, q: Fraction, tenths: int, digits: int
 ) -> None:
-    field, _ = oscillator(a, b, Fraction(0)).field()
+    field, _ = canonical_field(oscillator(a, b, Fraction(0)))
     flow, time = Flow(field, digits), Fraction(tenths, 10)
     z = flow.number(p), flow.number(q)
     slope = flow.slope(z)
@@ -66,7 +67,7 @@ def test_the_flow_is_followed_for_any_time_forth_and_back(
     ],
 )
 def test_a_flow_that_ends_says_about_when(text: str, p: str, q: str, time: str, said: str) -> None:
-    field, _ = Hamiltonian.parse(text).field()
+    field, _ = canonical_field(Hamiltonian.parse(text))
     flow = Flow(field, 12)
     with pytest.raises(NoFlowError, match=said):
         flow.follow((flow.number(Fraction(p)), flow.number(Fraction(q))), Fraction(time))
@@ -81,7 +82,7 @@ def test_a_flow_that_ends_says_about_when(text: str, p: str, q: str, time: str, 
     ],
 )
 def test_a_flow_is_not_advanced_beyond_its_end(text: str, p: str, q: str, time: str) -> None:
-    flow = Flow(Hamiltonian.parse(text).field()[0], 8)
+    flow = Flow(canonical_field(Hamiltonian.parse(text))[0], 8)
     start = flow.number(Fraction(p)), flow.number(Fraction(q))
     with pytest.raises(NoFlowError):
         flow.advance(start, flow.number(Fraction(time)), 7)
@@ -94,7 +95,7 @@ def test_a_flow_is_followed_in_steps_as_long_as_its_accuracy_allows(
 ) -> None:
     """By the longest that one step can be: most are a third of it at least, and few too long."""
     assume(p or q)
-    flow = Flow(oscillator(1, b, Fraction(0)).field()[0], digits)
+    flow = Flow(canonical_field(oscillator(1, b, Fraction(0)))[0], digits)
     z = flow.number(p), flow.number(q)
     longest = next(
         Fraction(n, 64) for n in range(1, 640) if flow.step(z, flow.number(Fraction(n, 64))) is None
@@ -122,7 +123,7 @@ def test_a_quarter_turn_of_the_plane_turns_every_bit_of_a_step(
     ends = []
     for middle, z in ((c, (c + p, c + q)), (-c, (-c - q, c + p))):
         text = f"{rate}*((p - ({middle}))**2 + (q - ({c}))**2)/2"
-        flow = Flow(Hamiltonian.parse(text).field()[0], digits)
+        flow = Flow(canonical_field(Hamiltonian.parse(text))[0], digits)
         time = flow.number(Fraction(part, 10 * rate))
         end = flow.step((flow.number(z[0]), flow.number(z[1])), time)
         ends.append(end and [flow.arithmetic.exact(x) for x in end])
@@ -133,7 +134,7 @@ def test_a_quarter_turn_of_the_plane_turns_every_bit_of_a_step(
 @few
 @given(polynomials("pq", 3, 3), numbers, numbers)
 def test_functions_at_a_point_are_what_they_are(text: str, p: Fraction, q: Fraction) -> None:
-    field, _ = oscillator(1, 1, Fraction(0)).field()
+    field, _ = canonical_field(oscillator(1, 1, Fraction(0)))
     flow = Flow(field, 30)
     at = functions_at(flow.arithmetic, [element(text), element(f"cos(q)*({text})")])
     with flow.arithmetic.context():

@@ -13,6 +13,7 @@ from tests.helpers.sampled.formulas import Q, plain, rationals
 from verify.flows.closed_form import blow_up
 from verify.flows.extrapolation import Flow, NoFlowError
 from verify.hamiltonians import systems
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.known_flows import closed_form
 from verify.hamiltonians.named_system import System
 from verify.hamiltonians.potential_motion import in_potential
@@ -91,7 +92,7 @@ def test_an_end_in_finite_time_is_there_and_nowhere_else(case: Case) -> None:
     for sign in (1, -1):
         end = blow_up(case.motion, sign, 20)
         assume(end is None or end < 100)
-        flow = Flow(case.system.hamiltonian().field()[0], 20)
+        flow = Flow(canonical_field(case.system.hamiltonian())[0], 20)
         start = flow.number(case.p), flow.number(case.q)
         if end is None:
             flow.follow(start, Fraction(sign * 2), 5000)  # before noise grows at a saddle
@@ -109,7 +110,7 @@ def test_the_numerical_flow_agrees(case: Case, part: Fraction) -> None:
     known = closed_form(hamiltonian, case.p, case.q)
     assert known is not None, "what a system knows is found from its formula"
     time = time_in(case, part) / 4
-    flow = Flow(hamiltonian.field()[0], 35)
+    flow = Flow(canonical_field(hamiltonian)[0], 35)
     z = flow.follow((flow.number(case.p), flow.number(case.q)), time, 20_000)
     found = case.at(time, 40)
     scale = 1 + max(map(abs, (*found, case.p, case.q)))

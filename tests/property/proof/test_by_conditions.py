@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from tests.helpers.constructed.schemes import Made, conditions, made_of, proof_of
+from tests.helpers.maps import by_expressions
 from tests.helpers.sampled.formulas import H, P, Q, plain, rationals
 from verify.algebra.series.jets import Jets, Series
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -18,7 +19,7 @@ from verify.proof.every import counterexample
 from verify.proof.order import prove
 from verify.schemes import get
 from verify.schemes.every_hamiltonian import StageEquations, TaylorSeries
-from verify.schemes.step_map import StepMap
+from verify.schemes.maps.step_map import StepMap
 from verify.verdict import Verdict
 
 few = drawn(12)
@@ -96,7 +97,7 @@ def test_an_h_that_the_scheme_is_not_asked_about_refutes_nothing(
     def build(hamiltonian: Hamiltonian) -> StepMap:
         h = hamiltonian.exact
         p_next = P - H * sympy.Rational(str(size)) * h.diff(Q)
-        return StepMap.from_expressions(hamiltonian, p_next, Q + H * h.diff(P).subs(P, p_next))
+        return by_expressions(hamiltonian, p_next, Q + H * h.diff(P).subs(P, p_next))
 
     found = counterexample(replace(get("euler"), build=build), separable)
     assert (found is None) == separable

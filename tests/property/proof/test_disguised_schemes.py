@@ -11,11 +11,12 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from tests.helpers.sampled.formulas import rationals
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import MOST_ORDERS
 from verify.proof.order import prove
-from verify.schemes.implicit_runge_kutta import implicit_map
 from verify.schemes.implicit_tableau import ImplicitTableau
+from verify.schemes.maps.kinds.implicit_runge_kutta import implicit_map
 from verify.schemes.tree_order import order_of
 from verify.verdict import Verdict
 
@@ -68,7 +69,7 @@ def test_no_order_is_told_where_every_consistent_method_is_exact(
     rows: list[list[Fraction]], weight: Fraction, a: Fraction, b: Fraction
 ) -> None:
     """H = a p + b q moves all points alike; without Σ b_i = 1 none by as much."""
-    field, _ = Hamiltonian.parse(f"({a})*p + ({b})*q").field()
+    field, _ = canonical_field(Hamiltonian.parse(f"({a})*p + ({b})*q"))
     assert order_of(tableau(rows, [weight, 1 - weight]), field) is None
     assert order_of(tableau(rows, [weight, 2 - weight]), field) == 0
 
@@ -82,7 +83,7 @@ def test_the_order_for_a_quadratic_h_is_that_of_the_stability_function(
     method = tableau([[theta]], [Fraction(1)])
     text = f"({a})*p**2/2 + ({b})*q**2/2"
     quadratic, cubic, falling = (
-        Hamiltonian.parse(x).field()[0]
+        canonical_field(Hamiltonian.parse(x))[0]
         for x in (text, f"{text} + ({c})*q**3", f"({a})*p**2/2 + ({b})*q")
     )
     order = 2 if theta == Fraction(1, 2) else 1
@@ -107,7 +108,7 @@ def test_what_cancels_for_one_h_is_no_difference_for_it(
     gap = second * x**2 + weight * y**2 - Fraction(1, 3)
     assume(gap)
     inner = (Fraction(1, 6) + k * gap / (1 + 2 * k)) / (weight * x)
-    field, _ = Hamiltonian.parse(f"(p*q)**{k + 1}").field()
+    field, _ = canonical_field(Hamiltonian.parse(f"(p*q)**{k + 1}"))
 
     def order(a32: Fraction) -> int | None:
         none = Fraction(0)

@@ -10,6 +10,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
+from tests.helpers.maps import by_formulas
+from tests.helpers.planted.steps import with_term
 from tests.helpers.sampled.formulas import (
     H,
     P,
@@ -25,14 +27,14 @@ from verify.algebra.embedding import embed
 from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.formula import parse
 from verify.algebra.ring import Decision
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import MOST_ORDERS, Expansion, Leading, first_nonzero
 from verify.proof.order import prove
-from verify.proof.order_proof import Proof
 from verify.proof.potential import potential_of
+from verify.proof.proof import Proof
 from verify.schemes import get
-from verify.schemes.step_map import StepMap
-from verify.schemes.substep import h_inside
+from verify.schemes.maps.closed_form import h_inside
 from verify.verdict import Verdict
 
 quick = drawn(14)
@@ -65,14 +67,14 @@ def test_a_map_with_h_in_its_functions_has_the_taylor_series_of_its_derivatives(
     p, q = (str(x) for x in lie_step(plain(text), eta))
     bent = f"h**{power}*({inside.format(size)})*({factor})"
     hamiltonian = Hamiltonian.parse(text)
-    step_map = StepMap.from_formulas(hamiltonian, f"{p} + {bent}", q)
+    step_map = by_formulas(hamiltonian, f"{p} + {bent}", q)
     step = [plain(f"{p} + {bent}"), plain(q)]
     taylor = [coefficients(x, 7) for x in step]
     series = [sum((c * H**n for n, c in enumerate(each)), sympy.S.Zero) for each in taylor]
-    (part,) = step_map.substeps
-    assert part.degree is part.terms is step_map.taylor(3) is None
-    assert h_inside(part.ring, part.p_next)
-    assert not h_inside(part.ring, part.q_next)
+    part = step_map.flat
+    assert part.degree is part.series(3) is step_map.series(3) is None
+    assert h_inside(part.ring, part.elements[0])
+    assert not h_inside(part.ring, part.elements[1])
     proof = prove(step_map)
     assert proof.convergence_order == order_of_flow(plain(text), series, 4)
     delta_j = determinant(step)
@@ -81,7 +83,7 @@ def test_a_map_with_h_in_its_functions_has_the_taylor_series_of_its_derivatives(
     if first is not None:
         assert proof.order == first
         assert zero_there(proof.leading - found[first])
-    expansion = Expansion(part.ring, part.p_next)
+    expansion = Expansion(part.ring, part.elements[0])
     assert expansion.length == MOST_ORDERS + 1
     for n in (3, 0, 1, 5):
         ring, x = expansion.coefficient(n)
@@ -94,16 +96,17 @@ def test_a_map_with_h_in_its_functions_has_the_taylor_series_of_its_derivatives(
 @given(st.integers(MOST_ORDERS + 2, MOST_ORDERS + 9))
 def test_what_begins_beyond_the_orders_looked_at_is_not_said_to_vanish(power: int) -> None:
     p_next = f"p*(1 + h**{power})/(1 + 2*h**{power})"
-    proof = prove(StepMap.from_formulas(Hamiltonian.parse("p**2/2"), p_next, "q + h*p"))
+    proof = prove(by_formulas(Hamiltonian.parse("p**2/2"), p_next, "q + h*p"))
     assert (proof.order, proof.area_preserving) == (None, False)
     assert "is not the zero function" in proof.reason
     assert proof.verdict is Verdict.PROVED
-    kicked = StepMap.from_formulas(FREE, "p - h**2*p", "q")
-    moved = StepMap.from_formulas(FREE, "p", f"q + h*p + h**{power}*q")
-    parts = moved.substeps + moved.substeps
-    both = prove(StepMap(FREE, parts))
-    assert (both.order, both.area_preserving) == (None, False), "of a composition as well"
-    assert prove(StepMap(FREE, parts + kicked.substeps)).order == 2
+    moved = with_term(get("rk4").step_map(FREE), 1, power, lambda ring: ring.variable("q"))
+    staged = prove(moved)
+    assert (staged.order, staged.area_preserving) == (None, False), "of stages as well"
+    kicked = with_term(moved, 0, 2, lambda ring: -ring.variable("p"))
+    assert prove(kicked).order == 2
+    polynomial = by_formulas(FREE, "p", f"q + h*p + h**{power}*q")
+    assert prove(polynomial).order == power, "a polynomial is looked at to its end"
 
 
 @few
@@ -136,15 +139,13 @@ FIELDS = (
 
 def proof_with(text: str, leading: str | sympy.Expr) -> Proof:
     """A proof whose leading coefficient is this one."""
-    step_map = get("rk4").step_map(Hamiltonian.parse(text))
-    field = step_map.substeps[0].field
-    own, (x,) = Hamiltonian.parse(text).field(
-        parse(leading) if isinstance(leading, str) else leading
+    hamiltonian = Hamiltonian.parse(text)
+    own, (x,) = canonical_field(
+        hamiltonian, parse(leading) if isinstance(leading, str) else leading
     )
     first = Leading(5, Decision(False), (own.ring, x))
-    true = prove(get("lie1").step_map(Hamiltonian.parse(text)), get("lie1"))
-    assert field is not None
-    return replace(true, order=5, first=first, step_map=step_map)
+    true = prove(get("lie1").step_map(hamiltonian), get("lie1"))
+    return replace(true, first=first, step_map=get("rk4").step_map(hamiltonian))
 
 
 @few

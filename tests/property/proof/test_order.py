@@ -11,6 +11,7 @@ from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
+from tests.helpers.maps import by_formulas
 from tests.helpers.sampled.formulas import (
     H,
     P,
@@ -31,8 +32,8 @@ from verify.algebra.expressions.formula_text import to_text
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
-from verify.proof.order_proof import Proof
-from verify.schemes.step_map import StepMap
+from verify.proof.proof import Proof
+from verify.schemes.maps.step_map import StepMap
 from verify.verdict import Verdict
 
 hamiltonians = polynomials() | trigonometric()
@@ -194,7 +195,7 @@ def lie2_terms(text: str) -> Map:
 
 def step_map_of(text: str, terms: Map) -> StepMap:
     p_next, q_next = (" + ".join(map(str, side)) for side in terms)
-    return StepMap.from_formulas(Hamiltonian.parse(text), p_next, q_next)
+    return by_formulas(Hamiltonian.parse(text), p_next, q_next)
 
 
 SLIPS = {
@@ -234,7 +235,7 @@ def test_without_a_planted_error_the_same_text_is_proved(text: str) -> None:
 @quick
 @given(hamiltonians)
 def test_the_frozen_map_is_refuted_for_every_hamiltonian_that_is_not_constant(text: str) -> None:
-    frozen = StepMap.from_formulas(Hamiltonian.parse(text), "p", "q")
+    frozen = by_formulas(Hamiltonian.parse(text), "p", "q")
     proof = prove(frozen)
     assert proof.verdict is Verdict.REFUTED
     assert (proof.area_preserving, proof.convergence_order) == (True, 0)
@@ -243,7 +244,7 @@ def test_the_frozen_map_is_refuted_for_every_hamiltonian_that_is_not_constant(te
 @quick
 @given(rationals())
 def test_the_frozen_map_is_exact_for_a_constant_hamiltonian(value: Fraction) -> None:
-    frozen = StepMap.from_formulas(Hamiltonian.parse(f"{value} + 0*p"), "p", "q")
+    frozen = by_formulas(Hamiltonian.parse(f"{value} + 0*p"), "p", "q")
     assert prove(frozen).verdict is Verdict.PROVED
 
 
@@ -275,5 +276,5 @@ REWRITTEN = [
 def test_equal_maps_written_differently_have_equal_proofs(text: str, f: str, g: str) -> None:
     p_next, q_next = (" + ".join(map(str, side)) for side in lie2_terms(text))
     hamiltonian = Hamiltonian.parse(text)
-    rewritten = StepMap.from_formulas(hamiltonian, f.format(p_next), g.format(q_next))
-    same_as(prove(StepMap.from_formulas(hamiltonian, p_next, q_next)), prove(rewritten))
+    rewritten = by_formulas(hamiltonian, f.format(p_next), g.format(q_next))
+    same_as(prove(by_formulas(hamiltonian, p_next, q_next)), prove(rewritten))

@@ -9,7 +9,9 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from tests.helpers.sampled.formulas import P, Q, plain, polynomials, rationals
+from verify.algebra.ring import Decision
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.proof.expansion import Leading
 from verify.proof.order import prove
 from verify.proof.potential import Potential, potential_of
 from verify.schemes import get
@@ -88,6 +90,7 @@ def test_what_has_no_leading_coefficient_has_the_potential_0_or_none_is_known(
     assert (found.holds, found.potential, found.text) == (True, 0, "0")
     scheme = get(name)
     proof = prove(scheme.step_map(hamiltonian), scheme)
-    left = potential_of(replace(proof, order=None, area_preserving=None), scheme)
+    open_ = Leading(None, Decision(None))
+    left = potential_of(replace(proof, first=open_, volume=open_), scheme)
     assert (left.holds, left.potential, left.text) == (None, None, None)
     assert "not known" in left.reason

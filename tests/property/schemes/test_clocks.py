@@ -14,7 +14,9 @@ import sympy
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import convergence_of
-from verify.schemes.splitting import all_times, right_times, shears
+from verify.schemes.maps.kinds import splittings
+from verify.schemes.splitting import right_times
+from verify.schemes.splitting_conditions import Splitting
 from verify.schemes.timed.splitting import TimedSplitting
 
 Polynomial = dict[tuple[int, int, int], Fraction]  # by the powers of p, q, t
@@ -189,8 +191,11 @@ def test_and_so_is_that_of_a_proof_for_one_h(seed: int) -> None:
         return " + ".join(f"({c})*p**{a}*q**{b}*t**{m}" for (a, b, m), c in x.items())
 
     hamiltonian = Hamiltonian.parse(f"{text(T)} + {text(V)}")
-    own = [(kind, sympy.Rational(x)) for kind, x in parts]
-    step = shears(hamiltonian, "drawn", own, all_times(own, tuple(map(sympy.Rational, clock))))
+    own = Splitting(
+        tuple((kind, sympy.Rational(x)) for kind, x in parts),
+        times=tuple(map(sympy.Rational, clock)),
+    )
+    step = splittings.build(own, hamiltonian, "drawn")
     assert convergence_of(step).order == order_by_hand(parts, clock)
 
 

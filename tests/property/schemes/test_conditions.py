@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from tests.helpers.constructed.schemes import Made, conditions
+from tests.helpers.maps import by_formulas
 from tests.helpers.sampled.formulas import polynomials, rationals
 from tests.helpers.symmetry import palindromic, prove_symmetry
 from verify.algebra.embedding import embed
@@ -19,7 +20,6 @@ from verify.proof.symmetry import by_series
 from verify.schemes import get
 from verify.schemes.every_hamiltonian import Stage, StageEquations
 from verify.schemes.residue import decimal_of
-from verify.schemes.step_map import StepMap
 from verify.verdict import Verdict
 
 quick = drawn(25)
@@ -113,7 +113,7 @@ def test_the_first_power_of_h_that_a_step_back_leaves_is_found(
     """p' = p + c hⁿ F(q), q' = q: the step of −h takes it away for odd n, doubles it for even."""
     formulas = f"p + ({size})*h**{power}*({force})", "q + h*p**0*0"
     hamiltonian = Hamiltonian.parse("p**2/2 + q**2/2")
-    step_map = StepMap.from_formulas(hamiltonian, *formulas)
+    step_map = by_formulas(hamiltonian, *formulas)
     found = by_series(step_map, most)
     if power % 2 == 0 and power <= most:
         assert (found.verdict, found.power) == (Verdict.REFUTED, power)

@@ -10,7 +10,7 @@ from tests.examples import drawn
 from tests.helpers.sampled.formulas import H, P, Q, plain, polynomials, zero_there
 from tests.helpers.symmetry import prove_symmetry
 from verify import schemes
-from verify.errors import InputError
+from verify.errors import InputError, LimitError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.every import prove_every
 from verify.proof.order import prove
@@ -64,8 +64,11 @@ def test_a_schemes_symmetry_and_explicitness_are_those_of_its_steps(name: str) -
     step_map = scheme.step_map(Hamiltonian.parse(bent))
     assert step_map.implicit == (not scheme.explicit)
     if step_map.implicit:
-        assert (step_map.closed, step_map.whole) == (None, step_map.substeps[0])
-        assert step_map.whole is step_map.substeps[0]
+        assert (step_map.closed, step_map.formulas, step_map.has_closed_form) == (
+            None, None, scheme.area_preserving,
+        )  # fmt: skip
+        with pytest.raises(LimitError, match="is given by equations"):
+            assert step_map.flat
     if scheme.needs_separable:
         with pytest.raises(InputError, match=r"T\(p\) \+ V\(q\)"):
             scheme.step_map(Hamiltonian.parse(MIXED))

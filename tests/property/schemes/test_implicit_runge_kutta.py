@@ -21,7 +21,7 @@ from tests.helpers.stepping.implicit_steps import (
 from verify import schemes
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
-from verify.schemes.implicit_runge_kutta import implicit_map
+from verify.schemes.maps.kinds.implicit_runge_kutta import implicit_map
 from verify.verdict import Verdict
 
 HAMILTONIANS = st.one_of(polynomials(degree=4, most_terms=3), trigonometric(most_terms=1))

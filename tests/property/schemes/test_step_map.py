@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
+from tests.helpers.maps import by_expressions, by_formulas
 from tests.helpers.sampled.formulas import H, P, Q, plain, polynomials, rationals
 from tests.helpers.sampled.maps import coefficients, determinant, order_of_flow, planted
 from verify.algebra.formula import parse
@@ -18,7 +19,8 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import MOST_ORDERS
 from verify.proof.order import convergence_of, prove
 from verify.schemes import get
-from verify.schemes.step_map import StepMap, grouped
+from verify.schemes.maps.parts import parts_of
+from verify.schemes.maps.step_map import grouped
 from verify.verdict import Verdict
 
 quick = drawn(14)
@@ -32,7 +34,7 @@ def test_a_map_has_the_orders_that_its_expansion_has_and_the_verdict_says_which(
 ) -> None:
     text, *formulas, _ = drawn
     hamiltonian, step = Hamiltonian.parse(text), [plain(f) for f in formulas]
-    step_map = StepMap.from_formulas(hamiltonian, *formulas)
+    step_map = by_formulas(hamiltonian, *formulas)
     delta_j = determinant(step)
     known = coefficients(delta_j)
     order = order_of_flow(plain(text), step, MOST_ORDERS)
@@ -75,15 +77,15 @@ def test_the_parts_of_a_map_are_its_derivatives_and_its_powers_of_h(
 ) -> None:
     text, *formulas, _ = drawn
     step = [plain(f) for f in formulas]
-    step_map = StepMap.from_formulas(Hamiltonian.parse(text), *formulas)
-    (part,) = step_map.substeps
+    step_map = by_formulas(Hamiltonian.parse(text), *formulas)
+    part = step_map.flat
     ring, delta_j = part.ring, determinant(step)
-    own = [ring.expression(x) for x in (part.p_next, part.q_next)]
+    own = [ring.expression(x) for x in part.elements]
     assert all(sympy.expand(x - y) == 0 for x, y in zip(own, step, strict=True))
     entries = [x.diff(v) for x in step for v in (P, Q)]
     assert all(
         sympy.expand(ring.expression(x) - y) == 0
-        for x, y in zip(part.jacobian, entries, strict=True)
+        for x, y in zip((x for row in part.jacobian for x in row), entries, strict=True)
     )
     assert sympy.expand(step_map.jacobian - sympy.Matrix(2, 2, entries)) == sympy.zeros(2)
     moved = [ring.expression(x) for x in part.increments]
@@ -91,38 +93,42 @@ def test_the_parts_of_a_map_are_its_derivatives_and_its_powers_of_h(
     assert sympy.expand(ring.expression(part.delta_j) - delta_j) == 0
     known = coefficients(delta_j)
     assert part.degree is not None
-    assert part.degree >= max(known, default=0)
-    assert part.degree == 2 * max(max(coefficients(x), default=0) for x in step)
-    for n in range(part.degree + 2):
-        assert sympy.expand(ring.expression(part.coefficient(n)) - known.get(n, 0)) == 0
-    assert part.terms is not None
-    for terms, x in zip(part.terms, step, strict=True):
+    assert 2 * part.degree >= max(known, default=0)
+    assert part.degree == max(max(coefficients(x), default=0) for x in step)
+    assert part.forms is not None
+    assert set(part.forms) == set(known)
+    for n in range(2 * part.degree + 2):
+        coefficient = part.form(n).at(0, 1)
+        assert sympy.expand(ring.expression(coefficient) - known.get(n, 0)) == 0
+    whole = part.series(part.degree)
+    assert whole is not None
+    for terms, x in zip(whole, step, strict=True):
         true = coefficients(x)
-        assert {n for n, c in terms.items() if c != 0} == set(true)
-        assert all(sympy.expand(ring.expression(terms[n]) - c) == 0 for n, c in true.items())
+        assert {n for n, c in enumerate(terms.coefficients) if c != 0} == set(true)
+        assert all(
+            sympy.expand(ring.expression(terms.coefficients[n]) - c) == 0 for n, c in true.items()
+        )
     written = step_map.delta_j_text
     assert written is not None
     assert sympy.expand(parse(written, ("p", "q", "h")) - delta_j) == 0
-    assert part.preserves_area == step_map.preserves_area == (delta_j == 0)
+    assert part.symplectic == step_map.preserves_area == (delta_j == 0)
     assert part.length == sum(len(sympy.Add.make_args(sympy.expand(x))) for x in step)
     count = len(sympy.Add.make_args(delta_j)) if delta_j != 0 else 0
-    assert part.terms_of_delta_j >= count
+    assert part.products >= count
     long, other = (len(sympy.Add.make_args(sympy.expand(x))) for x in step)
-    assert part.terms_of_delta_j <= long + other + 2 * long * other
-    assert (part.staged, part.implicit, step_map.implicit, step_map.of_parts) == (False,) * 4
+    assert part.products <= long + other + 2 * long * other
+    assert (step_map.implicit, step_map.in_stages) == (False, False)
     assert step_map.has_closed_form
-    assert step_map.whole is step_map.closed is step_map.flat is part
-    shown = grouped(ring, part.p_next)
+    assert step_map.closed is step_map.flat is step_map.written_defect is part
+    shown = grouped(ring, part.elements[0])
     assert sympy.expand(shown - step[0]) == 0
-    starts = coefficients(step[0]).get(0) == P and coefficients(step[1]).get(0) == Q
-    series = step_map.taylor(5)
-    assert (series is not None) == starts
-    if series is not None:
-        for x, y in zip(series[1:], step, strict=True):
-            true = coefficients(y)
-            for n, c in enumerate(x.coefficients):
-                assert sympy.expand(ring.expression(c) - true.get(n, 0)) == 0
-            assert len(x.coefficients) == 6
+    series = step_map.series(5)
+    assert series is not None
+    for x, y in zip(series[1], step, strict=True):
+        true = coefficients(y)
+        for n, c in enumerate(x.coefficients):
+            assert sympy.expand(ring.expression(c) - true.get(n, 0)) == 0
+        assert len(x.coefficients) == 6
 
 
 # -- compositions ---------------------------------------------------------------------------------
@@ -148,13 +154,16 @@ def test_a_composition_is_its_parts_one_after_the_other(
             q = q + part * whole.diff(P).subs({P: p, Q: q}, simultaneous=True)
     assert sympy.expand(step_map.p_next - p) == 0
     assert sympy.expand(step_map.q_next - q) == 0
-    assert len(step_map.substeps) == len(parts)
-    assert step_map.of_parts
+    shears = parts_of(step_map)
+    assert shears is not None
+    assert len(shears) == len(parts)
+    assert all(shear.symplectic for shear in shears)
+    assert step_map.in_stages
     assert step_map.preserves_area
     assert (step_map.delta_j, step_map.delta_j_text, step_map.has_closed_form) == (0, "0", True)
-    series = step_map.taylor(3)
+    series = step_map.series(3)
     assert series is not None
-    field, *own = series
+    field, own = series
     true = [coefficients(x) for x in (p, q)]
     for x, y in zip(own, true, strict=True):
         for n, c in enumerate(x.coefficients):
@@ -163,26 +172,26 @@ def test_a_composition_is_its_parts_one_after_the_other(
     assert convergence_of(step_map).order == order
     closed = step_map.closed
     if closed is not None:
-        assert sympy.expand(closed.ring.expression(closed.q_next) - q) == 0
-        assert closed.preserves_area
+        assert sympy.expand(closed.ring.expression(closed.elements[1]) - q) == 0
+        assert closed.symplectic
 
 
 @few
 @given(polynomials("pq", 3, 2), polynomials("pq", 2, 2), rationals(3))
-def test_two_substeps_that_change_area_are_composed_in_their_order(
+def test_two_maps_that_change_area_are_composed_in_their_order(
     one: str, other: str, size: Fraction
 ) -> None:
     hamiltonian = Hamiltonian.parse("p**2/2 + q**2/2")
-    first = StepMap.from_formulas(hamiltonian, f"p + h*({one})", f"q + h*p*({size})")
-    second = StepMap.from_formulas(hamiltonian, "p", f"q + h**2*({other})")
-    (a,), (b,) = first.substeps, second.substeps
-    both = StepMap(hamiltonian, (replace(a, field=b.field), b) if a.ring is b.ring else (a, b))
+    first = by_formulas(hamiltonian, f"p + h*({one})", f"q + h*p*({size})")
+    second = by_formulas(hamiltonian, "p", f"q + h**2*({other})")
+    put = {P: first.p_next, Q: first.q_next}
+    both = by_expressions(hamiltonian, *(x.xreplace(put) for x in second.composed))
     x = [plain(f"p + h*({one})"), plain(f"q + h*p*({size})")]
     y = [x[0], x[1] + H**2 * plain(other).subs({P: x[0], Q: x[1]}, simultaneous=True)]
     delta_j = determinant(y)
     assert sympy.expand(both.q_next - y[1]) == 0
     assert sympy.expand(both.delta_j - delta_j) == 0
-    assert both.preserves_area == (a.preserves_area and b.preserves_area)
-    assert sympy.expand(both.whole.ring.expression(both.whole.delta_j) - delta_j) == 0
+    assert both.preserves_area == (delta_j == 0)
+    assert sympy.expand(both.flat.ring.expression(both.flat.delta_j) - delta_j) == 0
     proof = prove(both)
     assert proof.order == min(coefficients(delta_j), default=None)

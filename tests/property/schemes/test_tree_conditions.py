@@ -15,6 +15,7 @@ from tests.helpers.lie_derivatives import lie_derivatives
 from tests.helpers.sampled.formulas import plain, polynomials
 from verify.algebra.series.jets import Jets
 from verify.errors import InputError
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes import get
 from verify.schemes.coloured_trees import Tree, condition_text, density, symmetry, vertices
@@ -192,7 +193,7 @@ def test_the_order_for_one_h_is_that_of_the_differences_of_elementary_differenti
     drawn: tuple[list[list[Fraction]], list[Fraction]], text: str
 ) -> None:
     rows, weights = drawn
-    field, _ = Hamiltonian.parse(text).field()
+    field, _ = canonical_field(Hamiltonian.parse(text))
     found = order_of(tableau_of(rows, weights), field)
     for order, left in differences(rows, weights, plain(text)):
         if any(gap(rows, weights, t) for t in trees(order)):

@@ -7,7 +7,8 @@ from typing import Any
 import pytest
 
 import verify
-from verify import Hamiltonian, StepMap, Verdict
+from tests.helpers.maps import by_formulas
+from verify import Hamiltonian, Verdict
 from verify.schemes import get
 
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + delta*q**4/4", {"delta": 1})
@@ -26,7 +27,7 @@ def test_proofs_by_name_are_those_of_step_maps() -> None:
 
 def test_a_wrong_map_is_refuted_however_it_is_given() -> None:
     wrong = "p_next = p - h*q; q_next = q + h*p"
-    for scheme in (wrong, StepMap.from_formulas(DUFFING, "p - h*q", "q + h*p")):
+    for scheme in (wrong, by_formulas(DUFFING, "p - h*q", "q + h*p")):
         assert verify.prove(DUFFING, scheme).verdict is Verdict.REFUTED
         assert verify.check(DUFFING, scheme).verdict is Verdict.REFUTED
 

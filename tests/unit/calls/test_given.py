@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import verify
-from verify import Hamiltonian, InputError, StepMap
+from tests.helpers.maps import by_formulas
+from verify import Hamiltonian, InputError
 from verify.calls.given import hamiltonian_from, scheme_name
 from verify.schemes import get
 
@@ -45,7 +46,7 @@ def lambda_of(scheme: object) -> verify.RunResult:
 
 def test_a_scheme_is_a_name_formulas_a_scheme_or_a_step_map() -> None:
     wanted = lambda_of("symplectic-euler")
-    whole = StepMap.from_formulas(DUFFING, "p - h*(q + q**3)", "q + h*p_next")
+    whole = by_formulas(DUFFING, "p - h*(q + q**3)", "q + h*p_next")
     own = replace(get("symplectic-euler"), name="mine")
     for scheme in ("Symplectic Euler", get("symplectic-euler"), whole, EULER, own):
         found = lambda_of(scheme)
@@ -82,7 +83,7 @@ def test_numbers_of_numpy_go_everywhere() -> None:
     assert [image.steps for image in carried.images] == [1, 2]
 
 
-OTHER = StepMap.from_formulas(Hamiltonian.parse("p**2/2 + q**2"), "p - 2*h*q", "q + h*p_next")
+OTHER = by_formulas(Hamiltonian.parse("p**2/2 + q**2"), "p - 2*h*q", "q + h*p_next")
 WRONG: dict[str, tuple[Callable[[], object], str]] = {
     "a name like one": (
         lambda: verify.run("dufing", "lie2", **START),

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.helpers.maps import by_formulas
 from verify.claims.report import make_report
 from verify.errors import InputError
 from verify.execution.execute import Store
@@ -13,7 +14,6 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
 from verify.runs.run import run
 from verify.scenes.scene import scene_from
-from verify.schemes.step_map import StepMap
 from verify.studies.criteria import judge
 from verify.verdict import Verdict
 
@@ -51,7 +51,7 @@ def test_where_the_solution_blows_up_criteria_3_and_4_are_not_proved_for_the_sce
 
 def test_a_defect_beyond_every_order_looked_at_is_still_a_defect() -> None:
     p_next, q_next = "p*cos(h) - q*sin(h) + sin(h)**15*p", "q*cos(h) + p*sin(h)"
-    step_map = StepMap.from_formulas(Hamiltonian.parse("(p**2 + q**2)/2"), p_next, q_next)
+    step_map = by_formulas(Hamiltonian.parse("(p**2 + q**2)/2"), p_next, q_next)
     proof = prove(step_map)
     assert (proof.area_preserving, proof.order) == (False, None)
     assert "is not the zero function" in proof.reason

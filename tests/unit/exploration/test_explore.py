@@ -14,6 +14,7 @@ from verify.exploration.sample import Sample
 from verify.exploration.sample_space import SampleSpace
 from verify.exploration.scenes import sample_scene
 from verify.exploration.tasks import ExploreTask
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.scenes.results.exploration import ExploreReport
 from verify.scenes.scene import load_scene
 from verify.scenes.toml_text import scene_text
@@ -70,7 +71,7 @@ def test_what_is_asked_for_is_drawn() -> None:
 def test_separable_schemes_get_separable_hamiltonians() -> None:
     asked = SampleSpace(schemes=("stormer-verlet",), degree=4)
     for k in range(20):
-        assert sample_scene(asked, 1, k).exact_hamiltonian().field()[0].separable()
+        assert canonical_field(sample_scene(asked, 1, k).exact_hamiltonian())[0].separable
 
 
 # -- counting, shrinking --------------------------------------------------------------------------

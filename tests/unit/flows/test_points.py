@@ -17,6 +17,7 @@ from verify.flows.extrapolation import Flow, NoFlowError
 from verify.flows.points import Points, exact_points
 from verify.flows.solution import exact_solution
 from verify.hamiltonians import known_flows, systems
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.motion import Motion
 
@@ -254,7 +255,7 @@ def test_a_motion_is_made_once_for_all_times(monkeypatch: pytest.MonkeyPatch) ->
 
 def by_numerical_flow(h: Hamiltonian, p: Any, q: Any, time: Fraction, found: Points) -> bool:
     """Whether all points are within their bound of what the numerical flow finds."""
-    flow = Flow(h.field()[0], 25)
+    flow = Flow(canonical_field(h)[0], 25)
     ours, errors = (found.p, found.q), []
     for i in range(len(p)):
         z = flow.follow((flow.number(Fraction(p[i])), flow.number(Fraction(q[i]))), time)

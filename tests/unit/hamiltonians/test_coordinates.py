@@ -56,4 +56,5 @@ def test_numbered_names_are_coordinates_unless_they_have_a_value() -> None:
 def test_what_is_of_the_plane_refuses_several_degrees_in_one_line() -> None:
     several = Hamiltonian.parse("p1**2/2 + q1**2*q2")
     with pytest.raises(InputError, match="is of p1, p2, q1, q2; what is asked for takes p and"):
-        several.field()
+        several.check_planar()
+    Hamiltonian.parse("p**2/2 + q").check_planar()

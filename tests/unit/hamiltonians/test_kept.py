@@ -7,6 +7,7 @@ import sys
 from fractions import Fraction
 from itertools import count
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -20,9 +21,10 @@ from verify.arithmetic.exact import text
 from verify.code_cache import OFF, VARIABLE
 from verify.errors import InputError
 from verify.hamiltonians import kept, systems
-from verify.hamiltonians.hamiltonian import Hamiltonian, embedded
+from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
+from verify.hamiltonians.coordinates import PLANE
+from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.kept import KeptHamiltonian, kept_or_read
-from verify.hamiltonians.vector_field import VectorField
 
 NUMBER = count()
 FORMULAS = [
@@ -57,10 +59,16 @@ def twice(formula: str, **values: str) -> tuple[Hamiltonian, Hamiltonian]:
     return found[0], found[1]
 
 
-def of_field(field: VectorField) -> list[object]:
+def anew(hamiltonian: Hamiltonian) -> CanonicalField:
+    """Its field, in a ring that is shared with nobody."""
+    ring, energy, _ = hamiltonian.embedded()
+    return CanonicalField(ring, PLANE, energy)
+
+
+def of_field(field: CanonicalField) -> list[object]:
     """All that is in it, as texts."""
     ring = field.ring
-    polynomials = (field.h_p, field.h_q, field.energy)
+    polynomials = (*field.slopes, field.energy)
     gradients = [
         {name: str(x) for name, x in ring.gradient(g.index).items()} for g in ring.generators
     ]
@@ -69,13 +77,18 @@ def of_field(field: VectorField) -> list[object]:
     return [ring.variables, ring.room, made, relations, gradients, [*map(str, polynomials)]]
 
 
+def recorded_field(record: Any) -> CanonicalField:
+    ring, energy = recorded(record)
+    return CanonicalField(ring, PLANE, energy)
+
+
 def same(one: Hamiltonian, other: Hamiltonian) -> None:
     assert type(other) is KeptHamiltonian
     names = ("formula", "values", "parameters", "coordinates", "time_dependent", "symbols", "texts")
     for name in (*names, "planar", "degrees", "domain", "written"):
         assert getattr(one, name) == getattr(other, name), name
     assert repr(one) == repr(other)
-    assert of_field(embedded(one, (), 20000)[0]) == of_field(other.field()[0])
+    assert of_field(anew(one)) == of_field(canonical_field(other)[0])
     assert "expression" not in vars(other), "nothing was read for that"
     assert (one.expression, one.exact) == (other.expression, other.exact)
 
@@ -104,19 +117,19 @@ def test_the_systems_are_kept_with_their_values_and_without(name: str) -> None:
 @drawn(40)
 @given(strategies.hamiltonians())
 def test_of_what_is_drawn_the_record_gives_the_same_field(drawn_one: Hamiltonian) -> None:
-    field = embedded(drawn_one, (), 20000)[0]
+    field = anew(drawn_one)
     record = json.loads(json.dumps(record_of(field.ring, field.energy)))
-    assert of_field(VectorField.of(*recorded(record))) == of_field(field)
+    assert of_field(recorded_field(record)) == of_field(field)
 
 
 def test_a_record_with_another_number_gives_another_field() -> None:
-    field = embedded(Hamiltonian.parse("p**2/2 - cos(q)"), (), 20000)[0]
+    field = anew(Hamiltonian.parse("p**2/2 - cos(q)"))
     record = json.loads(json.dumps(record_of(field.ring, field.energy)))
     record["element"][0][1] = "7"
-    assert of_field(VectorField.of(*recorded(record))) != of_field(field)
+    assert of_field(recorded_field(record)) != of_field(field)
     record = json.loads(json.dumps(record_of(field.ring, field.energy)))
     record["relations"] = []
-    assert of_field(VectorField.of(*recorded(record))) != of_field(field)
+    assert of_field(recorded_field(record)) != of_field(field)
 
 
 @drawn(150)
@@ -136,7 +149,7 @@ def test_with_parameters_of_value_0_the_generic_h_is_the_same_expression(
     assert record is not None
     generic = KeptHamiltonian(record).with_symbols()
     assert generic.expression == one.with_symbols().expression
-    assert of_field(generic.field()[0]) == of_field(embedded(one.with_symbols(), (), 20000)[0])
+    assert of_field(canonical_field(generic)[0]) == of_field(anew(one.with_symbols()))
 
 
 def test_a_generic_h_that_reads_back_otherwise_is_not_kept() -> None:
@@ -231,15 +244,15 @@ def test_it_is_compared_pickled_and_given_values_as_what_it_is() -> None:
     assert pickle.loads(pickle.dumps(other)) == one  # noqa: S301
     assert other.with_values({"delta": 2}) == one.with_values({"delta": 2})
     assert other.gradient()(1.0, 2.0) == one.gradient()(1.0, 2.0)
-    field, (energy,) = other.field(one.exact)
+    field, (energy,) = canonical_field(other, one.exact)
     assert energy == field.energy
 
 
 def test_what_was_added_to_the_shared_ring_is_not_kept() -> None:
     one = Hamiltonian.parse("p**2/2 + 1/(1 + q**2)")
-    ring = one.field()[0].ring
-    ring.add("stage", ring.variable("p"))
-    assert [g.kind for g in one.field()[0].ring.generators][3:] == ["inverse", "stage"]
+    ring = canonical_field(one)[0].ring
+    ring.add("exp", ring.variable("p"))
+    assert [g.kind for g in canonical_field(one)[0].ring.generators][3:] == ["inverse", "exp"]
     same(*twice("p**2/2 + 1/(1 + q**2)"))
 
 

@@ -10,6 +10,7 @@ import pytest
 import verify
 from verify.errors import InputError
 from verify.flows.extrapolation import Flow
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.results import Finding
 from verify.verdict import Verdict
@@ -226,7 +227,7 @@ def test_a_refuted_clock_has_a_counterexample_with_its_time() -> None:
     assert f"t = {example.t}" in str(example)
     gap = float(example.found)
     at = [float(x) for x in (*example.z.values(), example.t, example.h)]
-    flow = Flow(Hamiltonian.parse(DRIVEN).field()[0], 20)
+    flow = Flow(canonical_field(Hamiltonian.parse(DRIVEN))[0], 20)
     end = flow.advance(
         tuple(map(flow.number, (*example.z.values(), example.t))), flow.number(example.h)
     )

@@ -21,15 +21,13 @@ from verify.kernels.kernel import kernel_for
 from verify.kernels.statements import OBSERVABLES
 from verify.kernels.step.computation import Observed, computed, step_map_of
 from verify.kernels.step.program import Evaluator, Program, _nest
-from verify.runs import derivatives
 from verify.schemes import get
-from verify.schemes.composition import in_stages, unfolded
-from verify.schemes.step_map import h_inside
+from verify.schemes.every_hamiltonian import TaylorSeries
+from verify.schemes.maps.kinds.taylor_series import build
 
 MIXED = Hamiltonian.parse("p**4/4 + p**2*q**3/3 + p*q**2/5")
 PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
-POLYNOMIALS = ["p**3/3 + p*q", "p**2*q/2 - q**3/7", "p**2/2 + q**4/4"]
-EXPLICIT = ["lie2", "rk4", "explicit-midpoint"]
+EXPLICIT = ["lie1", "lie2", "lie3"]
 
 
 # -- trials ---------------------------------------------------------------------------------------
@@ -157,7 +155,7 @@ def test_all_precisions_and_number_systems_share_a_program_and_leave_it_as_it_is
 def test_maps_that_are_equal_and_not_the_same_share_nothing() -> None:
     """A map is known by itself: one with a planted error is another one."""
     asked = Observed(pipelined=False, scaled=False, delta_j=True, determinant=False, tangent=False)
-    one, two = (get("lie2").build(MIXED) for _ in range(2))
+    one, two = (build(TaylorSeries(2), MIXED) for _ in range(2))
     assert computed(one, asked) is computed(one, asked)
     assert computed(one, asked) is not computed(two, asked)
     assert step_map_of(MIXED, "lie2") is step_map_of(MIXED, "lie2")
@@ -169,8 +167,9 @@ def test_maps_that_are_equal_and_not_the_same_share_nothing() -> None:
 @pytest.mark.parametrize("scheme", EXPLICIT)
 @pytest.mark.parametrize("h", [MIXED, PENDULUM], ids=["polynomial", "pendulum"])
 def test_elements_that_were_read_once_have_the_same_balls(h: Hamiltonian, scheme: str) -> None:
-    step = get(scheme).step_map(h).substeps[0]
-    elements = [step.p_next, *step.jacobian, step.jacobian[0], step.ring.zero]
+    step = get(scheme).step_map(h).flat
+    first, second = step.jacobian
+    elements = [step.elements[0], *first, *second, first[0], step.ring.zero]
     made = Enclosures(step.ring, elements)
     with working_precision(96):
         for at in (Fraction(1, 3), Fraction(5, 2)):
@@ -181,38 +180,9 @@ def test_elements_that_were_read_once_have_the_same_balls(h: Hamiltonian, scheme
 
 
 def test_where_an_element_may_be_undefined_there_are_no_balls() -> None:
-    step = get("lie1").step_map(Hamiltonian.parse("log(q) + p**2/2")).substeps[0]
-    made = Enclosures(step.ring, [step.p_next])
+    step = get("lie1").step_map(Hamiltonian.parse("log(q) + p**2/2")).flat
+    made = Enclosures(step.ring, [step.elements[0]])
     with working_precision(96):
         box: Mapping[str, flint.arb] = {n: flint.arb(0, 1) for n in VARIABLES}
         assert made.over(box) is None
         assert made.over({**box, "q": flint.arb(3, 1)}) is not None
-
-
-@pytest.mark.parametrize("text", POLYNOMIALS)
-@pytest.mark.parametrize("scheme", ["rk4", "explicit-midpoint"])
-def test_a_map_in_stages_is_written_out_as_sympy_does(text: str, scheme: str) -> None:
-    step_map = get(scheme).step_map(Hamiltonian.parse(text))
-    step, closed = step_map.substeps[0], step_map.closed
-    elements = step.p_next, step.q_next
-    assert in_stages(step.ring, elements)
-    found = unfolded(step.ring, elements, 150)
-    assert found is not None or closed is None
-    assert closed is not None or derivatives._whole(step_map) is step
-    if found is not None and closed is not None:
-        expected = [closed.ring.expression(x) for x in (closed.p_next, closed.q_next)]
-        assert [step.ring.expression(x) for x in found] == expected
-        most = max(map(len, found))
-        assert unfolded(step.ring, elements, most - 1) is None
-
-
-def test_a_map_that_is_too_long_or_no_polynomial_is_not_written_out() -> None:
-    long = get("rk4").step_map(Hamiltonian.parse("p**3*q**2 + q**5"))
-    assert derivatives._whole(long) is long.substeps[0]
-    other = get("rk4").step_map(PENDULUM)
-    step = other.substeps[0]
-    assert not in_stages(step.ring, (step.p_next, step.q_next))
-    assert derivatives._whole(other) is other.whole
-    short = derivatives._whole(get("rk4").step_map(Hamiltonian.parse("p**2/2 + q**2/2")))
-    assert not short.staged
-    assert not h_inside(short.ring, short.p_next, short.q_next)

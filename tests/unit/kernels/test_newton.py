@@ -25,8 +25,8 @@ from tests.helpers.stepping.implicit_steps import (
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.step import newton
 from verify.runs.run import run
-from verify.schemes.implicit_runge_kutta import _Equations, implicit_map
-from verify.schemes.step_map import StepMap
+from verify.schemes.maps.kinds.implicit_runge_kutta import by_equations, implicit_map
+from verify.schemes.maps.step_map import StepMap
 from verify.studies.separation.separate import separate
 
 AT = Fraction(3, 10), Fraction(1, 2)
@@ -94,7 +94,7 @@ def _fraction(x: Any) -> Fraction:
 def test_the_closed_form_of_a_quadratic_h_is_what_newton_finds(name: str, text: str) -> None:
     hamiltonian = Hamiltonian.parse(text)
     closed = implicit_map(hamiltonian, TABLEAUS[name])
-    solved = _Equations(hamiltonian, TABLEAUS[name]).step_map()
+    solved = by_equations(hamiltonian, TABLEAUS[name])
     assert solved.implicit
     assert not closed.implicit
     found = [steps(made, "mpfr", 50, AT, H) for made in (closed, solved)]

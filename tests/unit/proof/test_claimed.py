@@ -7,7 +7,6 @@ import pytest
 from verify import schemes
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
-from verify.proof.symplectic.order import prove_symplectic
 from verify.verdict import Verdict
 
 FREE = Hamiltonian.parse("p**2/2")
@@ -30,6 +29,6 @@ def test_so_it_is_in_two_degrees(claims: bool, verdict: Verdict) -> None:
         "q1_next = q1 + h*p1_next; q2_next = q2 + h*p2_next"
     )
     scheme = replace(schemes.get(text), area_preserving=claims)
-    proof = prove_symplectic(coupled, scheme)
+    proof = prove(scheme.step_map(coupled), scheme)
     assert (proof.verdict, proof.symplectic, proof.order) == (verdict, False, None)
     assert "S is not the zero form" in proof.reason

@@ -13,9 +13,9 @@ from verify.errors import InputError, LimitError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof import every_by_series as module
 from verify.proof.every import prove_every
-from verify.proof.symplectic.order import prove_symplectic
+from verify.proof.order import prove
 from verify.schemes import get
-from verify.schemes.degrees.two_form import TwoForm
+from verify.schemes.maps.two_form import TwoForm
 
 PAIR = "p1**2*q2 + (p2 + q1*p1)**3/3 + q1**2*q2**2*p2 + p1*p2*q1"
 DRIVEN = "p1**2*q2*t + (p2 + q1*p1)**3/3 + q1**2*q2**2*t**2 + p1*p2*q1*t"
@@ -61,17 +61,32 @@ CASES = [
 def test_it_is_that_of_one_h(scheme: str, formula: str, timed: bool) -> None:
     hamiltonian = Hamiltonian.parse(formula)
     every = prove_every(scheme, degrees=hamiltonian.degrees, timed=timed)
-    one = prove_symplectic(hamiltonian, get(scheme))
+    one = prove(get(scheme).step_map(hamiltonian), get(scheme))
     assert (every.verdict, every.order, every.convergence_order) == (
         one.verdict, one.order, one.convergence_order)  # fmt: skip
     assert every.form is not None
-    assert one.leading is not None
+    leading = one.first.form
+    assert leading is not None
     jets, names = every.form.ring, [*hamiltonian.coordinates, *(["t"] if timed else [])]
     assert isinstance(jets, JetsInDegrees)
     for a, b in product(range(2), range(2, 4)):
         ours = in_numbers(jets, every.form.at(a, b), hamiltonian.exact)
-        theirs = at_point(one.leading.ring.expression(one.leading.at(a, b)), names)
+        theirs = at_point(leading.ring.expression(leading.at(a, b)), names)
         assert ours == theirs
+
+
+@pytest.mark.parametrize(("scheme", "has_formula"), [("lie2", True), ("rk4", False)])
+def test_a_leading_form_of_too_many_terms_is_told_by_its_formula_where_it_has_one(
+    scheme: str, has_formula: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    form = prove_every(scheme, degrees=2).form
+    assert form is not None
+    for most in (form.length, form.length - 1):
+        monkeypatch.setattr(module, "MOST_TERMS", most)
+        found = prove_every(scheme, degrees=2)
+        assert bool(found.formula) is has_formula
+        long = has_formula and most < form.length
+        assert found.leading == (found.formula if long else form.text)
 
 
 @pytest.mark.sample(7)

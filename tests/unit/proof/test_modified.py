@@ -14,7 +14,8 @@ from verify.proof.modified import one as module
 from verify.proof.modified.equation import ModifiedEquation, Term, judged
 from verify.proof.modified.field import Vector
 from verify.proof.modified.one import modified_of
-from verify.schemes.step_map import StepMap
+from verify.schemes.maps.parts import parts_of
+from verify.schemes.maps.step_map import StepMap
 from verify.verdict import Verdict
 
 DUFFING, PENDULUM = "p**2/2 + q**2/2 + q**4/4", "p**2/2 - cos(q)"
@@ -56,8 +57,8 @@ KEEPING = ["stormer-verlet", "symplectic-euler", "ruth3", "position-verlet", "yo
 
 def stepped(step_map: StepMap, p: mpmath.mpf, q: mpmath.mpf, h: mpmath.mpf) -> list[mpmath.mpf]:
     """One step, part by part."""
-    for part in step_map.substeps:
-        after = [part.ring.expression(x) for x in (part.p_next, part.q_next)]
+    parts = parts_of(step_map) or ()
+    for after in [list(map(x.ring.expression, x.elements)) for x in parts] or [step_map.composed]:
         p, q = sympy.lambdify((P, Q, H_STEP), after, "mpmath")(p, q, h)
     return [p, q]
 

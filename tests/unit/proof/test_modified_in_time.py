@@ -13,6 +13,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.modified.equation import ModifiedEquation
 from verify.proof.modified.one import modified_of
 from verify.runs.energy_drift import energy_drifts
+from verify.schemes.maps.parts import parts_of
 from verify.verdict import Verdict
 
 T = sympy.Symbol("t", real=True)
@@ -29,8 +30,9 @@ def found(text: str, name: str, order: int = 4) -> ModifiedEquation:
 
 def stepped(text: str, name: str, z: list[mpmath.mpf], h: mpmath.mpf) -> list[mpmath.mpf]:
     p, q, t = z
-    for part in schemes.get(name).step_map(Hamiltonian.parse(text)).substeps:
-        after = [part.ring.expression(x) for x in (part.p_next, part.q_next)]
+    step_map = schemes.get(name).step_map(Hamiltonian.parse(text))
+    parts = parts_of(step_map) or ()
+    for after in [list(map(x.ring.expression, x.elements)) for x in parts] or [step_map.composed]:
         p, q = sympy.lambdify((P, Q, T, H_STEP), after, "mpmath")(p, q, t, h)
     return [p, q]
 

@@ -11,7 +11,7 @@ from verify.proof import potential
 from verify.proof.order import prove
 from verify.proof.potential import Potential, potential_of
 from verify.schemes import get
-from verify.schemes.degrees.two_form import TwoForm
+from verify.schemes.maps.two_form import TwoForm
 
 OWN = "p_next = p - h*sin(q) - h**2/2*p*cos(q); q_next = q + h*(p - h/2*sin(q))"
 HOLDS = [

@@ -11,8 +11,7 @@ from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.modified.one import modified_of
 from verify.proof.order import prove
-from verify.proof.order_proof import Proof
-from verify.proof.symplectic.order import prove_symplectic
+from verify.proof.proof import Proof
 from verify.scenes.scene import Scene
 from verify.verdict import Verdict
 
@@ -87,11 +86,11 @@ def test_several_degrees() -> None:
         "q1_next = q1 + h*p1_next; q2_next = q2 + {b}*h*p2_next"
     )
     scheme = schemes.get(text.format(a="1.00000000001", b="0.99999999999"))
-    proof = prove_symplectic(HENON, scheme)
+    proof = prove(scheme.step_map(HENON), scheme)
     assert (proof.convergence_order, proof.convergence_decided) == (1, True)
     assert "S has no term up to h^8 with exact coefficients" in proof.reason
     wrong = schemes.get(text.format(a="1.00000010001", b="0.99999999999"))
-    assert prove_symplectic(HENON, wrong).verdict is Verdict.REFUTED
+    assert prove(wrong.step_map(HENON), wrong).verdict is Verdict.REFUTED
 
 
 def test_a_modified_equation_takes_its_digits_for_what_they_are() -> None:

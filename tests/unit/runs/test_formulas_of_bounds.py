@@ -23,7 +23,7 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.kernels.rounding import PRECISION, Rounded
 from verify.runs import a_posteriori, form_bound
 from verify.runs.a_posteriori import _Certificate
-from verify.runs.derivatives import DerivativesInDegrees, norm
+from verify.runs.derivatives import Derivatives, norm
 from verify.runs.step_rounding import StepErrors
 
 SEEDS = range(40)
@@ -33,7 +33,7 @@ ALL = frozenset(
 )
 
 
-class Told(DerivativesInDegrees):
+class Told(Derivatives):
     """Derivatives of a step as they were drawn; how far the box was widened stands in it."""
 
     def __init__(self, noted: Noted) -> None:

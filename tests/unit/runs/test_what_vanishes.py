@@ -5,7 +5,7 @@ from fractions import Fraction
 import pytest
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.step.in_degrees import map_of
+from verify.kernels.step.computation import step_map_of
 from verify.runs import run as runs
 from verify.scenes import observables
 from verify.scenes.observables import OF_DEFECT, OF_FORM, SEVERAL
@@ -16,7 +16,7 @@ NOT_OF_THE_DEFECT = "energy_error_max"
 
 
 def proved(hamiltonian: Hamiltonian, scheme: str) -> runs.Bounded:
-    return runs.proved(map_of(hamiltonian, scheme), Fraction(1, 10), 10, 20)
+    return runs.proved(step_map_of(hamiltonian, scheme), Fraction(1, 10), 10, 20)
 
 
 @pytest.mark.parametrize("hamiltonian", [PLANE, TWO_DEGREES])

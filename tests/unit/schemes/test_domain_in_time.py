@@ -4,9 +4,8 @@ import pytest
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
-from verify.proof.symplectic.order import prove_symplectic
 from verify.schemes import get
-from verify.schemes.step_map import AT_STAGES
+from verify.schemes.maps.step_map import AT_STAGES
 
 IN_THE_PLANE = "p**2/2 + q**2/(2*(1 - t))"
 IN_TWO_DEGREES = "p1**2/2 + p2**2/2 + q1**2*q2/(2*(1 - t)) + q2**2"
@@ -19,7 +18,7 @@ def domain(formula: str, scheme: str, **values: str) -> tuple[str, ...]:
     hamiltonian = Hamiltonian.parse(formula).with_values(values)
     if hamiltonian.planar:
         return prove(get(scheme).step_map(hamiltonian)).domain.texts
-    return prove_symplectic(hamiltonian, get(scheme)).domain.texts
+    return prove(get(scheme).step_map(hamiltonian), get(scheme)).domain.texts
 
 
 @pytest.mark.parametrize("scheme", STAGED)

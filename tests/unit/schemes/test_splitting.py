@@ -1,5 +1,6 @@
 """Compositions of shears, Störmer–Verlet and Yoshida's, against what they are defined as."""
 
+from collections.abc import Sequence
 from fractions import Fraction
 
 import pytest
@@ -12,10 +13,16 @@ from verify import schemes
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
-from verify.schemes.splitting import shears
+from verify.schemes.maps.kinds import splittings
+from verify.schemes.maps.step_map import StepMap
+from verify.schemes.splitting_conditions import Part, Splitting
 from verify.verdict import Verdict
 
 NONLINEAR = "p**2/2 - cos(q)"
+
+
+def shears(name: str, parts: Sequence[Part]) -> StepMap:
+    return splittings.build(Splitting(tuple(parts)), Hamiltonian.parse(NONLINEAR), name)
 
 
 @pytest.mark.parametrize("name", SPLITTINGS)
@@ -52,8 +59,8 @@ def test_a_composition_makes_the_steps_of_verlet_one_after_the_other(name: str) 
         Stepper(step_map).run(**at)
         for step_map in (
             schemes.get(name).step_map(hamiltonian),
-            shears(hamiltonian, name, parts),
-            shears(hamiltonian, name, parts[6:9] + parts[:6] + parts[9:]),
+            shears(name, parts),
+            shears(name, parts[6:9] + parts[:6] + parts[9:]),
         )
     )
     assert all(abs(x - y) < 1e-55 for x, y in zip(one, other, strict=True))
@@ -66,6 +73,6 @@ def test_yoshida_with_another_coefficient_has_order_2_and_is_refuted(gamma: str)
     inner = 1 - 2 * outer
     sizes = [outer / 2, outer, (outer + inner) / 2, inner, (outer + inner) / 2, outer, outer / 2]
     parts = list(zip(["kick", "drift"] * 3 + ["kick"], sizes, strict=True))
-    proof = prove(shears(Hamiltonian.parse(NONLINEAR), "yoshida4", parts), schemes.get("yoshida4"))
+    proof = prove(shears("yoshida4", parts), schemes.get("yoshida4"))
     assert (proof.verdict, proof.convergence_order) == (Verdict.REFUTED, 2)
     assert proof.area_preserving is True

@@ -15,7 +15,7 @@ from verify.kernels.rounding import rounding_of
 from verify.kernels.step.lowering import Lowering
 from verify.kernels.step.program import Program
 from verify.runs.run import run
-from verify.schemes.step_map import StepMap
+from verify.schemes.maps.step_map import StepMap
 
 SYSTEMS = ("p**2/2 - cos(q)", "p**2/2 + p**3/9 + exp(q) - q")
 STEPS, H = 30, Fraction(1, 70)

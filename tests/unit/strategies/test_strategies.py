@@ -13,6 +13,7 @@ from tests.helpers.sampled.drawing import fuzzed, shrunk
 from verify import Hamiltonian
 from verify import strategies as s
 from verify.algebra.formula import symbol
+from verify.hamiltonians.canonical_field import canonical_field
 
 P, Q = symbol("p"), symbol("q")
 KINDS = ("polynomial", "trigonometric", "exponential", "rational")
@@ -63,13 +64,13 @@ def test_a_kind_is_what_it_says(kind: str) -> None:
 @pytest.mark.parametrize("separable", [True, False])
 def test_the_ring_finds_separable_what_was_asked_to_be(kind: str, separable: bool) -> None:
     for h in fuzzed(s.hamiltonians([kind], separable=separable), 15):
-        field, _ = h.field()
-        assert field.separable() is separable, h
+        field, _ = canonical_field(h)
+        assert field.separable is separable, h
         assert mixed(h.exact) is not separable, h  # without the ring
 
 
 def test_both_are_drawn_where_it_is_not_said() -> None:
-    drawn = [h.field()[0].separable() for h in fuzzed(s.hamiltonians(), 100)]
+    drawn = [canonical_field(h)[0].separable for h in fuzzed(s.hamiltonians(), 100)]
     assert 20 <= drawn.count(True) <= 80
 
 

@@ -8,6 +8,7 @@ import pytest
 
 from verify.algebra.formula import symbol
 from verify.errors import InputError
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.growth_law import NoLawError, growth_law
 from verify.runs.run import run
@@ -50,7 +51,7 @@ def test_the_pendulums_law_is_that_of_eq_29() -> None:
 def test_for_even_eta_the_leading_coefficient_is_the_derivative_of_the_potential(
     scheme: str, power: int
 ) -> None:
-    law, (field, _) = growth_law(SKEW, scheme), SKEW.field()
+    law, (field, _) = growth_law(SKEW, scheme), canonical_field(SKEW)
     assert law.power == power
     assert law.potential is not None
     assert law.leading is not None

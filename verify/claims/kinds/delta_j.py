@@ -25,7 +25,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import leading_of
 from verify.prose import Formula, Prose, prose
 from verify.scenes.results.claim import ClaimResult
-from verify.schemes.step_map import grouped
+from verify.schemes.maps.step_map import grouped
 from verify.verdict import Verdict
 
 if TYPE_CHECKING:

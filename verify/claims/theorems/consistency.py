@@ -25,8 +25,8 @@ from verify.claims.theorems.exact_maps import Point, areas, map_from_formulas
 from verify.claims.theorems.oscillator import PRECISION
 from verify.hamiltonians import systems
 from verify.proof.assistant.stated import Shipped
+from verify.schemes.maps.step_map import StepMap
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.schemes.step_map import StepMap
 from verify.verdict import Verdict
 
 TIME = 20000

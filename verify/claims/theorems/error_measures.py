@@ -14,8 +14,8 @@ from verify.claims.theorems.criteria_examples import FRICTION, TO_AND_FRO, Examp
 from verify.claims.theorems.exact_maps import Point, areas, jacobian, next_point, value
 from verify.hamiltonians import systems
 from verify.proof.assistant.stated import Shipped
+from verify.schemes.maps.step_map import StepMap
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.schemes.step_map import StepMap
 from verify.verdict import Verdict
 
 _H = Fraction(1, 10)

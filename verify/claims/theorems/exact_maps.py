@@ -9,7 +9,8 @@ import sympy
 from verify.algebra.symbols import H_STEP, P, Q
 from verify.arithmetic.exact import text
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.schemes.step_map import StepMap
+from verify.schemes.maps.by_formulas import map_by_formulas
+from verify.schemes.maps.step_map import StepMap
 
 
 @dataclass(frozen=True)
@@ -75,4 +76,5 @@ def areas(step: StepMap, start: Point, h: Fraction, steps: int) -> Areas:
 
 def map_from_formulas(p_next: str, q_next: str) -> StepMap:
     """A map by formulas in p, q and h; the H that it is made with says nothing of it."""
-    return StepMap.from_formulas(Hamiltonian.parse("p**2/2 + q**2/2"), p_next, q_next)
+    formulas = {"p_next": p_next, "q_next": q_next}
+    return map_by_formulas(Hamiltonian.parse("p**2/2 + q**2/2"), formulas)

@@ -12,8 +12,8 @@ from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.assistant.stated import Shipped
 from verify.proof.order import prove
+from verify.schemes.maps.step_map import StepMap
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.schemes.step_map import StepMap
 from verify.verdict import Verdict
 
 H = Fraction(1, 10)
@@ -82,9 +82,9 @@ def _is_linear(found: StepMap) -> bool:
     """Whether J z − z' is zero in the ring."""
     flat = found.flat
     ring = flat.ring
-    a, b, c, d = flat.jacobian
+    (a, b), (c, d) = flat.jacobian
     p, q = ring.variable("p"), ring.variable("q")
-    gaps: Sequence = (a * p + b * q - flat.p_next, c * p + d * q - flat.q_next)  # type: ignore[type-arg]
+    gaps: Sequence = (a * p + b * q - flat.elements[0], c * p + d * q - flat.elements[1])  # type: ignore[type-arg]
     return all(ring.decide(x).zero is True for x in gaps)
 
 

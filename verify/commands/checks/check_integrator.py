@@ -152,10 +152,9 @@ def _callee(
 def _json(exact: "Hamiltonian", target: str, finding: "Finding", seconds: str) -> dict[str, Any]:
     from verify.arithmetic.exact import text
     from verify.integrators.results import potential_of_finding
-    from verify.proof.symplectic.proof import SymplecticProof
 
     proof, example = finding.proof, finding.counterexample
-    of_form = proof if isinstance(proof, SymplecticProof) else None
+    of_form = proof if proof and not proof.planar else None
     potential = None if of_form else potential_of_finding(finding)
     witness = proof.witness if proof and finding.symplectic is not True else {}
     if not witness and example is not None and finding.degrees > 1:
@@ -196,12 +195,11 @@ def _print(exact: "Hamiltonian", target: str, finding: "Finding") -> None:
 
     from verify.commands.shared.in_degrees import print_symplectic
     from verify.integrators.results import potential_of_finding
-    from verify.proof.order_proof import Proof
 
     proof, degrees = finding.proof, finding.degrees
-    if isinstance(proof, Proof) and finding.verdict is proof.verdict:
+    if proof and proof.planar and finding.verdict is proof.verdict:
         show.print_proof(exact, target, proof, potential_of_finding(finding))
-    elif proof is not None and not isinstance(proof, Proof):
+    elif proof is not None and not proof.planar:
         shown = replace(proof, verdict=finding.verdict, reason=finding.reason)
         print_symplectic(exact.texts, target, shown)
     else:

@@ -15,10 +15,9 @@ if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
     from verify.integrators.results import Finding
     from verify.proof.every_proof import EveryProof
-    from verify.proof.order_proof import Proof
     from verify.proof.potential import Potential
+    from verify.proof.proof import Proof
     from verify.proof.special_values import SpecialValue
-    from verify.proof.symplectic.proof import SymplecticProof
     from verify.scenes.frozen import Frozen
     from verify.scenes.results.report import Report
     from verify.scenes.results.run import RunResult
@@ -77,7 +76,7 @@ def cut(formula: str) -> str:
 def proof_json(
     texts: "Mapping[str, Any]",
     scheme: str,
-    proof: "Proof | SymplecticProof | EveryProof",
+    proof: "Proof | EveryProof",
     seconds: str,
     **differs: Any,
 ) -> dict[str, Any]:
@@ -99,7 +98,7 @@ def proof_json(
     }
 
 
-def checks_json(proof: "SymplecticProof | EveryProof") -> dict[str, Any]:
+def checks_json(proof: "Proof | EveryProof") -> dict[str, Any]:
     """How the leading coefficient is known, and what was checked; of S what is said beside."""
     from dataclasses import asdict
 
@@ -127,7 +126,7 @@ def line(name: str, text: str) -> None:
     click.echo(textwrap.fill(text, _WIDTH, initial_indent=first, subsequent_indent=rest))
 
 
-def print_checks(proof: "EveryProof | SymplecticProof") -> None:
+def print_checks(proof: "EveryProof | Proof") -> None:
     """The identities that were checked, and the conditions that decide."""
     for identity in proof.checked:
         line("checked", str(identity))
@@ -136,9 +135,7 @@ def print_checks(proof: "EveryProof | SymplecticProof") -> None:
         line("condition", f"{condition.name}: {found}")
 
 
-def print_head(
-    exact: "Hamiltonian", scheme: str, found: "Proof | SymplecticProof | Finding"
-) -> None:
+def print_head(exact: "Hamiltonian", scheme: str, found: "Proof | Finding") -> None:
     """The verdict, and of what it is."""
     click.echo(f"{found.verdict}: {found.reason}")
     click.echo(f"  H        {exact.formula}")

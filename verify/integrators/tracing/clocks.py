@@ -4,22 +4,21 @@ With t held still at a moment s of the step, H(p, q, s) is autonomous. A step th
 at one moment is a scheme for that H of an order that it may not have for the motion in time.
 """
 
-import math
 from collections.abc import Sequence
 from fractions import Fraction
 
 from verify.algebra.formula import symbol
 from verify.algebra.ring import Ring
-from verify.algebra.series.power_series import Series
 from verify.errors import InputError
+from verify.hamiltonians.canonical_field import CanonicalField
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.vector_field import VectorField
 from verify.integrators.tracing.number import UntraceableError
 from verify.integrators.tracing.readings import NoReadingsError, Read, Readings
 from verify.integrators.tracing.step_map import traced_map
 from verify.integrators.tracing.trace import Node, in_order, written
 from verify.proof.order import convergence_of, size_of
-from verify.schemes.step_map import StepMap
+from verify.schemes.maps.by_formulas import map_by_expressions
+from verify.schemes.maps.step_algebra import State
 from verify.schemes.timed.mistakes import Reading, name_of
 
 _MOST_WRITTEN = 3000  # operations of p' and q' as trees
@@ -50,7 +49,7 @@ def _still(hamiltonian: Hamiltonian, p_next: Node, q_next: Node, order: int) -> 
         if made is None:
             return []
         try:
-            step = StepMap.from_expressions(still, *made)
+            step = map_by_expressions(still, made)
             found = convergence_of(step).order
         except InputError:  # too long, or not smooth
             continue
@@ -96,7 +95,7 @@ def misread(hamiltonian: Hamiltonian, p_next: Node, q_next: Node, order: int) ->
 
 def _order(hamiltonian: Hamiltonian, p_next: Node, q_next: Node) -> int | None:
     """The order of that map but for the rounding of its coefficients; None where it is exact."""
-    traced = traced_map(hamiltonian, p_next, q_next)
+    traced = traced_map(hamiltonian, (p_next, q_next))
     found = convergence_of(traced.step_map).order
     if found is None or traced.series is None:
         return found
@@ -104,7 +103,7 @@ def _order(hamiltonian: Hamiltonian, p_next: Node, q_next: Node) -> int | None:
     return found if rounded is None else max(found, rounded)
 
 
-def _rounded_order(field: VectorField, p: Series, q: Series) -> int | None:
+def _rounded_order(field: CanonicalField, step: State) -> int | None:
     """Up to which power of h it agrees with the flow, with residues below 2⁻⁴⁴ of the coefficients
     taken for 0; None where it does in all that are looked at.
 
@@ -113,10 +112,10 @@ def _rounded_order(field: VectorField, p: Series, q: Series) -> int | None:
     from errors by their size beside the coefficients that they are residues of.
     """
     scale = Fraction(0)
-    for n in range(p.most + 1):
+    for n in range(step[0].most + 1):
         gap = Fraction(0)
-        for series, name in ((p, "p"), (q, "q")):
-            x, y = series.coefficients[n], field.power(name, n) / math.factorial(n)
+        for series, y in zip(step, field.term(n), strict=True):
+            x = series.coefficients[n]
             gap = max(gap, size_of(field.ring.reduce(x - y)))
             scale = max(scale, size_of(x), size_of(y))
         if gap > _ROUNDING * scale:

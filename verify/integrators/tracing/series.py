@@ -7,7 +7,6 @@ Derivatives, section 13.2).
 
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
-from typing import Generic, Protocol, TypeVar
 
 import sympy
 
@@ -15,32 +14,24 @@ from verify.algebra.limits import checked
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.power_series import Series
 from verify.errors import InputError
+from verify.hamiltonians.canonical_field import CanonicalField
 from verify.integrators.tracing.number import OPERATORS
 from verify.integrators.tracing.trace import Node, expressions, in_order, through
+from verify.schemes.maps.step_algebra import State
 
 _PAIRED = {"sin": ("sin", "cos", -1), "cos": ("sin", "cos", -1),
            "sinh": ("sinh", "cosh", 1), "cosh": ("sinh", "cosh", 1)}  # fmt: skip
 _REACHES = (7, 9, 13)  # who asks for one more order asks for further ones
 
 
-class InRing(Protocol):
-    """A field, of the plane or of more degrees of freedom, in its ring."""
-
-    @property
-    def ring(self) -> Ring: ...
-
-
-F = TypeVar("F", bound=InRing)
-
-
-class TracedSeries(Generic[F]):
+class TracedSeries:
     """A trace as power series in h, one for each root. InputError where it has none at h = 0.
 
     `field_with(*expressions)`: H's field, and expressions as elements of its ring.
     """
 
     def __init__(
-        self, roots: Sequence[Node], field_with: Callable[..., tuple[F, list[Poly]]]
+        self, roots: Sequence[Node], field_with: Callable[..., tuple[CanonicalField, list[Poly]]]
     ) -> None:
         self.roots = tuple(roots)
         self._made: dict[int, tuple[Series, ...]] = {}
@@ -56,7 +47,7 @@ class TracedSeries(Generic[F]):
         self.field, elements = field_with(*wanted.values())
         self.known: dict[tuple[int, str], Poly] = dict(zip(wanted, elements, strict=True))
 
-    def __call__(self, most: int) -> tuple[F, tuple[Series, ...]]:
+    def __call__(self, most: int) -> tuple[CanonicalField, State]:
         """The field, and the roots up to h^most."""
         reach = next((n for n in _REACHES if n >= most), most)
         if reach not in self._made:

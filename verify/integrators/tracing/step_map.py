@@ -7,22 +7,26 @@ changes no determinant, then what of q' is a function of the rest of p', and so 
 are left. No closed form of the composition is written down, and f and g may be anything.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import sympy
 
+from verify.algebra.embedding import MAX_TERMS
 from verify.algebra.formula import symbol
 from verify.algebra.limits import checked
-from verify.algebra.ring import Ring
 from verify.errors import InputError
+from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.vector_field import VectorField
 from verify.integrators.tracing.linear_sums import Linear, Scalar, Scalars, added, product, scaled
 from verify.integrators.tracing.series import TracedSeries
 from verify.integrators.tracing.trace import Node, expressions, in_order, written
-from verify.schemes.step_map import Expanded, StepMap, Substep
+from verify.schemes.conditions import Condition
+from verify.schemes.maps.closed_form import ClosedForm
+from verify.schemes.maps.step_algebra import State
+from verify.schemes.maps.step_map import StepMap
 
 _MOST_NODES, _MOST_SHEARS = 2000, 200
 Terms = list[tuple[Scalar, Node]]  # (coefficient, node): a sum
@@ -36,8 +40,9 @@ class Shear:
     increment: sympy.Expr
 
 
-def shears_of(hamiltonian: Hamiltonian, p_next: Node, q_next: Node) -> tuple[Substep, ...] | None:
-    """The shears, first one first, as substeps of one field; None where the step is none."""
+def shears_of(hamiltonian: Hamiltonian, p_next: Node, q_next: Node) -> int | None:
+    """How many shears the step is made of; None where it is not made of such, or one is no element
+    of a ring."""
     nodes = in_order(p_next, q_next)
     if len(nodes) > _MOST_NODES:
         return None
@@ -48,14 +53,10 @@ def shears_of(hamiltonian: Hamiltonian, p_next: Node, q_next: Node) -> tuple[Sub
     if not found:
         return None
     try:
-        field, increments = hamiltonian.field(*(shear.increment for shear in found))
+        canonical_field(hamiltonian, *(shear.increment for shear in found))
     except InputError:
         return None
-    p, q = (field.ring.variable(name) for name in "pq")
-    return tuple(
-        Substep(field, p + x, q) if shear.name == "p" else Substep(field, p, q + x)
-        for shear, x in zip(found, increments, strict=True)
-    )
+    return len(found)
 
 
 class _Peeler:
@@ -160,84 +161,64 @@ class _Function:
         return made[node.number]
 
 
-_MOST_WRITTEN = 3000  # operations of p' and q' as trees, of which a closed form is tried
-_MOST_TERMS, _MOST_OF_DELTA_J = 800, 20_000
+_MOST_WRITTEN = 3000  # operations of z' as trees, of which a closed form is tried
+_MOST_TERMS, _MOST_OF_DEFECT = 800, 20_000  # of a closed form in the plane
+_ORDERS = 9
+_IN_TURN = Condition("every part is a shear", 0, "0", holds=True)
+Expand = Callable[[int], tuple[CanonicalField, State]]
 
 
 @dataclass(frozen=True)
 class TracedMap:
     """The step map of a trace, for one H whose parameters have values.
 
-    `how`: as what it is known, a clause. `series`: None where the map has no Taylor series that
-    can be made, and so nothing but its closed form.
+    `how`: as what it is known, a clause. `expand`: None where the map has no Taylor series that can
+    be made, and so nothing but its closed form.
     """
 
     step_map: StepMap
     how: str
-    make: Callable[[int], Expanded] | None
+    expand: Expand | None
 
     @cached_property
-    def series(self) -> Expanded | None:
-        return self.make(_ORDERS) if self.make else None
+    def series(self) -> tuple[CanonicalField, State] | None:
+        return self.expand(_ORDERS) if self.expand else None
 
 
-_ORDERS = 9
-
-
-def traced_map(hamiltonian: Hamiltonian, p_next: Node, q_next: Node) -> TracedMap:
+def traced_map(hamiltonian: Hamiltonian, roots: Sequence[Node]) -> TracedMap:
     """InputError where the trace has neither a series in h nor a closed form that is short."""
-    series = _series(hamiltonian, p_next, q_next)
-    shears = shears_of(hamiltonian, p_next, q_next)
+    expand: Expand | None = None
+    with suppress(InputError):
+        expand = TracedSeries(roots, partial(canonical_field, hamiltonian))
+    shears = shears_of(hamiltonian, *roots) if len(roots) == 2 and expand else None
+    field, _ = canonical_field(hamiltonian)
     if shears is not None:
-        return TracedMap(
-            StepMap(hamiltonian, shears, series), f"is {len(shears)} shears in turn", series
-        )
-    closed = _closed(hamiltonian, p_next, q_next)
+        made = StepMap(hamiltonian, field, conditions=(_IN_TURN,), expand=expand)
+        return TracedMap(made, f"is {shears} shears in turn", expand)
+    closed = _closed(hamiltonian, roots)
     if closed is not None:
-        polynomial = closed.terms is not None
-        made = StepMap(hamiltonian, (closed,), None if polynomial else series)
-        return TracedMap(made, "has a short closed form", series)
-    if series is None:
+        made = StepMap(
+            hamiltonian,
+            closed.field,
+            formulas=closed.elements,
+            expand=None if closed.degree is not None else expand,
+        )
+        return TracedMap(made, "has a short closed form", expand)
+    if expand is None:
         raise InputError("step", "its operations", "have no series in h and no short closed form")
-    return TracedMap(
-        StepMap(hamiltonian, (_unwritten(hamiltonian),), series),
-        "is known by its Taylor series in h",
-        series,
-    )
+    made = StepMap(hamiltonian, field, expand=expand)
+    return TracedMap(made, "is known by its Taylor series in h", expand)
 
 
-def _series(
-    hamiltonian: Hamiltonian, p_next: Node, q_next: Node
-) -> Callable[[int], Expanded] | None:
-    """None where it has none at h = 0."""
-    try:
-        traced = TracedSeries((p_next, q_next), hamiltonian.field)
-    except InputError:
-        return None
-
-    def series(most: int) -> Expanded:
-        field, (p, q) = traced(most)
-        return field, p, q
-
-    return series
-
-
-def _closed(hamiltonian: Hamiltonian, p_next: Node, q_next: Node) -> Substep | None:
-    pair = written((p_next, q_next), _MOST_WRITTEN)
-    if pair is None:
+def _closed(hamiltonian: Hamiltonian, roots: Sequence[Node]) -> ClosedForm | None:
+    exact, planar = written(roots, _MOST_WRITTEN), len(roots) == 2
+    if exact is None:
         return None
     try:
-        smooth = [checked(x, "step", "its closed form") for x in pair]
-        field, (p, q) = hamiltonian.field(*smooth, most_terms=_MOST_TERMS)
+        smooth = [checked(x, "step", "its closed form") for x in exact]
+        most = _MOST_TERMS if planar else MAX_TERMS
+        field, elements = canonical_field(hamiltonian, *smooth, most_terms=most)
     except InputError:
         return None
-    step = Substep(field, p, q)
-    return step if step.terms_of_delta_j <= _MOST_OF_DELTA_J else None
-
-
-def _unwritten(hamiltonian: Hamiltonian) -> Substep:
-    """A map of which nothing but its series is known: two unknowns without an equation."""
-    ring = Ring(("p", "q", "h", *hamiltonian.symbols), 2, spare=0)
-    unknowns = [ring.add("solved", None, k) for k in range(2)]
-    field = VectorField(ring, ring.variable("p"), ring.variable("q"))
-    return Substep(field, unknowns[0], unknowns[1])
+    step = ClosedForm(field, tuple(elements))
+    return step if not planar or step.products <= _MOST_OF_DEFECT else None

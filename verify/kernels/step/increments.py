@@ -13,7 +13,7 @@ from functools import cached_property, partial
 
 from verify.algebra.ring import Poly, Ring
 from verify.kernels.step.program import Evaluator
-from verify.schemes.substep import h_inside
+from verify.schemes.maps.closed_form import h_inside
 
 _MOST = 12  # times a value is added to itself at most
 Pair = tuple[int, int]

@@ -11,11 +11,11 @@ from typing import Any, TypeVar
 
 import flint
 
-from verify.algebra.generator import Generator, System, terms_of
+from verify.algebra.generator import Generator, terms_of
 from verify.algebra.ring import Poly, Ring
-from verify.kernels.step.operations import Loop, Tail
 from verify.kernels.step.operations import Op as Op
 from verify.kernels.step.operations import Program as Program
+from verify.kernels.step.operations import Tail
 
 _MOST_VARIABLES = 4  # of which all orders are tried for nested evaluation
 
@@ -49,7 +49,7 @@ class Evaluator:
 
     def evaluate(self, x: Poly, factor: int | None = None) -> int:
         """The index of x's value, or of its product with a static value (the index `factor`)."""
-        used = self.ring.generators_in(x, inside_equations=False)
+        used = self.ring.generators_in(x)
         for generator in used:
             self.at(generator)
         dynamic = [g.index for g in used if not self.program.static[self._at[g.index]]]
@@ -57,6 +57,22 @@ class Evaluator:
         if factor is not None:
             terms = [(outer, self.program.mul(c, factor)) for outer, c in terms]
         return self._nested(terms, [self._at[i] for i in dynamic])
+
+    def combination(self, weights: Sequence[int], values: Sequence[int]) -> int:
+        """The index of Σ weights · values, of static weights, in the cheapest way."""
+        program = self.program
+        constant, parts = program.quotient(0, 1), dict[int, int]()
+        for weight, value in zip(weights, values, strict=True):
+            if program.static[value]:
+                constant = program.add(constant, program.mul(weight, value))
+            else:
+                parts[value] = program.add(parts[value], weight) if value in parts else weight
+        every = [(x, w) for x, w in parts.items() if not program.is_constant(w, 0)]
+        size = len(every)
+        terms = [(tuple(int(k == j) for j in range(size)), w) for k, (_, w) in enumerate(every)]
+        if not program.is_constant(constant, 0):
+            terms.append(((0,) * size, constant))
+        return self._nested(terms, [x for x, _ in every])
 
     def cheapest(self, ways: Sequence[Callable[[], T]]) -> T:
         """What the way returns that writes the fewest operations; of such the first."""
@@ -96,47 +112,12 @@ class Evaluator:
             self._at[generator.index] = self._generator(generator)
         return self._at[generator.index]
 
-    def set(self, generator: Generator, index: int) -> None:
-        """Takes a value that the program has already for the generator's."""
-        self._at[generator.index] = index
-
     def _generator(self, g: Generator) -> int:
         if g.kind == "variable":
             return self._inputs[g.name]
         if g.kind == "pi":
             return self.program.apply("pi")
-        if g.kind == "stage":
-            return self.evaluate(g.inner)
-        if g.kind == "solved":
-            self._solve(self.ring.systems[g.index])
-            return self._at[g.index]
         return self.program.apply(g.kind, self.evaluate(g.inner), degree=g.degree)
-
-    def _solve(self, system: System) -> None:
-        """Writes the loop that finds a system's unknowns, with what moves in it inside."""
-        ring, program, number = self.ring, self.program, len(self.program.loops)
-        inner, given = Program(), set()
-        own = Evaluator(inner, ring, {}, self.pipelined)
-        unknown = system.unknowns
-        for k, g in enumerate(unknown):
-            own.set(g, inner.input(f"u{number}_{k}", static=False))
-        # What does not depend on the unknowns is made once, outside, and is an input of the loop.
-        for g in ring.generators_in(*system.updates, inside_equations=False):
-            inside = (
-                () if g.argument is None else ring.generators_in(g.argument, inside_equations=False)
-            )
-            if g not in unknown and not any(x in unknown for x in inside):
-                at = self.at(g)
-                given.add(at)
-                own.set(g, inner.input(f"v{at}", static=program.static[at]))
-        updates = tuple(own.evaluate(x) for x in system.updates)
-        starts = tuple(self.evaluate(x) for x in system.starts)
-        added_to = tuple(self.evaluate(x) for x in system.added_to)
-        determinants = tuple(own.evaluate(x) for x in system.determinants)
-        loop = Loop(number, inner, updates, starts, added_to, determinants)
-        found = program.solve(loop, sorted(given))
-        for g, at in zip(unknown, found, strict=True):
-            self.set(g, at)
 
     def _collect(self, x: Poly, dynamic: Sequence[int], static: Collection[int]) -> list[Term]:
         """x by monomials in the dynamic generators, the static coefficients evaluated."""

@@ -1,105 +1,28 @@
-"""A scheme's step written into a kernel's program, in n degrees of freedom.
+"""A scheme's step written into a kernel's program, without its derivatives by z or with them.
 
-See `verify.schemes.step_algebra`; a value is an operation of a program. Equations are
-solved by Newton's method, with derivatives taken in the loop's own program.
+See `verify.schemes.maps.step_algebra`; a value is an operation of a program. Equations are solved
+by Newton's method, with derivatives taken in the loop's own program.
 
-Partial derivatives of a program's values by its inputs, written into the same program.
-
-Forwards, operation by operation. A polynomial that is nested by Horner's rule has its inner sums
-as derivatives, and no operation is written twice, so that they cost little beside the values.
+Derivatives are made forwards, with what a step is made of. Those of f at a stage are elements of
+H's ring, evaluated beside f itself, so that they share what f is made of; where equations are
+solved, Z = R(Z, z), they are ∂Z/∂z = (1 − ∂R/∂Z)⁻¹ ∂R/∂z.
 """
+
+from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
+from verify.algebra.ring import Poly
 from verify.hamiltonians.canonical_field import CanonicalField
 from verify.kernels.step.increments import increments
-from verify.kernels.step.operations import Loop, Op
-from verify.kernels.step.program import Evaluator, Program
-from verify.schemes.step_algebra import Number, StepAlgebra
+from verify.kernels.step.operations import Loop, Program
+from verify.kernels.step.program import Evaluator
+from verify.schemes.maps.step_algebra import Number, StepAlgebra
 
-Gradient = Mapping[int, int]  # by input, of what is not 0
-
-
-class Partials:
-    """∂/∂x of a program's values, x being these of its inputs, by their indices."""
-
-    def __init__(self, program: Program, inputs: Sequence[int]) -> None:
-        self.program, self.inputs = program, tuple(inputs)
-        self._found: dict[int, Gradient] = {}
-
-    def gradient(self, index: int) -> list[int]:
-        """The indices of ∂/∂x of a value, input by input.
-
-        Raises NotImplementedError of a value for which equations are solved.
-        """
-        for at in self.program.live([index]):
-            if at not in self._found:
-                self._found[at] = self._of(at)
-        zero, own = self.program.constant(Fraction(0)), self._found[index]
-        return [own.get(x, zero) for x in self.inputs]
-
-    def _of(self, index: int) -> Gradient:
-        if index in self.inputs:
-            return {index: self.program.constant(Fraction(1))}
-        op = self.program.ops[index]
-        if self.program.static[index] or op.kind == "input":
-            return {}
-        parts = [self._found[a] for a in op.args]
-        if op.kind in ("loop", "solved"):
-            raise NotImplementedError("the derivative of a solution of equations")
-        moved = [x for part in parts for x in part]
-        slopes = self._slopes(index, op) if moved else ()
-        return {x: self._chain(x, parts, slopes) for x in dict.fromkeys(moved)}
-
-    def _chain(self, x: int, parts: Sequence[Gradient], slopes: Sequence[int]) -> int:
-        """Σ slope · ∂argument/∂x."""
-        program = self.program
-        total = program.constant(Fraction(0))
-        for part, slope in zip(parts, slopes, strict=True):
-            if x in part:
-                total = program.add(total, program.mul(slope, part[x]))
-        return total
-
-    def _slopes(self, index: int, op: Op) -> tuple[int, ...]:
-        """∂ of the operation by each of its arguments."""
-        program = self.program
-        one = program.constant(Fraction(1))
-        match op.kind:
-            case "add":
-                return one, one
-            case "sub":
-                return one, program.neg(one)
-            case "neg":
-                return (program.neg(one),)
-            case "mul":
-                return op.args[1], op.args[0]
-            case "root":
-                return (self._of_root(index, op),)
-        return (_SLOPES[op.kind](program, op.args[0], index),)
-
-    def _of_root(self, index: int, op: Op) -> int:
-        """y/(n x) of y = x^(1/n), as 1/(n y^(n − 1))."""
-        program = self.program
-        below = program.mul(program.quotient(op.degree, 1), program.power(index, op.degree - 1))
-        return program.apply("inverse", below)
-
-
-# f'(x) of y = f(x), from the program, x and y.
-_SLOPES: Mapping[str, Callable[[Program, int, int], int]] = {
-    "sin": lambda made, x, y: made.apply("cos", x),
-    "cos": lambda made, x, y: made.neg(made.apply("sin", x)),
-    "exp": lambda made, x, y: y,
-    "log": lambda made, x, y: made.apply("inverse", x),
-    "sinh": lambda made, x, y: made.apply("cosh", x),
-    "cosh": lambda made, x, y: made.apply("sinh", x),
-    "inverse": lambda made, x, y: made.neg(made.mul(y, y)),
-    "atan": lambda made, x, y: made.apply("inverse", made.add(made.quotient(1, 1), made.mul(x, x))),
-}
-
-
-_ZERO = Fraction(0)
+Right = Callable[[StepAlgebra[Any], Sequence[Any]], list[Any]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,10 +33,19 @@ class Value:
     index: int
 
 
-class ProgramAlgebra:
+@dataclass(frozen=True, eq=False)
+class Dual(Value):
+    """The same with its derivatives, as indices in the program, of the algebra that it is of."""
+
+    gradient: tuple[int, ...]
+    algebra: TangentAlgebra
+
+
+class ProgramAlgebra(StepAlgebra[Value]):
     """Writes into `program`; `named` has the inputs: h, the coordinates, t, the parameters.
 
-    `outer`: what a loop's program takes values over from.
+    `outer`: what a loop's program takes values over from. `points`: the coordinates of where f is
+    looked at.
     """
 
     def __init__(
@@ -122,79 +54,94 @@ class ProgramAlgebra:
         field: CanonicalField,
         named: Mapping[str, int],
         pipelined: bool,
-        outer: "ProgramAlgebra | None" = None,
+        outer: ProgramAlgebra | None = None,
     ) -> None:
         self.program, self.field, self.pipelined = program, field, pipelined
-        self.outer, self.taken = outer, set[int]()
+        self.outer, self.taken, self.points = outer, set[int](), set[int]()
         self.named = named if outer is None else {n: self._taken(at) for n, at in named.items()}
 
     @property
     def nothing(self) -> Value:
-        return self._value(self.program.constant(_ZERO))
+        return self.value(self.program.constant(Fraction(0)))
 
     @property
     def size(self) -> int:
         return len(self.field.names)
 
     def along_flow(self, eta: int) -> list[Value]:
-        n, ring, h = self.size // 2, self.field.ring, self.field.ring.variable("h")
-        terms = [self.field.term(k) for k in range(1, eta + 1)]
-        total = [
-            sum((h**k * x for k, x in enumerate(own, start=1)), ring.zero)
-            for own in zip(*terms, strict=True)
-        ]
-        evaluator = Evaluator(self.program, ring, self.named, self.pipelined)
+        n, evaluator, moves = self.size // 2, self.evaluator(), self.sums_along_flow(eta)
         pairs = [
-            increments(evaluator, ring, pair, self.named["h"])
-            for pair in zip(total[:n], total[n:], strict=True)
+            increments(evaluator, self.field.ring, pair, self.named["h"])
+            for pair in zip(moves[:n], moves[n:], strict=True)
         ]
-        return [self._value(pair[part]) for part in (0, 1) for pair in pairs]
+        return [self.value(pair[part]) for part in (0, 1) for pair in pairs]
+
+    def sums_along_flow(self, eta: int) -> list[Poly]:
+        """Σ hⁿ/n! Xⁿz, n = 1 … η, as elements of the ring."""
+        ring, terms = self.field.ring, [self.field.term(k) for k in range(1, eta + 1)]
+        h = ring.variable("h")
+        each = (enumerate(own, start=1) for own in zip(*terms, strict=True))
+        return [sum((h**k * x for k, x in own), ring.zero) for own in each]
 
     def slopes(self, changes: Sequence[Value], clock: Number, places: Sequence[int]) -> list[Value]:
+        at = self.at(changes, clock)
+        return [self.value(at.evaluate(self.field.slopes[k])) for k in places]
+
+    def sheared(
+        self, changes: Sequence[Value], size: Number, clock: Number, places: Sequence[int]
+    ) -> list[Value]:
+        """With h and the size in the coefficients of f, which are made once."""
+        at, result = self.at(changes, clock), list(changes)
+        for k, move in zip(places, self.field.shears(size, places), strict=True):
+            total = self.program.add(self.own(changes[k]), at.evaluate(move))
+            result[k] = self.value(total)
+        return result
+
+    def at(self, changes: Sequence[Value], clock: Number) -> Evaluator:
+        """What evaluates elements of the ring at z + changes, and at t + clock h."""
         program, named = self.program, dict(self.named)
         for name, change in zip(self.field.names, changes, strict=True):
-            named[name] = program.add(named[name], self._own(change))
+            named[name] = program.add(named[name], self.own(change))
+            self.points.add(named[name])
         if self.field.timed:
             late = program.mul(named["h"], self._coefficient(clock))
             named["t"] = program.add(named["t"], late)
-        evaluator = Evaluator(program, self.field.ring, named, self.pipelined)
-        return [self._value(evaluator.evaluate(self.field.slopes[k])) for k in places]
+        return Evaluator(program, self.field.ring, named, self.pipelined)
 
     def moved(self, change: Value, weights: Sequence[Number], slopes: Sequence[Value]) -> Value:
-        program, total = self.program, self._own(change)
-        for w, slope in zip(weights, slopes, strict=True):
-            share = program.mul(self.named["h"], self._coefficient(w))
-            total = program.add(total, program.mul(share, self._own(slope)))
-        return self._value(total)
+        program, evaluator = self.program, self.evaluator()
+        shares = [program.mul(self.named["h"], self._coefficient(w)) for w in weights]
+        move = evaluator.combination(shares, [self.own(x) for x in slopes])
+        return self.value(program.add(self.own(change), move))
 
     def between(self, x: Value, y: Value, share: Fraction) -> Value:
         program = self.program
-        part = program.mul(program.constant(share), self._own(y))
-        return self._value(program.add(self._own(x), part))
+        part = program.mul(program.constant(share), self.own(y))
+        return self.value(program.add(self.own(x), part))
 
-    def solved(
-        self, count: int, right: Callable[[StepAlgebra[Value], Sequence[Value]], list[Value]]
-    ) -> list[Value]:
+    def solved(self, count: int, right: Right) -> list[Value]:
         """By Newton's method, from what the right side is at 0."""
         outer, number, inner = self.program, len(self.program.loops), Program()
-        starts = [self._own(x) for x in right(self, [self.nothing] * count)]
+        starts = [self.own(x) for x in right(self, [self.nothing] * count)]
         own = [inner.input(f"u{number}_{k}", static=False) for k in range(count)]
         algebra = ProgramAlgebra(inner, self.field, self.named, self.pipelined, self)
-        found = [algebra._own(x) for x in right(algebra, [algebra._value(x) for x in own])]
-        residuals = [inner.add(x, inner.neg(y)) for x, y in zip(own, found, strict=True)]
-        partials = Partials(inner, own)
-        updates, pivots = _eliminated(inner, [partials.gradient(x) for x in residuals], residuals)
+        tangents = TangentAlgebra(algebra, count)
+        sides = tangents.read(right, [algebra.value(x) for x in own])
+        residuals = [inner.add(x, inner.neg(y.index)) for x, y in zip(own, sides, strict=True)]
+        matrix = _less_one(inner, [side.gradient for side in sides])
+        updates, pivots = eliminated(inner, matrix, [[x] for x in residuals])
         names = self.field.names
         scale = [self.named[names[k % self.size]] for k in range(count)]
-        loop = Loop(number, inner, *map(tuple, (updates, starts, scale, pivots)))
-        return [self._value(at) for at in outer.solve(loop, sorted(algebra.taken))]
+        steps = [x for (x,) in updates]
+        loop = Loop(number, inner, *map(tuple, (steps, starts, scale, pivots)))
+        return [self.value(at) for at in outer.solve(loop, sorted(algebra.taken))]
 
     # -- values -------------------------------------------------------------------------------
 
-    def _value(self, index: int) -> Value:
+    def value(self, index: int) -> Value:
         return Value(self.program, index)
 
-    def _own(self, x: Value) -> int:
+    def own(self, x: Value) -> int:
         """A value's index; one of the outer program becomes an input of the loop."""
         return x.index if x.program is self.program else self._taken(x.index)
 
@@ -210,18 +157,143 @@ class ProgramAlgebra:
     def _coefficient(self, x: Number) -> int:
         if isinstance(x, Fraction):
             return self.program.constant(x)
-        return Evaluator(self.program, self.field.ring, self.named, self.pipelined).evaluate(x)
+        return self.evaluator().evaluate(x)
+
+    def evaluator(self) -> Evaluator:
+        return Evaluator(self.program, self.field.ring, self.named, self.pipelined)
 
 
-def _eliminated(
-    program: Program, matrix: Sequence[Sequence[int]], right: Sequence[int]
-) -> tuple[list[int], list[int]]:
-    """The solution of a linear system whose matrix is 1 + O(h), and the pivots that are not 1.
+class TangentAlgebra(StepAlgebra[Dual]):
+    """With derivatives: the coordinates' own among the first, where `outer` is none and they move;
+    then, of `unknowns` that are seeds, theirs. In a loop's program all but the unknowns is held.
+    """
+
+    def __init__(
+        self,
+        plain: ProgramAlgebra,
+        unknowns: int = 0,
+        outer: TangentAlgebra | None = None,
+        coordinates: int = 0,
+    ) -> None:
+        self.plain, self.outer, self.field = plain, outer, plain.field
+        self.coordinates: int = outer.coordinates if outer else coordinates
+        self.first: int = outer.width if outer else coordinates  # of the unknowns
+        self.width: int = self.first + unknowns
+        self.program = plain.program
+        self.zero, self.one = self.program.quotient(0, 1), self.program.quotient(1, 1)
+
+    @property
+    def nothing(self) -> Dual:
+        return self._dual(self.zero, (self.zero,) * self.width)
+
+    @property
+    def size(self) -> int:
+        return self.plain.size
+
+    def read(self, right: Right, unknowns: Sequence[Value]) -> list[Dual]:
+        """What a right side is of these unknowns, with its derivatives by them too."""
+        seeds = []
+        for k, x in enumerate(unknowns):
+            row = [self.zero] * self.width
+            row[self.first + k] = self.one
+            seeds.append(self._dual(x.index, tuple(row)))
+        return [self._fit(x) for x in right(self, seeds)]
+
+    def along_flow(self, eta: int) -> list[Dual]:
+        values, evaluator = self.plain.along_flow(eta), self.plain.evaluator()
+        rows = (self.field.gradient(x) for x in self.plain.sums_along_flow(eta))
+        nothing = [self.nothing] * self.size
+        return [
+            self._dual(value.index, self._chained([evaluator.evaluate(x) for x in row], nothing))
+            for value, row in zip(values, rows, strict=True)
+        ]
+
+    def slopes(self, changes: Sequence[Value], clock: Number, places: Sequence[int]) -> list[Dual]:
+        at, moved = self.plain.at(changes, clock), list(map(self._fit, changes))
+        slopes = [self.field.slopes[k] for k in places]
+        values = [at.evaluate(x) for x in slopes]
+        return [self._at(at, x, index, moved) for x, index in zip(slopes, values, strict=True)]
+
+    def sheared(
+        self, changes: Sequence[Value], size: Number, clock: Number, places: Sequence[int]
+    ) -> list[Dual]:
+        at, before = self.plain.at(changes, clock), list(map(self._fit, changes))
+        after, result = self.plain.sheared(changes, size, clock, places), list(before)
+        for k, move in zip(places, self.field.shears(size, places), strict=True):
+            row = self._at(at, move, self.zero, before).gradient
+            result[k] = self._dual(after[k].index, self._added(before[k].gradient, row))
+        return result
+
+    def moved(self, change: Value, weights: Sequence[Number], slopes: Sequence[Value]) -> Dual:
+        total, plain = self._fit(change), self.plain
+        index = plain.moved(total, weights, slopes).index
+        columns = list(zip(*(self._fit(x).gradient for x in slopes), strict=True))
+        columns = columns or [()] * self.width
+        moves = (plain.moved(plain.nothing, weights, [*map(plain.value, x)]) for x in columns)
+        return self._dual(index, self._added(total.gradient, [x.index for x in moves]))
+
+    def between(self, x: Value, y: Value, share: Fraction) -> Dual:
+        one, other = self._fit(x), self._fit(y)
+        part = self.program.constant(share)
+        moved = [self.program.mul(part, at) for at in other.gradient]
+        index = self.plain.between(one, other, share).index
+        return self._dual(index, self._added(one.gradient, moved))
+
+    def solved(self, count: int, right: Right) -> list[Dual]:
+        values, program = self.plain.solved(count, right), self.program
+        sides = TangentAlgebra(self.plain, count, self).read(right, values)
+        matrix = _less_one(program, [side.gradient[self.width :] for side in sides])
+        rows, _ = eliminated(program, matrix, [side.gradient[: self.width] for side in sides])
+        return [self._dual(x.index, tuple(row)) for x, row in zip(values, rows, strict=True)]
+
+    # -- gradients ----------------------------------------------------------------------------
+
+    def _dual(self, index: int, gradient: tuple[int, ...]) -> Dual:
+        return Dual(self.program, index, gradient, self)
+
+    def _fit(self, x: Value) -> Dual:
+        """With as many derivatives as there are here; what comes from elsewhere is held."""
+        if isinstance(x, Dual) and x.algebra is self:
+            return x
+        known = x.gradient if isinstance(x, Dual) and x.algebra is self.outer else ()
+        return self._dual(self.plain.own(x), (*known, *[self.zero] * (self.width - len(known))))
+
+    def _at(self, at: Evaluator, x: Poly, index: int, changes: Sequence[Dual]) -> Dual:
+        """An element at z + changes, with its derivatives."""
+        row = [at.evaluate(y) for y in self.field.gradient(x)]
+        return self._dual(index, self._chained(row, changes))
+
+    def _chained(self, row: Sequence[int], changes: Sequence[Dual]) -> tuple[int, ...]:
+        """Σ_j row_j ∂(z_j + change_j)."""
+        add, mul = self.program.add, self.program.mul
+        total = [*row[: self.coordinates], *[self.zero] * (self.width - self.coordinates)]
+        for slope, change in zip(row, changes, strict=True):
+            total = [add(x, mul(slope, y)) for x, y in zip(total, change.gradient, strict=True)]
+        return tuple(total)
+
+    def _added(self, one: Sequence[int], other: Sequence[int]) -> tuple[int, ...]:
+        return tuple(map(self.program.add, one, other))
+
+
+def _less_one(program: Program, rows: Sequence[Sequence[int]]) -> list[list[int]]:
+    """1 − the matrix of these rows."""
+    matrix = [list(map(program.neg, row)) for row in rows]
+    for k, row in enumerate(matrix):
+        row[k] = program.add(program.quotient(1, 1), row[k])
+    return matrix
+
+
+def eliminated(
+    program: Program, matrix: Sequence[Sequence[int]], right: Sequence[Sequence[int]]
+) -> tuple[list[list[int]], list[int]]:
+    """The solutions of linear systems whose matrix is 1 + O(h), one a column of the right side, row
+    by row, and the pivots that are not 1.
 
     Without pivoting: at h = 0 the diagonal is 1.
     """
     add, mul, neg = program.add, program.mul, program.neg
-    size, rows = len(matrix), [[*row, x] for row, x in zip(matrix, right, strict=True)]
+    size, rows = len(matrix), [[*row, *more] for row, more in zip(matrix, right, strict=True)]
+    width = len(rows[0])
     pivots, over = [], []
     for k in range(size):
         pivot = rows[k][k]
@@ -230,12 +302,13 @@ def _eliminated(
         over.append(pivot if one else program.apply("inverse", pivot))
         for i in range(k + 1, size):
             factor = mul(rows[i][k], over[k])
-            for j in range(k + 1, size + 1):
+            for j in range(k + 1, width):
                 rows[i][j] = add(rows[i][j], neg(mul(factor, rows[k][j])))
-    found: list[int] = [0] * size
+    solved: list[list[int]] = [[] for _ in range(size)]
     for k in reversed(range(size)):
-        total = rows[k][size]
-        for j in range(k + 1, size):
-            total = add(total, neg(mul(rows[k][j], found[j])))
-        found[k] = mul(total, over[k])
-    return found, pivots or [program.constant(Fraction(1))]
+        for column in range(width - size):
+            total = rows[k][size + column]
+            for j in range(k + 1, size):
+                total = add(total, neg(mul(rows[k][j], solved[j][column])))
+            solved[k].append(mul(total, over[k]))
+    return solved, pivots or [program.constant(Fraction(1))]

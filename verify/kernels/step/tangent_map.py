@@ -9,14 +9,12 @@ which Λ has been. In n degrees of freedom det M is Pf(MᵀΩM)/Pf Ω, and `form
 of squares of MᵀΩM's entries above the diagonal.
 """
 
-from collections.abc import Callable, Sequence
-from fractions import Fraction
+from collections.abc import Callable, Collection, Sequence
 from itertools import combinations
 
 from verify.hamiltonians.coordinates import PLANE
 from verify.kernels.step.lowering import Lowering
-from verify.kernels.step.program import Evaluator, Program
-from verify.schemes.step_map import Substep
+from verify.kernels.step.program import Program
 
 _SUMS = ("growth", "growth_top", "det_low", "form_top", "least", "most")
 
@@ -40,35 +38,17 @@ def carried(coordinates: Sequence[str]) -> list[tuple[str, int | str]]:
     return found + [(f"{name}_{end}", name) for name in coordinates for end in ("low", "high")]
 
 
-def product(program: Program, x: Sequence[int], y: Sequence[int]) -> list[int]:
-    """The 2 × 2 matrix product x y, row by row."""
-    add, mul = program.add, program.mul
-    return [add(mul(x[2 * i], y[j]), mul(x[2 * i + 1], y[2 + j])) for i in (0, 1) for j in (0, 1)]
-
-
 class Tangent:
     """A − 1 of the whole step, row by row, in a float64 program of its own."""
 
     def __init__(self, main: Program) -> None:
         self.main, self.program = main, Program()
         self.needed: list[int] = []  # values of the main program that are read
-        self.change = [self.program.constant(Fraction(0))] * 4
+        self.change: list[int] = []
 
-    def follow(self, step: Substep, evaluator: Evaluator) -> None:
-        """Composes the change with a substep's own, where `evaluator` writes the main program."""
-        a, b, c, d = step.jacobian
-        entries = [a - 1, b, c, d - 1]
-        own = Evaluator(self.program, step.ring, {}, pipelined=True)
-        for generator in step.ring.generators_in(*entries):
-            own.set(generator, self._read(evaluator.at(generator)))
-        x, y = [own.evaluate(entry) for entry in entries], self.change
-        add = self.program.add
-        both = zip(x, y, product(self.program, x, y), strict=True)
-        self.change = [add(add(a, b), c) for a, b, c in both]
-
-    def take(self, change: Sequence[int]) -> None:
+    def take(self, change: Sequence[int], points: Collection[int] = ()) -> None:
         """The change as values of the main program: its sums and products are made again in
-        float64, all else is read."""
+        float64; all else is read, and so are the coordinates of the points that it is made at."""
         known: dict[int, int] = {}
         program = self.program
         again: dict[str, Callable[..., int]] = {
@@ -79,7 +59,7 @@ class Tangent:
             op = self.main.ops[index]
             if op.kind == "const":
                 known[index] = program.constant(op.value)
-            elif op.kind in again and all(a in known for a in op.args):
+            elif index not in points and op.kind in again and all(a in known for a in op.args):
                 known[index] = again[op.kind](*(known[a] for a in op.args))
             else:
                 known[index] = self._read(index)

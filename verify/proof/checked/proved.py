@@ -7,12 +7,11 @@ from typing import Literal
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.certificates.every import of_every
 from verify.proof.certificates.file import Certificate
-from verify.proof.certificates.one import of_one, of_one_in_degrees
+from verify.proof.certificates.one import of_one
 from verify.proof.every import prove_every
 from verify.proof.every_proof import EveryProof
-from verify.proof.order_proof import Proof
 from verify.proof.potential import Potential
-from verify.proof.symplectic.proof import SymplecticProof
+from verify.proof.proof import Proof
 from verify.schemes.scheme import Scheme
 
 About = Literal["defect", "volume", "map", "telescopes", "product"]
@@ -60,7 +59,7 @@ def of_every_hamiltonian(proof: EveryProof, scheme: Scheme, about: frozenset[Abo
 
 
 def of_one_hamiltonian(
-    proof: Proof | SymplecticProof,
+    proof: Proof,
     hamiltonian: Hamiltonian,
     scheme: Scheme,
     about: frozenset[About],
@@ -72,8 +71,6 @@ def of_one_hamiltonian(
     timed, degrees = hamiltonian.time_dependent, hamiltonian.degrees
 
     def own() -> Certificate:
-        if isinstance(proof, SymplecticProof):
-            return of_one_in_degrees(proof, hamiltonian, scheme)
         return of_one(proof, _NOT_LOOKED_FOR)
 
     def every() -> Certificate:
@@ -83,7 +80,7 @@ def of_one_hamiltonian(
     short = proof.symplectic or len(proof.leading_text) <= _LONGEST
     return Proved(
         scheme, _asked(about, degrees), proof.symplectic, every=False, timed=timed, degrees=degrees,
-        telescopes=proof.telescopes if isinstance(proof, SymplecticProof) else None,
+        telescopes=None if proof.planar else proof.telescopes,
         certificates=(own, *(every,) * bool(fallback)) if short else (),
     )  # fmt: skip
 

@@ -37,8 +37,8 @@ from verify.schemes.conditions import ByConditions
 from verify.schemes.elementary_differentials import Differentials
 from verify.schemes.every_hamiltonian import BySeries
 from verify.schemes.free_lie_words import of_logarithm, words
+from verify.schemes.maps.step_map import solvable
 from verify.schemes.splitting_conditions import LETTERS, Splitting
-from verify.schemes.step_map import SOLVABLE
 from verify.schemes.tree_conditions import TreeConditions, trees
 
 _KICK, _DRIFT = LETTERS["kick"], LETTERS["drift"]
@@ -172,7 +172,7 @@ def modified_for_every(name: str, order: int, separable: bool = False) -> Modifi
         terms=tuple(terms),
         consistent=consistent,
         area=area,
-        where=EVERYWHERE if scheme.explicit else Domain.of((), SOLVABLE),
+        where=EVERYWHERE if scheme.explicit else Domain.of((), solvable(planar=True)),
     )
     return judged(found, scheme, nearby_order(every_h, scheme.order))
 

@@ -29,20 +29,20 @@ from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.jets import Index, Jets
 from verify.algebra.series.power_series import partials
 from verify.errors import InputError
-from verify.hamiltonians.vector_field import VectorField
+from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.proof.expansion import MOST_ORDERS, Expansion, Leading
 from verify.proof.modified.equation import ModifiedEquation, Term, judged
 from verify.proof.modified.field import Vector, divergence, field_of, modified_field
 from verify.proof.order import leading_of, nearby_of_scheme
 from verify.proof.potential import among_polynomials
 from verify.proof.telescoping import multisets
+from verify.schemes.maps.step_map import StepMap
 from verify.schemes.scheme import Scheme
-from verify.schemes.step_map import StepMap
 
 _MOST_PRODUCTS, _MOST_IN_TIME = 400, 2000  # tried in the second way
 
 
-def hamiltonian_of(field: VectorField, vector: Vector, factors: int) -> Poly | None:
+def hamiltonian_of(field: CanonicalField, vector: Vector, factors: int) -> Poly | None:
     """G for one H; None where none is found. `factors`: how many derivatives of H are multiplied
     in each term of the vector field, of a scheme for every H.
     """
@@ -95,7 +95,7 @@ def _is_hamiltonian_of(ring: Ring, found: Poly, vector: Vector) -> bool:
 # -- for one H: each way gives a G, or None; the caller checks it ---------------------------------
 
 
-def _by_integration(field: VectorField, vector: Vector, _: int) -> Poly | None:
+def _by_integration(field: CanonicalField, vector: Vector, _: int) -> Poly | None:
     """G = ∫ q' dp + ∫ (what is left of −p') dq, where p and q stand in no function."""
     ring = field.ring
     gens = ring.context.gens()
@@ -107,11 +107,11 @@ def _by_integration(field: VectorField, vector: Vector, _: int) -> Poly | None:
     return ring.reduce(by_p + left.integral(ring.places["q"]))
 
 
-def _among_products(field: VectorField, vector: Vector, factors: int) -> Poly | None:
-    ring, energy = field.ring, field.of_energy
-    if factors < 2 or energy is None:
+def _among_products(field: CanonicalField, vector: Vector, factors: int) -> Poly | None:
+    ring, energy = field.ring, field.energy
+    if factors < 2:
         return energy
-    jets = Jets(factors - 1, separable=field.separable())
+    jets = Jets(factors - 1, separable=field.separable)
     plain = multisets(jets.indices, factors, factors - 1, factors - 1)
     names = [*([(*each, 0) for each in chosen] for chosen in plain)]
     if field.timed:
@@ -173,14 +173,14 @@ def _numbers_in(ring: Ring, vector: Vector) -> list[Poly]:
     ]
 
 
-def _among_all(field: VectorField, vector: Vector, _: int) -> Poly | None:
+def _among_all(field: CanonicalField, vector: Vector, _: int) -> Poly | None:
     ring, mark = field.ring, field.ring.variable("h")
 
     def derive(x: Poly) -> Poly:
         return _joined(mark, field_of(ring, x))
 
     derivatives = [ring.diff(x, name) for x in vector for name in ("p", "q")]
-    used = (field.of_energy or ring.zero, *vector, *derivatives)  # sin has cos for its integral
+    used = (field.energy, *vector, *derivatives)  # sin has cos for its integral
     return among_polynomials(ring, used, derive, _joined(mark, vector))
 
 
@@ -192,6 +192,7 @@ def modified_of(step_map: StepMap, scheme: Scheme | None, order: int) -> Modifie
 
     Raises InputError where the map does not begin with (p, q) at h = 0, or is not smooth there.
     """
+    step_map.hamiltonian.check_planar()
     source, p_next, q_next = _series(step_map, order + 1)
     ring = source.ring
     for name, first in zip(("p", "q"), (p_next[0], q_next[0]), strict=True):
@@ -206,7 +207,7 @@ def modified_of(step_map: StepMap, scheme: Scheme | None, order: int) -> Modifie
         hamiltonian=step_map.hamiltonian.formula,
         order=order,
         terms=tuple(terms),
-        consistent=_same(ring, vectors[0], (-source.h_q, source.h_p)),
+        consistent=_same(ring, vectors[0], (source.slopes[0], source.slopes[1])),
         area=_area(step_map, terms),
         where=step_map.domain,
     )
@@ -214,15 +215,14 @@ def modified_of(step_map: StepMap, scheme: Scheme | None, order: int) -> Modifie
     return judged(found, scheme, near)
 
 
-def _series(step_map: StepMap, most: int) -> tuple[VectorField, Sequence[Poly], Sequence[Poly]]:
+def _series(step_map: StepMap, most: int) -> tuple[CanonicalField, Sequence[Poly], Sequence[Poly]]:
     """The coefficients of h⁰ … h^most in p' and q', and the vector field in their ring."""
-    series = step_map.taylor(most)
+    series = step_map.series(most)
     if series is not None:
-        source, p, q = series
+        source, (p, q) = series
         return source, p.coefficients, q.coefficients
     step = step_map.flat
-    pairs = zip((step.p_next, step.q_next), step.terms or (None, None), strict=True)
-    expansions = [Expansion(step.ring, x, terms) for x, terms in pairs]
+    expansions = [Expansion(step.ring, x) for x in step.elements]
     if most > MOST_ORDERS and not all(x.polynomial for x in expansions):
         raise InputError("order", most - 1, f"must be {MOST_ORDERS - 1} at most for this map")
     parts = [x.coefficient(n) for x in expansions for n in range(most + 1)]
@@ -230,11 +230,11 @@ def _series(step_map: StepMap, most: int) -> tuple[VectorField, Sequence[Poly], 
         own = [x for _, x in parts]
         return step.field, own[: most + 1], own[most + 1 :]
     # Where h stands in a function each coefficient has a ring of its own; one holds them all.
-    source, own = step_map.hamiltonian.field(*(ring.expression(x) for ring, x in parts))
+    source, own = canonical_field(step_map.hamiltonian, *(ring.expression(x) for ring, x in parts))
     return source, own[: most + 1], own[most + 1 :]
 
 
-def _term(source: VectorField, power: int, vector: Vector, domain: Domain) -> Term:
+def _term(source: CanonicalField, power: int, vector: Vector, domain: Domain) -> Term:
     """That of h^power in the field: its divergence decided, its energy looked for."""
     ring = source.ring
     turned = divergence(ring, vector)

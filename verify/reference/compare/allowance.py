@@ -19,6 +19,7 @@ from verify.kernels.step.computation import step_map_of
 from verify.reference.compare.findings import DOUBLE, SINGLE, Spread
 from verify.reference.compare.scatter import Scatters
 from verify.reference.make.orbit_points import Bounded
+from verify.schemes.maps.parts import parts_of
 
 USUAL, WORST = 8, 16  # times what the copies show, since operations differ
 _NOT_AT_ALL = Spread(0, 0)
@@ -86,16 +87,16 @@ def products(orbit: Orbit, done: int, known: dict[str, Bounded]) -> Fraction:
     if not orbit.hamiltonian.planar:
         return Fraction(1)
     step_map = step_map_of(orbit.hamiltonian, orbit.scheme)
-    if step_map.implicit:
-        return Fraction(1)
+    parts = parts_of(step_map) or (step_map.closed,)
     with working_precision(_BITS):
         box = {name: around(*known[name]) for name in ("p", "q")}
         box |= {"h": rational_ball(orbit.step_size)}
         if orbit.hamiltonian.time_dependent:
             box["t"] = rational_ball(orbit.t0 + done * orbit.step_size)
         whole = [flint.arb(x) for x in (1, 0, 0, 1)]  # the entries' sizes, of all substeps so far
-        for step in step_map.substeps:
-            own = enclose_all(step.ring, [*step.jacobian, step.p_next, step.q_next], box)
+        for step in parts:
+            rows = (*step.jacobian, step.elements) if step else ()
+            own = enclose_all(step.ring, [x for row in rows for x in row], box) if step else None
             if own is None:
                 return Fraction(1)
             a, b, c, d, box["p"], box["q"] = own

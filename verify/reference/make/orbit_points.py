@@ -14,7 +14,7 @@ from typing import Any, Literal
 
 import flint
 
-from verify.algebra.enclosure import enclose_all, enclose_over
+from verify.algebra.enclosure import enclose_over
 from verify.arithmetic.arb import around, in_reach, middle_and_radius, rational_ball
 from verify.arithmetic.exact import text
 from verify.arithmetic.flint_precision import working_precision
@@ -40,6 +40,7 @@ from verify.scenes.results.reference import FlowPoint, Kind, OrbitPoint, Rounded
 from verify.scenes.results.reference_in_degrees import FlowPointInDegrees, OrbitPointInDegrees
 from verify.scenes.results.run import RunResult
 from verify.scenes.values import AUTO
+from verify.schemes.maps.ball_algebra import UndefinedError, step_in_balls
 
 _GUARDS = (10, 25, 60, 150)  # digits beyond those asked for, in turn
 _BITS = 64  # beyond the digits, for the roundings of one step, or of H
@@ -147,19 +148,18 @@ def _at_state(
 def _delta_j(orbit: Orbit, box: dict[str, flint.arb]) -> flint.arb | None:
     """None, too, where a step is given by equations and does not preserve area by proof."""
     step_map = step_map_of(orbit.hamiltonian, orbit.scheme)
-    total = flint.arb(0)
     if step_map.preserves_area:
-        return total
-    if step_map.implicit:
+        return flint.arb(0)
+    h, written = rational_ball(orbit.step_size), step_map.written_defect
+    if written is not None:
+        return enclose_over(written.ring, written.delta_j, {**box, "h": h})
+    try:
+        _, slopes = step_in_balls(step_map.field, step_map.step or step_map.flat, box, h)
+    except UndefinedError:
         return None
-    box["h"] = rational_ball(orbit.step_size)
-    for part in step_map.substeps:
-        enclosed = enclose_all(part.ring, [part.delta_j, part.p_next, part.q_next], box)
-        if enclosed is None:
-            return None
-        change, box["p"], box["q"] = enclosed
-        total = total + change + total * change
-    return total
+    (a, b), (c, d) = slopes.tolist()
+    change: flint.arb = a + d + a * d - b * c
+    return change
 
 
 # -- the exact flow ----------------------------------------------------------------------------

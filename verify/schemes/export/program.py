@@ -11,39 +11,50 @@ from dataclasses import dataclass
 
 import sympy
 
-from verify.algebra.formula import FUNCTIONS
+from verify.algebra.formula import FUNCTIONS, symbol
 from verify.effort import MOST, limited
 from verify.errors import InputError, LimitError
 from verify.schemes.export.constants import Constant, Constants
-from verify.schemes.step_map import StepMap, Substep, grouped
+from verify.schemes.maps.closed_form import ClosedForm
+from verify.schemes.maps.parts import parts_of
+from verify.schemes.maps.step_map import StepMap, grouped
 
+_MOST_COORDINATES = 4  # of a map in stages, whose determinant is written out
 Lines = tuple[tuple[str, sympy.Expr], ...]  # names with what is assigned to them, in turn
-_STATE = ("p", "q")
-OUTPUTS = {
-    "step": ("p_next", "q_next"),
-    "jacobian": ("j_pp", "j_pq", "j_qp", "j_qq"),
-    "delta_j": ("delta_j",),
-}
+
+
+def outputs_of(coordinates: Sequence[str]) -> dict[str, tuple[str, ...]]:
+    """What each function gives, by its name.
+
+    >>> outputs_of(("p", "q"))["jacobian"]
+    ('j_pp', 'j_pq', 'j_qp', 'j_qq')
+    """
+    return {
+        "step": tuple(f"{x}_next" for x in coordinates),
+        "jacobian": tuple(f"j_{x}{y}" for x in coordinates for y in coordinates),
+        "delta_j": ("delta_j",),
+    }
 
 
 @dataclass(frozen=True)
 class Program:
-    """The map of `scheme` for H, `hamiltonian`, as three functions of p, q, h and `parameters`.
+    """The map of `scheme` for H, `hamiltonian`, as three functions of z, h and `parameters`.
 
-    `variables`: p, q and h, with t, at which the step begins, before h where H depends on it.
-    `name` is the step's; `functions` has the lines of `step`, `jacobian` (∂p'/∂p, ∂p'/∂q, ∂q'/∂p,
-    ∂q'/∂q) and `delta_j`, which end with assignments to the names in `OUTPUTS`. `parts`: the
-    formulas of each part, for people. `area_preserving`: whether ΔJ ≡ 0 is proved.
+    `variables`: the `coordinates` and h, with t, at which the step begins, before h where H depends
+    on it. `name` is the step's; `functions` has the lines of `step`, `jacobian` (∂z'/∂z by rows)
+    and `delta_j`, which end with assignments to the names in `outputs`. `parts`: the formulas of
+    each part, for people. `area_preserving`: whether ΔJ ≡ 0 is proved.
     """
 
     name: str
     scheme: str
     hamiltonian: str
+    coordinates: tuple[str, ...]
     variables: tuple[str, ...]
     parameters: tuple[str, ...]
     constants: tuple[Constant, ...]
     functions: dict[str, Lines]
-    parts: tuple[tuple[sympy.Expr, sympy.Expr], ...]
+    parts: tuple[tuple[sympy.Expr, ...], ...]
     delta_j: sympy.Expr | None
     area_preserving: bool
 
@@ -51,6 +62,11 @@ class Program:
     def arguments(self) -> tuple[str, ...]:
         """The names of what each function takes."""
         return (*self.variables, *self.parameters)
+
+    @property
+    def outputs(self) -> dict[str, tuple[str, ...]]:
+        """What each function gives."""
+        return outputs_of(self.coordinates)
 
     def head(self) -> tuple[str, ...]:
         """What it is, in lines of a comment, in ASCII."""
@@ -86,17 +102,20 @@ def program_of(
         shown = str(step_map.hamiltonian.expression)
         problem = "is given by equations; only a map in closed form is exported"
         raise LimitError("map", shown, problem)
-    taken = {*reserved, *(n for names in OUTPUTS.values() for n in names), *OUTPUTS, name}
+    coordinates = step_map.hamiltonian.coordinates
+    outputs = outputs_of(coordinates)
+    taken = {*reserved, *(n for names in outputs.values() for n in names), *outputs, name}
     renamed = _renamed(step_map.hamiltonian.symbols, taken)
     time = ("t",) if step_map.hamiltonian.time_dependent else ()
-    variables = ("p", "q", *time, "h")
+    variables = (*coordinates, *time, "h")
     with limited("map", scheme, "to write it out", 10 * MOST):
         writer = _Writer(step_map, renamed, variables)
-        functions = {key: getattr(writer, key)() for key in OUTPUTS}
+        functions = {key: getattr(writer, key)() for key in outputs}
     return Program(
         name=name,
         scheme=scheme,
         hamiltonian=_formula(step_map, renamed),
+        coordinates=coordinates,
         variables=variables,
         parameters=tuple(str(x) for x in renamed.values()),
         functions=functions,
@@ -122,20 +141,58 @@ def _renamed(names: Sequence[str], taken: set[str]) -> dict[sympy.Symbol, sympy.
     return found
 
 
+@dataclass(frozen=True)
+class _Part:
+    """z' of a part, ∂z'/∂z row by row, and its det − 1."""
+
+    formulas: tuple[sympy.Expr, ...]
+    jacobian: tuple[sympy.Expr, ...]
+    delta_j: sympy.Expr
+
+    def renamed(self, names: dict[sympy.Symbol, sympy.Symbol]) -> "_Part":
+        """With other names for parameters."""
+        formulas, jacobian = (
+            tuple(x.xreplace(names) for x in row) for row in (self.formulas, self.jacobian)
+        )
+        return _Part(formulas, jacobian, self.delta_j.xreplace(names))
+
+
+def _in_ring(part: ClosedForm) -> _Part:
+    """A part in closed form, its formulas by powers of h."""
+    ring, entries = part.ring, [x for row in part.jacobian for x in row]
+    formulas, jacobian = (tuple(grouped(ring, x) for x in y) for y in (part.elements, entries))
+    return _Part(formulas, jacobian, ring.factored(part.delta_j))
+
+
+def _in_stages(step_map: StepMap) -> _Part:
+    """A map whose stages stand in one another: what they have in common gets names later."""
+    formulas, state = step_map.composed, list(map(symbol, step_map.hamiltonian.coordinates))
+    size = len(state)
+    if size > _MOST_COORDINATES:
+        return _in_ring(step_map.flat)
+    jacobian = tuple(x.diff(y) for x in formulas for y in state)
+    entries = [x - int(k % (size + 1) == 0) for k, x in enumerate(jacobian)]
+    slopes = sympy.Matrix(size, size, sympy.symbols(f"k:{size * size}"))
+    change = sympy.expand((sympy.eye(size) + slopes).det(method="berkowitz") - 1)
+    put = dict(zip(slopes, entries, strict=True))
+    return _Part(formulas, jacobian, change.xreplace(put))
+
+
 class _Writer:
     def __init__(
         self, step_map: StepMap, renamed: dict[sympy.Symbol, sympy.Symbol], variables: Sequence[str]
     ) -> None:
         self.map = step_map
         self.renamed = renamed
+        self.state = step_map.hamiltonian.coordinates
+        self.outputs = outputs_of(self.state)
         self.used = {*variables, *map(str, renamed.values())}
         self.constants = Constants(lambda k: self._free(f"c{k}"))
         closed = step_map.closed
-        self.parts: Sequence[Substep] = step_map.substeps if closed is None else (closed,)
-        self.formulas = [
-            tuple(grouped(s.ring, x).xreplace(renamed) for x in (s.p_next, s.q_next))
-            for s in self.parts
-        ]
+        parts = parts_of(step_map) if closed is None else (closed,)
+        made = [_in_ring(x) for x in parts] if parts else [_in_stages(step_map)]
+        self.parts = [x.renamed(renamed) for x in made]
+        self.formulas = [part.formulas for part in self.parts]
 
     def _free(self, name: str) -> str:
         while name in self.used:
@@ -155,20 +212,30 @@ class _Writer:
         for k, pair in enumerate(self.formulas[:-1]):
             lines += self._moved(k, pair, ())[0]
         common, left = self._common("x", self.formulas[-1])
-        return (*lines, *common, *zip(OUTPUTS["step"], left, strict=True))
+        return (*lines, *common, *zip(self.outputs["step"], left, strict=True))
 
     def _moved(
         self, k: int, pair: Sequence[sympy.Expr], more: Sequence[sympy.Expr]
     ) -> tuple[Lines, list[sympy.Expr]]:
         """p and q set to those after part k; `more` are values at the point before."""
         common, left = self._common(f"x{k}_", [*pair, *more])
-        kept, after = self._kept(f"w{k}_", left[2:])
-        changed = [x for x in zip(_STATE, left[:2], strict=True) if x[0] != str(x[1])]
-        if len(changed) < len(_STATE):
+        size = len(self.state)
+        kept, after = self._kept(f"w{k}_", left[size:])
+        changed = [x for x in zip(self.state, left[:size], strict=True) if x[0] != str(x[1])]
+        if len(changed) < len(self.state) and self._apart(changed):
             return (*common, *kept, *changed), after
-        names = [self._free(f"{name}{k}_") for name in _STATE]
-        ends = zip(_STATE, (sympy.Symbol(name, real=True) for name in names), strict=True)
-        return (*common, *kept, *zip(names, left[:2], strict=True), *ends), after
+        names = [self._free(f"{name}{k}_") for name in self.state]
+        ends = zip(self.state, (sympy.Symbol(name, real=True) for name in names), strict=True)
+        return (*common, *kept, *zip(names, left[:size], strict=True), *ends), after
+
+    def _apart(self, changed: Sequence[tuple[str, sympy.Expr]]) -> bool:
+        """Whether no new value is read by one that is assigned after it."""
+        names: set[str] = set()
+        for name, x in changed:
+            if names & {s.name for s in x.free_symbols}:
+                return False
+            names.add(name)
+        return True
 
     def _kept(self, before: str, values: Sequence[sympy.Expr]) -> tuple[Lines, list[sympy.Expr]]:
         """Names for values that change with p and q; numbers stay as they are."""
@@ -183,19 +250,20 @@ class _Writer:
     def jacobian(self) -> Lines:
         """The product of the parts' Jacobians."""
         lines: list[tuple[str, sympy.Expr]] = []
-        total = sympy.eye(2)
+        size = len(self.state)
+        total = sympy.eye(size)
         last = len(self.parts) - 1
         for k, (part, pair) in enumerate(zip(self.parts, self.formulas, strict=True)):
-            entries = [grouped(part.ring, x).xreplace(self.renamed) for x in part.jacobian]
+            entries = part.jacobian
             moved, own = self._common("x", entries) if k == last else self._moved(k, pair, entries)
-            kept, names = self._kept(f"j{k}_", sympy.Matrix(2, 2, own) * total)
+            kept, names = self._kept(f"j{k}_", sympy.Matrix(size, size, own) * total)
             lines += moved
             if k < last:
                 lines += kept
-                total = sympy.Matrix(2, 2, names)
+                total = sympy.Matrix(size, size, names)
             else:
-                total = sympy.Matrix(2, 2, own) * total
-        return (*lines, *zip(OUTPUTS["jacobian"], total, strict=True))
+                total = sympy.Matrix(size, size, own) * total
+        return (*lines, *zip(self.outputs["jacobian"], total, strict=True))
 
     def delta_j(self) -> Lines:
         """ΔJ: 0 where that is proved, in closed form where there is one, else by the parts."""
@@ -205,8 +273,7 @@ class _Writer:
         found: list[tuple[str, sympy.Expr]] = []
         total = sympy.S.Zero
         for k, (part, pair) in enumerate(zip(self.parts, self.formulas, strict=True)):
-            own = part.ring.factored(part.delta_j).xreplace(self.renamed)
-            moved, (change,) = self._moved(k, pair, [own])
+            moved, (change,) = self._moved(k, pair, [part.delta_j])
             found += moved
             name = self._free(f"d{k}")
             found.append((name, total + change + total * change))

@@ -13,7 +13,7 @@ from verify import lockstep
 from verify.arithmetic.exact import decimal, text, upper
 from verify.arithmetic.systems import mpfr
 from verify.flows.functions import functions_at
-from verify.hamiltonians.energy import energy_of
+from verify.hamiltonians.canonical_field import energy_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.results.poincare import MapSections, PoincareOrbit
 from verify.scenes.results.regions import EXACT_FLOW

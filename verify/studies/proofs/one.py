@@ -11,15 +11,13 @@ from verify.execution.keeping import Keeper
 from verify.execution.task import SchemeTask
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
-from verify.proof.order_proof import Proof
-from verify.proof.symplectic.order import prove_symplectic
-from verify.proof.symplectic.proof import SymplecticProof
+from verify.proof.proof import Proof
 from verify.prose import Prose
 from verify.scenes.results.proof import FormResult, Formulas, ProofResult
 from verify.schemes import get
-from verify.schemes.degrees.two_form import MOST_TERMS
+from verify.schemes.maps.step_map import StepMap, grouped
+from verify.schemes.maps.two_form import MOST_TERMS
 from verify.schemes.scheme import Scheme
-from verify.schemes.step_map import StepMap, grouped
 
 _COST = 10_000_000  # of a proof, about
 _LONG = 12  # digits of a value that no formula is read with
@@ -46,8 +44,9 @@ class ProofTask(SchemeTask):
         """The proof for this H, as a result."""
         hamiltonian, scheme = self.exact_hamiltonian(), get(self.scheme)
         begun = time.perf_counter()
-        made = _in_plane if hamiltonian.planar else _in_degrees
-        proof, more = made(hamiltonian, scheme, self.formulas)
+        step_map = scheme.step_map(hamiltonian)
+        proof = prove(step_map, scheme)
+        more = _beside(proof, scheme, self.formulas)
         return ProofResult(
             **hamiltonian.texts,
             scheme=self.scheme,
@@ -68,9 +67,7 @@ class ProofTask(SchemeTask):
         )
 
 
-def _marks(
-    proof: Proof | SymplecticProof, hamiltonian: Hamiltonian, scheme: Scheme
-) -> tuple[Prose, ...]:
+def _marks(proof: Proof, hamiltonian: Hamiltonian, scheme: Scheme) -> tuple[Prose, ...]:
     """Who else checked it."""
     from verify.proof.checked import marks
     from verify.proof.checked.proved import DEFECT, MAP, of_one_hamiltonian
@@ -78,28 +75,25 @@ def _marks(
     return marks(of_one_hamiltonian(proof, hamiltonian, scheme, DEFECT | MAP))
 
 
-def _in_plane(
-    hamiltonian: Hamiltonian, scheme: Scheme, formulas: bool
-) -> tuple[Proof, dict[str, Any]]:
-    """The proof and what is written out beside it."""
-    step_map = scheme.step_map(hamiltonian)
-    proof = prove(step_map, scheme)
-    written = _written(step_map) if formulas else dict.fromkeys(_FORMULAS)
+def _beside(proof: Proof, scheme: Scheme, formulas: bool) -> dict[str, Any]:
+    """What is written out beside it: in the plane closed forms, in n degrees of freedom S."""
+    if not proof.planar:
+        written = dict.fromkeys(_FORMULAS) | {"delta_j": "0" if proof.symplectic else None}
+        return {**written, "form": _form(proof)}
+    hamiltonian = proof.step_map.hamiltonian
+    written = _written(proof.step_map) if formulas else dict.fromkeys(_FORMULAS)
     symbolic = _symbolic(hamiltonian, scheme, proof.order) if formulas else None
-    return proof, {**written, "symbolic": symbolic}
+    return {**written, "symbolic": symbolic}
 
 
-def _in_degrees(
-    hamiltonian: Hamiltonian, scheme: Scheme, _: bool
-) -> tuple[SymplecticProof, dict[str, Any]]:
-    """The proof and its form S; closed forms are not written out."""
-    proof = prove_symplectic(hamiltonian, scheme)
-    leading = proof.leading
+def _form(proof: Proof) -> FormResult:
+    """The leading coefficient of S, entry by entry where that is short."""
+    leading = proof.first.form
     entries: tuple[tuple[str, str], ...] = ()
     if leading is not None and leading.length <= MOST_TERMS:
         each = leading.entries.items()
         entries = tuple((leading.called(at), leading.ring.text(x)) for at, x in each)
-    form = FormResult(
+    return FormResult(
         symplectic=proof.symplectic,
         entries=entries,
         entry=proof.entry,
@@ -109,8 +103,6 @@ def _in_degrees(
         potential=proof.potential,
         why=proof.why,
     )
-    written = dict.fromkeys(_FORMULAS) | {"delta_j": "0" if proof.symplectic else None}
-    return proof, {**written, "form": form}
 
 
 def _written(step_map: StepMap) -> dict[str, Any]:
@@ -118,9 +110,10 @@ def _written(step_map: StepMap) -> dict[str, Any]:
     found: dict[str, Any] = dict.fromkeys(_FORMULAS)
     found["delta_j"] = step_map.delta_j_text
     if (closed := step_map.closed) is not None:
-        elements = (closed.p_next, closed.q_next, *closed.jacobian)
-        p_next, q_next, a, b, c, d = (to_text(grouped(closed.ring, x)) for x in elements)
-        found |= {"p_next": p_next, "q_next": q_next, "jacobian": ((a, b), (c, d))}
+        rows = closed.elements, *closed.jacobian
+        texts = [tuple(to_text(grouped(closed.ring, x)) for x in row) for row in rows]
+        (p_next, q_next), *jacobian = texts
+        found |= {"p_next": p_next, "q_next": q_next, "jacobian": tuple(jacobian)}
     return found
 
 

@@ -26,7 +26,7 @@ from verify.flows.extrapolation import NoFlowError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.times_on_the_way import first_fault
 from verify.kernels.many_points import LeftRangeError
-from verify.kernels.step.in_degrees import map_of, preserves
+from verify.kernels.step.computation import step_map_of
 from verify.prose import Number, Prose, prose, read_prose
 from verify.scenes.results.regions import EXACT_FLOW, CarriedOutline, FlowImage, Projection
 from verify.scenes.shapes.outline import Outline, Shape
@@ -92,7 +92,7 @@ class _Carrying:
     def preserves_area(self) -> bool:
         if self.map == EXACT_FLOW:
             return True
-        return preserves(map_of(self.hamiltonian, self.map))
+        return step_map_of(self.hamiltonian, self.map).preserves_area
 
 
 def carry(

@@ -22,7 +22,7 @@ from verify.arithmetic.float_context import FLOAT
 from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.many_points import PointMap
-from verify.kernels.step.in_degrees import is_written_out
+from verify.kernels.step.computation import step_map_of
 from verify.scenes.shapes.outline import Outline
 from verify.studies.regions.panels import NODES, rule
 from verify.studies.regions.place import ITSELF, Place
@@ -75,7 +75,7 @@ def mean_over(
         return found
 
     found = _mean_of(density, outline, centre)
-    written = hamiltonian.planar or is_written_out(hamiltonian, scheme)
+    written = hamiltonian.planar or step_map_of(hamiltonian, scheme).written_defect is not None
     return found if written else Mean(found.value, found.error + steps * _DEFECT)
 
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from verify.execution.plan import Plan
 from verify.execution.study import called
-from verify.kernels.step.in_degrees import map_of, preserves
+from verify.kernels.step.computation import step_map_of
 from verify.scenes.observables import carries_defect
 from verify.scenes.region_sections import Flow
 from verify.scenes.results.regions import EXACT_FLOW
@@ -29,7 +29,7 @@ def _no_mean(scene: Scene, name: str, scheme: str) -> tuple[str, str]:
         why = "ΔJ ≡ 0 is proved: Λ is exactly 0"
         return f"{name}: mean of Λ over the region for {scheme}", why
     why = "S ≡ 0 is shown: W is exactly 0"
-    if not preserves(map_of(exact, scheme)):
+    if not step_map_of(exact, scheme).preserves_area:
         why = f"W is not carried in {exact.degrees} degrees of freedom"
     return f"{name}: mean of W over the region for {scheme}", why
 
@@ -45,7 +45,7 @@ def flow_tasks(scene: Scene, flow: Flow) -> Iterator[FlowTask]:
     exact, given, shape = scene.exact_hamiltonian(), scene.hamiltonian_fields(), flow.placed_shape()
     for name in maps_of(scene, flow):
         by_scheme = name != EXACT_FLOW
-        kept = not by_scheme or preserves(map_of(exact, name))
+        kept = not by_scheme or step_map_of(exact, name).preserves_area
         for steps in flow.counts:
             yield FlowTask(
                 **given,

@@ -22,7 +22,7 @@ from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.estimated import working_digits
 from verify.runs.run import AskedRun, proved
 from verify.schemes import get
-from verify.schemes.step_map import StepMap
+from verify.schemes.maps.step_map import StepMap
 from verify.studies.separation.links import AsLink, LinksOnDemand, last_system
 from verify.studies.separation.mixed_run import POINTS, Advance, marks_of
 from verify.studies.separation.trail import Trail

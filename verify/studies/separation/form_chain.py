@@ -28,7 +28,7 @@ from verify.errors import InputError
 from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.chunked_loop import ENTRIES
-from verify.kernels.step.in_degrees import map_of, preserves
+from verify.kernels.step.computation import step_map_of
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.estimated import working_digits
 from verify.studies.separation.chain import Chain, lacking
@@ -112,7 +112,7 @@ class _FormLinks(LinksOnDemand[Links, FormWorking]):
     def of_proof(self, name: str) -> Links | None:
         """0, where S ≡ 0."""
         exact = self.kernel_run.hamiltonian
-        if not preserves(map_of(exact, self.kernel_run.scheme)):
+        if not step_map_of(exact, self.kernel_run.scheme).preserves_area:
             return None
         nothing, size = exact_link([Fraction(0)] * len(self.marks), "S ≡ 0"), len(exact.coordinates)
         return (nothing,) * (size * (size - 1) // 2)

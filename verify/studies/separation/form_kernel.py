@@ -29,11 +29,9 @@ from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.step.computation import Computation, Observed
-from verify.kernels.step.in_degrees import computed_in_degrees, map_of, preserves, with_slopes
+from verify.kernels.step.computation import Computation, Observed, computed, step_map_of
 from verify.kernels.step.lowering import Lowering
 from verify.kernels.step.program import Program
-from verify.schemes.step_map import StepMap
 from verify.studies.separation.kernel import AT, Mixed, assemble, box_of, prefixed_lines, scope_of
 
 Rows = Sequence[Sequence[str]]  # of names; an empty one is 0
@@ -62,15 +60,13 @@ class Step:
         """The step of a scheme; `form`: with S, M and W.
 
         Raises NotImplementedError where a step solves equations."""
-        step = map_of(hamiltonian, scheme)
-        assert not isinstance(step, StepMap)  # noqa: S101 - the caller has n degrees of freedom
+        step = step_map_of(hamiltonian, scheme)
         asked = Observed(
             pipelined=pipelined, scaled=False, delta_j=False, determinant=False, tangent=False,
-            symplectic=form, carried=form,
+            symplectic=form, carried=form, slopes=True,
         )  # fmt: skip
-        made = computed_in_degrees(step, asked)
-        program, _, slopes = with_slopes(made)
-        return cls(made, program, tuple(map(tuple, slopes)))
+        made = computed(step, asked)
+        return cls(made, made.program, tuple(map(tuple, made.slopes)))
 
     def names(self, prefix: str) -> Rows:
         """K's entries by their names in the source."""
@@ -89,7 +85,7 @@ def form_kernel(
 
     Raises NotImplementedError where a step solves equations.
     """
-    working, closed = float64.make(17), not preserves(map_of(hamiltonian, scheme))
+    working, closed = float64.make(17), not step_map_of(hamiltonian, scheme).preserves_area
     narrow = Step.of(hamiltonian, scheme, pipelined=working.pipelined, form=closed)
     wide = Step.of(hamiltonian, scheme, pipelined=arithmetic.pipelined, form=False)
     names, timed = narrow.made.coordinates, hamiltonian.time_dependent

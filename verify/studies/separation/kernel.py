@@ -40,7 +40,7 @@ from verify.kernels.step import newton
 from verify.kernels.step.computation import step_map_of
 from verify.kernels.step.lowering import Lowering
 from verify.kernels.step.program import Program
-from verify.schemes.step_map import StepMap
+from verify.schemes.maps.step_map import StepMap
 
 WORKING = frozenset({"lambda", "lambda_plain"})  # with these `verify run` steps in float64, too
 AT = "w_at_"  # before names of the wide state that steps by float64's clock

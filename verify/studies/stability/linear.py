@@ -37,8 +37,9 @@ from verify.arithmetic.exact import known_text
 from verify.effort import MOST, limited
 from verify.errors import InputError
 from verify.prose import Prose
-from verify.schemes.step_map import StepMap
-from verify.schemes.substep import h_inside
+from verify.schemes.maps.closed_form import h_inside
+from verify.schemes.maps.parts import parts_of
+from verify.schemes.maps.step_map import StepMap
 from verify.studies.stability.positive_roots import PositiveRoot, positive_roots
 
 _BITS = 128
@@ -70,15 +71,15 @@ def product(step: StepMap) -> tuple[Ring, Entries] | None:
 
     None, too, where there are so many of them, of so high a degree, that roots would take minutes.
     """
-    field = step.substeps[0].field
-    ring = field.ring
-    if step.implicit or any(part.field is not field for part in step.substeps):
+    parts = parts_of(step)
+    if parts is None:
         return None
-    if len(step.substeps) * math.prod(power for _, power, _ in ring.relations) > _MOST_DEGREE:
+    ring = parts[0].ring
+    if len(parts) * math.prod(power for _, power, _ in ring.relations) > _MOST_DEGREE:
         return None
     total: Entries = (ring.one, ring.zero, ring.zero, ring.one)
-    for part in step.substeps:
-        own = [ring.diff(x, name) for x in (part.p_next, part.q_next) for name in ("p", "q")]
+    for part in parts:
+        own = [entry for row in part.jacobian for entry in row]
         if h_inside(ring, *own) or any(ring.depends(x, name) for x in own for name in ("p", "q")):
             return None
         total = _times(ring, own, total)
@@ -177,7 +178,7 @@ def of_map(
     Raises InputError where it has no closed form there.
     """
     with limited("scheme", name, "its linear theory", 10 * MOST):  # `lie99` takes 3
-        found = _of_product(name, step, narrow) if step.of_parts else None
+        found = _of_product(name, step, narrow) if step.formulas is None else None
         return found or _of_closed_form(name, step, narrow, keeps_area)
 
 

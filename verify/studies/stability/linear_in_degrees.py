@@ -26,7 +26,6 @@ from verify.errors import NOT_GIVEN, InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import check_start
 from verify.schemes import get
-from verify.schemes.degrees import check_takes
 from verify.studies.stability.linear import LinearStability, NearbyLimit
 from verify.studies.stability.nearby_linear import linear_stability
 from verify.studies.stability.positive_roots import PositiveRoot, positive_roots
@@ -129,7 +128,7 @@ def linear_in_degrees(
     if get(scheme).formulas:
         raise InputError("scheme", scheme, "is a formula; linear theory takes a named scheme")
     hessian = hessian_at(hamiltonian, point)
-    check_takes(get(scheme), hamiltonian)
+    get(scheme).step_map(hamiltonian)
     matrix = _field_matrix(hessian)
     splits = _is_sum_of_oscillators(hessian, hamiltonian.degrees)
     if not splits and not step_sizes:

@@ -22,6 +22,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.printed_formulas import moved_by_units, nearby_defect
 from verify.prose import Number, Prose, prose
 from verify.schemes import get
+from verify.schemes.maps.by_formulas import map_by_formulas
 from verify.schemes.printed.asked import BITS, Asked, Named
 from verify.schemes.printed.judged import WITHIN
 from verify.schemes.printed.nearby import AnyNumbers, Nearby
@@ -30,7 +31,6 @@ from verify.schemes.printed.nearest import Nearest, nearest
 from verify.schemes.printed.splitting_table import PrintedTable
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import splitting
-from verify.schemes.step_map import StepMap
 from verify.studies.stability.linear import LinearStability, NearbyLimit, of_map
 
 _NARROW = Fraction(1, 1000)  # a gap that is looked at; whether it closes is asked
@@ -91,7 +91,7 @@ def _of_formulas(scheme: Scheme, found: LinearStability) -> LinearStability:
 
 
 def _end_of_formulas(formulas: Mapping[str, str]) -> Fraction | None:
-    step = StepMap.from_formulas(_oscillator(), formulas["p_next"], formulas["q_next"])
+    step = map_by_formulas(_oscillator(), formulas)
     found = of_map("printed", step, _NARROW, keeps_area=True)
     return None if found.interval in (sympy.oo, 0) else Fraction(found.decimal(_DIGITS))
 

@@ -21,7 +21,7 @@ from verify.flows.energies import energies_at
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import Given, point_of, shown_of
 from verify.kernels.many_points import PointMap
-from verify.kernels.step.in_degrees import map_of, preserves
+from verify.kernels.step.computation import step_map_of
 from verify.scenes.observables import carries_defect
 from verify.scenes.results.stability import OrbitKind, OrbitMapResult
 from verify.studies.stability.exact_motion import Sensitivity
@@ -165,7 +165,7 @@ def _kind(seen: Sensitivity, left: bool, defined: bool) -> OrbitKind:
 def _defects(orbits: Orbits, stays: np.ndarray) -> list[str | None]:
     """Of those that stay, to some digits; "0" of all where that is proved."""
     of, count = orbits.hamiltonian, len(stays)
-    if preserves(map_of(of, orbits.scheme)):
+    if step_map_of(of, orbits.scheme).preserves_area:
         return ["0" if x else None for x in stays]
     found: list[str | None] = [None] * count
     if carries_defect(of) and stays.any():

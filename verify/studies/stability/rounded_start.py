@@ -4,6 +4,7 @@ from fractions import Fraction
 
 from verify.arithmetic.systems import mpfr
 from verify.flows.functions import functions_at
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.prose import Number, Prose, prose, read_prose
 from verify.studies.stability.trail import Run
 
@@ -32,9 +33,9 @@ def nearest_equilibrium(run: Run) -> tuple[Fraction, Fraction] | None:
     H depends on time."""
     if run.hamiltonian.time_dependent:
         return None
-    field, _ = run.hamiltonian.field()
+    field, _ = canonical_field(run.hamiltonian)
     ring, arithmetic = field.ring, mpfr.make(_DIGITS)
-    gradient = (field.h_p, field.h_q)
+    gradient = field.gradient(field.energy)
     hessian = [ring.diff(x, name) for x in gradient for name in ("p", "q")]
     at = functions_at(arithmetic, [(ring, x) for x in (*gradient, *hessian)])
     start = tuple(map(arithmetic.number, run.state))

@@ -1,6 +1,6 @@
 """The matrix of a step of a scheme on a linear system, exactly; whether its powers stay bounded.
 
-A scheme's step is made of few operations (`verify.schemes.step_algebra`). Here a value is a
+A scheme's step is made of few operations (`verify.schemes.maps.step_algebra`). Here a value is a
 row: a linear function of z, and, inside of equations, of their unknowns too. So a step of size h, a
 rational, is a 2n × 2n matrix M of rationals.
 
@@ -23,8 +23,7 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes import get
-from verify.schemes.degrees import map_in_degrees
-from verify.schemes.step_algebra import Number, StepAlgebra
+from verify.schemes.maps.step_algebra import Number, StepAlgebra
 from verify.studies.stability.positive_roots import positive_roots
 
 _BITS, _MOST_BITS = 128, 4096
@@ -35,12 +34,15 @@ class _IrrationalError(Exception):
     """A coefficient of the scheme is no rational."""
 
 
-class LinearAlgebra:
+class LinearAlgebra(StepAlgebra[Row]):
     """A step of size h of z' = A z: values are rows, changes of z as functions of it."""
 
     def __init__(self, matrix: flint.fmpq_mat, h: flint.fmpq, unknowns: int = 0) -> None:
         self.matrix, self.h, self.unknowns = matrix, h, unknowns
-        self.size = matrix.nrows()
+
+    @property
+    def size(self) -> int:
+        return self.matrix.nrows()
 
     @property
     def _width(self) -> int:
@@ -109,12 +111,13 @@ def step_matrix(
     """M of a step of z' = `matrix` z, the field of a quadratic H; None where the scheme has
     irrational coefficients. InputError for formulas of a user's own, and where the scheme does not
     take H."""
-    made = map_in_degrees(get(scheme), hamiltonian)
-    if made.step is None:
+    chosen = get(scheme)
+    step = chosen.step_map(hamiltonian).step or getattr(chosen.every_h, "changes", None)
+    if step is None:
         raise InputError("scheme", scheme, "is a formula; linear theory takes a named scheme")
     algebra = LinearAlgebra(matrix, _rational(h))
     try:
-        changes = made.step(algebra)
+        changes = step(algebra)
     except _IrrationalError:
         return None
     size = algebra.size

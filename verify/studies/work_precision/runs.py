@@ -23,11 +23,11 @@ from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import float64
 from verify.flows.degrees.solution import solution_in_degrees
 from verify.flows.solution import Point, Solution
-from verify.hamiltonians.energy import energy_of
+from verify.hamiltonians.canonical_field import energy_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.chunked_loop import ChunkedLoop
 from verify.kernels.kernel import Kernel, Writer
-from verify.kernels.step.in_degrees import map_of, preserves
+from verify.kernels.step.computation import step_map_of
 from verify.kernels.stepping import KernelRun
 from verify.runs.digits_on_demand import choose, measure
 from verify.runs.estimated import Bounds
@@ -119,10 +119,10 @@ class Ladder:
     def __init__(self, problem: Problem, scheme: str) -> None:
         self.problem, self.scheme = problem, get(scheme)
         self.name = scheme
-        self.preserves_area = preserves(map_of(problem.hamiltonian, scheme))
+        self.preserves_area = step_map_of(problem.hamiltonian, scheme).preserves_area
         # Anew: what is kept of an earlier run is loaded, which says nothing of compiling.
         self.arithmetic: Arithmetic = float64.compiled_at_once(anew=True)
-        step_map = map_of(self._kernel_run(problem.time, frozenset()).hamiltonian, scheme)
+        step_map = step_map_of(self._kernel_run(problem.time, frozenset()).hamiltonian, scheme)
         begun = time.perf_counter()
         self.kernel: Kernel = Writer(step_map, self.arithmetic, frozenset(), False).kernel()
         self.call(problem.time, blank=True)()

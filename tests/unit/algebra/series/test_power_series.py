@@ -10,9 +10,8 @@ from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.power_series import Derivatives, Series, at_moved
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.plane_flow import PlaneFlow
 from verify.schemes import get
-from verify.schemes.degrees.defect import DefectSeries
+from verify.schemes.maps.defect import DefectSeries
 
 H = plain("h")
 MOST = 4
@@ -76,11 +75,11 @@ def test_series_are_multiplied_and_cut_off() -> None:
 @pytest.mark.parametrize("name", ["lie2", "symplectic-euler", "explicit-midpoint"])
 def test_delta_j_of_a_series_is_that_of_the_closed_form(name: str) -> None:
     step_map = get(name).step_map(Hamiltonian.parse("p**2/2 + q**2/2 + a*q**4/4"))
-    expanded = step_map.taylor(MOST)
+    expanded = step_map.series(MOST)
     assert expanded is not None
-    field, p, q = expanded
+    field, state = expanded
     closed = sympy.Poly(step_map.delta_j, H)
-    made = DefectSeries(lambda _: (PlaneFlow(field), (p, q)), MOST)
+    made = DefectSeries(lambda _: (field, state), MOST)
     for n in range(MOST + 1):
         coefficient = made.form(n).divergence
         assert sympy.expand(field.ring.expression(coefficient) - closed.coeff_monomial(H**n)) == 0

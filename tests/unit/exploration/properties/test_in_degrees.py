@@ -2,12 +2,12 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from fractions import Fraction
 from importlib import import_module
 from typing import Any
 
 import pytest
 
+from tests.helpers.planted.steps import with_term
 from tests.unit.exploration.properties.test_properties import OF_TIME_ALONE, PLANTED
 from verify.exploration import properties
 from verify.exploration.any_sample import AnySample
@@ -19,8 +19,7 @@ from verify.kernels.kernel import kernel_for
 from verify.kernels.statements import Statements
 from verify.scenes.scene import scene_from
 from verify.schemes import get
-from verify.schemes.degrees import map_in_degrees
-from verify.schemes.degrees.canonical_map import CanonicalMap
+from verify.schemes.maps.step_map import StepMap
 
 Patch = pytest.MonkeyPatch
 Plant = Callable[[SampleInDegrees, Patch], Any]
@@ -48,33 +47,24 @@ def _every_turn(monkeypatch: Patch) -> None:
     monkeypatch.setattr(AnySample, "is_turn", lambda self, one_in, after=0: True)
 
 
-def wrong_map(true: CanonicalMap, power: int = 3) -> CanonicalMap:
+def wrong_map(true: StepMap, power: int = 3) -> StepMap:
     """h^power f2/100 added to q1'."""
-
-    def changes(algebra: Any) -> list[Any]:
-        found = true.step(algebra)
-        added = algebra.slopes([algebra.nothing] * algebra.size, Fraction(0), [1])
-        for _ in range(power):
-            added = [algebra.moved(algebra.nothing, [Fraction(1)], added)]
-        n = algebra.size // 2
-        found[n] = algebra.between(found[n], added[0], Fraction(1, 100))
-        return found
-
-    return CanonicalMap(true.hamiltonian, true.field, changes)
+    return with_term(true, true.degrees, power, lambda _: true.field.slopes[1] / 100)
 
 
 def another_map(sample: SampleInDegrees, patch: Patch) -> None:
     patch.setitem(sample.__dict__, "step_map", wrong_map(sample.step_map))
 
 
-def in_module(name: str) -> Plant:
-    """The map that the property's own module makes is another."""
-    module = import_module(f"verify.exploration.properties.{name}")
+def another_scheme(sample: SampleInDegrees, patch: Patch) -> SampleInDegrees:
+    """The maps that the property makes of the scheme are others, but in the plane."""
+    true = sample.scheme.step_map
 
-    def plant(_: SampleInDegrees, patch: Patch) -> None:
-        patch.setattr(module, "map_in_degrees", lambda *asked: wrong_map(map_in_degrees(*asked)))
+    def build(hamiltonian: Hamiltonian) -> StepMap:
+        right = true(hamiltonian)
+        return right if hamiltonian.planar else wrong_map(right)
 
-    return plant
+    return replace(sample, scheme=replace(sample.scheme, build=build))
 
 
 def one_more_order(sample: SampleInDegrees, patch: Patch) -> None:
@@ -83,8 +73,8 @@ def one_more_order(sample: SampleInDegrees, patch: Patch) -> None:
 
 
 def one_order_less(sample: SampleInDegrees, patch: Patch) -> None:
-    order = sample.proof.order or 0
-    patch.setitem(sample.__dict__, "proof", replace(sample.proof, order=order - 1))
+    first = replace(sample.proof.first, power=(sample.proof.order or 0) - 1)
+    patch.setitem(sample.__dict__, "proof", replace(sample.proof, first=first))
 
 
 def sums_for_products(_: SampleInDegrees, patch: Patch) -> None:
@@ -102,7 +92,7 @@ def believes_all(_: SampleInDegrees, patch: Patch) -> None:
 
 def blind(sample: SampleInDegrees, patch: Patch) -> None:
     module = import_module("verify.exploration.properties.orders.planted_errors")
-    patch.setattr(module, "prove_map", lambda *_: sample.proof)
+    patch.setattr(module, "prove", lambda *_, **__: sample.proof)
 
 
 def half_a_flow(_: SampleInDegrees, patch: Patch) -> None:
@@ -124,7 +114,7 @@ def a_lost_step(_: SampleInDegrees, patch: Patch) -> None:
 def a_second_drive(sample: SampleInDegrees, patch: Patch) -> None:
     """Of another H, which is not periodic."""
     other = Hamiltonian.parse(f"{DRIVEN} + q2*t/100")
-    patch.setitem(sample.__dict__, "step_map", map_in_degrees(sample.scheme, other))
+    patch.setitem(sample.__dict__, "step_map", sample.scheme.step_map(other))
 
 
 PLANTED_IN_DEGREES: dict[str, tuple[str, str, Plant]] = {
@@ -141,13 +131,13 @@ PLANTED_IN_DEGREES: dict[str, tuple[str, str, Plant]] = {
     "number-systems-agree": ("lie2", HENON_HEILES, another_map),
     "periodic-hamiltonians": ("lie2", DRIVEN, a_second_drive),
     "planted-errors": ("lie2", HENON_HEILES, blind),
-    "quadratic-hamiltonians": ("lie2", MIXED, in_module("symmetries.quadratic_hamiltonians")),
+    "quadratic-hamiltonians": ("lie2", MIXED, another_scheme),
     "results-read-back": ("lie2", HENON_HEILES, a_lost_step),
     "shift-of-time": ("rk4", DRIVEN, another_map),
     "symmetric-schemes": ("stormer-verlet", HENON_HEILES, another_map),
     "symplectic-schemes": ("stormer-verlet", THREE, another_map),
     "time-scaling": ("lie2", HENON_HEILES, another_map),
-    "uncoupled-systems": ("lie2", THREE, in_module("degrees.uncoupled_systems")),
+    "uncoupled-systems": ("lie2", THREE, another_scheme),
 }
 
 

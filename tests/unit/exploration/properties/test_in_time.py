@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 import sympy
 
+from tests.helpers.maps import by_expressions
 from tests.unit.exploration.properties.test_properties import (
     OF_TIME_ALONE,
     PLANTED,
@@ -15,16 +16,15 @@ from tests.unit.exploration.properties.test_properties import (
     example_of,
     must_fail,
     take_every_turn,
-    with_map,
+    with_added,
 )
-from tests.unit.exploration.properties.test_properties_sharp import moved, proved, tiny
+from tests.unit.exploration.properties.test_properties_sharp import moved, tiny, with_power
 from verify.algebra.formula import symbol
 from verify.exploration import properties
 from verify.exploration.sample import Sample
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes import get
-from verify.schemes.step_map import StepMap
-from verify.schemes.substep import Substep
+from verify.schemes.maps.step_map import StepMap
 
 DRIVEN = "p**2/2 + q**2/2 + q**4/4 + q**2*cos(2*t)"
 MASS = "p**2/2 + q**2/2 + q**4/4 + p**2/(1 + t**2)"
@@ -51,25 +51,20 @@ def without_d_by_t(sample: Sample, patch: Patch) -> Sample:
             return exact.diff(p) * x.diff(q) - exact.diff(q) * x.diff(p)
 
         pair = [x + h * along(x) + h**2 / 2 * along(along(x)) for x in (p, q)]
-        return StepMap.from_expressions(hamiltonian, *pair)
+        return by_expressions(hamiltonian, *pair)
 
     return replace(sample, scheme=replace(sample.scheme, build=build))
 
 
 def frozen(sample: Sample, patch: Patch) -> Sample:
     """The scheme, every part of it at the step's beginning."""
-    wrong = get(f"{sample.scheme.name}, clock frozen").build
+    wrong = get(f"{sample.scheme.name}, clock frozen").step_map
     return replace(sample, scheme=replace(sample.scheme, build=wrong))
 
 
 def with_zero_of_time(power: int) -> Plant:
     """h^… t/1000 added to p': a clock with a zero of its own, and without a period."""
-
-    def changed(step: Substep) -> tuple[Any, Any]:
-        h, t = (step.ring.variable(name) for name in "ht")
-        return step.p_next + h**power * t / 1000, step.q_next
-
-    return lambda sample, _: with_map(sample, changed)
+    return lambda sample, _: with_added(sample, power, lambda ring: ring.variable("t") / 1000)
 
 
 def slow_clock(sample: Sample, patch: Patch) -> Sample:
@@ -97,7 +92,7 @@ IN_TIME: list[tuple[str, str, Plant]] = [
     ("extended-system", "rk4", tiny(1, 0, 3)),
     ("extended-system", "stormer-verlet", frozen),
     ("extended-system", "forest-ruth", with_zero_of_time(5)),
-    ("order-by-jets", "lie2", proved(lambda p: {"order": 4})),
+    ("order-by-jets", "lie2", with_power(4)),
     ("periodic-hamiltonians", "lie2", with_zero_of_time(3)),
     ("periodic-hamiltonians", "rk4", with_zero_of_time(6)),
     ("separated-parts-add-up", "lie2", moved("clock", "product")),

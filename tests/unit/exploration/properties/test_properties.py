@@ -7,18 +7,19 @@ from typing import Any
 
 import pytest
 
+from tests.helpers.planted.steps import Term, with_term
 from verify.arithmetic.exact import decimal
 from verify.exploration import properties
 from verify.exploration.property import Violation
 from verify.exploration.sample import Sample
+from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import kernel_for
 from verify.proof import growth_law as growth
 from verify.proof.order import prove
 from verify.scenes.scene import scene_from
 from verify.schemes import get
-from verify.schemes.degrees.two_form import TwoForm
-from verify.schemes.step_map import StepMap
-from verify.schemes.substep import Substep
+from verify.schemes.maps.step_map import StepMap
+from verify.schemes.maps.two_form import TwoForm
 
 Patch = pytest.MonkeyPatch
 Plant = Callable[[Sample, Patch], Sample]
@@ -49,25 +50,23 @@ def take_every_turn(patch: Patch) -> None:
     patch.setattr(Sample, "is_turn", lambda self, one_in, after=0: True)
 
 
-def with_map(sample: Sample, change: Callable[[Substep], tuple[Any, Any]]) -> Sample:
-    """The example, its scheme's last part changed for every H."""
+def with_added(sample: Sample, h_power: int, term: Term, part: str = "p") -> Sample:
+    """The example, its scheme's p' or q' changed for every H by h^… times the term."""
+    true = sample.scheme.step_map
 
-    def build(hamiltonian: Any) -> StepMap:
-        *before, last = sample.scheme.build(hamiltonian).substeps
-        return StepMap(hamiltonian, (*before, Substep(last.field, *change(last))))
+    def build(hamiltonian: Hamiltonian) -> StepMap:
+        return with_term(true(hamiltonian), "pq".index(part), h_power, term)
 
     return replace(sample, scheme=replace(sample.scheme, build=build))
 
 
 def added(p_power: int, q_power: int, h_power: int, part: str = "p") -> Plant:
     """h^… p^… q^…/1000 added to p' or q'."""
+    return lambda sample, _: with_added(sample, h_power, monomial(p_power, q_power, 1000), part)
 
-    def changed(step: Substep) -> tuple[Any, Any]:
-        p, q, h = (step.ring.variable(name) for name in "pqh")
-        term = p**p_power * q**q_power * h**h_power / 1000
-        return step.p_next + term * (part == "p"), step.q_next + term * (part == "q")
 
-    return lambda sample, _: with_map(sample, changed)
+def monomial(p_power: int, q_power: int, divisor: int) -> Term:
+    return lambda ring: ring.variable("p") ** p_power * ring.variable("q") ** q_power / divisor
 
 
 def wrong_order(sample: Sample, patch: Patch) -> Sample:
@@ -303,7 +302,8 @@ def test_an_unknown_property_is_refused_with_those_that_there_are() -> None:
 
 
 def test_a_scheme_keeps_its_name_when_planted() -> None:
-    """The control of `with_map`: nothing changed is the same step."""
-    same = with_map(example_of("lie2"), lambda step: (step.p_next, step.q_next))
-    assert same.scheme.name == get("lie2").name
-    assert properties.get("time-scaling").holds(same)
+    """The control of `with_added`: nothing added is the same step."""
+    for scheme in ("lie2", "rk4", "stormer-verlet"):
+        same = with_added(example_of(scheme), 1, lambda ring: ring.zero)
+        assert same.scheme.name == get(scheme).name
+        assert properties.get("time-scaling").holds(same)

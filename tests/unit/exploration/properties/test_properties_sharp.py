@@ -11,9 +11,10 @@ from tests.unit.exploration.properties.test_properties import (
     Patch,
     Plant,
     example_of,
+    monomial,
     must_fail,
     take_every_turn,
-    with_map,
+    with_added,
 )
 from verify.arithmetic.exact import decimal
 from verify.exploration import properties
@@ -22,9 +23,9 @@ from verify.exploration.properties.orbits import growth_laws
 from verify.exploration.properties.orders import planted_errors
 from verify.exploration.property import Violation
 from verify.exploration.sample import Sample
+from verify.proof.expansion import VANISHES
 from verify.proof.growth_law import GrowthLaw
-from verify.proof.order_proof import Proof
-from verify.schemes.substep import Substep
+from verify.proof.proof import Proof
 from verify.studies.separation.chain import Chain
 
 
@@ -35,13 +36,8 @@ def _every_turn(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def tiny(p_power: int, q_power: int, h_power: int, part: str = "p", size: int = 15) -> Plant:
     """10^−size h^… p^… q^… added to p' or q'."""
-
-    def changed(step: Substep) -> tuple[Any, Any]:
-        p, q, h = (step.ring.variable(name) for name in "pqh")
-        term = p**p_power * q**q_power * h**h_power / 10**size
-        return step.p_next + term * (part == "p"), step.q_next + term * (part == "q")
-
-    return lambda sample, _: with_map(sample, changed)
+    term = monomial(p_power, q_power, 10**size)
+    return lambda sample, _: with_added(sample, h_power, term, part)
 
 
 def unseen(plant: Plant) -> Plant:
@@ -65,6 +61,11 @@ def proved(change: Callable[[Proof], dict[str, Any]]) -> Plant:
         return sample
 
     return planted
+
+
+def with_power(power: int) -> Plant:
+    """A proof that says another order of ΔJ."""
+    return proved(lambda p: {"first": replace(p.first, power=power)})
 
 
 def ruled(change: Callable[[GrowthLaw], GrowthLaw]) -> Plant:
@@ -168,9 +169,9 @@ PLANTED: list[tuple[str, str, Plant]] = [
     ("number-systems-agree", "lie2", measured("lambda_max", 1 + Fraction(1, 10**9))),
     ("number-systems-agree", "lie2", measured("delta_j_max", 1 + Fraction(1, 10**9))),
     ("number-systems-agree", "lie2", measured("lambda", Fraction(-1))),
-    ("order-by-jets", "lie2", proved(lambda p: {"order": None, "area_preserving": True})),
-    ("order-by-jets", "lie4", proved(lambda p: {"order": 8})),
-    ("order-by-jets", "rk4", proved(lambda p: {"order": 5})),
+    ("order-by-jets", "lie2", proved(lambda _: {"first": VANISHES, "volume": VANISHES})),
+    ("order-by-jets", "lie4", with_power(8)),
+    ("order-by-jets", "rk4", with_power(5)),
     ("planted-errors", "lie2", boasting),
     ("quadratic-hamiltonians", "lie2", tiny(1, 0, 6)),
     ("quadratic-hamiltonians", "rk4", tiny(0, 1, 6, size=30)),

@@ -11,9 +11,9 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.certificates.checker import check
 from verify.proof.certificates.established import Established, established
 from verify.proof.certificates.every import of_every as certificate_of_every
-from verify.proof.certificates.one import of_one_in_degrees
+from verify.proof.certificates.one import of_one as certificate_of_one
 from verify.proof.every import prove_every
-from verify.proof.symplectic.order import prove_symplectic
+from verify.proof.order import prove
 from verify.schemes import get
 
 HENON = "(p1**2 + p2**2 + q1**2 + q2**2)/2 + q1**2*q2 - q2**3/3"
@@ -33,7 +33,7 @@ EVERY = [("lie1", 2, False), ("lie2", 2, False), ("lie2", 3, False), ("lie2", 2,
 @cache
 def _of_one(formula: str, scheme: str) -> dict[str, Any]:
     hamiltonian = Hamiltonian.parse(formula)
-    return of_one_in_degrees(prove_symplectic(hamiltonian, get(scheme)), hamiltonian, get(scheme))
+    return certificate_of_one(prove(get(scheme).step_map(hamiltonian), get(scheme)))
 
 
 def of_one(formula: str, scheme: str) -> dict[str, Any]:
@@ -57,7 +57,7 @@ def refused(data: dict[str, Any], reason: str) -> None:
 @pytest.mark.parametrize(("formula", "scheme"), ONE)
 def test_what_is_proved_of_one_is_accepted(formula: str, scheme: str) -> None:
     said = accepted(of_one(formula, scheme))
-    proof = prove_symplectic(Hamiltonian.parse(formula), get(scheme))
+    proof = prove(get(scheme).step_map(Hamiltonian.parse(formula)), get(scheme))
     assert (said.order, said.convergence_order) == (proof.order, proof.convergence_order)
     assert (said.degrees, said.symplectic, said.area_preserving) == (proof.degrees, False, None)
     assert len(said.p_next) == len(said.q_next) == said.degrees
@@ -173,7 +173,7 @@ def test_where_there_is_none_it_says_why(formula: str, scheme: str, problem: str
 def test_an_odd_taylor_polynomial_of_an_h_whose_form_vanishes_has_a_certificate() -> None:
     """S of lie1 is 0 where no derivative of H is of two variables: 0 telescopes, without β."""
     formula = "3*p1/4 + sin(3*q1)/2 + 7*p2/3 + cos(3*q2)/7 + (q1 - q2)**2/2"
-    proof = prove_symplectic(Hamiltonian.parse(formula), get("lie1"))
+    proof = prove(get("lie1").step_map(Hamiltonian.parse(formula)), get("lie1"))
     assert proof.symplectic
     assert proof.telescopes
     data = of_one(formula, "lie1")

@@ -18,7 +18,6 @@ from verify.proof.checked.proved import (
 )
 from verify.proof.every import prove_every
 from verify.proof.order import prove
-from verify.proof.symplectic.order import prove_symplectic
 from verify.schemes import get
 
 
@@ -79,7 +78,7 @@ def test_a_map_that_is_no_polynomial_in_h_and_changes_area_has_no_mark() -> None
 
 def test_in_degrees_s_is_certified_and_of_det_j_nothing() -> None:
     hamiltonian = systems.get("henon-heiles").hamiltonian()
-    proof, scheme = prove_symplectic(hamiltonian, get("lie2")), get("lie2")
+    proof, scheme = prove(get("lie2").step_map(hamiltonian), get("lie2")), get("lie2")
     (mark,) = marks(of_one_hamiltonian(proof, hamiltonian, scheme, DEFECT))
     assert "S = JᵀΩJ − Ω = L h^3" in mark
     assert marks(of_one_hamiltonian(proof, hamiltonian, scheme, frozenset({"volume"}))) == []

@@ -6,8 +6,9 @@ from typing import Any
 import pytest
 
 from tests.helpers.constructed.separations import CROSSING, point
+from tests.helpers.maps import by_formulas
 from tests.unit.pages.test_page import EVIL, Reader, claim, proof, report, run, scene
-from verify import Hamiltonian, Proof, StepMap, prove, separate_grid
+from verify import Hamiltonian, Proof, prove, separate_grid
 from verify import run as run_scheme
 from verify.schemes import get
 from verify.verdict import Verdict
@@ -132,5 +133,5 @@ def test_the_check_sees_what_is_not_escaped() -> None:
 
 
 def test_a_map_of_ones_own_shows_itself() -> None:
-    own = prove(StepMap.from_formulas(DUFFING, "p - h*(q + q**3)", "q + h*p_next"))
+    own = prove(by_formulas(DUFFING, "p - h*(q + q**3)", "q + h*p_next"))
     assert r"\det J &\equiv 1" in own._repr_latex_()

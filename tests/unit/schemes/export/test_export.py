@@ -13,11 +13,12 @@ import pytest
 import sympy
 
 import verify
+from tests.helpers.maps import by_formulas
 from verify import InputError, schemes
 from verify.algebra.formula import symbol
 from verify.algebra.symbols import H_STEP, P, Q
 from verify.calls.given import hamiltonian_from
-from verify.schemes.step_map import StepMap
+from verify.schemes.maps.parts import parts_of
 
 Functions = tuple[Callable[..., Any], Callable[..., Any], Callable[..., Any]]
 JULIA = ("sin", "cos", "tan", "exp", "log", "sqrt", "atan", "sinh", "cosh")
@@ -49,8 +50,8 @@ def known(system: str, name: str) -> list[mpmath.mpf]:
         point = [mpmath.mpf(x) for x in POINT]
         delta = {symbol("delta"): sympy.Rational(3, 2), symbol("t"): sympy.Rational(3, 8)}
         jacobian = mpmath.eye(2)
-        for part in step_map.substeps:
-            pair = [part.ring.expression(x).subs(delta) for x in (part.p_next, part.q_next)]
+        for part in parts_of(step_map) or (step_map.flat,):
+            pair = [part.ring.expression(x).subs(delta) for x in part.elements]
             slopes = [x.diff(y) for x in pair for y in (P, Q)]
             values = sympy.lambdify((P, Q, H_STEP), [*pair, *slopes], "mpmath")(*point)
             own = mpmath.matrix([values[2:4], values[4:6]])
@@ -180,7 +181,7 @@ def test_what_is_not_in_closed_form_is_refused() -> None:
 
 
 def test_a_text_of_the_users_stays_in_its_comment() -> None:
-    made = StepMap.from_formulas(hamiltonian_from("p**2/2 + q**2/2"), "p - h*q", "q + h*p_next")
+    made = by_formulas(hamiltonian_from("p**2/2 + q**2/2"), "p - h*q", "q + h*p_next")
     assert verify.export("p**2/2 + q**2/2", made).startswith("# One step of the scheme p_next = ")
     text = "p_next = p - (h*\nq); q_next = q + h*p_next"
     for language, mark in (("c", "//"), ("python", "#"), ("julia", "#"), ("latex", "%")):

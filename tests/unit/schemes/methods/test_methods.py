@@ -12,7 +12,7 @@ from verify.errors import InputError
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
-from verify.proof.order_proof import Proof
+from verify.proof.proof import Proof
 from verify.proof.symmetry import by_series
 from verify.schemes.every_hamiltonian import Stage, StageEquations
 from verify.verdict import Verdict

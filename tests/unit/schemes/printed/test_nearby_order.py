@@ -9,7 +9,6 @@ from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.every import prove_every
 from verify.proof.order import prove
-from verify.proof.symplectic.order import prove_symplectic
 from verify.schemes.printed.nearby_order import nearby_of
 from verify.schemes.printed.printed_numbers import PrintedNumbers
 from verify.verdict import Verdict
@@ -44,7 +43,7 @@ def test_the_order_of_exact_sizes_near_the_printed_ones_is_told_everywhere(
         prove(scheme.step_map(PENDULUM), scheme),
         prove_every(name),
         prove_every(name, timed=True),
-        prove_symplectic(HENON, scheme),
+        prove(scheme.step_map(HENON), scheme),
         prove_every(name, degrees=2),
     ):
         assert (proof.verdict, proof.convergence_order) == (ENCLOSED, 4), proof
@@ -64,7 +63,7 @@ def test_a_wrong_digit_is_refuted(half: tuple[str, ...], place: int, digit: int)
     scheme = schemes.get(name)
     assert prove_every(name).verdict is REFUTED
     assert prove(scheme.step_map(PENDULUM), scheme).verdict is REFUTED
-    assert prove_symplectic(HENON, scheme).verdict is REFUTED
+    assert prove(scheme.step_map(HENON), scheme).verdict is REFUTED
 
 
 def test_short_decimals_and_quotients_are_what_they_are() -> None:

@@ -1,19 +1,20 @@
 """Stability intervals on the harmonic oscillator, against known ones and against powers of M."""
 
 import math
-from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 import pytest
 import sympy
 
+from tests.helpers.maps import by_formulas
 from verify import schemes
 from verify.algebra.enclosure import enclose
 from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.schemes.step_map import StepMap
+from verify.schemes.maps.closed_form import ClosedForm
+from verify.schemes.maps.step_map import StepMap
 from verify.studies.stability import linear
 from verify.studies.stability.linear import Y, of_map
 from verify.studies.stability.nearby_linear import linear_stability
@@ -106,7 +107,7 @@ def test_schemes_of_high_order_end_at_the_same_root_by_bisection() -> None:
     ],
 )
 def test_maps_of_ones_own(p_next: str, q_next: str, end: object) -> None:
-    found = of_map("own", StepMap.from_formulas(HARMONIC, p_next, q_next))
+    found = of_map("own", by_formulas(HARMONIC, p_next, q_next))
     if end is None:
         assert 1.9 < float(found.decimal()) < 2
     else:
@@ -122,7 +123,7 @@ def test_a_shear_is_stable_for_no_step_as_its_powers_grow(name: str) -> None:
 
 def test_what_is_not_linear_is_refused() -> None:
     with pytest.raises(InputError, match="not linear"):
-        of_map("own", StepMap.from_formulas(HARMONIC, "p - h*q**2", "q"))
+        of_map("own", by_formulas(HARMONIC, "p - h*q**2", "q"))
 
 
 # -- by the product of the parts' matrices --------------------------------------------------------
@@ -147,13 +148,15 @@ def test_the_product_of_the_parts_gives_what_the_closed_form_does(
 
 
 def test_a_wrong_product_gives_another_interval(monkeypatch: pytest.MonkeyPatch) -> None:
-    right = linear.product
+    right = linear.parts_of
 
-    def without_its_last_part(step: StepMap) -> object:
-        return right(replace(step, substeps=step.substeps[:-1]))
+    def without_the_last(step: StepMap) -> tuple[ClosedForm, ...]:
+        parts = right(step)
+        assert parts is not None
+        return parts[:-1]
 
     assert linear_stability("stormer-verlet").interval == 2
-    monkeypatch.setattr(linear, "product", without_its_last_part)
+    monkeypatch.setattr(linear, "parts_of", without_the_last)
     assert linear_stability("stormer-verlet").interval == 2 * sympy.sqrt(2)
 
 

@@ -8,7 +8,7 @@ import pytest
 import verify
 from verify.hamiltonians.start import point_of
 from verify.hamiltonians.systems import get
-from verify.kernels.step.in_degrees import map_of
+from verify.kernels.step.computation import step_map_of
 from verify.scenes.results.bounded_value import Value
 from verify.studies.work_precision import peers
 from verify.studies.work_precision.lines import error_slope, lambda_slope
@@ -65,7 +65,7 @@ def test_w_is_that_of_a_run() -> None:
 
 def test_a_step_counts_the_operations_of_all_coordinates() -> None:
     of = problem(HENON, START, 1)
-    small, chain = Ladder(of, "stormer-verlet").cost, map_of(HENON, "stormer-verlet")
+    small, chain = Ladder(of, "stormer-verlet").cost, step_map_of(HENON, "stormer-verlet")
     assert small.additions > 2 * chain.hamiltonian.degrees
     assert not small.functions
 

@@ -16,7 +16,7 @@ from verify.arithmetic.arb import Ball, rational_ball
 from verify.claims.findings import Findings
 from verify.claims.on_runs import RunClaim
 from verify.claims.runs import QUANTITIES, middle, start_of, table_of
-from verify.hamiltonians.energy import energy_of
+from verify.hamiltonians.canonical_field import energy_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.prose import Number, Prose, joined, prose
 from verify.runs.start import Start

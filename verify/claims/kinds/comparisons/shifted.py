@@ -16,6 +16,7 @@ from verify.claims.formulas import step_map_of
 from verify.claims.on_runs import RunClaim
 from verify.claims.runs import QUANTITIES, NoValueError, all_hold, middle
 from verify.errors import InputError
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.prose import number, prose
 from verify.scenes.results.bounded_value import Value
@@ -93,7 +94,7 @@ def _values(run: RunResult, delta_j: DeltaJ) -> dict[str, Ball]:
 
 def _delta_j(exact: Hamiltonian, scheme: str) -> DeltaJ:
     step_map = step_map_of(exact, scheme)
-    field, (element,) = step_map.hamiltonian.field(step_map.delta_j)
+    field, (element,) = canonical_field(step_map.hamiltonian, step_map.delta_j)
 
     def at(p: Ball, q: Ball, h: Ball) -> Ball:
         found = enclose_over(field.ring, element, {"p": p, "q": q, "h": h})

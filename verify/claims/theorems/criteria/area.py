@@ -16,8 +16,8 @@ from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.assistant.stated import Shipped
 from verify.proof.order import prove
+from verify.schemes.maps.step_map import StepMap
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.schemes.step_map import StepMap
 from verify.verdict import Verdict
 
 _H = Fraction(1, 10)

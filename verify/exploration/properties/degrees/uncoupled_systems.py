@@ -17,7 +17,6 @@ from verify.exploration.oracles.mpfr_runs import RunInDegrees, must_agree
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.schemes.degrees import map_in_degrees
 
 _IN, _OF_EQUATIONS = 2, 4  # one in so many samples
 _MOST_STEPS = 3
@@ -33,7 +32,7 @@ def holds_in_degrees(sample: SampleInDegrees) -> None:
         _by_runs(sample, together, parts)
         return
     steps = min(sample.steps, _MOST_STEPS)
-    step = map_in_degrees(sample.scheme, together)
+    step = sample.scheme.step_map(together)
     start = sample.start if together.time_dependent else {
         name: x for name, x in sample.start.items() if name != "t"
     }  # fmt: skip

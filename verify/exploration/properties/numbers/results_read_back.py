@@ -12,7 +12,8 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.scene import Scene, scene_from
 from verify.scenes.toml_file import toml_data
 from verify.scenes.toml_text import scene_text
-from verify.schemes.step_map import StepMap
+from verify.schemes.maps.by_formulas import map_by_formulas
+from verify.schemes.maps.parts import parts_of
 
 _SCENES, _MAPS = 2, 3  # one in so many is read back; where no scene is, H is
 _LONGEST = 15  # terms of a map
@@ -46,13 +47,15 @@ def _must_be_same(sample: AnySample) -> None:
 
 
 def _must_be_same_map(sample: Sample) -> None:
-    closed = sample.step_map.substeps[-1]
-    if closed.implicit or closed.staged or closed.length > _LONGEST:
+    parts = parts_of(sample.step_map)
+    if parts is None or parts[-1].length > _LONGEST:
         return
-    texts = [to_text(closed.ring.expression(x)) for x in (closed.p_next, closed.q_next)]
-    read = StepMap.from_formulas(sample.hamiltonian, *texts).whole
-    for name in ("p_next", "q_next"):
-        ours, theirs = (enclose(step.ring, getattr(step, name), sample.start, BITS)
-                        for step in (closed, read))  # fmt: skip
+    closed, names = parts[-1], ("p_next", "q_next")
+    texts = [to_text(closed.ring.expression(x)) for x in closed.elements]
+    formulas = dict(zip(names, texts, strict=True))
+    read = map_by_formulas(sample.hamiltonian, formulas).flat
+    for name, x, y in zip(names, closed.elements, read.elements, strict=True):
+        ours = enclose(closed.ring, x, sample.start, BITS)
+        theirs = enclose(read.ring, y, sample.start, BITS)
         if ours is not None and theirs is not None and not ours.overlaps(theirs):
             raise Violation(f"{name} reads back as {shown(theirs)}, and is {shown(ours)}")

@@ -16,7 +16,7 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.oracles.ball_steps import BITS, ball_steps, stepped
 from verify.exploration.property import Silent, Violation, only_if, silent_at
 from verify.exploration.sample import Sample
-from verify.schemes.step_map import StepMap
+from verify.schemes.maps.step_map import StepMap
 from verify.studies.separation.chain import Chain, separated_chains
 from verify.studies.separation.kernel import WORKING
 from verify.studies.separation.mixed_run import Stopped

@@ -13,7 +13,7 @@ from verify.exploration.property import Violation, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.proof.certificates.checker import check
-from verify.proof.certificates.one import of_one, of_one_in_degrees
+from verify.proof.certificates.one import of_one
 from verify.proof.potential import potential_of
 
 _IN = 10  # one in so many samples
@@ -67,7 +67,7 @@ def holds_in_degrees(sample: SampleInDegrees) -> None:
     """The numbers are one of S, and one of h¹ in a coordinate's new value."""
     only_if(sample.is_turn(_IN_DEGREES) and sample.ordinary and not sample.step_map.implicit)
     with silent_at(InputError):  # such a map, or such functions, have no certificate
-        data = of_one_in_degrees(sample.proof, sample.hamiltonian, sample.scheme)
+        data = of_one(sample.proof)
     only_if(len(json.dumps(data)) <= _LONGEST_IN_DEGREES)
     leading = data["leading"][0][2] if data["leading"] else []
     _must_be_checked(data, leading, data["next"])

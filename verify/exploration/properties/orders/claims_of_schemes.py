@@ -5,7 +5,6 @@ Its ΔJ then has at least one order more than the scheme, as the exact flow has 
 
 from verify.exploration.any_sample import AnySample
 from verify.exploration.property import Violation, only_if
-from verify.proof.symplectic.proof import SymplecticProof
 from verify.verdict import Verdict
 
 
@@ -18,10 +17,10 @@ def holds_in_any_degrees(sample: AnySample) -> None:
     only_if(proof.verdict is not Verdict.UNDECIDED)
     if proof.convergence_order is not None and proof.convergence_order < scheme.order:
         raise Violation(f"{scheme.name} is proved, and has order {proof.convergence_order}")
-    defect = "S" if isinstance(proof, SymplecticProof) else "ΔJ"
+    defect = "ΔJ" if proof.planar else "S"
     if proof.order is not None and proof.order <= scheme.order:
         raise Violation(f"{scheme.name} has order {scheme.order}, and its {defect} {proof.order}")
-    if isinstance(proof, SymplecticProof):
+    if not proof.planar:
         volume = proof.volume_order
         if volume is not None and proof.order is not None and volume < proof.order:
             raise Violation(f"S has order {proof.order}, and det J − 1 {volume}")

@@ -8,9 +8,8 @@ from verify.exploration.sample import Sample
 from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.proof.every import prove_every
 from verify.proof.every_proof import EveryProof
-from verify.proof.order_proof import Proof
 from verify.proof.potential import potential_of
-from verify.proof.symplectic.proof import SymplecticProof
+from verify.proof.proof import Proof
 from verify.verdict import Verdict
 
 _MOST_ORDER = 4  # of a scheme that is proved for every H here
@@ -39,7 +38,7 @@ def holds(sample: Sample) -> None:
             raise Violation(f"L is not X·G: {found.reason}; it is for {every.quantifier}")
 
 
-def _contradiction(every: EveryProof, proof: Proof | SymplecticProof) -> str:
+def _contradiction(every: EveryProof, proof: Proof) -> str:
     """In words; empty where there is none. None, as an order, is beyond all that are looked at."""
     defect = "ΔJ" if every.planar else "S"
     if every.symplectic and proof.symplectic is False:

@@ -73,7 +73,7 @@ def _derivatives(sample: Sample, jets: Jets | TimedJets) -> list[Ball]:
     @cache
     def derivative(index: tuple[int, ...]) -> Poly:
         if sum(index) == 1:
-            return field.h_p if index[0] else field.h_q
+            return field.slopes[1] if index[0] else -field.slopes[0]
         at = max(k for k, n in enumerate(index) if n)
         lower = tuple(n - (k == at) for k, n in enumerate(index))
         return ring.diff(derivative(lower), "pqt"[at])

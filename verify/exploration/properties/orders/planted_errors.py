@@ -4,56 +4,50 @@ from fractions import Fraction
 from typing import Any
 
 from verify.errors import InputError
-from verify.exploration.property import Violation, only_if, silent_at
+from verify.exploration.property import Violation, known, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.exploration.sample_in_degrees import SampleInDegrees
+from verify.hamiltonians.canonical_field import CanonicalField
 from verify.proof.claimed import Claimed
 from verify.proof.order import prove
-from verify.proof.order_proof import Proof
-from verify.proof.symplectic.order import prove_map
-from verify.proof.symplectic.proof import SymplecticProof
-from verify.schemes.degrees.canonical_map import CanonicalMap
-from verify.schemes.step_algebra import StepAlgebra
-from verify.schemes.step_map import Expanded, StepMap
-from verify.schemes.substep import Substep
+from verify.proof.proof import Proof
+from verify.schemes.maps.step_algebra import State, StepAlgebra
+from verify.schemes.maps.step_map import StepMap
 from verify.verdict import Verdict
 
 _IN = 2  # one in so many samples
 
 
 def holds(sample: Sample) -> None:
-    order, parts = sample.scheme.order, sample.step_map.substeps
-    only_if(sample.is_turn(_IN) and sample.ordinary)
-    only_if(not any(part.implicit or part.staged for part in parts))
+    order = sample.scheme.order
+    only_if(sample.is_turn(_IN) and sample.ordinary and not sample.step_map.implicit)
     only_if(sample.proof.verdict is Verdict.PROVED)
     with silent_at(InputError):  # its closed form is too large to be looked at
-        found = prove(_planted(sample, order), sample.scheme)
-    _must_be_refuted(found, order, f"with q'·h^{order} added to p'")
+        finding = prove(_planted(sample.step_map, order), sample.scheme)
+    _must_be_refuted(finding, order, f"with q'·h^{order} added to p'")
 
 
-def _must_be_refuted(found: Proof | SymplecticProof, order: int, planted: str) -> None:
-    if found.verdict is not Verdict.REFUTED:
-        raise Violation(f"{planted} it is {found.verdict.value}")
-    if found.convergence_order != order - 1:
-        told = f"agrees with the flow up to h^{found.convergence_order}"
+def _must_be_refuted(proof: Proof, order: int, planted: str) -> None:
+    if proof.verdict is not Verdict.REFUTED:
+        raise Violation(f"{planted} it is {proof.verdict.value}")
+    if proof.convergence_order != order - 1:
+        told = f"agrees with the flow up to h^{proof.convergence_order}"
         raise Violation(f"{planted} it {told}, and truly up to h^{order - 1}")
 
 
-def _planted(sample: Sample, power: int) -> StepMap:
+def _planted(true: StepMap, power: int) -> StepMap:
     """The map with q'·h^power added to p'; its series has that term, too, where it has one."""
-    true = sample.step_map
-    *before, last = true.substeps
-    wrong = last.p_next + last.q_next * last.ring.variable("h") ** power
-    parts = (*before, Substep(last.field, wrong, last.q_next))
-    known = true.expansion
-    if known is None:
-        return StepMap(sample.hamiltonian, parts)
+    closed = true.closed if true.formulas is not None else None
+    if closed is not None:
+        p_next, q_next = closed.elements
+        wrong = p_next + q_next * closed.ring.variable("h") ** power
+        return StepMap(true.hamiltonian, closed.field, formulas=(wrong, q_next))
 
-    def expansion(most: int) -> Expanded:
-        field, p, q = known(most)
-        return field, p + q.shifted(power), q
+    def expand(most: int) -> tuple[CanonicalField, State]:
+        field, (p, q) = known(true.series(most))
+        return field, (p + q.shifted(power), q)
 
-    return StepMap(sample.hamiltonian, parts, expansion)
+    return StepMap(true.hamiltonian, true.field, expand=expand)
 
 
 def holds_in_degrees(sample: SampleInDegrees) -> None:
@@ -65,15 +59,19 @@ def holds_in_degrees(sample: SampleInDegrees) -> None:
     only_if(field.ring.vanishes(field.slopes[0]) is False)
     claimed = Claimed(sample.scheme.name, order, sample.scheme.area_preserving)
     with silent_at(InputError):
-        found = prove_map(_planted_in_degrees(sample.step_map, order), claimed)
-    _must_be_refuted(found, order, f"with h^{order} f1 added to q1'")
+        proof = prove(_planted_in_degrees(sample.step_map, order), claimed=claimed)
+    _must_be_refuted(proof, order, f"with h^{order} f1 added to q1'")
 
 
-def _planted_in_degrees(true: CanonicalMap, power: int) -> CanonicalMap:
+def _planted_in_degrees(true: StepMap, power: int) -> StepMap:
     """The map with h^power f1 added to q1', f1 the slope of p1."""
-    step = true.step
-    assert step is not None  # noqa: S101 - the schemes of the catalogue have one
-    zero = Fraction(0)
+    closed = true.closed if true.formulas is not None else None
+    if closed is not None:
+        slope = closed.ring.variable("h") ** power * closed.field.slopes[0]
+        wrong = list(closed.elements)
+        wrong[len(wrong) // 2] += slope
+        return StepMap(true.hamiltonian, closed.field, formulas=tuple(wrong))
+    step, zero = known(true.step), Fraction(0)
 
     def changes(algebra: StepAlgebra[Any]) -> list[Any]:
         found, first = step(algebra), algebra.slopes([algebra.nothing] * algebra.size, zero, [0])
@@ -83,4 +81,4 @@ def _planted_in_degrees(true: CanonicalMap, power: int) -> CanonicalMap:
         found[n] = algebra.between(found[n], first[0], Fraction(1))
         return found
 
-    return CanonicalMap(true.hamiltonian, true.field, changes)
+    return StepMap(true.hamiltonian, true.field, changes)

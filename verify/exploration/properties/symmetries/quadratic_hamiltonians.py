@@ -24,7 +24,6 @@ from verify.exploration.sample import Sample
 from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.schemes.degrees import map_in_degrees
 from verify.schemes.every_hamiltonian import RungeKutta, TaylorSeries
 
 _UNIT = 100  # coefficients are whole multiples of 1/100
@@ -39,7 +38,7 @@ def holds(sample: Sample) -> None:
     square = -(sample.step_size**2) * (h_pp * h_qq - h_pq**2)
     wanted = _product(_stability_function(generic), square)
     step_map = sample.scheme.step_map(_quadratic(sample, form))
-    whole = step_map.whole
+    whole = step_map.flat
     found = enclose(whole.ring, whole.delta_j, {"h": sample.step_size}, BITS)
     # det J − 1 against ΔJ, and not det J: of a small ΔJ that has lost most digits.
     with working_precision(BITS):
@@ -87,7 +86,7 @@ def holds_in_degrees(sample: SampleInDegrees) -> None:
     hamiltonian = _quadratic(sample, form)
     only_if(hamiltonian.coordinates == sample.hamiltonian.coordinates)
     wanted = _stability_matrix(_stability_function(generic), form, sample.step_size)
-    step = map_in_degrees(sample.scheme, hamiltonian)
+    step = sample.scheme.step_map(hamiltonian)
     start = {name: x for name, x in sample.start.items() if name != "t"}
     found = ball_steps(step, start, 1)[-1].sharp()
     with working_precision(BITS):

@@ -151,13 +151,13 @@ def _distance(formula: str, eta: int) -> tuple[float, float]:
     from verify.schemes import get
 
     taylor = _integrator(formula, eta)
-    (own,) = get(f"lie{eta}").step_map(Hamiltonian.parse(formula)).substeps
+    own = get(f"lie{eta}").step_map(Hamiltonian.parse(formula)).flat
     found = [0.0, 0.0]
     for p, q in _POINTS:
         for k, x in enumerate((p, q, 1, 0, 0, 1)):
             taylor.state[k] = float(x)
         taylor.step(max_delta_t=float(_STEP))
-        exact = (own.p_next, own.q_next, *own.jacobian)
+        exact = (*own.elements, *(x for row in own.jacobian for x in row))
         for k, element in enumerate(exact):
             ball = enclosed(own.ring, element, {"p": p, "q": q, "h": _STEP}, 400)
             middle, _ = middle_and_radius(ball)

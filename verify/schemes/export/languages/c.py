@@ -1,9 +1,11 @@
 """C99, which is also C++: three functions and their constants; needs -lm."""
 
+from collections.abc import Sequence
+
 import sympy
 from sympy.printing.c import C99CodePrinter
 
-from verify.schemes.export.program import OUTPUTS, Program
+from verify.schemes.export.program import Program
 
 SUFFIX = ".c"
 _WORDS = """
@@ -13,7 +15,6 @@ volatile while bool true false main out j0 j1 jn y0 y1 yn gamma class namespace 
 template operator public private protected friend virtual try catch throw using
 """  # of C and C++, and of math.h
 RESERVED = frozenset(_WORDS.split())
-_ENDS = {"step": "out[2]: p', q'", "jacobian": "out[4]: dp'/dp, dp'/dq, dq'/dp, dq'/dq"}
 
 
 class _Printer(C99CodePrinter):  # type: ignore[misc]
@@ -35,13 +36,13 @@ def written(program: Program) -> str:
     lines += [
         f"static const double {c.name} = {c.literal};  // {c.comment}" for c in program.constants
     ]
-    for key in OUTPUTS:
+    for key in program.outputs:
         lines += ["", *_function(program, key)]
     return "\n".join(lines) + "\n"
 
 
 def _function(program: Program, key: str) -> list[str]:
-    own, outputs = program.functions[key], OUTPUTS[key]
+    own, outputs = program.functions[key], program.outputs[key]
     given = ", ".join(f"double {name}" for name in program.arguments)
     name = program.name if key == "step" else f"{program.name}_{key}"
     printer, declared = _Printer(), set(program.arguments)
@@ -59,7 +60,21 @@ def _function(program: Program, key: str) -> list[str]:
     body = [*(f"    (void){n};" for n in unused), *body]
     if key == "delta_j":
         return [f"double {name}({given})", "{", *body, "}"]
-    return [f"// {_ENDS[key]}", f"void {name}({given}, double *out)", "{", *body, "}"]
+    return [
+        f"// {_end(program.coordinates, key)}",
+        f"void {name}({given}, double *out)",
+        "{",
+        *body,
+        "}",
+    ]
+
+
+def _end(names: Sequence[str], key: str) -> str:
+    """What a function writes into `out`."""
+    own = [f"{x}'" for x in names]
+    if key == "jacobian":
+        own = [f"d{x}'/d{y}" for x in names for y in names]
+    return f"out[{len(own)}]: {', '.join(own)}"
 
 
 def _uses(x: sympy.Expr, name: str) -> bool:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import sympy
 from sympy.printing.str import StrPrinter
 
-from verify.schemes.export.program import OUTPUTS, Program
+from verify.schemes.export.program import Program
 
 SUFFIX = ".jl"
 _WORDS = """
@@ -26,7 +26,7 @@ def written(program: Program) -> str:
     """The whole file."""
     head = [f"# {line}" for line in program.head()]
     constants = [f"const {c.name} = {c.literal}  # {c.comment}" for c in program.constants]
-    functions = [line for key in OUTPUTS for line in _function(program, key)]
+    functions = [line for key in program.outputs for line in _function(program, key)]
     return "\n".join([*head, *([""] if constants else []), *constants, *functions]) + "\n"
 
 
@@ -36,4 +36,4 @@ def _function(program: Program, key: str) -> Iterator[str]:
     yield from ("", f"function {name}({', '.join(program.arguments)})")
     for target, x in program.functions[key]:
         yield f"    {target} = {printer.doprint(x)}"
-    yield from (f"    return {', '.join(OUTPUTS[key])}", "end")
+    yield from (f"    return {', '.join(program.outputs[key])}", "end")

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import sympy
 
-from verify.algebra.symbols import P, Q
+from verify.algebra.formula import symbol
 from verify.effort import MOST, limited
 from verify.schemes.export.program import Program
 
@@ -19,10 +19,10 @@ def written(program: Program) -> str:
     comments += [f"% {comment.removesuffix(', rounded to nearest')}" for comment in irrational]
     rows = [*_steps(program)]
     if len(program.parts) == 1:
-        (pair,) = program.parts
+        (pair,), state = program.parts, list(map(symbol, program.coordinates))
         with limited("map", program.scheme, "to write its Jacobian", 10 * MOST):
-            entries = [sympy.factor_terms(x.diff(y)) for x in pair for y in (P, Q)]
-        matrix = sympy.Matrix(2, 2, entries)
+            entries = [sympy.factor_terms(x.diff(y)) for x in pair for y in state]
+        matrix = sympy.Matrix(len(state), len(state), entries)
         rows.append(rf"J &= {sympy.latex(matrix)}")
     if program.delta_j is not None:
         rows.append(rf"\Delta J &= {sympy.latex(program.delta_j)}")
@@ -32,7 +32,7 @@ def written(program: Program) -> str:
 
 def _steps(program: Program) -> Iterator[str]:
     """p_1, q_1, p_2, … as they change from part to part, the last of each being p' and q'."""
-    names = {P: "p", Q: "q"}
+    names = {symbol(name): _name(name) for name in program.coordinates}
     changes = {z: sum(pair[n] != z for pair in program.parts) for n, z in enumerate(names)}
     now, done = {z: z for z in names}, dict.fromkeys(names, 0)
     for pair in program.parts:
@@ -41,7 +41,16 @@ def _steps(program: Program) -> Iterator[str]:
             if x == z and changes[z]:
                 continue
             done[z] += 1
-            mark = "'" if done[z] >= changes[z] else f"_{{{done[z]}}}"
-            yield rf"{names[z]}{mark} &= {sympy.latex(x.xreplace(now))}"
-            after[z] = sympy.Symbol(f"{names[z]}{mark}", real=True)
+            own = names[z].partition("_")[2].strip("{}")  # p_1 in the second part is p_{1,2}
+            index = f"{own},{done[z]}" if own else str(done[z])
+            last = done[z] >= changes[z]
+            mark = "'" if last else f"_{{{index}}}"
+            base = names[z] if last else names[z].partition("_")[0]
+            yield rf"{base}{mark} &= {sympy.latex(x.xreplace(now))}"
+            after[z] = sympy.Symbol(f"{base}{mark}", real=True)
         now = after
+
+
+def _name(coordinate: str) -> str:
+    letter, number = coordinate[0], coordinate[1:]
+    return f"{letter}_{{{number}}}" if number else letter

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from sympy.printing.pycode import PythonCodePrinter
 
-from verify.schemes.export.program import OUTPUTS, Program
+from verify.schemes.export.program import Program
 
 SUFFIX = ".py"
 RESERVED = frozenset({*keyword.kwlist, "math", "float"})
@@ -15,7 +15,7 @@ def written(program: Program) -> str:
     """The whole module."""
     head = [f"# {line}" for line in program.head()]
     constants = [f"{c.name} = {c.literal}  # {c.comment}" for c in program.constants]
-    functions = [line for key in OUTPUTS for line in _function(program, key)]
+    functions = [line for key in program.outputs for line in _function(program, key)]
     between = [""] if constants else []
     return "\n".join([*head, "", "import math", *between, *constants, *functions]) + "\n"
 
@@ -26,4 +26,4 @@ def _function(program: Program, key: str) -> Iterator[str]:
     yield from ("", "", f"def {name}({', '.join(program.arguments)}):")
     for target, x in program.functions[key]:
         yield f"    {target} = {printer.doprint(x)}"
-    yield f"    return {', '.join(OUTPUTS[key])}"
+    yield f"    return {', '.join(program.outputs[key])}"

@@ -13,8 +13,9 @@ import re
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.every_hamiltonian import TaylorSeries
+from verify.schemes.maps.kinds.taylor_series import build
+from verify.schemes.maps.step_map import StepMap
 from verify.schemes.scheme import Scheme
-from verify.schemes.step_map import StepMap, Substep
 
 EXAMPLES = ("lie1", "lie2", "lie3", "lie4", "lie5", "lie6")
 MAX_ETA = 100
@@ -35,7 +36,6 @@ def lie_series(name: str, eta: int, *, source: str) -> Scheme:
         explicit=True,
         symmetric=False,
         source=source,
-        build=lambda hamiltonian: lie_map(hamiltonian, eta),
         every_h=TaylorSeries(eta),
     )
 
@@ -52,5 +52,4 @@ def eta_of(name: str) -> int | None:
 
 def lie_map(hamiltonian: Hamiltonian, eta: int) -> StepMap:
     """The step map of lieη, exact, for any H."""
-    field, _ = hamiltonian.field()
-    return StepMap(hamiltonian, (Substep(field, *field.truncated(eta)),))
+    return build(TaylorSeries(eta), hamiltonian)

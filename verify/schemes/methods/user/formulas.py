@@ -10,9 +10,7 @@ import re
 from collections.abc import Mapping
 
 from verify.errors import InputError
-from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.scheme import Scheme
-from verify.schemes.step_map import StepMap
 
 _FORM = "write it as 'p_next = …; q_next = …', or as 'kick 1/2; drift 1; kick 1/2'"
 _NUMBERED = re.compile(r"[pq][1-9]\d{0,2}_next", re.ASCII)
@@ -26,38 +24,19 @@ def make(name: str) -> Scheme | None:
     parts = [part.partition("=") for part in name.split(";") if part.strip()]
     formulas = {left.strip(): right.strip() for left, _, right in parts}
     if len(formulas) == len(parts) and all(map(_NUMBERED.fullmatch, formulas)):
-        return _in_degrees(formulas)
+        return _scheme(formulas)
     if len(parts) != 2 or set(formulas) != {"p_next", "q_next"}:
         raise InputError("scheme", name, _FORM)
-    p_next, q_next = formulas["p_next"], formulas["q_next"]
+    return _scheme({name: formulas[name] for name in ("p_next", "q_next")})
+
+
+def _scheme(formulas: Mapping[str, str]) -> Scheme:
     return Scheme(
-        name=f"p_next = {p_next}; q_next = {q_next}",
+        name="; ".join(f"{name} = {formula}" for name, formula in formulas.items()),
         order=1,
         area_preserving=False,
         explicit=True,
         symmetric=False,
         source="the user's formulas",
-        build=lambda hamiltonian: StepMap.from_formulas(hamiltonian, p_next, q_next),
-        formulas=formulas,
-    )
-
-
-def _in_degrees(formulas: Mapping[str, str]) -> Scheme:
-    written = "; ".join(f"{name} = {formula}" for name, formula in formulas.items())
-
-    def refuse(hamiltonian: Hamiltonian) -> StepMap:
-        needed = "p_next and q_next" if hamiltonian.planar else ", ".join(hamiltonian.coordinates)
-        raise InputError(
-            "scheme", written, f"H has other coordinates; allowed: formulas of {needed}"
-        )
-
-    return Scheme(
-        name=written,
-        order=1,
-        area_preserving=False,
-        explicit=True,
-        symmetric=False,
-        source="the user's formulas",
-        build=refuse,
         formulas=formulas,
     )

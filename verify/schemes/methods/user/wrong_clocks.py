@@ -14,6 +14,7 @@ clock is what X makes of H at that time, in place of D.
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from functools import partial
 from itertools import count
 
@@ -24,12 +25,13 @@ from verify.algebra.symbols import H_STEP
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.every_hamiltonian import RungeKutta, TaylorSeries
+from verify.schemes.maps.by_formulas import map_by_expressions
+from verify.schemes.maps.kinds import explicit_runge_kutta
+from verify.schemes.maps.step_map import StepMap
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.schemes.runge_kutta import runge_kutta_map
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import splitting, sums_before
 from verify.schemes.splitting_conditions import Part, Splitting
-from verify.schemes.step_map import StepMap
 
 EXAMPLES = ()  # its names are the users' own
 _NAME = re.compile(r"\s*(?P<base>[^,;]+?)\s*,\s*clock\s+(?P<clock>.*\S)\s*")
@@ -73,14 +75,14 @@ def _with_standing_clock(
 ) -> StepMap:
     """The map of H as it is at t + `at` h."""
     if isinstance(every_h, RungeKutta):
-        return runge_kutta_map(hamiltonian, every_h, at)
+        return explicit_runge_kutta.build(every_h, hamiltonian, standing=Fraction(at))
     if not hamiltonian.time_dependent:
         return lie_map(hamiltonian, every_h.eta)
     t, names = symbol("t"), hamiltonian.symbols
     instant = symbol(next(n for n in map("instant{}".format, count()) if n not in names))
     still = lie_map(Hamiltonian(hamiltonian.exact.xreplace({t: instant})), every_h.eta)
-    pair = (x.xreplace({instant: t + at * H_STEP}) for x in still.composed)
-    return StepMap.from_expressions(hamiltonian, *pair)
+    exact = [x.xreplace({instant: t + at * H_STEP}) for x in still.composed]
+    return map_by_expressions(hamiltonian, exact)
 
 
 _STANDING = {"frozen": 0, "at the end": 1}  # and when it stands, in parts of h

@@ -1,0 +1,170 @@
+"""A step in balls, with its derivatives by z: what a scheme's step is made of, read with balls.
+
+A value is a change of one coordinate and its gradient. Nothing of a kernel's program is in it, and
+no Jacobian that is written out: the slopes' own derivatives are enclosed at each stage.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from itertools import islice
+
+import flint
+
+from verify.algebra.enclosure import Enclosures, enclose_over, points
+from verify.algebra.ring import Poly
+from verify.arithmetic.arb import Ball, rational_ball
+from verify.arithmetic.flint_precision import working_precision
+from verify.hamiltonians.canonical_field import CanonicalField
+from verify.schemes.maps.closed_form import ClosedForm
+from verify.schemes.maps.step_algebra import Number, Step, StepAlgebra
+
+
+class UndefinedError(ArithmeticError):
+    """A step may not be defined over a box, or solves equations."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """A ball, and balls of its derivatives by each coordinate at the beginning of the step."""
+
+    value: Ball
+    gradient: tuple[Ball, ...]
+
+    def plus(self, factor: Ball, other: "Change") -> "Change":
+        """self + factor · other."""
+        pairs = zip(self.gradient, other.gradient, strict=True)
+        return Change(self.value + factor * other.value, tuple(x + factor * y for x, y in pairs))
+
+
+class BallAlgebra(StepAlgebra[Change]):
+    """At a point of balls, with t where H depends on it; in flint's present precision."""
+
+    def __init__(self, field: CanonicalField, point: Mapping[str, Ball], h: Ball) -> None:
+        self.field, self.point, self.h = field, point, h
+
+    @property
+    def nothing(self) -> Change:
+        return Change(flint.arb(0), (flint.arb(0),) * self.size)
+
+    @property
+    def size(self) -> int:
+        return len(self.field.names)
+
+    def along_flow(self, eta: int) -> list[Change]:
+        found, power = [self.nothing] * self.size, flint.arb(1)
+        for n in range(1, eta + 1):
+            power *= self.h
+            terms = self._at(_of_flow(self.field, n), self.point)
+            found = [x.plus(power, y) for x, y in zip(found, terms, strict=True)]
+        return found
+
+    def slopes(
+        self, changes: Sequence[Change], clock: Number, places: Sequence[int]
+    ) -> list[Change]:
+        box = dict(self.point)
+        for name, change in zip(self.field.names, changes, strict=True):
+            box[name] = box[name] + change.value
+        if self.field.timed:
+            box["t"] = box["t"] + self._number(clock) * self.h
+        found = self._at(_of_slopes(self.field, tuple(places)), box)
+        return [Change(x.value, self._chained(x.gradient, changes)) for x in found]
+
+    def moved(self, change: Change, weights: Sequence[Number], slopes: Sequence[Change]) -> Change:
+        for weight, slope in zip(weights, slopes, strict=True):
+            change = change.plus(self.h * self._number(weight), slope)
+        return change
+
+    def between(self, x: Change, y: Change, share: Fraction) -> Change:
+        return x.plus(rational_ball(share), y)
+
+    def solved(
+        self, count: int, right: Callable[[StepAlgebra[Change], Sequence[Change]], list[Change]]
+    ) -> list[Change]:
+        raise UndefinedError  # equations are not solved here
+
+    def closed(self, closed: ClosedForm) -> list[Change]:
+        """z' − z of a map that is written out."""
+        return self._at(_of_closed(closed), {**self.point, "h": self.h})
+
+    def _number(self, x: Number) -> Ball:
+        if isinstance(x, Fraction):
+            return rational_ball(x)
+        ball = enclose_over(self.field.ring, x, {})
+        if ball is None:
+            raise UndefinedError
+        return ball
+
+    def _at(self, wanted: Enclosures, box: Mapping[str, Ball]) -> list[Change]:
+        """Elements with their gradients; UndefinedError where one may not be defined."""
+        balls = wanted.over(box)
+        if balls is None or not all(x.is_finite() for x in balls):
+            raise UndefinedError
+        width = self.size + 1
+        rows = [balls[k : k + width] for k in range(0, len(balls), width)]
+        return [Change(row[0], tuple(row[1:])) for row in rows]
+
+    def _chained(self, gradient: Sequence[Ball], changes: Sequence[Change]) -> tuple[Ball, ...]:
+        """The derivative of f(z + change): f_j (δ_jm + ∂change_j/∂z_m), summed over j."""
+        found = list(gradient)
+        for slope, change in zip(gradient, changes, strict=True):
+            found = [x + slope * y for x, y in zip(found, change.gradient, strict=True)]
+        return tuple(found)
+
+
+@lru_cache(maxsize=64)
+def _of_slopes(field: CanonicalField, places: tuple[int, ...]) -> Enclosures:
+    return _with_gradients(field, [field.slopes[k] for k in places])
+
+
+@lru_cache(maxsize=64)
+def _of_flow(field: CanonicalField, n: int) -> Enclosures:
+    return _with_gradients(field, field.term(n))
+
+
+@lru_cache(maxsize=64)
+def _of_closed(closed: ClosedForm) -> Enclosures:
+    return _with_gradients(closed.field, closed.increments)
+
+
+def _with_gradients(field: CanonicalField, elements: Sequence[Poly]) -> Enclosures:
+    every = [y for x in elements for y in (x, *field.gradient(x))]
+    return Enclosures(field.ring, every)
+
+
+def step_in_balls(
+    field: CanonicalField,
+    step: Step | ClosedForm,
+    point: Mapping[str, Ball],
+    h: Ball,
+) -> tuple[list[Ball], flint.arb_mat]:
+    """(z' − z, K = J − 1) over a box, in flint's present precision; UndefinedError where the step
+    may not be defined, or solves equations."""
+    algebra = BallAlgebra(field, point, h)
+    changes = algebra.closed(step) if isinstance(step, ClosedForm) else step(algebra)
+    return [x.value for x in changes], flint.arb_mat([list(x.gradient) for x in changes])
+
+
+_POINTS, _BITS = 8, 128
+
+
+def may_preserve(field: CanonicalField, step: Step) -> bool:
+    """Whether no point is seen at which S = JᵀΩJ − Ω is not 0; most steps show one at once."""
+    names = [name for name in field.ring.variables if name != "h"]
+    n, one = len(field.names) // 2, Fraction(1, 16)
+    omega = flint.arb_mat(2 * n, 2 * n)
+    for i in range(n):
+        omega[i, n + i], omega[n + i, i] = flint.arb(1), flint.arb(-1)
+    with working_precision(_BITS):
+        for point in islice(points(names), _POINTS):
+            box = {name: rational_ball(x) for name, x in point.items()}
+            try:
+                _, slopes = step_in_balls(field, step, box, rational_ball(one))
+            except UndefinedError:
+                continue
+            across = slopes.transpose() * omega
+            gap = across + omega * slopes + across * slopes
+            if any(x.is_finite() and not x.contains(0) for x in gap.entries()):
+                return False
+    return True

@@ -1,0 +1,200 @@
+"""A map z → z' that is written out: its Jacobian, S = JᵀΩJ − Ω and det J − 1 in closed form.
+
+S is made coefficient by coefficient of h where the map is a polynomial in h, so that nothing
+cancels in it; in the plane it is ΔJ dp∧dq.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+
+from verify.algebra.ring import Poly, Ring
+from verify.algebra.series.power_series import Series
+from verify.hamiltonians.canonical_field import CanonicalField
+from verify.schemes.maps.defect import DefectSeries
+from verify.schemes.maps.step_algebra import State
+from verify.schemes.maps.two_form import TwoForm, wedge
+
+_MOST_PRODUCTS = 40_000  # in all entries of S of several degrees, beyond which it is left as it is
+_MOST_TERMS = 300  # of J's entries together, beyond which det J is not multiplied out
+
+
+@dataclass(frozen=True, eq=False)
+class ClosedForm:
+    """z' as `elements` of the ring of H's `field`, one for each of its names."""
+
+    field: CanonicalField
+    elements: tuple[Poly, ...]
+
+    @property
+    def ring(self) -> Ring:
+        """The ring of z' and the field."""
+        return self.field.ring
+
+    @property
+    def increments(self) -> tuple[Poly, ...]:
+        """z' − z."""
+        return tuple(x - z for x, z in zip(self.elements, self.field.start, strict=True))
+
+    @cached_property
+    def jacobian(self) -> tuple[tuple[Poly, ...], ...]:
+        """∂z'/∂z by rows."""
+        return tuple(map(self.field.gradient, self.elements))
+
+    @cached_property
+    def degree(self) -> int | None:
+        """In h, of a map that is a polynomial in it; else None."""
+        if h_inside(self.ring, *self.elements):
+            return None
+        return max((max(powers, default=0) for powers in self._powers), default=0)
+
+    @cached_property
+    def _powers(self) -> list[dict[int, Poly]]:
+        return [self.ring.powers(x, "h") for x in self.elements]
+
+    @cached_property
+    def flow_up_to(self) -> int:
+        """The power of h up to which they are the exact flow's own terms, to the letter; −1 where
+        they are no polynomials in h."""
+        for n in range((-1 if self.degree is None else self.degree) + 1):
+            own = (powers.get(n, self.ring.zero) for powers in self._powers)
+            if any(x != y for x, y in zip(own, self.field.term(n), strict=True)):
+                return n - 1
+        return -1 if self.degree is None else self.degree
+
+    def series(self, most: int) -> State | None:
+        """z' up to h^most; None where it is no polynomial in h."""
+        if self.degree is None:
+            return None
+        ring = self.ring
+        each = ([own.get(n, ring.zero) for n in range(most + 1)] for own in self._powers)
+        return tuple(Series.of(ring, own, most) for own in each)
+
+    @property
+    def length(self) -> int:
+        """How many terms there are in all its parts."""
+        return terms_of(self.ring, self.elements)
+
+    @property
+    def products(self) -> int:
+        """A bound of the number of terms that S has when it is written out."""
+        bound, names = self.ring.terms_of_diff, self.field.names
+        rows = [[bound(x, name) for name in names] for x in self.increments]
+        n = len(rows) // 2
+        pairs = [(rows[i], rows[n + i]) for i in range(n)]
+        linear = sum(u[i] + v[n + i] for i, (u, v) in enumerate(pairs))
+        places = list(combinations(range(2 * n), 2))
+        return linear + sum(u[a] * v[b] + u[b] * v[a] for u, v in pairs for a, b in places)
+
+    # -- S ----------------------------------------------------------------------------------------
+
+    @cached_property
+    def forms(self) -> Mapping[int, TwoForm] | None:
+        """The coefficients of S that are not 0, by their power of h; S itself by 0 where the map is
+        no polynomial in h. None where there is too much to multiply."""
+        if self.field.degrees > 1 and self.products > _MOST_PRODUCTS:
+            return None
+        if self.degree is None:
+            return {0: self.defect} if self.defect.entries else {}
+        highest = 2 * self.degree
+        made = self.series(highest)
+        assert made is not None  # noqa: S101 - it is a polynomial in h
+        series = DefectSeries(lambda _: (self.field, made), highest, self.flow_up_to)
+        # Up to `flow_up_to` the map is the flow, which is symplectic.
+        each = ((m, series.form(m)) for m in range(self.flow_up_to + 1, highest + 1))
+        return {m: form for m, form in each if form.entries}
+
+    @cached_property
+    def defect(self) -> TwoForm:
+        """S as one form, h being one more variable of its ring."""
+        return defect_of(self.ring, self.field.names, self.elements)
+
+    @cached_property
+    def symplectic(self) -> bool:
+        """True where S is shown to be the zero form."""
+        if self.forms is None:
+            return False
+        entries = [x for form in self.forms.values() for x in form.entries.values()]
+        return all(self.ring.vanishes(x) is True for x in entries)
+
+    def form(self, power: int) -> TwoForm:
+        """The coefficient of h^power in S, of a map that is a polynomial in h."""
+        empty = TwoForm(self.ring, self.field.names)
+        return (self.forms or {}).get(power, empty)
+
+    @cached_property
+    def delta_j(self) -> Poly:
+        """det J − 1."""
+        if self.field.degrees > 1 or self.forms is None:
+            return determinant(self.ring, self.jacobian) - 1
+        h = self.ring.variable("h")
+        parts = (h**m * form.at(0, 1) for m, form in self.forms.items())
+        return sum(parts, self.ring.zero)
+
+    def preserves_volume(self) -> bool | None:
+        """Whether det J ≡ 1; None where that is not decided, or there is too much to multiply."""
+        return preserves_volume(self.ring, self.jacobian)
+
+
+def h_inside(ring: Ring, *elements: Poly) -> bool:
+    """Whether h occurs inside a generator, so that an element is not a polynomial in h."""
+    return any(ring.depends(a, "h") for a in arguments(ring, *elements))
+
+
+def arguments(ring: Ring, *elements: Poly) -> list[Poly]:
+    """The arguments of the generators that the elements are made of."""
+    return [g.argument for g in ring.generators_in(*elements) if g.argument is not None]
+
+
+def terms_of(ring: Ring, elements: Sequence[Poly]) -> int:
+    """How many terms there are in elements and in what their generators are functions of."""
+    return sum(map(len, [*elements, *arguments(ring, *elements)]))
+
+
+# -- of any map, with an H or without --------------------------------------------------------------
+
+
+def defect_of(ring: Ring, names: tuple[str, ...], elements: Sequence[Poly]) -> TwoForm:
+    """S of z ↦ `elements`, z being the variables of these names."""
+    n, rows = len(names) // 2, [[ring.diff(x, name) for name in names] for x in elements]
+
+    def entry(a: int, b: int) -> Poly:
+        total = -ring.one if b == a + n else ring.zero
+        for i in range(n):
+            total += wedge(rows[i], rows[n + i], a, b)
+        return total
+
+    return TwoForm.of(ring, names, entry)
+
+
+def preserves_volume(ring: Ring, jacobian: Sequence[Sequence[Poly]]) -> bool | None:
+    """Whether the determinant is 1; None where that is not decided, or there is too much to
+    multiply."""
+    if sum(len(x) for row in jacobian for x in row) > _MOST_TERMS:
+        return None
+    return ring.vanishes(determinant(ring, jacobian) - 1)
+
+
+def determinant(ring: Ring, matrix: Sequence[Sequence[Poly]]) -> Poly:
+    """Of a square matrix, without division.
+
+    R. S. Bird, A simple division-free algorithm for computing determinants, Inf. Process. Lett. 111
+    (2011).
+    """
+    size, own = len(matrix), [list(row) for row in matrix]
+    found = own
+    for _ in range(size - 1):
+        below = ring.zero
+        upper = [[ring.zero] * size for _ in range(size)]
+        for i in reversed(range(size)):
+            upper[i][i + 1 :] = found[i][i + 1 :]
+            upper[i][i] = -below
+            below = below + found[i][i]
+        found = [[_product(ring, row, own, j) for j in range(size)] for row in upper]
+    return found[0][0] if size % 2 else -found[0][0]
+
+
+def _product(ring: Ring, row: Sequence[Poly], matrix: Sequence[Sequence[Poly]], j: int) -> Poly:
+    terms = (x * other[j] for x, other in zip(row, matrix, strict=True) if not x.is_zero())
+    return ring.reduce(sum(terms, ring.zero))

@@ -1,0 +1,32 @@
+"""Explicit Runge–Kutta methods: stage by stage, each at t + c h where H depends on time."""
+
+from fractions import Fraction
+from functools import partial
+
+from verify.hamiltonians.canonical_field import canonical_field
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.schemes.conditions import Condition
+from verify.schemes.every_hamiltonian import RungeKutta
+from verify.schemes.maps.step_map import StepMap
+
+KIND = RungeKutta
+
+
+def build(
+    coefficients: RungeKutta,
+    hamiltonian: Hamiltonian,
+    name: str = "",
+    standing: Fraction | None = None,
+) -> StepMap:
+    """The map for any H.
+
+    `standing`: the clock stands at t + so many h, which is wrong (see
+    `verify.schemes.methods.user.wrong_clocks`); None for the right one.
+    """
+    field, _ = canonical_field(hamiltonian)
+    return StepMap(hamiltonian, field, partial(coefficients.changes, standing=standing))
+
+
+def conditions(_: RungeKutta, degrees: int) -> tuple[Condition, ...]:
+    """None: no explicit method is symplectic for every H."""
+    return ()

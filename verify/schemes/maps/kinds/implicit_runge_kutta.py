@@ -1,0 +1,118 @@
+"""Implicit Runge–Kutta methods: symplectic by their coefficients.
+
+The unknowns are Z_i = Y_i − z, Y_i the points at which the stages' slopes are taken: they are of
+the size of h, so that their rounding is h times smaller than that of Y_i (Hairer, Nørsett, Wanner,
+Solving Ordinary Differential Equations I, II.8, and II, IV.8). Z_i = h Σ a_ij f(z + Z_j), and
+z' = z + h Σ b_i f(z + Z_i). Newton's method begins at Z_i = h c_i f(z); of several solutions, which
+there may be where h is large, it finds one, and that is the map. Where H depends on time, stage i
+is taken at t + c_i h, c_i = Σ_j a_ij.
+
+That b_i a_ij + b_j a_ji = b_i b_j for all i, j suffices for S ≡ 0, for every H in any number of
+degrees of freedom (Sanz-Serna 1988; Hairer, Lubich, Wanner, Geometric Numerical Integration,
+theorem VI.4.3).
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+from verify.algebra.symbols import H_STEP, P, Q
+from verify.hamiltonians.canonical_field import canonical_field
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.late import sympy
+from verify.schemes.conditions import Condition
+from verify.schemes.implicit_tableau import ImplicitTableau, implicit_step
+from verify.schemes.maps.by_formulas import map_by_expressions
+from verify.schemes.maps.step_map import StepMap
+from verify.schemes.tree_conditions import TreeConditions
+from verify.schemes.tree_order import order_of
+
+KIND = TreeConditions
+
+
+def build(coefficients: TreeConditions, hamiltonian: Hamiltonian, name: str = "") -> StepMap:
+    """The map for any H."""
+    return implicit_map(hamiltonian, coefficients.tableau)
+
+
+@lru_cache(maxsize=64)
+def implicit_map(hamiltonian: Hamiltonian, tableau: ImplicitTableau) -> StepMap:
+    """The map for any H: by its equations; in closed form for a quadratic H in the plane."""
+    closed = None
+    if hamiltonian.planar and not hamiltonian.time_dependent:
+        closed = _linear(hamiltonian, tableau)
+    return closed or by_equations(hamiltonian, tableau)
+
+
+def by_equations(hamiltonian: Hamiltonian, tableau: ImplicitTableau) -> StepMap:
+    """The map by its equations, for any H."""
+    count = tableau.stages
+    numbers = [x for row in (*tableau.rows, tableau.weights) for x in row]
+    field, exact = canonical_field(hamiltonian, *numbers)
+    rows = [exact[count * i : count * (i + 1)] for i in range(count)]
+    clocks = [sum(row, field.ring.zero) for row in rows]
+
+    def known_order() -> int | None:
+        """By rooted trees, which are those of an autonomous H."""
+        return order_of(tableau, field) if field.planar and not field.timed else None
+
+    return StepMap(
+        hamiltonian,
+        field,
+        implicit_step(rows, exact[count * count :], clocks),
+        conditions=tableau.area_conditions(),
+        known_order=known_order,
+        implicit=True,
+    )
+
+
+def conditions(coefficients: TreeConditions, degrees: int) -> tuple[Condition, ...]:
+    """Those of the module's text."""
+    return coefficients.tableau.area_conditions()
+
+
+# -- a quadratic H in the plane -------------------------------------------------------------------
+
+
+def _linear(hamiltonian: Hamiltonian, tableau: ImplicitTableau) -> StepMap | None:
+    """The closed form for a quadratic H; None for another.
+
+    f(z + d) = f(z) + M d with M² = −D, D = det Hess H, and z' = z + h ρ(hM) f(z) with
+    ρ(μ) = (R(μ) − 1)/μ, R the method's stability function (Hairer, Wanner, II, IV.3). With the
+    denominator's product by its own at −μ, which is even, ρ(hM) = (α + β h M)/γ, where α, β and γ
+    are polynomials in μ² = −h² D.
+    """
+    field, _ = canonical_field(hamiltonian)
+    ring, (u, v) = field.ring, field.slopes
+    matrix = [x for slope in field.slopes for x in field.gradient(slope)]
+    if any(ring.vanishes(ring.diff(x, n)) is not True for x in matrix for n in field.names):
+        return None
+    u, v, u_p, u_q, v_p, v_q = map(ring.expression, (u, v, *matrix))
+    square = -(H_STEP**2) * (u_p * v_q - u_q * v_p)
+    alpha, beta, gamma = (x.subs(_square(), square) for x in _of_matrix(tableau))
+    more_u, more_v = u_p * u + u_q * v, v_p * u + v_q * v
+    p_next = P + H_STEP * (alpha * u + beta * H_STEP * more_u) / gamma
+    q_next = Q + H_STEP * (alpha * v + beta * H_STEP * more_v) / gamma
+    return map_by_expressions(hamiltonian, (p_next, q_next))
+
+
+def _square() -> sympy.Symbol:
+    return sympy.Symbol("square")
+
+
+@lru_cache(maxsize=64)
+def _of_matrix(tableau: ImplicitTableau) -> tuple[sympy.Expr, sympy.Expr, sympy.Expr]:
+    """α, β and γ as polynomials in μ²; see `_linear`."""
+    count, mu = tableau.stages, sympy.Symbol("mu")  # an eigenvalue of hM
+    a, b = sympy.Matrix(tableau.rows), sympy.Matrix([tableau.weights])
+    left = sympy.eye(count) - mu * a
+    below = sympy.expand(left.det(method="berkowitz"))
+    above = sympy.expand((left + mu * sympy.ones(count, 1) * b).det(method="berkowitz"))
+    rho = sympy.expand(sympy.expand(above - below) / mu)
+    mirrored = below.subs(mu, -mu)
+    numerator, even = (sympy.Poly(sympy.expand(x * mirrored), mu) for x in (rho, below))
+    parts = [sympy.S.Zero] * 2
+    for (n,), c in numerator.terms():
+        parts[n % 2] += c * _square() ** (n // 2)
+    gamma = sum((c * _square() ** (n // 2) for (n,), c in even.terms()), sympy.S.Zero)
+    return parts[0], parts[1], gamma

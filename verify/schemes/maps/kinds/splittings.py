@@ -1,0 +1,70 @@
+"""Kicks and drifts in turn, for H = T(p) + V(q): each is a shear, and symplectic.
+
+A kick moves p by −a h ∂V/∂q. The one block of its Jacobian that is neither 0 nor 1 is −a h Hess V,
+and S of a shear is that block less its transpose, which is 0.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from functools import lru_cache
+
+from verify.algebra.ring import Poly
+from verify.algebra.series.jets import JetsInDegrees
+from verify.errors import InputError
+from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.schemes.conditions import Condition
+from verify.schemes.maps.step_map import StepMap
+from verify.schemes.splitting import all_times, shears_step
+from verify.schemes.splitting_conditions import Splitting, expressed
+
+KIND = Splitting
+
+
+def build(coefficients: Splitting, hamiltonian: Hamiltonian, name: str) -> StepMap:
+    """The map of H = T(p) + V(q), or T(p, t) + V(q, t); InputError for another H."""
+    parts = coefficients.parts
+    field, sizes, times = _with_numbers(hamiltonian, coefficients)
+    if not field.separable:
+        shown = str(hamiltonian.expression)
+        raise InputError("hamiltonian", shown, f"{name} is explicit only for H = T(p) + V(q)")
+    step = shears_step([kind for kind, _ in parts], sizes, times)
+    return StepMap(
+        hamiltonian, field, step, conditions=conditions(coefficients, hamiltonian.degrees)
+    )
+
+
+def _with_numbers(
+    hamiltonian: Hamiltonian, coefficients: Splitting
+) -> tuple[CanonicalField, Sequence[Poly], Sequence[Poly]]:
+    """The field of H, and the sizes and times of the parts in its ring."""
+    parts = coefficients.parts
+    timed = hamiltonian.time_dependent
+    rational = [size for _, size in parts if isinstance(size, Fraction)]
+    if len(rational) == len(parts) and not timed:
+        field = canonical_field(hamiltonian)[0]
+        sizes = [field.ring.constant(size) for size in rational]
+        return field, sizes, [field.ring.zero] * len(parts)
+    times = all_times(expressed(parts), coefficients.times) if timed else ()
+    field, numbers = canonical_field(hamiltonian, *(x for _, x in expressed(parts)), *times)
+    sizes = numbers[: len(parts)]
+    return field, sizes, numbers[len(parts) :] or [field.ring.zero] * len(parts)
+
+
+def conditions(coefficients: Splitting, degrees: int) -> tuple[Condition, ...]:
+    """That kicks and drifts move by a gradient, whose Jacobian is symmetric, for all T and V."""
+    return _of_kinds(tuple(dict.fromkeys(kind for kind, _ in coefficients.parts)))
+
+
+@lru_cache(maxsize=4)
+def _of_kinds(kinds: tuple[str, ...]) -> tuple[Condition, ...]:
+    jets = JetsInDegrees(("p1", "p2", "q1", "q2"), 2, separable=True)
+    pairs = {"kick": ("q1", "q2"), "drift": ("p1", "p2")}
+    shown = []
+    for kind in kinds:
+        a, b = pairs[kind]
+        gap = jets.diff(jets.first(a), b) - jets.diff(jets.first(b), a)
+        shown.append(
+            Condition(f"every {kind} is a shear by a gradient", 0, str(gap), jets.vanishes(gap))
+        )
+    return tuple(shown)

@@ -1,0 +1,72 @@
+"""Stages that are solved for, one after the other: symplectic Euler of any H.
+
+A stage moves p by −h a ∂H/∂q and q by h b ∂H/∂p, both taken at (p + α(p' − p), q + β(q' − q)). With
+a = b, dP∧dH_p + dQ∧dH_q = −d(dH) = 0 leaves dp'∧dq' − dp∧dq = (1 − α − β) δp∧δq, δ = d(z' − z): so
+α + β = 1 suffices for a map that is symplectic, for every H. (Hairer, Lubich, Wanner, Geometric
+Numerical Integration, VI.3.) In the plane less suffices; see `StageEquations.conditions`.
+"""
+
+from fractions import Fraction
+from functools import lru_cache
+
+from verify.algebra.symbols import H_STEP, P, Q
+from verify.effort import limited
+from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.schemes.conditions import Condition
+from verify.schemes.every_hamiltonian import Stage, StageEquations
+from verify.schemes.maps.by_formulas import map_by_expressions
+from verify.schemes.maps.kinds import splittings
+from verify.schemes.maps.step_map import StepMap
+from verify.schemes.splitting_conditions import Splitting
+
+KIND = StageEquations
+
+
+@lru_cache(maxsize=64)
+def build(coefficients: StageEquations, hamiltonian: Hamiltonian, name: str) -> StepMap:
+    """The map for any H. Where H = T(p) + V(q), symplectic Euler is its kick and its drift; where
+    ∂H/∂q is linear in p it is written in closed form, in the plane."""
+    field, _ = canonical_field(hamiltonian)
+    if all(s.at_p == 1 and s.at_q == 0 for s in coefficients.stages):
+        if field.separable:
+            parts = [
+                part for s in coefficients.stages for part in (("kick", s.kick), ("drift", s.drift))
+            ]
+            return splittings.build(Splitting(tuple(parts)), hamiltonian, name)
+        if field.planar and coefficients.stages == (_EULER,):
+            linear = _linear_in_p(hamiltonian, field)
+            if linear is not None:
+                return linear
+    shown = conditions(coefficients, field.degrees)
+    return StepMap(hamiltonian, field, coefficients.changes, conditions=shown, implicit=True)
+
+
+_EULER = Stage(kick=Fraction(1), drift=Fraction(1), at_p=Fraction(1))
+
+
+def _linear_in_p(hamiltonian: Hamiltonian, field: CanonicalField) -> StepMap | None:
+    """p' = p − h H_q/(1 + h H_pq) and q' = q + h H_p(p', q); None where H_q is not linear in p."""
+    ring, (force, speed) = field.ring, field.slopes
+    mixed = ring.diff(force, "p")  # −H_pq
+    if ring.vanishes(ring.diff(mixed, "p")) is not True:
+        return None
+    h_p, h_q, h_pq = map(ring.expression, (speed, -force, -mixed))
+    p_next = P - H_STEP * h_q / (1 + H_STEP * h_pq)
+    with limited("hamiltonian", str(hamiltonian.expression), "to compose its stages"):
+        q_next = Q + H_STEP * h_p.subs(P, p_next)
+    return map_by_expressions(hamiltonian, (p_next, q_next))
+
+
+def conditions(coefficients: StageEquations, degrees: int) -> tuple[Condition, ...]:
+    """Those of each stage; see the module's text."""
+    if degrees == 1:
+        return coefficients.conditions()
+    return tuple(map(_condition, coefficients.stages))
+
+
+def _condition(stage: Stage) -> Condition:
+    gap = stage.at_p + stage.at_q - 1
+    same = stage.kick == stage.drift
+    name = f"kick = drift = {stage.kick}, and its shares add up to 1"
+    return Condition(name, 0, str(gap), bool(same and gap == 0))

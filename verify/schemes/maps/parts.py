@@ -1,0 +1,102 @@
+"""A step as maps made in turn, each in closed form: the kicks and drifts of a splitting."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, NoReturn
+
+from verify.algebra.formula import symbol
+from verify.algebra.ring import Poly
+from verify.effort import limited
+from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
+from verify.late import sympy
+from verify.schemes.maps.closed_form import ClosedForm
+from verify.schemes.maps.step_algebra import Number, StepAlgebra
+from verify.schemes.maps.step_map import StepMap
+from verify.schemes.maps.written_out import TooLongError
+
+
+@dataclass(frozen=True)
+class _Shear:
+    """Those places move by h `size` f, f taken at t + `clock` h."""
+
+    size: Poly
+    clock: Poly
+    places: tuple[int, ...]
+
+
+class _Shears(StepAlgebra[None]):
+    """Notes the shears that a step is made of, and nothing else."""
+
+    def __init__(self, field: CanonicalField) -> None:
+        self.field, self.noted = field, list[_Shear]()
+
+    @property
+    def nothing(self) -> None:
+        return None
+
+    @property
+    def size(self) -> int:
+        return len(self.field.names)
+
+    def sheared(
+        self, changes: Sequence[None], size: Number, clock: Number, places: Sequence[int]
+    ) -> list[None]:
+        ring = self.field.ring
+        share, at = (ring.constant(x) if isinstance(x, Fraction) else x for x in (size, clock))
+        self.noted.append(_Shear(share, at, tuple(places)))
+        return list(changes)
+
+    def _no_shear(self, *_: Any) -> NoReturn:
+        raise TooLongError
+
+    along_flow = slopes = moved = between = solved = _no_shear  # type: ignore[assignment]
+
+
+def parts_of(step_map: StepMap) -> tuple[ClosedForm, ...] | None:
+    """The maps that it is made of, first one first, in the ring of one field: its shears, or itself
+    where it is given in closed form; None of others."""
+    if step_map.formulas is not None:
+        return (step_map.flat,)
+    if step_map.step is None or step_map.implicit:
+        return None
+    reading = _Shears(step_map.field)
+    try:
+        step_map.step(reading)
+    except TooLongError:
+        return None
+    made = _at_times if step_map.field.timed else _in_ring
+    return tuple(made(step_map, reading.noted))
+
+
+def _in_ring(step_map: StepMap, shears: Sequence[_Shear]) -> list[ClosedForm]:
+    field, parts = step_map.field, []
+    for shear in shears:
+        moved = list(field.start)
+        for k, move in zip(shear.places, field.shears(shear.size, shear.places), strict=True):
+            moved[k] += move
+        parts.append(ClosedForm(field, tuple(moved)))
+    return parts
+
+
+def _at_times(step_map: StepMap, shears: Sequence[_Shear]) -> list[ClosedForm]:
+    """Each with H's derivative at its own time."""
+    field, exact = step_map.field, step_map.hamiltonian
+    written, t, h = field.ring.expression, symbol("t"), symbol("h")
+    moves: list[sympy.Expr] = []
+    slopes = [written(x) for x in field.slopes]
+    with limited("hamiltonian", str(exact.expression), "to put the parts' times into it"):
+        for shear in shears:
+            later = t + h * written(shear.clock)
+            share = h * written(shear.size)
+            moves += [share * slopes[k].subs(t, later) for k in shear.places]
+    whole, elements = canonical_field(exact, *moves)
+    left, parts = iter(elements), []
+    for shear in shears:
+        moved = list(whole.start)
+        for k in shear.places:
+            moved[k] += next(left)
+        parts.append(ClosedForm(whole, tuple(moved)))
+    return parts

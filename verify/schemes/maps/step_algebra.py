@@ -1,0 +1,138 @@
+"""What a step is made of, whatever its values are: series in h, closed forms, a kernel's program.
+
+A scheme's step is written once, in these few operations, and read with any of them.
+"""
+
+from collections import deque
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import Any, Protocol, TypeAlias, TypeVar
+
+from verify.algebra.ring import Poly
+from verify.algebra.series.power_series import Series, at_moved
+from verify.hamiltonians.canonical_field import Flow
+
+V = TypeVar("V")
+Recent: TypeAlias = "deque[tuple[object, list[Series]]]"
+_RECENT = 8  # slopes: of as many stages
+Number = Fraction | Poly  # a coefficient of a scheme, in the ring of H's field if it is no rational
+
+
+class StepAlgebra(Protocol[V]):
+    """Changes of z are values `V`, each O(h); so many as there are names in the flow."""
+
+    @property
+    def nothing(self) -> V:
+        """0."""
+        raise NotImplementedError
+
+    @property
+    def size(self) -> int:
+        """Of z: so many names."""
+
+    def along_flow(self, eta: int) -> list[V]:
+        """Σ hⁿ/n! Xⁿz, n = 1 … η."""
+
+    def slopes(self, changes: Sequence[V], clock: Number, places: Sequence[int]) -> list[V]:
+        """Those components of f at z + changes, and where H depends on it at t + clock h."""
+
+    def moved(self, change: V, weights: Sequence[Number], slopes: Sequence[V]) -> V:
+        """change + h Σ weights · slopes."""
+
+    def sheared(
+        self, changes: Sequence[V], size: Number, clock: Number, places: Sequence[int]
+    ) -> list[V]:
+        """changes + h size f(z + changes) in these places: f is asked for nowhere else."""
+        result = list(changes)
+        slopes = self.slopes(changes, clock, places)
+        for place, slope in zip(places, slopes, strict=True):
+            result[place] = self.moved(result[place], [size], [slope])
+        return result
+
+    def between(self, x: V, y: V, share: Fraction) -> V:
+        """x + share · y."""
+
+    def solved(
+        self, count: int, right: "Callable[[StepAlgebra[V], Sequence[V]], list[V]]"
+    ) -> list[V]:
+        """Z with Z = right(Z), so many of them, whose right side is O(h); Z[k] is a change of the
+        coordinate number k modulo that of coordinates."""
+
+
+class SeriesAlgebra(StepAlgebra[Series]):
+    """Values are series up to h^most over the ring of a flow."""
+
+    def __init__(self, flow: Flow, most: int, recent: "Recent | None" = None) -> None:
+        """`recent`: slopes that were made, which are asked for again where an iteration ends."""
+        self.flow, self.most = flow, most
+        self._recent: Recent = deque(maxlen=_RECENT) if recent is None else recent
+
+    @property
+    def nothing(self) -> Series:
+        return Series.of(self.flow.ring, [], self.most)
+
+    @property
+    def size(self) -> int:
+        return len(self.flow.names)
+
+    def along_flow(self, eta: int) -> list[Series]:
+        flow, ring = self.flow, self.flow.ring
+        terms = [flow.term(n) for n in range(1, min(eta, self.most) + 1)]
+        each = zip(*terms, strict=True) if terms else [()] * len(flow.names)
+        return [Series.of(ring, [ring.zero, *own], self.most) for own in each]
+
+    def slopes(
+        self, changes: Sequence[Series], clock: Number, places: Sequence[int]
+    ) -> list[Series]:
+        reach = max(self.most - 1, 0)  # as far as `moved` takes them, times h
+        key = reach, clock, places, [x.coefficients[: reach + 1] for x in changes]
+        made = next((made for asked, made in self._recent if asked == key), None)
+        if made is None:
+            made = self._slopes(changes, clock, places, reach)
+            self._recent.append((key, made))
+        return made
+
+    def _slopes(
+        self, changes: Sequence[Series], clock: Number, places: Sequence[int], reach: int
+    ) -> list[Series]:
+        flow, ring = self.flow, self.flow.ring
+        each = zip(flow.names, changes, strict=True)
+        moves = [(name, x) for name, x in each if not x.vanishes]
+        if flow.timed and clock != 0:
+            late = ring.constant(clock) if isinstance(clock, Fraction) else clock
+            moves.append(("t", Series.of(ring, [ring.zero, late], self.most)))
+        return [at_moved(flow.derivatives[k], moves, reach) for k in places]
+
+    def moved(self, change: Series, weights: Sequence[Number], slopes: Sequence[Series]) -> Series:
+        total = self._cut(change)
+        for w, slope in zip(weights, slopes, strict=True):
+            total += self._cut(slope).times(w).shifted(1)
+        return total
+
+    def between(self, x: Series, y: Series, share: Fraction) -> Series:
+        return self._cut(x) + self._cut(y).times(share)
+
+    def solved(
+        self, count: int, right: Callable[[StepAlgebra[Series], Sequence[Series]], list[Series]]
+    ) -> list[Series]:
+        """By iteration: each makes one power of h more right."""
+        found = [SeriesAlgebra(self.flow, 0).nothing] * count
+        for longest in range(1, self.most + 1):
+            shorter = SeriesAlgebra(self.flow, longest, self._recent)
+            found = right(shorter, list(map(shorter._cut, found)))
+        return found
+
+    def _cut(self, x: Series) -> Series:
+        return Series.of(self.flow.ring, x.coefficients, self.most)
+
+
+State = tuple[Series, ...]  # a series for each of p1 … pn, q1 … qn
+# z' − z from what a step is made of; the same kind of value.
+Step = Callable[[StepAlgebra[Any]], list[Any]]
+
+
+def series_of(flow: Flow, step: Step, most: int) -> State:
+    """z' up to h^most."""
+    changes = step(SeriesAlgebra(flow, most))
+    start = (Series.of(flow.ring, [x], most) for x in flow.start)
+    return tuple(x + y for x, y in zip(start, changes, strict=True))

@@ -1,0 +1,105 @@
+"""Two-forms Σ c_ab dz_a∧dz_b, a < b, over the coordinates z = (p1 … pn, q1 … qn).
+
+Ω = Σ dp_i∧dq_i. As a matrix a form is antisymmetric: c_ab stands above the diagonal, −c_ab below.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import combinations
+from typing import Any
+
+from verify.algebra.ring import Decision, Poly
+from verify.algebra.series.power_series import CoefficientRing
+from verify.hamiltonians.canonical_field import Flow
+
+Place = tuple[int, int]
+MOST_TERMS = 2000  # of a form that is written out
+
+
+@dataclass(frozen=True)
+class TwoForm:
+    """Its coefficients that are not 0 in normal form, by their places a < b."""
+
+    ring: Any  # of coefficients: see `verify.algebra.series.power_series.CoefficientRing`
+    names: tuple[str, ...]
+    entries: Mapping[Place, Poly] = field(default_factory=dict)
+
+    @classmethod
+    def of(
+        cls, ring: CoefficientRing, names: tuple[str, ...], entry: Callable[[int, int], Poly]
+    ) -> "TwoForm":
+        """With the coefficients c_ab, which are put in normal form."""
+        made = {place: ring.reduce(entry(*place)) for place in combinations(range(len(names)), 2)}
+        return cls(ring, names, {place: x for place, x in made.items() if not x.is_zero()})
+
+    def at(self, a: int, b: int) -> Poly:
+        """The entry of its matrix."""
+        if a > b:
+            return -self.at(b, a)
+        return self.entries.get((a, b), self.ring.zero)
+
+    def __sub__(self, other: "TwoForm") -> "TwoForm":
+        return TwoForm.of(self.ring, self.names, lambda a, b: self.at(a, b) - other.at(a, b))
+
+    def called(self, place: Place) -> str:
+        """An entry's name, such as dp1∧dq2."""
+        a, b = (self.names[k] for k in place)
+        return f"d{a}∧d{b}"
+
+    @property
+    def length(self) -> int:
+        """How many terms its entries have together."""
+        return sum(map(len, self.entries.values()))
+
+    @property
+    def text(self) -> str:
+        """As a formula."""
+        terms = (self._term(self.ring.text(x), at) for at, x in self.entries.items())
+        return " + ".join(terms) or "0"
+
+    def _term(self, coefficient: str, place: Place) -> str:
+        return self.called(place) if coefficient == "1" else f"({coefficient})*{self.called(place)}"
+
+    @property
+    def divergence(self) -> Poly:
+        """Σ c_(p_i q_i): of S it is ΔJ, but for products of its entries."""
+        n = len(self.names) // 2
+        total: Poly = self.ring.reduce(sum((self.at(i, n + i) for i in range(n)), self.ring.zero))
+        return total
+
+    def decide(
+        self, decide: Callable[[Poly], Decision] | None = None
+    ) -> tuple[Decision, Place | None]:
+        """Whether it is the zero form, and the entry that shows that it is not; `decide` in place
+        of the ring's own.
+
+        Undecided where no entry is shown not to be zero, and one is not shown to be.
+        """
+        undecided = None
+        for place, x in self.entries.items():
+            decision = (decide or self.ring.decide)(x)
+            if decision.zero is False:
+                return decision, place
+            if decision.zero is None:
+                undecided = decision, place
+        return undecided or (Decision(True), None)
+
+
+def lie_derivative(flow: Flow, form: TwoForm) -> TwoForm:
+    """Along the flow, of D = ∂_t + X where H depends on time: D applied to the entries, and with
+    A = f' AᵀB + BA, which is tr A = 0 times the entry in the plane."""
+    ring, slopes = flow.ring, [flow.gradient(x) for x in flow.slopes]
+    size = range(len(flow.names)) if flow.degrees > 1 else ()
+
+    def entry(a: int, b: int) -> Poly:
+        total = flow.derive(form.at(a, b))
+        for c in size:
+            total += slopes[c][a] * form.at(c, b) + form.at(a, c) * slopes[c][b]
+        return total
+
+    return TwoForm.of(ring, flow.names, entry)
+
+
+def wedge(x: Sequence[Poly], y: Sequence[Poly], a: int, b: int) -> Poly:
+    """The entry ab of dx∧dy, of two gradients."""
+    return x[a] * y[b] - x[b] * y[a]
