@@ -25,9 +25,9 @@ from tests.paths import ROOT
 
 # From the roof down. A module imports from its own room and from those below it.
 ROOF = ("verify", "__main__", "from_type", "testing")
-ROOMS = ("commands", "calls", "pages", "reference", "exploration", "strategies", "claims",
-         "studies", "integrators", "runs", "flows", "kernels", "execution", "scenes", "proof",
-         "schemes", "hamiltonians", "algebra", "arithmetic")  # fmt: skip
+ROOMS = ("commands", "calls", "pages", "reference", "exploration", "strategies", "audits",
+         "claims", "studies", "integrators", "runs", "flows", "kernels", "execution", "scenes",
+         "proof", "schemes", "hamiltonians", "algebra", "arithmetic")  # fmt: skip
 GROUND = ("code_cache", "content", "discovery", "drawable", "effort", "errors", "files", "formats",
           "frames", "late", "lateral", "lockstep", "notebook", "prose", "verdict")  # fmt: skip
 
@@ -72,8 +72,8 @@ BY_NAME = {
     "verify.integrators.user_code.repeated": {"modules"},  # numpy, and where a function is from
     "verify.integrators.tracing.functions": {"builtins", "__import__"},  # what the user's code does
     "verify.integrators.tracing.purity": {"modules"},  # numpy and others, where they are imported
-    "verify.integrators.others.report": {"import_module"},  # a library that may be broken
-    "verify.integrators.others.methods.scripted": {"exec"},  # lines of ours, which are shown
+    "verify.audits.report": {"import_module"},  # a library that may be broken
+    "verify.audits.methods.scripted": {"exec"},  # lines of ours, which are shown
     "verify.integrators.user_code.user_modules": {
         "import_module", "modules", "spec_from_file_location", "exec_module"},  # the user's code
     "verify.arithmetic.number_system": {"exec"},  # kernels
