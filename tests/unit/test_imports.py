@@ -26,8 +26,8 @@ from tests.paths import ROOT
 # From the roof down. A module imports from its own room and from those below it.
 ROOF = ("verify", "__main__", "from_type", "testing")
 ROOMS = ("commands", "calls", "pages", "reference", "exploration", "strategies", "audits",
-         "claims", "studies", "integrators", "runs", "flows", "kernels", "execution", "scenes",
-         "proof", "schemes", "hamiltonians", "algebra", "arithmetic")  # fmt: skip
+         "claims", "papers", "studies", "integrators", "runs", "flows", "kernels", "execution",
+         "scenes", "proof", "schemes", "hamiltonians", "algebra", "arithmetic")  # fmt: skip
 GROUND = ("code_cache", "content", "discovery", "drawable", "effort", "errors", "files", "formats",
           "frames", "late", "lateral", "lockstep", "notebook", "prose", "verdict")  # fmt: skip
 
