@@ -300,7 +300,7 @@ def test_pages_compute_nothing_themselves() -> None:
 
 def test_only_what_is_declared_is_imported() -> None:
     declared = {"click", "flint", "mpmath", "numba", "numpy", "pydantic", "rich", "sympy", "gmpy2",
-                "greenlet", "llvmlite", "heyoka", "scipy", "galpy", "nodepy", "rebound",
+                "llvmlite", "heyoka", "scipy", "galpy", "nodepy", "rebound",
                 "desolver", "diffrax", "extensisq", "gala", "jax_md", "pyhamsys", "torchdiffeq",
                 "matplotlib", "jinja2", "markupsafe", "hypothesis",
                 "distributed", "pandas", "pyarrow", "tqdm", "verify", "xarray"}  # fmt: skip

@@ -13,6 +13,7 @@ from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import Kernel, Writer
 from verify.kernels.stepping import KernelRun
+from verify.lockstep import alone
 from verify.schemes import get
 from verify.studies.separation.kernel import WORKING, MixedKernel, mixed_kernel
 from verify.studies.separation.mixed_run import marks_of
@@ -70,7 +71,7 @@ def states(
     made = arithmetic.get(name, 50)
     working = WorkingRun(run, rounded_inputs(run), follow=False)
     kernel = mixed_kernel(run.hamiltonian, scheme, made, follow=False)
-    found = working._states(kernel, made, lambda _: None)
+    found = alone(working._states(kernel, made, lambda _: None))
     return dict(zip(marks_of(steps), found, strict=True))
 
 
