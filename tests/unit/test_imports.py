@@ -29,7 +29,7 @@ ROOMS = ("commands", "calls", "pages", "reference", "exploration", "strategies",
          "claims", "papers", "studies", "integrators", "runs", "flows", "kernels", "execution",
          "scenes", "proof", "schemes", "hamiltonians", "algebra", "arithmetic")  # fmt: skip
 GROUND = ("code_cache", "content", "discovery", "drawable", "effort", "errors", "files", "formats",
-          "frames", "late", "lateral", "lockstep", "notebook", "prose", "verdict")  # fmt: skip
+          "frames", "late", "lockstep", "notebook", "prose", "verdict")  # fmt: skip
 
 
 def floor(name: str) -> int:

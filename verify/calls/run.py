@@ -13,13 +13,13 @@ from verify.calls.given import (
     scheme_name,
 )
 from verify.calls.progress import Progress, progress_of
+from verify.calls.run_result import RunResult
 from verify.errors import InputError
 from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.start import Given, check_start
 from verify.lockstep import Course, alone
 from verify.runs.run import AskedRun
 from verify.scenes.results.orbit import MOST_POINTS
-from verify.scenes.results.run import RunResult
 from verify.scenes.values import AUTO, steps_from
 
 _DIGITS = 17
@@ -109,7 +109,7 @@ def run_in_turn(
             keeper=keeper,
         )  # fmt: skip
         result = yield from asked.result(tell)
-    return result.with_points(int(points))
+    return RunResult.of(result).with_points(int(points))
 
 
 def _names(observables: Sequence[str] | None) -> tuple[str, ...] | None:
