@@ -77,7 +77,6 @@ BY_NAME = {
     "verify.integrators.user_code.user_modules": {
         "import_module", "modules", "spec_from_file_location", "exec_module"},  # the user's code
     "verify.arithmetic.number_system": {"exec"},  # kernels
-    "verify.arithmetic.systems.float64": {"exec"},  # kernels
 }  # fmt: skip
 
 
@@ -290,7 +289,7 @@ def test_stray_python_and_an_imported_example_are_seen(tmp_path: Path) -> None:
 
 
 def test_pages_compute_nothing_themselves() -> None:
-    heavy = {"numba", "mpmath", "gmpy2", "flint"}
+    heavy = {"mpmath", "gmpy2", "flint"}
     rooms = {"runs", "kernels", "proof"}
     for name, path in NAMES.items():
         if rooms_of(name) == "pages":
@@ -299,7 +298,7 @@ def test_pages_compute_nothing_themselves() -> None:
 
 
 def test_only_what_is_declared_is_imported() -> None:
-    declared = {"click", "flint", "mpmath", "numba", "numpy", "pydantic", "rich", "sympy", "gmpy2",
+    declared = {"click", "flint", "mpmath", "numpy", "pydantic", "rich", "sympy", "gmpy2",
                 "llvmlite", "heyoka", "scipy", "galpy", "nodepy", "rebound",
                 "desolver", "diffrax", "extensisq", "gala", "jax_md", "pyhamsys", "torchdiffeq",
                 "matplotlib", "jinja2", "markupsafe", "hypothesis",
