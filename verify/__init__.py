@@ -10,7 +10,6 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from verify.from_type import register
-from verify.lateral import computed_by
 
 if TYPE_CHECKING:
     from verify import schemes as schemes
@@ -23,6 +22,7 @@ if TYPE_CHECKING:
     from verify.calls.modified import modified_hamiltonian as modified_hamiltonian
     from verify.calls.prove import prove as prove
     from verify.calls.run import run as run
+    from verify.calls.run_result import RunResult as RunResult
     from verify.calls.separate import separate as separate
     from verify.calls.separate import separate_grid as separate_grid
     from verify.calls.stability import stability as stability
@@ -42,7 +42,6 @@ if TYPE_CHECKING:
     from verify.proof.proof import Proof as Proof
     from verify.scenes.results.orbit import OrbitTable as OrbitTable
     from verify.scenes.results.report import Report as Report
-    from verify.scenes.results.run import RunResult as RunResult
     from verify.scenes.results.separation import SeparationGrid as SeparationGrid
     from verify.scenes.results.separation import SeparationResult as SeparationResult
     from verify.scenes.results.separation_in_degrees import (
@@ -94,7 +93,7 @@ _NAMES = {
     "load_scene": ("verify.scenes.scene", "the scene in a TOML file"),
     "Proof": ("verify.proof.proof", "what is proved of a step map"),
     "ModifiedEquation": ("verify.proof.modified.equation", "what is known of a scheme's H̃"),
-    "RunResult": ("verify.scenes.results.run", "what a run gave"),
+    "RunResult": ("verify.calls.run_result", "what a run gave"),
     "OrbitTable": ("verify.scenes.results.orbit", "the states of a run"),
     "Sweep": ("verify.scenes.results.sweep", "what a sweep gave"),
     "SeparationResult": ("verify.scenes.results.separation", "what a separation gave"),
@@ -119,28 +118,7 @@ __doc__ = (__doc__ or "") + "\n".join(  # None by python -OO
 )
 
 
-def _orbit(*given: Any) -> Any:
-    from verify.runs.orbit import orbit_of
-
-    return orbit_of(*given)
-
-
-def _solution_errors(*given: Any) -> Any:
-    from verify.runs.solution_error import solution_errors
-
-    return solution_errors(*given)
-
-
-def _energy_drifts(*given: Any) -> Any:
-    from verify.runs.energy_drift import energy_drifts
-
-    return energy_drifts(*given)
-
-
 register()  # what hypothesis draws, whichever of the two is imported first
-computed_by("orbit", _orbit)
-computed_by("solution_errors", _solution_errors)
-computed_by("energy_drifts", _energy_drifts)
 
 
 def __getattr__(name: str) -> Any:

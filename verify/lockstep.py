@@ -1,24 +1,33 @@
 """Functions that run in turn and meet where what they ask for can be done together.
 
-Contract: `together` calls functions so that one of them runs at a time, and each as if it ran by
-itself: what a `Work` gives must not depend on what is done beside it. Where a function calls
-`meet`, it waits until all others wait too, or have ended; then one work does some of what is asked
-of it, as orbits of one kernel are stepped in the lanes of the vector unit.
+Such a function is a generator, a `Course`: it yields what it asks of a `Work`, by `meet`, and goes
+on when that is there. `together` runs several of them, one at a time, until all wait, or have
+ended; then one work does some of what is asked of it, as orbits of one kernel are stepped in the
+lanes of the vector unit. `alone` runs a single one.
 
-Not promised: which function ends first. A function that waits holds what it holds: it must not meet
-while it has changed what others see, such as flint's precision.
-
-Each function is a greenlet, a stack of its own in this thread: to let another one run takes a
-microsecond, where threads that wait for each other take some fifty.
+Contract: each gives what it gives alone. What a `Work` gives must not depend on what is done beside
+it. Not promised: which of them ends first. Who waits holds what it holds: it must not meet while it
+has changed what others see, such as flint's precision.
 """
 
+import inspect
+import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
-from typing import Any, Generic, Protocol, TypeVar
-
-import greenlet
+from collections.abc import Generator, Iterator, Sequence
+from contextlib import suppress
+from typing import Any, Generic, Protocol, TypeAlias, TypeVar
 
 T = TypeVar("T")
+
+
+class Work(Protocol):
+    """What can be done for several together."""
+
+    def advance(self, pending: "Sequence[Pending]") -> None:
+        """Does some of what is asked; at least one of them is finished then.
+
+        They come in the order in which they wait, and the first is among those that go on.
+        """
 
 
 class Pending:
@@ -28,10 +37,10 @@ class Pending:
     its share where it was done together with others.
     """
 
-    __slots__ = ("asked", "error", "finished", "result", "seconds", "state")
+    __slots__ = ("asked", "error", "finished", "result", "seconds", "state", "work")
 
-    def __init__(self, asked: Any) -> None:
-        self.asked = asked
+    def __init__(self, work: Work, asked: Any) -> None:
+        self.work, self.asked = work, asked
         self.finished = False
         self.result: Any = None
         self.error: Exception | None = None
@@ -43,18 +52,62 @@ class Pending:
         self.result, self.error, self.finished = result, error, True
 
 
+Course: TypeAlias = Generator[Pending, None, T]
+
+
+def meet(work: Work, asked: Any) -> Course[Any]:
+    """What the work makes of this, together with what others ask of it; errors are raised."""
+    pending = Pending(work, asked)
+    yield pending
+    if pending.error is not None:
+        raise pending.error
+    return pending.result
+
+
+def alone(course: Course[T]) -> T:
+    """What it gives with no other beside it. What a work raises, it may catch."""
+    error: BaseException | None = None
+    while True:
+        try:
+            pending = next(course) if error is None else course.throw(error)
+            error = None
+            while not pending.finished:
+                pending.work.advance([pending])
+        except StopIteration as ended:
+            result: T = ended.value
+            return result
+        except BaseException as raised:
+            if not _waits(course):
+                raise
+            error = raised
+
+
+def _waits(course: Course[Any]) -> bool:
+    """Whether it has begun, and has not ended."""
+    return inspect.getgeneratorstate(course) == inspect.GEN_SUSPENDED
+
+
+class _Here(threading.local):
+    """Of the course that runs in this thread: the seconds for which others ran since it began."""
+
+    away = 0.0
+
+
+_HERE = _Here()
+
+
+def clock() -> float:
+    """Seconds for which this course has run, what was done for it by a work among them."""
+    return time.perf_counter() - _HERE.away
+
+
 class Ended(Generic[T]):
-    """What a function gave."""
+    """What a course gave."""
 
     __slots__ = ("_error", "_value")
 
-    def __init__(self, value: T | None, error: BaseException | None = None) -> None:
+    def __init__(self, value: T | None, error: Exception | None = None) -> None:
         self._value, self._error = value, error
-
-    @property
-    def interruption(self) -> BaseException | None:
-        """What ended it, where that is everybody's."""
-        return None if isinstance(self._error, Exception) else self._error
 
     def result(self) -> T:
         """Its value; what it raised is raised."""
@@ -63,44 +116,15 @@ class Ended(Generic[T]):
         return self._value  # type: ignore[return-value]  # T may be None
 
 
-class Work(Protocol):
-    """What can be done for several together."""
+def together(courses: Iterator[Course[T]], most: int) -> Iterator[tuple[int, Ended[T]]]:
+    """(its number, what it gave) of each course as it ends; `most` are under way at a time.
 
-    def advance(self, pending: Sequence[Pending]) -> None:
-        """Does some of what is asked; at least one of them is finished then.
-
-        They come in the order in which they wait, and the first is among those that go on.
-        """
-
-
-def meet(work: Work, asked: Any) -> Pending:
-    """What the work makes of this, together with what others ask of it; errors are raised."""
-    pending = Pending(asked)
-    here = greenlet.getcurrent()
-    if isinstance(here, _Member):
-        here.wait(work, pending)
-    while not pending.finished:
-        work.advance([pending])
-    if pending.error is not None:
-        raise pending.error
-    return pending
-
-
-def clock() -> float:
-    """Seconds for which this function has run, what was done for it by a work among them."""
-    here = greenlet.getcurrent()
-    return time.perf_counter() - (here.away if isinstance(here, _Member) else 0.0)
-
-
-def together(functions: Iterator[Callable[[], T]], most: int) -> "Iterator[tuple[int, Ended[T]]]":
-    """(its number, what it gave) of each function as it ends; `most` are under way at a time.
-
-    The functions are taken from their iterator as there is room. Where this is left before its end,
+    The courses are taken from their iterator as there is room. Where this is left before its end,
     those under way are ended where they wait: a KeyboardInterrupt is raised in them as well.
     """
-    numbered = enumerate(functions)
-    waiting: list[_Member] = []
-    reason: BaseException = greenlet.GreenletExit()
+    numbered = enumerate(courses)
+    waiting: list[_Member[T]] = []
+    reason: BaseException = GeneratorExit()
     try:
         while True:
             while len(waiting) < most and (following := next(numbered, None)) is not None:
@@ -128,26 +152,24 @@ def together(functions: Iterator[Callable[[], T]], most: int) -> "Iterator[tuple
             member.end(reason)
 
 
-def _advance(waiting: Sequence["_Member"]) -> None:
+def _advance(waiting: "Sequence[_Member[Any]]") -> None:
     """The work that is waited for longest is done, for all who wait for it.
 
     So nobody waits for ever, and who is behind the others is not left behind.
     """
-    work = waiting[0].work
-    assert work is not None  # noqa: S101 - it waits for it
-    work.advance([e.pending for e in waiting if e.work is work and e.pending is not None])
+    asked = [member.pending for member in waiting if member.pending is not None]
+    work = asked[0].work
+    work.advance([pending for pending in asked if pending.work is work])
 
 
-class _Member(greenlet.greenlet):
-    """A function under way: it runs while `go_on` is called, until it waits for a work or ends."""
+class _Member(Generic[T]):
+    """A course under way: it runs while `go_on` is called, until it waits for a work or ends."""
 
-    def __init__(self, number: int, function: Callable[[], Any]) -> None:
-        super().__init__(self._whole)
-        self.number, self.function = number, function
-        self.ended: Ended[Any] | None = None
-        self.work: Work | None = None
+    def __init__(self, number: int, course: Course[T]) -> None:
+        self.number, self.course = number, course
+        self.ended: Ended[T] | None = None
         self.pending: Pending | None = None
-        self.away = 0.0  # seconds for which others ran since it began
+        self.away = self.since = 0.0  # seconds for which others ran; when it began to wait
 
     @property
     def ready(self) -> bool:
@@ -155,30 +177,22 @@ class _Member(greenlet.greenlet):
         return self.pending is not None and self.pending.finished
 
     def go_on(self) -> None:
-        self.parent = greenlet.getcurrent()
-        self.switch()
-        if self.ended is not None and self.ended.interruption is not None:
-            raise self.ended.interruption
+        """An interruption of it is raised."""
+        if self.pending is not None:
+            self.away += time.perf_counter() - self.since - self.pending.seconds
+        outer, _HERE.away = _HERE.away, self.away
+        try:
+            self.pending = next(self.course)
+        except StopIteration as ended:
+            self.ended = Ended(ended.value)
+        except Exception as error:
+            self.ended = Ended(None, error)
+        finally:
+            _HERE.away = outer
+            self.since = time.perf_counter()
 
     def end(self, reason: BaseException) -> None:
         """Ends it where it waits, if it does."""
-        if self:  # it has begun, and has not ended
-            self.parent = greenlet.getcurrent()
-            self.throw(type(reason), reason)
-
-    def wait(self, work: Work, pending: Pending) -> None:
-        """Called by the function itself: until what is pending is done."""
-        self.work, self.pending = work, pending
-        begun = time.perf_counter()
-        try:
-            assert self.parent is not None  # noqa: S101 - whoever let it run
-            self.parent.switch()
-        finally:
-            self.away += time.perf_counter() - begun - pending.seconds
-            self.work = self.pending = None
-
-    def _whole(self) -> None:
-        try:
-            self.ended = Ended(self.function())
-        except BaseException as error:
-            self.ended = Ended(None, error)
+        if _waits(self.course):
+            with suppress(BaseException):
+                self.course.throw(reason)

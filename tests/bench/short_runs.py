@@ -18,6 +18,7 @@ from collections.abc import Callable
 from fractions import Fraction
 
 from verify import arithmetic as number_systems
+from verify import lockstep
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import kernel_for
 from verify.runs.run import run
@@ -51,7 +52,9 @@ def drawn(draw: random.Random, scheme: str) -> Hamiltonian:
 def one_run(hamiltonian: Hamiltonian, scheme: str, name: str) -> None:
     if name == SEPARATION:
         with contextlib.suppress(Stopped):  # an answer too
-            separated_chains(hamiltonian, scheme, {"p": P, "q": Q, "h": H}, STEPS, 8)
+            lockstep.alone(
+                separated_chains(hamiltonian, scheme, {"p": P, "q": Q, "h": H}, STEPS, 8)
+            )
         return
     run(hamiltonian, scheme, q=Q, p=P, step_size=H, steps=STEPS, arithmetic=name,
         digits=DIGITS[name], observables=("lambda",))  # fmt: skip

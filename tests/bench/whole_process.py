@@ -69,7 +69,7 @@ def main() -> None:
     bare, _ = measure([sys.executable, "-c", "import sympy"], 3 * ROUNDS)
     show("verify run, 1,000 steps, float64, a second time", f"{again:.3f} s", "< 0.4 s")
     show("- with --no-cache; import sympy alone", f"{anew:.3f} / {bare:.3f} s", "-")
-    # Python alone does runs of up to 2·10⁵ steps; numba is there in both of these.
+    # Python alone does runs of up to 2·10⁵ steps; the compiler is there in both of these.
     peaks = [measure([sys.executable, "-c", _RUN % n], 3)[1] for n in (400_000, 40_000_000)]
     show("peak memory, 4·10⁷ steps over 4·10⁵", f"{peaks[1] / peaks[0]:.3f}", "≤ 1.10")
     if "--report" not in sys.argv:

@@ -10,8 +10,8 @@ of an hour.
 import sys
 import time
 
-from verify.integrators.others.printed_libraries import files
-from verify.integrators.others.second.look import OF_ORDERS, at_table, claimed_of
+from verify.audits.printed_libraries import files
+from verify.audits.second.look import OF_ORDERS, at_table, claimed_of
 from verify.integrators.tables.check import read_tables
 from verify.verdict import Verdict
 

@@ -192,7 +192,7 @@ def imported(*given: str) -> set[str]:
     return modules
 
 
-HEAVY = {"numba", "llvmlite", "matplotlib", "numpy", "jinja2", "rich", "reports"}
+HEAVY = {"llvmlite", "matplotlib", "numpy", "jinja2", "rich", "reports"}
 
 
 @pytest.mark.left_to_ci

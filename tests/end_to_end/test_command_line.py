@@ -311,15 +311,14 @@ print("IMPORTED", *sorted(roots), file=sys.stderr)
     [
         (
             ["--help"],
-            {"numba", "matplotlib", "numpy", "sympy", "flint", "mpmath", "pydantic", "difflib"},
+            {"matplotlib", "numpy", "sympy", "flint", "mpmath", "pydantic", "difflib"},
         ),
-        (["report", "--help"], {"numba", "matplotlib", "numpy", "sympy", "jinja2", "reports"}),
-        (arguments("prove", PROVE), {"numba", "matplotlib", "numpy", "jinja2", "rich", "reports"}),
-        (["plan", "paper"], {"numba", "matplotlib", "numpy", "jinja2"}),
+        (["report", "--help"], {"matplotlib", "numpy", "sympy", "jinja2", "reports"}),
+        (arguments("prove", PROVE), {"matplotlib", "numpy", "jinja2", "rich", "reports"}),
+        (["plan", "paper"], {"matplotlib", "numpy", "jinja2"}),
         (
             arguments("run", RUN, digits="20"),
             {
-                "numba",
                 "matplotlib",
                 "numpy",
                 "jinja2",

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from verify.audits import libraries as others
+from verify.audits import printed_libraries
 from verify.commands.main import main
-from verify.integrators.others import libraries as others
-from verify.integrators.others import printed_libraries
 
 
 @pytest.fixture(autouse=True)

@@ -21,7 +21,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-LIBRARIES = ("sympy", "flint", "numpy", "numba", "gmpy2", "mpmath", "pydantic", "hypothesis",
+LIBRARIES = ("sympy", "flint", "numpy", "gmpy2", "mpmath", "pydantic", "hypothesis",
              "llvmlite.binding", "pytest", "_pytest.assertion", "click", "rich")  # fmt: skip
 MEMORY = 6 << 30
 _DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of Linux
@@ -109,7 +109,6 @@ def _in_child(
         end_with_parent()
         # What is kept between runs of the same tests is kept for this child alone.
         os.environ["HYPOTHESIS_STORAGE_DIRECTORY"] = str(folder / "hypothesis")
-        os.environ["NUMBA_CACHE_DIR"] = str(folder / "numba")
         os.environ["VERIFY_CACHE"] = str(folder.absolute() / "verify")
         os.environ["TMPDIR"] = tempfile.tempdir = str(folder)
         said = os.open(folder / "said", os.O_WRONLY | os.O_CREAT)

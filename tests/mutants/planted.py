@@ -1,8 +1,8 @@
 """A mutant in place of its module, from the next import on; no file is written or changed.
 
-Three things could carry a mutant's work over to sound code, and none does: no bytecode is written
-for the module, as its tree is compiled at each import; what `verify` keeps on disk has the
-mutant's name in its fingerprint; and numba keeps nothing, as no function asks it to.
+Two things could carry a mutant's work over to sound code, and neither does: no bytecode is written
+for the module, as its tree is compiled at each import; and what `verify` keeps on disk has the
+mutant's name in its fingerprint.
 """
 
 import ast

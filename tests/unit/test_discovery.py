@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 
 from verify import arithmetic, schemes
+from verify.audits import libraries
 from verify.discovery import Catalogue
 from verify.exploration import properties
 from verify.exploration.sample_space import SampleSpace
 from verify.exploration.scenes import sample_scene
 from verify.hamiltonians import systems
-from verify.integrators.others import libraries
 from verify.scenes.shapes import named
 
 

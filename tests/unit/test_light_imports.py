@@ -17,7 +17,7 @@ LIGHT = [
     "verify.verdict",
     *(name for name in NAMES if name.startswith("verify.commands")),
 ]
-SLOW = {"numba", "matplotlib", "numpy", "sympy", "flint", "mpmath", "pydantic", "rich", "jinja2",
+SLOW = {"matplotlib", "numpy", "sympy", "flint", "mpmath", "pydantic", "rich", "jinja2",
         "hypothesis"}  # fmt: skip
 
 
@@ -51,10 +51,10 @@ def test_what_a_package_and_what_is_imported_import_is_seen() -> None:
         assert "numpy" in loaded_with("verify.commands.main", planted), module
 
 
-def test_numba_and_matplotlib_are_imported_only_where_they_are_used() -> None:
+def test_matplotlib_is_imported_only_where_it_is_used() -> None:
     for name, names in imports().items():
         drawing = name.startswith(("verify.pages.figures.", "verify.pages.plotting"))
-        assert not roots(names) & {"numba", *(() if drawing else ("matplotlib",))}, name
+        assert drawing or "matplotlib" not in roots(names), name
 
 
 EXPLORING = {f"verify.exploration.{name}" for name in ("scenes", "explore", "property_checks",
@@ -100,7 +100,7 @@ try:
     main({arguments})
 except SystemExit as done:
     assert not done.code, done.code
-print(sorted({{"numpy", "numba", "matplotlib"}} & set(sys.modules)), file=sys.stderr)
+print(sorted({{"numpy", "matplotlib"}} & set(sys.modules)), file=sys.stderr)
 """
 FLOW = """
 system = "duffing"
@@ -120,7 +120,7 @@ steps = [5]
     [
         (["plan", "SCENE"], []),
         (["prove", "--system", "duffing", "--scheme", "lie2"], []),
-        (["flow", "SCENE", "--workers", "1"], ["numba", "numpy"]),
+        (["flow", "SCENE", "--workers", "1"], ["numpy"]),
     ],
 )
 def test_what_carries_no_points_loads_no_numpy(

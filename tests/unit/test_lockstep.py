@@ -1,14 +1,13 @@
 """Functions in lockstep give what each gives by itself, and end where nobody waits for them."""
 
 import sys
-from collections.abc import Callable, Sequence
-from functools import partial
+from collections.abc import Generator, Sequence
 from typing import Any
 
 import pytest
 
 from verify import lockstep
-from verify.lockstep import Pending, meet, together
+from verify.lockstep import Course, Pending, alone, meet, together
 
 
 class Doubling:
@@ -36,28 +35,33 @@ class Four(Doubling):
         super().advance(pending[:4])
 
 
-def chain(work: Doubling, start: int, times: int) -> int:
+def chain(work: Doubling, start: int, times: int) -> Course[int]:
     for _ in range(times):
-        start = meet(work, start).result + 1
+        start = (yield from meet(work, start)) + 1
     return start
 
 
-def results(functions: Sequence[Callable[[], Any]], most: int) -> dict[int, Any]:
-    return {number: future.result() for number, future in together(iter(functions), most)}
+def results(courses: Sequence[Course[Any]], most: int) -> dict[int, Any]:
+    return {number: ended.result() for number, ended in together(iter(courses), most)}
+
+
+def by_itself(value: int) -> Course[int]:
+    """Meets nobody."""
+    yield from ()
+    return value
 
 
 @pytest.mark.parametrize("most", [1, 2, 3, 50])
 def test_each_gives_what_it_gives_by_itself(most: int) -> None:
-    calls = [partial(chain, Doubling(), k, k % 4) for k in range(20)]
     work = Doubling()
-    found = results([partial(chain, work, k, k % 4) for k in range(20)], most)
-    assert found == {k: call() for k, call in enumerate(calls)}
+    found = results([chain(work, k, k % 4) for k in range(20)], most)
+    assert found == {k: alone(chain(Doubling(), k, k % 4)) for k in range(20)}
     assert max(work.sizes) <= most
 
 
 def test_what_is_asked_at_once_is_done_together() -> None:
     work = Doubling()
-    results([partial(chain, work, 2 * k, 1) for k in range(7)], 50)
+    results([chain(work, 2 * k, 1) for k in range(7)], 50)
     assert work.sizes == [7]
 
 
@@ -67,7 +71,7 @@ def test_the_work_that_is_waited_for_longest_is_done_first() -> None:
     for name, work in (("one", one), ("other", other)):
         advance = work.advance
         work.advance = lambda p, n=name, f=advance: (order.append(n), f(p))[1]  # type: ignore
-    results([partial(chain, one, 2, 1), *[partial(chain, other, 2, 1)] * 2], 50)
+    results([chain(one, 2, 1), chain(other, 2, 1), chain(other, 2, 1)], 50)
     assert order == ["one", "other"]
 
 
@@ -76,11 +80,11 @@ def test_nobody_is_left_to_go_on_alone(count: int) -> None:
     """Each needs one work, then another; both are done for four at once nearly all the time."""
     first, second = Four(), Four()
 
-    def both() -> None:
+    def both() -> Course[None]:
         for work in [first] * 20 + [second] * 20:
-            meet(work, 2)
+            yield from meet(work, 2)
 
-    results([both] * count, 50)
+    results([both() for _ in range(count)], 50)
     for work in (first, second):
         assert sum(work.sizes) == 20 * count
         assert len(work.sizes) <= 20 * count / 4 + 3
@@ -88,7 +92,7 @@ def test_nobody_is_left_to_go_on_alone(count: int) -> None:
 
 def test_an_error_is_that_of_its_own_function_alone() -> None:
     work = Doubling()
-    ended = dict(together(iter([partial(chain, work, k, 1) for k in (2, -1, 4)]), 50))
+    ended = dict(together(iter([chain(work, k, 1) for k in (2, -1, 4)]), 50))
     assert ended[0].result() == 5
     assert ended[2].result() == 9
     with pytest.raises(ValueError, match="-1 is negative"):
@@ -96,36 +100,59 @@ def test_an_error_is_that_of_its_own_function_alone() -> None:
 
 
 def test_functions_that_meet_nobody_are_all_called() -> None:
-    assert results([lambda k=k: k for k in range(9)], 2) == {k: k for k in range(9)}  # type: ignore
+    assert results([by_itself(k) for k in range(9)], 2) == {k: k for k in range(9)}
     assert results([], 2) == {}
 
 
 def test_without_others_it_is_done_at_once() -> None:
-    assert meet(Doubling(), 21).result == 42
+    assert alone(meet(Doubling(), 21)) == 42
     with pytest.raises(ValueError, match="negative"):
-        meet(Doubling(), -3)
+        alone(meet(Doubling(), -3))
+
+
+def test_what_a_work_raises_is_raised_where_it_is_waited_for() -> None:
+    """So a run that is interrupted amid its steps keeps what it has."""
+
+    class Stopping(Doubling):
+        def advance(self, pending: Sequence[Pending]) -> None:
+            raise KeyboardInterrupt
+
+    seen: list[str] = []
+
+    def kept(again: bool) -> Course[int]:
+        try:
+            yield from meet(Stopping(), 1)
+        except KeyboardInterrupt:
+            seen.append("kept")
+            if not again:
+                raise
+        return (yield from meet(Doubling(), 3))
+
+    with pytest.raises(KeyboardInterrupt):
+        alone(kept(again=False))
+    assert alone(kept(again=True)) == 6
+    assert seen == ["kept"] * 2
 
 
 def test_those_that_wait_are_ended_where_nobody_waits_for_them() -> None:
     seen: list[str] = []
 
-    def waiting(work: Doubling) -> None:
+    def waiting(work: Doubling) -> Course[None]:
         try:
-            chain(work, 2, 5)
+            yield from chain(work, 2, 5)
         except BaseException as error:
             seen.append(type(error).__name__)
             raise
         seen.append("ended")
 
     work = Doubling()
-    course = together(iter([lambda: 1, *[partial(waiting, work)] * 2]), 50)
-    next(course)
-    course.close()
-    assert seen in ([], ["GreenletExit"] * 2)
-    course = together(iter([partial(chain, work, 2, 1), *[partial(waiting, work)] * 2]), 50)
-    next(course)
-    course.close()
-    assert seen[-2:] == ["GreenletExit"] * 2
+    for first in (by_itself(1), chain(work, 2, 1)):
+        seen.clear()
+        whole = together(iter([first, waiting(work), waiting(work)]), 50)
+        assert isinstance(whole, Generator)
+        next(whole)
+        whole.close()
+    assert seen == ["GeneratorExit"] * 2
 
 
 @pytest.mark.parametrize("at", range(3))
@@ -133,20 +160,19 @@ def test_an_interruption_is_everybodys(at: int) -> None:
     """Ctrl-C comes while one of them runs; the others write what they have."""
     seen: list[str] = []
 
-    def kept(work: Doubling, interrupted: bool) -> None:
+    def kept(work: Doubling, interrupted: bool) -> Course[None]:
         try:
-            chain(work, 2, 1)
+            yield from chain(work, 2, 1)
             if interrupted:
                 raise KeyboardInterrupt
-            chain(work, 2, 1)
+            yield from chain(work, 2, 1)
         except KeyboardInterrupt:
             seen.append("kept")
             raise
 
     work = Doubling()
-    functions = [partial(kept, work, k == at) for k in range(3)]
     with pytest.raises(KeyboardInterrupt):
-        results(functions, 50)
+        results([kept(work, k == at) for k in range(3)], 50)
     assert seen == ["kept"] * 3
 
 
@@ -170,10 +196,10 @@ def test_nobody_is_forgotten_whenever_an_interruption_comes() -> None:
     begun: list[int] = []
     ended: list[int] = []
 
-    def counted(work: Doubling, k: int) -> None:
+    def counted(work: Doubling, k: int) -> Course[None]:
         begun.append(k)
         try:
-            chain(work, 2, 2)
+            yield from chain(work, 2, 2)
         finally:
             ended.append(k)
 
@@ -185,7 +211,7 @@ def test_nobody_is_forgotten_whenever_an_interruption_comes() -> None:
         before = sys.gettrace()
         sys.settrace(Interrupted(at))
         try:
-            results([partial(counted, work, k) for k in range(4)], 3)
+            results([counted(work, k) for k in range(4)], 3)
         except KeyboardInterrupt:
             interruptions += 1
         finally:
@@ -195,10 +221,10 @@ def test_nobody_is_forgotten_whenever_an_interruption_comes() -> None:
 
 
 def test_a_clock_counts_ones_own_time_and_ones_share_of_the_work() -> None:
-    def timed(work: Doubling) -> float:
+    def timed(work: Doubling) -> Course[float]:
         begun = lockstep.clock()
-        chain(work, 2, 3)
+        yield from chain(work, 2, 3)
         return lockstep.clock() - begun
 
-    found = results([partial(timed, Doubling()) for _ in range(4)], 50)
+    found = results([timed(Doubling()) for _ in range(4)], 50)
     assert all(3000 <= seconds < 3001 for seconds in found.values())

@@ -7,11 +7,11 @@ import pytest
 
 from tests.helpers.pages.parts_of_prose import UNMARKED, proses, unmarked
 from tests.helpers.programs.judged import judged
-from verify.claims.theorems import check_theorem
-from verify.claims.theorems import names as theorems
 from verify.execution.keeping import NOTHING
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.results import Claims
+from verify.papers import check_theorem
+from verify.papers import names as theorems
 from verify.proof.every import prove_every
 from verify.proof.symmetry import by_series
 from verify.prose import Formula, Number, Prose, prose

@@ -9,12 +9,14 @@ from functools import lru_cache
 from types import CodeType
 from typing import TYPE_CHECKING, Any
 
+from verify.lockstep import Course
+
 if TYPE_CHECKING:
     from verify.arithmetic.arb import Ball
 
 Rounding = Callable[[str, int, "Ball"], "Ball"]
 State = Sequence[Any]  # the numbers that a kernel carries
-Walk = Callable[[Callable[..., Any], int, int, State, State, int], list[State]]
+Walk = Callable[[Callable[..., Any], int, int, State, State, int], Course[list[State]]]
 
 
 @dataclass(frozen=True)
@@ -33,8 +35,8 @@ class Arithmetic:
     number is an enclosure: how far from `exact` the true value may be, and `minimum` and `maximum`
     are then among the functions. `rounding`: how far the result of an operation may be off, by its
     kind in a program, its degree (of a root) and its size, a bound of |exact| and |computed|; None
-    where that is not known. `walk`: what does the work of `states`, where that is more
-    than calling a kernel again and again. Two arithmetics of one name and precision are equal.
+    where that is not known. `walk`: what does the work of `states`, where that is
+    done for several orbits together. Two arithmetics of one name and precision are equal.
     """
 
     name: str
@@ -66,7 +68,7 @@ class Arithmetic:
         fixed: State,
         state: State,
         beyond: int = 0,
-    ) -> list[State]:
+    ) -> Course[list[State]]:
         """What a kernel carries after `every` steps, twice as many, … from a state, `stops` times;
         fewer where a number left the arithmetic's range on the way.
 
@@ -74,7 +76,7 @@ class Arithmetic:
         steps of this orbit will be asked for after these.
         """
         if self.walk is not None:
-            return self.walk(kernel, every, stops, fixed, state, beyond)
+            return (yield from self.walk(kernel, every, stops, fixed, state, beyond))
         found: list[State] = []
         try:
             with self.context():
@@ -85,17 +87,20 @@ class Arithmetic:
                         break
                     found.append(after)
         except (ArithmeticError, ValueError):  # a pole, the log or root of a negative
-            return self._one_by_one(kernel, every, stops, fixed, state) if stops > 1 else []
+            if stops > 1:
+                return (yield from self._one_by_one(kernel, every, stops, fixed, state))
+            return []
         return found
 
     def _one_by_one(
         self, kernel: Callable[..., Any], every: int, stops: int, fixed: State, state: State
-    ) -> list[State]:
+    ) -> Course[list[State]]:
         """The same, each stop in a context of its own: one that they share does not say at which of
         them a number left the range, and may say so at the end only."""
         found: list[State] = []
         while len(found) < stops:
-            after = self.states(kernel, every, 1, fixed, found[-1] if found else state)
+            last = found[-1] if found else state
+            after = yield from self.states(kernel, every, 1, fixed, last)
             if not after:
                 break
             found += after

@@ -13,12 +13,13 @@ from verify.calls.given import (
     scheme_name,
 )
 from verify.calls.progress import Progress, progress_of
+from verify.calls.run_result import RunResult
 from verify.errors import InputError
 from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.start import Given, check_start
-from verify.runs.run import run as run_scheme
+from verify.lockstep import Course, alone
+from verify.runs.run import AskedRun
 from verify.scenes.results.orbit import MOST_POINTS
-from verify.scenes.results.run import RunResult
 from verify.scenes.values import AUTO, steps_from
 
 _DIGITS = 17
@@ -76,6 +77,22 @@ def run(
     >>> found.values["lambda"] < 0, found.orbit.t.tolist()[:3], found.orbit.texts("p")[1]
     (True, [0.0, 0.01, 0.02], '-0.04875')
     """
+    return alone(
+        run_in_turn(
+            system, scheme, q=q, p=p, step_size=step_size, steps=steps, time=time, t0=t0,
+            parameters=parameters, arithmetic=arithmetic, digits=digits, observables=observables,
+            points=points, progress=progress, keeper=keeper,
+        )
+    )  # fmt: skip
+
+
+def run_in_turn(
+    system: GivenSystem, scheme: GivenScheme, *, q: Given, p: Given, step_size: Exact,
+    steps: int | None, time: Exact | None, t0: Exact = 0, parameters: GivenParameters,
+    arithmetic: str | None = None, digits: int | None = None, observables: Sequence[str] | None,
+    points: int = 0, progress: Progress, keeper: Keeper = NOTHING,
+) -> Course[RunResult]:  # fmt: skip
+    """The same beside others."""
     exact = hamiltonian_from(system, parameters)
     check_start(exact, q, p, t0)
     name = scheme_name(scheme, exact)
@@ -86,22 +103,13 @@ def run(
     if not isinstance(arithmetic, str):
         raise InputError("arithmetic", arithmetic, "is no name of a number system")
     with progress_of(progress, f"{name[:30]}, steps", count) as tell:
-        result = run_scheme(
-            exact,
-            name,
-            q=q,
-            p=p,
-            step_size=step_size,
-            steps=count,
-            t0=t0,
-            arithmetic=arithmetic,
-            digits=digits or _DIGITS,
-            observables=_names(observables),
-            points=int(points),
-            progress=tell,
+        asked = AskedRun(
+            exact, name, q=q, p=p, step_size=step_size, steps=count, t0=t0, arithmetic=arithmetic,
+            digits=digits or _DIGITS, observables=_names(observables), points=int(points),
             keeper=keeper,
-        )
-    return result.with_points(int(points))
+        )  # fmt: skip
+        result = yield from asked.result(tell)
+    return RunResult.of(result).with_points(int(points))
 
 
 def _names(observables: Sequence[str] | None) -> tuple[str, ...] | None:

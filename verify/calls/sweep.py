@@ -1,17 +1,16 @@
 """`verify.sweep`: runs over a product of whatever is given as a list, as one table."""
 
 from collections.abc import Mapping, Sequence
-from functools import partial
 from itertools import product
 from typing import Any
 
-from verify import lockstep
 from verify.arithmetic.exact import Exact, positive, rational, text
 from verify.calls.given import GivenSystem, hamiltonian_from, listed, schemes_from
 from verify.calls.progress import Progress, progress_of
-from verify.calls.run import run
+from verify.calls.run import run_in_turn
 from verify.errors import InputError
 from verify.execution.ensembles import MOST_AT_ONCE
+from verify.lockstep import Course, together
 from verify.scenes.results.run import RunResult
 from verify.scenes.results.sweep import Sweep
 from verify.scenes.values import CLOSED_FORM
@@ -63,16 +62,15 @@ def sweep(
     if len(combinations) > _MOST:
         raise InputError("sweep", len(combinations), f"are more than {_MOST} runs")
 
-    def one(at: Sequence[Any]) -> RunResult:
+    def one(at: Sequence[Any]) -> Course[RunResult]:
         chosen = dict(zip(axes, at, strict=True))
         own = {name: chosen.pop(name) for name in values}
-        return run(exact, parameters=own, steps=steps, time=time, observables=observables,
-                   progress=False, **options, **chosen)  # fmt: skip
+        return run_in_turn(exact, parameters=own, steps=steps, time=time, observables=observables,
+                           progress=False, **options, **chosen)  # fmt: skip
 
     runs: dict[int, RunResult] = {}
     with progress_of(progress, "runs", len(combinations)) as tell:
-        calls = (partial(one, at) for at in combinations)
-        for number, ended in lockstep.together(calls, MOST_AT_ONCE):
+        for number, ended in together(map(one, combinations), MOST_AT_ONCE):
             runs[number] = ended.result()
             if tell:
                 tell(len(runs))

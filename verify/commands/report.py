@@ -185,7 +185,7 @@ def _integrators(
     scene: str, output: Path | None, more: str, where: "Placement", force: bool
 ) -> "tuple[Path, Report]":
     """Other libraries run on this machine, one a process."""
-    from verify.integrators.others.report import make_integrators_report
+    from verify.audits.report import make_integrators_report
 
     if where.cluster is not None:
         raise InputError("--cluster", where.cluster, "the integrators of others are run here")
@@ -199,7 +199,7 @@ def _integrators(
 
 def _findings(made: "Report", folder: Path) -> list[Path]:
     """The notes that were written; why any was not goes to standard error."""
-    from verify.integrators.others.findings.markdown import write_findings
+    from verify.audits.findings.markdown import write_findings
 
     writable(folder)
     written, left = write_findings(made, folder, _tell)

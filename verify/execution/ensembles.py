@@ -1,4 +1,4 @@
-"""Tasks whose runs are stepped together: which they are, and how they are computed.
+"""Tasks whose runs are stepped together: which they are.
 
 Tasks that name the same `ensemble` take the same steps from other initial values, or with other
 step sizes and parameters. They go to a worker in groups, longest first, and in a group each has its
@@ -6,12 +6,9 @@ step sizes and parameters. They go to a worker in groups, longest first, and in 
 unit have one run each. The results are what each task gives by itself.
 """
 
-from collections.abc import Callable, Iterator, Mapping
-from functools import partial
+from collections.abc import Mapping
 from itertools import islice
-from typing import TypeVar
 
-from verify import lockstep
 from verify.execution.task import Task
 
 MOST_AT_ONCE = 24  # under way: three sets of lanes, so that they are full where runs have ended
@@ -19,7 +16,6 @@ _LEAST_IN_GROUP = 16  # two sets, so that lanes are full
 _MOST_IN_GROUP = 64  # so that results come in, and every worker has some
 
 Group = dict[str, Task]
-T = TypeVar("T")
 
 
 def groups(tasks: Mapping[str, Task], workers: int) -> list[Group]:
@@ -35,10 +31,3 @@ def groups(tasks: Mapping[str, Task], workers: int) -> list[Group]:
         while part := sorted(islice(names, size), key=lambda name: tasks[name].turn):
             found.append({name: tasks[name] for name in part})
     return sorted(found, key=lambda part: -sum(task.cost for task in part.values()))
-
-
-def in_lockstep(group: Group, compute: Callable[[str, Task], T]) -> Iterator[T]:
-    """What is computed of each task as it is there. What a task raises is raised here."""
-    calls = (partial(compute, name, task) for name, task in group.items())
-    for _, ended in lockstep.together(calls, MOST_AT_ONCE):
-        yield ended.result()

@@ -9,13 +9,12 @@ import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import cached_property
-from itertools import chain
 from pathlib import Path
 
 from pydantic import ValidationError
 
 from verify.errors import InputError
-from verify.execution.ensembles import Group, groups, in_lockstep
+from verify.execution.ensembles import MOST_AT_ONCE, Group, groups
 from verify.execution.executors import (
     ANYWHERE,
     THIS_PROCESS,
@@ -37,6 +36,7 @@ from verify.execution.keeping import (
 from verify.execution.plan import Plan, given_by
 from verify.execution.task import Task
 from verify.files import check_replaceable, clear_unfinished, write_atomically
+from verify.lockstep import Course, together
 from verify.scenes.frozen import Frozen
 
 OnResult = Callable[[str, Frozen], None]  # called with a task's key and its result
@@ -175,9 +175,9 @@ def prepare_task(task: Task) -> object:
         return None
 
 
-def compute_all(task: Task, keeper: Keeper) -> list[tuple[str, Frozen]]:
+def compute_all(task: Task, keeper: Keeper) -> Course[dict[str, Frozen]]:
     """What comes of one task: its result and those that it gives, by the keys of their tasks."""
-    return [(each.key, result) for each, result in task.computed(keeper)]
+    return task.compute_in_turn(keeper)
 
 
 def _modules(tasks: Mapping[str, Task]) -> list[str]:
@@ -199,16 +199,10 @@ def _enough(tasks: Mapping[str, Task], calls: int, where: Placement) -> Placemen
 
 def _computed(part: Group, store: Store) -> Iterator[tuple[str, Frozen]]:
     """The results of tasks that are computed together, and those that they give, in this
-    process."""
-
-    def compute(name: str, task: Task) -> list[tuple[str, Frozen]]:
-        return compute_all(task, store.keeper(name))
-
-    if len(part) > 1:
-        yield from chain.from_iterable(in_lockstep(part, compute))
-        return
-    for name, task in part.items():
-        yield from compute(name, task)
+    process. What a task raises is raised."""
+    courses = (compute_all(task, store.keeper(name)) for name, task in part.items())
+    for _, ended in together(courses, MOST_AT_ONCE):
+        yield from ended.result().items()
 
 
 def compute_group(part: Group, store: Store) -> dict[str, Frozen]:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from verify.content import checkout
 
-_VERSIONED = ("areaproof", "sympy", "python-flint", "gmpy2", "mpmath", "numba", "llvmlite", "numpy")
+_VERSIONED = ("areaproof", "sympy", "python-flint", "gmpy2", "mpmath", "llvmlite", "numpy")
 _PROCESSOR = Path("/proc/cpuinfo")
 _SECONDS = 5.0  # for git to answer
 _LETTERS = 12  # of a commit

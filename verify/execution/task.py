@@ -6,11 +6,11 @@ A kind of task is one class, in a file of the study whose it is.
 import hashlib
 import json
 from abc import abstractmethod
-from collections.abc import Iterator
 from typing import Any, ClassVar
 
 from verify.execution.keeping import Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.lockstep import Course
 from verify.scenes.frozen import Frozen
 from verify.scenes.values import Coordinates, Number
 
@@ -58,10 +58,13 @@ class Task(Frozen):
         be computed beside it."""
         return ()
 
-    def computed(self, keeper: Keeper) -> "Iterator[tuple[Task, Frozen]]":
-        """Its result, and those that have come with it, each with its task: what `compute` makes
-        of each."""
-        yield self, self.compute(keeper)
+    def compute_in_turn(self, keeper: Keeper) -> Course[dict[str, Frozen]]:
+        """What `compute` makes of it, and of those of `gives` that have come with it, by keys.
+
+        One of an ensemble waits here for what its runs ask for (`verify.lockstep`).
+        """
+        yield from ()
+        return {self.key: self.compute(keeper)}
 
     def proved(self) -> Frozen | None:
         """Its result where a proof gives it at once, and nothing is to be computed."""

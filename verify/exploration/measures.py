@@ -16,6 +16,7 @@ from verify.exploration.any_sample import AnySample
 from verify.exploration.sample import Sample
 from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.kernels.stepping import KernelRun, Outcome
+from verify.lockstep import alone
 from verify.studies.separation.chain import separated_chains
 from verify.studies.separation.mixed_run import Stopped
 from verify.studies.separation.trail import Trail
@@ -55,7 +56,7 @@ def rounding_share(sample: Sample, digits: int = DIGITS) -> float | None:
     if _stays(sample, digits) is None:
         return None
     try:
-        chain = separated_chains(*sample.kernel_inputs, max(1, digits // _SHARE)).plain
+        chain = alone(separated_chains(*sample.kernel_inputs, max(1, digits // _SHARE))).plain
     except Stopped:
         return None
     truncation, rounding = (_greatest(*chain.trail(n)) for n in ("truncation", "total"))

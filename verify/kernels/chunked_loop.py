@@ -1,7 +1,7 @@
 """One kernel's loop in chunks, what is noted on the way, and its checkpoints."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache
@@ -10,7 +10,6 @@ from typing import Annotated, Any, NamedTuple
 
 from pydantic import PlainSerializer, PlainValidator, TypeAdapter
 
-from verify import lockstep
 from verify.arithmetic.exact import decimal
 from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic, State
@@ -21,6 +20,7 @@ from verify.kernels.kernel import Kernel
 from verify.kernels.notes import LazyNote, Notes
 from verify.kernels.run_inputs import RunInputs
 from verify.kernels.step import tangent_map
+from verify.lockstep import Course, clock
 from verify.scenes.results.run import SeriesPoint
 
 Progress = Callable[[int], None]  # called with the number of steps done
@@ -69,6 +69,19 @@ class _Now(NamedTuple):
 @cache
 def _kept() -> TypeAdapter[Reached]:
     return TypeAdapter(Reached)
+
+
+def last_good(count: int, advance: Callable[[int], Course[Sequence[object]]]) -> Course[int]:
+    """The greatest number of steps below `count` that stays in range, by bisection; where one does
+    not, there are no states when it is advanced by so many."""
+    good, bad = 0, count
+    while bad - good > 1:
+        middle = (good + bad) // 2
+        if (yield from advance(middle)):
+            good = middle
+        else:
+            bad = middle
+    return good
 
 
 class ChunkedLoop:
@@ -142,26 +155,29 @@ class ChunkedLoop:
 
     # -- steps --------------------------------------------------------------------------------
 
-    def chunks(self) -> Iterator[int]:
-        """Steps to the end, and tells the steps done after every chunk; ends early where a number
-        left the arithmetic's range, with `done` the steps that stayed in it."""
+    def to_end(self, goes_on: Callable[[int], bool] = lambda _: True) -> Course[bool]:
+        """Steps to the end; ends early where a number left the arithmetic's range, with `done` the
+        steps that stayed in it. `goes_on` is told the steps done after every chunk, and says
+        whether to go on: False where it said no."""
         run = self.run
         self.arithmetic.expect(self.kernel.function, run.steps - self.done)
-        self._advance(0)  # compiles: `seconds` is the stepping alone
+        yield from self._advance(0)  # compiles: `seconds` is the stepping alone
         while self.done < run.steps:
             every, stops = self._ahead()
-            begun = lockstep.clock()
-            states = self._advance(every, stops)
-            self.seconds += lockstep.clock() - begun
+            begun = clock()
+            states = yield from self._advance(every, stops)
+            self.seconds += clock() - begun
             for state in states:
                 self.state, self.done = state, self.done + every
                 self._note()
-                yield self.done
+                if not goes_on(self.done):
+                    return False
                 if run.keeper.due(self._label):
                     self.keep()
             if len(states) < stops:
-                self.done += self._last_good(every)
-                return
+                self.done += yield from last_good(every, self._advance)
+                return True
+        return True
 
     def _ahead(self) -> tuple[int, int]:
         """So many steps to the next stop, and so many stops: to a note or to some, or on the way to
@@ -174,27 +190,16 @@ class ChunkedLoop:
             return self.section, min(chunk, rest) // self.section
         return min(chunk, left, rest), 1
 
-    def _advance(self, every: int, stops: int = 1) -> list[State]:
+    def _advance(self, every: int, stops: int = 1) -> Course[list[State]]:
         """The states at the next stops; fewer where a number left the arithmetic's range."""
         kernel = self.kernel.function
         state = self._turned_back() if self.turns else self.state
         beyond = self.run.steps - self.done - every * stops
-        found = self.arithmetic.states(kernel, every, stops, self.fixed, state, beyond)
+        found = yield from self.arithmetic.states(kernel, every, stops, self.fixed, state, beyond)
         return list(takewhile(self._finite, found))
 
     def _finite(self, state: State) -> bool:
         return all(map(math.isfinite, map(state.__getitem__, self._doubles)))
-
-    def _last_good(self, count: int) -> int:
-        """The greatest number of steps below `count` that stays in range, by bisection."""
-        good, bad = 0, count
-        while bad - good > 1:
-            middle = (good + bad) // 2
-            if self._advance(middle):
-                good = middle
-            else:
-                bad = middle
-        return good
 
     # -- what is noted ------------------------------------------------------------------------
 

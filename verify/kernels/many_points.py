@@ -19,7 +19,6 @@ from typing import Any
 
 import numpy as np
 
-from verify import lockstep
 from verify.arithmetic.compiled.doubles import POINTS, on_points
 from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
@@ -28,6 +27,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.clock import clock_inputs, first_rest
 from verify.kernels.kernel import Kernel, kernel_for
 from verify.kernels.stepping import KernelRun, limits
+from verify.lockstep import alone, together
 
 _MOST = 1 << 16  # numbers that are kept of one kernel with its inputs: some 10 MB
 _WORTH = 500  # steps: fewer are taken again as soon as looked up
@@ -213,14 +213,14 @@ class PointMap:
         kernel, states = self.kernel.function, self.arithmetic.states
         calls = [partial(states, kernel, self.steps, 1, inputs, z) for z in points]
         if self.arithmetic.walk is None:
-            yield from (call() for call in calls)
+            yield from (alone(call()) for call in calls)
             return
 
         self.arithmetic.expect(kernel, self.steps * len(points))
 
         def advance(first: int) -> list[list[Sequence[Number]]]:
             share = calls[first : first + _SHARE]
-            ended = dict(lockstep.together(iter(share), len(share)))
+            ended = dict(together((call() for call in share), len(share)))
             return [ended[k].result() for k in range(len(share))]
 
         with ThreadPoolExecutor(os.cpu_count()) as threads:  # native code runs beside Python

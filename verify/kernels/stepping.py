@@ -14,8 +14,8 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import lru_cache, partial
-from itertools import chain, product
-from typing import NamedTuple
+from itertools import product
+from typing import Any, NamedTuple
 
 import flint
 
@@ -29,6 +29,7 @@ from verify.kernels.kernel import Kernel, kernel_for
 from verify.kernels.notes import LazyNote
 from verify.kernels.rounding import PRECISION, Ball, Rounded, analyse
 from verify.kernels.run_inputs import RunInputs, Times
+from verify.lockstep import Course, alone
 
 _TOP = Fraction(2) ** 15 * (1 - Fraction(1, 2**20))  # numbers are below 2^15 in size
 _MATRIX_LIMITS = tuple(Fraction(2) ** n for n in (12, 10, 8, 6, 4, 3, 2))
@@ -199,7 +200,11 @@ class KernelRun(RunInputs):
         kernel = kernel_for(*made)
         return not arithmetic.absolute or any(True for _ in self.formats(kernel, arithmetic))
 
-    def run(
+    def run(self, arithmetic: Arithmetic, **asked: Any) -> Outcome:
+        """The same as `run_in_turn`, alone."""
+        return alone(self.run_in_turn(arithmetic, **asked))
+
+    def run_in_turn(
         self,
         arithmetic: Arithmetic,
         *,
@@ -207,7 +212,7 @@ class KernelRun(RunInputs):
         tangent: bool = False,
         progress: Progress | None = None,
         enough: Callable[[Outcome], bool] | None = None,
-    ) -> Outcome:
+    ) -> Course[Outcome]:
         """All steps in this arithmetic; the series only where the kernel collects extremes.
 
         `tangent` carries the tangent map along. `enough` is asked at the first checkpoint whether
@@ -219,11 +224,12 @@ class KernelRun(RunInputs):
         made = (self.hamiltonian, self.scheme, arithmetic, observables, compensated)
         kernel = kernel_for(*made)
         if not arithmetic.absolute:
-            return _outcome(ChunkedLoop(self, kernel, arithmetic, (), 0), progress, enough)
+            loop = ChunkedLoop(self, kernel, arithmetic, (), 0)
+            return (yield from _outcome(loop, progress, enough))
         outcome = replace(_NOWHERE, reason=_NOWHERE.reason + arithmetic.name)
         for shift, found in self.formats(kernel, arithmetic):
             loop = ChunkedLoop(self, kernel, arithmetic, found[: len(kernel.limits)], shift)
-            outcome = _outcome(loop, progress, enough)
+            outcome = yield from _outcome(loop, progress, enough)
             if outcome.done == self.steps or outcome.kernel is None:  # done, or not enough
                 return outcome
             reason = (
@@ -250,7 +256,7 @@ class KernelRun(RunInputs):
 
 def _outcome(
     loop: ChunkedLoop, progress: Progress | None, enough: Callable[[Outcome], bool] | None
-) -> Outcome:
+) -> Course[Outcome]:
     """The loop to its end; a checkpoint is written where it is interrupted."""
 
     def outcome() -> Outcome:
@@ -258,16 +264,21 @@ def _outcome(
         return Outcome(**reached, kernel=loop.kernel, radii=loop.radii(), shift=loop.shift)
 
     asked = False
+
+    def goes_on(done: int) -> bool:
+        nonlocal asked
+        if progress and done:
+            progress(done)
+        if enough and not asked and loop.done >= loop.section:
+            asked = True
+            return enough(outcome())
+        return True
+
     try:
         # A run that goes on from beyond its first checkpoint is asked about that one as well.
-        for done in chain([0], loop.chunks()):
-            if progress and done:
-                progress(done)
-            if enough and not asked and loop.done >= loop.section:
-                asked = True
-                if not enough(outcome()):
-                    return replace(_NOWHERE, done=loop.done, seconds=loop.seconds)
+        if goes_on(0) and (yield from loop.to_end(goes_on)):
+            return outcome()
     except KeyboardInterrupt:
         loop.keep()
         raise
-    return outcome()
+    return replace(_NOWHERE, done=loop.done, seconds=loop.seconds)

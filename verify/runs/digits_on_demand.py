@@ -19,6 +19,7 @@ from verify import arithmetic as number_systems
 from verify.arithmetic.number_system import Arithmetic, NumberSystem, UnsupportedError
 from verify.kernels.chunked_loop import Progress
 from verify.kernels.stepping import KernelRun, Outcome
+from verify.lockstep import Course
 from verify.runs.a_posteriori import METHOD, certify
 from verify.runs.enclosed import enclosed
 from verify.runs.estimated import Bounds, digits_of, missing_digits, resolved, working_digits
@@ -75,7 +76,7 @@ def _fits(kernel_run: KernelRun, arithmetic: Arithmetic) -> bool:
 
 def measure(
     kernel_run: KernelRun, name: str, digits: int, progress: Progress | None = None
-) -> Measured:
+) -> Course[Measured]:
     """The run's values to so many digits in the arithmetic of that name, or in its fallback.
 
     A fixed-point run that leaves its range, and where a function is missing, or equations cannot be
@@ -86,23 +87,22 @@ def measure(
             wider = number_systems.get(name, working_digits(digits, kernel_run.steps))
             bounds, run = enclosed(kernel_run, wider, digits, progress)
             return Measured(bounds, name, run)
-        own = certified(kernel_run, name, digits, progress)
+        own = yield from certified(kernel_run, name, digits, progress)
         if isinstance(own, Measured):
             return own
-        found = _estimated(kernel_run, own, digits, progress)
+        found = yield from _estimated(kernel_run, own, digits, progress)
         if not own.absolute or found.bounds.status == "finished":
             return found
         reason = found.outcome.reason or found.bounds.method
     except UnsupportedError as error:
         reason = str(error)
-    return replace(
-        measure(kernel_run, number_systems.automatic()[-1].name, digits, progress), fallback=reason
-    )
+    last = number_systems.automatic()[-1].name
+    return replace((yield from measure(kernel_run, last, digits, progress)), fallback=reason)
 
 
 def certified(
     kernel_run: KernelRun, name: str, digits: int, progress: Progress | None = None
-) -> Measured | Arithmetic:
+) -> Course[Measured | Arithmetic]:
     """The run's values to so many digits with rigorous bounds; where there are none, the arithmetic
     at the precision that was reached. Raises UnsupportedError."""
     own = number_systems.get(name, _first_digits(name, digits, kernel_run))
@@ -110,14 +110,16 @@ def certified(
         return own
     for _ in range(_ATTEMPTS):
         foreseen = _Foresight(kernel_run, own, digits) if kernel_run.steps > _SHORT else None
-        outcome = kernel_run.run(own, tangent=True, progress=progress, enough=foreseen)
+        outcome = yield from kernel_run.run_in_turn(
+            own, tangent=True, progress=progress, enough=foreseen
+        )
         if foreseen and foreseen.missing > 0:
             own = _finer(own, foreseen.missing)
             continue
         errors = certify(kernel_run, own, outcome) if outcome.done == kernel_run.steps else None
         if errors is None or len(errors) < len(outcome.values):
             break
-        apart = difference_of_w(kernel_run, own, outcome)
+        apart = yield from difference_of_w(kernel_run, own, outcome)
         if apart is not None:
             errors[_W] = min(errors[_W], apart)
         values = {n: (x, errors[n]) for n, x in outcome.values.items()}
@@ -129,13 +131,15 @@ def certified(
     return own
 
 
-def difference_of_w(kernel_run: KernelRun, own: Arithmetic, outcome: Outcome) -> Fraction | None:
+def difference_of_w(
+    kernel_run: KernelRun, own: Arithmetic, outcome: Outcome
+) -> Course[Fraction | None]:
     """A bound of W's error by a run with more digits and its certificate; None of a long run, of
     one without W, and where that has no certificate."""
     if kernel_run.steps > _SHORT or _W not in outcome.values:
         return None
     finer = number_systems.get(own.name, digits_of(own) + _MORE)
-    second = kernel_run.run(finer, tangent=True)
+    second = yield from kernel_run.run_in_turn(finer, tangent=True)
     errors = certify(kernel_run, finer, second) if second.done == kernel_run.steps else None
     if errors is None or _W not in errors:
         return None
@@ -144,12 +148,12 @@ def difference_of_w(kernel_run: KernelRun, own: Arithmetic, outcome: Outcome) ->
 
 def _estimated(
     kernel_run: KernelRun, own: Arithmetic, digits: int, progress: Progress | None
-) -> Measured:
-    first = kernel_run.run(own, progress=progress)
+) -> Course[Measured]:
+    first = yield from kernel_run.run_in_turn(own, progress=progress)
     if own.absolute and first.done < kernel_run.steps:
         bounds = Bounds({}, "", "left range", first.done + 1)
     else:
-        bounds = resolved(kernel_run, own, first, digits)
+        bounds = yield from resolved(kernel_run, own, first, digits)
     return Measured(bounds, own.name, first)
 
 

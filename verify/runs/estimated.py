@@ -17,6 +17,7 @@ from verify.arithmetic.exact import magnitude
 from verify.arithmetic.number_system import Arithmetic
 from verify.hamiltonians.coordinates import PLANE
 from verify.kernels.stepping import KernelRun, Outcome
+from verify.lockstep import Course
 
 Bounded = dict[str, tuple[Fraction, Fraction]]  # values with their bounds
 Status = Literal["finished", "left range", "unresolved"]
@@ -66,18 +67,18 @@ def _noise(own: Arithmetic, *runs: Outcome) -> Fraction:
     return max(sizes, default=Fraction(0)) * Fraction(1, 2 ** (own.bits // 2))
 
 
-def resolved(kernel_run: KernelRun, own: Arithmetic, first: Outcome, digits: int) -> Bounds:
+def resolved(kernel_run: KernelRun, own: Arithmetic, first: Outcome, digits: int) -> Course[Bounds]:
     """The values to so many digits, by raising the precision until a rerun confirms them."""
     for _ in range(_ATTEMPTS):
         finer = number_systems.get(own.name, digits_of(own) + _MORE_DIGITS)
-        second = kernel_run.run(finer)
+        second = yield from kernel_run.run_in_turn(finer)
         method = f"rerun with {_MORE_DIGITS} more digits"
         noise = _noise(own, first, second)
         if first.done != second.done or not second.trail or spread(first, second, noise) > LINEAR:
             if first.done == second.done < kernel_run.steps and not second.trail:
                 return Bounds({}, method, "left range", second.done + 1)
             own = number_systems.get(own.name, 2 * digits_of(own))
-            first = kernel_run.run(own)
+            first = yield from kernel_run.run_in_turn(own)
             continue
         if second.done < kernel_run.steps:
             return Bounds({}, method, "left range", second.done + 1)
@@ -97,7 +98,7 @@ def resolved(kernel_run: KernelRun, own: Arithmetic, first: Outcome, digits: int
         if missing <= 0:
             return Bounds(found, method)
         own = number_systems.get(own.name, digits_of(own) + missing + 5)
-        first = kernel_run.run(own)
+        first = yield from kernel_run.run_in_turn(own)
     return Bounds({}, f"{_ATTEMPTS} reruns at rising precision that do not agree", "unresolved")
 
 

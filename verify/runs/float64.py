@@ -20,6 +20,7 @@ from fractions import Fraction
 
 from verify import arithmetic as number_systems
 from verify.kernels.stepping import KernelRun, Outcome
+from verify.lockstep import Course
 from verify.runs.digits_on_demand import Measured, certified, choose
 from verify.runs.estimated import LINEAR, Bounded, Bounds, resolved, spread, working_digits
 
@@ -31,7 +32,7 @@ _FOLLOWED_STEPS = 1000  # a chaotic orbit is followed so far; it loses digits at
 _RERUN_STEPS = 20_000  # an orbit is followed in mpfr so far where there is no certificate
 
 
-def bounded(run: KernelRun, first: Outcome, known: Bounded) -> Bounds:
+def bounded(run: KernelRun, first: Outcome, known: Bounded) -> Course[Bounds]:
     """The values of the float64 run `first` of the run with their bounds.
 
     `known`: what a proof gives for observables that were not run.
@@ -40,7 +41,7 @@ def bounded(run: KernelRun, first: Outcome, known: Bounded) -> Bounds:
         return Bounds({}, "none", "left range", first.done + 1)
     # A compensated run has the same clock, whose rounding it would not see.
     direct = run.steps <= DIRECT_STEPS or run.hamiltonian.time_dependent
-    found = _held(run, first) if direct else _compensated(run, first)
+    found = (yield from _held(run, first)) if direct else _compensated(run, first)
     values = dict(found.values)
     better = (known | values).get("lambda")
     if "lambda_plain" in first.values and "lambda_plain" not in values and better:
@@ -50,17 +51,17 @@ def bounded(run: KernelRun, first: Outcome, known: Bounded) -> Bounds:
     return replace(found, values={n: x for n, x in values.items() if n in first.values})
 
 
-def _held(run: KernelRun, first: Outcome) -> Bounds:
+def _held(run: KernelRun, first: Outcome) -> Course[Bounds]:
     """Against a certified run; else against an estimated one, or a compensated one."""
     exact = run.observing(_comparable(run.observables))
     name = choose(exact, _CERTIFIED_DIGITS)
-    true = certified(exact, name, _CERTIFIED_DIGITS)
+    true = yield from certified(exact, name, _CERTIFIED_DIGITS)
     if isinstance(true, Measured):
         method = f"difference from a certified run in {name}"
         return Bounds(_from(first, true.bounds.values), method, rigorous=True)
     if run.steps > _RERUN_STEPS:
         return _compensated(run, first)
-    return _against_rerun(exact, first)
+    return (yield from _against_rerun(exact, first))
 
 
 def _comparable(observables: frozenset[str]) -> frozenset[str]:
@@ -76,7 +77,7 @@ def _from(first: Outcome, true: Bounded) -> Bounded:
     return {n: (x, abs(x - true[n][0]) + true[n][1]) for n, x in first.values.items() if n in true}
 
 
-def _against_rerun(run: KernelRun, first: Outcome) -> Bounds:
+def _against_rerun(run: KernelRun, first: Outcome) -> Course[Bounds]:
     reference = number_systems.get(REFERENCE, working_digits(_REFERENCE_DIGITS, run.steps))
     second = run.run(reference)
     method = f"rerun in {REFERENCE} with {_REFERENCE_DIGITS} digits"
@@ -85,7 +86,7 @@ def _against_rerun(run: KernelRun, first: Outcome) -> Bounds:
     # float64 has lost every digit, so the reference has lost many: is it good for the rest?
     if run.steps > _FOLLOWED_STEPS:
         return _compensated(run, first)
-    true = resolved(run, reference, second, 1)
+    true = yield from resolved(run, reference, second, 1)
     if true.status != "finished":
         return Bounds({}, f"{method}, which finds another orbit", "unresolved")
     values = {n: value for n, (value, _) in true.values.items()}

@@ -33,6 +33,7 @@ from verify.kernels.chunked_loop import Progress
 from verify.kernels.run_inputs import SECTIONS
 from verify.kernels.step.computation import step_map_of
 from verify.kernels.stepping import KernelRun, Outcome
+from verify.lockstep import Course, alone
 from verify.runs.digits_on_demand import Measured, choose, measure
 from verify.runs.estimated import Bounded, Bounds
 from verify.runs.float64 import bounded
@@ -121,11 +122,11 @@ class AskedRun:
         asked = self._arithmetic
         return choose(self.kernel_run, self.digits) if asked == AUTO else asked
 
-    def measured(self, progress: Progress | None = None) -> Measured:
+    def measured(self, progress: Progress | None = None) -> Course[Measured]:
         """All steps, done once; `progress` is called with the number of those done."""
         if self._measured is None:
             given = self.kernel_run, self.arithmetic, self.digits, self.known
-            self._measured = _run(*given, progress)
+            self._measured = yield from _run(*given, progress)
         return self._measured
 
     @property
@@ -133,9 +134,9 @@ class AskedRun:
         """Whether its steps were done."""
         return self._measured is not None
 
-    def result(self, progress: Progress | None = None) -> RunResult:
+    def result(self, progress: Progress | None = None) -> Course[RunResult]:
         """What is told of it."""
-        done = self.measured(progress)
+        done = yield from self.measured(progress)
         found = _result(self.begun, self.steps, self.digits, self.wanted, self.known, done)
         left = left_domain(self.begun.hamiltonian, self.kernel_run, done.outcome)
         return found.model_copy(update={"left_domain": left}) if left else found
@@ -156,7 +157,7 @@ def run(
     `verify.kernels.run_inputs`. Raises InputError for h ≤ 0, N < 1, a parameter without a value,
     unknown names, lists of another length.
     """
-    return AskedRun(hamiltonian, scheme, **asked).result(progress)
+    return alone(AskedRun(hamiltonian, scheme, **asked).result(progress))
 
 
 def proved_run(
@@ -224,11 +225,11 @@ def _result(
 
 def _run(
     kernel_run: KernelRun, arithmetic: str, digits: int, known: Bounded, progress: Progress | None
-) -> Measured:
+) -> Course[Measured]:
     if arithmetic != float64.NAME:
-        return measure(kernel_run, arithmetic, digits, progress)
+        return (yield from measure(kernel_run, arithmetic, digits, progress))
     first = kernel_run.run(number_systems.get(arithmetic, digits), progress=progress)
-    return Measured(bounded(kernel_run, first, known), arithmetic, first)
+    return Measured((yield from bounded(kernel_run, first, known)), arithmetic, first)
 
 
 def check(hamiltonian: Hamiltonian, steps: int, digits: int, observables: Sequence[str]) -> None:

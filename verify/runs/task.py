@@ -8,8 +8,10 @@ from verify.arithmetic.systems import float64, mpfr
 from verify.execution.keeping import Keeper
 from verify.execution.task import StartTask
 from verify.kernels.run_inputs import SECTIONS
+from verify.lockstep import Course, alone
 from verify.runs.float64 import DIRECT_STEPS
 from verify.runs.run import AskedRun, proved_run
+from verify.scenes.frozen import Frozen
 from verify.scenes.results.run import RunResult
 from verify.scenes.values import Number, StepSize
 
@@ -64,4 +66,8 @@ class RunTask(StartTask):
 
     def compute(self, keeper: Keeper) -> RunResult:
         """The run, from its last checkpoint where there is one."""
-        return self.asked_run(keeper).result()
+        return alone(self.asked_run(keeper).result())
+
+    def compute_in_turn(self, keeper: Keeper) -> Course[dict[str, Frozen]]:
+        """The same."""
+        return {self.key: (yield from self.asked_run(keeper).result())}

@@ -1,6 +1,6 @@
 """What an argument must answer to a planted error."""
 
-from verify.claims.theorems.argument import Argument
+from verify.papers.argument import Argument
 from verify.verdict import Verdict
 
 

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from tests.helpers.sampled.formulas import monomial, polynomials, rationals
 from verify import arithmetic as number_systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.lockstep import alone
 from verify.studies.separation.chain import Chains, separated_chains
 from verify.studies.separation.mixed_run import Stopped
 
@@ -32,7 +33,7 @@ def separated(
     advanced: list[int] = []
     run = Hamiltonian.parse(text), scheme, start, steps
     try:
-        return separated_chains(*run, digits, name, advanced.append), advanced
+        return alone(separated_chains(*run, digits, name, advanced.append)), advanced
     except Stopped:
         assume(False)
         raise

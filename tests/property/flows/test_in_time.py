@@ -10,6 +10,7 @@ from verify.flows.extrapolation import NoFlowError
 from verify.flows.solution import Solution, exact_solution, leaves
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.run import run
+from verify.runs.solution_error import solution_errors
 
 START = {"p": Fraction(0), "q": Fraction(3, 2)}
 PENDULUM = "p**2/2 - (1 + cos(2*t)/2)*cos(q)"
@@ -82,7 +83,7 @@ def test_solution_errors_of_a_run_shrink_with_its_order() -> None:
 
     def last(h: Fraction) -> Fraction:
         made = run(hamiltonian, "rk4", **START, step_size=h, steps=int(2 / h), t0="1/3")
-        time, error = made.solution_errors(4)[-1]
+        time, error = solution_errors(made, 4)[-1]
         assert time == Fraction(7, 3)
         return Fraction(error.value)
 

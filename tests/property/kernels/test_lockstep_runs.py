@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -47,11 +46,11 @@ def done(
     all_runs: Sequence[KernelRun], digits: int, *, in_lockstep: bool, tangent: bool = True
 ) -> list[Outcome]:
     own = arithmetic.get("fixed", digits)
-    calls = [partial(run.run, own, tangent=tangent) for run in all_runs]
+    courses = [run.run_in_turn(own, tangent=tangent) for run in all_runs]
     if not in_lockstep:
-        return [call() for call in calls]
-    ended = dict(lockstep.together(iter(calls), len(calls)))
-    return [ended[k].result() for k in range(len(calls))]
+        return [lockstep.alone(course) for course in courses]
+    ended = dict(lockstep.together(iter(courses), len(courses)))
+    return [ended[k].result() for k in range(len(courses))]
 
 
 def told(outcome: Outcome) -> Any:
@@ -132,7 +131,7 @@ def test_who_waits_longest_goes_on_with_those_that_have_the_longest_way(
     kernel = engine.compiled("def f(steps: 'int', x: 'wide'):\n" + loop, 112, {})
     state = (engine.Fixed(1, 112),)
     ways = [engine.Walk(5 + k % 2, 3, (), state, beyond=10 * k) for k in range(2 * LANES + 2)]
-    pending = [lockstep.Pending(way) for way in ways]
+    pending = [lockstep.Pending(kernel, way) for way in ways]
     waiting = pending
     with path(IN_LANES[0]):
         while waiting:

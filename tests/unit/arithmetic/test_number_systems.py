@@ -17,7 +17,7 @@ import sys
 from verify import arithmetic
 assert all(arithmetic.step_cost(name) > 0 for name in (arithmetic.AUTO, *arithmetic.names()))
 assert all(arithmetic.about(name).about for name in arithmetic.names())
-print(sorted({"numba", "gmpy2", "flint", "mpmath", "numpy", "llvmlite"} & set(sys.modules)))
+print(sorted({"gmpy2", "flint", "mpmath", "numpy", "llvmlite"} & set(sys.modules)))
 """
 
 

@@ -36,7 +36,7 @@ CLAIMS: dict[str, Any] = {claim.id: claim for claim in FILE.claims}
 EQUATIONS = {
     id_: claim for id_, claim in CLAIMS.items() if id_.startswith("eq-") and claim.kind != "theorem"
 }
-# Theorems speak of no scene: they are judged in tests/unit/claims/theorems.
+# Theorems speak of no scene: they are judged in tests/unit/papers.
 ON_SCENES = {id_: claim for id_, claim in CLAIMS.items() if claim.kind != "theorem"}
 SCENES = {name: load_scene(PAPER / f"{name}.toml") for name in ("duffing", "pendulum")}
 ENERGY = {"duffing": "p**2/2 + q**2/2 + delta*q**4/4", "pendulum": "p**2/2 - cos(q)"}

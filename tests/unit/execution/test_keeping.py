@@ -80,7 +80,7 @@ def test_what_python_writes_itself_does_not_count(copy: Path) -> None:
 
 
 LIBRARIES = (
-    "areaproof", "gmpy2", "hypothesis", "llvmlite", "mpmath", "numba", "numpy", "python-flint",
+    "areaproof", "gmpy2", "hypothesis", "llvmlite", "mpmath", "numpy", "python-flint",
     "sympy",
 )  # fmt: skip
 

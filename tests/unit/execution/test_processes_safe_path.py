@@ -14,7 +14,7 @@ from verify.execution.processes import safe_path
 
 PLANTED = sorted(
     {*sys.stdlib_module_names, "click", "distributed", "flint", "gmpy2", "llvmlite", "mpmath",
-     "numba", "numpy", "pydantic", "sympy", "verify", "sitecustomize"} - {"sys", "builtins"}
+     "numpy", "pydantic", "sympy", "verify", "sitecustomize"} - {"sys", "builtins"}
 )  # fmt: skip
 SCENE = """
 system = "duffing"

@@ -24,6 +24,7 @@ from tests.helpers.stepping.steps_in_degrees import (
 )
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.runs.orbit import orbit_of
 from verify.runs.run import run
 from verify.scenes.observables import SEVERAL
 from verify.scenes.results.run import RunResult
@@ -234,7 +235,7 @@ def test_a_collision_on_the_way_ends_the_run_at_its_step() -> None:
 
 def test_states_on_the_way_are_those_of_the_run() -> None:
     found = done(HENON, "lie2", "mpfr")
-    table = found.orbit
+    table = orbit_of(found)
     assert table.columns == ("t", "p1", "p2", "q1", "q2", "energy_error", "delta_j", "lambda",
                              "symplectic_defect")  # fmt: skip
     assert table.p.shape == table.q.shape == (COUNT + 1, 2)

@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from tests.paths import ROOT
+from verify.audits.findings import confirmed
 from verify.claims.file import load_claims
 from verify.errors import InputError
 from verify.exploration.different_scenes import scene_of
-from verify.integrators.others.findings import confirmed
 from verify.integrators.tables.check import check_table
 from verify.scenes.results.exploration import Worst
 from verify.scenes.scene import load_scene, scene_from_toml

@@ -13,9 +13,9 @@ from fractions import Fraction
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from verify import lockstep
 from verify.arithmetic.number_system import Arithmetic, NumberSystem
 from verify.arithmetic.wide.size import INTEGER_BITS, WORD, size_of, words_of
+from verify.lockstep import Course, meet
 
 if TYPE_CHECKING:
     from verify.arithmetic.arb import Ball
@@ -103,12 +103,12 @@ def _units() -> dict[str, Callable[["Ball"], "Ball"]]:
 
 def _walk(
     kernel: Any, every: int, stops: int, fixed: Sequence[Any], state: Sequence[Any], beyond: int
-) -> Any:
+) -> Course[Any]:
     """In one call, and in lanes where others walk in the same kernel."""
     from verify.arithmetic.compiled.engine import Walk
 
     try:
-        return lockstep.meet(kernel, Walk(every, stops, fixed, state, beyond)).result
+        return (yield from meet(kernel, Walk(every, stops, fixed, state, beyond)))
     except OverflowError:  # a number is outside the format from the start
         return []
 

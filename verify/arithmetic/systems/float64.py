@@ -11,10 +11,8 @@ from contextlib import nullcontext, suppress
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache, partial
-from pathlib import Path
 from typing import Any
 
-from verify.arithmetic import numba_code
 from verify.arithmetic.number_system import Arithmetic, NumberSystem, interpreted
 
 NAME = "float64"
@@ -76,12 +74,7 @@ def _compile(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[.
     IEEE and of the same C library. What Python refuses, as 1/0, is done again with functions that
     give infinities and NaN; what is refused even so is left to the compiled one.
     """
-    plain = interpreted(source, name, namespace)
-
-    @cache
-    def unrefused() -> Callable[..., Any]:
-        return _unrefused(source, name, namespace)
-
+    in_python = _in_python(source, name, namespace)
     compiled: Callable[..., Any] | None = None
     repaid = _REPAID if source.count("for ") < 2 else _REPAID_SOLVING
     done = 0
@@ -90,11 +83,8 @@ def _compile(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[.
         nonlocal compiled, done
         steps = first if isinstance(first, int) else 1  # a function that is no kernel has none
         if compiled is None and done + steps <= repaid:
-            for way in (0, 1):
-                try:
-                    result = (unrefused() if way else plain)(first, *arguments)
-                except (ArithmeticError, ValueError):
-                    continue
+            with suppress(ArithmeticError, ValueError):
+                result = in_python(first, *arguments)
                 done += steps
                 return result
         if compiled is None:
@@ -104,36 +94,39 @@ def _compile(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[.
     return kernel
 
 
-def _unrefused(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
-    """The kernel in Python that gives infinities and NaN, as IEEE and a compiled one do.
+def _in_python(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
+    """The kernel in Python; what that refuses, as 1/0, is done again with functions that give
+    infinities and NaN, as IEEE and a compiled one do.
 
     A compiled kernel stays in memory for good, and orbits that escape are no rarity.
     """
-    own = {f: made for f, made in _IEEE.items() if f in namespace}
-    return interpreted(_DIVISION.sub(r"over(\1, \2)", source), name, {**namespace, **own, **_OVER})
+    plain = interpreted(source, name, namespace)
+
+    @cache
+    def unrefused() -> Callable[..., Any]:
+        own = {f: made for f, made in _IEEE.items() if f in namespace}
+        divided = _DIVISION.sub(r"over(\1, \2)", source)
+        return interpreted(divided, name, {**namespace, **own, **_OVER})
+
+    def kernel(*arguments: Any) -> Any:
+        try:
+            return plain(*arguments)
+        except (ArithmeticError, ValueError):
+            return unrefused()(*arguments)
+
+    return kernel
 
 
 def _compiled(
     source: str, name: str, namespace: Mapping[str, Any], *, anew: bool = False
 ) -> Callable[..., Any]:
+    """By LLVM where it has a loop over steps; else a call takes longer than it does in Python."""
     if "for k in range(steps)" in source:
         from verify.arithmetic.compiled.doubles import one_point
 
         with suppress(NotImplementedError):  # a function that is not in its language
             return one_point(source, namespace, anew=anew)
-    return _by_numba(source, name, namespace)
-
-
-def _by_numba(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[..., Any]:
-    import numba
-
-    # numba looks for the module of what it loads again.
-    scope = {**namespace, "root": numba.njit(_root), "__name__": __name__}
-    exec(compile(source, f"<kernel {name}>", "exec"), scope)  # noqa: S102 - our own source
-    # A function's text has an address in it; the name says which it is, and `_root` is in the file.
-    named = {k: getattr(x, "__qualname__", None) or repr(x) for k, x in namespace.items()}
-    own = Path(__file__).read_text(encoding="utf-8")
-    return numba_code.compiled(scope[name], source, name, repr(sorted(named.items())), own)
+    return _in_python(source, name, namespace)
 
 
 def _either(function: Callable[[float], float], beyond: Callable[[float], float]) -> Any:
@@ -154,7 +147,7 @@ def _over(x: float, y: float) -> float:
     return math.copysign(math.inf, x) * math.copysign(1.0, y) if x and x == x else math.nan
 
 
-_DIVISION = re.compile(r"(\w+|\([^()]*\)) / (\w+|\([^()]*\))")
+_DIVISION = re.compile(r"([\w.]+|\([^()]*\)) / ([\w.]+|\([^()]*\))")
 _OVER = {"over": _over}
 _IEEE = {
     "exp": _either(math.exp, lambda _: math.inf),

@@ -1,17 +1,17 @@
-"""What a paper says in words, judged by the function of that `name` in `verify.claims.theorems`."""
+"""What a paper says in words, judged by the function of that `name` in `verify.papers`."""
 
 from collections.abc import Iterable
 from typing import Literal, Self
 
 from pydantic import model_validator
 
-from verify.claims import theorems
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
-from verify.claims.theorems.argument import Argument
-from verify.claims.theorems.task import TheoremTask
 from verify.errors import unknown
 from verify.execution.task import Task
+from verify.papers import check_theorem, names
+from verify.papers.argument import Argument
+from verify.papers.task import TheoremTask
 from verify.prose import joined
 from verify.scenes.results.claim import ClaimResult
 
@@ -23,14 +23,14 @@ class TheoremClaim(Claim):
     only_here = "a theorem says nothing of drawn Hamiltonians"
     kind: Literal["theorem"]
     name: str
-    """The name of its function in `verify.claims.theorems`."""
+    """The name of its function in `verify.papers`."""
     scheme: str = ""
     """None."""
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        if self.name not in theorems.names():
-            raise unknown("name", self.name, theorems.names())
+        if self.name not in names():
+            raise unknown("name", self.name, names())
         return self
 
     def tasks_without_scene(self) -> Iterable[Task]:
@@ -42,7 +42,7 @@ class TheoremClaim(Claim):
 
     def judge(self, findings: Findings) -> ClaimResult:
         known = findings.results.get(self._task.key)
-        found = known if isinstance(known, Argument) else theorems.check_theorem(self.name)
+        found = known if isinstance(known, Argument) else check_theorem(self.name)
         result = self.result(found.verdict, found.evidence, found.details, found.proof)
         own = {name: getattr(found, name) for name in ("checked_by", "given", "steps")}
         own["remark"] = joined(" ", [*filter(None, (found.remark, result.remark))])

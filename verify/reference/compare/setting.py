@@ -11,6 +11,7 @@ from functools import lru_cache
 from verify.arithmetic.number_system import UnsupportedError
 from verify.errors import InputError
 from verify.kernels.orbit import Orbit
+from verify.lockstep import alone
 from verify.reference.make.columns import AnyOrbitPoint, values_of
 from verify.reference.make.orbit_points import Bounded, orbit_points
 
@@ -80,7 +81,7 @@ def _run_at(orbit: Orbit, step: int, digits: int) -> AnyOrbitPoint | None:
     if step > (_MOST_STEPS if orbit.hamiltonian.planar else _MOST_STEPS_IN_DEGREES):
         return None
     try:
-        (point,) = orbit_points(orbit, steps=(step,), digits=digits)
+        (point,) = alone(orbit_points(orbit, steps=(step,), digits=digits))
     except (InputError, UnsupportedError, ArithmeticError):
         return None
     return point if point.status == "finished" else None

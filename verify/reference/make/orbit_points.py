@@ -27,6 +27,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import point_of
 from verify.kernels.orbit import Orbit
 from verify.kernels.step.computation import step_map_of
+from verify.lockstep import Course
 from verify.reference.make.columns import (
     AFTER_A_STEP,
     MAY_LACK,
@@ -35,7 +36,7 @@ from verify.reference.make.columns import (
     orbit_columns,
 )
 from verify.reference.make.correct_rounding import correctly_rounded, near_zero
-from verify.runs.run import run
+from verify.runs.run import AskedRun
 from verify.scenes.results.reference import FlowPoint, Kind, OrbitPoint, Rounded
 from verify.scenes.results.reference_in_degrees import FlowPointInDegrees, OrbitPointInDegrees
 from verify.scenes.results.run import RunResult
@@ -47,13 +48,15 @@ _BITS = 64  # beyond the digits, for the roundings of one step, or of H
 Bounded = tuple[Fraction, Fraction]  # a value and its bound
 
 
-def orbit_points(orbit: Orbit, steps: Sequence[int], digits: int) -> Iterator[Any]:
+def orbit_points(orbit: Orbit, steps: Sequence[int], digits: int) -> Course[tuple[Any, ...]]:
     """The orbit after each of these numbers of steps, every number to so many digits."""
+    points = []
     for step in steps:
-        yield _point(orbit, step, digits)
+        points.append((yield from _point(orbit, step, digits)))
+    return tuple(points)
 
 
-def _point(orbit: Orbit, step: int, digits: int) -> AnyOrbitPoint:
+def _point(orbit: Orbit, step: int, digits: int) -> Course[AnyOrbitPoint]:
     start = point_of(orbit.hamiltonian, orbit.q, orbit.p)
     beside = orbit_columns(orbit.hamiltonian.degrees)
     observables = tuple(x for x in beside if x not in MAY_LACK)
@@ -63,7 +66,7 @@ def _point(orbit: Orbit, step: int, digits: int) -> AnyOrbitPoint:
         known |= dict.fromkeys(at_first, (Fraction(0), Fraction(0)))
         kind: Kind = "enclosed"
         if step > 0:
-            after = _run(orbit, step, digits + guard, observables)
+            after = yield from _run(orbit, step, digits + guard, observables)
             if after.status == "left range":
                 return _orbit_point(orbit, step, "left range", failed_step=after.failed_step)
             if after.status == "unresolved":
@@ -77,8 +80,8 @@ def _point(orbit: Orbit, step: int, digits: int) -> AnyOrbitPoint:
     return _orbit_point(orbit, step, "unresolved")
 
 
-def _run(orbit: Orbit, steps: int, digits: int, observables: Sequence[str]) -> RunResult:
-    return run(
+def _run(orbit: Orbit, steps: int, digits: int, observables: Sequence[str]) -> Course[RunResult]:
+    asked = AskedRun(
         orbit.hamiltonian,
         orbit.scheme,
         q=orbit.q,
@@ -90,6 +93,7 @@ def _run(orbit: Orbit, steps: int, digits: int, observables: Sequence[str]) -> R
         digits=digits,
         observables=observables,
     )
+    return asked.result()
 
 
 def _all_rounded(

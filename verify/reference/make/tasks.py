@@ -9,6 +9,8 @@ from verify.execution.keeping import Keeper
 from verify.execution.task import HamiltonianTask
 from verify.hamiltonians.start import point_of
 from verify.kernels.orbit import Orbit
+from verify.lockstep import Course, alone
+from verify.scenes.frozen import Frozen
 from verify.scenes.results.reference import OrbitResult, SolutionResult
 from verify.scenes.results.reference_in_degrees import OrbitInDegreesResult, SolutionInDegreesResult
 from verify.scenes.values import Coordinates, Number, StepSize
@@ -76,8 +78,14 @@ class OrbitTask(OrbitAtSteps):
     def compute(self, keeper: Keeper) -> OrbitResult:
         from verify.reference.make.orbit_points import orbit_points
 
-        points = orbit_points(self.orbit, self.steps, self.digits)
-        return OrbitResult.model_validate({"points": tuple(points)})
+        points = alone(orbit_points(self.orbit, self.steps, self.digits))
+        return OrbitResult.model_validate({"points": points})
+
+    def compute_in_turn(self, keeper: Keeper) -> Course[dict[str, Frozen]]:
+        from verify.reference.make.orbit_points import orbit_points
+
+        points = yield from orbit_points(self.orbit, self.steps, self.digits)
+        return {self.key: OrbitResult.model_validate({"points": points})}
 
 
 class OrbitInDegreesTask(OrbitAtSteps):
@@ -90,8 +98,8 @@ class OrbitInDegreesTask(OrbitAtSteps):
     def compute(self, keeper: Keeper) -> OrbitInDegreesResult:
         from verify.reference.make.orbit_points import orbit_points
 
-        points = orbit_points(self.orbit, self.steps, self.digits)
-        return OrbitInDegreesResult.model_validate({"points": tuple(points)})
+        points = alone(orbit_points(self.orbit, self.steps, self.digits))
+        return OrbitInDegreesResult.model_validate({"points": points})
 
 
 class SolutionAtSteps(AtSteps):

@@ -5,13 +5,11 @@ How an energy changes along a run.
 
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
 from typing import Literal, Self
 
 from pydantic import PrivateAttr
 
 from verify.errors import InputError
-from verify.lateral import compute
 from verify.notebook import aligned_latex, html_table, number_latex
 from verify.scenes.frozen import Frozen, OfScheme, Seconds
 from verify.scenes.results.bounded_value import Value
@@ -112,30 +110,31 @@ class RunResult(OfScheme):
         problem = "has more degrees of freedom; what is asked for takes p and q"
         raise InputError("run", self.scheme, problem)
 
-    @cached_property
+    @property
     def orbit(self) -> OrbitTable:
         """The states as arrays and exact texts: every step up to 10,000 or `points`, else thinned.
 
         The run is done again for it when it is first looked at; see `verify.runs.orbit`.
         """
-        found: OrbitTable = compute("orbit", self, self._points)
-        return found
+        raise self._only_values()
 
     def solution_errors(self, points: int = 200) -> tuple[tuple[Fraction, Value], ...]:
         """(t, |z − φ_t(z₀)|) at so many states at most: how far the exact solution is.
 
         See `verify.runs.solution_error`. Raises InputError where no exact solution is found.
         """
-        found: tuple[tuple[Fraction, Value], ...] = compute("solution_errors", self, points)
-        return found
+        raise self._only_values()
 
     def energy_drifts(self, order: int = 4, points: int = 1000) -> list[EnergyDrift]:
         """H̃ − H̃₀ at so many states at most, for H and for H̃ with each term up to h^order.
 
         See `verify.runs.energy_drift`. Raises InputError where the scheme has no H̃ but H.
         """
-        found: list[EnergyDrift] = compute("energy_drifts", self, order, points)
-        return found
+        raise self._only_values()
+
+    def _only_values(self) -> InputError:
+        """Of a run in a report; `verify.calls.run_result` has what does a run again."""
+        return InputError("run", self.scheme, "is a report's, which has no more than its values")
 
     def __repr__(self) -> str:
         values = ", ".join(f"{name} = {value}" for name, value in self.values.items())

@@ -16,6 +16,7 @@ from verify.arithmetic.systems import mpfr
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import kernel_for
 from verify.kernels.stepping import KernelRun
+from verify.lockstep import alone
 from verify.studies.poincare.surface import Passes, State, Surface
 
 _BLOCK = 1000  # steps between looks at them
@@ -70,7 +71,7 @@ class _Steps:
         """The states after 1, 2, … steps; fewer where one leaves where H is defined."""
         while steps > 0:
             count = min(_BLOCK, steps)
-            found = self.own.states(self.kernel.function, 1, count, self.inputs, tuple(z))
+            found = alone(self.own.states(self.kernel.function, 1, count, self.inputs, tuple(z)))
             yield from found
             if len(found) < count:
                 return
@@ -79,7 +80,7 @@ class _Steps:
     def after(self, z: State, time: Any) -> State:
         """Φ_time(z). Raises OutOfRangeError."""
         given = [time, *self.inputs[1:]]
-        found = self.own.states(self.kernel.function, 1, 1, given, tuple(z))
+        found = alone(self.own.states(self.kernel.function, 1, 1, given, tuple(z)))
         if not found:
             raise OutOfRangeError
         return found[0]

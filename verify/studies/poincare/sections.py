@@ -5,11 +5,11 @@ followed twice: by a scheme with the digits that are asked for and with more of 
 flow with extrapolations of two orders. Where the two part, the points are no more the orbit's own.
 """
 
+import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from verify import lockstep
 from verify.arithmetic.exact import decimal, text, upper
 from verify.arithmetic.systems import mpfr
 from verify.flows.functions import functions_at
@@ -43,14 +43,14 @@ class Asked:
 def sections_of(asked: Asked, name: str, starts: Sequence[Start]) -> MapSections:
     """Orbits by the scheme of this name, or by EXACT_FLOW, from each start, p1 … qn by their
     names."""
-    begun, exact = lockstep.clock(), name == EXACT_FLOW
+    begun, exact = time.perf_counter(), name == EXACT_FLOW
     pairs = _exact(asked, starts) if exact else [_by_scheme(asked, name, z) for z in starts]
     return MapSections(
         map=name,
         orbits=tuple(_orbit(asked, z, *pair) for z, pair in zip(starts, pairs, strict=True)),
         arithmetic="long double" if exact else mpfr.NAME,
         digits=by_exact_flow.digits() if exact else asked.digits,
-        seconds=lockstep.clock() - begun,
+        seconds=time.perf_counter() - begun,
     )
 
 

@@ -12,17 +12,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from math import isfinite, sqrt
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from verify.arithmetic import numba_code
 from verify.errors import InputError
-from verify.studies.regions import segment_tree
 from verify.studies.regions.segment_tree import (
     boxes,
-    make_compilable,
     nearest,
     new_stack,
     segments,
@@ -88,22 +84,17 @@ def _both(first: Any, second: Any, rounding: float) -> tuple[float, float]:
 
 def _one_way(rows: Any, others: Any, known: float, rounding: float) -> tuple[float, float]:
     near = np.empty((len(rows), 2), dtype=np.int64)
-    divided = np.empty((_DEEP + 2, 4)), np.empty((_DEEP + 2, 3), dtype=np.int64)
-    work = (new_stack(), *divided)
-    low, high = _compiled()(rows, others, boxes(others), near, work, known, rounding)
+    parts, nears = np.empty((_DEEP + 2, 4)), np.empty((_DEEP + 2, 3), dtype=np.int64)
+    work = new_stack(), parts, nears
+    low, high = _compiled()(rows, others, boxes(others), near, *work, known, rounding)
     return float(low), float(high)
 
 
 @cache
 def _compiled() -> Callable[..., tuple[float, float]]:
-    from numba.extending import register_jitable
+    from verify.arithmetic.compiled.loops import compiled
 
-    make_compilable()
-    for function in (_distance, _upper, _greatest_on_segment):
-        register_jitable(function)
-    files = (__file__, segment_tree.__file__)
-    texts = (Path(file).read_text(encoding="utf-8") for file in files)
-    return numba_code.compiled(_directed, *texts)
+    return compiled(_directed)
 
 
 def _distance(x: float, y: float, row: Any) -> float:
@@ -136,15 +127,22 @@ def _upper(part: Any, start: Any, end: Any, enough: float) -> tuple[float, float
 
 
 def _greatest_on_segment(
-    row: Any, near: Any, others: Any, tree: Any, work: Any, low: float, rounding: float
+    row: Any,
+    near: Any,
+    others: Any,
+    tree: Any,
+    stack: Any,
+    parts: Any,
+    nears: Any,
+    low: float,
+    rounding: float,
 ) -> tuple[float, float]:
     """The greatest distance of a point of one segment from `others`: at least, and at most.
 
     The first is at least `low`. `near` has the indices of the segments nearest to its ends.
     """
-    stack, parts, nears = work
     high, count = 0.0, 1
-    for k in range(4):  # numba takes seconds over the assignment of a whole row
+    for k in range(4):
         parts[0, k] = row[k]
     nears[0, 0], nears[0, 1], nears[0, 2] = near[0], near[1], 0
     while count > 0:
@@ -154,7 +152,7 @@ def _greatest_on_segment(
         enough = low * (1.0 + RELATIVE) + rounding
         ends = _distance(x0, y0, others[start]) + _distance(x1, y1, others[end])
         # The distance changes at most as fast as the place.
-        bound, place = (ends + sqrt((x1 - x0) ** 2 + (y1 - y0) ** 2)) / 2, 0.5
+        bound, place = (ends + sqrt((x1 - x0) * (x1 - x0) + (y1 - y0) * (y1 - y0))) / 2, 0.5
         if bound > enough:
             closer, place = _upper(parts[count], others[start], others[end], enough)
             bound = min(bound, closer)
@@ -164,8 +162,8 @@ def _greatest_on_segment(
         x, y = x0 + place * (x1 - x0), y0 + place * (y1 - y0)
         square, middle = nearest(x, y, others, tree, start, stack)
         low = max(low, sqrt(square))
-        for index, a, b in ((count, start, middle), (count + 1, middle, end)):
-            nears[index, 0], nears[index, 1], nears[index, 2] = a, b, depth + 1
+        nears[count, 0], nears[count, 1], nears[count, 2] = start, middle, depth + 1
+        nears[count + 1, 0], nears[count + 1, 1], nears[count + 1, 2] = middle, end, depth + 1
         parts[count, 0], parts[count, 1], parts[count, 2], parts[count, 3] = x0, y0, x, y
         parts[count + 1, 0], parts[count + 1, 1] = x, y
         parts[count + 1, 2], parts[count + 1, 3] = x1, y1
@@ -174,22 +172,33 @@ def _greatest_on_segment(
 
 
 def _directed(
-    rows: Any, others: Any, tree: Any, near: Any, work: Any, known: float, rounding: float
+    rows: Any,
+    others: Any,
+    tree: Any,
+    near: Any,
+    stack: Any,
+    parts: Any,
+    nears: Any,
+    known: float,
+    rounding: float,
 ) -> tuple[float, float]:
     """The greatest distance of a point of `rows` from `others`: at least, and at most.
 
-    Both are at least `known`. `near`, one row for each segment, and `work` are to be written on.
+    Both are at least `known`. `near`, one row for each segment, and what follows are to be written
+    on.
     """
     low, hint = known, 0
     for k in range(len(rows)):
-        square, hint = nearest(rows[k, 0], rows[k, 1], others, tree, hint, work[0])
+        square, hint = nearest(rows[k, 0], rows[k, 1], others, tree, hint, stack)
         low, near[k, 0] = max(low, sqrt(square)), hint
     high = low
     for k in range(len(rows)):
         follows = (k + 1) % len(rows)
         near[k, 1] = near[follows, 0]
         if rows[k, 2] != rows[follows, 0] or rows[k, 3] != rows[follows, 1]:
-            near[k, 1] = nearest(rows[k, 2], rows[k, 3], others, tree, near[k, 0], work[0])[1]
-        low, bound = _greatest_on_segment(rows[k], near[k], others, tree, work, low, rounding)
+            _, near[k, 1] = nearest(rows[k, 2], rows[k, 3], others, tree, near[k, 0], stack)
+        low, bound = _greatest_on_segment(
+            rows[k], near[k], others, tree, stack, parts, nears, low, rounding
+        )
         high = max(high, bound, low)
     return low, high

@@ -1,8 +1,8 @@
 """Which segment of a set of closed polylines is nearest to a point: a tree of boxes over them.
 
 A node's box holds segments that follow each other along the curves, so that boxes are small where
-curves are smooth, however often they wind. Plain loops over float64 arrays, compiled by numba when
-first used.
+curves are smooth, however often they wind. Plain loops over float64 arrays, which LLVM compiles
+(`verify.arithmetic.compiled.loops`).
 
 scipy's cKDTree finds the nearest vertex, which may be far away where the segment is near: from
 (5, −0.1) the boundary of 0 ≤ x ≤ 10, 0 ≤ y ≤ 1 is at 0.1 and its nearest vertex at 5. It also
@@ -10,7 +10,6 @@ cannot be called from the compiled loop that divides segments and asks for a few
 """
 
 from collections.abc import Sequence
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -93,12 +92,3 @@ def nearest(x: float, y: float, rows: Any, tree: Any, hint: int, stack: Any) -> 
 
 def new_stack() -> Any:
     return np.empty(2 * _DEEP, dtype=np.int64)
-
-
-@cache
-def make_compilable() -> None:
-    """Lets compiled functions call those of this module."""
-    from numba.extending import register_jitable
-
-    for function in (to_segment, _to_box, nearest):
-        register_jitable(function)

@@ -19,6 +19,7 @@ from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.step.computation import common_power, step_map_of
 from verify.kernels.stepping import KernelRun, Outcome
+from verify.lockstep import Course
 from verify.runs.estimated import working_digits
 from verify.runs.run import AskedRun, proved
 from verify.schemes import get
@@ -137,7 +138,7 @@ def separated_chains(
     advance: Advance = lambda _: None,
     keeper: Keeper = NOTHING,
     run: AskedRun | None = None,
-) -> Chains:
+) -> Course[Chains]:
     """Of a scheme's run from exact inputs, every part to so many digits where that can be had.
 
     `arithmetic` stands for exact arithmetic; `auto` takes the fastest that can. `advance` is called
@@ -149,7 +150,7 @@ def separated_chains(
     links = _AreaLinks(kernel_run, step_map, arithmetic, digits + CANCELLED, advance)
     if run is not None:
         links.take(run)
-    plain, closed = links.to_digits(
+    plain, closed = yield from links.to_digits(
         links.chains, lambda found: lacking(filter(None, found), digits)
     )
     return Chains(plain, closed, links.arithmetic, links.seconds)
@@ -183,9 +184,10 @@ class _AreaLinks(LinksOnDemand[Link, Working[Link]]):
             return _proved(step_map, run, self.digits[name])
         return _proved(_rounded_map(step_map, self.rounded), self.rounded, self.digits[name])
 
-    def chains(self) -> tuple[Chain, Chain | None]:
+    def chains(self) -> Course[tuple[Chain, Chain | None]]:
         """The chain of the plain way and that of the closed form."""
-        shared, working = self.shared(), self.working
+        shared = yield from self.shared()
+        working = yield from self.working()
         parts = PARTS_IN_TIME if self.kernel_run.hamiltonian.time_dependent else PARTS
         plain = Chain(self.marks, (*shared, working.factors, working.plain), parts)
         fourth, fifth = working.closed_factors, working.closed_form
@@ -193,7 +195,7 @@ class _AreaLinks(LinksOnDemand[Link, Working[Link]]):
             return plain, None
         return plain, Chain(self.marks, (*shared, fourth, fifth), parts)
 
-    def beside(self) -> Working[Link]:
+    def beside(self) -> Course[Working[Link]]:
         """In what can follow float64 everywhere where another cannot, or has no bound of its
         rounding."""
         run = WorkingRun(
@@ -205,9 +207,10 @@ class _AreaLinks(LinksOnDemand[Link, Working[Link]]):
         asked = number_systems.get(self.system(digits), digits)
         last = last_system().make(working_digits(self.digits["beside"], self.kernel_run.steps))
         try:
-            return run.step_through(asked if asked.rounding else last, self.advance)
+            own = asked if asked.rounding else last
+            return (yield from run.step_through(own, self.advance))
         except UnsupportedError:
-            return run.step_through(last, self.advance)
+            return (yield from run.step_through(last, self.advance))
 
     def _digits_beside(self) -> int:
         """After the point: a compiled kernel takes the longer the more there are."""

@@ -30,6 +30,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.chunked_loop import ENTRIES
 from verify.kernels.step.computation import step_map_of
 from verify.kernels.stepping import KernelRun, Outcome
+from verify.lockstep import Course
 from verify.runs.estimated import working_digits
 from verify.studies.separation.chain import Chain, lacking
 from verify.studies.separation.form_run import POINTS, FormRun, FormWorking, Links, Size, links_of
@@ -72,7 +73,7 @@ def form_chains(
     arithmetic: str = AUTO,
     advance: Advance = lambda _: None,
     keeper: Keeper = NOTHING,
-) -> FormChains:
+) -> Course[FormChains]:
     """Of a scheme's run from exact inputs, every part of every entry of W to so many digits, where
     that can be had; arguments as in `verify.studies.separation.chain.separated_chains`.
 
@@ -84,10 +85,11 @@ def form_chains(
         problem = "solves equations; in n degrees of freedom its Jacobian is not followed"
         raise InputError("scheme", scheme, problem)
     links = _FormLinks(kernel_run, arithmetic, digits + _CANCELLED, advance)
-    plain, closed = links.to_digits(
+    plain, closed = yield from links.to_digits(
         links.chains, lambda found: _lacking((*found[0], *found[1]), digits)
     )
-    return FormChains(plain, closed, links.working.sizes, links.arithmetic, links.seconds)
+    working = yield from links.working()
+    return FormChains(plain, closed, working.sizes, links.arithmetic, links.seconds)
 
 
 def _lacking(chains: Sequence[Chain], digits: int) -> list[int]:
@@ -117,9 +119,10 @@ class _FormLinks(LinksOnDemand[Links, FormWorking]):
         nothing, size = exact_link([Fraction(0)] * len(self.marks), "S ≡ 0"), len(exact.coordinates)
         return (nothing,) * (size * (size - 1) // 2)
 
-    def chains(self) -> tuple[tuple[Chain, ...], tuple[Chain, ...]]:
+    def chains(self) -> Course[tuple[tuple[Chain, ...], tuple[Chain, ...]]]:
         """Those of the plain way and of the closed form."""
-        shared, working = self.shared(), self.working
+        shared = yield from self.shared()
+        working = yield from self.working()
         parts = PARTS_IN_TIME if self.kernel_run.hamiltonian.time_dependent else PARTS
 
         def chains(*links: Links) -> tuple[Chain, ...]:
@@ -130,13 +133,14 @@ class _FormLinks(LinksOnDemand[Links, FormWorking]):
         closed = working.closed_factors or first, working.closed_form or first
         return chains(working.factors, working.plain), chains(*closed)
 
-    def beside(self) -> FormWorking:
+    def beside(self) -> Course[FormWorking]:
         """In what has every range and function."""
         follow = self.proved("first") is None and self.kernel_run.steps > 1
         digits = working_digits(self.digits["beside"], self.kernel_run.steps)
         asked = number_systems.get(self.arithmetic, digits)
         own = last_system().make(digits) if asked.absolute or asked.radius else asked
-        return FormRun(self.kernel_run, self.inputs, follow).step_through(own, self.advance)
+        run = FormRun(self.kernel_run, self.inputs, follow)
+        return (yield from run.step_through(own, self.advance))
 
     def read(self, run: Outcome, last: Fraction, as_link: AsLink) -> Links:
         """Each entry at every checkpoint; `last` is of the greatest alone."""

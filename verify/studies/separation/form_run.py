@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 
 from verify import arithmetic as number_systems
 from verify.arithmetic.number_system import Arithmetic
+from verify.lockstep import Course
 from verify.runs.estimated import digits_of
 from verify.studies.separation.form_count import counted
 from verify.studies.separation.form_kernel import FormKernel, form_kernel
@@ -68,17 +69,17 @@ class FormRun(MixedRun[FormKernel]):
 
     points = POINTS
 
-    def step_through(self, arithmetic: Arithmetic, advance: Advance) -> FormWorking:
+    def step_through(self, arithmetic: Arithmetic, advance: Advance) -> Course[FormWorking]:
         """All steps; raises Stopped where float64 leaves its range."""
         kernel = self._kernel(arithmetic)
-        states = self._states(kernel, arithmetic, advance)
+        states = yield from self._states(kernel, arithmetic, advance)
         known = counted(kernel, arithmetic, self.inputs, states[-1], self.run.steps)
         carried = (*kernel.products, *("w_w",) * kernel.closed)
         wide = [name for name in _LINKS if name in carried]
         again: Sequence[State] = ()
         finer = number_systems.get(arithmetic.name, digits_of(arithmetic) + MORE_DIGITS)
         if any(known.get(name) is None for name in wide):
-            again = self._states(self._kernel(finer), finer, lambda _: None)
+            again = yield from self._states(self._kernel(finer), finer, lambda _: None)
 
         def links(name: str) -> Links | None:
             if name not in wide:

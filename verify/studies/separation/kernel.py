@@ -19,7 +19,7 @@ which w_clock is the product.
 The source is in the language of `verify.arithmetic.wide.translate`: names begin with `f_` where
 their value is a float64 and with `w_` where it is wide, but for functions of wide numbers, which
 have their own name; `wide(x)` is the exact value of a float64. Python runs it with its own floats
-and libm, and LLVM compiles it for fixed-point numbers; both round as numba's float64 kernel does
+and libm, and LLVM compiles it for fixed-point numbers; both round as a float64 kernel does
 (tests hold all three against each other).
 """
 

@@ -13,10 +13,10 @@ from fractions import Fraction
 from typing import Any, ClassVar, Generic, TypeVar
 
 from verify import arithmetic as number_systems
-from verify import lockstep
 from verify.arithmetic import AUTO
 from verify.arithmetic.number_system import NumberSystem
 from verify.kernels.stepping import KernelRun, Outcome
+from verify.lockstep import Course, clock
 from verify.runs.digits_on_demand import Measured, choose, measure
 from verify.runs.estimated import working_digits
 from verify.runs.run import AskedRun
@@ -45,7 +45,7 @@ class LinksOnDemand(ABC, Generic[L, W]):
         self, kernel_run: KernelRun, arithmetic: str, digits: int, advance: Advance
     ) -> None:
         """`auto` takes the fastest arithmetic that can."""
-        self._begun = lockstep.clock()
+        self._begun = clock()
         self.arithmetic = choose(kernel_run, digits) if arithmetic == AUTO else arithmetic
         self.kernel_run, self.advance = kernel_run, advance
         self.marks = marks_of(kernel_run.steps, self.points)
@@ -62,7 +62,7 @@ class LinksOnDemand(ABC, Generic[L, W]):
         self._made: dict[str, L] = {}
 
     @abstractmethod
-    def beside(self) -> W:
+    def beside(self) -> Course[W]:
         """The run in float64, exact arithmetic beside it; Stopped where it leaves its range."""
 
     @abstractmethod
@@ -76,7 +76,7 @@ class LinksOnDemand(ABC, Generic[L, W]):
     @property
     def seconds(self) -> float:
         """Since it was begun."""
-        return lockstep.clock() - self._begun
+        return clock() - self._begun
 
     def take(self, run: AskedRun) -> None:
         """The first link is what comes of this run, as long as its digits do."""
@@ -89,31 +89,33 @@ class LinksOnDemand(ABC, Generic[L, W]):
             self._known[name] = self.of_proof(name)
         return self._known[name]
 
-    @property
-    def working(self) -> W:
+    def working(self) -> Course[W]:
+        """The same, done once."""
         if self._working is None:
-            self._working = self.beside()
+            self._working = yield from self.beside()
         return self._working
 
-    def shared(self) -> list[L]:
+    def shared(self) -> Course[list[L]]:
         """The links before those in which ways to evaluate differ."""
         # Before the longer runs: where float64 leaves its range there is nothing to separate.
-        working = self.working
-        first = self.proved("first") or self._reference(self.kernel_run, "first")
+        working = yield from self.working()
+        first = self.proved("first") or (yield from self._reference(self.kernel_run, "first"))
         second = first
         if not self.same:
-            second = self.proved("second") or self._reference(self.rounded, "second")
+            second = self.proved("second") or (yield from self._reference(self.rounded, "second"))
         links = [first, second]
         if self.kernel_run.hamiltonian.time_dependent:
             known = _clock_is_exact(self.rounded)
             links.append(second if known or working.clock is None else working.clock)
         return [*links, working.trajectory or second]
 
-    def to_digits(self, make: Callable[[], C], lacking: Callable[[C], Sequence[int]]) -> C:
+    def to_digits(
+        self, make: Callable[[], Course[C]], lacking: Callable[[C], Sequence[int]]
+    ) -> Course[C]:
         """What is made of the links, which are made again as long as some lack digits of it: how
         many the differences cancel is known once they are there."""
         for attempt in range(_ATTEMPTS):
-            found = make()
+            found = yield from make()
             if not self.refine(lacking(found), attempt):
                 break
         return found
@@ -143,15 +145,15 @@ class LinksOnDemand(ABC, Generic[L, W]):
         asked = number_systems.about(self.arithmetic)
         return asked.name if digits <= asked.most_digits else last_system().name
 
-    def _reference(self, kernel_run: KernelRun, name: str) -> L:
+    def _reference(self, kernel_run: KernelRun, name: str) -> Course[L]:
         if name not in self._made:
             digits, asked = self.digits[name], self._asked
             if name == "first" and asked and digits <= asked.digits:
-                measured = asked.measured(self._progress())
+                measured = yield from asked.measured(self._progress())
                 if measured.bounds.status == "finished":
                     self._made[name] = self._in_exact_stead(asked.kernel_run, digits, measured)
                     return self._made[name]
-            measured = measure(kernel_run, self.system(digits), digits, self._progress())
+            measured = yield from measure(kernel_run, self.system(digits), digits, self._progress())
             self._made[name] = self._in_exact_stead(kernel_run, digits, measured)
         return self._made[name]
 

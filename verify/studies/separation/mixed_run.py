@@ -5,9 +5,9 @@ A mixed kernel on its way: its states by names, at the stops that are asked for.
 
 import math
 from abc import ABC, abstractmethod
-from bisect import bisect_left
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
+from functools import partial
 from itertools import takewhile
 from typing import Any, ClassVar, Generic, Literal, TypeVar
 
@@ -15,8 +15,10 @@ from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.execution.keeping import fraction_of, fraction_text
+from verify.kernels.chunked_loop import last_good
 from verify.kernels.rounding import Ball, Rounded
 from verify.kernels.stepping import KernelRun
+from verify.lockstep import Course
 from verify.studies.separation.kernel import AT, Mixed
 
 State = Mapping[str, Any]  # a float or a wide number; its name begins with f or with w
@@ -56,22 +58,20 @@ class Stepper:
         # The sums of logarithms may be undefined while the orbit and the plain way go on.
         self._vital = [n for n in self._at if n[0] == "f" and n not in ("f_sum", "f_rest")]
 
-    def states(self, state: State, every: int, stops: int, beyond: int = 0) -> list[State]:
+    def states(
+        self, state: State, every: int, stops: int = 1, beyond: int = 0
+    ) -> Course[list[State]]:
         """Those at the next stops; fewer where float64 leaves its range on the way.
 
         `beyond`: so many steps will be asked for after these.
         """
         begun = state.numbers if isinstance(state, Carried) else [state[n] for n in self._at]
         kernel = self.kernel.function
-        found = self.arithmetic.states(kernel, every, stops, self.fixed, begun, beyond)
+        found = yield from self.arithmetic.states(kernel, every, stops, self.fixed, begun, beyond)
         return list(takewhile(self._finite, (Carried(self._at, x) for x in found)))
 
     def _finite(self, state: State) -> bool:
         return all(map(math.isfinite, map(state.__getitem__, self._vital))) and self.also(state)
-
-    def last_good(self, state: State, count: int) -> int:
-        """The greatest number of steps below `count` that stays in range, by bisection."""
-        return bisect_left(range(1, count), True, key=lambda n: not self.states(state, n, 1))
 
 
 Advance = Callable[[int], None]  # called with the number of steps just done
@@ -123,7 +123,7 @@ class MixedRun(ABC, Generic[K]):
         """What must hold of a state beside that its float64 numbers are finite."""
         return True
 
-    def _states(self, kernel: K, arithmetic: Arithmetic, advance: Advance) -> list[State]:
+    def _states(self, kernel: K, arithmetic: Arithmetic, advance: Advance) -> Course[list[State]]:
         """What the kernel carries, at every checkpoint."""
         given = [self.inputs[n] for n in ("h", *kernel.parameters)]
         wide = [arithmetic.number(Fraction(x)) for x in given]
@@ -137,7 +137,7 @@ class MixedRun(ABC, Generic[K]):
         while done < self.run.steps:
             every, stops = self._ahead(done, len(states), arithmetic.chunk)
             beyond = self.run.steps - done - every * stops
-            after = stepper.states(state, every, stops, beyond)
+            after = yield from stepper.states(state, every, stops, beyond)
             for state in after:
                 done += every
                 advance(every)
@@ -147,7 +147,7 @@ class MixedRun(ABC, Generic[K]):
             if len(after) < stops and arithmetic.absolute:
                 raise UnsupportedError(f"the orbit leaves the range of {arithmetic.name}")
             if len(after) < stops:
-                done += stepper.last_good(state, every)
+                done += yield from last_good(every, partial(stepper.states, state))
                 raise Stopped("left range", done + 1, "float64 leaves its range")
         return states
 

@@ -42,7 +42,7 @@ How far the parts are known is told in `verify.studies.separation.working` and
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeAlias
 
 from verify import arithmetic as number_systems
 from verify.arithmetic import AUTO
@@ -53,6 +53,7 @@ from verify.execution.keeping import NOTHING, Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import Given, point_of
 from verify.hamiltonians.times_on_the_way import check_times
+from verify.lockstep import Course, alone
 from verify.runs.run import AskedRun, check
 from verify.runs.start import Start
 from verify.scenes.results.separation import WAYS, CrossoverResult, SeparationGrid, SeparationResult
@@ -68,8 +69,15 @@ from verify.studies.separation.way import Way, evaluation
 Progress = Callable[[int], None]  # called with a number of steps just done, of 3 N in all
 RUNS = 3  # of N steps each: two in exact arithmetic's stead and one in both
 
+Separation: TypeAlias = SeparationResult | SeparationInDegrees
 
-def separate(
+
+def separate(hamiltonian: Hamiltonian, scheme: str, **asked: Any) -> Separation:
+    """The same as `separate_in_turn`, which takes the same arguments, alone."""
+    return alone(separate_in_turn(hamiltonian, scheme, **asked))
+
+
+def separate_in_turn(
     hamiltonian: Hamiltonian,
     scheme: str,
     *,
@@ -83,7 +91,7 @@ def separate(
     progress: Progress | None = None,
     keeper: Keeper = NOTHING,
     run: AskedRun | None = None,
-) -> SeparationResult | SeparationInDegrees:
+) -> Course[Separation]:
     """Λ of a float64 run of `steps` steps from (q, p), split into truncation and rounding; in n
     degrees of freedom, where q and p are lists, W.
 
@@ -112,9 +120,11 @@ def separate(
         result |= {"coordinates": hamiltonian.coordinates, "tangent": None}
     try:
         if planar:
-            result |= _split(separated_chains(*asked, keeper, run), digits)
+            chains = yield from separated_chains(*asked, keeper, run)
+            result |= _split(chains, digits)
         else:
-            result |= split_in_degrees(form_chains(*asked, keeper), begun, steps, digits)
+            forms = yield from form_chains(*asked, keeper)
+            result |= split_in_degrees(forms, begun, steps, digits)
     except Stopped as stopped:
         ends = {"status": stopped.status, "failed_step": stopped.step, "reason": stopped.reason}
         result |= ends
@@ -167,7 +177,7 @@ def separate_grid(
 
 
 def as_grid(
-    points: Sequence[SeparationResult | SeparationInDegrees],
+    points: Sequence[Separation],
 ) -> SeparationGrid | SeparationGridInDegrees:
     """Separations for several step sizes, with the crossover of each way to evaluate Λ, or W."""
     crossed = {

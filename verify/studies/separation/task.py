@@ -1,6 +1,5 @@
 """The tasks of splitting Λ of one run, in n degrees of freedom W, into truncation and rounding."""
 
-from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any, ClassVar, Literal
 
@@ -8,6 +7,7 @@ from verify.arithmetic import AUTO, step_cost
 from verify.arithmetic.systems import ball, float64
 from verify.execution.keeping import Keeper
 from verify.execution.task import StartTask, Task
+from verify.lockstep import Course, alone
 from verify.runs.run import AskedRun
 from verify.runs.task import RunTask
 from verify.scenes.frozen import Frozen
@@ -17,7 +17,7 @@ from verify.scenes.values import Number, StepSize
 from verify.studies.separation.chain import CANCELLED
 from verify.studies.separation.form_run import POINTS as POINTS_OF_FORM
 from verify.studies.separation.mixed_run import POINTS
-from verify.studies.separation.separate import separate
+from verify.studies.separation.separate import separate_in_turn
 
 DIGITS = 6  # of each part, in a scene
 
@@ -46,8 +46,9 @@ class _Separation(StartTask):
         of_points = self.point_cost * min(self.steps, self.points)
         return of_points + self.runs * self.steps * step_cost(AUTO)
 
-    def _separated(self, keeper: Keeper, run: AskedRun | None = None) -> Any:
-        return separate(self.exact_hamiltonian(), **self.asked("run"), run=run, keeper=keeper)
+    def _separated(self, keeper: Keeper, run: AskedRun | None = None) -> Course[Any]:
+        asked = self.asked("run")
+        return separate_in_turn(self.exact_hamiltonian(), **asked, run=run, keeper=keeper)
 
 
 class SeparationTask(_Separation):
@@ -80,15 +81,16 @@ class SeparationTask(_Separation):
     def compute(self, keeper: Keeper) -> SeparationResult:
         """The separation, as a result."""
         own = self.run.asked_run(keeper) if self.run else None
-        split: SeparationResult = self._separated(keeper, own)
+        split: SeparationResult = alone(self._separated(keeper, own))
         return split
 
-    def computed(self, keeper: Keeper) -> Iterator[tuple[Task, Frozen]]:
+    def compute_in_turn(self, keeper: Keeper) -> Course[dict[str, Frozen]]:
         """The separation, and the run where that was done for it."""
         own = self.run.asked_run(keeper) if self.run else None
-        yield self, self._separated(keeper, own)
+        results: dict[str, Frozen] = {self.key: (yield from self._separated(keeper, own))}
         if self.run and own and own.done:
-            yield self.run, own.result()
+            results[self.run.key] = yield from own.result()
+        return results
 
 
 class FormSeparationTask(_Separation):
@@ -102,5 +104,5 @@ class FormSeparationTask(_Separation):
 
     def compute(self, keeper: Keeper) -> SeparationInDegrees:
         """The separation, as a result."""
-        split: SeparationInDegrees = self._separated(keeper)
+        split: SeparationInDegrees = alone(self._separated(keeper))
         return split

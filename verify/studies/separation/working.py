@@ -30,6 +30,7 @@ from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.arithmetic.systems import float64
 from verify.kernels.rounding import PRECISION, analyse, rounding_of
 from verify.kernels.stepping import KernelRun, limits
+from verify.lockstep import Course
 from verify.runs.estimated import digits_of
 from verify.studies.separation.kernel import MixedKernel, mixed_kernel
 from verify.studies.separation.mixed_run import (
@@ -88,16 +89,16 @@ def exact_link(trail: Sequence[Fraction], method: str) -> Link:
 class WorkingRun(MixedRun[MixedKernel]):
     """The float64 run of a run in the plane."""
 
-    def step_through(self, arithmetic: Arithmetic, advance: Advance) -> Working[Link]:
+    def step_through(self, arithmetic: Arithmetic, advance: Advance) -> Course[Working[Link]]:
         """All steps; raises Stopped where float64 leaves its range."""
         kernel = self._kernel(arithmetic)
-        states = self._states(kernel, arithmetic, advance)
+        states = yield from self._states(kernel, arithmetic, advance)
         bound_of = self._bounds(kernel, arithmetic, states[-1])
         unknown = {name for name, bound in bound_of.items() if bound is None}
         if unknown:
             unknown = unknown if unknown == {"clock"} else set(bound_of)
             finer = number_systems.get(arithmetic.name, digits_of(arithmetic) + MORE_DIGITS)
-            again = self._states(self._kernel(finer), finer, lambda _: None)
+            again = yield from self._states(self._kernel(finer), finer, lambda _: None)
             bound_of |= {n: _apart(n, states, again, arithmetic, finer) for n in unknown}
 
         def link(name: str) -> Link | None:

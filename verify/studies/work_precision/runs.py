@@ -29,6 +29,7 @@ from verify.kernels.chunked_loop import ChunkedLoop
 from verify.kernels.kernel import Kernel, Writer
 from verify.kernels.step.computation import step_map_of
 from verify.kernels.stepping import KernelRun
+from verify.lockstep import alone
 from verify.runs.digits_on_demand import choose, measure
 from verify.runs.estimated import Bounds
 from verify.scenes.observables import observed
@@ -158,8 +159,7 @@ class Ladder:
     def point(self, h: Fraction) -> WorkPoint:
         """The run with this step size, not yet timed."""
         loop = self._loop(h)
-        for _ in loop.chunks():
-            pass
+        alone(loop.to_end())
         steps = loop.run.steps
         if loop.done < steps:
             return failed(
@@ -203,7 +203,7 @@ class Ladder:
         """The same steps in high precision, from the exact inputs."""
         lost = frozenset[str]() if self.preserves_area else frozenset(self.lost)
         kernel_run = self._kernel_run(h, lost)
-        return measure(kernel_run, choose(kernel_run, EXACT_DIGITS), EXACT_DIGITS).bounds
+        return alone(measure(kernel_run, choose(kernel_run, EXACT_DIGITS), EXACT_DIGITS)).bounds
 
     def _area(self, h: Fraction, exact: Bounds) -> dict[str, Any]:
         """Of a point: Λ, and in n degrees of freedom W; what limits them; and in the plane Λ by the

@@ -250,14 +250,16 @@ def test_a_kernel_is_compiled_once_it_repays_and_says_the_same(part: int) -> Non
     lines = [
         "def kernel(steps, x):",
         "    for k in range(steps):",
-        "        x = x * 0.75 + 1.0 / 3",
+        "        x = x * share + more / 3",
     ]
     source = "\n".join([*lines, "    return x"])
-    kernel = float64.make(17).compile(source, "kernel", float64.make(17).functions)
+    names = {"share": 0.75, "more": 1.0}
+    kernel = float64.make(17).compile(source, "kernel", names)
     total, each = 1.0, 22_500
     for _ in range(part):
         total = kernel(each, total)
-    once = float64.compiled_at_once().compile(source, "kernel", {})
+    once = float64.compiled_at_once().compile(source, "kernel", names)
+    assert hasattr(once, "prepared"), "LLVM has made it"
     assert bits(total) == bits(once(part * each, 1.0))
 
 

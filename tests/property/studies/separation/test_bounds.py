@@ -27,6 +27,7 @@ from verify import arithmetic as number_systems
 from verify.arithmetic.number_system import Arithmetic
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
+from verify.lockstep import alone
 from verify.studies.separation.chain import QUANTITIES, Chain, separated_chains
 from verify.studies.separation.kernel import WORKING
 from verify.studies.separation.mixed_run import Stopped
@@ -94,7 +95,7 @@ def test_bounds_of_few_bits_hold_against_many_at_every_checkpoint(
     working = WorkingRun(run, rounded_inputs(run), follow=True)
     coarse_, fine_ = number_systems.get("mpfr", 17), number_systems.get("mpfr", 90)
     try:
-        coarse, fine = (working.step_through(x, lambda _: None) for x in (coarse_, fine_))
+        coarse, fine = (alone(working.step_through(x, lambda _: None)) for x in (coarse_, fine_))
     except Stopped:
         assume(False)
         raise
@@ -133,7 +134,8 @@ def test_fixed_point_beside_float64_is_within_its_bound(
     run = KernelRun(hamiltonian, "lie2", {"p": p, "q": q, "h": h}, steps, WORKING, 10)
     working = WorkingRun(run, rounded_inputs(run), follow=True)
     coarse, fine = (
-        working.step_through(x, lambda _: None) for x in (FIXED, number_systems.get("mpfr", 90))
+        alone(working.step_through(x, lambda _: None))
+        for x in (FIXED, number_systems.get("mpfr", 90))
     )
     for name in ("trajectory", "factors", "closed_factors"):
         x, y = getattr(coarse, name), getattr(fine, name)
@@ -198,7 +200,7 @@ def test_a_large_lambda_is_estimated_and_a_small_one_counted(
     for h in (Fraction(1, 3), Fraction(1, 300)):
         run = Hamiltonian.parse(DUFFING), "lie1", {"p": p, "q": q, "h": h}, steps
         try:
-            plain = separated_chains(*run, 17, "mpfr").plain
+            plain = alone(separated_chains(*run, 17, "mpfr")).plain
         except Stopped:
             continue
         middle = plain.links[3]

@@ -11,6 +11,7 @@ from tests.examples import drawn
 from tests.helpers.sampled.formulas import monomial, polynomials, rationals
 from tests.helpers.stepping.exact_separation import links
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.lockstep import alone
 from verify.studies.separation.chain import PARTS, QUANTITIES, Chain, Chains, separated_chains
 from verify.studies.separation.mixed_run import Stopped
 
@@ -23,7 +24,7 @@ quick = drawn(40)
 def chains(text: str, eta: int, start: dict[str, Fraction], steps: int) -> Chains:
     run = Hamiltonian.parse(text), f"lie{eta}", start, steps
     try:
-        return separated_chains(*run, 17, "mpfr")
+        return alone(separated_chains(*run, 17, "mpfr"))
     except Stopped:
         assume(False)
         raise

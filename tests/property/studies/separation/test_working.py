@@ -20,6 +20,7 @@ from verify.arithmetic.number_system import Arithmetic
 from verify.execution.keeping import Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
+from verify.lockstep import alone
 from verify.runs.run import run
 from verify.studies.separation.chain import PARTS, QUANTITIES, Chain, separated_chains
 from verify.studies.separation.kernel import WORKING
@@ -121,7 +122,7 @@ def test_the_second_link_is_the_first_of_the_rounded_inputs(
         values = {"delta": of(delta)}
         hamiltonian = Hamiltonian.parse("p**2/2 + q**2/2 + delta*q**4/4", values)
         start = {"p": of(p), "q": of(q), "h": of(h)}
-        return separated_chains(hamiltonian, "lie2", start, steps, 25, "mpfr").plain
+        return alone(separated_chains(hamiltonian, "lie2", start, steps, 25, "mpfr")).plain
 
     one, other = chain(lambda x: x), chain(lambda x: Fraction(float(x)))
     for a, b in zip(one.links[1].trail, other.links[0].trail, strict=True):
@@ -244,12 +245,12 @@ def test_a_run_that_is_interrupted_goes_on_to_the_same_bits(
         kernel_run = KernelRun(Hamiltonian.parse(text), "lie2", start, steps, WORKING, 10, of)
         return WorkingRun(kernel_run, rounded_inputs(kernel_run), follow=True)
 
-    once = working(Keeper(None, "")).step_through(made, lambda _: None)
+    once = alone(working(Keeper(None, "")).step_through(made, lambda _: None))
     if after < steps:
         with pytest.raises(KeyboardInterrupt):
-            working(keeper).step_through(made, interrupting)
+            alone(working(keeper).step_through(made, interrupting))
     rest: list[int] = []
-    again = working(keeper).step_through(made, rest.append)
+    again = alone(working(keeper).step_through(made, rest.append))
     # The step that was told last was not kept.
     assert sum(rest) == (steps - sum(told[:-1]) if after < steps else steps)
     for link in ("trajectory", "factors", "plain", "closed_factors", "closed_form"):

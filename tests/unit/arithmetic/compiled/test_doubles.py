@@ -1,4 +1,4 @@
-"""float64 kernels by LLVM alone: numba's bits, and what they do not know is left to it."""
+"""float64 kernels by LLVM: Python's bits, and what they do not know is left to Python."""
 
 import math
 from fractions import Fraction
@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from verify.arithmetic.compiled import doubles
+from verify.arithmetic.number_system import interpreted
 from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.systems import get
@@ -28,13 +29,13 @@ def chain(scheme: str, n: int) -> tuple[Kernel, list[Any]]:
 @pytest.mark.left_to_ci
 @pytest.mark.sample(2)
 @pytest.mark.parametrize("scheme", ["stormer-verlet", "lie2", "rk4"])
-def test_a_long_kernel_has_the_bits_of_numba(scheme: str) -> None:
+def test_a_long_kernel_has_the_bits_of_python(scheme: str) -> None:
     kernel, given = chain(scheme, 4)
     ours = doubles.one_point(kernel.source, kernel.names)
-    by_numba = float64._by_numba(kernel.source, "kernel", kernel.names)
-    assert ours(100, *given) == tuple(by_numba(100, *given))
+    in_python = interpreted(kernel.source, "kernel", kernel.names)
+    assert ours(100, *given) == tuple(in_python(100, *given))
     assert doubles.prepared_call(ours, 100, *given)() is None
-    assert doubles.prepared_call(by_numba, 1, *given)()[0] == 1  # type: ignore[index]
+    assert doubles.prepared_call(in_python, 1, *given)()[0] == 1  # type: ignore[index]
     assert ours(0, *given) == (0, *given[-8:])
 
 
@@ -50,14 +51,14 @@ PLANE = {
 @pytest.mark.sample(4)
 @pytest.mark.parametrize("text", PLANE.values(), ids=PLANE)
 @pytest.mark.parametrize("scheme", ["lie2", "implicit-midpoint", "gauss4"])
-def test_a_kernel_of_the_plane_has_the_bits_of_numba(scheme: str, text: str) -> None:
+def test_a_kernel_of_the_plane_has_the_bits_of_python(scheme: str, text: str) -> None:
     """Loops in the loop too, which solve equations."""
     hamiltonian = Hamiltonian.parse(text)
     asked = frozenset({"lambda", "lambda_plain", "lambda_max", "mse"})
     kernel = kernel_for(hamiltonian, scheme, _OWN, asked)
     start = [0.05, 0.3, 0.7, *map(float, kernel.start)]
-    by_numba = float64._by_numba(kernel.source, "kernel", kernel.names)
-    assert doubles.one_point(kernel.source, kernel.names)(300, *start) == by_numba(300, *start)
+    in_python = interpreted(kernel.source, "kernel", kernel.names)
+    assert doubles.one_point(kernel.source, kernel.names)(300, *start) == in_python(300, *start)
 
 
 LOOP = "def kernel(steps, x):\n    for k in range(steps):\n        x = {0}\n    return steps, x\n"
@@ -74,12 +75,17 @@ def test_roots_have_the_bits_of_python(n: int) -> None:
     assert all(math.isnan(root(1, x)[1]) for x in (-1.0, -math.inf, math.nan))
 
 
-def test_what_is_not_in_the_language_is_left_to_numba() -> None:
+def test_what_is_not_in_the_language_is_left_to_python() -> None:
     source = LOOP.format("expm1(x)")
     with pytest.raises(NotImplementedError):
         doubles.one_point(source, {})
-    by_numba = float64._compiled(source, "kernel", {"expm1": math.expm1})
-    assert by_numba(2, 0.5) == (2, math.expm1(math.expm1(0.5)))
+    in_python = float64._compiled(source, "kernel", {"expm1": math.expm1})
+    assert in_python(2, 0.5) == (2, math.expm1(math.expm1(0.5)))
+    for text in ("0.5 / y + x", "1 / (y + y) + x"):
+        at = float64._compiled(f"def f(x, y):\n    return {text}\n", "f", {})
+        assert [at(3.0, 2.0), at(-1.0, -0.0)] == [3.25, -math.inf]
+    summed = "def f(x):\n    for k in range(1, 3):\n        x = x + k\n    return x\n"
+    assert float64._compiled(summed, "f", {})(0.5) == 3.5
 
 
 def test_lanes_that_would_part_are_left_to_one_point_after_another() -> None:

@@ -9,11 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from verify.claims.theorems import check_theorem, names
 from verify.pages.markdown.markup import Node, tree
 from verify.pages.markdown.mathml_to_tex import tex
 from verify.pages.text.displayed import displayed
 from verify.pages.text.prose import prose
+from verify.papers import check_theorem, names
 from verify.proof.lie_argument import STEPS
 from verify.prose import Display, Prose, read_prose
 

@@ -6,9 +6,9 @@ from fractions import Fraction
 
 import pytest
 
+from verify.audits.claims import claims_of
+from verify.audits.libraries import literature
 from verify.errors import InputError
-from verify.integrators.others.claims import claims_of
-from verify.integrators.others.libraries import literature
 from verify.schemes.free_lie_words import KINDS, MOST_ORDER, conditions, residue, step
 from verify.schemes.printed.printed_numbers import PrintedNumbers, evaluated
 from verify.schemes.printed.splitting_table import PrintedTable, judge_order

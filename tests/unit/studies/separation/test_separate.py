@@ -13,6 +13,7 @@ from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import fixed, mpfr
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
+from verify.lockstep import alone
 from verify.runs.run import run
 from verify.studies.separation import kernel as separation_kernel
 from verify.studies.separation.chain import PARTS, QUANTITIES, Chain, separated_chains
@@ -32,7 +33,9 @@ def chain_of(
     hamiltonian: Hamiltonian, scheme: str, steps: int = 300, name: str = "plain", **start: Any
 ) -> Chain:
     at = {"p": Fraction(1, 3), "q": Fraction(3, 2), "h": Fraction(1, 1000), **start}
-    found: Chain = getattr(separated_chains(hamiltonian, scheme, at, steps, 17, "mpfr"), name)
+    found: Chain = getattr(
+        alone(separated_chains(hamiltonian, scheme, at, steps, 17, "mpfr")), name
+    )
     return found
 
 
@@ -83,7 +86,7 @@ def test_the_working_value_is_what_run_reports_for_float64() -> None:
 def test_fixed_and_mpfr_find_the_same_parts(hamiltonian: Hamiltonian) -> None:
     start = {"p": Fraction(1, 3), "q": Fraction(3, 2), "h": Fraction(1, 1000)}
     run = hamiltonian, "lie2", start, 1000
-    found = [separated_chains(*run, 17, name) for name in ("fixed", "mpfr")]
+    found = [alone(separated_chains(*run, 17, name)) for name in ("fixed", "mpfr")]
     for way in ("plain", "closed_form"):
         one, other = (getattr(each, way) for each in found)
         assert one.kind == other.kind == "enclosed"
@@ -206,7 +209,9 @@ def test_counted_bounds_hold_for_few_bits_and_are_not_far_off(
     start = {"p": Fraction(1, 3), "q": Fraction(3, 2), "h": Fraction(1, 50)}
     kernel_run = KernelRun(hamiltonian, "lie2", start, 600, WORKING, 10)
     working = WorkingRun(kernel_run, rounded_inputs(kernel_run), follow=True)
-    coarse, fine = (working.step_through(x, lambda _: None) for x in (made, mpfr.at_bits(300)))
+    coarse, fine = (
+        alone(working.step_through(x, lambda _: None)) for x in (made, mpfr.at_bits(300))
+    )
     for name in ("trajectory", "factors", "closed_factors"):
         x, y = getattr(coarse, name), getattr(fine, name)
         assert x.kind == y.kind == "enclosed"
@@ -220,7 +225,7 @@ def test_where_rounding_cannot_be_counted_a_rerun_estimates_it() -> None:
     assert max(map(abs, chain.links[2].trail)) > Fraction(1, 2)
     assert chain.links[2].kind == chain.links[3].kind == "estimated"
     start = {"p": Fraction(1, 3), "q": Fraction(3, 2), "h": Fraction(1, 20)}
-    finer = separated_chains(DUFFING, "lie1", start, 100, 40, "mpfr").plain
+    finer = alone(separated_chains(DUFFING, "lie1", start, 100, 40, "mpfr")).plain
     for name in QUANTITIES:
         (x, dx), (y, dy) = chain.final(name), finer.final(name)
         assert abs(x - y) <= dx + dy, name

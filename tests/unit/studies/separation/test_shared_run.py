@@ -14,6 +14,7 @@ from verify.execution.executors import THIS_PROCESS, Placement
 from verify.execution.keeping import NOTHING
 from verify.execution.plan import Plan
 from verify.kernels.stepping import KernelRun
+from verify.lockstep import Course
 from verify.runs.digits_on_demand import Measured
 from verify.runs.run import AskedRun
 from verify.runs.task import RunTask
@@ -45,13 +46,13 @@ def of_kind(plan: Plan, kind: type[Any]) -> dict[str, Any]:
 def stepped(monkeypatch: pytest.MonkeyPatch) -> list[tuple[Fraction, int]]:
     """The step size and the number of notes of each run in exact arithmetic's stead."""
     seen: list[tuple[Fraction, int]] = []
-    whole = KernelRun.run
+    whole = KernelRun.run_in_turn
 
     def noting(self: KernelRun, *given: Any, **named: Any) -> Any:
         seen.append((self.start["h"], self.sections))
         return whole(self, *given, **named)
 
-    monkeypatch.setattr(KernelRun, "run", noting)
+    monkeypatch.setattr(KernelRun, "run_in_turn", noting)
     return seen
 
 
@@ -165,8 +166,8 @@ def test_a_shared_run_that_finds_no_digit_leaves_the_separation_its_own(
     expected = plain(execute(plan, Store(None), where=THIS_PROCESS))
     whole = AskedRun.measured
 
-    def unknown(self: AskedRun, *given: Any) -> Measured:
-        found = whole(self, *given)
+    def unknown(self: AskedRun, *given: Any) -> Course[Measured]:
+        found = yield from whole(self, *given)
         return replace(found, bounds=replace(found.bounds, values={}, status="unresolved"))
 
     monkeypatch.setattr(AskedRun, "measured", unknown)
@@ -187,7 +188,7 @@ def test_a_separation_that_ends_before_the_run_is_kept_where_that_is_interrupted
     def interrupted(*_: Any) -> RunResult:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(RunTask, "compute", interrupted)
+    monkeypatch.setattr(RunTask, "compute_in_turn", interrupted)
     with pytest.raises(KeyboardInterrupt):
         execute(plan, store, where=THIS_PROCESS)
     kept = {name for name, task in plan.tasks.items() if store.get(name, task)}

@@ -16,6 +16,7 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.oracles.ball_steps import BITS, ball_steps, stepped
 from verify.exploration.property import Silent, Violation, only_if, silent_at
 from verify.exploration.sample import Sample
+from verify.lockstep import alone
 from verify.schemes.maps.step_map import StepMap
 from verify.studies.separation.chain import Chain, separated_chains
 from verify.studies.separation.kernel import WORKING
@@ -28,7 +29,7 @@ _DIGITS = 8
 def holds(sample: Sample) -> None:
     only_if(sample.is_turn(_IN) and sample.short)
     with silent_at(Stopped):
-        chains = separated_chains(*sample.kernel_inputs, _DIGITS)
+        chains = alone(separated_chains(*sample.kernel_inputs, _DIGITS))
     wanted = _lambda_by_balls(sample)
     for chain in (chains.plain, chains.closed_form):
         if chain is not None:
@@ -39,9 +40,9 @@ def holds(sample: Sample) -> None:
         return
     bare = sample.run("float64", 17, *WORKING).values["lambda_plain"]
     beside = chains.plain.final("lambda_working")[0]
-    alone, other = float(bare), float(beside)  # the program's last subtraction, of 1, rounds
-    if alone != other:
-        raise Violation(f"float64 gives {alone!r}, and beside exact numbers {other!r}")
+    one, other = float(bare), float(beside)  # the program's last subtraction, of 1, rounds
+    if one != other:
+        raise Violation(f"float64 gives {one!r}, and beside exact numbers {other!r}")
 
 
 def _must_add_up(chain: Chain) -> None:

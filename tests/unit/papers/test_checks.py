@@ -1,0 +1,103 @@
+"""The identities that arguments rest on: each holds, and none with a planted error in it."""
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from tests.helpers.planted.theorem_controls import refused
+from verify.algebra.symbols import P, Q
+from verify.papers.checks import matrices, sums, triangle
+from verify.papers.checks.check import Check, same
+from verify.papers.lie_derivative_scheme import (
+    determinant,
+    developables,
+    families,
+    lipschitz,
+    matrix_vector,
+    two_norm,
+)
+from verify.papers.lie_derivative_scheme.convergence import _lengthened
+from verify.papers.lie_derivative_scheme.criteria import area, connections
+from verify.papers.lie_derivative_scheme.criteria_examples import (
+    COMPENSATED,
+    FRICTION,
+    NOT_UNIFORM,
+    TO_AND_FRO,
+    ExampleMap,
+    shrinks_to,
+    turns_to_and_fro,
+)
+
+PLANTED: list[tuple[Callable[..., Check], Any]] = [
+    (triangle.triangle, 0),
+    (triangle.triangle, -1),
+    (triangle.difference, "ac"),
+    (triangle.difference, "bc"),
+    (matrices.product_of_determinants, -1),
+    (matrices.of_the_field, 1),
+    (matrices.where_it_rests, 2),
+    (matrices.stretching, 2),
+    (sums.geometric, 1),
+    (sums.bound_of_eq_11, 2),
+    (sums.squares_of_times, 2),
+    (sums.mean_of_fourth_powers, 4),
+    (sums.compensated_changes, 1),
+    (matrix_vector.euler, 1),
+    (matrix_vector.stays_linear, 1),
+    (developables.contracted, 2),
+    (developables.legendre, -1),
+    (developables.radial, 1),
+    (developables.ruled_hessian, -1),
+    (developables.compared, 1),
+    (families.moves_by_a_constant, "c*p**2 + d*q"),
+    (families.by_acceleration, 2),
+    (families.twice, 3),
+    (determinant._last_coefficients, 1),
+    (determinant._spirals, 2),
+    (shrinks_to, 1),
+    (turns_to_and_fro, -1),
+    (_lengthened, 2),
+]
+
+
+@pytest.mark.parametrize(("check", "error"), PLANTED, ids=lambda x: getattr(x, "__name__", str(x)))
+def test_an_identity_holds_and_not_with_an_error_in_it(
+    check: Callable[..., Check], error: Any
+) -> None:
+    assert check().holds
+    assert not check(error).holds
+
+
+@pytest.mark.parametrize("example", [FRICTION, TO_AND_FRO, COMPENSATED, NOT_UNIFORM])
+def test_the_delta_j_that_is_said_of_an_example_is_held_against_its_map(
+    example: ExampleMap,
+) -> None:
+    assert example.changes().holds
+    fields = {name: getattr(example, name) for name in example.__dataclass_fields__}
+    assert not ExampleMap(**{**fields, "delta_j": f"{example.delta_j} + h**3"}).changes().holds
+
+
+@pytest.mark.parametrize("name", ["duffing", "pendulum"])
+def test_another_stretching_is_not_that_of_the_system(name: str) -> None:
+    assert two_norm._stretch_of(name).holds
+    assert not two_norm._stretch_of(name, "delta*q**2").holds
+
+
+def test_an_h_with_a_second_derivative_does_not_decouple_the_components() -> None:
+    assert refused(lipschitz.eq_9(mixed="a*p*q + b*p**2"))
+
+
+def test_an_h_whose_step_has_no_such_inverse_is_no_example_of_criterion_1() -> None:
+    assert refused(area.criterion_1("p**2*q"))
+
+
+def test_a_run_that_does_not_cancel_is_no_example_of_a_weaker_criterion() -> None:
+    assert refused(connections.against_2(compensated=FRICTION))
+
+
+def test_formulas_are_the_same_by_algebra_and_not_by_their_text() -> None:
+    assert same("x", [(P + Q) ** 2 - P**2 - 2 * P * Q - Q**2], ("p", "q")).holds
+    found = same("x", [P - P, P - Q], ("p", "q"))
+    assert not found.holds
+    assert found.shown == "`p - q`"

@@ -1,0 +1,119 @@
+"""The steps of arguments: each is marked, in full or as not checked, and no mark says too much."""
+
+import re
+
+import pytest
+
+from verify.papers import check_theorem, names
+from verify.papers.argument import Step, checks_of, concluded, step
+from verify.papers.checks.check import BALLS, NUMBERS, Check
+from verify.proof.assistant.stated import Shipped
+from verify.prose import Display, Formula
+from verify.verdict import Verdict
+
+ONE, TWO, THREE = (Check(name, True, "0") for name in ("one", "two", "three"))
+RUN = Check("a run", True, "0", NUMBERS)
+BALL = Check("a ball", True, "0", BALLS)
+THEOREM = Shipped("Product", "product_near_one")
+_MARK = re.compile(
+    r"(exact algebra|exact numbers|enclosures), rows? [0-9–]+( and [0-9–]+)*|"
+    r"Rocq, \w+\.\w+(, \w+\.\w+)*"
+)
+
+
+def marks(*steps: Step) -> list[tuple[tuple[str, ...], tuple[str, ...]]]:
+    made = concluded("x", Verdict.PROVED, "because", steps)
+    return [(tuple(map(str, s.checked_by)), tuple(map(str, s.tried))) for s in made.steps]
+
+
+# -- the paper's arguments ------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", names())
+def test_each_step_is_marked_by_rows_of_its_table_by_theorems_or_not_at_all(name: str) -> None:
+    argument = check_theorem(name)
+    assert argument.steps
+    for each in argument.steps:
+        assert str(each.text).endswith((".", ")", ":")) or each.text.parts[-1] == "."
+        assert all(_MARK.fullmatch(mark) for mark in (*each.checked_by, *each.tried))
+    (said,) = argument.checked_by
+    checked = sum(1 for each in argument.steps if each.checked_by)
+    count = len(argument.steps)
+    assert said.startswith(f"paper: an argument in {count} step")
+    told = "all checked" if checked == count else f"{checked or 'none'} checked"
+    assert told in said
+
+
+@pytest.mark.parametrize("name", names())
+def test_every_row_of_the_table_is_named_by_a_step(name: str) -> None:
+    argument = check_theorem(name)
+    named: set[int] = set()
+    for each in argument.steps:
+        for mark in (*each.checked_by, *each.tried):
+            for first, last in re.findall(r"(\d+)(?:–(\d+))?", mark.partition(", row")[2]):
+                named |= set(range(int(first), int(last or first) + 1))
+    assert named == set(range(1, len(argument.details)))
+
+
+def test_long_formulas_stand_on_lines_of_their_own() -> None:
+    shown = [p for n in names() for s in check_theorem(n).steps for p in s.text.parts]
+    assert sum(isinstance(part, Display) for part in shown) > 80
+    assert max(len(part) for part in shown if isinstance(part, Formula)) < 34
+
+
+# -- how marks are made ---------------------------------------------------------------------------
+
+
+def test_a_step_without_a_check_has_no_mark() -> None:
+    assert marks(step("a", ONE), step("b")) == [(("exact algebra, row 1",), ()), ((), ())]
+
+
+def test_what_was_only_tried_is_no_mark() -> None:
+    assert marks(step("a", tried=[RUN]), step("b", ONE)) == [
+        ((), ("exact numbers, row 1",)),
+        (("exact algebra, row 2",), ()),
+    ]
+
+
+def test_a_mark_names_how_and_which_rows_and_theorems() -> None:
+    assert marks(step("a", ONE, TWO), step("b", ONE, THREE, RUN, BALL, THEOREM)) == [
+        (("exact algebra, rows 1–2",), ()),
+        (
+            (
+                "exact algebra, rows 1 and 3",
+                "exact numbers, row 4",
+                "enclosures, row 5",
+                "Rocq, Product.product_near_one",
+            ),
+            (),
+        ),
+    ]
+
+
+def test_a_check_of_several_steps_is_one_row() -> None:
+    steps = [step("a", ONE), step("b", TWO, tried=[ONE]), step("c", ONE)]
+    assert checks_of(steps) == [ONE, TWO]
+
+
+def test_a_failed_example_leaves_nothing_of_an_argument() -> None:
+    wrong = Check("tried", False, "1", NUMBERS)
+    made = concluded("x", Verdict.PROVED, "because", [step("a", ONE), step("b", tried=[wrong])])
+    assert (made.verdict, made.steps, made.checked_by) == (Verdict.UNDECIDED, (), ())
+
+
+def test_theorems_alone_are_no_argument() -> None:
+    """Something of it is computed in each run."""
+    assert concluded("x", Verdict.PROVED, "because", [step("a", THEOREM)]).steps == ()
+
+
+def test_how_many_steps_a_machine_checked_is_said() -> None:
+    def said(*steps: Step) -> str:
+        return str(concluded("x", Verdict.PROVED, "because", steps).checked_by[0])
+
+    assert said(step("a", ONE)) == "paper: an argument in 1 step, all checked by machine"
+    assert said(step("a", ONE), step("b")) == (
+        "paper: an argument in 2 steps, 1 checked by machine, 1 not"
+    )
+    assert said(step("a", tried=[ONE])) == (
+        "paper: an argument in 1 step, none checked by machine, 1 not"
+    )

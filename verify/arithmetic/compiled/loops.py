@@ -1,0 +1,57 @@
+"""Plain Python functions over numbers and arrays, compiled by LLVM, with the bits of Python.
+
+What a function may say is told in `verify.arithmetic.compiled.loop_writer`.
+"""
+
+import ctypes
+from collections.abc import Callable
+from functools import cache
+from struct import Struct
+from typing import Any
+
+import numpy as np
+
+from verify import code_cache
+from verify.arithmetic.compiled import native
+from verify.arithmetic.compiled.loop_writer import LoopWriter
+
+_LETTERS = {"int": "q", "float": "d"}
+
+
+def compiled(function: Callable[..., Any]) -> Callable[..., tuple[Any, ...]]:
+    """The function, compiled at its first call for the kinds of its arguments: numbers, contiguous
+    arrays. What it returns is a tuple."""
+
+    @cache
+    def made(kinds: tuple[str, ...]) -> tuple[Struct, native.Native]:
+        writer = LoopWriter()
+        results = writer.write(function, kinds)
+        key = code_cache.key_of(native.versions(), str(writer.module))
+        code = code_cache.load(key)
+        if code is None:
+            code = native.machine_code(writer.module)
+            code_cache.keep(key, code)
+        return Struct("=" + "".join(map(_LETTERS.__getitem__, results))), native.linked(code)
+
+    def call(*arguments: Any) -> tuple[Any, ...]:
+        results, linked = made(tuple(map(_kind, arguments)))
+        found = ctypes.create_string_buffer(results.size)
+        linked(b"".join(map(_words, arguments)), found)
+        return results.unpack(found.raw)
+
+    return call
+
+
+def _kind(x: Any) -> str:
+    """`float` or `int`; of an array with the number of columns."""
+    if not isinstance(x, np.ndarray):
+        return "float" if isinstance(x, float) else "int"
+    assert x.flags.c_contiguous  # noqa: S101 - as its address is all that is given
+    return f"{_kind(x.dtype.type(0).item())} {x.shape[1] if x.ndim > 1 else 0}"
+
+
+def _words(x: Any) -> bytes:
+    """A number; of an array where it lies, and its length."""
+    if isinstance(x, np.ndarray):
+        return Struct("=qq").pack(x.ctypes.data, len(x))
+    return Struct("=" + _LETTERS[_kind(x)]).pack(x)

@@ -1,0 +1,256 @@
+"""The claims that are made for an integrator of others, each with its verdict and evidence."""
+
+from collections.abc import Callable, Iterable, Iterator
+from fractions import Fraction
+from functools import partial, singledispatch
+
+from verify.audits import reproductions
+from verify.audits.methods.integrator import (
+    Compared,
+    ExactTableau,
+    FloatStep,
+    ReleasedIntegrator,
+)
+from verify.audits.methods.measured import finding
+from verify.audits.methods.scripted import POINTS
+from verify.audits.methods.tableau import (
+    WRONG,
+    Symplecticity,
+    TableauOrder,
+    order_of,
+    repair,
+    symplecticity,
+)
+from verify.audits.methods.tabled import FloatTable, tabled
+from verify.audits.second.look import Look, at_claim, at_step, at_table, looked_at_again
+from verify.integrators.results import Finding
+from verify.integrators.tables import kinds
+from verify.integrators.tables.cost import Severity, severity_of
+from verify.integrators.tables.told import TableClaim
+from verify.prose import Formula, Number, Prose, joined, prose, read_prose
+from verify.scenes.results.claim import ClaimResult
+from verify.schemes.printed.sentences import Judgement, of_digits, of_printed
+from verify.schemes.printed.splitting_table import PrintedTable, judge_order
+from verify.verdict import Verdict
+
+NONE = Prose()
+_PLACES = ((Fraction(1, 5), Fraction(-1, 4), Fraction(3, 10), Fraction(1, 7)),)  # p, then q
+_NOT_CLAIMED = "Nothing is claimed of symplecticity"
+_SYMPLECTIC = "symplectic: det J ≡ 1"
+_IN_TIME = "where the force depends on time"
+_UNSAID = f"its order {_IN_TIME}, of which nothing is said"
+_FOLLOWING = ("row sums", "symmetric", "stage order")
+_ALWAYS_TOLD = ("agreement", "in time")  # with its reproduction, whatever is found
+# What is claimed, its reproduction, and a second look, where there are means that share no code.
+_Claim = tuple[TableClaim, str, Callable[[], Look | None]]
+
+
+def claims_of(integrator: ReleasedIntegrator, section: str, prefix: str) -> Iterator[ClaimResult]:
+    """One claim for the order and one for symplecticity, where they are made; of a printed table
+    one for the order and one for its digits. `prefix` begins the ids."""
+    for claim, code, look in _claims(integrator.method, integrator):
+        ending = f". Driven: {integrator.driven}"
+        made = result_of(claim, prefix, integrator.name, section, integrator.source, ending, look)
+        told = made.verdict in (Verdict.REFUTED, Verdict.UNDECIDED) or claim.kind in _ALWAYS_TOLD
+        yield made.model_copy(update={"reproduction": code if told else ""})
+
+
+def result_of(
+    claim: TableClaim, prefix: str, name: str, section: str, source: str, ending: str,
+    look: Callable[[], Look | None],
+) -> ClaimResult:  # fmt: skip
+    """The claim as it stands after a second look. `ending`: of its evidence, in plain words."""
+    severity = claim.severity or ""
+    verdict, evidence = looked_at_again(claim.verdict, claim.evidence, severity, look)
+    return ClaimResult(
+        id=f"{prefix}/{name}/{claim.kind}",
+        kind=claim.kind,
+        source=name,
+        section=section,
+        statement=prose(f"{claim.statement} ({source})"),
+        scene="",
+        verdict=verdict,
+        evidence=prose(evidence, ending),
+        details=tuple(tuple(map(prose, row)) for row in claim.details),
+        severity=severity if verdict is Verdict.REFUTED else "",
+    )
+
+
+def _no_look() -> None:
+    return None
+
+
+def separate(claims: Iterable[TableClaim]) -> Iterator[TableClaim]:
+    """Without those that fail since the order does: of one mistake one thing is told."""
+    wrong = False
+    for claim in claims:
+        follows = claim.kind in _FOLLOWING or (
+            claim.kind == "order in time" and claim.severity == Severity.WRONG_ORDER
+        )
+        if not (wrong and follows and claim.verdict is Verdict.REFUTED):
+            yield claim
+        wrong |= claim.kind == "order" and claim.verdict is Verdict.REFUTED
+
+
+@singledispatch
+def _claims(method: object, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
+    """What is claimed of an integrator, by the kind of its method."""
+    raise TypeError(f"{integrator.name}: no method is a {type(method).__name__}")
+
+
+@_claims.register
+def _(method: Compared, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
+    verdict, told, details = method.compare()
+    said, severity = prose(told), Severity.OF_WORDS
+    claim = TableClaim(method.kind, method.statement, verdict, said, details, severity)
+    yield claim, integrator.reproduction, _no_look
+
+
+@_claims.register
+def _(method: PrintedTable, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
+    order = integrator.order
+    assert order is not None  # noqa: S101 - of printed tables it is always claimed
+    found = judge_order(method, order)
+    said = of_printed(found, order)
+    claim = TableClaim("order", f"order {order}", *said, Severity.WRONG_ORDER)
+    yield claim, integrator.reproduction, _no_look
+    if found.verdict is not Verdict.REFUTED and method.units:
+        code = reproductions.of_digits(method, found.nearest, order)
+        exact = "every digit is right, to one unit of the last"
+        severity = severity_of(found, Severity.WRONG_ORDER) or Severity.OF_WORDS
+        yield TableClaim("digits", exact, *of_digits(found), severity), code, _no_look
+
+
+@_claims.register
+def _(method: FloatTable, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
+    for claim in separate(kinds.get(method.entry.kind).claims(method.entry)):
+        if not claim.kind.endswith("digits"):  # of floats nothing is claimed of them
+            yield claim, integrator.reproduction, partial(at_claim, method.entry, claim.kind)
+
+
+@_claims.register
+def _(method: ExactTableau, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
+    table, rounded, claimed = method.tableau, method.rounded, integrator.order
+    if claimed is not None:
+        order = order_of(table, claimed, rounded)
+        wrong = order.order < claimed and not rounded
+        repaired = repair(table, claimed) if wrong else NONE
+        said = of_tableau(claimed, order, symplecticity(table, rounded), rounded, repaired)
+        embedded = "embedded" in integrator.name
+        severity = Severity.WRONG_WEIGHTS if embedded else Severity.WRONG_ORDER
+        claim = TableClaim("order", f"order {claimed}", *said, severity)
+        yield claim, integrator.reproduction, partial(_at_tableau, method, integrator.name, claimed)
+    if integrator.area_preserving:
+        area = symplecticity(table, rounded)
+        verdict = {True: Verdict.PROVED, False: Verdict.REFUTED, None: Verdict.UNDECIDED}
+        severity = Severity.NOT_SYMPLECTIC
+        claim = TableClaim("area", _SYMPLECTIC, verdict[area.holds], area.said, (), severity)
+        yield claim, integrator.reproduction, _no_look
+
+
+def _at_tableau(method: ExactTableau, name: str, claimed: int) -> Look:
+    table = method.tableau
+    entry = tabled(
+        name, "runge-kutta", "", "", order=claimed,
+        a=[[str(x) for x in row] for row in table.rows], b=[str(x) for x in table.weights],
+    ).method.entry  # fmt: skip
+    return at_table(entry, "order", claimed, exact=not method.rounded)
+
+
+@_claims.register
+def _(method: FloatStep, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
+    point = (method.points or (POINTS if method.exact.degrees == 1 else _PLACES))[0]
+    order, area, code = integrator.order, integrator.area_preserving, integrator.reproduction
+    timed = method.exact.time_dependent
+    if order is not None:
+        statement = f"order {order}, too, {_IN_TIME}" if timed else f"order {order}"
+        severity = Severity.WRONG_CLOCK if timed else Severity.WRONG_ORDER
+        said = of_measured_order(order, finding(method), area)
+        claim = TableClaim("order", statement, *said, severity)
+        script = reproductions.of_order(code, point, order, timed)
+        yield claim, script, partial(at_step, integrator, order)
+    elif timed:
+        claim = TableClaim("in time", _UNSAID, *of_unsaid(finding(method)))
+        yield claim, reproductions.of_time(code, point), _no_look
+    if area:
+        said = of_measured_area(finding(method))
+        claim = TableClaim("area", _SYMPLECTIC, *said, Severity.NOT_SYMPLECTIC)
+        yield claim, reproductions.of_area(code, point), _no_look
+
+
+# -- tableaux -------------------------------------------------------------------------------------
+
+
+def of_tableau(
+    claimed: int, found: TableauOrder, area: Symplecticity, rounded: bool, repaired: Prose = NONE
+) -> Judgement:
+    """Of exact coefficients by proof; of floats up to their rounding."""
+    of_next = prose("; of ", Formula(f"h^{found.order + 1}"), ", ", Formula(found.next))
+    by = prose(" fails by ", Number(f"{found.residue:.3g}"))
+    ends = prose(of_next, by) if found.next else NONE
+    symplectic = {True: "it is symplectic", False: "it is not symplectic", None: ""}[area.holds]
+    beside = prose(f". {_NOT_CLAIMED}")
+    if symplectic:
+        beside = prose(beside, f"; {symplectic}: ", area.said)
+    if found.order >= claimed:
+        more = f", and even order {found.order}" if found.order > claimed else ""
+        shown = f"order {claimed}{more} by {found.by}"
+        if rounded:
+            shown += (
+                f", with residues up to `{found.largest:.1e}`, as its floats' rounding leaves them"
+            )
+        verdict = Verdict.MEASURED if rounded else Verdict.PROVED
+        return verdict, prose(read_prose(shown), ends, beside), ()
+    if rounded and found.residue < float(WRONG):
+        said = read_prose(
+            f"its floats satisfy `{found.next}` but for `{found.residue:.2e}`, more than rounding "
+            "and less than a wrong method: digits are missing"
+        )
+        return Verdict.UNDECIDED, said, ()
+    fails = f"`{found.next}` fails by `{found.residue:.5g}`"
+    said = read_prose(f"its order is {found.order}: of `h^{found.order + 1}`, {fails}")
+    mend = prose(". ", repaired) if repaired else NONE
+    return Verdict.REFUTED, prose(said, mend, beside), ()
+
+
+# -- floats ---------------------------------------------------------------------------------------
+
+
+def of_measured_order(claimed: int, found: Finding, area_claimed: bool | None) -> Judgement:
+    """A measured order against the claimed one; what is not known refutes nothing."""
+    order, known = found.convergence_order, found.order_decided
+    beside = ""
+    if area_claimed is None and found.area_preserving is False:
+        beside = f". {_NOT_CLAIMED}, and area is not preserved"
+    notes = joined("", (prose(". ", _capital(note)) for note in found.notes[:1]))
+    if known and (order is None or order >= claimed):
+        return Verdict.MEASURED, prose(found.reason, beside, notes), ()
+    if known and order is not None and order < 1:
+        said = "nothing of H's flow is seen in it, as where it is driven in a wrong way; "
+        return Verdict.UNDECIDED, prose(said, found.reason), ()
+    if known and order is not None:
+        return Verdict.REFUTED, prose(found.reason, notes), ()
+    return Verdict.UNDECIDED, prose(found.reason, notes), ()
+
+
+def of_unsaid(found: Finding) -> Judgement:
+    """What is measured where nothing is claimed: it refutes nothing, whatever it is."""
+    verdict = Verdict.MEASURED if found.order_decided else Verdict.UNDECIDED
+    return verdict, found.reason, ()
+
+
+def _capital(note: Prose) -> Prose:
+    """With a capital, where it opens with a text."""
+    first, *rest = note.parts
+    return prose(f"{first[0].upper()}{first[1:]}" if type(first) is str else first, *rest)
+
+
+def of_measured_area(found: Finding) -> Judgement:
+    """An area defect above the probe's own error refutes; none that is seen is MEASURED."""
+    error = "unknown" if found.probe_error is None else f"`{found.probe_error:.1e}`"
+    if found.area_preserving:
+        return Verdict.MEASURED, read_prose(f"no area defect above the probe's error {error}"), ()
+    if found.area_preserving is False and found.largest is not None:
+        said = f"|det J − 1| is up to `{found.largest:.3g}`, where the probe's error is {error}"
+        return Verdict.REFUTED, prose(read_prose(said), "; ", found.reason), ()
+    return Verdict.UNDECIDED, found.reason, ()

@@ -1,0 +1,277 @@
+"""A described mistake, with all that is measured of it; or why it is not told.
+
+A table with entries changed, as a mend would have them.
+
+What a person has read of a mistake: the words that claim, the line to blame, and the mend.
+
+One TOML file a finding, `reports/audits/findings/NAME.toml`. Nothing in it is taken for true: the
+claims must be refuted where it is told, and the tables and programs are run again.
+"""
+
+import re
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from functools import cache
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import sympy
+from pydantic import Field, ValidationError
+
+from verify.audits.printed_libraries import files
+from verify.audits.second.look import at_table, claimed_of
+from verify.audits.second.slopes import Slopes
+from verify.content import content
+from verify.errors import InputError
+from verify.integrators.tables import kinds
+from verify.integrators.tables.check import read_tables
+from verify.integrators.tables.entry import TableEntry
+from verify.integrators.tables.splittings.claims import AlternatingEntry, parts_of
+from verify.scenes.frozen import Frozen
+from verify.scenes.mistakes.values import one_line
+from verify.scenes.results.claim import ClaimResult
+from verify.scenes.toml_file import read_toml
+from verify.schemes.printed.naming import Naming
+from verify.verdict import Verdict
+
+Text = Annotated[str, Field(min_length=1, max_length=20000)]
+
+
+class Changed(Frozen):
+    """A printed table, by the first word of its file's title and its name; which of its claims; and
+    the entries that the mend changes, by key, row and column from 1, to their texts."""
+
+    id: Text
+    kind: Text
+    changes: dict[str, str] = Field(default_factory=dict)
+
+
+class Description(Frozen):
+    """See the module. `claims`: ids of what is refuted, with * for any text. `program` is in the
+    library's `language`; `mended`, the same with the mend; `ran`: by whom it was run and when,
+    unless it is run here."""
+
+    title: Text
+    library: Text
+    claims: Annotated[tuple[Text, ...], Field(min_length=1)]
+    quote: Text
+    where: Text
+    holds: Text
+    blame: Text
+    mend: Text
+    language: Literal["python", "c", "c++", "julia"]
+    program: Text
+    mended: Text | None = None
+    ran: str = ""
+    output: str = ""
+    table: tuple[Changed, ...] = ()
+
+    def tells_of(self, claim: str) -> bool:
+        """Whether it is about the claim of that id."""
+        return any(fnmatchcase(_plain(claim), _plain(pattern)) for pattern in self.claims)
+
+
+def _plain(text: str) -> str:
+    """Without the brackets that stand for more than themselves in a pattern."""
+    return text.replace("[", "(").replace("]", ")")
+
+
+def folder() -> Path:
+    """Where they lie."""
+    return Path(content("reports", "audits", "findings"))
+
+
+def descriptions() -> dict[str, Description]:
+    """By name. InputError for a file that is none."""
+    return {path.stem: read(path) for path in sorted(folder().glob("*.toml"))}
+
+
+def read(path: Path) -> Description:
+    """One of them. InputError names the file."""
+    try:
+        return Description.model_validate(read_toml(path))
+    except ValidationError as error:
+        found = one_line(error, f"finding {path.stem}", Description)
+        raise found from None
+
+
+RIGHT = "right"
+
+
+def entry_of(name: str) -> TableEntry:
+    """The printed table of that id. InputError for none."""
+    found = _entries().get(name)
+    if found is None:
+        raise InputError("table", name, "is none of the printed tables in reports/audits")
+    return found
+
+
+@cache
+def _entries() -> dict[str, TableEntry]:
+    """All printed tables of libraries, by id; the files are read once."""
+    each = map(read_tables, files())
+    return {f"{x.title.split()[0]}/{entry.name}": entry for x in each for entry, _ in x.entries}
+
+
+def changed(entry: TableEntry, changes: Mapping[str, str]) -> TableEntry:
+    """The same with those entries. InputError for a key that it has not."""
+    data = entry.model_dump(exclude_unset=True)
+    for key, value in changes.items():
+        if key == "times" and value == RIGHT:
+            data["times"] = _right_times(entry)
+        else:
+            _put(data, key, value)
+    try:
+        made: TableEntry = kinds.get(entry.kind).Entry.model_validate(data)
+    except ValidationError as error:
+        raise one_line(error, "changes", type(entry)) from None
+    return made.in_folder(entry.folder)
+
+
+def _put(data: dict[str, Any], key: str, value: str) -> None:
+    *path, last = [int(x) - 1 if x.isdigit() else x for x in key.split(".")]
+    place: Any = data
+    for step in path:
+        place[step] = list(place[step]) if isinstance(place[step], tuple) else place[step]
+        place = place[step]
+    if isinstance(last, int) and not last < len(place):
+        raise InputError("changes", key, "is no entry of the table")
+    place[last] = value
+
+
+def _right_times(entry: TableEntry) -> list[str]:
+    """Each part reads the time that the other kind's parts before it add up to."""
+    if not isinstance(entry, AlternatingEntry):
+        raise InputError("changes", "times", "are made right of kicks and drifts alone")
+    naming = Naming(entry.numbers)
+    names, sizes, _ = parts_of(entry, naming)
+    totals = {"kick": sympy.S.Zero, "drift": sympy.S.Zero}
+    times = []
+    for name, size in zip(names, sizes, strict=True):
+        other = "drift" if name == "kick" else "kick"
+        times.append(str(sympy.N(totals[other], 60)))
+        totals[name] += naming.printed.at_print(naming.printed.entry(size))
+    return times
+
+
+_SECONDS = 300.0
+_ORDER = re.compile(r"^order on (.+): (-?\d+\.\d+)$", re.MULTILINE)
+_WITHIN = 0.3  # of the order that a program prints
+
+
+@dataclass(frozen=True)
+class Ran:
+    """What a program printed, and the orders that it names, by problem; `failed`: why it did not
+    end well."""
+
+    printed: str
+    orders: dict[str, float]
+    failed: str = ""
+
+
+@dataclass(frozen=True)
+class Shown:
+    """One table: its claimed order, its steps' orders as printed, and with the mend."""
+
+    name: str
+    claimed: int
+    printed: tuple[Slopes, ...]
+    mended: tuple[Slopes, ...] = ()
+
+
+@dataclass(frozen=True)
+class Confirmed:
+    """All that a finding tells: the description, the refuted claims, and what was run."""
+
+    name: str
+    described: Description
+    claims: tuple[ClaimResult, ...]
+    tables: tuple[Shown, ...] = ()
+    program: Ran | None = None
+    mended: Ran | None = None
+
+
+class NotConfirmedError(Exception):
+    """Why it is not told, one clause."""
+
+
+def confirm(name: str, described: Description, claims: Sequence[ClaimResult]) -> Confirmed:
+    """Of the claims that were judged just now. Raises NotConfirmedError where one that it tells of
+    is not refuted, or where a table or a program does not show it, or not the mend."""
+    own = tuple(claim for claim in claims if described.tells_of(claim.id))
+    if not own:
+        raise NotConfirmedError("none of its claims was judged: its library is not installed")
+    for claim in own:
+        if claim.verdict is not Verdict.REFUTED:
+            raise NotConfirmedError(f"{claim.id} is {claim.verdict}, not refuted")
+    tables = tuple(_shown(each) for each in described.table)
+    made = None
+    mended = None
+    if described.language == "python":
+        made = _ran(described.program)
+        mended = _ran(described.mended) if described.mended else None
+        _compare(made, mended)
+    return Confirmed(name, described, own, tables, made, mended)
+
+
+def _shown(each: Changed) -> Shown:
+    try:
+        entry = entry_of(each.id)
+        claimed = claimed_of(entry, each.kind)
+        if claimed is None:
+            raise NotConfirmedError(f"{each.id} claims no order")
+        printed = at_table(entry, each.kind, claimed)
+        mended: tuple[Slopes, ...] = ()
+        if each.changes:
+            mended = at_table(changed(entry, each.changes), each.kind, claimed).slopes
+    except InputError as error:
+        raise NotConfirmedError(str(error)) from None
+    if not printed.shown:
+        raise NotConfirmedError(f"{each.id}: its steps do not show it")
+    seen = [x.order for x in mended if x.order is not None]
+    if each.changes and (not seen or min(seen) < claimed or any(x.below(claimed) for x in mended)):
+        raise NotConfirmedError(f"{each.id}: with the mend its order is not {claimed}")
+    return Shown(each.id, claimed, printed.slopes, mended)
+
+
+def _ran(program: str) -> Ran:
+    found = run(program)
+    if found.failed:
+        raise NotConfirmedError(f"its program fails: {found.failed}")
+    return found
+
+
+def _compare(made: Ran, mended: Ran | None) -> None:
+    """With the mend every order must be higher by nearly one, at least."""
+    for problem, order in (mended.orders if mended else {}).items():
+        before = made.orders.get(problem)
+        if before is None or order < before + 1 - _WITHIN:
+            raise NotConfirmedError(f"the mend does not raise the order on {problem}")
+
+
+# -- a program in Python, where its library is installed ------------------------------------------
+
+
+def run(program: str) -> Ran:
+    """Runs the lines; nothing that it does is let through but what it prints."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "program.py"
+        path.write_text(program, encoding="utf-8")
+        try:
+            done = subprocess.run(  # noqa: S603 - the program is ours, beside the descriptions
+                [sys.executable, str(path)],
+                capture_output=True,
+                text=True,
+                timeout=_SECONDS,
+                cwd=folder,
+                check=False,
+            )
+        except subprocess.TimeoutExpired:
+            return Ran("", {}, f"does not end within {_SECONDS:.0f} s")
+    found = {name: float(order) for name, order in _ORDER.findall(done.stdout)}
+    last = done.stderr.strip().splitlines()[-1:] if done.returncode else []
+    return Ran(done.stdout.strip(), found, " ".join(last))

@@ -1,0 +1,107 @@
+"""Coefficient tables of splitting methods, as they are printed.
+
+The data are in `reports/audits/literature.toml`.
+"""
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from verify.audits.methods.integrator import ReleasedIntegrator
+from verify.content import content
+from verify.integrators.tables.splittings.claims import alternating, mirrored
+from verify.scenes.toml_file import read_toml
+from verify.schemes.printed.printed_numbers import PrintedNumbers
+from verify.schemes.printed.splitting_table import PrintedTable
+
+TITLE = "printed tables"
+LIBRARY = None
+LEFT_OUT = (
+    (
+        "OrdinaryDiffEqSymplecticRK's McAte42",
+        "its documentation says that it is broken, so that no order is claimed of it",
+    ),
+    (
+        "a force that depends on time",
+        "a table has no clock: which time kicks and drifts read is in code that is not run here",
+    ),
+)
+_KINDS = {
+    "splitting": "for every H = T(p) + V(q)",
+    "nystrom": "for every H = T(p) + V(q) with quadratic T",
+    "composition": "composing any symmetric step of order 2",
+}
+
+
+def integrators() -> Iterator[ReleasedIntegrator]:
+    for entry in read_toml(Path(content("reports", "audits", "literature.toml")))["table"]:
+        yield ReleasedIntegrator(
+            entry["name"],
+            f"its coefficients as exact decimals, {_KINDS[entry['kind']]}; read in {entry['read']}",
+            entry["source"],
+            table_of(entry),
+            entry["order"],
+            reproduction=_script(entry),
+        )
+
+
+def table_of(entry: Mapping[str, Any]) -> PrintedTable:
+    """The table of one entry of the file."""
+    sizes = entry.get("sizes") or mirrored(entry["half"])
+    parts = tuple(zip(_names(entry, len(sizes)), sizes, strict=True))
+    return PrintedTable(entry["kind"], parts, PrintedNumbers(entry.get("numbers", {})))
+
+
+def _names(entry: Mapping[str, Any], count: int) -> tuple[str, ...]:
+    if entry["kind"] == "composition":
+        return ("step",) * count
+    return alternating(entry["first"], count)
+
+
+def _script(entry: Mapping[str, Any]) -> str:
+    """The step in plain Python, for the pendulum, and the slope of its error."""
+    table = table_of(entry)
+    numbers = "\n".join(
+        f"{name} = {value.strip()}" for name, value in table.printed.numbers.items()
+    )
+    parts = ", ".join(f'("{kind}", {size})' for kind, size in table.parts)
+    lines = [
+        "from math import log2, sin",
+        "",
+        *([numbers] if numbers else []),
+        f"parts = [{parts}]",
+        "",
+        "",
+        "def step(p, q, h):",
+        "    for kind, a in parts:",
+    ]
+    if entry["kind"] == "composition":
+        lines += [
+            "        p = p - a * h / 2 * sin(q)",
+            "        q = q + a * h * p",
+            "        p = p - a * h / 2 * sin(q)",
+        ]
+    else:
+        speed = "p" if entry["kind"] == "nystrom" else "sin(p)"
+        lines += [
+            '        if kind == "kick":',
+            "            p = p - a * h * sin(q)",
+            "        else:",
+            f"            q = q + a * h * {speed}",
+        ]
+    lines += [
+        "    return p, q",
+        "",
+        "",
+        "def error(h):  # against many steps a hundred times smaller",
+        "    x = step(1.0, 0.5, h)",
+        "    y = (1.0, 0.5)",
+        "    for _ in range(100):",
+        "        y = step(*y, h / 100)",
+        "    return max(abs(x[0] - y[0]), abs(x[1] - y[1]))",
+        "",
+        "",
+        f"# the error of one step is O(h^r), r = order + 1; claimed: order {entry['order']}",
+        "print(log2(error(0.2) / error(0.1)))",
+    ]
+    return "\n".join(lines)

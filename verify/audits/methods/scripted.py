@@ -1,0 +1,194 @@
+"""A step of someone else's library by the few lines that drive it: what is shown is what is run.
+
+The systems on which steps are tried are H = p²/2 + V(q, t), so that a step of any kind takes them.
+Of each kind there are two, as what one problem does not show another may.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any
+
+from verify.audits.methods.integrator import FloatStep, Map, ReleasedIntegrator
+from verify.hamiltonians.hamiltonian import Hamiltonian
+
+_HIGH = 5  # an order of which few points and a fine ladder tell more
+_END = {
+    1: "return float(np.ravel(p)[0]), float(np.ravel(q)[0])",
+    2: "return np.ravel(p), np.ravel(q)",
+}
+
+
+@dataclass(frozen=True)
+class Problem:
+    """`said`: what it is, for people. `force`: its lines of Python, force(t, q) of an array q, with
+    numpy as np. `tag`: what is appended to a method's name."""
+
+    said: str
+    hamiltonian: str
+    force: str
+    tag: str = ""
+
+    @property
+    def exact(self) -> Hamiltonian:
+        """H."""
+        return Hamiltonian.parse(self.hamiltonian)
+
+    @property
+    def timed(self) -> bool:
+        """Whether the force depends on time."""
+        return self.exact.time_dependent
+
+    @property
+    def degrees(self) -> int:
+        """Of freedom."""
+        return self.exact.degrees
+
+    @property
+    def arguments(self) -> str:
+        """Of a step for it."""
+        return "p, q, t, h" if self.timed else "p, q, h"
+
+
+def _force(line: str) -> str:
+    return f"def force(t, q):\n    return {line}\n"
+
+
+PENDULUM = Problem("a pendulum", "p**2/2 - cos(q)", _force("-np.sin(q)"))
+TWO_WAVES = Problem(
+    "a particle in a potential of two waves",
+    "p**2/2 - 2*cos(q) - sin(2*q)/2",
+    _force("np.cos(2 * q) - 2 * np.sin(q)"),
+)
+DRIVEN = Problem(
+    "a driven pendulum",
+    "p**2/2 - cos(q) - q*cos(2*t)/2",
+    _force("np.cos(2 * t) / 2 - np.sin(q)"),
+    ", driven",
+)
+SWUNG = Problem(
+    "an oscillator with a stiffness that depends on time",
+    "p**2/2 + (1 + sin(t)/2)*(q**2/2 + q**4/4)",
+    _force("-(1 + np.sin(t) / 2) * (q + q**3)"),
+    ", driven",
+)
+HENON_HEILES = Problem(
+    "Hénon and Heiles's system",
+    "p1**2/2 + p2**2/2 + q1**2/2 + q2**2/2 + q1**2*q2 - q2**3/3",
+    _force("np.array([-q[0] - 2 * q[0] * q[1], -q[1] - q[0] ** 2 + q[1] ** 2])"),
+    ", two degrees",
+)
+COUPLED = Problem(
+    "two coupled oscillators of degree 4",
+    "p1**2/2 + p2**2/2 + q1**4/4 + q2**2 + q1**2*q2**2/2",
+    _force("np.array([-(q[0] ** 3) - q[0] * q[1] ** 2, -2 * q[1] - q[0] ** 2 * q[1]])"),
+    ", two degrees",
+)
+EACH = TWO_WAVES, DRIVEN, HENON_HEILES
+AGAIN = {TWO_WAVES: PENDULUM, DRIVEN: SWUNG, HENON_HEILES: COUPLED}  # the second of a kind
+# p, q of the points at which a step is tried where nothing else is said.
+POINTS = tuple(
+    (Fraction(p), Fraction(q))
+    for p, q in (("1/3", "3/5"), ("-1/2", "7/8"), ("1/7", "6/5"), ("3/4", "-2/5"), ("-1/5", "-2/5"))
+)
+# Where a high order is seen in float64, between a step that is too large for it and rounding.
+AWAY = ((Fraction(5, 4), Fraction(-1, 2)), (Fraction(-1, 3), Fraction(9, 8)))
+LONG = tuple(Fraction(k, 64) for k in (*range(64, 16, -4), *range(16, 3, -1)))
+USUAL = tuple(
+    Fraction(x, 2**k) for k in range(3, 16) for x in ((4, 3) if k < 10 else (4,))
+)  # fmt: skip
+
+
+# -- steps ----------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Script:
+    """Lines of Python that define step(p, q, h), or step(p, q, t, h), with nothing but the library
+    that they import. They are ours: nothing that is read from elsewhere is in them."""
+
+    text: str
+
+    def step(self) -> Map:
+        """Raises what the library raises."""
+        names: dict[str, Any] = {}
+        exec(compile(self.text, "<the lines shown>", "exec"), names)  # noqa: S102 - our own text
+        made: Map = names["step"]
+        return made
+
+
+@dataclass(frozen=True)
+class Driven:
+    """How the steps of a library are driven.
+
+    `head`: what its lines import, numpy as np among it, and define beside force(t, q). `body`: the
+    lines of a step, from p, q, t and h, of arrays, to p and q; `{method}` stands for the method.
+    `said`: one sentence.
+    """
+
+    head: str
+    body: str
+    said: str
+
+    def script(self, problem: Problem, method: str) -> str:
+        """The lines for one problem and one method."""
+        begin = [] if problem.timed else ["t = 0.0"]
+        inside = [*begin, *self.body.strip().splitlines(), _END[problem.degrees]]
+        lines = [
+            self.head.replace("{method}", method).strip(),
+            "",
+            "",
+            problem.force.strip(),
+            "",
+            "",
+            f"def step({problem.arguments}):",
+            *(f"    {line}".rstrip().replace("{method}", method) for line in inside),
+        ]
+        return "\n".join(lines) + "\n"
+
+
+def by_script(
+    name: str,
+    driven: str,
+    source: str,
+    hamiltonian: str,
+    text: str,
+    order: int | None,
+    symplectic: bool | None = None,
+    points: Sequence[tuple[Fraction, ...]] = (),
+    ladder: Sequence[Fraction] = (),
+) -> ReleasedIntegrator:
+    """The integrator whose step the lines of `text` define, which are what is shown of it."""
+    step = FloatStep(hamiltonian, Script(text).step, tuple(points), tuple(ladder))
+    return ReleasedIntegrator(name, driven, source, step, order, symplectic, text)
+
+
+def scripted(
+    name: str,
+    driven: Driven,
+    method: str,
+    source: str,
+    order: int | None,
+    symplectic: bool | None = None,
+    problems: Iterable[Problem] = EACH,
+) -> Iterator[ReleasedIntegrator]:
+    """One for each problem."""
+    for problem in problems:
+        first, second = (
+            by_script(
+                f"{name}{each.tag}", f"{driven.said}, for {each.said}", source, each.hamiltonian,
+                driven.script(each, method), order, symplectic if each is not DRIVEN else None,
+                *_where(each, order or 0),
+            )
+            for each in (problem, AGAIN[problem])
+        )  # fmt: skip
+        yield replace(first, again=second.method)
+
+
+def _where(
+    problem: Problem, order: int
+) -> tuple[Sequence[tuple[Fraction, ...]], Sequence[Fraction]]:
+    """Points and steps with which an order is seen."""
+    high = order >= _HIGH
+    points = (AWAY if high else POINTS[:2]) if problem.degrees == 1 else ()
+    return points, LONG if high else USUAL

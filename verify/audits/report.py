@@ -1,0 +1,212 @@
+"""The integrators of others → a Report: what each claims, held against what is found.
+
+Its parts, a library's own code or a file of printed tables each, are looked at by themselves, in a
+process of their own where there are several.
+"""
+
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from types import ModuleType
+
+from sympy import S
+
+from verify.audits import libraries, printed_libraries
+from verify.audits.claims import claims_of
+from verify.audits.methods.integrator import ReleasedIntegrator
+from verify.audits.methods.measured import FAILURES
+from verify.execution.processes import Processes
+from verify.execution.provenance import provenance
+from verify.integrators.tables.check import read_tables
+from verify.integrators.tables.cost import Severity
+from verify.integrators.user_code.step import contained, last_line
+from verify.prose import prose
+from verify.scenes.results.claim import ClaimResult
+from verify.scenes.results.report import Report
+from verify.schemes.conditions import Condition
+from verify.schemes.splitting_conditions import Splitting
+from verify.verdict import Verdict
+
+_LEAST = "is not installed: pip install 'areaproof[{}]'"
+TITLE = "The integrators of others, verified"
+
+
+@dataclass(frozen=True)
+class Found:
+    """What was found in one part. `version`: of a library, None where it is not installed, and ""
+    for what needs none; `broken`: whether some of it fails here."""
+
+    title: str
+    version: str | None
+    claims: tuple[ClaimResult, ...] = ()
+    left_out: tuple[tuple[str, str], ...] = ()
+    broken: bool = False
+
+
+def make_integrators_report(
+    command: str, on_library: Callable[[str], None] = lambda _: None, workers: int = 1
+) -> Report:
+    """The report of all libraries that are installed, and of the printed tables.
+
+    `on_library` is called with what each part is called before it is looked at. `workers`:
+    processes; with one, all is looked at here.
+    """
+    begun = time.perf_counter()
+    parts = look_at_each(workers, on_library)
+    claims = [claim for part in parts for claim in part.claims]
+    told = provenance(command, begun, kept=0, computed=len(claims))
+    versions = {part.title: part.version for part in parts if part.version}
+    return Report(
+        title=TITLE,
+        claims=tuple(claims),
+        scenes=(),
+        left_out=tuple(row for part in parts for row in part.left_out),
+        preface=tuple(_preface(parts, claims)),
+        provenance=told.model_copy(update={"versions": told.versions | versions}),
+    )
+
+
+def _preface(parts: Sequence[Found], claims: Sequence[ClaimResult]) -> Iterator[str]:
+    installed = ", ".join(f"{x.title} {x.version}" for x in parts if x.version) or "none"
+    yield f"Installed here: {installed}; printed tables need no library."
+    missing = [x.title for x in parts if x.version is None and not x.broken]
+    if missing:
+        yield f"Left out, as not installed: {', '.join(missing)}."
+    broken = [x.title for x in parts if x.broken]
+    if broken:
+        yield f"Left out, all or in part, as they fail here: {', '.join(broken)}."
+    wrong = [c for c in claims if c.verdict is Verdict.REFUTED]
+    counts = Counter(c.severity or "not told" for c in wrong)
+    if counts:
+        ordered = [x for x in (*Severity, "not told") if x in counts]
+        yield (
+            f"Of {len(claims)} claims {len(wrong)} are refuted: "
+            + ", ".join(f"{counts[kind]} of {kind}" for kind in ordered) + "."
+        )  # fmt: skip
+
+
+# -- its parts ------------------------------------------------------------------------------------
+
+
+def names() -> list[str]:
+    """Of all parts: readers of libraries, then files of tables, the longest first."""
+    files = sorted(printed_libraries.files(), key=lambda path: (-path.stat().st_size, path.name))
+    return [*libraries.names(), *map(str, files)]
+
+
+def title_of(name: str) -> str:
+    """What a part is called."""
+    return Path(name).stem if name.endswith(".toml") else str(libraries.get(name).TITLE)
+
+
+def look_at(name: str) -> Found:
+    """One part. Raises what our own tables raise, and nothing of a library."""
+    return _tables(Path(name)) if name.endswith(".toml") else _library(name)
+
+
+def look_at_each(workers: int, on_part: Callable[[str], None]) -> list[Found]:
+    """All parts, in their order. A process that is lost is one whose library ends it."""
+    every = names()
+    if workers == 1:
+        found = []
+        for name in every:
+            on_part(title_of(name))
+            found.append(look_at(name))
+        return found
+    processes, told = Processes(workers), dict[str, Found]()
+    try:
+        waiting = [*every]
+        running: dict[Future[Found], str] = {}
+        while waiting or running:
+            while waiting and len(running) < workers:
+                name = waiting.pop(0)
+                on_part(title_of(name))
+                running[processes.submit(look_at, name)] = name
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
+                name, error = running.pop(future), future.exception()
+                processes.release(future)
+                if error is not None and not processes.lost(error):
+                    raise error
+                told[name] = _lost(name) if error is not None else future.result()
+    except BaseException:
+        processes.end()
+        raise
+    processes.close()
+    return [told[name] for name in every]
+
+
+def _lost(name: str) -> Found:
+    title = title_of(name)
+    return Found(title, None, (), ((title, "ends the process that it is looked at in"),), True)
+
+
+def _tables(path: Path) -> Found:
+    tables = read_tables(path)
+    left_out = tuple((f"{tables.title}: {what}", why) for what, why in tables.left_out)
+    return Found(tables.title, "", tuple(printed_libraries.claims_of(tables)), left_out)
+
+
+def _library(name: str) -> Found:
+    module, version = libraries.get(name), libraries.installed(name)
+    if version is None:
+        why = _LEAST.format(getattr(module, "EXTRA", "peers"))
+        return Found(module.TITLE, None, (), ((module.TITLE, why),))
+    with contained():
+        claims, failed = _claims(module, f"{module.TITLE} {version}".strip())
+    left_out = (*failed, *((f"{module.TITLE}: {what}", why) for what, why in module.LEFT_OUT))
+    return Found(module.TITLE, version, tuple(claims), left_out, bool(failed))
+
+
+def _claims(module: ModuleType, section: str) -> tuple[list[ClaimResult], list[tuple[str, str]]]:
+    """The claims of one file; and what of it could not be looked at since the library fails, each
+    with its error: that refutes nothing, and does not end the report."""
+    prefix = str(module.TITLE).replace(" ", "-")
+    failed: list[tuple[str, str]] = []
+    claims: list[ClaimResult] = []
+    for integrator in _integrators(module, failed):
+        try:
+            claims += claims_of(integrator, section, prefix)
+        except FAILURES as error:
+            if module.LIBRARY is None:
+                raise  # no one else's code was run: it is ours that is wrong
+            failed.append((f"{module.TITLE}: {integrator.name}", f"fails: {last_line(error)}"))
+    if module.LIBRARY is None:
+        claims.append(_shears(section, prefix))
+    return claims, failed
+
+
+def _integrators(module: ModuleType, failed: list[tuple[str, str]]) -> Iterator[ReleasedIntegrator]:
+    """Its integrators, up to where the library fails: most fail when they are imported."""
+    try:
+        if module.LIBRARY is not None:
+            import_module(module.LIBRARY)
+        yield from module.integrators()
+    except FAILURES as error:
+        if module.LIBRARY is None:
+            raise
+        failed.append((module.TITLE, f"is installed and fails: {last_line(error)}"))
+
+
+def _shears(section: str, prefix: str) -> ClaimResult:
+    """What holds of all tables at once, whatever their coefficients are."""
+    conditions: Sequence[Condition] = Splitting(
+        (("kick", S.One), ("drift", S.One))
+    ).area_conditions()
+    proved = all(c.holds for c in conditions)
+    return ClaimResult(
+        id=f"{prefix}/all/area",
+        kind="area",
+        source="all of them",
+        section=section,
+        statement=prose("kicks and drifts are symplectic, whatever their coefficients are"),
+        scene="",
+        verdict=Verdict.PROVED if proved else Verdict.UNDECIDED,
+        evidence=prose(
+            "every kick and every drift has determinant 1, for all a h V″ and a h T″; so "
+            "every composition of them has; a wrong coefficient costs order, not area"
+        ),
+    )

@@ -1,0 +1,1 @@
+"""Sentences of the paper on area preservation of the Lie-derivative scheme, one subject a file."""

@@ -1,0 +1,253 @@
+"""Smooth consistency: with it criteria 2–4 hold for every scheme, and without it they need not.
+
+A one-step map Φ is smoothly consistent of order m ≥ 1 with the exact flow φ_h of Eq. 1 where
+
+    Φ(z, h) = φ_h(z) + h^(m+1) ρ(z, h)
+
+with a ρ that has first derivatives in z, both continuous up to h = 0. Every lieη, every
+Runge–Kutta scheme and every splitting of a smooth H is. Consistency alone asks only that the local
+error |Φ − φ_h| be O(h^(m+1)); then nothing is known of its derivatives, of which ΔJ is made.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+import flint
+import sympy
+
+from verify.algebra.symbols import H_STEP, P
+from verify.arithmetic.exact import text
+from verify.arithmetic.flint_precision import working_precision
+from verify.hamiltonians import systems
+from verify.papers.argument import Argument, concluded, step
+from verify.papers.checks.check import BALLS, NUMBERS, Check, vanishes
+from verify.papers.checks.differential import Differential, Poly, flow_of_every_hamiltonian
+from verify.papers.exact_maps import Point, areas, map_from_formulas
+from verify.papers.lie_derivative_scheme.oscillator import PRECISION
+from verify.proof.assistant.stated import Shipped
+from verify.schemes.maps.step_map import StepMap
+from verify.schemes.methods.taylor.lie import lie_map
+from verify.verdict import Verdict
+
+TIME = 20000
+STEP_SIZES = (Fraction(1, 100), Fraction(1, 1000), Fraction(1, 10**6), Fraction(1, 10**9))
+
+
+def consistent_map(hamiltonian: bool = True) -> dict[int, Poly]:
+    """ΔJ, by powers of h, of p' = p + ha + h²r, q' = q + hb + h²s, for generic r and s.
+
+    (a, b) is the vector field of a generic H; where `hamiltonian` is False, a generic one.
+    """
+    parts = [f"{name}_{z}" for name in "abrs" for z in "pq"]
+    mixed = ["H1_1", "H2_0", "H0_2"]
+    ring = Differential(["h", *parts, *mixed])
+    h = ring["h"]
+    a_p, a_q, b_p, b_q, r_p, r_q, s_p, s_q = (ring[name] for name in parts)
+    if hamiltonian:
+        a_p, a_q = -ring["H1_1"], -ring["H0_2"]
+        b_p, b_q = ring["H2_0"], ring["H1_1"]
+    u_p, u_q = h * a_p + h * h * r_p, h * a_q + h * h * r_q
+    v_p, v_q = h * b_p + h * h * s_p, h * b_q + h * h * s_q
+    return ring.powers(u_p + v_q + u_p * v_q - u_q * v_p, "h")
+
+
+def small_determinant(hamiltonian: bool = True) -> Check:
+    """ΔJ = O(h²) for every smoothly consistent map of a generic H."""
+    powers, zero = consistent_map(hamiltonian), flow_of_every_hamiltonian(1).ring.zero
+    return vanishes(
+        "the coefficients of h⁰ and h¹ in ΔJ of a generic smoothly consistent map of a generic H",
+        *(powers.get(n, zero) for n in (0, 1)),
+    )
+
+
+def of_smooth_schemes(hamiltonian: bool = True) -> Argument:
+    """Criteria 2, 3 and 4 hold for explicit Euler too, which blows every area up."""
+    grown = enclosed_growth(STEP_SIZES[0])[1]
+    return concluded(
+        "criteria-of-consistent-schemes",
+        Verdict.PROVED,
+        "every smoothly consistent scheme has ΔJ = O(h²), hence MSE = O(h⁴) and Λ = O(h) on every "
+        "[0, T]: all satisfy all three, explicit Euler too, whose Λ for the oscillator at h = "
+        f"{text(STEP_SIZES[0])}, T = {TIME} is {grown}",
+        [
+            step(
+                "Since det φ' = 1 (Liouville), ``det Φ' = 1 + O(h^2)`` uniformly on compact sets.",
+                small_determinant(hamiltonian),
+            ),
+            step(
+                "On every [0, T] on which the exact solution exists the run stays in a compact set "
+                "for small h, so `ΔJ_k` = O(h²) = o(h): criterion 2 holds.",
+            ),
+            step(
+                "A mean is at most its greatest term, so ``MSE = O(h^4) = o(h)``: criterion 3 "
+                "holds.",
+                Shipped("Sums", "sum_of_less"),
+            ),
+            step(
+                "``|Λ| ≤ e^(T O(h)) − 1 → 0``: criterion 4 holds.",
+                Shipped("Theorems", "error_over_many_steps"),
+            ),
+            step(
+                "So they hold for every smoothly consistent scheme, whatever it does to areas "
+                "otherwise. The explicit Euler scheme, lie1, for H = (p² + q²)/2 has ΔJ = h² at "
+                f"every point, so ``1 + Λ = (1 + h^2)^(T/h)``, and for h = {text(STEP_SIZES[0])} "
+                f"and T = {TIME} the Λ of every region is {grown}.",
+                _euler(),
+                _over_time(STEP_SIZES[0]),
+            ),
+            step(
+                "Yet Λ → 0 as h → 0, by ``(1 + h^2)^(T/h) ≤ e^(Th)``, and criteria 2 to 4 are "
+                "satisfied.",
+                Shipped("Product", "power_below_exp"),
+                tried=[_over_time(h) for h in STEP_SIZES[1:]],
+            ),
+        ],
+        given="""A step Φ is smoothly consistent with Eq. 1 where ``Φ(z) = φ(z) + h^(m+1)
+        ρ(z, h)``, m ≥ 1, φ the exact flow over h, with a ρ whose values and first
+        derivatives in z are continuous up to h = 0.""",
+        remark="""For m > 1 ΔJ is even O(`h^(m+1)`). The criteria are asymptotic in h, and
+        for a given h they say nothing. What tells schemes apart is the order r of ΔJ =
+        O(`h^r`), the growth of Λ with T, and criterion 1. That ρ is smooth is needed: see
+        the counterexample of order 1 for H = q.""",
+    )
+
+
+def _euler() -> Check:
+    one = systems.get("harmonic").hamiltonian().with_values({"omega": 1})
+    delta_j = lie_map(one, 1).delta_j
+    return Check("ΔJ of lie1 for H = (p² + q²)/2 is h²", str(delta_j) == "h**2", f"`{delta_j}`")
+
+
+def enclosed_growth(h: Fraction) -> tuple[bool, str]:
+    """Whether 1 + Λ ≤ e^(Th) for lie1 on the oscillator over [0, TIME], and Λ, both enclosed."""
+    with working_precision(PRECISION):
+        size = flint.arb(flint.fmpq(h.numerator, h.denominator))
+        log = (1 + size * size).log() * TIME / size
+        lam = log.exp() - 1
+        # 1 + Λ = exp(T log(1 + h²)/h) ≤ exp(T h), which is what tends to 1.
+        return bool(log <= TIME * size), f"`{lam.str(6, radius=False)}`"
+
+
+def _over_time(h: Fraction) -> Check:
+    holds, lam = enclosed_growth(h)
+    what = f"lie1, oscillator, h = {text(h)}, T = {TIME}: Λ, and 1 + Λ ≤ `e^(Th)`"
+    return Check(what, holds, f"Λ = {lam}", BALLS)
+
+
+# -- without it ------------------------------------------------------------------------------------
+
+RIPPLE = "p - h + h**{n}*sin(2*pi*p/h**{m})/(2*pi)"
+ORDERS = (1, 2, 3)
+STEPS = (4, 16)
+
+
+def alone(ripple: str = RIPPLE) -> Argument:
+    """A consistent scheme of any order that fails criteria 2 and 4; `ripple` is its p'."""
+    found = [_rippled(ripple.format(n=m + 1, m=m), m) for m in ORDERS]
+    local, whole, run = zip(*found, strict=True)
+    limit, growth = _tends_to_e(STEPS)
+    return concluded(
+        "consistency-is-not-enough",
+        Verdict.PROVED,
+        "for H = q the scheme p' = p − h + h² sin(2πp/h)/(2π), q' = q is of order 1, and along its "
+        "run from (0, 0) every `ΔJ_k` is h, so that Λ = `(1 + h)^N` − 1 → e − 1 on [0, 1]",
+        [
+            step(
+                "The exact flow is p ↦ p − h, q ↦ q. The local error is ``h^(m+1) "
+                "sin(2πp/h^m)/(2π)``, at most `h^(m+1)`/(2π) everywhere, and p' = p + hψ(p) with "
+                "``ψ' = cos(2πp/h^m)``, which is at most 1 in size; here for m = 1, 2, 3.",
+                *local,
+            ),
+            step("By the standard argument the scheme converges with order m (see convergence)."),
+            step(
+                "From (p, q) = (0, 0) with h = 1/N the run is `p_k` = −kh exactly, for there "
+                "2πp/`h^m` = −2πk `N^(m−1)` and the sine is 0. The cosine is 1, so that for every "
+                "k ``ΔJ_k = h cos(2πp/h^m) = h``.",
+                *whole,
+                *run,
+            ),
+            step(
+                "Hence |`ΔJ_k`| is no higher-order infinitesimal of h: criterion 2 fails. MSE = h² "
+                "is, so that criterion 3 holds.",
+                *whole,
+            ),
+            step(
+                "``Λ = (1 + h)^N − 1 ≥ 1``: criterion 4 fails.",
+                Shipped("Product", "bound_attained"),
+                Shipped("Product", "product_above_sum"),
+            ),
+            step(
+                "It tends to e − 1.",
+                tried=[Check("Λ tends to e − 1 on [0, 1]", limit, growth, BALLS)],
+            ),
+            step(
+                "The local error is `h^(m+1)` ρ with ``ρ = sin(2πp/h^m)/(2π), ∂ρ/∂p = "
+                "cos(2πp/h^m)/h^m``, which is not bounded as h → 0: the scheme is consistent, and "
+                "not smoothly so.",
+                *local,
+            ),
+        ],
+        given="Let H = q, and Φ the map p' = p − h + `h^(m+1)` sin(2πp/`h^m`)/(2π), q' = q.",
+    )
+
+
+def _rippled(formula: str, m: int) -> tuple[Check, Check, Check]:
+    """Order m by its local error, and ΔJ_k = h along the run, for all k and exactly for some N."""
+    found = map_from_formulas(formula, "q")
+    k = sympy.Symbol("k", integer=True)
+    ripple = sympy.simplify((found.p_next - P + H_STEP) / H_STEP ** (m + 1))
+    slope = sympy.simplify(sympy.diff(found.p_next - P, P) / H_STEP)
+    steep = sympy.simplify(sympy.diff(ripple, P) * H_STEP**m - slope)
+    along = {P: -k * H_STEP}
+    whole = {H_STEP: 1 / sympy.Symbol("N", integer=True, positive=True)}
+    moved = sympy.simplify((found.p_next - P + H_STEP).subs(along).subs(whole))
+    area = sympy.simplify((found.delta_j / H_STEP).subs(along).subs(whole))
+    runs = [_run_of(found, n) for n in STEPS]
+    return (
+        Check(
+            f"H = q, p' = `{formula}`: the local error over `h^{m + 1}` is a sine over 2π, ψ' is a "
+            f"cosine, and `h^{m}` ∂ρ/∂p that cosine",
+            (2 * sympy.pi * ripple).func is sympy.sin and slope.func is sympy.cos and steep == 0,
+            f"`{ripple}`, `{slope}`",
+        ),
+        Check(
+            f"m = {m}, at p = −kh, h = 1/N, for all integers k and N: p' − p + h = 0, ΔJ = h",
+            moved == 0 and area == 1,
+            f"{moved}, ΔJ/h = {area}",
+        ),
+        Check(
+            f"m = {m}, run from (0, 0) to T = 1 with N = {', '.join(map(str, STEPS))}: all "
+            "`ΔJ_k` = h, so that Λ = `(1 + h)^N` − 1 ≥ 1",
+            all(runs),
+            "exactly",
+            NUMBERS,
+        ),
+    )
+
+
+def _run_of(found: StepMap, steps: int) -> bool:
+    """Exactly; a run whose numbers are not rational is none with ΔJ = h."""
+    h = Fraction(1, steps)
+    try:
+        run = areas(found, Point(Fraction(0), Fraction(0)), h, steps)
+    except ValueError:
+        return False
+    return set(run.delta_j) == {h} and run.lam == (1 + h) ** steps - 1 >= 1
+
+
+def _tends_to_e(steps: Sequence[int]) -> tuple[bool, str]:
+    """Whether e − (1 + 1/N)^N lies between 0 and e/(2N + 1), and Λ."""
+    with working_precision(PRECISION):
+        e, found = flint.arb(1).exp(), []
+        for n in steps:
+            power = flint.arb(flint.fmpq(n + 1, n)) ** n
+            found.append((bool(e / (2 * n + 1) > e - power > 0), (power - 1)))
+        shown = ", ".join(f"`{x.str(6, radius=False)}`" for _, x in found)
+    listed = ", ".join(map(str, steps))
+    return all(near for near, _ in found), f"for N = {listed} it is {shown}, e − 1 to 1/N"
+
+
+THEOREMS = {
+    "criteria-of-consistent-schemes": of_smooth_schemes,
+    "consistency-is-not-enough": alone,
+}

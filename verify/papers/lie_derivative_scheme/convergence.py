@@ -1,0 +1,185 @@
+"""Eq. 8–11: the scheme converges with order η, by a joint Lipschitz constant; Eq. 10 as printed."""
+
+import math
+from collections.abc import Sequence
+from fractions import Fraction
+from itertools import pairwise
+
+import flint
+import sympy
+
+from verify.algebra.symbols import H_STEP, P, Q
+from verify.arithmetic.flint_precision import working_precision
+from verify.hamiltonians import systems
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.papers.argument import Argument, concluded, step
+from verify.papers.checks.check import BALLS, Check, same
+from verify.papers.checks.sums import geometric
+from verify.papers.lie_derivative_scheme.oscillator import PRECISION, errors, final_error
+from verify.proof.assistant.stated import Shipped
+from verify.proof.order import convergence_of
+from verify.schemes.methods.taylor.lie import lie_map
+from verify.verdict import Verdict
+
+SYSTEMS = ("duffing", "pendulum")
+ETAS = range(1, 5)
+STEPS = (10, 100, 1000)
+_LIPSCHITZ = 1  # of lie1 for the oscillator: ψ = f, and the norm of f' is 1
+
+
+def convergence(shift: int = 0) -> Argument:
+    """The global error is O(h^η). `shift`: what is added to the claimed orders, 0 as printed."""
+    return concluded(
+        "convergence",
+        Verdict.PROVED,
+        "it holds for every H of class `C^(η+1)`, with one Lipschitz constant for (p, q) together "
+        "in place of Eq. 9's two",
+        [
+            step(
+                "Local error. Φ is the Taylor polynomial of degree η of the exact flow, so for a "
+                "smooth H one step from the exact solution is off by C `h^(η+1)` at most; for both "
+                "systems by no higher power.",
+                Shipped("Theorems", "flow_has_taylor_series"),
+                *local_orders(shift),
+            ),
+            step(
+                "By the remainder’s closed form (Lagrange), which needs η + 1 derivatives of H "
+                "alone, ``|z̄_{k+1} − Φ(z̄_k)| ≤ M h^(η+1)/(η+1)!`` with M the maximum of "
+                "|`X^(η+1)` z| over the solution.",
+            ),
+            step(
+                "Stability. Φ(z) = z + h ψ(z) with ψ = Σ `h^(n−1)`/n! Xⁿz, n = 1 … η, of class C¹; "
+                "let L be the maximum of the norm of ψ' over K for 0 < h ≤ h₀. For a z within r of "
+                "`z̄_k` the segment from `z̄_k` to z lies in K, so that ``|Φ(z̄_k) − Φ(z)| ≤ (1 + "
+                "hL) |z̄_k − z|``. This is Eq. 9 in a norm of the plane, for both components "
+                "together.",
+            ),
+            step(
+                "The triangle inequality, Eq. 8, gives for `E_k` = |`z̄_k` − `z_k`|, `E_0` = 0, as "
+                "long as `E_k` ≤ r: ``E_{k+1} ≤ (1 + hL) E_k + M h^(η+1)/(η+1)!``.",
+                Shipped("Sums", "size_of_sum"),
+            ),
+            step(
+                "By induction ``E_k ≤ M h^η/(η+1)! (e^(LT) − 1)/L`` for all kh ≤ T.",
+                Shipped("Product", "errors_below_exp"),
+                geometric(),
+                tried=[_within_the_bound(eta, eta + shift) for eta in ETAS],
+            ),
+            step(
+                "Where h is so small that the right side is at most r, the numerical solution "
+                "never leaves K before T, and the induction closes. Hence |`p̄_k` − `p_k`| and "
+                "|`q̄_k` − `q_k`| are O(`h^η`) on [t₀, `t_end`].",
+            ),
+        ],
+        given="""Let H be of class `C^(η+1)` near the exact solution z̄(t), t₀ ≤ t ≤
+        `t_end`, and let K be the closed tube of some radius r around it in which this
+        holds; T = `t_end` − t₀. Write Φ for the step and `z̄_k` for the exact solution at
+        t₀ + kh.""",
+        remark="""What fails on the way as it is printed: Eq. 7 calls |p̃ − p| the global
+        error, which is |p̄ − p|; Eq. 9 has the p-difference alone on its right side, and
+        `p̃_k` in it for `p̄_k`; Eq. 10 and 11 are of p alone and of q alone; Eq. 10 has
+        `e_n` for `e_k`; and n in the exponents of Eq. 10 and 11 is η.""",
+    )
+
+
+def local_orders(shift: int) -> list[Check]:
+    """The local error is of order η + 1 + shift exactly, for both systems."""
+    return [_local_order(name, eta, eta + shift) for name in SYSTEMS for eta in ETAS]
+
+
+def _local_order(name: str, eta: int, claimed: int) -> Check:
+    hamiltonian = Hamiltonian(systems.get(name).hamiltonian().expression)
+    found = convergence_of(lie_map(hamiltonian, eta))
+    return Check(
+        f"{name}, lie{eta}: the local error is of order `h^{claimed + 1}` exactly",
+        found.decided and found.order == claimed,
+        f"agrees with the exact flow up to `h^{found.order}`",
+    )
+
+
+def _within_the_bound(eta: int, order: int) -> Check:
+    """On the oscillator M = 1, and L ≤ (e^h − 1)/h as the norm of every Xⁿ is 1."""
+    shown, holds = [], True
+    for steps in STEPS:
+        error = final_error(eta, steps)
+        with working_precision(PRECISION):
+            h = flint.arb(flint.fmpq(1, steps))
+            lipschitz = (h.exp() - 1) / h
+            bound = h**order / math.factorial(order + 1) * (lipschitz.exp() - 1) / lipschitz
+            holds = holds and bool(error <= bound)
+            shown.append(f"`{(error / h**order).mid().str(5, radius=False)}`")
+    return Check(
+        f"oscillator, lie{eta}, T = 1: |error|/`h^{order}` for N = {_listed(STEPS)} lies below the "
+        f"proof's bound",
+        holds,
+        ", ".join(shown),
+        BALLS,
+    )
+
+
+def _listed(numbers: Sequence[int]) -> str:
+    return ", ".join(map(str, numbers))
+
+
+def eq_10(fixed: bool = True) -> Argument:
+    """Eq. 10 with e_n, n = η, in the middle of it; `fixed` False: with e_k, as it must read."""
+    eta, ratios = 1, []
+    with working_precision(PRECISION):
+        for steps in STEPS:
+            h = flint.arb(flint.fmpq(1, steps))
+            end = final_error(eta, steps)
+            before = abs(errors(eta, Fraction(1, steps), eta if fixed else steps - 1)[-1])
+            ratios.append((end - (h * _LIPSCHITZ).exp() * before) / h ** (eta + 1))
+    grows = all(bool(b > 5 * a) for a, b in pairwise(ratios))
+    shown = ", ".join(f"`{r.mid().str(4, radius=False)}`" for r in ratios)
+    asked = Check(
+        f"oscillator, lie{eta}, T = 1: (`e_N` − `e^h` "
+        f"`e_{eta if fixed else 'N−1'}`)/`h^{eta + 1}`, which C must exceed, for N = "
+        f"{_listed(STEPS)}",
+        grows,
+        f"{shown}: {'grows like N' if grows else 'stays bounded'}",
+        BALLS,
+    )
+    return concluded(
+        "eq-10",
+        Verdict.REFUTED,
+        "with `e_n` in place of `e_k` the error would be O(`h^(η+1)`) after any number of steps; "
+        f"for the oscillator and η = 1 it is h/2 to leading order at T = 1 (C would have to be "
+        f"{shown} for N = {_listed(STEPS)})",
+        [
+            step(
+                "`e_n` is the error after η steps, which is O(`h^(η+1)`) whatever k is; so Eq. 10 "
+                "would bound `e_{k+1}` by O(`h^(η+1)`) for all k, one order better than Eq. 11.",
+            ),
+            step(
+                "For H = (p² + q²)/2 and η = 1 a step takes |z|² to (1 + h²) |z|², so that "
+                "``|z_k| = (1 + h^2)^(k/2) |z_0|``, while the exact solution keeps |z|.",
+                _lengthened(),
+            ),
+            step(
+                "So at T = 1 the norm of the error is at least, for h ≤ 1/2, ``(1 + h^2)^(1/(2h)) "
+                "− 1 ≥ h/2`` (Bernoulli), and one of its two components at least h/3, which no C "
+                "h² bounds.",
+                tried=[asked],
+            ),
+        ],
+        given="In Eq. 10 n is the order η of the truncated exponential, as its exponent `h^(n+1)` "
+        "and the text below it say.",
+        remark="It is a misprint: with `e_k` for `e_n` the second inequality of Eq. 10 is 1 + hL ≤ "
+        "`e^(hL)`, and Eq. 11 follows by iteration for any sequence with `e_{k+1}` ≤ (1 + hL) "
+        "`e_k` + C `h^(η+1)`.",
+    )
+
+
+def _lengthened(eta: int = 1) -> Check:
+    """p'² + q'² = (1 + h²)(p² + q²) for lie1 on the oscillator; not so for another `eta`."""
+    hamiltonian = systems.get("harmonic").hamiltonian().with_values({"omega": 1})
+    found, square = lie_map(hamiltonian, eta), P**2 + Q**2
+    gap = found.p_next**2 + found.q_next**2 - (1 + H_STEP**2) * square
+    h_p, h_q = (sympy.diff(hamiltonian.exact, z) for z in (P, Q))
+    kept = h_p * sympy.diff(square, Q) - h_q * sympy.diff(square, P)
+    what = "oscillator, lie1: p'² + q'² − (1 + h²)(p² + q²), and X(p² + q²)"
+    return same(what, [gap, kept], ("p", "q", "h"))
+
+
+THEOREMS = {"convergence": convergence, "eq-10": eq_10}

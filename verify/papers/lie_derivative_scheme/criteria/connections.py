@@ -1,0 +1,238 @@
+"""How the criteria are connected: 2 forces 3 and 4, 3 forces neither, and 4 is not stronger.
+
+On a fixed [0, T] with N = T/h: criterion 2 is max |ΔJ_k| = o(h), criterion 3 is MSE = o(h),
+criterion 4 is Λ = o(1), as h → 0.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+from verify.papers.argument import Argument, concluded, step
+from verify.papers.checks.check import NUMBERS, Check
+from verify.papers.checks.sums import compensated_changes, mean_of_fourth_powers
+from verify.papers.exact_maps import Areas
+from verify.papers.lie_derivative_scheme.criteria_examples import (
+    COMPENSATED,
+    FRICTION,
+    NOT_UNIFORM,
+    TO_AND_FRO,
+    TO_AND_FRO_ODD,
+    ExampleMap,
+    shrinks_to,
+    turns_to_and_fro,
+)
+from verify.proof.assistant.stated import Shipped
+from verify.verdict import Verdict
+
+SETTING = """Fix T, let h = T/N, and write `x_k` = `ΔJ_k`, k = 0 … N − 1, m = max |`x_k`|.
+Criterion 2 is m = o(h), criterion 3 is MSE = (1/N) Σ `x_k²` = o(h), criterion 4 is Λ = Π (1 +
+`x_k`) − 1 = o(1), h → 0."""
+BY_MANY_STEPS = Shipped("Theorems", "error_over_many_steps")
+
+
+def inequalities_of(example: ExampleMap) -> Check:
+    """MSE ≤ m² and |log| bounds, in Fractions: |Λ| ≤ Π(1 + |x|) − 1, (Σ|x|)² ≤ N² MSE."""
+    holds = all(map(inequalities_hold, (example.run(n) for n in example.steps)))
+    return Check(
+        f"MSE ≤ m², |Λ| ≤ Π(1 + |`x_k`|) − 1 and (Σ |`x_k`|)² ≤ N² MSE for “{example.name}”",
+        holds,
+        f"N = {', '.join(map(str, example.steps))}, exactly",
+        NUMBERS,
+    )
+
+
+def inequalities_hold(found: Areas) -> bool:
+    count, total, product = len(found.delta_j), Fraction(0), Fraction(1)
+    for x in found.delta_j:
+        total += abs(x)
+        product *= 1 + abs(x)
+    return (
+        found.mse <= found.largest**2
+        and abs(found.lam) <= product - 1
+        and total**2 <= count**2 * found.mse
+    )
+
+
+def two_implies_three(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
+    """Criterion 2 is sufficient for criterion 3."""
+    return concluded(
+        "criterion-2-implies-3",
+        Verdict.PROVED,
+        "MSE ≤ (max |`ΔJ_k`|)², so criterion 2 gives even MSE = o(h²); “higher-order "
+        "infinitesimal” must be meant uniformly in k, else it fails",
+        [
+            step(
+                "A mean is at most the greatest of its terms: "
+                "``MSE = (1/N) Σ_{k} x_k^2 ≤ m^2 = o(h^2)``, more than criterion 3 asks for.",
+                Shipped("Sums", "sum_of_less"),
+                tried=[inequalities_of(FRICTION), inequalities_of(not_uniform)],
+            ),
+            step(
+                "Criterion 2 must be read uniformly in k, as its maximum over [0, T]: for the map "
+                "p' = p(1 + q²), q' = q + h from (0, 0) one has `ΔJ_k` = (kh)² = O(h²) for each "
+                "fixed k, but MSE → T⁴/5.",
+                not_uniform.changes(),
+                mean_of_fourth_powers(),
+                not_uniform.check(),
+            ),
+            step(
+                "For a scheme whose step depends smoothly on (p, q, h) the uniform reading is no "
+                "restriction: if ΔJ = o(h) at every point of a compact set, then its Taylor "
+                "coefficients of h⁰ and h¹ vanish on it, and ΔJ = O(h²) uniformly.",
+            ),
+            step(
+                "The converse is false: MSE = o(h), and criterion 2 fails, for p' = p − h(q + p), "
+                "q' = q + hp, where ``ΔJ = −h + h^2``.",
+                FRICTION.changes(),
+                FRICTION.check(),
+            ),
+        ],
+        given=SETTING,
+    )
+
+
+def connection_with_2(friction: ExampleMap = FRICTION) -> Argument:
+    """Criterion 4 follows from criterion 2, read uniformly in k."""
+    return concluded(
+        "criterion-4-and-2",
+        Verdict.REFUTED,
+        "criterion 2 implies criterion 4, by |Λ| ≤ exp(T max|`ΔJ_k`|/h) − 1",
+        [
+            step(
+                "Criterion 2 implies criterion 4: ``|Λ| ≤ e^(Nm) − 1 = e^(T m/h) − 1 → 0``.",
+                BY_MANY_STEPS,
+            ),
+            step(
+                "For all real `x_k`, more precisely, "
+                "``|Π_{k} (1 + x_k) − 1| ≤ e^(Σ_k |x_k|) − 1``.",
+                Shipped("Product", "product_near_one_by_sum"),
+                tried=[inequalities_of(friction)],
+            ),
+        ],
+        given=SETTING,
+        remark="The paper’s own scheme is smooth in (p, q, h), so that criterion 2 holds for each "
+        "k only where it holds uniformly: for that scheme 2 implies 4.",
+    )
+
+
+def connection_with_3(
+    friction: ExampleMap = FRICTION,
+    alternating: Sequence[ExampleMap] = (TO_AND_FRO, TO_AND_FRO_ODD),
+) -> Argument:
+    """Neither of criteria 3 and 4 implies the other."""
+    return concluded(
+        "criterion-4-and-3",
+        Verdict.PROVED,
+        "criterion 3 does not imply criterion 4 (an oscillator with friction has MSE = O(h²) and "
+        "Λ → `e^(−T)` − 1), nor does 4 imply 3 (p' = −p (1 − √h q)/(1 + √h q), q' = −q)",
+        [
+            step(
+                "MSE = o(h) does not imply criterion 4, nor does MSE = O(h²). The explicit Euler "
+                "step of an oscillator with friction, p' = p − h(q + p), q' = q + hp, has ΔJ = −h "
+                "+ h² at every point, so ``MSE = h^2(1 − h)^2 = o(h)``, and ``Λ = (1 − h + "
+                "h^2)^(T/h) − 1 → e^(−T) − 1``: criterion 3 calls a map nearly area-preserving "
+                "that shrinks every area to a fraction `e^(−T)`.",
+                *_shrinking(friction),
+            ),
+            step(
+                "In the other direction criterion 4 does not imply 3: for p' = −p (1 − √h q)/(1 + "
+                "√h q), q' = −q from q = 1, det J is (1 − √h)/(1 + √h) and its reciprocal in turn, "
+                "so Λ is 0 or −2√h/(1 + √h), which tends to 0, while MSE > 4h for even N.",
+                *_to_and_fro(alternating),
+            ),
+        ],
+        given=SETTING,
+        remark="By Cauchy and Schwarz Σ |`x_k`| ≤ N √MSE = T √MSE/h, so |Λ| ≤ exp(T √MSE/h) − 1: "
+        "MSE = o(h²) does imply criterion 4, and this is the right scale for criterion 3.",
+    )
+
+
+def against_2(
+    compensated: ExampleMap = COMPENSATED,
+    alternating: Sequence[ExampleMap] = (TO_AND_FRO, TO_AND_FRO_ODD),
+) -> Argument:
+    """Criterion 4 is weaker than criterion 2."""
+    between = [0 < compensated.run(n).lam < Fraction(1, n) for n in compensated.steps]
+    small = Check(
+        "0 < Λ < h for the compensated map", all(between), f"{len(between)} step sizes", NUMBERS
+    )
+    return concluded(
+        "criterion-4-against-2",
+        Verdict.REFUTED,
+        "criterion 2 implies criterion 4 and not the other way round, so 4 is the weaker one",
+        [
+            step(
+                "Criterion 2 implies 4: ``|Λ| ≤ e^(T m/h) − 1 → 0``.",
+                BY_MANY_STEPS,
+            ),
+            step(
+                "4 does not imply 2, for a global number can vanish by cancellation. It does so "
+                "for a smooth map near the identity: p' = p(1 + h(1/2 − q)), q' = q + h from (0, "
+                "0) on [0, 1] has `ΔJ_k` = h(1/2 − kh), hence max |`ΔJ_k`| = h/2, which is not "
+                "o(h).",
+                compensated.changes(),
+                compensated.check(),
+            ),
+            step(
+                "But Σ `ΔJ_k` = h/2, so that ``1 + Λ = Π_{k} (1 + x_k) ≤ e^(Σ_k x_k) = e^(h/2)``.",
+                compensated_changes(),
+                Shipped("Product", "one_plus_below_exp"),
+            ),
+            step(
+                "`x_k` and `x_{N−k}` are opposite, so Λ > 0: "
+                "``1 + Λ ≥ (1 + h/2)(1 − Σ_{k} x_k^2) > 1``, and Λ → 0.",
+                tried=[small],
+            ),
+            step(
+                "And it does so far from the identity: p' = −p (1 − √h q)/(1 + √h q), q' = −q.",
+                *_to_and_fro(alternating),
+            ),
+        ],
+        given=SETTING,
+        remark="What can be said in favour of criterion 4 is of smooth steps and all times: see "
+        "the other reading.",
+    )
+
+
+def against_3(
+    friction: ExampleMap = FRICTION,
+    alternating: Sequence[ExampleMap] = (TO_AND_FRO, TO_AND_FRO_ODD),
+) -> Argument:
+    """Criterion 4 is not stronger than criterion 3, of any one-step map."""
+    return concluded(
+        "criterion-4-against-3",
+        Verdict.REFUTED,
+        "criteria 3 and 4 imply each other in neither direction: p' = −p (1 − √h q)/(1 + √h q), q' "
+        "= −q satisfies 4 and not 3",
+        [
+            step(
+                "4 does not imply 3: p' = −p (1 − √h q)/(1 + √h q), q' = −q from q = 1 has Λ → 0, "
+                "and MSE > 4h for even N.",
+                *_to_and_fro(alternating),
+            ),
+            step(
+                "Criterion 3 does not imply 4 (friction: ΔJ = −h + h²), so 3 and 4 cannot be "
+                "ordered.",
+                *_shrinking(friction),
+            ),
+        ],
+        given=SETTING,
+    )
+
+
+def _shrinking(friction: ExampleMap) -> list[Check]:
+    return [friction.changes(), shrinks_to(), friction.check()]
+
+
+def _to_and_fro(alternating: Sequence[ExampleMap]) -> list[Check]:
+    each = [example.check() for example in alternating]
+    return [alternating[0].changes(), turns_to_and_fro(), *each]
+
+
+THEOREMS = {
+    "criterion-2-implies-3": two_implies_three,
+    "criterion-4-and-2": connection_with_2,
+    "criterion-4-and-3": connection_with_3,
+    "criterion-4-against-2": against_2,
+    "criterion-4-against-3": against_3,
+}

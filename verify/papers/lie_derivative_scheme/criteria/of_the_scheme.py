@@ -1,0 +1,127 @@
+"""What Criteria 2 and 3 make of ΔJ and MSE, of lieη and of other maps."""
+
+from verify.papers.argument import Argument, concluded, step
+from verify.papers.checks.check import Check, vanishes
+from verify.papers.checks.differential import flow_of_every_hamiltonian
+from verify.papers.checks.matrices import product_of_determinants
+from verify.papers.checks.sums import squares_of_times
+from verify.papers.lie_derivative_scheme.consistency import small_determinant
+from verify.papers.lie_derivative_scheme.criteria.connections import BY_MANY_STEPS, inequalities_of
+from verify.papers.lie_derivative_scheme.criteria_examples import (
+    FRICTION,
+    NOT_UNIFORM,
+    TO_AND_FRO,
+    ExampleMap,
+    shrinks_to,
+)
+from verify.papers.lie_derivative_scheme.error_measures import CHAIN
+from verify.proof.assistant.stated import Shipped
+from verify.verdict import Verdict
+
+_ETAS = range(1, 4)
+_OF_LIE = Shipped("Theorems", "determinant_of_lie_in_plane")
+
+
+def criterion_2(not_small: ExampleMap = NOT_UNIFORM) -> Argument:
+    """Criterion 2, uniformly, makes Λ tend to 0."""
+    return concluded(
+        "criterion-2",
+        Verdict.PROVED,
+        "if max |`ΔJ_k`| = o(h), then |Λ| ≤ exp(T max |`ΔJ_k`|/h) − 1 → 0 on [t₀, `t_end`]: areas "
+        "change by a part of them that vanishes with h; and lieη of a smooth H does satisfy it",
+        [
+            step(
+                "With m = max |`ΔJ_k`| and N = T/h "
+                "``|Λ| ≤ (1 + m)^N − 1 ≤ e^(T m/h) − 1``, which tends to 0 if m = o(h).",
+                BY_MANY_STEPS,
+                tried=[inequalities_of(each) for each in (FRICTION, TO_AND_FRO)],
+            ),
+            step(
+                "By the chain rule 1 + Λ is the determinant of all N steps.",
+                CHAIN,
+                product_of_determinants(),
+            ),
+            step(
+                "For lieη, of which the criterion speaks, ``ΔJ = h^(η+1) L + h^(η+2) R`` with "
+                "smooth L and R, so that it is `O(h^(η+1))`.",
+                _OF_LIE,
+                _vanishing(),
+            ),
+            step("On compact sets L and R are bounded, so this is uniform there."),
+            step(
+                "The maximum over k is meant: that each single `ΔJ_k` is o(h) is not enough for "
+                "other maps, such as p' = p(1 + q²), q' = q + h, whose Λ over [0, 1] grows beyond "
+                "all bounds.",
+                not_small.changes(),
+                squares_of_times(),
+                Shipped("Product", "product_above_sum"),
+                not_small.check(),
+            ),
+        ],
+    )
+
+
+def _vanishing() -> Check:
+    flows = {eta: flow_of_every_hamiltonian(eta + 1) for eta in _ETAS}
+    low = [
+        flow.delta_j(*flow.lie(eta)).get(n, flow.ring.zero)
+        for eta, flow in flows.items()
+        for n in range(1, eta + 1)
+    ]
+    return vanishes("the coefficients of h … `h^η` in ΔJ of lieη, η = 1, 2, 3, generic H", *low)
+
+
+def criterion_3(hamiltonian: bool = True) -> Argument:
+    """For lieη, and every smoothly consistent scheme, MSE = o(h) and Λ → 0, both."""
+    return concluded(
+        "criterion-3",
+        Verdict.PROVED,
+        "for the Lie derivative algorithm of a smooth H both sides of the implication hold: MSE = "
+        "`O(h^(2η+2))`, and Λ = `O(h^η)` → 0, so that areas change by o(1)",
+        [
+            step(
+                "For lieη ``ΔJ = O(h^(η+1))``; for every smoothly consistent scheme it is O(h²).",
+                _OF_LIE,
+                small_determinant(hamiltonian),
+                _vanishing(),
+            ),
+            step("It is so uniformly on compact sets, in one of which the run stays for small h."),
+            step(
+                "A mean is at most its greatest term: ``MSE = O(h^(2η+2)) = o(h)``.",
+                Shipped("Sums", "sum_of_less"),
+            ),
+            step("``|Λ| ≤ e^(T O(h^η)) − 1 → 0``.", BY_MANY_STEPS),
+        ],
+        remark="So whenever criterion 3 is satisfied the algorithm is nearly area-preserving; it "
+        "always is, and the criterion excludes nothing.",
+    )
+
+
+def criterion_3_of_any_map(friction: ExampleMap = FRICTION) -> Argument:
+    """MSE = o(h), and every area shrinks to a fraction 1/e."""
+    return concluded(
+        "criterion-3-any-map",
+        Verdict.REFUTED,
+        "for p' = p − h(q + p), q' = q + hp MSE = h²(1 − h)² = o(h), and over [0, 1] every area "
+        "shrinks to a fraction that tends to 1/e",
+        [
+            step(
+                "The explicit Euler step of an oscillator with friction has ΔJ = −h + h² at every "
+                "point, so ``MSE = h^2(1 − h)^2 = o(h)``.",
+                friction.changes(),
+                friction.check(),
+            ),
+            step(
+                "Yet over [0, 1] ``1 + Λ = (1 − h + h^2)^(1/h) → 1/e``.",
+                shrinks_to(),
+            ),
+        ],
+        remark="It is no scheme for Eq. 1, of which alone the criterion speaks.",
+    )
+
+
+THEOREMS = {
+    "criterion-2": criterion_2,
+    "criterion-3": criterion_3,
+    "criterion-3-any-map": criterion_3_of_any_map,
+}

@@ -1,0 +1,191 @@
+"""Maps that tell the criteria apart: each with the closed form of its ΔJ, MSE and Λ.
+
+T is fixed, N = T/h steps. Every closed form is held against the map itself, run in Fractions.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
+from math import prod
+
+import sympy
+
+from verify.algebra.formula import parse
+from verify.arithmetic.exact import decimal
+from verify.papers.checks.check import NUMBERS, Check, same
+from verify.papers.exact_maps import Areas, Point, areas, map_from_formulas
+
+Numbers = tuple[Fraction, Fraction, Fraction]  # max |ΔJ|, MSE, Λ
+
+
+@dataclass(frozen=True)
+class ExampleMap:
+    """A map from `start`, run over T = 1 with N steps for each N in `steps`.
+
+    `delta_j`: its ΔJ as a formula in p, q and h. `closed(h)`: what max |ΔJ|, MSE and Λ are; `says`:
+    the same in words, and what follows.
+    """
+
+    name: str
+    p_next: str
+    q_next: str
+    start: Point
+    steps: tuple[int, ...]
+    closed: Callable[[Fraction], Numbers]
+    says: str
+    delta_j: str
+
+    def run(self, steps: int) -> Areas:
+        return _run(self.p_next, self.q_next, self.start, steps)
+
+    def check(self) -> Check:
+        """Whether the map has the numbers that are said of it, exactly, for each N."""
+        holds, shown = True, []
+        for n in self.steps:
+            found = self.run(n)
+            holds = holds and (found.largest, found.mse, found.lam) == self.closed(Fraction(1, n))
+            shown.append(
+                f"N = {n}: max |ΔJ| = {_short(found.largest)}, MSE = {_short(found.mse)}, "
+                f"Λ = {_short(found.lam)}"
+            )
+        what = f"{self.name}: p' = `{self.p_next}`, q' = `{self.q_next}`, from {self.start}, T = 1"
+        return Check(f"{what}: {self.says}", holds, "; ".join(shown), NUMBERS)
+
+    def changes(self) -> Check:
+        """Whether its ΔJ is what is said, at every point and for every h."""
+        names = ("p", "q", "h")
+        told = parse(self.delta_j, names, source=self.name)
+        found = map_from_formulas(self.p_next, self.q_next).delta_j
+        return same(f"{self.name}: ΔJ − (`{self.delta_j}`)", [found - told], names)
+
+
+@cache
+def _run(p_next: str, q_next: str, start: Point, steps: int) -> Areas:
+    return areas(map_from_formulas(p_next, q_next), start, Fraction(1, steps), steps)
+
+
+def _short(x: Fraction) -> str:
+    return f"`{decimal(x, 3)}`"
+
+
+def shrinks_to(limit: sympy.Expr = -sympy.S.One) -> Check:
+    """log(1 − h + h²)/h → −1: with friction every area shrinks to 1/e over [0, 1]."""
+    h = sympy.Symbol("h", positive=True)
+    found = sympy.limit(sympy.log(1 - h + h**2) / h, h, 0)
+    return Check("friction: log(1 − h + h²)/h for h → 0", found == limit, f"`{found}`")
+
+
+def turns_to_and_fro(sign: int = 1) -> Check:
+    """Of a step and the next, e = √h: their factors multiply to 1, and the sizes of their ΔJ."""
+    e = sympy.Symbol("e", positive=True)
+    down, up = -2 * e / (1 + e), sign * 2 * e / (1 - e)
+    gaps = [
+        (1 + down) * (1 + up) - 1,
+        (down**2 + up**2) / 2 - 4 * e**2 * (1 + e**2) / (1 - e**2) ** 2,
+        -down - e - e * (1 - e) / (1 + e),
+    ]
+    what = (
+        "to and fro, e = √h: the product of two factors less 1, the MSE less 4e²(1 + e²)/(1 − "
+        "e²)², and |`ΔJ_0`| − e less e(1 − e)/(1 + e)"
+    )
+    return same(what, gaps, ("e",))
+
+
+def _root(h: Fraction) -> Fraction:
+    """√h of an h = 1/n²."""
+    n = round(h.denominator**0.5)
+    if n * n * h != 1:
+        raise ValueError("h is not 1/n²")
+    return Fraction(1, n)
+
+
+def _friction(h: Fraction) -> Numbers:
+    x = -h + h * h
+    return abs(x), x * x, (1 + x) ** int(1 / h) - 1
+
+
+def _to_and_fro(h: Fraction) -> Numbers:
+    """ΔJ alternates between −2ε/(1 + ε) and 2ε/(1 − ε), ε = √h; N is even."""
+    e = _root(h)
+    down, up = -2 * e / (1 + e), 2 * e / (1 - e)
+    return up, (down**2 + up**2) / 2, Fraction(0)
+
+
+def _to_and_fro_odd(h: Fraction) -> Numbers:
+    """The same for odd N: one contraction more than expansions."""
+    e, n = _root(h), int(1 / h)
+    down, up = -2 * e / (1 + e), 2 * e / (1 - e)
+    return up, ((n + 1) * down**2 + (n - 1) * up**2) / (2 * n), down
+
+
+def _compensated(h: Fraction) -> Numbers:
+    """ΔJ_k = h(1/2 − kh), whose sum is h/2; Λ stays as the product."""
+    n = int(1 / h)
+    values = [h * (Fraction(1, 2) - k * h) for k in range(n)]
+    mse = h * h * (1 + 2 * h * h) / 12  # Σ (1/2 − kh)² h = (1 + 2h²)/12
+    assert sum(values) == h / 2  # noqa: S101 - the sum that the argument uses
+    return h / 2, mse, prod((1 + x for x in values), start=Fraction(1)) - 1
+
+
+def _not_uniform(h: Fraction) -> Numbers:
+    """ΔJ_k = (kh)², with Σ k⁴ in closed form."""
+    n = int(1 / h)
+    fourth = Fraction((n - 1) * n * (2 * n - 1) * (3 * n * n - 3 * n - 1), 30)
+    product = prod((1 + (k * h) ** 2 for k in range(n)), start=Fraction(1))
+    return ((n - 1) * h) ** 2, fourth * h**4 / n, product - 1
+
+
+_ORIGIN = Point(p=Fraction(0), q=Fraction(0))
+_UNIT = Point(p=Fraction(0), q=Fraction(1))
+
+FRICTION = ExampleMap(
+    "friction",
+    "p - h*(q + p)",
+    "q + h*p",
+    _UNIT,
+    (4, 16, 64),
+    _friction,
+    "ΔJ = −h + h², so MSE = o(h) while Λ → 1/e − 1",
+    "-h + h**2",
+)
+TO_AND_FRO = ExampleMap(
+    "to and fro",
+    "-p*(1 - sqrt(h)*q)/(1 + sqrt(h)*q)",
+    "-q",
+    _UNIT,
+    (4, 16, 64),
+    _to_and_fro,
+    "max |ΔJ| > 2√h and MSE > 4h, while Λ = 0 for even N",
+    "-2*sqrt(h)*q/(1 + sqrt(h)*q)",
+)
+TO_AND_FRO_ODD = ExampleMap(
+    "to and fro, odd N",
+    TO_AND_FRO.p_next,
+    TO_AND_FRO.q_next,
+    _UNIT,
+    (9, 25, 81),
+    _to_and_fro_odd,
+    "Λ = −2√h/(1 + √h) → 0 for odd N",
+    TO_AND_FRO.delta_j,
+)
+COMPENSATED = ExampleMap(
+    "near the identity, compensated",
+    "p*(1 + h*(1/2 - q))",
+    "q + h",
+    _ORIGIN,
+    (4, 16, 64),
+    _compensated,
+    "max |ΔJ| = h/2, Σ ΔJ = h/2 and 0 < Λ < h, so that Λ → 0",
+    "h*(1/2 - q)",
+)
+NOT_UNIFORM = ExampleMap(
+    "small for each k, not uniformly",
+    "p*(1 + q**2)",
+    "q + h",
+    _ORIGIN,
+    (4, 16, 64),
+    _not_uniform,
+    "`ΔJ_k` = (kh)², which is O(h²) for each fixed k, while MSE → 1/5",
+    "q**2",
+)

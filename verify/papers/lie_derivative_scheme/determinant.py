@@ -1,0 +1,176 @@
+"""“The value of the determinant cannot always be equal to 1”: for which H it is."""
+
+import math
+from collections.abc import Sequence
+
+import sympy
+
+from verify.algebra.expressions.formula_text import to_text
+from verify.algebra.symbols import H_STEP, P, Q
+from verify.hamiltonians import systems
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.papers.argument import Argument, concluded, step
+from verify.papers.checks.check import Check, same
+from verify.papers.checks.matrices import of_the_field, where_it_rests
+from verify.papers.lie_derivative_scheme import families
+from verify.proof.order import convergence_of, prove
+from verify.schemes.methods.taylor.lie import lie_map
+from verify.verdict import Verdict
+
+SYSTEMS = ("duffing", "pendulum")
+ETAS = range(1, 6)
+# det J = 1 exactly, and the scheme is not the flow.
+PRESERVED = ("p**3/6 + q", "(p**2 + q**2)**(3/4)", "(p*q)**(3/4)")
+SINGULAR = "q**2/p"  # det Hess H = 0 everywhere, and still ΔJ ≠ 0
+
+
+def examples(names: Sequence[str] = SYSTEMS) -> Argument:
+    """For the paper's two systems det J ≠ 1: at the equilibrium, for every η and almost every h."""
+    at_rest = [_at_rest(name, eta) for name in names for eta in ETAS]
+    return concluded(
+        "determinant-of-the-examples",
+        Verdict.PROVED,
+        "wherever H has an equilibrium with D = det Hess H ≠ 0, as both systems have at (0, 0), "
+        "det J of lie2 is 1 + h⁴D²/4 there, and for every η it is 1 for finitely many h only",
+        [
+            step(
+                "At a critical point z₀ of H f = 0, and with A = f'(z₀) ``(Xg)' = g''f + g'A = "
+                "g'A``. So the derivative of Xⁿz is Aⁿ, and J = R(hA), R the truncated exponential "
+                "of degree η.",
+                where_it_rests(),
+            ),
+            step(
+                "A has trace 0 and determinant D = det Hess H(z₀), hence eigenvalues ±μ with μ² = "
+                "−D, and ``det J = R(hμ) R(−hμ)``.",
+                of_the_field(),
+            ),
+            step(
+                "This is a polynomial in h of degree 2η whose coefficient of `h^(2η)` is "
+                "``(−1)^η μ^(2η)/(η!)^2 = D^η/(η!)^2``.",
+                _last_coefficients(),
+            ),
+            step("If D ≠ 0 it is not constant, so det J = 1 at z₀ for at most 2η values of h."),
+            step("For η = 2 it is ``1 + h^4 D^2/4 > 1`` for every h > 0.", families.equilibrium()),
+            step(
+                "The Duffing oscillator (for every δ) and the pendulum have D = 1 at (0, 0): for "
+                "them the sentence is right, whatever η is.",
+                *at_rest,
+            ),
+        ],
+        given="f = (−`H_q`, `H_p`) is the field of Eq. 1.",
+    )
+
+
+def _last_coefficients(sign: int = -1) -> Check:
+    """The last coefficient of R(hμ) R(−hμ) is D^η/(η!)², μ² = −D, or `sign` D."""
+    mu, h, d = sympy.symbols("mu h D")
+    gaps = []
+    for eta in ETAS:
+        both = [
+            sum((s * h * mu) ** n / sympy.factorial(n) for n in range(eta + 1)) for s in (1, -1)
+        ]
+        top = sympy.expand(both[0] * both[1]).coeff(h, 2 * eta)
+        put = top.subs(mu, sympy.Symbol("x")).subs(
+            sympy.Symbol("x") ** (2 * eta), (sign * d) ** eta
+        )
+        gaps.append(put - d**eta / sympy.factorial(eta) ** 2)
+    what = "the coefficient of `h^(2η)` in R(hμ) R(−hμ) less `D^η`/(η!)², η = 1 … 5"
+    return same(what, gaps, ("D",))
+
+
+def _at_rest(name: str, eta: int) -> Check:
+    """ΔJ at (0, 0) against R(ih) R(−ih) − 1, all parameters symbols."""
+    hamiltonian = Hamiltonian(systems.get(name).hamiltonian().expression)
+    delta_j = sympy.expand(lie_map(hamiltonian, eta).delta_j.subs({P: 0, Q: 0}))
+    # R(z) R(−z) at z² = −h²
+    z = sympy.Symbol("z")
+    terms = [z**n / sympy.factorial(n) for n in range(eta + 1)]
+    product = sympy.expand(sum(terms) * sum(t.subs(z, -z) for t in terms))
+    told = sympy.expand(product.subs(z, sympy.I * H_STEP)) - 1
+    top = sympy.Poly(delta_j, H_STEP).coeff_monomial(H_STEP ** (2 * eta)) if delta_j != 0 else 0
+    return Check(
+        f"{name}, lie{eta}: ΔJ at (0, 0) is R(ih) R(−ih) − 1, its last coefficient 1/({eta}!)²",
+        delta_j == told and top == sympy.Rational(1, math.factorial(eta) ** 2),
+        f"`{to_text(delta_j)}`",
+    )
+
+
+def universal(formulas: Sequence[str] = PRESERVED) -> Argument:
+    """As a statement on every H: refuted by H with det J ≡ 1 and a truncation error."""
+    first, *others = map(preserved, formulas)
+    return concluded(
+        "determinant-of-every-h",
+        Verdict.REFUTED,
+        "for H = p³/6 + q the local error of lie2 is h³/6 in q, and det J = 1 for all p, q, h; so "
+        "it is for H = `(p² + q²)^(3/4)`, where lie2 spirals outwards; see the classification",
+        [
+            step(
+                "For H = p³/6 + q one has ``p' = p − h, q' = q + h p^2/2 − h^2 p/2``, while the "
+                "exact flow has another h³/6 in q: the local truncation error is not 0. J is "
+                "triangular with ones on its diagonal, so det J = 1 for all p, q and h.",
+                first,
+            ),
+            step(
+                "For H = `(p² + q²)^(3/4)` away from the origin write I = (p² + q²)/2: the flow "
+                "turns each circle with the frequency Ω(I) = dH/dI, proportional to `I^(−1/4)`. A "
+                "step of lie2 turns it by an angle that depends on I alone, and takes I to ``I (1 "
+                "+ h^4Ω^4/4) = I + c h^4``, c a constant.",
+                _spirals(),
+            ),
+            step(
+                "In the coordinates (I, angle), in which areas are dI dφ, that has determinant 1: "
+                "lie2 preserves area exactly, although the energy grows in every step. A "
+                "truncation error is thus no reason for det J ≠ 1.",
+                *others,
+            ),
+            step(
+                "In general, with D = det Hess H and `T_ij` = `Σ_k` `∂_j` adj`(Hess H)_ik` `∂_k` "
+                "H, ``ΔJ = (h^3/2) X D + (h^4/4)(D^2 + det T)``, so det J = 1 for all h (or for "
+                "two values h > 0) if and only if X D = 0 and det T = −D².",
+                families.coefficients(),
+            ),
+            step(
+                "D = 0 everywhere is not enough: H = q²/p has D = 0 and ``ΔJ = −h^4 q^4/p^8``.",
+                _singular(),
+            ),
+            step("H = F(ℓ) + m with linear ℓ and m has det J = 1.", families.linear()),
+        ],
+        remark="For H = T(p) + V(q) det J = 1 if and only if T'' = 0 or V'' = 0, for a polynomial "
+        "H if and only if H = F(ℓ) + m or H = F(ℓ + m²) with linear functions ℓ, m of p and q: see "
+        "the classification.",
+    )
+
+
+def _spirals(power: int = 4) -> Check:
+    """What a step of lie2 makes of I on a circle that turns with Ω: I (1 + (hΩ)^`power`/4)."""
+    x, amount, h, k = sympy.symbols("x I h k")  # x = hΩ
+    grown = (1 - x**2 / 2) ** 2 + x**2 - (1 + x**power / 4)
+    moved = amount * (1 + h**4 * (k / amount) / 4)  # Ω⁴ = k/I
+    what = "(1 − x²/2)² + x² − (1 + x⁴/4), x = hΩ; and d/dI [I (1 + h⁴Ω⁴/4)] − 1 for Ω⁴ = k/I"
+    return same(what, [grown, sympy.diff(sympy.expand(moved), amount) - 1], ("x", "I", "h", "k"))
+
+
+def preserved(formula: str) -> Check:
+    """ΔJ ≡ 0 by the ring, and the map agrees with the flow up to h² and not further."""
+    step_map = lie_map(Hamiltonian.parse(formula), 2)
+    found, agreement = prove(step_map), convergence_of(step_map)
+    return Check(
+        f"H = `{formula}`: det J ≡ 1, and the local error of lie2 is of order h³ exactly",
+        found.area_preserving is True and agreement.decided and agreement.order == 2,
+        f"ΔJ = `{to_text(step_map.delta_j)}`, agrees with the flow up to `h^{agreement.order}`",
+    )
+
+
+def _singular() -> Check:
+    hamiltonian = Hamiltonian.parse(SINGULAR)
+    hessian = sympy.hessian(hamiltonian.expression, (P, Q)).det()
+    found = prove(lie_map(hamiltonian, 2))
+    told = -(H_STEP**4) * Q**4 / P**8
+    return Check(
+        f"H = `{SINGULAR}`: det Hess H = 0 and ΔJ is not 0",
+        sympy.simplify(hessian) == 0 and found.order == 4 and found.delta_j == told,
+        f"ΔJ = `{to_text(found.delta_j)}`",
+    )
+
+
+THEOREMS = {"determinant-of-the-examples": examples, "determinant-of-every-h": universal}

@@ -1,0 +1,258 @@
+"""What ΔJ, MSE and Λ of Eq. 14–16 measure."""
+
+from fractions import Fraction
+
+import sympy
+
+from verify.algebra.symbols import P, Q
+from verify.arithmetic.exact import decimal, text
+from verify.hamiltonians import systems
+from verify.papers.argument import Argument, Step, concluded, step
+from verify.papers.checks.check import NUMBERS, Check, vanishes
+from verify.papers.checks.differential import flow_of_every_hamiltonian
+from verify.papers.checks.matrices import product_of_determinants
+from verify.papers.exact_maps import Point, areas, jacobian, next_point, value
+from verify.papers.lie_derivative_scheme.criteria_examples import FRICTION, TO_AND_FRO, ExampleMap
+from verify.proof.assistant.stated import Shipped
+from verify.schemes.maps.step_map import StepMap
+from verify.schemes.methods.taylor.lie import lie_map
+from verify.verdict import Verdict
+
+_H = Fraction(1, 10)
+_START = Point(Fraction(1, 2), Fraction(1))
+_FLOW = Shipped("Taylor", "flow_has_no_defect")
+CHAIN = Shipped("Differential", "slopes_of_composition")
+
+
+def _duffing() -> StepMap:
+    return lie_map(systems.get("duffing").hamiltonian().with_values({"delta": 1}), 2)
+
+
+def exact_determinant(most: int = 5, eta: int = 5) -> Argument:
+    """det of the exact flow is 1 for a generic H up to h^most; `eta` is of what stands for it."""
+    return concluded(
+        "eq-14",
+        Verdict.PROVED,
+        "the exact flow has det = 1 over every step, so det `J_k` − 1 is by how much one step’s "
+        "determinant is off, a local error, and the relative change of a small region’s area",
+        [
+            step(
+                "Eq. 1 has no divergence, so by Liouville’s theorem the exact flow has determinant "
+                "1 at every point and over every step: in its Taylor series no power of h changes "
+                "it.",
+                _FLOW,
+                _of_the_flow(most, eta),
+            ),
+            step(
+                "Hence `ΔJ_k` = det `J_k` − 1 is the difference, in step k alone, from what is "
+                "exact; it is 0 up to `h^η` for lieη, whose step agrees with the flow so far.",
+                Shipped("Theorems", "determinant_of_lie_in_plane"),
+            ),
+            step(
+                "By the change of variables a small region around `z_k` of area A has an image of "
+                "area ``A (1 + ΔJ_k) + o(A)``.",
+            ),
+        ],
+    )
+
+
+def _of_the_flow(most: int, eta: int) -> Check:
+    flow = flow_of_every_hamiltonian(most + 1)
+    powers, zero = flow.delta_j(*flow.lie(eta)), flow.ring.zero
+    return vanishes(
+        f"the coefficients of h … `h^{most}` in ΔJ of the flow of a generic H",
+        *(powers.get(n, zero) for n in range(1, most + 1)),
+    )
+
+
+def mean_square(true: int = 1, steps: int = 3) -> Argument:
+    """MSE is the mean of (det J − 1)², and 1 is the true value; `true`: what is taken for it."""
+    squares = mean_of_squares(true, steps)
+    return concluded(
+        "eq-15",
+        Verdict.PROVED,
+        "Eq. 15 is the mean of the squares of det `J_k` − 1, and 1 is the true value of the "
+        "determinant",
+        [
+            step(
+                "By Liouville’s theorem the exact flow has determinant 1, so `ΔJ_k` is the "
+                "calculated value less the true one.",
+                _FLOW,
+                _of_the_flow(3, 3),
+            ),
+            step(
+                "Eq. 15 is the mean of its squares over the N steps of [t₀, `t_end`]: "
+                "``MSE = (1/N) Σ_{k} (det J_k − 1)^2``.",
+                tried=[squares],
+            ),
+        ],
+    )
+
+
+def mean_of_squares(true: int = 1, steps: int = 3) -> Check:
+    """MSE by its closed form against det J from its entries; `true`: what is taken for 1."""
+    scheme, point, dets = _duffing(), _START, []
+    for _ in range(steps):
+        a, b, c, d = jacobian(scheme, point, _H)
+        dets.append(a * d - b * c)
+        point = next_point(scheme, point, _H)
+    mean = sum(((x - true) ** 2 for x in dets), Fraction(0)) / steps
+    mse = areas(scheme, _START, _H, steps).mse
+    return Check(
+        f"Duffing, δ = 1, lie2, h = {text(_H)}, (p, q) = {_START}, N = {steps}: the mean of (det J "
+        f"− {true})², det J from its entries, and the MSE by the closed form",
+        mean == mse,
+        f"`{decimal(mean, 4)}` and `{decimal(mse, 4)}`",
+        NUMBERS,
+    )
+
+
+def sum_of_squares(steps: int = 2) -> Argument:
+    """The sum of the squares is N times Eq. 15, and another number for N > 1."""
+    found = areas(_duffing(), _START, _H, steps)
+    total = sum((x * x for x in found.delta_j), Fraction(0))
+    differ = Check(
+        f"Duffing, δ = 1, lie2, h = {text(_H)}, (p, q) = {_START}, N = {steps}: Σ `ΔJ_k`² and MSE",
+        total != found.mse and total == steps * found.mse,
+        f"`{decimal(total, 4)}` and `{decimal(found.mse, 4)}`",
+        NUMBERS,
+    )
+    return concluded(
+        "eq-15-sum",
+        Verdict.REFUTED,
+        "Eq. 15 is the mean: the sum of the squares is N times as much",
+        [
+            step(
+                "Eq. 15 has the factor 1/N. For two steps of lie2 on the Duffing oscillator the "
+                "sum of the squares is twice the MSE.",
+                differ,
+            ),
+        ],
+    )
+
+
+def chain_rule(stray: Fraction = Fraction(0)) -> Argument:
+    """1 + Λ is the determinant of the map of all N steps; `stray` is added to it."""
+    return concluded(
+        "criterion-4",
+        Verdict.PROVED,
+        "by the chain rule 1 + Λ is the determinant of the map of all N steps at the initial "
+        "value, so that Λ → 0, uniformly on a region of initial values, says that areas within it "
+        "change by o(1) over the whole of [t₀, `t_end`]",
+        [
+            *of_all_steps(stray),
+            step(
+                "By the change of variables the area of a region’s image after N steps is ``∫ (1 + "
+                "Λ) dp dq`` over the region. If |Λ| ≤ ε for all of its initial values, then the "
+                "area changes by ε of it at most.",
+            ),
+        ],
+        remark="From one initial value alone Λ tells of small regions around that one.",
+    )
+
+
+def of_all_steps(stray: Fraction = Fraction(0)) -> list[Step]:
+    """1 + Λ as the determinant of the map of all steps."""
+    return [
+        step(
+            "The map of N steps is Φ∘…∘Φ, whose Jacobian at `z_0` is the product of the J at `z_0` "
+            "… `z_{N−1}`, by the chain rule.",
+            CHAIN,
+        ),
+        step(
+            "Its determinant is the product of theirs: ``Π_{k} det J_k = 1 + Λ(z_0)``.",
+            product_of_determinants(),
+            _composed(2, stray),
+        ),
+    ]
+
+
+def _composed(steps: int, stray: Fraction) -> Check:
+    scheme, p_next, q_next = _duffing(), P, Q
+    for _ in range(steps):
+        put = {P: p_next, Q: q_next}
+        p_next, q_next = (x.subs(put, simultaneous=True) for x in (scheme.p_next, scheme.q_next))
+    entries = [sympy.diff(x, z) for x in (p_next, q_next) for z in (P, Q)]
+    a, b, c, d = (value(x, _START, _H) for x in entries)
+    det, lam = a * d - b * c + stray, areas(scheme, _START, _H, steps).lam
+    return Check(
+        f"Duffing, δ = 1, lie2, h = {text(_H)}, (p, q) = {_START}: the determinant of {steps} "
+        "steps, composed and then differentiated, and 1 + Λ",
+        det == 1 + lam,
+        f"`{decimal(det, 8)}` and `{decimal(1 + lam, 8)}`, exactly equal",
+        NUMBERS,
+    )
+
+
+# -- “the system with a smaller cumulative error” --------------------------------------------------
+
+
+def smaller_is_better() -> Argument:
+    """|Λ| is by which part areas change after all steps."""
+    return concluded(
+        "smaller-lambda",
+        Verdict.PROVED,
+        "after all N steps a small region’s area has changed by |Λ| of it, by the chain rule, so "
+        "the smaller |Λ|, the less",
+        [
+            *of_all_steps(),
+            step(
+                "So a small region of area A around `z_0` ends with the area ``A (1 + Λ) + o(A)``."
+            ),
+        ],
+    )
+
+
+def smaller_in_each_step(
+    to_and_fro: ExampleMap = TO_AND_FRO, friction: ExampleMap = FRICTION
+) -> Argument:
+    """Of two maps the one with the smaller |Λ| may change areas more in every step."""
+    both = [(one.run(n), other.run(n)) for n in to_and_fro.steps
+            for one, other in [(to_and_fro, friction)]]  # fmt: skip
+    worse = [
+        abs(a.lam) < abs(b.lam) and min(map(abs, a.delta_j)) > b.largest and a.mse > b.mse
+        for a, b in both
+    ]
+    compared = Check(
+        f"N = {', '.join(map(str, to_and_fro.steps))}: |Λ| is smaller, the least |`ΔJ_k`| and the "
+        "MSE are greater",
+        all(worse),
+        "exactly",
+        NUMBERS,
+    )
+    return concluded(
+        "smaller-lambda-each-step",
+        Verdict.REFUTED,
+        "a Λ may be small because changes cancel: p' = −p (1 − √h q)/(1 + √h q), q' = −q has Λ = "
+        "0 and changes areas more in every single step than p' = p − h(q + p), q' = q + hp, whose "
+        "|Λ| tends to 1 − 1/e",
+        [
+            step(
+                "p' = −p (1 − √h q)/(1 + √h q), q' = −q shrinks areas by a factor (1 − √h)/(1 + "
+                "√h) and blows them up by its reciprocal in turn, so Λ = 0 for even N.",
+                to_and_fro.changes(),
+                to_and_fro.check(),
+            ),
+            step(
+                "p' = p − h(q + p), q' = q + hp shrinks them by h − h² in each step.",
+                friction.changes(),
+                friction.check(),
+            ),
+            step(
+                "By criteria 2 and 3 the one is the worse, by criterion 4 the better; here for "
+                "three N.",
+                compared,
+            ),
+        ],
+        given="Λ is a number at the end.",
+    )
+
+
+THEOREMS = {
+    "eq-14": exact_determinant,
+    "eq-15": mean_square,
+    "eq-15-sum": sum_of_squares,
+    "criterion-4": chain_rule,
+    "smaller-lambda": smaller_is_better,
+    "smaller-lambda-each-step": smaller_in_each_step,
+}

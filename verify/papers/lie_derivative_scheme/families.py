@@ -1,0 +1,147 @@
+"""The Hamiltonians for which lie2 preserves area exactly: the identities of their classification.
+
+Notation: w = ∇H = (H_p, H_q), D = det Hess H, N = −X²z, the negative of the acceleration z''. In
+the plane N = adj(Hess H) w, and J = 1 + hA − (h²/2) N' with A = (−H_q, H_p)'.
+"""
+
+from verify.papers.checks.check import Check, vanishes
+from verify.papers.checks.differential import (
+    Differential,
+    Flow,
+    flow_of_every_hamiltonian,
+    of_one_function,
+)
+
+LINEAR = ("a*p + b*q", "c*p + d*q")  # H = F(u) + rest
+PARABOLIC = ("a*p + b*q + (c*p + d*q)**2/2", "0")
+_CONSTANTS = ("a", "b", "c", "d")
+
+
+def family(name: str, u: str, rest: str) -> Check:
+    """ΔJ of lie2 is zero for H = F(u) + rest, for a generic F and all constants."""
+    flow = of_one_function(_CONSTANTS, u, rest)
+    delta_j = flow.delta_j(*flow.lie(2))
+    return vanishes(f"ΔJ of lie2 for {name}, F generic", *delta_j.values())
+
+
+def linear() -> Check:
+    return family("H = F(ap + bq) + cp + dq", *LINEAR)
+
+
+def parabolic() -> Check:
+    return family("H = F(ap + bq + (cp + dq)²/2)", *PARABOLIC)
+
+
+def moves_by_a_constant(rest: str = LINEAR[1]) -> Check:
+    """H = F(ℓ) + m with linear ℓ and m: X ℓ is a constant, Xz and X²z are functions of ℓ; `rest`
+    stands for m."""
+    flow = of_one_function(_CONSTANTS, LINEAR[0], rest)
+    names = (*_CONSTANTS, "p", "q", "F1", "F2")
+    a, b, c, d, p, q, f1, f2 = (flow.ring[name] for name in names)
+    steady = b * c - a * d
+    return vanishes(
+        "H = F(ℓ) + cp + dq, ℓ = ap + bq, F generic: Xℓ − (bc − ad), Xp + bF' + d, Xq − aF' − c, "
+        "X²p + bF''(bc − ad), X²q − aF''(bc − ad)",
+        flow.derive(a * p + b * q) - steady,
+        flow.derive(p) + b * f1 + d,
+        flow.derive(q) - a * f1 - c,
+        flow.derive(flow.derive(p)) + b * f2 * steady,
+        flow.derive(flow.derive(q)) - a * f2 * steady,
+    )
+
+
+def exact_flow() -> Check:
+    """lie2 is the flow itself where X³z = 0."""
+    flow = of_one_function(_CONSTANTS, *PARABOLIC, 5)
+    third = [flow.lie_derivatives(z, 3)[3] for z in ("p", "q")]
+    return vanishes("X³p and X³q for H = F(ap + bq + (cp + dq)²/2): lie2 is its exact flow", *third)
+
+
+def separable() -> Check:
+    """ΔJ of lie2 for H = T(p) + V(q), T and V generic; T1 stands for T', and so on."""
+    names = [f"{f}{k}" for f in "TV" for k in range(1, 5)]
+    ring = Differential(["h", "p", "q", *names])
+    one, zero = ring.context.constant(1), ring.zero
+    ring.set_gradient("p", p=one, q=zero)
+    ring.set_gradient("q", p=zero, q=one)
+    for k in range(1, 4):
+        ring.set_gradient(f"T{k}", p=ring[f"T{k + 1}"], q=zero)
+        ring.set_gradient(f"V{k}", p=zero, q=ring[f"V{k + 1}"])
+    t1, t2, t3, v1, v2, v3 = (ring[f"{f}{k}"] for f in "TV" for k in (1, 2, 3))
+    flow = Flow(ring, t1, v1)
+    delta_j = flow.delta_j(*flow.lie(2))
+    return vanishes(
+        "H = T(p) + V(q): ΔJ = (h³/2)(T'T''V''' − V'V''T''') + (h⁴/4)(T''²V''² − T'T'''V'V''')",
+        delta_j.pop(3) - (t1 * t2 * v3 - v1 * v2 * t3) / 2,
+        delta_j.pop(4) - (t2**2 * v2**2 - t1 * t3 * v1 * v3) / 4,
+        *delta_j.values(),
+    )
+
+
+def equilibrium() -> Check:
+    """At a critical point of a generic H, ΔJ of lie2 is h⁴D²/4."""
+    flow = flow_of_every_hamiltonian(4)
+    at: dict[str | int, int] = {"H1_0": 0, "H0_1": 0}
+    delta_j = {n: x.subs(at) for n, x in flow.delta_j(*flow.lie(2)).items()}
+    fourth = delta_j.pop(4) - flow.hessian_determinant**2 / 4
+    return vanishes("ΔJ of lie2 where ∇H = 0 is h⁴D²/4, for a generic H", fourth, *delta_j.values())
+
+
+def coefficients() -> Check:
+    """ΔJ = (h³/2) X D + (h⁴/4)(D² + det T), T_ij = Σ_k ∂_j adj(Hess H)_ik w_k, for a generic H."""
+    flow = flow_of_every_hamiltonian(4)
+    ring, w = flow.ring, (flow.h_p, flow.h_q)
+    pp, pq, qq = flow.hessian
+    adjugate = ((qq, -pq), (-pq, pp))
+    t = [
+        [sum((ring.diff(row[k], z) * w[k] for k in (0, 1)), ring.zero) for z in ("p", "q")]
+        for row in adjugate
+    ]
+    d = flow.hessian_determinant
+    delta_j = flow.delta_j(*flow.lie(2))
+    fourth = (d * d + t[0][0] * t[1][1] - t[0][1] * t[1][0]) / 4
+    return vanishes(
+        "ΔJ = (h³/2) X D + (h⁴/4) (D² + det T) for a generic H, and no other powers",
+        delta_j.pop(3) - flow.derive(d) / 2,
+        delta_j.pop(4) - fourth,
+        *delta_j.values(),
+    )
+
+
+def acceleration() -> Check:
+    """−X²z = adj(Hess H) ∇H, and div N = 2 D, for a generic H."""
+    flow = flow_of_every_hamiltonian(4)
+    pp, pq, qq = flow.hessian
+    n_p, n_q = (-flow.lie_derivatives(z, 2)[2] for z in ("p", "q"))
+    return vanishes(
+        "−X²z = adj(Hess H) ∇H, and its divergence is 2 D, for a generic H",
+        n_p - (qq * flow.h_p - pq * flow.h_q),
+        n_q - (-pq * flow.h_p + pp * flow.h_q),
+        flow.ring.diff(n_p, "p") + flow.ring.diff(n_q, "q") - 2 * flow.hessian_determinant,
+    )
+
+
+def by_acceleration(half: int = 4) -> Check:
+    """The coefficient of h⁴ in ΔJ is det N'/4, N = −X²z, for a generic H; `half` is that 4."""
+    flow = flow_of_every_hamiltonian(4)
+    ring = flow.ring
+    n_p, n_q = (-flow.lie_derivatives(z, 2)[2] for z in ("p", "q"))
+    fourth = flow.delta_j(*flow.lie(2))[4]
+    return vanishes(
+        "the coefficient of h⁴ in ΔJ of lie2 less det N'/4 for a generic H, N = −X²z",
+        fourth - ring.bracket(n_p, n_q) / half,
+    )
+
+
+def twice(factor: int = 2) -> Check:
+    """λT'' = cT'² and T''' = cT'T'' give λT''' = 2T''', by one derivative; `factor` is that 2."""
+    ring = Differential(["p", "T1", "T2", "c", "lambda"])
+    t1, t2, c, constant = (ring[name] for name in ring.names[1:])
+    third = c * t1 * t2
+    ring.set_gradient("T1", p=t2)
+    ring.set_gradient("T2", p=third)
+    derived = ring.diff(constant * t2 - c * t1 * t1, "p")
+    return vanishes(
+        "the derivative of λT'' − cT'² less (λ − 2) T''', where T''' = cT'T''",
+        derived - (constant - factor) * third,
+    )

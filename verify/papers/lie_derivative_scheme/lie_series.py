@@ -1,0 +1,210 @@
+"""Eq. 2–5: the scheme is the truncated exponential of hX; Eq. 3 as printed is not."""
+
+from collections.abc import Callable
+
+import sympy
+
+from verify.algebra.formula import symbol
+from verify.algebra.symbols import H_STEP, P, Q
+from verify.hamiltonians import systems
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.papers.argument import Argument, concluded, step
+from verify.papers.checks.check import Check, same, vanishes
+from verify.papers.checks.differential import Flow, Poly, flow_of_every_hamiltonian
+from verify.proof.assistant.stated import Shipped
+from verify.schemes.methods.taylor.lie import lie_map
+from verify.verdict import Verdict
+
+MOST = 5  # powers of X looked at for a generic H; the rest is by induction
+SYSTEMS = ("duffing", "pendulum")
+Recursion = Callable[[Flow, Poly], Poly]
+
+
+def eq_4(flow: Flow, y: Poly) -> Poly:
+    """Lⁿ from y = Lⁿ⁻¹ by Eq. 4, with both operators as Eq. 5 defines them."""
+    along_q = flow.h_p * flow.ring.diff(y, "q")
+    along_p = -flow.h_q * flow.ring.diff(y, "p")
+    return along_p + along_q
+
+
+def printed_step(hamiltonian: Hamiltonian, eta: int) -> tuple[sympy.Expr, sympy.Expr]:
+    """p', q' by Eq. 2, 4 and 5 with sympy's own derivatives, started by L q = H_p, L p = −H_q."""
+    h_p, h_q = (sympy.diff(hamiltonian.expression, z) for z in (P, Q))
+    both = []
+    for start, first in ((P, -h_q), (Q, h_p)):
+        total, power = start, first
+        for n in range(1, eta + 1):
+            total += H_STEP**n / sympy.factorial(n) * power
+            power = h_p * sympy.diff(power, Q) - h_q * sympy.diff(power, P)
+        both.append(total)
+    return both[0], both[1]
+
+
+def lie_exponential(recursion: Recursion = eq_4, eta: int = 4) -> Argument:
+    """Eq. 2 with Eq. 4 and 5 is the exponential series of hX, cut off after h^η."""
+    powers = [powers_of(name, recursion) for name in ("p", "q")]
+    for_systems = []
+    for name in SYSTEMS:
+        hamiltonian = Hamiltonian(systems.get(name).hamiltonian().expression)
+        for order in range(1, eta + 1):
+            for_systems.append(_same(name, hamiltonian, order))
+    return concluded(
+        "lie-exponential",
+        Verdict.PROVED,
+        "with L p = −`H_q` and L q = `H_p` to start from, Eq. 4 and 5 say Lⁿ = X Lⁿ⁻¹, so that Eq. "
+        f"2 is exp(hX) cut off after `h^η`; checked for a generic H up to `X^{MOST}`",
+        [
+            step(
+                "By Eq. 5 the two operators are `L_{H_p}` = `H_p` `∂_q` and `L_{−H_q}` = −`H_q` "
+                "`∂_p`. Their sum is the derivative along the motion: ``X = H_p ∂_q − H_q ∂_p``.",
+                _operators(recursion),
+            ),
+            step(
+                "Eq. 4 applies this sum in both of its lines, Lⁿ = X Lⁿ⁻¹, from L¹ = `H_p` = X q "
+                "in the line of q and from L¹ = −`H_q` = X p in that of p. So, for every n ≥ 1, "
+                "``L^n_{H_p} = X^n q, L^n_{−H_q} = X^n p``.",
+                _operators(recursion),
+                *powers,
+            ),
+            step(
+                "Along a solution ``d/dt y(z(t)) = (Xy)(z(t))``, so that Xⁿp and Xⁿq are the n-th "
+                "time derivatives of p and q.",
+                Shipped("Solutions", "rate_along_solution"),
+                Shipped("Solutions", "derivatives_along_solution"),
+            ),
+            step(
+                "Hence Eq. 2 is the Taylor polynomial of degree η of the exact flow, exp(hX) "
+                "applied to the two coordinates and cut off: ``z_{k+1} = Σ_{n=0}^{η} h^n/n! X^n "
+                "z``.",
+                Shipped("Theorems", "flow_has_taylor_series"),
+                *for_systems,
+            ),
+        ],
+        remark="Nothing in this uses that H is separable. (`Lⁿ_{H_p}` is not the n-th power of the "
+        "operator `L_{H_p}` of Eq. 5, although it is written so: Eq. 4 mixes the two operators.)",
+    )
+
+
+def _operators(recursion: Recursion) -> Check:
+    """Both operators of Eq. 5 together are X, whatever they are applied to."""
+    flow = flow_of_every_hamiltonian(1, ["y", "y_p", "y_q"])
+    ring = flow.ring
+    ring.set_gradient("y", p=ring["y_p"], q=ring["y_q"])
+    return vanishes(
+        "Eq. 4 and 5 applied to a generic y, less X y",
+        recursion(flow, ring["y"]) - flow.derive(ring["y"]),
+    )
+
+
+def powers_of(name: str, recursion: Recursion = eq_4) -> Check:
+    """Eq. 4 and 5 give the n-th time derivative of p or q, for a generic H."""
+    flow = flow_of_every_hamiltonian(MOST)
+    powers = flow.lie_derivatives(name, MOST)
+    gaps = [recursion(flow, powers[n - 1]) - powers[n] for n in range(1, MOST + 1)]
+    return vanishes(f"Eq. 4 and 5 give Lⁿ = Xⁿ {name} for a generic H, n = 1 … {MOST}", *gaps)
+
+
+def _same(name: str, hamiltonian: Hamiltonian, eta: int) -> Check:
+    found = lie_map(hamiltonian, eta)
+    printed = printed_step(hamiltonian, eta)
+    gaps = [x - y for x, y in zip(printed, (found.p_next, found.q_next), strict=True)]
+    what = f"{name}: Eq. 2–5 by plain differentiation against the step map of lie{eta}"
+    return same(what, gaps, ("p", "q", "h", *hamiltonian.parameters), "the same")
+
+
+def eq_3(coordinate: str = "p") -> Argument:
+    """Eq. 3 as printed: L_{H_p}(p_k) = H_p ∂q/∂p = H_p. `coordinate`: what L_{H_p} is applied to.
+
+    With `q` the equation is right, and so it is not refuted.
+    """
+    flow = flow_of_every_hamiltonian(2)
+    ring, h_p = flow.ring, flow.h_p
+    literal = h_p * ring.diff(ring["q"], coordinate)
+    by_eq_5 = h_p * ring.diff(ring[coordinate], "q")
+    as_printed = Check(
+        f"`H_p` ∂q/∂{coordinate} is not `H_p`, p and q being independent",
+        literal != h_p,
+        f"`{literal}`",
+    )
+    operator = Check(
+        f"by Eq. 5, `L_{{H_p}}`({coordinate}) = `H_p` ∂{coordinate}/∂q is not `H_p`",
+        by_eq_5 != h_p,
+        f"`{by_eq_5}`",
+    )
+    return concluded(
+        "eq-3",
+        Verdict.REFUTED,
+        "p and q are independent coordinates, so ∂q/∂p = 0 and the right side is 0, not `H_p`; "
+        "with q for p, `L_{H_p}`(`q_k`) = `H_p` ∂q/∂q = `H_p`, it is what Eq. 2 needs",
+        [
+            step(
+                "In Eq. 3 p and q are the independent coordinates of the phase plane, so ∂q/∂p = 0 "
+                "and ``H_p ∂q/∂p = 0``.",
+                as_printed,
+            ),
+            step("By Eq. 5, too, ``L_{H_p}(p) = H_p ∂p/∂q = 0``.", operator),
+            step(
+                "So the printed equality holds only where `H_p` = 0, and not everywhere.",
+                _example(),
+            ),
+            step(
+                "Taken at its word it would give `L_{H_p}` = 0, and with Eq. 4 Lⁿ = 0 and with Eq. "
+                "2 `q_{k+1}` = `q_k`: no scheme for Eq. 1.",
+                vanishes("Eq. 4 from L¹ = 0", eq_4(flow, ring.zero)),
+            ),
+            step(
+                "What is meant is ``L_{H_p}(q_k) = H_p ∂q/∂q = H_p``, and the second line, "
+                "`L_{−H_q}`(`p_k`) = −`H_q` ∂p/∂p = −`H_q`, is right.",
+                _meant(flow, "q"),
+            ),
+        ],
+        remark="So read, Eq. 2–5 are consistent with each other and with Eq. 19 and 27, and "
+        "nothing that follows in the paper is affected.",
+    )
+
+
+def _meant(flow: Flow, coordinate: str) -> Check:
+    diff = flow.ring.diff
+    return vanishes(
+        f"by Eq. 5, `L_{{H_p}}`({coordinate}) − `H_p` and `L_{{−H_q}}`(p) + `H_q`",
+        flow.h_p * diff(flow.ring[coordinate], "q") - flow.h_p,
+        -flow.h_q * diff(flow.ring["p"], "p") + flow.h_q,
+    )
+
+
+def _example() -> Check:
+    """H = p²/2 + q²/2 at (p, q) = (1, 0): the printed sides are 0 and 1."""
+    at = {symbol("p"): sympy.Integer(1), symbol("q"): sympy.Integer(0)}
+    energy = P**2 / 2 + Q**2 / 2
+    left = (sympy.diff(energy, P) * sympy.diff(Q, P)).subs(at)
+    right = sympy.diff(energy, P).subs(at)
+    return Check(
+        "H = (p² + q²)/2 at (p, q) = (1, 0): `H_p` ∂q/∂p against `H_p`",
+        left != right,
+        f"{left} against {right}",
+    )
+
+
+def eq_3_meant(coordinate: str = "q") -> Argument:
+    """Eq. 3 with q for p in its first line: L_{H_p}(q) = H_p, L_{−H_q}(p) = −H_q, by Eq. 5."""
+    found = [Hamiltonian(systems.get(name).hamiltonian().expression) for name in SYSTEMS]
+    return concluded(
+        "eq-3-meant",
+        Verdict.PROVED,
+        "`L_{H_p}`(`q_k`) = `H_p` ∂q/∂q = `H_p` and `L_{−H_q}`(`p_k`) = −`H_q` ∂p/∂p = −`H_q` are "
+        "Eq. 5 for y = q and y = p, and what Eq. 2 begins with",
+        [
+            step(
+                "By Eq. 5 `L_{H_p}`(y) = `H_p` ∂y/∂q and `L_{−H_q}`(y) = −`H_q` ∂y/∂p. With y = q "
+                "and with y = p these are ``L_{H_p}(q) = H_p, L_{−H_q}(p) = −H_q``.",
+                _meant(flow_of_every_hamiltonian(2), coordinate),
+            ),
+            step(
+                "They are the first terms of Eq. 2, by which Eq. 19 and 27 are right.",
+                *(_same(name, each, 2) for name, each in zip(SYSTEMS, found, strict=True)),
+            ),
+        ],
+    )
+
+
+THEOREMS = {"lie-exponential": lie_exponential, "eq-3": eq_3, "eq-3-meant": eq_3_meant}

@@ -1,0 +1,252 @@
+"""Eq. 12 as a product of the Jacobian and the state, and “near-identity” from ΔJ → 0."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+from verify.arithmetic.exact import decimal, text
+from verify.hamiltonians import systems
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.papers.argument import Argument, concluded, step
+from verify.papers.checks.check import NUMBERS, Check, vanishes
+from verify.papers.checks.differential import Differential, Flow, flow_of_every_hamiltonian
+from verify.papers.exact_maps import Point, areas, jacobian, map_from_formulas, next_point
+from verify.proof.assistant.stated import Shipped
+from verify.proof.order import prove
+from verify.schemes.maps.step_map import StepMap
+from verify.schemes.methods.taylor.lie import lie_map
+from verify.verdict import Verdict
+
+H = Fraction(1, 10)
+POINT = Point(p=Fraction(0), q=Fraction(1))
+
+
+def eq_12(hamiltonian: Hamiltonian | None = None, point: Point = POINT) -> Argument:
+    """z_{k+1} = J_k z_k: refuted at one rational point, of the Duffing oscillator if not told."""
+    chosen = hamiltonian or systems.get("duffing").hamiltonian().with_values({"delta": 1})
+    found = lie_map(chosen, 2)
+    product, image = _product(found, point), next_point(found, point, H)
+    linear = _is_linear(lie_map(Hamiltonian.parse("a*p**2/2 + b*p*q + c*q**2/2"), 2))
+    at_a_point = Check(
+        f"Duffing, δ = 1, lie2, h = {text(H)}, z = (p, q) = {point}: J z against z'",
+        product != image,
+        f"{product} against {image}",
+        NUMBERS,
+    )
+    quadratic = Check(
+        "H = a p²/2 + b pq + c q²/2, lie2: J z = z' for all p, q, h, a, b, c",
+        linear,
+        "holds exactly" if linear else "does not hold",
+    )
+    return concluded(
+        "eq-12",
+        Verdict.REFUTED,
+        f"for the Duffing oscillator (δ = 1, h = {text(H)}) at (p, q) = {point}, J z = {product} "
+        f"but z' = {image}; it holds for all h only where H is quadratic",
+        [
+            step(
+                f"For the Duffing oscillator (δ = 1, h = {text(H)}) at (p, q) = {point} J z = "
+                f"{product} and z' = {image}: Eq. 12 is false as a product of a matrix and a "
+                "vector.",
+                at_a_point,
+            ),
+            step(
+                "Of which H is it true? That J(z) z = Φ(z) for all z means that Φ is homogeneous "
+                "of degree 1 (Euler): ``d/ds Φ(sz)/s = (J(sz) sz − Φ(sz))/s^2 = 0``.",
+                euler(),
+            ),
+            step(
+                "If it holds for all small h on a disc around the origin, then the coefficient f "
+                "of h in Φ(z) = z + hf(z) + … is homogeneous of degree 1 too. It is differentiable "
+                "at the origin, so ``f(z) = lim_{s→0} f(sz)/s = f'(0) z``, and H is a quadratic "
+                "form plus a constant.",
+            ),
+            step(
+                "Conversely, for a quadratic form every Xⁿz is linear, and Eq. 12 is an identity.",
+                stays_linear(),
+                quadratic,
+            ),
+        ],
+        remark="So Eq. 12 is false as a product for every other H that is smooth around the "
+        "origin, the Duffing oscillator with δ ≠ 0 and the pendulum among them. What holds is its "
+        "tangent form, `δz_{k+1}` = `J_k` `δz_k` for infinitesimal differences, and that is all "
+        "that Eq. 13–16 use: they need det `J_k` only.",
+    )
+
+
+def _product(found: StepMap, point: Point) -> Point:
+    a, b, c, d = jacobian(found, point, H)
+    return Point(a * point.p + b * point.q, c * point.p + d * point.q)
+
+
+def _is_linear(found: StepMap) -> bool:
+    """Whether J z − z' is zero in the ring."""
+    flat = found.flat
+    ring = flat.ring
+    (a, b), (c, d) = flat.jacobian
+    p, q = ring.variable("p"), ring.variable("q")
+    gaps: Sequence = (a * p + b * q - flat.elements[0], c * p + d * q - flat.elements[1])  # type: ignore[type-arg]
+    return all(ring.decide(x).zero is True for x in gaps)
+
+
+def eq_12_tangent(stray: Fraction = Fraction(0)) -> Argument:
+    """δz_{k+1} = J_k δz_k: Φ(z + sv) − Φ(z) − s J v is O(s²); `stray` is added to J's entries."""
+    found = lie_map(systems.get("duffing").hamiltonian().with_values({"delta": 1}), 2)
+    along = [Point(Fraction(1), Fraction(0)), Point(Fraction(0), Fraction(1))]
+    sizes = [Fraction(1, 10**n) for n in (1, 2, 3)]
+    gaps = [[_gap(found, v, s, stray) / s**2 for s in sizes] for v in along]
+    bounded = all(max(row) <= 2 * min(row) for row in gaps if max(row))
+    shown = "; ".join(", ".join(f"`{decimal(x, 3)}`" for x in row) for row in gaps)
+    example = Check(
+        f"Duffing, δ = 1, lie2, h = {text(H)}, (p, q) = {POINT}: |Φ(z + sv) − Φ(z) − s J v|"
+        f"/s² for s = {', '.join(map(text, sizes))} and v along p; along q, is bounded",
+        bounded,
+        shown,
+        NUMBERS,
+    )
+    return concluded(
+        "eq-12-tangent",
+        Verdict.PROVED,
+        "`δz_{k+1}` = `J_k` `δz_k` for infinitesimal differences is what a Jacobian matrix is, for "
+        "every scheme that is differentiable; Eq. 13–16 use no more",
+        [
+            step(
+                "That Φ is differentiable at `z_k` says ``Φ(z_k + δz) = Φ(z_k) + J_k δz + "
+                "o(|δz|)``, and a smooth function is, with its derivatives as the entries of "
+                "`J_k`; so is every lieη of a smooth H.",
+                Shipped("Smooth", "derivation_has_slopes"),
+            ),
+            step(
+                "Where Φ has second derivatives the rest is O(|δz|²) (Taylor).",
+                tried=[example],
+            ),
+        ],
+        remark="The next sentence of the paper calls `J_k` a tool for representing local linear "
+        "transformations, and all that follows is made of det `J_k`; nothing needs Eq. 12 as a "
+        "product of `J_k` and `z_k` itself.",
+    )
+
+
+def _gap(found: StepMap, v: Point, s: Fraction, stray: Fraction) -> Fraction:
+    a, b, c, d = (x + stray for x in jacobian(found, POINT, H))
+    moved = next_point(found, Point(POINT.p + s * v.p, POINT.q + s * v.q), H)
+    image = next_point(found, POINT, H)
+    gap_p = moved.p - image.p - s * (a * v.p + b * v.q)
+    return abs(gap_p) + abs(moved.q - image.q - s * (c * v.p + d * v.q))
+
+
+def near_identity(start: int = 0) -> Argument:
+    """Φ and J of lieη tend to the identity; `start`: the power of h from which on terms count."""
+    flow = flow_of_every_hamiltonian(4)
+    ring, at_0 = flow.ring, [flow.ring.zero, flow.ring.zero]
+    for i, image in enumerate(flow.lie(3)):
+        at_0[i] = ring.powers(image, "h").get(start, ring.zero)
+    without_h = vanishes(
+        "p' and q' of lie3 without h are p and q, for a generic H",
+        at_0[0] - ring["p"],
+        at_0[1] - ring["q"],
+    )
+    return concluded(
+        "near-identity",
+        Verdict.PROVED,
+        "by Eq. 2 the step is z + h f(z) + O(h²), which tends to z as h → 0, and its Jacobian to "
+        "the unit matrix, uniformly on compact sets",
+        [
+            step(
+                "Eq. 2 is a polynomial in h whose term without h is z: "
+                "``Φ(z) = z + Σ_{n=1}^{η} h^n/n! X^n z``.",
+                without_h,
+            ),
+            step(
+                "For a smooth H its coefficients and their derivatives are bounded on compact "
+                "sets, so Φ → id and J → 1 uniformly there.",
+            ),
+            step(
+                "It follows that ΔJ → 0, too: it is ``h^(η+1)`` times a polynomial in h.",
+                Shipped("Theorems", "determinant_of_lie_in_plane"),
+            ),
+        ],
+    )
+
+
+def near_identity_inference(p_next: str = "-q", q_next: str = "p") -> Argument:
+    """ΔJ → 0 does not make a near-identity map: a map with ΔJ = 0 that moves a point by 1."""
+    found = map_from_formulas(p_next, q_next)
+    sizes = (Fraction(1, 10), Fraction(1, 1000))
+    delta_j = [areas(found, POINT, h, 4).largest for h in sizes]
+    moved = [next_point(found, POINT, h) for h in sizes]
+    far = [abs(z.p - POINT.p) + abs(z.q - POINT.q) for z in moved]
+    preserves = prove(found).area_preserving is True
+    for_every_h = Check(
+        f"p' = `{p_next}`, q' = `{q_next}`: ΔJ is the zero function",
+        preserves,
+        "0" if preserves else "it is not",
+    )
+    along_a_run = Check(
+        "the same map: the largest |ΔJ| along 4 steps for h = 0.1 and 0.001",
+        all(x == 0 for x in delta_j),
+        ", ".join(map(text, delta_j)),
+        NUMBERS,
+    )
+    moves = Check(
+        f"the same map takes (p, q) = {POINT} to a point that does not tend to it",
+        all(x >= 1 for x in far),
+        ", ".join(map(str, moved)),
+        NUMBERS,
+    )
+    return concluded(
+        "near-identity-inference",
+        Verdict.REFUTED,
+        f"ΔJ → 0 alone does not give it: p' = `{p_next}`, q' = `{q_next}` has ΔJ ≡ 0 for all h and "
+        "is not near the identity; the scheme is near-identity because Eq. 2 is z + O(h)",
+        [
+            step(
+                "The rotation by a right angle, p' = −q, q' = p, has det J = 1 for every h.",
+                for_every_h,
+                along_a_run,
+            ),
+            step("It moves (0, 1) to (−1, 0), for every h.", moves),
+        ],
+        remark="A determinant near 1 says that areas are nearly kept, not that points are. The "
+        "conclusion is true of lieη for another reason: by Eq. 2 Φ(z) = z + hf(z) + O(h²), which "
+        "tends to z as h → 0, and J to the unit matrix. From that ΔJ → 0 follows, and not the "
+        "other way round.",
+    )
+
+
+THEOREMS = {
+    "eq-12": eq_12,
+    "eq-12-tangent": eq_12_tangent,
+    "near-identity": near_identity,
+    "near-identity-inference": near_identity_inference,
+}
+
+
+def euler(power: int = 2) -> Check:
+    """d/ds [Φ(sz)/s] = [J(sz) sz − Φ(sz)]/s² for a generic Φ; `power` stands for the 2."""
+    names = ["u", "s", "F", "F_p", "F_q", "p", "q"]
+    ring = Differential(names)
+    u, s, f, f_p, f_q, p, q = (ring[name] for name in names)
+    ring.relate(u * s - 1)  # u = 1/s
+    ring.set_gradient("s", s=ring.context.constant(1))
+    ring.set_gradient("u", s=-u * u)
+    ring.set_gradient("F", s=f_p * p + f_q * q)
+    right = (f_p * s * p + f_q * s * q - f) * u**power
+    return vanishes(
+        "d/ds [Φ(sz)/s] − [J(sz) sz − Φ(sz)]/s² for a component of a generic Φ",
+        ring.reduce(ring.diff(f * u, "s") - right),
+    )
+
+
+def stays_linear(bent: int = 0) -> Check:
+    """X y is linear where y is and H is a quadratic form; `bent` p² is added to y."""
+    names = ["p", "q", "a", "b", "c", "alpha", "beta"]
+    ring = Differential(names)
+    p, q, a, b, c, alpha, beta = (ring[name] for name in names)
+    ring.set_gradient("p", p=ring.context.constant(1), q=ring.zero)
+    ring.set_gradient("q", p=ring.zero, q=ring.context.constant(1))
+    flow = Flow(ring, a * p + b * q, b * p + c * q)
+    along = flow.derive(alpha * p + beta * q + bent * p * p)
+    linear = (a * beta - b * alpha) * p + (b * beta - c * alpha) * q
+    return vanishes(
+        "X(αp + βq) − (aβ − bα)p − (bβ − cα)q for H = a p²/2 + b pq + c q²/2", along - linear
+    )

@@ -1,0 +1,139 @@
+"""Sentences of Section 2.1 beside its equations: whose the method is, and why it is as it is."""
+
+import sympy
+
+from verify.algebra.symbols import P, Q
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.papers.argument import Argument, concluded, step
+from verify.papers.checks.check import Check, vanishes
+from verify.papers.checks.differential import flow_of_every_hamiltonian
+from verify.papers.lie_derivative_scheme.lie_series import eq_4, powers_of
+from verify.verdict import Verdict
+
+
+def taylor_method() -> Argument:
+    """lieη is the Taylor series method of order η, step for step."""
+    return concluded(
+        "taylor-method",
+        Verdict.PROVED,
+        "for every H a step of lieη is the Taylor polynomial of degree η of the exact flow: the "
+        "Taylor series method of order η; by the paper’s own account references 23 to 29 have "
+        "applied it as the Lie derivative method",
+        [
+            step(
+                "By Eq. 2, 4 and 5 ``z_{k+1} = Σ_{n=0}^{η} h^n/n! X^n z``, X the derivative along "
+                "the motion (see the claim on Eq. 2, 4 and 5).",
+                *map(powers_of, ("p", "q")),
+            ),
+            step(
+                "This is the definition of the Taylor series method of order η for z' = f(z): Xⁿz "
+                "is the n-th time derivative of the solution.",
+            ),
+        ],
+        remark="What may be new are the four criteria, and what is said of areas: claims of "
+        "their own. Who was first is not for a computation to say.",
+    )
+
+
+def partitioned(sign: int = -1) -> Argument:
+    """The derivative along Eq. 1 is the sum of two, one from each of its equations."""
+    flow = flow_of_every_hamiltonian(1, ["y", "y_p", "y_q"])
+    ring = flow.ring
+    ring.set_gradient("y", p=ring["y_p"], q=ring["y_q"])
+    parts = flow.h_p * ring["y_q"] + sign * flow.h_q * ring["y_p"]
+    return concluded(
+        "partitioned",
+        Verdict.PROVED,
+        "Eq. 1 is two equations, and the derivative along the motion the sum of one term from "
+        "each, `L_{H_p}` + `L_{−H_q}` = `H_p` ∂/∂q − `H_q` ∂/∂p, for every H",
+        [
+            step(
+                "By the chain rule ``dy/dt = H_p ∂y/∂q − H_q ∂y/∂p`` along Eq. 1, and the two "
+                "terms are Eq. 3 (as meant) and 5.",
+                vanishes(
+                    "`H_p` ∂y/∂q − `H_q` ∂y/∂p less X y, for a generic H and y",
+                    parts - flow.derive(ring["y"]),
+                ),
+            ),
+        ],
+    )
+
+
+def separable_alone(formula: str = "p*q + p**2*q**2") -> Argument:
+    """Eq. 2–5 serve an H that is no sum of a function of p and one of q."""
+    hamiltonian = Hamiltonian.parse(formula)
+    mixed = sympy.expand(sympy.diff(hamiltonian.exact, P, Q))
+    flow = flow_of_every_hamiltonian(2)
+    second = flow.lie_derivatives("q", 2)
+    return concluded(
+        "partitioned-separable",
+        Verdict.REFUTED,
+        "Eq. 3 to 5 hold for every H(p, q), such as `pq + p²q²`, which is no sum of a function of "
+        "p and a function of q",
+        [
+            step(
+                f"H = `{formula}` has ``H_{{pq}} ≠ 0``, so that it is no such sum.",
+                Check(f"H = `{formula}`: `H_pq` is not 0", mixed != 0, f"`{mixed}`"),
+            ),
+            step(
+                "Eq. 4 and 5 are the derivative along the motion for a generic H, so for this one.",
+                vanishes(
+                    "Eq. 4 and 5 from L q = `H_p`, less X² q, for a generic H",
+                    eq_4(flow, second[1]) - second[2],
+                ),
+            ),
+        ],
+    )
+
+
+def of_functions() -> Argument:
+    """L² is a derivative of H_p and of −H_q."""
+    flow = flow_of_every_hamiltonian(2)
+    along = {"q": flow.h_p, "p": -flow.h_q}
+    gaps = [eq_4(flow, y) - flow.lie_derivatives(name, 2)[2] for name, y in along.items()]
+    return concluded(
+        "higher-derivatives",
+        Verdict.PROVED,
+        "`L²` q = L `H_p` and `L²` p = −L `H_q`, and so on: derivatives of functions of p and q",
+        [step("By Eq. 4 ``L^2 q = X H_p, L^2 p = −X H_q``.",
+              vanishes("Eq. 4 from `H_p` and −`H_q`, less X² q and X² p, for a generic H", *gaps))],
+    )  # fmt: skip
+
+
+def nonlinearity(linear: str = "p**2/2 + p*q + q**2", curved: str = "p**2/2 + q**4/4") -> Argument:
+    """The same for linear systems; and a nonlinear one whose second derivative is of a variable."""
+    first, second = (Hamiltonian.parse(formula).exact for formula in (linear, curved))
+    rates = [sympy.diff(first, z) for z in (P, Q)]
+    slopes = [sympy.diff(x, y, z) for x in rates for y in (P, Q) for z in (P, Q)]
+    is_linear = Check(
+        f"H = `{linear}`: the second derivatives of `H_p` and `H_q`, and `H_p` is neither p nor q",
+        not any(slopes) and rates[0] not in (P, Q),
+        f"0; `H_p` = `{rates[0]}`",
+    )
+    force, speed = sympy.diff(second, Q), sympy.diff(second, P)
+    is_curved = Check(
+        f"H = `{curved}`: `H_p` is p, and `H_q` is not linear",
+        speed == P and sympy.diff(force, Q, Q) != 0,
+        f"`{speed}`, `{force}`",
+    )
+    return concluded(
+        "higher-derivatives-nonlinearity",
+        Verdict.REFUTED,
+        "the linear system of H = `p²/2 + pq + q²` has L q = p + q, a function, whose derivative "
+        "`L²` q is; and the nonlinear one of H = `p²/2 + q⁴/4` has L q = p, a variable",
+        [
+            step("The system of the first H is linear, and L q = `H_p` is none of p and q.",
+                 is_linear),
+            step("That of the second is not, and L q = p, so that `L²` q = L p is the derivative "
+                 "of a variable.", is_curved),
+        ],
+    )  # fmt: skip
+
+
+THEOREMS = {
+    "taylor-method": taylor_method,
+    "partitioned": partitioned,
+    "partitioned-separable": separable_alone,
+    "higher-derivatives": of_functions,
+    "higher-derivatives-nonlinearity": nonlinearity,
+}

@@ -1,0 +1,186 @@
+"""Sentences of Sections 3 and 4.1 beside their equations: of errors, and of single numbers."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+import flint
+import sympy
+
+from verify.algebra.symbols import H_STEP, P, Q
+from verify.arithmetic.exact import decimal, text
+from verify.arithmetic.flint_precision import working_precision
+from verify.hamiltonians import systems
+from verify.papers.argument import Argument, concluded, step
+from verify.papers.checks.check import BALLS, NUMBERS, Check, same
+from verify.papers.exact_maps import Point, map_from_formulas, next_point, value
+from verify.papers.lie_derivative_scheme.convergence import STEPS, SYSTEMS
+from verify.papers.lie_derivative_scheme.error_measures import mean_of_squares
+from verify.papers.lie_derivative_scheme.lipschitz import duffing
+from verify.papers.lie_derivative_scheme.oscillator import PRECISION
+from verify.schemes.methods.taylor.lie import lie_map
+from verify.verdict import Verdict
+
+EULER = ("p - h*q", "q + h*p - h**2*q")  # symplectic Euler for H = (p² + q²)/2
+UNEVEN = ("-p*(1 + (q + 1/20)/10**11)", "-q")  # its ΔJ is 10⁻¹¹ (q + 1/20), whatever h is
+_POINT_ONE = Fraction(1, 10)
+
+
+def of_the_determinants() -> Argument:
+    """MSE(J) tells how far the determinants are from 1."""
+    return concluded(
+        "mse-quantifies",
+        Verdict.PROVED,
+        "√MSE is the root mean square of det `J_k` − 1 over [t₀, `t_end`], and no |det `J_k` − 1| "
+        "exceeds √(N MSE)",
+        [
+            step(
+                "The true value of det `J_k` is 1 and ``MSE = (1/N) Σ_{k} (det J_k − 1)^2``.",
+                mean_of_squares(),
+            ),
+            step("One term of a sum of squares is at most the sum: |det `J_k` − 1|² ≤ N MSE."),
+        ],
+    )
+
+
+def of_the_solution(formulas: Sequence[str] = EULER) -> Argument:
+    """MSE = 0 and an error of order h: symplectic Euler for the oscillator."""
+    found = map_from_formulas(*formulas)
+    zero = same("symplectic Euler, H = (p² + q²)/2: ΔJ", [found.delta_j], ("p", "q", "h"))
+    errors = [_error_at_1(formulas, n) for n in STEPS]
+    return concluded(
+        "mse-quantifies-solution",
+        Verdict.REFUTED,
+        "symplectic Euler has det `J_k` = 1 and MSE = 0 whatever h is, while its solution is off "
+        f"by {', '.join(each.shown for each in errors)} at t = 1 for the oscillator with h = "
+        f"{', '.join(text(Fraction(1, n)) for n in STEPS)}",
+        [
+            step("For symplectic Euler (Eq. 24, 32) ΔJ = 0 at every point, so MSE = 0.", zero),
+            step(
+                "For H = (p² + q²)/2 from (q, p) = (1, 0) its error at t = 1 is about 0.42 h.",
+                *errors,
+            ),
+        ],
+        given="Let the calculated values be those of (p, q).",
+    )
+
+
+def _error_at_1(formulas: Sequence[str], steps: int) -> Check:
+    """The distance from the exact solution after N steps of 1/N, in balls; the map is linear."""
+    jacobian = map_from_formulas(*formulas).jacobian
+    h = Fraction(1, steps)
+    a, b, c, d = (value(x, Point(Fraction(0), Fraction(0)), h) for x in jacobian)
+    with working_precision(PRECISION):
+        entries = [flint.arb(flint.fmpq(x.numerator, x.denominator)) for x in (a, b, c, d)]
+        matrix = flint.arb_mat(2, 2, entries) ** steps
+        p, q = matrix[0, 1], matrix[1, 1]  # from (p, q) = (0, 1)
+        one = flint.arb(1)
+        off = ((p + one.sin()) ** 2 + (q - one.cos()) ** 2).sqrt()
+        share = off * steps
+        holds, shown = bool(share > 0.4) and bool(share < 0.5), off.mid().str(3, radius=False)
+    return Check(
+        f"symplectic Euler, oscillator, h = {text(h)}: the error at t = 1 lies between 0.4 h and "
+        "0.5 h",
+        holds,
+        f"`{shown}`",
+        BALLS,
+    )
+
+
+def in_general() -> Argument:
+    """ΔJ of lie2 is not 0 at almost every state of either system."""
+    return concluded(
+        "errors-in-every-step",
+        Verdict.PROVED,
+        "for both systems ΔJ of lie2 is an analytic function of (p, q) that is not identically 0, "
+        "for any h > 0: it is 0 on a set of measure 0 alone",
+        [
+            step(
+                "For δ ≠ 0, h > 0 ΔJ of lie2 is not identically 0 in (p, q): its part that is "
+                "proportional to p is not.",
+                *map(_part_in_p, SYSTEMS),
+            ),
+            step("Zeros of an analytic function that is not 0 everywhere have measure 0."),
+        ],
+    )
+
+
+def _part_in_p(name: str) -> Check:
+    """∂ΔJ/∂p for δ = 1, which has no zero but where it should have."""
+    parameters = {"delta": 1} if name == "duffing" else {}
+    slope = lie_map(systems.get(name).hamiltonian().with_values(parameters), 2).delta_j
+    slope = sympy.simplify(sympy.diff(slope, P))
+    return Check(f"{name}: ∂ΔJ/∂p of lie2", slope != 0, f"`{slope}`")
+
+
+def in_every_step(q: Fraction = Fraction(1), share: Fraction = Fraction(-4, 3)) -> Argument:
+    """ΔJ = 0 on a curve of the Duffing oscillator; `share`: p on it at this q, over h."""
+    found = lie_map(duffing(), 2)
+    put = {P: sympy.Rational(share.numerator, share.denominator) * H_STEP, Q: sympy.Rational(q)}
+    there = same(
+        f"Duffing, δ = 1, lie2: ΔJ at q = {text(q)}, p = `{text(share)} h`",
+        [sympy.expand(found.delta_j.subs(put, simultaneous=True))],
+        ("h",),
+    )
+    return concluded(
+        "errors-in-every-step-exactly",
+        Verdict.REFUTED,
+        f"for the Duffing oscillator with δ = 1 the step from q = {text(q)}, p = −4h/3 has ΔJ = 0, "
+        "as those have from every point of the curve 12pq = −h (1 + 3q²)²",
+        [step("ΔJ = 3h³pq + `h⁴ (1 + 3q²)²/4` is 0 on this curve.", there)],
+    )
+
+
+# -- Section 4.1 -----------------------------------------------------------------------------------
+
+
+def from_one_step_size(formulas: Sequence[str] = UNEVEN, steps: int = 20_000_000) -> Argument:
+    """A map with the numbers of Figure 3 at h = 0.001 that satisfies neither criterion."""
+    found = map_from_formulas(*formulas)
+    points = [Point(Fraction(0), Fraction(1))]
+    points += [next_point(found, points[0], _POINT_ONE)]
+    both = [value(found.delta_j, point, _POINT_ONE) for point in points]
+    again = next_point(found, points[1], _POINT_ONE) == points[0]
+    size, pair = max(map(abs, both)), (1 + both[0]) * (1 + both[1]) - 1
+    with working_precision(PRECISION):
+        grown = (1 + flint.arb(flint.fmpq(pair.numerator, pair.denominator))) ** (steps // 2) - 1
+        near = bool(grown > 5e-6) and bool(grown < 2e-5)
+        shown = grown.mid().str(3, radius=False)
+    return concluded(
+        "duffing-criteria-inference",
+        Verdict.REFUTED,
+        "criteria 2 and 4 speak of h → 0, and a number at one h says nothing of that: a map that "
+        "does not depend on h at all, with ΔJ = 10⁻¹¹ (1/20 ± 1), has these very numbers at h = "
+        "0.001 and satisfies neither",
+        [
+            step(
+                "p' = −p (1 + 10⁻¹¹ (q + 1/20)), q' = −q from (p, q) = (0, 1) alternates between "
+                "two ΔJ, about ±10⁻¹¹, whatever h is: |ΔJ| is about 10⁻¹¹ and no o(h).",
+                Check(
+                    "the map: it returns after two steps, and max |ΔJ|",
+                    again and H_STEP not in found.delta_j.free_symbols and 5e-12 < size < 2e-11,
+                    f"`{decimal(size, 3)}`",
+                    NUMBERS,
+                ),
+            ),
+            step(
+                "Over [0, 20000] with h = 0.001 its Λ is about 10⁻⁵.",
+                Check(f"the map: Λ after {steps} steps", near, f"`{shown}`", BALLS),
+            ),
+            step(
+                "After N = T/h steps 1 + Λ is a fixed number above 1 to the power N/2, which does "
+                "not tend to 1 as h → 0.",
+                Check("the map: ΔJ of two steps together is positive", pair > 0,
+                      f"`{decimal(pair, 3)}`", NUMBERS),
+            ),
+        ],
+        remark="That lie2 satisfies both criteria is true, and shown by Eq. 21.",
+    )  # fmt: skip
+
+
+THEOREMS = {
+    "mse-quantifies": of_the_determinants,
+    "mse-quantifies-solution": of_the_solution,
+    "errors-in-every-step": in_general,
+    "errors-in-every-step-exactly": in_every_step,
+    "duffing-criteria-inference": from_one_step_size,
+}

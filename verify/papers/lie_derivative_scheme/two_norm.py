@@ -1,0 +1,149 @@
+"""L_p = ‖J_k‖₂: wrong as the L of Eq. 9, right as the Lipschitz constant of the step itself."""
+
+from fractions import Fraction
+
+import sympy
+
+from verify.algebra.symbols import P, Q
+from verify.arithmetic.exact import decimal, text
+from verify.hamiltonians import systems
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.papers.argument import Argument, concluded, step
+from verify.papers.checks.check import NUMBERS, Check, same
+from verify.papers.checks.matrices import stretching
+from verify.papers.exact_maps import Point, jacobian, next_point, squared
+from verify.papers.lie_derivative_scheme.lipschitz import PAIR, duffing
+from verify.schemes.methods.taylor.lie import lie_map
+from verify.verdict import Verdict
+
+_EDGE = Fraction(2, 3)  # of |δ|q²
+STRETCHED = Point(p=Fraction(0), q=Fraction(2))
+_BESIDE = ((1, 10), (1, 2), (80, 100), (83, 100), (3, 2))  # q, on both sides of √(2/3)
+_STRETCHES = {"duffing": "3*delta*q**2/2", "pendulum": "(1 - cos(q))/2"}
+
+
+def two_norm(point: Point = STRETCHED, h: Fraction = Fraction(1, 10)) -> Argument:
+    """L_p = ‖J_k‖₂ in Eq. 9: refuted at a point where ‖J‖₂ > 1 + h ‖J‖₂ is exact."""
+    a, b, c, d = jacobian(lie_map(duffing(), 2), point, h)
+    # With |Jv| ≤ ‖J‖₂ |v| for v = (1, −1), ‖J‖₂ (1 − h) > 1 follows from |Jv|² (1 − h)² > |v|².
+    stretch = ((a - b) ** 2 + (c - d) ** 2) / 2
+    exceeds = Check(
+        f"Duffing, δ = 1, lie2, h = {text(h)}, (p, q) = {point}: ‖J v‖²/‖v‖² for v = (1, −1), "
+        "times (1 − h)², exceeds 1",
+        stretch * (1 - h) ** 2 > 1,
+        text(stretch * (1 - h) ** 2),
+        NUMBERS,
+    )
+    return concluded(
+        "two-norm",
+        Verdict.REFUTED,
+        f"a map with ‖J‖₂ > 1 + h‖J‖₂ has no Lipschitz constant 1 + h‖J‖₂, and the Duffing step is "
+        f"one: at (p, q) = {point}, h = {text(h)}, (1 − h)² ‖J‖₂² ≥ {text(stretch * (1 - h) ** 2)}",
+        [
+            step(
+                "The inequality |Φ(z̄) − Φ(z)| ≤ (1 + h‖J‖₂) |z̄ − z| for z̄ near z needs "
+                "``‖J‖₂ ≤ 1 + h‖J‖₂``, as ‖J‖₂ is the local Lipschitz constant of Φ.",
+            ),
+            step(
+                f"For the Duffing oscillator with δ = 1, h = {text(h)}, at (p, q) = {point} "
+                "``(1 − h)^2 ‖J‖₂^2 > 1``, so that this is false.",
+                exceeds,
+            ),
+            step(
+                "It is no accident: J = 1 + hf' + O(h²), so ‖J‖₂ = 1 + hs + O(h²) with s the "
+                "greatest eigenvalue of the symmetric part of f', whereas 1 + h‖J‖₂ = 1 + h + "
+                "O(h²). Wherever s > 1 the inequality fails for all small h.",
+            ),
+            step(
+                "That symmetric part has the eigenvalues ±s, "
+                "``s^2 = H_{pq}^2 + (H_{pp} − H_{qq})^2/4``.",
+                stretching(),
+            ),
+            step(
+                "For the Duffing oscillator s = 3|δ|q²/2, so it fails where |δ|q² > 2/3. (For the "
+                "pendulum s = (1 − cos q)/2 ≤ 1.)",
+                *(_stretch_of(name) for name in _STRETCHES),
+            ),
+            step(
+                "Where |δ|q² < 2/3 it holds for small h: of the paper’s five initial values along "
+                "the orbits from (q, p) = (0.1, 0) and (0.5, 0), which stay there, and from no "
+                "other.",
+                tried=[_is_a_factor(Fraction(*q)) for q in _BESIDE],
+            ),
+        ],
+        given="‖J‖₂ is the local Lipschitz constant of the step map itself, Φ, whose factor in Eq. "
+        "9 is 1 + hL. To put L = ‖J‖₂ counts it twice.",
+        remark="What Eq. 9 needs in a norm is L = max (‖J‖₂ − 1)/h, or any bound of ‖ψ'‖, Φ = z + "
+        "hψ, which stays bounded as h → 0; with it the conclusion of Section 2.2 stands.",
+    )
+
+
+def _is_a_factor(q: Fraction, h: Fraction = Fraction(1, 100), edge: Fraction = _EDGE) -> Check:
+    """‖J‖₂ ≤ 1 + h‖J‖₂ for Duffing with δ = 1 at p = 0, exactly where q² < `edge`."""
+    a, b, c, d = jacobian(lie_map(duffing(), 2), Point(Fraction(0), q), h)
+    trace, square = a * a + b * b + c * c + d * d, (a * d - b * c) ** 2
+    most = 1 / (1 - h) ** 2  # what the greater zero of x² − trace x + square may be at most
+    holds = most**2 - trace * most + square >= 0 and 2 * most >= trace
+    return Check(
+        f"Duffing, δ = 1, lie2, h = {text(h)}, (p, q) = (0, `{text(q)}`): ‖J‖₂ ≤ 1 + h‖J‖₂, if and "
+        "only if q² < 2/3",
+        holds is (q * q < edge),
+        "it holds" if holds else "it does not hold",
+        NUMBERS,
+    )
+
+
+def _stretch_of(name: str, told: str = "") -> Check:
+    """s² of the system, all parameters symbols; `told`: what is taken for s."""
+    energy = systems.get(name).hamiltonian().expression
+    s = Hamiltonian.parse(told or _STRETCHES[name]).expression
+    pp, pq, qq = (sympy.diff(energy, *by) for by in ((P, P), (P, Q), (Q, Q)))
+    gap = s**2 - (pq**2 + (pp - qq) ** 2 / 4)
+    return same(f"{name}: s² for s = `{told or _STRETCHES[name]}`", [gap], ("p", "q", "delta"))
+
+
+def norm_of_the_step(scale: Fraction = Fraction(1)) -> Argument:
+    """‖J‖₂ as the Lipschitz constant of the step itself, the 1 + hL of Eq. 9; `scale` times it.
+
+    On the segment between two points |Φ(z̄) − Φ(z)|² ≤ max ‖J‖₂² |z̄ − z|².
+    """
+    h = Fraction(1, 10)
+    found, ends = lie_map(duffing(), 2), PAIR
+    images = [next_point(found, z, h) for z in ends]
+    moved = squared(*images) / squared(*ends)
+    between = [Point(Fraction(0), Fraction(k, 8)) for k in range(9)]
+    norms = [_norm_squared(jacobian(found, z, h)) for z in between]
+    example = Check(
+        f"Duffing, δ = 1, lie2, h = {text(h)}: |Φ(z̄) − Φ(z)|²/|z̄ − z|² for (p, q) = "
+        f"{ends[0]} and {ends[1]}, at most the greatest of 9 lower bounds of ‖J‖₂² between",
+        moved <= scale * max(norms),
+        f"`{decimal(moved, 4)}` ≤ `{decimal(scale * max(norms), 4)}`",
+        NUMBERS,
+    )
+    return concluded(
+        "two-norm-of-the-step",
+        Verdict.PROVED,
+        "the greatest ‖`J_k`‖₂ on a convex set is the least Lipschitz constant there of "
+        "(`p_{k+1}`, `q_{k+1}`) as functions of (`p_k`, `q_k`), which is the factor 1 + hL of Eq. "
+        "9",
+        [
+            step(
+                "By the mean value theorem, the maximum taken over the segment, "
+                "``|Φ(z̄) − Φ(z)| ≤ max ‖J‖₂ |z̄ − z|``.",
+                tried=[example],
+            ),
+            step("Along the direction that J stretches most nothing less will do."),
+        ],
+        remark="So if `L_p` stands for the Lipschitz constant “of `p_{k+1}` and `q_{k+1}`”, as the "
+        "text after Eq. 9 calls it, then ‖`J_k`‖₂ is right. It then takes the place of the whole "
+        "factor 1 + hL in Eq. 9.",
+    )
+
+
+def _norm_squared(entries: tuple[Fraction, ...]) -> Fraction:
+    """A lower bound of ‖J‖₂²: |J v|²/|v|² for the better of v = (0, 1) and (1, 0)."""
+    a, b, c, d = entries
+    return max(a * a + c * c, b * b + d * d)
+
+
+THEOREMS = {"two-norm": two_norm, "two-norm-of-the-step": norm_of_the_step}
