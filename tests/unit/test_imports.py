@@ -27,7 +27,7 @@ from tests.paths import ROOT
 ROOF = ("verify", "__main__", "from_type", "testing")
 ROOMS = ("commands", "calls", "pages", "reference", "exploration", "strategies", "claims",
          "studies", "integrators", "runs", "flows", "kernels", "execution", "scenes", "proof",
-         "schemes", "hamiltonians", "algebra", "arithmetic")  # fmt: skip
+         "schemes", "hamiltonians", "algebra", "arithmetic", "functions")  # fmt: skip
 GROUND = ("code_cache", "content", "discovery", "drawable", "effort", "errors", "files", "formats",
           "frames", "late", "lateral", "lockstep", "notebook", "prose", "verdict")  # fmt: skip
 

@@ -16,6 +16,7 @@ from typing import Any
 
 from verify.arithmetic import numba_code
 from verify.arithmetic.number_system import Arithmetic, NumberSystem, interpreted
+from verify.functions import by_name, in_rings
 
 NAME = "float64"
 _REPAID = 50_000  # steps: Python takes some 2 µs each, and llvmlite's import and compilation 0.1 s
@@ -32,7 +33,7 @@ def make(digits: int) -> Arithmetic:
         finite=math.isfinite,
         context=nullcontext,
         functions={
-            **{f: getattr(math, f) for f in ("sin", "cos", "exp", "log", "sinh", "cosh", "atan")},
+            **{f: getattr(math, f) for f in in_rings()},
             "sqrt": math.sqrt,
             "root": _root,
             "pi": math.pi,
@@ -109,7 +110,7 @@ def _unrefused(source: str, name: str, namespace: Mapping[str, Any]) -> Callable
 
     A compiled kernel stays in memory for good, and orbits that escape are no rarity.
     """
-    own = {f: made for f, made in _IEEE.items() if f in namespace}
+    own = {f: _ieee(f) for f in by_name() if f in namespace}
     return interpreted(_DIVISION.sub(r"over(\1, \2)", source), name, {**namespace, **own, **_OVER})
 
 
@@ -136,14 +137,19 @@ def _by_numba(source: str, name: str, namespace: Mapping[str, Any]) -> Callable[
     return numba_code.compiled(scope[name], source, name, repr(sorted(named.items())), own)
 
 
-def _either(function: Callable[[float], float], beyond: Callable[[float], float]) -> Any:
-    """The function, and `beyond` where Python's own refuses."""
+def _ieee(name: str) -> Callable[[float], float]:
+    """The function; where Python's own refuses, with the infinity or NaN that IEEE has there."""
+    function: Callable[[float], float] = getattr(math, name)
+    pair = by_name()[name].pair
+    odd = pair is not None and name == pair.odd
 
     def made(x: float) -> float:
         try:
             return function(x)
-        except (OverflowError, ValueError):
-            return beyond(x)
+        except OverflowError:
+            return math.copysign(math.inf, x) if odd else math.inf
+        except ValueError:
+            return math.nan if x else -math.inf  # at 0 only log is refused
 
     return made
 
@@ -156,15 +162,6 @@ def _over(x: float, y: float) -> float:
 
 _DIVISION = re.compile(r"(\w+|\([^()]*\)) / (\w+|\([^()]*\))")
 _OVER = {"over": _over}
-_IEEE = {
-    "exp": _either(math.exp, lambda _: math.inf),
-    "cosh": _either(math.cosh, lambda _: math.inf),
-    "sinh": _either(math.sinh, lambda x: math.copysign(math.inf, x)),
-    "log": _either(math.log, lambda x: math.nan if x else -math.inf),
-    "sqrt": _either(math.sqrt, lambda _: math.nan),
-    "sin": _either(math.sin, lambda _: math.nan),
-    "cos": _either(math.cos, lambda _: math.nan),
-}
 
 
 def _root(x: float, n: int) -> float:
