@@ -13,6 +13,7 @@ import flint
 
 from verify.algebra.generator import Generator, System, terms_of
 from verify.algebra.ring import Poly, Ring
+from verify.functions import in_rings
 from verify.kernels.step.operations import Loop, Tail
 from verify.kernels.step.operations import Op as Op
 from verify.kernels.step.operations import Program as Program
@@ -104,13 +105,18 @@ class Evaluator:
         if g.kind == "variable":
             return self._inputs[g.name]
         if g.kind == "pi":
-            return self.program.apply("pi")
+            return self.program.pi()
         if g.kind == "stage":
             return self.evaluate(g.inner)
         if g.kind == "solved":
             self._solve(self.ring.systems[g.index])
             return self._at[g.index]
-        return self.program.apply(g.kind, self.evaluate(g.inner), degree=g.degree)
+        inner = self.evaluate(g.inner)
+        if g.kind == "inverse":
+            return self.program.inverse(inner)
+        if g.kind == "root":
+            return self.program.root(inner, g.degree)
+        return self.program.call(in_rings()[g.kind], inner)
 
     def _solve(self, system: System) -> None:
         """Writes the loop that finds a system's unknowns, with what moves in it inside."""

@@ -17,6 +17,7 @@ from verify.hamiltonians.canonical_field import CanonicalField
 from verify.kernels.step.increments import increments
 from verify.kernels.step.operations import Loop, Op
 from verify.kernels.step.program import Evaluator, Program
+from verify.kernels.step.slopes import slope_of
 from verify.schemes.step_algebra import Number, StepAlgebra
 
 Gradient = Mapping[int, int]  # by input, of what is not 0
@@ -75,28 +76,19 @@ class Partials:
                 return (program.neg(one),)
             case "mul":
                 return op.args[1], op.args[0]
+            case "inverse":
+                return (program.neg(program.mul(index, index)),)
             case "root":
-                return (self._of_root(index, op),)
-        return (_SLOPES[op.kind](program, op.args[0], index),)
+                return (self._of_root(index, op.degree),)
+            case "call":
+                return (slope_of(program, op, index),)
+        return ()
 
-    def _of_root(self, index: int, op: Op) -> int:
+    def _of_root(self, index: int, degree: int) -> int:
         """y/(n x) of y = x^(1/n), as 1/(n y^(n − 1))."""
         program = self.program
-        below = program.mul(program.quotient(op.degree, 1), program.power(index, op.degree - 1))
-        return program.apply("inverse", below)
-
-
-# f'(x) of y = f(x), from the program, x and y.
-_SLOPES: Mapping[str, Callable[[Program, int, int], int]] = {
-    "sin": lambda made, x, y: made.apply("cos", x),
-    "cos": lambda made, x, y: made.neg(made.apply("sin", x)),
-    "exp": lambda made, x, y: y,
-    "log": lambda made, x, y: made.apply("inverse", x),
-    "sinh": lambda made, x, y: made.apply("cosh", x),
-    "cosh": lambda made, x, y: made.apply("sinh", x),
-    "inverse": lambda made, x, y: made.neg(made.mul(y, y)),
-    "atan": lambda made, x, y: made.apply("inverse", made.add(made.quotient(1, 1), made.mul(x, x))),
-}
+        below = program.mul(program.quotient(degree, 1), program.power(index, degree - 1))
+        return program.inverse(below)
 
 
 _ZERO = Fraction(0)
@@ -227,7 +219,7 @@ def _eliminated(
         pivot = rows[k][k]
         one = program.is_constant(pivot, 1)
         pivots += [] if one else [pivot]
-        over.append(pivot if one else program.apply("inverse", pivot))
+        over.append(pivot if one else program.inverse(pivot))
         for i in range(k + 1, size):
             factor = mul(rows[i][k], over[k])
             for j in range(k + 1, size + 1):
