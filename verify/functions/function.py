@@ -38,14 +38,16 @@ class Domain:
 
 @dataclass(frozen=True)
 class FixedPoint:
-    """How exact a function's code in fixed point is, which `verify.arithmetic.wide` has.
+    """How exact a function is in fixed point, and how it is made where it is made of others.
 
     A result is off by `units` in the last place at most, and by its size divided by `share` more,
-    where that is not 0.
+    where that is not 0. `composed`: the function in finer numbers, from these and its argument (see
+    `verify.arithmetic.wide.composed`); None where `verify.arithmetic.wide` has code for it.
     """
 
     units: str
     share: int = 0
+    composed: Callable[[Any, Number], Number] | None = None
 
 
 @dataclass(frozen=True)
