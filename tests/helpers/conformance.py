@@ -18,8 +18,7 @@ import flint
 from verify.algebra.enclosure import BALLS
 from verify.arithmetic.arb import bounds, middle_and_radius, rational_ball
 from verify.arithmetic.number_system import Arithmetic
-from verify.kernels.rounding import rounding_of
-from verify.kernels.step.program import Op
+from verify.functions import in_rings
 
 ZERO, HALF = Fraction(0), Fraction(1, 2)
 # Units in the last place that a function may be off: libm keeps within 2, mpmath within 1, MPFR
@@ -39,8 +38,8 @@ MODERATE = [Fraction(n, 37) for n in (-401, -100, -58, -37, -5, -1, 1, 3, 29, 58
 POSITIVE = [Fraction(1, 10**30), *(x for x in MODERATE if x > 0), Fraction(7 * 10**40, 3)]
 HUGE = [Fraction(10**9, 7), Fraction(10**20, 7), Fraction(10**22)]
 POINTS = {
-    "sin": [*MODERATE, *HUGE], "cos": [*MODERATE, *HUGE], "exp": MODERATE, "sinh": MODERATE,
-    "cosh": MODERATE, "atan": [*MODERATE, *HUGE, Fraction(1, 10**30)], "log": POSITIVE,
+    **{name: [*MODERATE, *HUGE, Fraction(1, 10**30)] for name in in_rings()},
+    "exp": MODERATE, "sinh": MODERATE, "cosh": MODERATE, "log": POSITIVE,
 }  # fmt: skip
 RADICANDS = [*POSITIVE, Fraction(8), Fraction(10**200), Fraction(1, 10**200)]
 
@@ -97,7 +96,8 @@ def stated_ulps(made: Arithmetic, kind: str, value: Fraction) -> Fraction:
     if not made.absolute:
         return FUNCTION_ULPS.get(made.name, GOOD_LIBRARY)
     with flint.ctx.workprec(64):
-        own = rounding_of(made)(Op(kind, degree=2), abs(rational_ball(value)))
+        assert made.rounding is not None
+        own = made.rounding(kind, 2, abs(rational_ball(value)))
         return bounds(own)[1] * 2**made.bits
 
 

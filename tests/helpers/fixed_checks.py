@@ -20,8 +20,7 @@ from verify.arithmetic.compiled import engine
 from verify.arithmetic.compiled.engine import Fixed
 from verify.arithmetic.systems import fixed
 from verify.arithmetic.wide.functions import _ANGLES, _OCTAVE
-from verify.kernels.rounding import rounding_of
-from verify.kernels.step.program import Op
+from verify.functions import in_rings
 
 WIDTHS = (128, 156, 192, 256, 320, 512)
 WIDEST = 1024
@@ -29,9 +28,10 @@ FRACTION_OF = 16  # bits less than the width are after the point
 RANGE = 2**15
 OPERATORS = ("<", "<=", ">", ">=", "==", "!=")
 CALLS = {
-    "sin": "sin(x)", "cos": "cos(x)", "exp": "exp(x)", "sinh": "sinh(x)", "cosh": "cosh(x)",
-    "log": "log(x)", "root": "sqrt(x)", "inverse": "1 / x",
-}  # fmt: skip
+    **{name: f"{name}(x)" for name, f in in_rings().items() if f.fixed is not None},
+    "root": "sqrt(x)",
+    "inverse": "1 / x",
+}
 ONES = 2**64 - 1
 
 
@@ -63,7 +63,9 @@ class Format:
     def stated(self, kind: str, true: Fraction) -> Fraction:
         """The error that `verify.kernels.rounding` states of an operation with this result."""
         with flint.ctx.workprec(64):
-            own = rounding_of(self.made)(Op(kind, degree=2), abs(rational_ball(true)))
+            rounding = self.made.rounding
+            assert rounding is not None
+            own = rounding(kind, 2, abs(rational_ball(true)))
             return bounds(own)[1]
 
     def allows(self, error: Fraction, kind: str, true: Fraction) -> bool:

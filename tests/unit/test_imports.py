@@ -27,7 +27,8 @@ from tests.paths import ROOT
 ROOF = ("verify", "__main__", "from_type", "testing")
 ROOMS = ("commands", "calls", "pages", "reference", "exploration", "strategies", "audits",
          "claims", "papers", "studies", "integrators", "runs", "flows", "kernels", "execution",
-         "scenes", "proof", "schemes", "hamiltonians", "algebra", "arithmetic")  # fmt: skip
+         "scenes", "proof", "schemes", "hamiltonians", "algebra", "arithmetic",
+         "functions")  # fmt: skip
 GROUND = ("code_cache", "content", "discovery", "drawable", "effort", "errors", "files", "formats",
           "frames", "late", "lockstep", "notebook", "prose", "verdict")  # fmt: skip
 

@@ -17,7 +17,7 @@ from docs._generate.markdown import table
 from docs._generate.parts import PARTS, asked_for, filled
 from docs._generate.toctrees import chapters, with_toctrees
 from tests.helpers.pages.blocks import DOCS, PAGES
-from verify import arithmetic, schemes
+from verify import arithmetic, functions, schemes
 from verify.claims.kinds import models
 from verify.hamiltonians import systems
 from verify.scenes.scene import Scene
@@ -68,6 +68,7 @@ def test_a_mark_becomes_its_part_and_one_of_no_part_fails() -> None:
 NAMED = {
     "command-line": [context.command_path for context in contexts()],
     "claim-kinds": [*models()],
+    "functions": functions.names(),
     "number-systems": arithmetic.names(),
     "python-api": [f"verify.{name}" for name in verify.__all__],
     "results-json": ["SceneResult", "ClaimResult", "Provenance"],

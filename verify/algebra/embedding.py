@@ -13,11 +13,9 @@ from functools import partial
 import flint
 
 from verify.algebra.expressions.functions_used import (
-    is_exponential,
+    function_of,
     is_exponential_power,
-    is_hyperbolic,
     is_natural,
-    is_other,
     is_trigonometric,
     levels_of,
     subexpressions,
@@ -27,10 +25,13 @@ from verify.algebra.identities.numbers import rational_root
 from verify.algebra.lattice import lattice, lattice_and_turns
 from verify.algebra.ring import Poly, Ring, RingFullError
 from verify.errors import LimitError
+from verify.functions import by_name
+from verify.functions.function import CIRCLE, HYPERBOLA, Function, Pair
 from verify.late import sympy
 
 MAX_TERMS = 20000
 _MOST_BITS = 12  # of a number under a root, before it is scaled
+_EXP = "exp"  # it alone stands for itself where no function of its pair is asked for
 
 
 def embed(
@@ -74,6 +75,13 @@ def _argument(function: sympy.Expr) -> sympy.Expr:
     return function.args[0] if function.args else sympy.S.One  # e is exp(1)
 
 
+def _function(node: sympy.Expr) -> Function:
+    """The function that the node is of something, as u**v is the exponential of v log u."""
+    function = by_name()[_EXP] if node.is_Pow else function_of(node)
+    assert function is not None  # noqa: S101 - the nodes are those of `levels_of`
+    return function
+
+
 def _scale(u: Poly, degree: int) -> flint.fmpq:
     """2^k such that u/2^(k·degree) is close to 1, for a number u that is not, and fits no fixed
     point; else 1."""
@@ -96,10 +104,10 @@ class _Builder:
     def functions(self, level: Sequence[sympy.Expr]) -> None:
         """Generators for one level of functions, whose arguments are elements by now."""
         self.family([f for f in level if is_trigonometric(f)], self.circle, lattice_and_turns)
-        exponentials = [f for f in level if is_hyperbolic(f) or is_exponential(f) or f.is_Pow]
+        exponentials = [f for f in level if _function(f).pair is HYPERBOLA]
         self.family(exponentials, self.exponential, lattice)
         for function in level:
-            if is_other(function):
+            if _function(function).pair is None:
                 self.other(function)
 
     def family(
@@ -127,17 +135,16 @@ class _Builder:
             self.known[function] = self.select(function, even, odd)
 
     def select(self, function: sympy.Expr, even: Poly, odd: Poly) -> Poly:
-        if isinstance(function, sympy.cos | sympy.cosh):
-            return even
-        if isinstance(function, sympy.sin | sympy.sinh):
-            return odd
-        if is_exponential(function) or function.is_Pow:
-            return self.ring.reduce(even + odd)
-        return self.ring.multiply(odd, self.inverse(even, function))
+        def over(above: Poly, below: Poly) -> Poly:
+            return self.ring.multiply(above, self.inverse(below, function))
+
+        parts = _function(function).parts
+        assert parts is not None  # noqa: S101 - those of a pair have them
+        return self.ring.reduce(parts(odd, even, over))
 
     def circle(self, b: Poly, _: list[sympy.Expr]) -> Callable[[int], tuple[Poly, Poly]]:
         """cos b and sin b; returns k ↦ (cos kb, sin kb)."""
-        return partial(self.multiple, *self.pair(b, "cos", "sin", sign=-1), sign=-1)
+        return partial(self.multiple, *self.pair(b, CIRCLE), sign=CIRCLE.sign)
 
     def exponential(
         self, b: Poly, functions: list[sympy.Expr]
@@ -147,20 +154,22 @@ class _Builder:
         Returns k ↦ (even, odd) with even + odd = exp kb; without hyperbolic functions odd is 0.
         """
         ring = self.ring
-        if ring.find("cosh", b) is not None or any(map(is_hyperbolic, functions)):
-            return partial(self.multiple, *self.pair(b, "cosh", "sinh", sign=1), sign=1)
-        e = ring.find("exp", b)
+        if ring.find(HYPERBOLA.even, b) is not None or any(
+            _function(f).name != _EXP for f in functions
+        ):
+            return partial(self.multiple, *self.pair(b, HYPERBOLA), sign=HYPERBOLA.sign)
+        e = ring.find(_EXP, b)
         if e is None:
-            e = ring.add("exp", b)
+            e = ring.add(_EXP, b)
             ring.set_gradient(e, e, b)
         return lambda k: (e**k if k >= 0 else ring.inverse(e) ** -k, ring.zero)
 
-    def pair(self, b: Poly, even: str, odd: str, *, sign: int) -> tuple[Poly, Poly]:
-        """c and s of one argument, with c² − sign·s² = 1, c' = sign·s and s' = c."""
-        ring = self.ring
-        c, s = ring.find(even, b), ring.find(odd, b)
+    def pair(self, b: Poly, pair: Pair) -> tuple[Poly, Poly]:
+        """The even and the odd one of a pair, of one argument."""
+        ring, sign = self.ring, pair.sign
+        c, s = ring.find(pair.even, b), ring.find(pair.odd, b)
         if c is None or s is None:
-            c, s = ring.add(even, b), ring.add(odd, b)
+            c, s = ring.add(pair.even, b), ring.add(pair.odd, b)
             ring.relate(s, 2, s**2 - sign * c**2 + sign)
             ring.set_gradient(c, sign * s, b)
             ring.set_gradient(s, c, b)
@@ -181,14 +190,19 @@ class _Builder:
         return reduce(c * d + sign * s * t), reduce(s * d + c * t)
 
     def other(self, function: sympy.Expr) -> None:
-        ring, u = self.ring, self.element(function.args[0])
-        kind = "log" if isinstance(function, sympy.log) else "atan"
-        same = ring.find(kind, u)
+        """A function of its own, whose derivative is made of its argument."""
+        ring, u, made = self.ring, self.element(function.args[0]), _function(function)
+        same = ring.find(made.name, u)
         if same is not None:
             self.known[function] = same
             return
-        outer = self.inverse(u if kind == "log" else ring.reduce(u * u + 1), function)
-        generator = ring.add(kind, u)
+
+        def apply(name: str, x: Poly) -> Poly:
+            x = ring.reduce(x)
+            return self.inverse(x, function) if name == "inverse" else self.root(x, 2, function)
+
+        outer = made.derivative(u, None, apply)
+        generator = ring.add(made.name, u)
         ring.set_gradient(generator, outer, u)
         self.known[function] = generator
 

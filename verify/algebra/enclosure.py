@@ -8,8 +8,9 @@ from itertools import product
 import flint
 
 from verify.algebra.differential_ring import DifferentialRing
-from verify.algebra.generator import NAMED, Generator, Poly, terms_of
+from verify.algebra.generator import Generator, Poly, terms_of
 from verify.arithmetic.flint_precision import working_precision
+from verify.functions import in_rings
 
 Ball = flint.arb
 _FAR_POINTS = 200
@@ -80,7 +81,7 @@ def square(x: Ball) -> Ball:
 
 
 BALLS: dict[str, Callable[[Ball, int], Ball]] = {
-    **{name: _by_method(name) for name in NAMED},
+    **{name: _by_method(name) for name in in_rings()},
     "root": lambda x, n: x.root(n),
     "inverse": lambda x, _: 1 / x,
 }

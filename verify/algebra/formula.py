@@ -16,7 +16,6 @@ from collections.abc import Callable, Iterable
 from functools import lru_cache
 from types import ModuleType
 
-from verify.algebra.expressions.constant_size import FUNCTIONS as NAMES
 from verify.algebra.expressions.constant_size import within_reach
 from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.expressions.monomials import DEEPEST, Monomials, is_of_name
@@ -25,12 +24,13 @@ from verify.algebra.requirement import Requirement, of_divisor, of_function, of_
 from verify.arithmetic.exact import rational
 from verify.effort import limited
 from verify.errors import InputError, LimitError
+from verify.functions import names as names_of_functions
 from verify.late import sympy
 
 MAX_LENGTH = 5000  # that of a chain of 64 masses is 4,240
 MAX_DEPTH = 60
 
-FUNCTIONS = (*NAMES, "sqrt")
+FUNCTIONS = names_of_functions()
 NOT_SMOOTH = frozenset(
     {"abs", "Abs", "fabs", "sign", "sgn", "floor", "ceil", "round", "trunc", "max", "min"}
 )
@@ -215,7 +215,7 @@ class _Reader:
         # sympy sums and simplifies as it builds: infinities must not get into it.
         if name == "sqrt":
             return self.power(argument, sympy.S.Half)
-        if name == "exp" and argument.has(sympy.log):
+        if name == "exp" and argument.has(sympy.log):  # a power, which has limits of its own
             return self.finite(self.exponential(argument))
         if not argument.free_symbols and not within_reach(argument):
             raise self.beyond(f"{name} of a constant that is too large, or not defined")

@@ -10,17 +10,15 @@ import flint
 from verify.algebra.formula import function, symbol
 from verify.algebra.identities.polynomials import Poly as Poly
 from verify.algebra.identities.polynomials import terms_of as terms_of
+from verify.functions import in_rings
 from verify.late import sympy
-
-# Kinds that are functions of one argument, by the name that sympy and arb know them by.
-NAMED = ("sin", "cos", "exp", "sinh", "cosh", "log", "atan")
 
 
 @dataclass(frozen=True)
 class Generator:
     """One ring generator: `kind` of function, and its argument.
 
-    `kind`: variable, which has a `name`, pi, sin, cos, exp, sinh, cosh, log, atan, root (of
+    `kind`: variable, which has a `name`, pi, a function of `verify.functions.in_rings`, root (of
     `degree`), inverse, or stage, which is its argument itself under a name, or solved: an unknown
     of a system of equations (see `verify.algebra.implicit_unknowns`), the `degree`-th of it, of
     which its argument is 0.
@@ -68,7 +66,7 @@ def _by_name(name: str) -> Callable[[sympy.Expr, int], sympy.Expr]:
 
 
 _FUNCTIONS: dict[str, Callable[[sympy.Expr, int], sympy.Expr]] = {
-    **{name: _by_name(name) for name in NAMED},
+    **{name: _by_name(name) for name in in_rings()},
     "root": lambda x, degree: x ** sympy.Rational(1, degree),
     "inverse": lambda x, _: 1 / x,
     "stage": lambda x, _: x,

@@ -24,6 +24,8 @@ from verify.algebra.identities.relations import without_related
 from verify.algebra.identities.translation import Translation, translated
 from verify.algebra.where_positive import is_convex, point_of
 from verify.arithmetic.flint_precision import working_precision
+from verify.functions import in_rings
+from verify.functions.function import CIRCLE
 
 _MOST_ROOTS = 4
 _BITS = 256
@@ -64,18 +66,17 @@ def _conjugate(field: Field, x: Poly, place: int) -> Poly:
     return sum((part * (-unit) ** n for n, part in parts.items()), field.ring.zero)
 
 
-_WAVES = {"sin", "cos"}
-_OF_FACTORS = {"root", "log"}
-
-
 def is_hidden_zero(ring: DifferentialRing, x: Poly) -> bool:
     """True where x is shown to be 0 wherever it is defined; else False, which says nothing."""
     point = point_of(ring, x)
     if point is None:
         return False
     kinds = {g.kind for g in ring.generators_in(x)}
+    functions = [in_rings()[kind] for kind in kinds & in_rings().keys()]
+    waves = any(f.pair is CIRCLE for f in functions)
     # Tangents serve to find factors, which only roots and logarithms are asked for.
-    ways = (False, True) if kinds & _WAVES and kinds & _OF_FACTORS else (False,)
+    factored = "root" in kinds or any(f.pair is None and not f.turns for f in functions)
+    ways = (False, True) if waves and factored else (False,)
     return any(_is_shown(ring, x, point, tangents) for tangents in ways)
 
 
@@ -90,7 +91,8 @@ def _vanishes(t: Translation, ring: DifferentialRing, x: Poly, names: Names) -> 
     above = t.element.above
     if vanishes(t.field, above):
         return True
-    angles = [g.inner for g in t.used if g.kind == "atan"]
+    turning = [name for name, f in in_rings().items() if f.turns]
+    angles = [g.inner for g in t.used if g.kind in turning]
     left = without_related(t, above, names, lambda: is_convex(ring, angles, inside=x))
     if left != above and vanishes(t.field, left):
         return True

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from verify.algebra.expressions.functions_used import function_of
 from verify.algebra.expressions.monomials import monomials_of
 from verify.effort import limited, unless_long
 from verify.errors import InputError, LimitError
@@ -36,8 +37,7 @@ def checked(result: sympy.Expr, source: str, text: str) -> sympy.Expr:
     for power in powers:
         if power.exp.is_Rational:  # else it is exp(x·log(y)), which sympy writes so
             check_power(power.base, power.exp, source, text)
-    logarithms = (node for node in others if isinstance(node, sympy.log))
-    if sympy.I in others or any(_is_nonpositive(f.args[0]) for f in logarithms):
+    if sympy.I in others or any(map(_is_of_nonpositive, others)):
         raise InputError(source, text, "is not real, so it is not defined")
     return result
 
@@ -100,6 +100,14 @@ def check_power(base: sympy.Expr, exponent: sympy.Expr, source: str, text: str) 
 
 def _is_nonpositive(x: sympy.Expr) -> bool:
     return unless_long(lambda: bool(x.is_nonpositive), otherwise=False)
+
+
+def _is_of_nonpositive(node: sympy.Expr) -> bool:
+    """Whether it is a function as log, of what is not positive."""
+    function = function_of(node)
+    if function is None or function.domain is None or function.domain.relation != ">":
+        return False
+    return _is_nonpositive(function.domain.inside(node.args[0]))
 
 
 def _root_bits(base: sympy.Expr) -> int:

@@ -7,7 +7,9 @@ from __future__ import annotations
 
 from typing import Literal, NamedTuple
 
+from verify.algebra.expressions.functions_used import function_of
 from verify.algebra.expressions.monomials import monomials_of
+from verify.functions import by_name
 from verify.late import sympy
 
 Relation = Literal["!=", ">=", ">"]
@@ -34,9 +36,13 @@ def of_divisor(divisor: sympy.Expr) -> list[Requirement]:
 
 def of_function(name: str, argument: sympy.Expr) -> list[Requirement]:
     """What the function of that name asks of its argument."""
-    if argument.is_number or name not in ("log", "tan"):
+    domain = by_name()[name].domain
+    if argument.is_number or domain is None:
         return []
-    return [Requirement(argument, ">") if name == "log" else Requirement(sympy.cos(argument), "!=")]
+    inside = domain.inside(argument)
+    if domain.through:
+        inside = getattr(sympy, domain.through)(inside)
+    return [Requirement(inside, domain.relation)]
 
 
 def of_expression(expression: sympy.Expr, *, smooth: bool = False) -> list[Requirement]:
@@ -51,6 +57,6 @@ def of_expression(expression: sympy.Expr, *, smooth: bool = False) -> list[Requi
                 found.append(Requirement(expected.expression, ">") if root else expected)
         elif node.is_Pow and not node.base.is_number:  # exp(x·log(y)), as sympy writes it
             found.append(Requirement(node.base, ">"))
-        elif isinstance(node, sympy.log | sympy.tan):
-            found += of_function(node.func.__name__, node.args[0])
+        elif node.args and (function := function_of(node)):
+            found += of_function(function.name, node.args[0])
     return found

@@ -10,9 +10,9 @@ from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.generator import Generator, Poly, generator_expression, rational_of, terms_of
 from verify.algebra.identities.polynomials import occurring
 from verify.algebra.limits import no_numbers
+from verify.functions import in_rings
 from verify.late import sympy
 
-_FACTORED = ("log", "atan")  # of a product, which it mostly was, it is the shorter text
 _LONG = 100  # terms of what is not factored for that
 _MOST_FACTORED = 300  # terms, beyond which factoring and sympy take seconds
 
@@ -59,7 +59,9 @@ def _argument(ring: DifferentialRing, g: Generator) -> sympy.Expr:
     """What it is a function of; 0 where it is of nothing."""
     if g.argument is None or g.kind == "solved":
         return sympy.S.Zero
-    factored = g.kind in _FACTORED and len(g.inner) < _LONG
+    function = in_rings().get(g.kind)
+    # Of a product, which it mostly was, it is the shorter text; of a pair's argument it is a sum.
+    factored = function is not None and function.pair is None and len(g.inner) < _LONG
     return (as_product if factored else as_expression)(ring, g.inner)
 
 

@@ -18,15 +18,9 @@ from verify.algebra.identities.field import Names, UndecidedError
 from verify.algebra.identities.signs import definite
 from verify.algebra.identities.translation import translated
 from verify.arithmetic.flint_precision import working_precision
+from verify.functions import in_rings
 
 _BITS = 128
-_ALWAYS_POSITIVE = ("pi", "exp", "cosh", "root")  # a root inside of where it is defined
-# By its kind, a function is positive where this, made from its argument, is.
-_POSITIVE_WHERE: dict[str, Callable[[Poly], Poly]] = {
-    **dict.fromkeys(("inverse", "stage", "sinh", "atan"), lambda u: u),
-    "log": lambda u: u - 1,
-}
-_OF_POSITIVE = ("root", "log")
 _NEARBY = 10**6
 _PRIMES = [n for n in range(2, 1000) if all(n % k for k in range(2, isqrt(n) + 1))]
 
@@ -66,12 +60,11 @@ class _Generators:
 
     def _is_positive(self, place: int) -> bool:
         g = self.by_index[place]
-        if g.kind in _ALWAYS_POSITIVE:
+        where = _positive_where(g)
+        if where is True:
             return True
-        if g.kind in _POSITIVE_WHERE:
-            inner = _POSITIVE_WHERE[g.kind](g.inner)
-            if sign_everywhere(self.ring, inner, strict=True) == 1:
-                return True
+        if where and sign_everywhere(self.ring, where(g.inner), strict=True) == 1:
+            return True
         inside = self.ring.generators_in(self.ring.context.gens()[place])
         if any(other.kind in ("variable", "solved") for other in inside):
             return False
@@ -79,7 +72,26 @@ class _Generators:
         return bool(ball is not None and ball > 0)
 
     def bounded(self, place: int) -> bool:
-        return self.by_index[place].kind in ("sin", "cos")
+        function = in_rings().get(self.by_index[place].kind)
+        return function is not None and function.bounded
+
+
+def _positive_where(g: Generator) -> Callable[[Poly], Poly] | bool:
+    """Whether it is positive everywhere, or what, made from its argument, is where it is."""
+    if g.kind in ("pi", "root"):  # a root inside of where it is defined
+        return True
+    if g.kind in ("inverse", "stage"):
+        return lambda u: u
+    function = in_rings().get(g.kind)
+    return function is not None and function.positive
+
+
+def _inside(g: Generator) -> Poly | None:
+    """What has to be positive for a root or a function as log to be defined; None of others."""
+    if g.kind == "root":
+        return g.inner
+    function = in_rings().get(g.kind)
+    return function.domain.inside(g.inner) if function and function.domain else None
 
 
 def size_of_base(ring: DifferentialRing, u: Poly, power: int) -> tuple[flint.fmpq, Poly] | None:
@@ -102,7 +114,7 @@ def point_of(ring: DifferentialRing, x: Poly) -> Names | None:
     """A point around which x is defined and may be 0, if one is found; as balls for the names."""
     used = ring.generators_in(x)
     names = [g.name for g in used if g.kind == "variable"]
-    positive = [g.inner for g in used if g.kind in _OF_POSITIVE]
+    positive = [inside for g in used if (inside := _inside(g)) is not None]
     enclosures = Enclosures(ring, [x, *positive])
     for point in points(names):
         near = _near(point)
@@ -136,9 +148,8 @@ def is_convex(ring: DifferentialRing, elements: Iterable[Poly], inside: Poly) ->
     for g in ring.generators_in(*elements):
         if g.kind == "solved":
             return False
-        if g.kind not in ("inverse", *_OF_POSITIVE):
-            continue
-        for f, _ in _factors(g.inner):
+        shaped = g.inner if g.kind == "inverse" else _inside(g)
+        for f, _ in _factors(shaped) if shaped is not None else ():
             shown = sign_everywhere(ring, f, strict=True)
             if shown is None and f not in half_spaces:
                 return False
@@ -149,8 +160,8 @@ def _half_spaces(ring: DifferentialRing, used: list[Generator]) -> list[Poly]:
     """Polynomials of degree 1 in the variables that have one sign wherever all is defined."""
     found: list[Poly] = []
     for g in used:
-        if g.kind in _OF_POSITIVE:
-            signed = [f for f, n in _factors(g.inner) if n % 2 and sign_everywhere(ring, f) is None]
+        if (inside := _inside(g)) is not None:
+            signed = [f for f, n in _factors(inside) if n % 2 and sign_everywhere(ring, f) is None]
             if len(signed) == 1 and signed[0].total_degree() == 1 and ring.in_variables(signed[0]):
                 found += signed
     return found

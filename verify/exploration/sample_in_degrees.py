@@ -10,6 +10,7 @@ from typing import Any, Self
 from verify.errors import InputError
 from verify.exploration.any_sample import AnySample
 from verify.exploration.sample import Sample
+from verify.functions.function import CIRCLE
 from verify.scenes.run_sections import Grid
 from verify.scenes.scene import Scene
 from verify.scenes.values import InitialState
@@ -17,6 +18,7 @@ from verify.schemes.every_hamiltonian import TaylorSeries
 
 _MOST_TERMS = 30  # of what a step is made of, so that a proof is made of it in a moment
 _MOST_ORDER = 4  # of a scheme whose series is made
+_OF_SHORT_SERIES = {"variable", CIRCLE.odd, CIRCLE.even}  # as other functions' are not
 
 
 @dataclass(frozen=True)
@@ -48,7 +50,7 @@ class SampleInDegrees(AnySample):
     def ordinary(self) -> bool:
         """Whether its map is proved in a moment: its series in h are short."""
         exact = self.step_map.symplectic_by_conditions if self.brief else False
-        small = self.terms <= _MOST_TERMS and (exact or self._kinds <= {"variable", "sin", "cos"})
+        small = self.terms <= _MOST_TERMS and (exact or self._kinds <= _OF_SHORT_SERIES)
         return small and self.scheme.order <= _MOST_ORDER
 
     @cached_property

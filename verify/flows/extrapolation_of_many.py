@@ -17,6 +17,7 @@ from verify.arithmetic.number_system import Arithmetic, interpreted
 from verify.arithmetic.systems import float64
 from verify.flows.extrapolation import LOST, NoFlowError
 from verify.flows.functions import functions_at
+from verify.functions import in_rings
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
@@ -81,8 +82,7 @@ def arrays() -> Arithmetic:
         return y - np.where(y > 0, (y**n - x) / (n * y ** (n - 1)), 0.0)  # 1/n is rounded
 
     functions = {
-        **{name: getattr(np, name) for name in ("sin", "cos", "exp", "log", "sinh", "cosh")},
-        "atan": np.arctan,
+        **{name: getattr(np, f.numpy) for name, f in in_rings().items()},
         "sqrt": np.sqrt,
         "root": root,
         "pi": WIDE.pi,

@@ -10,6 +10,7 @@ from collections.abc import Collection
 
 from verify.algebra.expressions.monomials import names_in
 from verify.errors import InputError
+from verify.functions import names as names_of_functions
 from verify.late import sympy
 
 _LIKELY = {
@@ -20,7 +21,7 @@ _NUMBERED = re.compile(r"[pq]([1-9]\d{0,2})", re.ASCII)
 PLANE = ("p", "q")
 MOST_DEGREES = 64  # of freedom; what has n² entries or more has limits of its own
 _PRODUCT = re.compile(r"[pq]{2,}")
-_CALL = re.compile(r"(sinh?|cosh?|tanh?|exp|log|ln|sqrt|atan)_?([pq])")
+_CALL = re.compile(rf"({'|'.join((*names_of_functions(), 'ln'))})_?([pq])")
 
 
 def coordinates_of(names: Collection[str]) -> tuple[str, ...]:

@@ -6,6 +6,7 @@ import math
 from fractions import Fraction
 from functools import lru_cache
 
+from verify.algebra.expressions.functions_used import waves_in
 from verify.algebra.formula import symbol
 from verify.arithmetic.exact import text
 from verify.effort import unless_long
@@ -61,7 +62,7 @@ def period_in(hamiltonian: Hamiltonian, name: str) -> sympy.Expr | None:
     4*pi/3
     """
     variable = symbol(name)
-    functions = hamiltonian.exact.atoms(sympy.sin, sympy.cos, sympy.tan)
+    functions = waves_in(hamiltonian.exact)
     rates = {sympy.expand(f.args[0]).diff(variable) for f in functions} - {sympy.S.Zero}
     for unit in (sympy.S.One, sympy.pi):
         parts = [rate / unit for rate in rates]

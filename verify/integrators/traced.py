@@ -12,6 +12,7 @@ from verify.algebra.limits import checked
 from verify.algebra.requirement import Requirement, of_divisor, of_function, of_power
 from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.exact import text
+from verify.functions import by_name
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.results import Finding
 from verify.integrators.tracing.functions import copied
@@ -158,7 +159,8 @@ def domain_of(tape: Tape) -> Domain:
 
 def _asks(node: Node) -> bool:
     power = node.operation == "power" and (node.value < 0 or node.value.denominator > 1)
-    return power or node.operation in ("divide", "log", "tan", "sqrt")
+    function = by_name().get(node.operation)
+    return power or node.operation == "divide" or bool(function and function.domain)
 
 
 def _asked(node: Node, operand: sympy.Expr) -> list[Requirement]:

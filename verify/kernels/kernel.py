@@ -19,11 +19,11 @@ from verify.kernels.clock import clock_of
 from verify.kernels.statements import CLOSED_FORM, Statements
 from verify.kernels.step import newton
 from verify.kernels.step.computation import Computation, Observed, computed, step_map_of
+from verify.kernels.step.kinds import may_leave_range
 from verify.kernels.step.lowering import Lowering
 from verify.scenes.observables import OF_FORM
 from verify.schemes.maps.step_map import StepMap
 
-PARTIAL = ("inverse", "root", "log", "exp", "sinh", "cosh")  # functions that may leave a range
 SCALES = ("kappa", "down", "shift")  # 2^s h^r, 2^−s and s itself
 LIMITS = ("reach_p", "reach_q", "reach_part", "reach_value")
 _OF_MATRIX = "reach_m"  # where M is carried
@@ -190,6 +190,6 @@ class Writer:
         looked_at |= dict.fromkeys(products, "reach_part")
         looked_at |= dict.fromkeys(self.made.matrix, _OF_MATRIX)
         for index in self.lowering.live(needed):
-            if self.program.ops[index].kind in PARTIAL:
+            if may_leave_range(self.program.ops[index]):
                 looked_at[self.lowering.name(index)] = "reach_value"
         return " and ".join(["valid", *(f"inside({x}, {m})" for x, m in looked_at.items())])

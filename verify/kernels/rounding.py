@@ -15,6 +15,7 @@ import flint
 
 from verify.algebra.enclosure import BALLS, square
 from verify.arithmetic.number_system import Arithmetic
+from verify.functions import in_rings
 from verify.kernels.step.program import Op, Program
 
 Ball = flint.arb
@@ -56,7 +57,7 @@ def rounding_of(arithmetic: Arithmetic) -> Rounding:
         if op.kind == "const":
             found = arithmetic.exact(arithmetic.number(op.value))
             return flint.arb(abs(_fmpq(found) - _fmpq(op.value)))
-        return rounding(op.kind, op.degree, size)
+        return rounding(*_function(op), size)
 
     return own
 
@@ -91,7 +92,7 @@ def analyse(
         if op.kind == "loop":  # how far Newton's method is from the solution is not counted
             return None
         interval, error = _value(op, [found[a] for a in op.args])
-        if limit is not None and op.kind in _SLOPES and not _within(interval, limit):
+        if limit is not None and _function(op)[0] in BALLS and not _within(interval, limit):
             interval = limit * flint.arb(0, 1)
         if not (interval.is_finite() and error.is_finite()):
             return None
@@ -125,19 +126,32 @@ def _value(op: Op, args: Sequence[Rounded]) -> tuple[Ball, Ball]:
                 return square(x.interval), error
             return x.interval * y.interval, error
     x = args[0]
-    value = BALLS[op.kind](x.interval, op.degree)
+    kind, degree = _function(op)
+    value = BALLS[kind](x.interval, degree)
     if x.error.is_zero():  # of no matter then is a slope without a bound
         return value, zero
-    slope = _SLOPES[op.kind](x.widened, op.degree)
-    return value, slope.abs_upper() * x.error
+    return value, _slope(kind, degree, x.widened).abs_upper() * x.error
 
 
-_SLOPES: dict[str, Callable[[Ball, int], Ball]] = {
-    **dict.fromkeys(("sin", "cos", "atan"), lambda x, _: flint.arb(1)),
-    "exp": lambda x, _: x.exp(),
-    "sinh": lambda x, _: x.cosh(),
-    "cosh": lambda x, _: x.sinh(),
-    "log": lambda x, _: 1 / x,
-    "inverse": lambda x, _: square(1 / x),
-    "root": lambda x, n: x.root(n) / (n * x),
-}
+def _function(op: Op) -> tuple[str, int]:
+    """The kind of a function among `BALLS`, and a root's degree."""
+    if op.kind == "call":
+        return op.function.name, 1
+    return op.kind, op.degree if op.kind == "root" else 1
+
+
+def _slope(kind: str, degree: int, x: Ball) -> Ball:
+    """A ball that holds the slopes of a function at x, or what they nowhere exceed."""
+    if kind == "inverse":
+        return square(1 / x)
+    if kind == "root":
+        return x.root(degree) / (degree * x)
+    function = in_rings()[kind]
+    if function.lipschitz is not None:
+        return flint.arb(function.lipschitz)
+    slope: Ball = function.derivative(x, BALLS[kind](x, 1), _apply)
+    return slope
+
+
+def _apply(name: str, x: Ball) -> Ball:
+    return x.sqrt() if name == "sqrt" else BALLS[name](x, 1)

@@ -167,8 +167,8 @@ class Float64Step:
                     found.append(x[0] * x[1])
                 case "neg":
                     found.append(-x[0])
-                case "sin" | "cos":
-                    found.append(getattr(math, op.kind)(x[0]))
+                case "call" if op.function.name in ("sin", "cos"):
+                    found.append(getattr(math, op.function.name)(x[0]))
                 case _:
                     raise NotImplementedError(op.kind)
         return found

@@ -41,7 +41,7 @@ def values(kernel: Kernel, arithmetic: Arithmetic, inputs: dict[str, Any]) -> di
     run = arithmetic.compile(source, "f", names)
     with arithmetic.context():
         given = run(*(arithmetic.number(x) for x in inputs.values()))
-    held = {i: program.ops[i].value for i in live if program.ops[i].kind == "const"}
+    held = {i: op.value for i in live if (op := program.ops[i]).kind == "const"}
     exact = {i: arithmetic.exact(arithmetic.number(x)) for i, x in held.items()}
     return exact | {i: arithmetic.exact(x) for i, x in zip(found, given, strict=False)}
 
@@ -67,7 +67,9 @@ def exactly(op: Op, args: Sequence[Ball], inputs: Mapping[str, Fraction]) -> Bal
             return 1 / args[0]
         case "root":
             return args[0].root(op.degree)
-    return getattr(args[0], op.kind)()
+        case "call":
+            return getattr(args[0], op.function.name)()
+    raise AssertionError(op.kind)
 
 
 @dataclass(frozen=True)

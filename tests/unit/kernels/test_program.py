@@ -24,6 +24,7 @@ from verify.algebra.formula import symbol
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import Kernel, kernel_for
 from verify.kernels.statements import OBSERVABLES
+from verify.kernels.step.kinds import Root
 from verify.kernels.step.program import Evaluator, Program
 
 VARIABLES = ("p", "q", "h", "delta")
@@ -103,14 +104,14 @@ def test_a_program_evaluates_to_its_polynomials_exactly(
 def test_no_operation_occurs_twice(pipelined: bool, one: Polynomial, two: Polynomial) -> None:
     program, _, _, _ = program_of(pipelined, one, two)
     forms = [
-        (op.kind, tuple(sorted(op.args)) if op.kind in ("add", "mul") else op.args, op.name,
-         op.value, op.degree)
+        (op.kind, tuple(sorted(op.args)) if op.kind in ("add", "mul") else repr(op))
         for op in program.ops
-    ]  # fmt: skip
+    ]
     assert len(set(forms)) == len(forms)
     for op in program.ops:
         if op.kind in ("add", "mul"):
-            constants = [program.ops[a].value for a in op.args if program.ops[a].kind == "const"]
+            args = [program.ops[a] for a in op.args]
+            constants = [x.value for x in args if x.kind == "const"]
             assert 0 not in constants, op
             assert op.kind == "add" or 1 not in constants, op
 
@@ -141,7 +142,8 @@ def test_what_is_static_is_what_does_not_depend_on_p_and_q(
     program, _, _, _ = program_of(pipelined, polynomial)
     depends: list[bool] = []
     for op in program.ops:
-        depends.append(op.name in STATE or any(depends[a] for a in op.args))
+        state = op.kind == "input" and op.name in STATE
+        depends.append(state or any(depends[a] for a in op.args))
     assert program.static == [not d for d in depends]
 
 
@@ -252,7 +254,6 @@ def test_a_roots_degree_is_no_operand() -> None:
     program = Program()
     x = program.input("x", static=False)
     with pytest.raises(TypeError):
-        program.apply("root", x, 2)  # type: ignore[misc]
-    root = program.apply("root", x, degree=2)
-    assert (program.ops[root].args, program.ops[root].degree) == ((x,), 2)
-    assert program.apply("pi") != root
+        program.call("root", x, 2)  # type: ignore[call-arg, arg-type]
+    assert program.ops[program.root(x, 2)] == Root((x,), 2)
+    assert program.root(x, 2) != program.root(x, 3)

@@ -15,7 +15,7 @@ from verify.arithmetic.systems import fixed, float64, mpfr, mpmath
 from verify.execution.keeping import Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.rounding import rounding_of
-from verify.kernels.step.program import Op
+from verify.kernels.step.kinds import Constant
 from verify.kernels.stepping import KernelRun
 from verify.runs.a_posteriori import certify
 from verify.runs.derivatives import Derivatives
@@ -138,7 +138,7 @@ def test_what_is_certified_is_what_was_asked_for(asked: tuple[str, ...]) -> None
     "value", [Fraction(1001, 64), Fraction(1, 3), Fraction(-7, 2), Fraction(1)]
 )
 def test_a_constant_is_off_by_what_its_number_is(made: Arithmetic, value: Fraction) -> None:
-    own = rounding_of(made)(Op("const", value=value), flint.arb(0))
+    own = rounding_of(made)(Constant(value), flint.arb(0))
     assert bounds(own)[1] >= abs(made.exact(made.number(value)) - value) >= bounds(own)[0]
     assert (own == 0) == (made.exact(made.number(value)) == value)
 

@@ -66,7 +66,7 @@ def test_fixed_point_numbers_have_the_irrational_coefficients(name: str) -> None
 @pytest.mark.parametrize(("number", "degree"), [("2", 3), ("4", 3), ("2", 15), ("1/700", 5)])
 def test_a_given_root_is_rounded_as_the_bound_says(number: str, degree: int, digits: int) -> None:
     program, fixed = Program(), arithmetic.get("fixed", digits)
-    root = program.apply("root", program.constant(Fraction(number)), degree=degree)
+    root = program.root(program.constant(Fraction(number)), degree)
     lowering = Lowering(program, fixed.functions, bits=fixed.bits)
     assert lowering.function(root) is None
     given = fixed.exact(lowering.named_constants(fixed.number)[f"number_{lowering.name(root)}"])
@@ -79,5 +79,5 @@ def test_a_given_root_is_rounded_as_the_bound_says(number: str, degree: int, dig
 
 def test_a_root_of_what_is_no_number_is_still_not_there() -> None:
     program = Program()
-    root = program.apply("root", program.input("h", static=True), degree=3)
+    root = program.root(program.input("h", static=True), 3)
     assert Lowering(program, arithmetic.get("fixed", 30).functions).function(root) == "root"

@@ -10,13 +10,11 @@ import math
 
 import flint
 
+from verify.algebra.expressions.functions_used import function_of
 from verify.arithmetic.flint_precision import working_precision
 from verify.late import sympy
 
 MAX_BITS = 4000
-
-# What may be written of one argument, by the name that sympy and arb know it by.
-FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh", "atan")
 
 
 def within_reach(constant: sympy.Expr) -> bool:
@@ -45,7 +43,5 @@ def _ball(node: sympy.Expr) -> flint.arb | None:
         return math.prod(arguments, start=flint.arb(1))
     if node.is_Pow:
         return arguments[0] ** arguments[1]
-    if not (isinstance(node, sympy.Function) and node.func.__name__ in FUNCTIONS):
-        return None
-    found: flint.arb = getattr(arguments[0], node.func.__name__)()
-    return found
+    function = function_of(node)
+    return None if function is None else getattr(arguments[0], function.name)()

@@ -5,30 +5,25 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cache
 
+from verify.functions import by_name
+from verify.functions.function import CIRCLE, Function
 from verify.late import sympy
 
 
+def function_of(node: sympy.Expr) -> Function | None:
+    """The function that the node is of something, as e is exp of 1; None where it is of none."""
+    return by_name().get("exp" if node is sympy.E else type(node).__name__)
+
+
 def is_trigonometric(node: sympy.Expr) -> bool:
-    """Whether it is sin, cos or tan of something."""
-    return isinstance(node, sympy.sin | sympy.cos | sympy.tan)
+    """Whether it is a function as sin and cos are, which repeat."""
+    function = function_of(node)
+    return function is not None and function.pair is CIRCLE
 
 
-def is_hyperbolic(node: sympy.Expr) -> bool:
-    """Whether it is sinh, cosh or tanh of something."""
-    return isinstance(node, sympy.sinh | sympy.cosh | sympy.tanh)
-
-
-def is_exponential(node: sympy.Expr) -> bool:
-    """Whether it is exp of something, as e is of 1."""
-    return isinstance(node, sympy.exp) or node is sympy.E
-
-
-def is_other(node: sympy.Expr) -> bool:
-    """Whether it is log or atan of something."""
-    return isinstance(node, sympy.log | sympy.atan)
-
-
-_KINDS = is_trigonometric, is_hyperbolic, is_exponential, is_other
+def waves_in(expression: sympy.Expr) -> set[sympy.Expr]:
+    """All that is sin, cos or tan of something in the expression."""
+    return {node for node in sympy.preorder_traversal(expression) if is_trigonometric(node)}
 
 
 def subexpressions(expressions: Sequence[sympy.Expr]) -> set[sympy.Expr]:
@@ -53,7 +48,7 @@ def levels_of(nodes: set[sympy.Expr]) -> list[list[sympy.Expr]]:
         if is_exponential_power(node):
             inner = visit(sympy.log(node.base)) + 1
             depth[node] = inner
-        elif any(is_kind(node) for is_kind in _KINDS):
+        elif function_of(node) is not None:
             inner += 1
             depth[node] = inner
         return inner

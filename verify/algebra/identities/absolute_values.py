@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import flint
 import sympy
 
+from verify.algebra.expressions.functions_used import function_of
 from verify.algebra.identities.signs import definite
 
 _MOST_OPERATIONS = 200
@@ -21,7 +22,8 @@ class _Generators:
         return bool(self.generators[place].is_positive)
 
     def bounded(self, place: int) -> bool:
-        return isinstance(self.generators[place], sympy.sin | sympy.cos)
+        function = function_of(self.generators[place])
+        return function is not None and function.bounded
 
 
 def without_absolute_values(expression: sympy.Expr) -> sympy.Expr:

@@ -1,6 +1,6 @@
 """From a ring's element to the field of functions in which its hidden identities show."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from typing import Protocol
 
@@ -8,6 +8,7 @@ from verify.algebra.identities.angles import Angles
 from verify.algebra.identities.field import Field, Quotient, UndecidedError
 from verify.algebra.identities.polynomials import Poly, terms_of
 from verify.algebra.identities.powers import Finer, FinerError, Powers
+from verify.functions import in_rings
 
 _MOST_GENERATORS = 40
 _MOST_TERMS = 20_000
@@ -91,35 +92,37 @@ class Translation:
             return self.field.polynomial(self.field.ring.gens[self.field.ring.places[g.name]])
         if g.kind == "pi":
             return self.angles.pi
-        if g.kind not in _IMAGES:
+        if g.kind == "solved":
             raise UndecidedError(f"{g.kind} is not handled here")
-        return _IMAGES[g.kind](self, self.of(g.inner), g.degree)
+        u = self.of(g.inner)
+        match g.kind:
+            case "root":
+                return self.root(u, g.degree)
+            case "inverse":
+                return u.inverse()
+            case "stage":
+                return u
+        image = in_rings()[g.kind].image
+        assert image is not None  # noqa: S101 - a ring has no other functions
+        quotient: Quotient = image(self, u)
+        return quotient
 
-    def _exponentials(self, u: Quotient, sign: int) -> Quotient:
+    # -- what functions are made of, see `verify.functions` -------------------------------------
+
+    def half_sum(self, u: Quotient, sign: int) -> Quotient:
+        """(e^u + sign·e^−u)/2."""
         up = self.powers.exponential(u)
         return (up + up.inverse().times(sign)).times(Fraction(1, 2))
 
-    def _root(self, u: Quotient, degree: int) -> Quotient:
+    def root(self, u: Quotient, degree: int) -> Quotient:
+        """The root of u, which is then > 0."""
         self.powers.positive(u)
         return self.powers.power(u, Fraction(1, degree))
 
-    def _logarithm(self, u: Quotient) -> Quotient:
+    def logarithm(self, u: Quotient) -> Quotient:
+        """log u of u, which is then > 0."""
         self.powers.positive(u)
         return self.powers.logarithm(u)
-
-
-_IMAGES: dict[str, Callable[[Translation, Quotient, int], Quotient]] = {
-    "sin": lambda t, u, _: t.angles.of(u)[1],
-    "cos": lambda t, u, _: t.angles.of(u)[0],
-    "exp": lambda t, u, _: t.powers.exponential(u),
-    "sinh": lambda t, u, _: t._exponentials(u, -1),
-    "cosh": lambda t, u, _: t._exponentials(u, 1),
-    "log": lambda t, u, _: t._logarithm(u),
-    "atan": lambda t, u, _: t.angles.arctangent(u),
-    "root": lambda t, u, degree: t._root(u, degree),
-    "inverse": lambda t, u, _: u.inverse(),
-    "stage": lambda t, u, _: u,
-}
 
 
 def translated(used: Sequence[Function], x: Poly, *, tangents: bool) -> Translation:

@@ -5,22 +5,25 @@ import re
 from collections.abc import Collection
 
 from verify.errors import is_meant, nearest
+from verify.functions import by_name
 
 _LONGEST = 40  # characters of what is quoted
 _CASES = "a formula has no cases, since H must be smooth"
-# What other languages call these; {0} and {1} are the arguments, in parentheses.
-_OTHERS = {
-    "ln": "log{0}", "tg": "tan{0}", "atg": "atan{0}",
-    "sh": "sinh{0}", "ch": "cosh{0}", "th": "tanh{0}", "sec": "(1/cos{0})", "csc": "(1/sin{0})",
-    "cosec": "(1/sin{0})", "cot": "(1/tan{0})", "ctg": "(1/tan{0})", "sech": "(1/cosh{0})",
-    "csch": "(1/sinh{0})", "coth": "(1/tanh{0})", "log10": "(log{0}/log(10))",
-    "log2": "(log{0}/log(2))", "log1p": "log(1 + {0})", "expm1": "(exp{0} - 1)",
-    "square": "({0}**2)", "cbrt": "({0}**(1/3))", "pow": "({0}**{1})", "power": "({0}**{1})",
-    "hypot": "sqrt({0}**2 + {1}**2)", "asin": "atan({0}/sqrt(1 - {0}**2))",
+# What is made of functions, unless it is one itself; {0} and {1} are the arguments, in parentheses.
+_MADE = {
+    "sec": "(1/cos{0})", "csc": "(1/sin{0})", "cosec": "(1/sin{0})", "cot": "(1/tan{0})",
+    "ctg": "(1/tan{0})", "sech": "(1/cosh{0})", "csch": "(1/sinh{0})", "coth": "(1/tanh{0})",
+    "log10": "(log{0}/log(10))", "log2": "(log{0}/log(2))", "log1p": "log(1 + {0})",
+    "expm1": "(exp{0} - 1)", "square": "({0}**2)", "cbrt": "({0}**(1/3))", "pow": "({0}**{1})",
+    "power": "({0}**{1})", "hypot": "sqrt({0}**2 + {1}**2)", "asin": "atan({0}/sqrt(1 - {0}**2))",
     "acos": "(pi/2 - atan({0}/sqrt(1 - {0}**2)))", "asinh": "log({0} + sqrt({0}**2 + 1))",
     "acosh": "log({0} + sqrt({0}**2 - 1))", "atanh": "(log((1 + {0})/(1 - {0}))/2)",
-    "log": "(log{0}/log{1})",
 }  # fmt: skip
+_OTHERS = {
+    **{name: form for name, form in _MADE.items() if name not in by_name()},
+    **{other: f"{name}{{0}}" for name, f in by_name().items() for other in f.synonyms},
+    "log": "(log{0}/log{1})",  # to a base
+}
 _WITH_CASES = frozenset({"heaviside", "step", "relu", "piecewise", "where", "clip", "mod", "fmod"})
 _VARIABLES = frozenset({"p", "q", "h", "t", "pi"})
 

@@ -87,6 +87,13 @@ class Series:
     def __sub__(self, other: "Series") -> "Series":
         return self + other.times(Fraction(-1))
 
+    def __radd__(self, number: int) -> "Series":
+        first, *others = self.coefficients
+        return Series(self.ring, (first + number, *others))
+
+    def __rsub__(self, number: int) -> "Series":
+        return number + self.times(Fraction(-1))
+
     def __mul__(self, other: "Series") -> "Series":
         ring, most = self.ring, self.most
         total = [ring.zero] * (most + 1)

@@ -21,10 +21,11 @@ Native = Callable[[Any, Any], None]  # of the addresses of arguments and results
 _LOCK = threading.Lock()  # LLVM's set-up is not made for threads
 _ENGINES: list[llvm.ExecutionEngine] = []  # what runs must not be freed
 # Read as this is imported, since a process that goes on while its files change has the old ones.
+_ROOMS = ("arithmetic/compiled", "arithmetic/lanes", "arithmetic/wide", "functions/elementary")
 _OURS = [
     path
-    for room in ("compiled", "lanes", "wide")
-    for path in sorted(Path(__file__).parents[1].joinpath(room).glob("*.py"))
+    for room in _ROOMS
+    for path in sorted(Path(__file__).parents[2].joinpath(room).glob("*.py"))
 ]
 _COMPILER = sha256(b"\n".join(path.read_bytes() for path in _OURS))
 

@@ -19,6 +19,7 @@ from verify.arithmetic.number_system import (
     bits_for,
     interpreted,
 )
+from verify.functions import in_rings
 
 NAME = "ball"
 
@@ -45,7 +46,6 @@ def at_bits(bits: int) -> Arithmetic:
         return bool(abs(x) < escape and (x.rel_accuracy_bits() > 0 or x.rad() < 1))
 
     escape = flint.arb(2) ** ESCAPE_BITS
-    names = ("sin", "cos", "sin_cos", "exp", "log", "sinh", "cosh", "atan", "sqrt", "root")
     with context():
         pi = flint.arb.pi()
     return Arithmetic(
@@ -57,7 +57,7 @@ def at_bits(bits: int) -> Arithmetic:
         finite=in_range,
         context=context,
         functions={
-            **{f: getattr(flint.arb, f) for f in names},
+            **{f: getattr(flint.arb, f) for f in (*in_rings(), "sin_cos", "sqrt", "root")},
             "pi": pi,
             "minimum": flint.arb.min,
             "maximum": flint.arb.max,

@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 from verify.arithmetic.number_system import Arithmetic, NumberSystem
 from verify.arithmetic.wide.size import INTEGER_BITS, WORD, size_of, words_of
+from verify.functions import by_name
+from verify.functions.function import FixedPoint
 from verify.lockstep import Course, meet
 
 if TYPE_CHECKING:
@@ -22,7 +24,6 @@ if TYPE_CHECKING:
 
 NAME = "fixed"
 _THREE_LIMBS = 3 * 52  # bits; in lanes as fast as 128, for one orbit as 192
-FUNCTIONS = ("sin", "cos", "cos_sin", "exp", "log", "sqrt", "sinh", "cosh")
 
 
 def make(digits: int) -> Arithmetic:
@@ -47,10 +48,11 @@ def at_bits(bits: int) -> Arithmetic:
         return compiled(source, bits, names)
 
     def rounding(kind: str, degree: int, size: "Ball") -> "Ball":
-        given = kind == "root" and degree != 2  # a number; there is no function for it
-        return type(size)(2) ** -bits * _units()["pi" if given else kind](size)
+        if kind == "root":  # of another degree it is a number; there is no function for it
+            kind = "sqrt" if degree == 2 else "pi"
+        return type(size)(2) ** -bits * _units()[kind](size)
 
-    with_pi = {f: f for f in FUNCTIONS} | {"approx": "approx", "pi": number(_pi(bits))}
+    with_pi = {f: f for f in functions()} | {"approx": "approx", "pi": number(_pi(bits))}
     return Arithmetic(
         name=NAME,
         bits=bits,
@@ -81,6 +83,11 @@ NUMBER_SYSTEM = NumberSystem(
 )
 
 
+def functions() -> tuple[str, ...]:
+    """The names of the functions that there are in fixed point."""
+    return (*(name for name, f in by_name().items() if f.fixed is not None), "cos_sin")
+
+
 @cache
 def _units() -> dict[str, Callable[["Ball"], "Ball"]]:
     """Each operation's error in units of the last place, by the size of its result.
@@ -92,13 +99,15 @@ def _units() -> dict[str, Callable[["Ball"], "Ball"]]:
     return {
         "add": lambda _: arb(0), "sub": lambda _: arb(0), "neg": lambda _: arb(0),
         "pi": lambda _: arb("0.501"), "mul": lambda _: arb("0.501"),
-        "sin": lambda _: arb("0.6"), "cos": lambda _: arb("0.6"),
-        "log": lambda _: arb("0.6"), "exp": lambda y: 1 + y / 64,
-        # Half of what e^x and e^−x lose, and of a unit more.
-        "sinh": lambda y: arb("1.04") + y / 64, "cosh": lambda y: arb("1.54") + y / 64,
-        # The last step of the iteration: y + y (1 − x y), and s + (x − s s)/(2 s) with s ≥ 2^−13.
-        "inverse": lambda y: arb("0.51") * (1 + y), "root": lambda _: arb(2**11 + 8),
+        "inverse": lambda y: arb("0.51") * (1 + y),  # the iteration's last step: y + y (1 − x y)
+        **{name: _units_of(f.fixed) for name, f in by_name().items() if f.fixed is not None},
     }  # fmt: skip
+
+
+def _units_of(fixed: FixedPoint) -> Callable[["Ball"], "Ball"]:
+    from flint import arb
+
+    return lambda y: arb(fixed.units) + y / fixed.share if fixed.share else arb(fixed.units)
 
 
 def _walk(

@@ -14,6 +14,7 @@ from functools import cache, partial
 from typing import Any
 
 from verify.arithmetic.number_system import Arithmetic, NumberSystem, interpreted
+from verify.functions import by_name, in_rings
 
 NAME = "float64"
 _REPAID = 50_000  # steps: Python takes some 2 µs each, and llvmlite's import and compilation 0.1 s
@@ -30,7 +31,7 @@ def make(digits: int) -> Arithmetic:
         finite=math.isfinite,
         context=nullcontext,
         functions={
-            **{f: getattr(math, f) for f in ("sin", "cos", "exp", "log", "sinh", "cosh", "atan")},
+            **{f: getattr(math, f) for f in in_rings()},
             "sqrt": math.sqrt,
             "root": _root,
             "pi": math.pi,
@@ -104,7 +105,7 @@ def _in_python(source: str, name: str, namespace: Mapping[str, Any]) -> Callable
 
     @cache
     def unrefused() -> Callable[..., Any]:
-        own = {f: made for f, made in _IEEE.items() if f in namespace}
+        own = {f: _ieee(f) for f in by_name() if f in namespace}
         divided = _DIVISION.sub(r"over(\1, \2)", source)
         return interpreted(divided, name, {**namespace, **own, **_OVER})
 
@@ -129,14 +130,19 @@ def _compiled(
     return _in_python(source, name, namespace)
 
 
-def _either(function: Callable[[float], float], beyond: Callable[[float], float]) -> Any:
-    """The function, and `beyond` where Python's own refuses."""
+def _ieee(name: str) -> Callable[[float], float]:
+    """The function; where Python's own refuses, with the infinity or NaN that IEEE has there."""
+    function: Callable[[float], float] = getattr(math, name)
+    pair = by_name()[name].pair
+    odd = pair is not None and name == pair.odd
 
     def made(x: float) -> float:
         try:
             return function(x)
-        except (OverflowError, ValueError):
-            return beyond(x)
+        except OverflowError:
+            return math.copysign(math.inf, x) if odd else math.inf
+        except ValueError:
+            return math.nan if x else -math.inf  # at 0 only log is refused
 
     return made
 
@@ -149,15 +155,6 @@ def _over(x: float, y: float) -> float:
 
 _DIVISION = re.compile(r"([\w.]+|\([^()]*\)) / ([\w.]+|\([^()]*\))")
 _OVER = {"over": _over}
-_IEEE = {
-    "exp": _either(math.exp, lambda _: math.inf),
-    "cosh": _either(math.cosh, lambda _: math.inf),
-    "sinh": _either(math.sinh, lambda x: math.copysign(math.inf, x)),
-    "log": _either(math.log, lambda x: math.nan if x else -math.inf),
-    "sqrt": _either(math.sqrt, lambda _: math.nan),
-    "sin": _either(math.sin, lambda _: math.nan),
-    "cos": _either(math.cos, lambda _: math.nan),
-}
 
 
 def _root(x: float, n: int) -> float:

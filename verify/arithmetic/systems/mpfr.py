@@ -24,6 +24,7 @@ from verify.arithmetic.number_system import (
     interpreted,
     relative,
 )
+from verify.functions import in_rings
 
 NAME = "mpfr"
 
@@ -54,7 +55,6 @@ def at_bits(bits: int) -> Arithmetic:
         # Rounded once; own.div of gmpy2 2.2 rounds to the bits of the caller's context.
         return gmpy2.mpfr(gmpy2.mpq(value), bits, own)
 
-    names = ("sin", "cos", "sin_cos", "exp", "log", "sinh", "cosh", "atan", "sqrt")
     with made():
         pi = gmpy2.const_pi()
     return Arithmetic(
@@ -65,7 +65,7 @@ def at_bits(bits: int) -> Arithmetic:
         finite=lambda x: gmpy2.is_finite(x) and abs(gmpy2.get_exp(x)) <= MOST_EXPONENT,
         context=partial(_checked, made),
         functions={
-            **{f: getattr(gmpy2, f) for f in names},
+            **{f: getattr(gmpy2, f) for f in (*in_rings(), "sin_cos", "sqrt")},
             "root": _root,
             "approx": float,
             "wide": gmpy2.mpfr,  # the exact value of a float64: 53 bits at least are there

@@ -18,6 +18,7 @@ from verify.arithmetic.number_system import (
     interpreted,
     relative,
 )
+from verify.functions import in_rings
 
 NAME = "mpmath"
 
@@ -56,7 +57,8 @@ def _arithmetic(bits: int, _thread: int) -> Arithmetic:
 
         return checked
 
-    names = ("sin", "cos", "exp", "sinh", "cosh", "atan")
+    everywhere = [name for name, f in in_rings().items() if f.domain is None]
+    inside = [name for name in in_rings() if name not in everywhere]
     return Arithmetic(
         name=NAME,
         bits=bits,
@@ -67,8 +69,8 @@ def _arithmetic(bits: int, _thread: int) -> Arithmetic:
         ),
         context=gmpy2.context,  # mpmath's roots use gmpy2, and would raise what its user traps
         functions={
-            **{f: getattr(context, f) for f in names},
-            **{f: real(getattr(context, f)) for f in ("log", "root", "sqrt")},
+            **{f: getattr(context, f) for f in everywhere},
+            **{f: real(getattr(context, f)) for f in (*inside, "root", "sqrt")},
             "cos_sin": context.cos_sin,
             "approx": float,
             "wide": context.mpf,  # the exact value of a float64: 53 bits at least are there

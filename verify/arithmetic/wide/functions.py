@@ -76,11 +76,13 @@ def _powers(width: int) -> ir.Constant:
 class Functions:
     """Defines functions of one format in a module, each when it is first asked for.
 
-    `spare`: the bits in front of a number's fraction.
+    `spare`: the bits in front of a number's fraction. `label`: what their names begin with, another
+    for each format of a module.
     """
 
-    def __init__(self, module: ir.Module, fraction: int) -> None:
+    def __init__(self, module: ir.Module, fraction: int, label: str = "fixed") -> None:
         self.module, self.fraction, self.width = module, fraction, width_of(fraction)
+        self.label = label
         self.count, self.spare = self.width // 64, self.width - fraction
         self.type = bits(self.width)
         self.products = Products(module, fraction)
@@ -98,7 +100,9 @@ class Functions:
     def _define(self, name: str, results: int) -> tuple[ir.IRBuilder, Value]:
         """A new function of one number that returns so many numbers and whether they are valid."""
         kind = ir.LiteralStructType([self.type] * results + [ir.IntType(1)])
-        function = ir.Function(self.module, ir.FunctionType(kind, [self.type]), f"fixed_{name}")
+        function = ir.Function(
+            self.module, ir.FunctionType(kind, [self.type]), f"{self.label}_{name}"
+        )
         function.linkage = "internal"
         return ir.IRBuilder(function.append_basic_block("entry")), function.args[0]
 
@@ -110,7 +114,7 @@ class Functions:
         return b.function
 
     def _table(self, name: str, values: ir.Constant) -> ir.GlobalVariable:
-        table = ir.GlobalVariable(self.module, values.type, f"fixed_{name}")
+        table = ir.GlobalVariable(self.module, values.type, f"{self.label}_{name}")
         table.linkage, table.global_constant = "internal", True
         table.initializer = values
         return table

@@ -1,13 +1,18 @@
 """log, sqrt and 1/x of fixed-point numbers, as LLVM functions: by iteration from float64."""
 
+from collections.abc import Callable
+from functools import cached_property
+
 import flint
 from llvmlite import ir
 
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.wide import limbs
+from verify.arithmetic.wide.composed import MORE, FinerNumbers, Number
 from verify.arithmetic.wide.functions import Functions, arb_integer
 from verify.arithmetic.wide.limbs import I64, Value, constant, resized
 from verify.arithmetic.wide.size import INTEGER_BITS, size_of, width_of
+from verify.functions import by_name
 
 DOUBLE = ir.DoubleType()
 LEAST_ROOT = 26  # sqrt takes x ≥ 2^−26, and 1/x takes |x| ≥ 2^−14: their slopes stay in range
@@ -61,7 +66,27 @@ def iterations(fraction: int, *, quadratic: bool) -> int:
 
 
 class MoreFunctions(Functions):
-    """`Functions` and those found by iteration."""
+    """`Functions`, those found by iteration, and those that are composed of others."""
+
+    def get(self, name: str) -> ir.Function:
+        function = by_name().get(name)
+        rule = function.fixed.composed if function and function.fixed else None
+        if rule is not None and name not in self._made:
+            self._made[name] = self._composed(name, rule)
+        return super().get(name)
+
+    @cached_property
+    def _finer(self) -> "MoreFunctions":
+        return MoreFunctions(self.module, self.fraction + MORE, "finer")
+
+    def _composed(self, name: str, rule: Callable[[FinerNumbers, Number], Number]) -> ir.Function:
+        """A function by its rule in finer numbers, rounded to the nearest."""
+        b, x = self._define(name, 1)
+        finer, width = FinerNumbers(b, self._finer), self._finer.width
+        widened = limbs.shifted_up(b, resized(b, x, width, signed=True), MORE)
+        total = b.add(rule(finer, Number(finer, widened)).value, constant(1 << MORE - 1, width))
+        value = resized(b, b.ashr(total, constant(MORE, width)), self.width)
+        return self._result(b, finer.valid, value)
 
     def _inverse(self) -> ir.Function:
         b, x = self._define("inverse", 1)

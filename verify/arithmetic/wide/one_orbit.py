@@ -11,9 +11,13 @@ from verify.arithmetic.wide import limbs, memory
 from verify.arithmetic.wide.limbs import I64, Value, constant, resized
 from verify.arithmetic.wide.newton import DOUBLE, MoreFunctions, from_double, to_double
 from verify.arithmetic.wide.size import INTEGER_BITS, MORE_OF_SUMS, width_of
-from verify.arithmetic.wide.translate import FLOAT_FUNCTIONS, LIBM_FUNCTIONS
+from verify.functions import in_rings
 
 BOOL = ir.IntType(1)
+# Those of float64 that are written as LLVM's own; others are those of the C library that this
+# process has. LLVM would make `sincos` of its own sin and cos of one number, which in glibc differs
+# from `sin` at 1.6762…, and takes longer.
+_INTRINSICS = ("exp", "log", "sqrt")
 
 
 class OneOrbit:
@@ -226,9 +230,9 @@ class OneOrbit:
 def float_function(module: ir.Module, name: str) -> ir.Function:
     """The function of one float64 that a source calls by that name; NotImplementedError."""
     plain = name.removeprefix("f_")
-    if plain in FLOAT_FUNCTIONS:
+    if plain in _INTRINSICS:
         return module.declare_intrinsic(f"llvm.{plain}", [DOUBLE])
-    if plain not in LIBM_FUNCTIONS:
+    if plain not in {*in_rings(), "log1p"}:  # which kernels take beside those of formulas
         raise NotImplementedError(name)
     return _of_libm(module, plain, 1)
 

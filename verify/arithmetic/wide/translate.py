@@ -27,11 +27,6 @@ from llvmlite import ir
 Ours: TypeAlias = Any  # a node of a source that we wrote, whose parts are known
 Value: TypeAlias = Any  # a target's own
 KINDS = ("int", "float", "wide", "sum")  # of two numbers the first becomes what the second is
-FUNCTIONS = ("sin", "cos", "cos_sin", "exp", "log", "sqrt", "sinh", "cosh")
-FLOAT_FUNCTIONS = ("exp", "log", "sqrt")
-# By the C library that this process has. LLVM would make `sincos` of its own sin and cos of one
-# number, which in glibc differs from `sin` at 1.6762…, and takes longer.
-LIBM_FUNCTIONS = ("sin", "cos", "log1p", "sinh", "cosh", "atan")
 _COMPARE = {ast.Lt: "<", ast.Gt: ">", ast.LtE: "<=", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
 _SUMS = {ast.Add: "+", ast.Sub: "-"}
 

@@ -67,10 +67,11 @@ def periods_of(hamiltonian: Hamiltonian) -> Periods:
 def _period(hamiltonian: Hamiltonian, place: int) -> Fraction:
     import sympy
 
+    from verify.algebra.expressions.functions_used import waves_in
     from verify.algebra.formula import symbol
 
     own = symbol(hamiltonian.coordinates[place])
-    waves = hamiltonian.exact.atoms(sympy.sin, sympy.cos, sympy.tan)
+    waves = waves_in(hamiltonian.exact)
     rates = sorted({abs(x.args[0].diff(own)) for x in waves} - {0}, key=str)
     ratios = [sympy.nsimplify(x / rates[0]) for x in rates]
     if not rates or not all(x.is_Rational for x in ratios) or rates[0].free_symbols:

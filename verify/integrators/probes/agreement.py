@@ -10,7 +10,7 @@ import gmpy2
 
 from verify.integrators.places.place import Place
 from verify.integrators.probes.duals import DualProbe
-from verify.integrators.tracing.dual import SLOPES, Dual, Duals
+from verify.integrators.tracing.dual import Dual, Duals, slope_of
 from verify.integrators.tracing.number import UntraceableError
 from verify.integrators.tracing.trace import Node, in_order, replayed, through
 from verify.integrators.user_code.user_map import State, UserMap
@@ -182,5 +182,5 @@ def _made(node: Node, x: list[Rounded], start: dict[str, float]) -> Rounded:
         case name:
             a, e = x[0]
             value = getattr(math, name)(a)
-            slope = SLOPES[name](gmpy2.mpfr(a), gmpy2.mpfr(value))
+            slope = slope_of(name, gmpy2.mpfr(a), gmpy2.mpfr(value))
             return value, abs(float(slope)) * e

@@ -8,6 +8,8 @@ from fractions import Fraction
 from operator import methodcaller
 from typing import Any
 
+from verify.functions import by_name
+
 _HALF, _THIRD = Fraction(1, 2), Fraction(1, 3)
 
 
@@ -61,10 +63,7 @@ def hypot(*x: Any) -> Any:
     return _root(sum(each * each for each in x))
 
 
-FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh", "atan")
-OF_ONE: dict[str, Callable[[Any], Any]] = {
-    **{name: methodcaller("applied", name) for name in FUNCTIONS},
-    "arctan": methodcaller("applied", "atan"),
+_MADE: dict[str, Callable[[Any], Any]] = {
     "arcsin": _arcsin,
     "arccos": lambda x: x.kind.pi() / 2 - _arcsin(x),
     "arcsinh": lambda x: _log(x + _root(x * x + 1)),
@@ -81,6 +80,7 @@ OF_ONE: dict[str, Callable[[Any], Any]] = {
     "sinc": _sinc,
     "sign": _signed,
 }
+OF_ONE = _MADE | {f.numpy: methodcaller("applied", name) for name, f in by_name().items()}
 # As `math` and new versions of numpy call them.
 OF_ONE |= {name.replace("arc", "a"): call for name, call in OF_ONE.items()}
 OF_ONE |= {"rad2deg": OF_ONE["degrees"], "deg2rad": OF_ONE["radians"]}

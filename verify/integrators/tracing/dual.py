@@ -6,7 +6,7 @@ the line of code that made it. gmpy2's context is set by `running`.
 """
 
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
@@ -16,6 +16,7 @@ from typing import TypeAlias
 import gmpy2
 
 from verify.arithmetic.exact import fraction
+from verify.functions import by_name
 from verify.integrators.tracing.number import (
     OPERATORS,
     Kind,
@@ -26,20 +27,6 @@ from verify.integrators.tracing.number import (
 
 Number: TypeAlias = gmpy2.mpfr
 BITS = 200
-SLOPES: dict[str, Callable[[Number, Number], Number]] = {  # of each function y of x
-    "sin": lambda x, _: gmpy2.cos(x),
-    "cos": lambda x, _: -gmpy2.sin(x),
-    "tan": lambda _, y: 1 + y * y,
-    "tanh": lambda _, y: 1 - y * y,
-    "exp": lambda _, y: y,
-    "sinh": lambda x, _: gmpy2.cosh(x),
-    "cosh": lambda x, _: gmpy2.sinh(x),
-    "log": lambda x, _: 1 / x,
-    "atan": lambda x, _: 1 / (1 + x * x),
-    "sqrt": lambda _, y: 1 / (2 * y) if y else gmpy2.mpfr(0),
-}
-
-
 _MOST_COMPARISONS = 4096  # of one call that are written down
 
 
@@ -94,6 +81,17 @@ class Duals(Kind):
             )
             for k, x in enumerate(z)
         ]
+
+
+def slope_of(name: str, x: Number, y: Number) -> Number:
+    """The slope of y = f(x); of √x at 0, which has none, it is taken to be 0."""
+    if name == "sqrt" and not y:
+        return gmpy2.mpfr(0)
+    return by_name()[name].derivative(x, y, _apply)
+
+
+def _apply(name: str, x: Number) -> Number:
+    return 1 / x if name == "inverse" else getattr(gmpy2, name)(x)
 
 
 def _line_of_user() -> tuple[str, int, int]:
@@ -177,10 +175,13 @@ class Dual(TracedNumber):
 
     def applied(self, name: str) -> "Dual":
         x = self.value
-        if (name == "sqrt" and x < 0) or (name == "log" and x <= 0):
-            raise ValueError("math domain error")
+        domain = by_name()[name].domain
+        if domain and domain.relation != "!=":
+            inside = domain.inside(x)
+            if inside < 0 or (inside == 0 and domain.relation == ">"):
+                raise ValueError("math domain error")
         y = getattr(gmpy2, name)(x)
-        return self._chained(y, SLOPES[name](x, y))
+        return self._chained(y, slope_of(name, x, y))
 
     def raised(self, exponent: Fraction) -> "Dual":
         x = self.value

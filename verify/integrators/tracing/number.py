@@ -169,7 +169,7 @@ class TracedNumber(ABC):
 
     @abstractmethod
     def applied(self, name: str) -> "TracedNumber":
-        """The function of `derived.FUNCTIONS` at it."""
+        """The function of `verify.functions` of that name at it."""
 
     @abstractmethod
     def raised(self, exponent: Fraction) -> "TracedNumber": ...

@@ -7,20 +7,21 @@ Derivatives, section 13.2).
 
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
+from itertools import count
 
 import sympy
 
 from verify.algebra.limits import checked
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.power_series import Series
-from verify.errors import InputError
+from verify.functions import by_name
+from verify.functions.function import Apply, Pair
 from verify.hamiltonians.canonical_field import CanonicalField
 from verify.integrators.tracing.number import OPERATORS
 from verify.integrators.tracing.trace import Node, expressions, in_order, through
 from verify.schemes.maps.step_algebra import State
 
-_PAIRED = {"sin": ("sin", "cos", -1), "cos": ("sin", "cos", -1),
-           "sinh": ("sinh", "cosh", 1), "cosh": ("sinh", "cosh", 1)}  # fmt: skip
+_HALF = Fraction(1, 2)
 _REACHES = (7, 9, 13)  # who asks for one more order asks for further ones
 
 
@@ -71,17 +72,38 @@ def _beginnings(node: Node, at_zero: Mapping[int, sympy.Expr]) -> list[tuple[str
         return [("value", sympy.pi)]
     if name == "divide":
         return [("inverse", 1 / x[1])]
-    if name in _PAIRED:
-        first, second, _ = _PAIRED[name]
-        return [(one, getattr(sympy, one)(x[0])) for one in (first, second)]
-    found = [("value", at_zero[node.number])]
+    if pair := _pair_of(name):
+        return [(one, getattr(sympy, one)(x[0])) for one in (pair.odd, pair.even)]
+    value = ("value", at_zero[node.number])
     if name == "power" and node.value.denominator == 1 and node.value > 0:
         return []
-    if name in ("power", "sqrt", "log"):
-        found.append(("inverse", 1 / x[0]))
-    if name == "atan":
-        found.append(("inverse", 1 / (1 + x[0] ** 2)))
-    return found
+    if name in ("power", "sqrt"):
+        return [value, ("inverse", 1 / x[0])]
+    slope = by_name()[name].slope
+    return [value] if slope is None else [value, *_beginnings_of_slope(slope, x[0])]
+
+
+def _pair_of(name: str) -> Pair | None:
+    """The pair that a function is one of, which has its partner as its derivative."""
+    function = by_name().get(name)
+    pair = function.pair if function else None
+    return pair if pair and name in (pair.odd, pair.even) else None
+
+
+def _beginnings_of_slope(
+    slope: Callable[[sympy.Expr, Apply], sympy.Expr], x: sympy.Expr
+) -> list[tuple[str, sympy.Expr]]:
+    """What its series needs at h = 0: of each thing applied in it, in turn, by numbers."""
+    values: list[sympy.Expr] = []
+
+    def apply(name: str, inner: sympy.Expr) -> sympy.Expr:
+        values.append(1 / inner)
+        if name == "sqrt":
+            values.append(sympy.sqrt(inner))
+        return values[-1]
+
+    slope(x, apply)
+    return [(str(k), value) for k, value in enumerate(values)]
 
 
 class _Maker:
@@ -113,32 +135,32 @@ class _Maker:
         x, name = inputs[0], node.operation
         if name == "divide":
             return x.over(inputs[1], self.known[node.number, "inverse"])
-        if name in _PAIRED:
-            first, second, sign = _PAIRED[name]
-            pair = self._pair(x, self.known[node.number, first], self.known[node.number, second],
-                              sign)  # fmt: skip
-            return pair[name == second]
+        if pair := _pair_of(name):
+            odd, even = (self.known[node.number, one] for one in (pair.odd, pair.even))
+            return self._pair(x, odd, even, pair.sign)[name == pair.even]
         if name == "power" and (node.number, "value") not in self.known:
             return self._natural(x, int(node.value))
         value = self.known[node.number, "value"]
-        inverse = self.known.get((node.number, "inverse"), self.ring.zero)
-        match name:
-            case "power":
-                return self._power(x, node.value, value, inverse)
-            case "sqrt":
-                return self._power(x, Fraction(1, 2), value, inverse)
-            case "log":  # y' = x'/x
-                return self._integral(value, _slope(x).over(x, inverse))
-            case "atan":  # y' = x'/(1 + x²)
-                below = self.constant(self.ring.one) + x * x
-                return self._integral(value, _slope(x).over(below, inverse))
-            case "exp":
-                return self._solved(value, x, lambda y: y)
-            case "tan":
-                return self._solved(value, x, lambda y: self.constant(self.ring.one) + y * y)
-            case "tanh":
-                return self._solved(value, x, lambda y: self.constant(self.ring.one) - y * y)
-        raise InputError("step", name, "is a function whose series is not known")
+        if name in ("power", "sqrt"):
+            inverse = self.known[node.number, "inverse"]
+            return self._power(x, node.value or _HALF, value, inverse)
+        function = by_name()[name]
+        if function.equation:
+            return self._solved(value, x, function.equation)
+        slope = function.derivative(x, None, self._applied(node))
+        return self._integral(value, slope * _slope(x))
+
+    def _applied(self, node: Node) -> Apply:
+        """What is applied in a function's slope, from where `_beginnings_of_slope` has it begin."""
+        values = (self.known[node.number, str(k)] for k in count())
+
+        def apply(name: str, x: Series) -> Series:
+            inverse = next(values)
+            if name == "inverse":
+                return self.constant(self.ring.one).over(x, inverse)
+            return self._power(x, _HALF, next(values), inverse)
+
+        return apply
 
     def _natural(self, x: Series, n: int) -> Series:
         result, base = None, x

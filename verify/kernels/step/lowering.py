@@ -8,12 +8,11 @@ import gmpy2
 
 from verify.arithmetic.number import Number
 from verify.kernels.step import newton
+from verify.kernels.step.kinds import Call, Input, Inverse, Opposite, Pi, Root, Solution, Solving
 from verify.kernels.step.operations import Loop, Program
 
 _INFIX = {"add": "+", "sub": "-", "mul": "*"}
 _GUARD = 64  # bits of a given root beyond those of the arithmetic
-_WRITTEN = {"input": "{0}", "neg": "-{1}", "inverse": "1 / {1}", "pi": "pi"}  # of name, argument
-_OPERATORS = (*_INFIX, *_WRITTEN, "const", "loop", "solved")
 
 
 @dataclass
@@ -48,14 +47,14 @@ class Lowering:
         static: list[str] = []
         dynamic: list[str] = []
         for index in live:
-            kind, args, *_ = op = ops[index]
-            if kind in _INFIX:
-                x, y = args
-                line = f"{prefix}{index} = {prefix}{x} {_INFIX[kind]} {prefix}{y}"
-            elif kind == "const" or index in self._written:
+            op = ops[index]
+            if op.kind == "add" or op.kind == "sub" or op.kind == "mul":
+                x, y = op.args
+                line = f"{prefix}{index} = {prefix}{x} {_INFIX[op.kind]} {prefix}{y}"
+            elif op.kind == "const" or index in self._written:
                 continue
-            elif kind == "loop":
-                before, inside = self._newton(program.loops[op.degree])
+            elif op.kind == "loop":
+                before, inside = self._newton(program.loops[op.number])
                 static += before
                 dynamic += inside
                 continue
@@ -68,17 +67,18 @@ class Lowering:
         """cos and sin of one argument in one call, where the arithmetic has that."""
         op = self.program.ops[index]
         both = next((f for f in ("cos_sin", "sin_cos") if f in self.functions), None)
-        if op.kind not in ("cos", "sin") or both is None:
+        names = both.split("_") if both else ()
+        if op.kind != "call" or op.function.name not in names:
             return None
-        found = {
-            self.program.ops[i].kind: i
+        calls = {
+            other.function.name: i
             for i in live
-            if self.program.ops[i].kind in ("cos", "sin") and self.program.ops[i].args == op.args
+            if isinstance(other := self.program.ops[i], Call) and other.args == op.args
         }
-        if len(found) < 2:
+        if not calls.keys() >= {*names}:
             return None
-        self._written |= set(found.values())
-        first, second = (self.name(found[kind]) for kind in both.split("_"))
+        self._written |= {calls[name] for name in names}
+        first, second = (self.name(calls[name]) for name in names)
         return f"{first}, {second} = {both}({self.name(op.args[0])})"
 
     def inner(self, loop: Loop) -> "Lowering":
@@ -103,11 +103,9 @@ class Lowering:
     def function(self, index: int) -> str | None:
         """The name of the function that an operation calls, where it calls one."""
         op = self.program.ops[index]
-        if self._given(index):
-            return None
-        if op.kind == "root":
+        if op.kind == "root" and self._radicand(op) is None:
             return "sqrt" if op.degree == 2 else "root"
-        return None if op.kind in _OPERATORS else op.kind
+        return op.function.name if op.kind == "call" else None
 
     def called(self, roots: Sequence[int]) -> set[str]:
         """The names of all functions that the roots need, those in inner loops included."""
@@ -124,27 +122,36 @@ class Lowering:
     def loops(self, live: Sequence[int]) -> list[Loop]:
         """The inner loops among live operations, in their order."""
         ops = (self.program.ops[index] for index in live)
-        return [self.program.loops[op.degree] for op in ops if op.kind == "loop"]
+        return [self.program.loops[op.number] for op in ops if op.kind == "loop"]
 
     def _operation(self, index: int) -> str:
         op = self.program.ops[index]
         args = [self.name(a) for a in op.args]
-        if op.kind in _WRITTEN:
-            return _WRITTEN[op.kind].format(op.name, *args)
-        if op.kind == "solved":
-            return f"u{self.program.ops[op.args[0]].degree}_{op.degree}"
-        if self._given(index):
-            return f"number_{self.name(index)}"
-        more = f", {op.degree}" if op.kind == "root" and op.degree != 2 else ""
-        return f"{self.function(index)}({args[0]}{more})"
+        match op:
+            case Input(name):
+                return name
+            case Pi():
+                return "pi"
+            case Opposite():
+                return f"-{args[0]}"
+            case Inverse():
+                return f"1 / {args[0]}"
+            case Solution((loop,), number):
+                solving = self.program.ops[loop]
+                assert isinstance(solving, Solving)  # noqa: S101 - what finds it is a loop
+                return f"u{solving.number}_{number}"
+            case Root() if self._radicand(op) is not None:
+                return f"number_{self.name(index)}"
+            case Root(_, degree) if degree != 2:
+                return f"root({args[0]}, {degree})"
+        return f"{self.function(index)}({args[0]})"
 
-    def _given(self, index: int) -> bool:
-        """Whether it is a root of a number, not a square root, and there is no function for it."""
-        op = self.program.ops[index]
-        if op.kind != "root" or op.degree == 2 or "root" in self.functions:
-            return False
-        radicand = self.program.ops[op.args[0]]
-        return radicand.kind == "const" and radicand.value > 0
+    def _radicand(self, op: Root) -> Fraction | None:
+        """What it is the root of, where that is a number and there is no function for the root."""
+        of = self.program.ops[op.args[0]]
+        if op.degree == 2 or "root" in self.functions or of.kind != "const":
+            return None
+        return of.value if of.value > 0 else None
 
     def named_constants(
         self, number: Callable[[Fraction], Number], roots: Sequence[int] | None = None
@@ -159,11 +166,9 @@ class Lowering:
             op = program.ops[index]
             if op.kind == "const":
                 found[self.name(index)] = number(op.value)
-            elif self._given(index):
-                radicand = program.ops[op.args[0]].value
-                found[f"number_{self.name(index)}"] = number(
-                    _root(radicand, op.degree, self.bits + _GUARD)
-                )
+            elif op.kind == "root" and (radicand := self._radicand(op)) is not None:
+                root = _root(radicand, op.degree, self.bits + _GUARD)
+                found[f"number_{self.name(index)}"] = number(root)
         for loop in self.loops(live):
             needed = None if roots is None else [*loop.updates, *loop.determinants]
             found |= self.inner(loop).named_constants(number, needed)

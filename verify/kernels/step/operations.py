@@ -13,26 +13,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import NamedTuple
 
-_LATENCY = {"add": 1, "sub": 1, "mul": 1, "neg": 1, "inverse": 4}
-_FUNCTION_LATENCY = 20
-_COST = {"input": 0, "add": 1, "sub": 1, "neg": 1, "mul": 4}
-_COST_OF_FUNCTION = 40
-_ZERO = Fraction(0)
+from verify.functions.function import Function
+from verify.kernels.step import kinds
+from verify.kernels.step.kinds import Op as Op
+
 _SPECIAL = (0, 1, -1)  # constants that products and sums are shorter with
-
-
-class Op(NamedTuple):
-    """`kind`: input, const, add, sub, mul, neg, inverse, root, loop, solved, or a function's name.
-
-    `loop` is the program's loop number `degree`, and depends on `args`; `solved` is the unknown of
-    number `degree` that a loop, its one argument, has found.
-    """
-
-    kind: str
-    args: tuple[int, ...] = ()
-    name: str = ""
-    value: Fraction = _ZERO
-    degree: int = 1
 
 
 @dataclass(frozen=True)
@@ -160,13 +145,12 @@ class Program:
         if static:
             self.depth.append(0)
             return index
-        depth, kind = self.depth, op.kind
-        ready = max([depth[a] for a in op.args], default=0)
-        depth.append(ready + _LATENCY.get(kind, _FUNCTION_LATENCY if op.args else 0))
-        self.cost += _COST.get(kind, _COST_OF_FUNCTION)
+        depth = self.depth
+        depth.append(max([depth[a] for a in op.args], default=0) + op.latency)
+        self.cost += op.cost
         return index
 
-    def _binary(self, kind: str, x: int, y: int) -> int:
+    def _binary(self, kind: type[kinds.Binary], x: int, y: int) -> int:
         key = kind, x, y
         found = self._known.get(key)
         if found is not None:
@@ -174,20 +158,20 @@ class Program:
         index, depth = len(self.ops), self.depth
         self._known[key] = index
         self._keys.append(key)
-        self.ops.append(tuple.__new__(Op, (kind, (x, y), "", _ZERO, 1)))
+        self.ops.append(kind((x, y)))
         if self.static[x] and self.static[y]:
             self.static.append(True)
             depth.append(0)
         else:
             self.static.append(False)
-            depth.append((depth[x] if depth[x] > depth[y] else depth[y]) + _LATENCY[kind])
-            self.cost += _COST[kind]
+            depth.append((depth[x] if depth[x] > depth[y] else depth[y]) + kind.latency)
+            self.cost += kind.cost
         return index
 
     def input(self, name: str, *, static: bool) -> int:
         key = "input", name
         found = self._known.get(key)
-        return self._new(key, Op("input", name=name), static) if found is None else found
+        return self._new(key, kinds.Input(name), static) if found is None else found
 
     def constant(self, value: Fraction) -> int:
         return self.quotient(value.numerator, value.denominator)
@@ -198,28 +182,39 @@ class Program:
         found = self._known.get(key)
         if found is not None:
             return found
-        index = self._new(key, Op("const", value=Fraction(numerator, denominator)), True)
+        index = self._new(key, kinds.Constant(Fraction(numerator, denominator)), True)
         if denominator == 1 and numerator in _SPECIAL:
             self._special[index] = numerator
         return index
 
-    def apply(self, kind: str, operand: int | None = None, *, degree: int = 1) -> int:
-        """A function, `neg`, `inverse` or a `root` of this degree, of an earlier result; or π, of
-        none."""
-        args = () if operand is None else (operand,)
-        key = kind, degree, args
-        found = self._known.get(key)
-        if found is not None:
-            return found
-        return self._new(key, Op(kind, args, degree=degree), all(self.static[a] for a in args))
+    def pi(self) -> int:
+        """π."""
+        at = self._known.get(("pi",))
+        return self._new(("pi",), kinds.Pi(), True) if at is None else at
+
+    def inverse(self, x: int) -> int:
+        """1/x."""
+        return self._of_one(("inverse", x), kinds.Inverse((x,)))
+
+    def root(self, x: int, degree: int) -> int:
+        """x^(1/degree)."""
+        return self._of_one(("root", degree, x), kinds.Root((x,), degree))
+
+    def call(self, function: Function, x: int) -> int:
+        """A function of x."""
+        return self._of_one((function.name, x), kinds.Call((x,), function))
+
+    def _of_one(self, key: Key, op: kinds.Unary) -> int:
+        at = self._known.get(key)
+        return self._new(key, op, self.static[op.args[0]]) if at is None else at
 
     def solve(self, loop: Loop, given: Sequence[int]) -> list[int]:
         """The values that a loop finds; `given`: what it reads of this program."""
         self.loops.append(loop)
         read = (*loop.starts, *loop.added_to, *given)
-        made = self._new(("loop", loop.number), Op("loop", read, degree=loop.number), False)
+        made = self._new(("loop", loop.number), kinds.Solving(read, loop.number), False)
         return [
-            self._new(("solved", made, k), Op("solved", (made,), degree=k), False)
+            self._new(("solved", made, k), kinds.Solution((made,), k), False)
             for k in range(len(loop.starts))
         ]
 
@@ -232,7 +227,7 @@ class Program:
             return self.quotient(-op.value.numerator, op.value.denominator)
         if op.kind == "neg":
             return op.args[0]
-        return self.apply("neg", x)
+        return self._of_one(("neg", x), kinds.Opposite((x,)))
 
     def add(self, x: int, y: int) -> int:
         special, ops = self._special, self.ops
@@ -241,10 +236,10 @@ class Program:
         if y in special and special[y] == 0:
             return x
         if ops[y].kind == "neg":
-            return self._binary("sub", x, ops[y].args[0])
+            return self._binary(kinds.Difference, x, ops[y].args[0])
         if ops[x].kind == "neg":
-            return self._binary("sub", y, ops[x].args[0])
-        return self._binary("add", x, y) if x <= y else self._binary("add", y, x)
+            return self._binary(kinds.Difference, y, ops[x].args[0])
+        return self._binary(kinds.Sum, x, y) if x <= y else self._binary(kinds.Sum, y, x)
 
     def mul(self, x: int, y: int) -> int:
         special, ops, static = self._special, self.ops, self.static
@@ -256,7 +251,7 @@ class Program:
             return self._multiple(special[y], y, x)
         if ops[y].kind == "neg" and not static[y]:
             return self.neg(self.mul(ops[y].args[0], x))
-        return self._binary("mul", x, y) if x <= y else self._binary("mul", y, x)
+        return self._binary(kinds.Product, x, y) if x <= y else self._binary(kinds.Product, y, x)
 
     def _multiple(self, n: int, constant: int, x: int) -> int:
         """n x for n = 0, 1, −1, which is a constant of that index."""

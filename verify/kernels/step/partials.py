@@ -4,10 +4,11 @@ Forwards, operation by operation. A polynomial that is nested by Horner's rule h
 as derivatives, and no operation is written twice, so that they cost little beside the values.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 from verify.kernels.step.operations import Op, Program
+from verify.kernels.step.slopes import slope_of
 
 Gradient = Mapping[int, int]  # by input, of what is not 0
 
@@ -65,25 +66,16 @@ class Partials:
                 return (program.neg(one),)
             case "mul":
                 return op.args[1], op.args[0]
+            case "inverse":
+                return (program.neg(program.mul(index, index)),)
             case "root":
-                return (self._of_root(index, op),)
-        return (_SLOPES[op.kind](program, op.args[0], index),)
+                return (self._of_root(index, op.degree),)
+            case "call":
+                return (slope_of(program, op, index),)
+        return ()
 
-    def _of_root(self, index: int, op: Op) -> int:
+    def _of_root(self, index: int, degree: int) -> int:
         """y/(n x) of y = x^(1/n), as 1/(n y^(n − 1))."""
         program = self.program
-        below = program.mul(program.quotient(op.degree, 1), program.power(index, op.degree - 1))
-        return program.apply("inverse", below)
-
-
-# f'(x) of y = f(x), from the program, x and y.
-_SLOPES: Mapping[str, Callable[[Program, int, int], int]] = {
-    "sin": lambda made, x, y: made.apply("cos", x),
-    "cos": lambda made, x, y: made.neg(made.apply("sin", x)),
-    "exp": lambda made, x, y: y,
-    "log": lambda made, x, y: made.apply("inverse", x),
-    "sinh": lambda made, x, y: made.apply("cosh", x),
-    "cosh": lambda made, x, y: made.apply("sinh", x),
-    "inverse": lambda made, x, y: made.neg(made.mul(y, y)),
-    "atan": lambda made, x, y: made.apply("inverse", made.add(made.quotient(1, 1), made.mul(x, x))),
-}
+        below = program.mul(program.quotient(degree, 1), program.power(index, degree - 1))
+        return program.inverse(below)

@@ -13,6 +13,7 @@ import flint
 
 from verify.algebra.generator import Generator, terms_of
 from verify.algebra.ring import Poly, Ring
+from verify.functions import in_rings
 from verify.kernels.step.operations import Op as Op
 from verify.kernels.step.operations import Program as Program
 from verify.kernels.step.operations import Tail
@@ -116,8 +117,13 @@ class Evaluator:
         if g.kind == "variable":
             return self._inputs[g.name]
         if g.kind == "pi":
-            return self.program.apply("pi")
-        return self.program.apply(g.kind, self.evaluate(g.inner), degree=g.degree)
+            return self.program.pi()
+        inner = self.evaluate(g.inner)
+        if g.kind == "inverse":
+            return self.program.inverse(inner)
+        if g.kind == "root":
+            return self.program.root(inner, g.degree)
+        return self.program.call(in_rings()[g.kind], inner)
 
     def _collect(self, x: Poly, dynamic: Sequence[int], static: Collection[int]) -> list[Term]:
         """x by monomials in the dynamic generators, the static coefficients evaluated."""

@@ -299,7 +299,7 @@ def eliminated(
         pivot = rows[k][k]
         one = program.is_constant(pivot, 1)
         pivots += [] if one else [pivot]
-        over.append(pivot if one else program.apply("inverse", pivot))
+        over.append(pivot if one else program.inverse(pivot))
         for i in range(k + 1, size):
             factor = mul(rows[i][k], over[k])
             for j in range(k + 1, width):

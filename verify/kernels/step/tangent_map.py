@@ -64,7 +64,8 @@ class Tangent:
             else:
                 known[index] = self._read(index)
         self.change = [known[index] for index in change]
-        used = {program.ops[at].name for at in program.live(self.change)}
+        read = (program.ops[at] for at in program.live(self.change))
+        used = {op.name for op in read if op.kind == "input"}
         self.needed = [at for at in self.needed if _read_as(at) in used]
 
     def _read(self, at: int) -> int:

@@ -8,12 +8,14 @@ A leaf is never taken for a command: its letters are set one by one or as uprigh
 import re
 from unicodedata import normalize
 
+from verify.functions import by_name
 from verify.pages.markdown.markup import Node
 from verify.pages.text.mathml import GREEK
 
 _OTHERWISE = {"ε": "varepsilon", "λ": "lambda", "π": "pi", "φ": "varphi"}
 _GREEK = {letter: name for name, letter in GREEK.items() if letter != "ο"} | _OTHERWISE
-_FUNCTIONS = {"sin", "cos", "tan", "exp", "ln", "log", "sinh", "cosh", "tanh", "arctan"}
+# As they are shown, but for a root, which has its sign; and log, which sentences of papers have.
+_FUNCTIONS = {f.shown: f.tex for f in by_name().values() if f.name != "sqrt"} | {"log": r"\log"}
 _LARGE = {"max": r"\max ", "min": r"\min ", "lim": r"\lim ", "∑": r"\sum ", "∏": r"\prod "}
 _SIGNS = {
     "−": "-", "\u2061": "", "\u2062": r"\,", "′": "'", "≡": r"\equiv ", "≤": r"\le ",
@@ -80,7 +82,7 @@ def _operator(node: Node) -> str:
 
 def _leaf(text: str) -> str:
     if text in _FUNCTIONS:
-        return f"\\{text} "
+        return f"{_FUNCTIONS[text]} "
     if over := re.fullmatch("([0-9]+)\N{FRACTION SLASH}([0-9]+)", normalize("NFKC", text)):
         return rf"\tfrac{{{over[1]}}}{{{over[2]}}}"
     if len(text) == 2 and text[1] in _ACCENTS:

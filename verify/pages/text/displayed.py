@@ -11,6 +11,7 @@ import re
 
 from markupsafe import Markup, escape
 
+from verify.functions import by_name
 from verify.pages.text.pieces import (
     Kind,
     Piece,
@@ -23,8 +24,8 @@ from verify.pages.text.pieces import (
 )
 
 _WORDS = {
-    "det", "div", "tr", "adj", "Hess", "exp", "log", "ln", "sin", "cos", "max", "min", "lim",
-    "MSE", "area", "const", "end",
+    "det", "div", "tr", "adj", "Hess", "log", "max", "min", "lim", "MSE", "area", "const", "end",
+    *(f.shown for f in by_name().values()),
 }  # fmt: skip
 _BELOW = {"Σ", "Π", "max", "min", "lim"}  # what has its index below it
 _LARGE = {"Σ": "∑", "Π": "∏", "∫": "∫", "∂": "∂", "∇": "∇"}

@@ -18,6 +18,7 @@ from markupsafe import Markup, escape
 
 from verify.algebra.formula import FUNCTIONS, parse
 from verify.errors import InputError
+from verify.functions import by_name
 from verify.hamiltonians.coordinates import PLANE, coordinates_of
 from verify.pages.text.inline_math import in_line
 from verify.pages.text.terms import Term, factor_key, terms_of
@@ -28,7 +29,6 @@ LONGEST_SHOWN = 600  # characters of a formula that is shown as text
 _STACKED_FROM = 4  # terms from which a sum is set one term a line, where it is
 _LONGEST_LINE = 40  # signs and names longer than that
 
-_NAMES = {"log": "ln", "atan": "arctan"}
 GREEK = {
     "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ε", "zeta": "ζ",
     "eta": "η", "theta": "θ", "iota": "ι", "kappa": "κ", "lamda": "λ", "mu": "μ", "nu": "ν",
@@ -268,7 +268,7 @@ def _atom(base: Expr) -> str:
 
 def _call(function: Expr, power: str) -> str:
     text = type(function).__name__
-    label = _word(_NAMES.get(text, text))
+    label = _word(by_name()[text].shown if text in by_name() else text)
     head = f"<msup>{label}{power}</msup>" if power else label
     (argument,) = function.args
     if argument.is_Symbol or argument is sympy.pi or (argument.is_Integer and argument >= 0):

@@ -35,9 +35,10 @@ from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.kernel import PARTIAL, Kernel, Writer
+from verify.kernels.kernel import Kernel, Writer
 from verify.kernels.step import newton
 from verify.kernels.step.computation import step_map_of
+from verify.kernels.step.kinds import may_leave_range
 from verify.kernels.step.lowering import Lowering
 from verify.kernels.step.program import Program
 from verify.schemes.maps.step_map import StepMap
@@ -163,10 +164,15 @@ def _uncompiled(step_map: StepMap, arithmetic: Arithmetic, observables: frozense
 def _check(wide: Kernel, arithmetic: Arithmetic) -> None:
     """Where the range is limited, only what stays within it by the state's limits alone."""
     lowering = wide.lowering
-    kinds = {lowering.program.ops[i].kind for i in lowering.live([wide.outputs["dj"]])}
-    if arithmetic.absolute and kinds & set(PARTIAL):
+    operations = (lowering.program.ops[i] for i in lowering.live([wide.outputs["dj"]]))
+    partial = {
+        op.function.name if op.kind == "call" else op.kind
+        for op in operations
+        if may_leave_range(op)
+    }
+    if arithmetic.absolute and partial:
         raise UnsupportedError(
-            f"{', '.join(kinds & set(PARTIAL))} may leave the range of {arithmetic.name}"
+            f"{', '.join(sorted(partial))} may leave the range of {arithmetic.name}"
         )
 
 

@@ -25,6 +25,7 @@ from verify.exploration.oracles.ball_steps import (
     unlike,
 )
 from verify.exploration.property import Violation, known, only_if
+from verify.functions.function import CIRCLE
 
 
 def holds_in_any_degrees(sample: AnySample) -> None:
@@ -67,7 +68,7 @@ def _frequency(ring: Ring, slopes: Sequence[Poly]) -> Fraction | None:
 def _rate(ring: Ring, g: Generator) -> Fraction | None:
     """ω of sin or cos of ω t + φ; None of anything else."""
     rate = ring.diff(g.inner, "t")
-    if g.kind not in ("sin", "cos") or not rate.is_constant():
+    if g.kind not in (CIRCLE.odd, CIRCLE.even) or not rate.is_constant():
         return None
     value = rate.leading_coefficient()
     return Fraction(int(value.numer()), int(value.denom()))

@@ -1,0 +1,29 @@
+"""The elementary functions that a formula may have: `elementary/` has one a file.
+
+A file of `elementary/` defines `FUNCTION`, all that is asked of that function anywhere: in algebra,
+in every number system, in kernels, of traced code, on pages.
+"""
+
+from functools import cache
+
+from verify.discovery import Catalogue
+from verify.functions.function import Function
+
+_FILES = Catalogue(f"{__name__}.elementary", [f"{folder}/elementary" for folder in __path__])
+
+
+def names() -> tuple[str, ...]:
+    """The names of all functions, as formulas have them, in alphabetical order."""
+    return _FILES.names
+
+
+@cache
+def by_name() -> dict[str, Function]:
+    """All functions by their names."""
+    return {name: _FILES.module(name).FUNCTION for name in names()}
+
+
+@cache
+def in_rings() -> dict[str, Function]:
+    """Those that a ring has generators of, and so a kernel calls: the others are made of them."""
+    return {name: each for name, each in by_name().items() if each.image is not None}

@@ -1,0 +1,1 @@
+"""The elementary functions, one file each with a `FUNCTION`, found by themselves."""

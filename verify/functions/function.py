@@ -1,0 +1,100 @@
+"""An elementary function of one real number: all that is asked of it, in one object.
+
+What holds in numbers of any kind is written once, with + − * and `apply`, which applies a function
+to such a number by its name, "inverse" and "sqrt" among them: the numbers may be MPFR's, balls,
+elements of a ring, series, operations of a program. No library is imported here.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias
+
+Number: TypeAlias = Any
+Apply: TypeAlias = Callable[[str, Number], Number]
+
+
+@dataclass(frozen=True)
+class Pair:
+    """The names of odd s and even c with s' = c, c' = sign·s and c² − sign·s² = 1."""
+
+    odd: str
+    even: str
+    sign: int
+
+
+CIRCLE, HYPERBOLA = Pair("sin", "cos", -1), Pair("sinh", "cosh", 1)
+
+
+@dataclass(frozen=True)
+class Domain:
+    """Where a function is defined: where `inside`, made from its argument, is ≠ 0, ≥ 0 or > 0; or
+    `through`, the function of that name, of it is.
+    """
+
+    relation: Literal["!=", ">=", ">"]
+    inside: Callable[[Number], Number] = lambda x: x
+    through: str = ""
+
+
+@dataclass(frozen=True)
+class FixedPoint:
+    """How exact a function is in fixed point, and how it is made where it is made of others.
+
+    A result is off by `units` in the last place at most, and by its size divided by `share` more,
+    where that is not 0. `composed`: the function in finer numbers, from these and its argument (see
+    `verify.arithmetic.wide.composed`); None where `verify.arithmetic.wide` has code for it.
+    """
+
+    units: str
+    share: int = 0
+    composed: Callable[[Any, Number], Number] | None = None
+
+
+@dataclass(frozen=True)
+class Function:
+    """`name`: in formulas, as sympy, arb, MPFR, mpmath, `math` and the C library know it.
+
+    - `slope`: its derivative, from the argument; or `equation`, from the value.
+    - `lipschitz`: what its slope nowhere exceeds, which is 1: it then stays in a range that its
+      argument is in, such as fixed point's; None where the slope has no bound.
+    - `domain`: where it is defined; None: everywhere.
+    - `pair`, `parts`: of what pair's odd and even function it is made, and how, with a quotient.
+    - `image`: what it is in the field of `verify.algebra.identities.translation`, from its
+      argument's image. None: it is made of others, and a ring has no generator of it.
+    - `turns`: whether sums of it, as of arctangents, are the same but for multiples of π.
+    - `bounded`: whether it is between −1 and 1. `positive`: whether it is > 0 everywhere, or what,
+      made from its argument, is > 0 where it is.
+    - `fixed`: in fixed point; None: that has none.
+    - `numpy`: its name there; `shown`: on pages; `tex`: a command of TeX's; each as its name tells
+      where nothing is given. `synonyms`: what others write for it, which a refused formula is told.
+    """
+
+    name: str
+    slope: Callable[[Number, Apply], Number] | None = None
+    equation: Callable[[Number], Number] | None = None
+    lipschitz: int | None = None
+    domain: Domain | None = None
+    pair: Pair | None = None
+    parts: Callable[[Number, Number, Callable[[Number, Number], Number]], Number] | None = None
+    image: Callable[[Any, Number], Number] | None = None
+    turns: bool = False
+    bounded: bool = False
+    positive: Callable[[Number], Number] | bool = False
+    fixed: FixedPoint | None = None
+    numpy: str = ""
+    shown: str = ""
+    tex: str = ""
+    synonyms: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        shown = self.shown or self.name
+        names = {"numpy": self.numpy or self.name, "shown": shown, "tex": self.tex or f"\\{shown}"}
+        for field, text in names.items():
+            object.__setattr__(self, field, text)
+
+    def derivative(self, x: Number, y: Number, apply: Apply) -> Number:
+        """f'(x), where y = f(x)."""
+        if self.equation is not None:
+            return self.equation(y)
+        assert self.slope is not None  # noqa: S101 - each has one of the two
+        return self.slope(x, apply)

@@ -1,0 +1,138 @@
+"""The kinds of operations of a straight-line program, each with what belongs to it.
+
+`args` are the indices of earlier results; `kind` tells the kinds apart. What is not static has a
+`latency`, until its result is there, and a `cost`: a product is worth several sums.
+"""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import ClassVar, Literal, TypeAlias
+
+from verify.functions.function import Function
+
+
+@dataclass(frozen=True, slots=True)
+class _OfNone:
+    args: ClassVar[tuple[()]] = ()
+    latency: ClassVar[int] = 0
+    cost: ClassVar[int] = 0
+
+
+@dataclass(frozen=True, slots=True)
+class _OfOne:
+    args: tuple[int]
+    latency: ClassVar[int] = 20
+    cost: ClassVar[int] = 40
+
+
+@dataclass(frozen=True, slots=True)
+class _OfTwo:
+    args: tuple[int, int]
+    latency: ClassVar[int] = 1
+    cost: ClassVar[int] = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Input(_OfNone):
+    """A number that is given under a name."""
+
+    kind: ClassVar[Literal["input"]] = "input"
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Constant(_OfNone):
+    """A rational."""
+
+    kind: ClassVar[Literal["const"]] = "const"
+    value: Fraction
+
+
+class Pi(_OfNone):
+    """π."""
+
+    __slots__ = ()
+    kind: ClassVar[Literal["pi"]] = "pi"
+
+
+class Sum(_OfTwo):
+    """x + y."""
+
+    __slots__ = ()
+    kind: ClassVar[Literal["add"]] = "add"
+
+
+class Difference(_OfTwo):
+    """x − y."""
+
+    __slots__ = ()
+    kind: ClassVar[Literal["sub"]] = "sub"
+
+
+class Product(_OfTwo):
+    """x y."""
+
+    __slots__ = ()
+    kind: ClassVar[Literal["mul"]] = "mul"
+    cost = 4
+
+
+class Opposite(_OfOne):
+    """−x."""
+
+    __slots__ = ()
+    kind: ClassVar[Literal["neg"]] = "neg"
+    latency = cost = 1
+
+
+class Inverse(_OfOne):
+    """1/x."""
+
+    __slots__ = ()
+    kind: ClassVar[Literal["inverse"]] = "inverse"
+    latency = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Root(_OfOne):
+    """x^(1/degree)."""
+
+    kind: ClassVar[Literal["root"]] = "root"
+    degree: int
+
+
+@dataclass(frozen=True, slots=True)
+class Call(_OfOne):
+    """A function of x."""
+
+    kind: ClassVar[Literal["call"]] = "call"
+    function: Function
+
+
+@dataclass(frozen=True, slots=True)
+class Solution(_OfOne):
+    """The unknown of that number that a loop, its one argument, has found."""
+
+    kind: ClassVar[Literal["solved"]] = "solved"
+    number: int
+
+
+@dataclass(frozen=True, slots=True)
+class Solving:
+    """The program's loop of that number, which reads `args`."""
+
+    kind: ClassVar[Literal["loop"]] = "loop"
+    args: tuple[int, ...]
+    number: int
+    latency: ClassVar[int] = 20
+    cost: ClassVar[int] = 40
+
+
+Unary: TypeAlias = Opposite | Inverse | Root | Call
+Binary: TypeAlias = Sum | Difference | Product
+Op: TypeAlias = Input | Constant | Pi | Unary | Binary | Solving | Solution
+
+
+def may_leave_range(op: Op) -> bool:
+    """Whether its value may leave a range in which its arguments are."""
+    return op.kind in ("inverse", "root") or (op.kind == "call" and op.function.lipschitz is None)
