@@ -5,18 +5,16 @@ What it is for, and how zero is decided in it, is told in `verify.algebra.ring`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
 from fractions import Fraction
 
 import flint
 
-from verify.algebra.generator import Generator, Poly, System
+from verify.algebra.generator import Generator, Poly
 from verify.algebra.identities.polynomials import occurring, split
 from verify.late import sympy
 
 _SPARE = 6  # generators that later calls to `inverse` may still add
-_LONG = 64  # terms of what has no p and q in it, beyond which it may have a name
 
 
 class RingFullError(Exception):
@@ -44,11 +42,7 @@ class DifferentialRing:
         self.places = {name: self.room + k for k, name in enumerate(self.variables)}
         self.relations: list[tuple[int, int, Poly]] = []  # generator, its power, polynomial = 0
         self._gradients: dict[int, dict[str, Poly]] = {}
-        self._chains: dict[int, Sequence[tuple[Poly, Poly]]] = {}
         self._inside: dict[int, list[int]] = {}
-        self._rules: dict[int, Callable[[str], Poly]] = {}
-        # Of equations, by their unknowns; see `verify.algebra.implicit_unknowns`.
-        self.systems: dict[int, System] = {}
         self.expressions: dict[int, sympy.Expr] = {}  # of generators
 
     # -- elements -----------------------------------------------------------------------------
@@ -93,15 +87,8 @@ class DifferentialRing:
         return not self._functions_in(x)
 
     def _partial(self, index: int, name: str) -> Poly:
-        """The partial derivative of a generator; that of a stage has a name of its own, too."""
-        known = self._gradients.setdefault(index, {})
-        if name not in known and index in self._rules:
-            known[name] = self._rules[index](name)
-        if name not in known and index in self._chains:
-            terms = (outer * self.diff(inner, name) for outer, inner in self._chains[index])
-            total = self.reduce(sum(terms, self.zero))
-            known[name] = self.named(total) if self._by_index[index].kind == "stage" else total
-        return known.get(name, self.zero)
+        """The partial derivative of a generator."""
+        return self.gradient(index).get(name, self.zero)
 
     def terms_of_diff(self, x: Poly, name: str) -> int:
         """A bound of the number of terms of ∂x/∂name, without making it."""
@@ -110,19 +97,15 @@ class DifferentialRing:
             total += len(x.derivative(index)) * len(self._partial(index, name))
         return total
 
-    def generators_in(self, *elements: Poly, inside_equations: bool = True) -> list[Generator]:
-        """The generators that the elements depend on, arguments included, oldest first.
-
-        `inside_equations`: those in the equations of unknowns, too.
-        """
+    def generators_in(self, *elements: Poly) -> list[Generator]:
+        """The generators that the elements depend on, arguments included, oldest first."""
         seen: set[int] = set()
         stack = [index for x in elements for index in occurring(x)]
         while stack:
             index = stack.pop()
             if index not in seen:
                 seen.add(index)
-                if inside_equations or self._by_index[index].kind != "solved":
-                    stack += self._inside_of(index)
+                stack += self._inside_of(index)
         return [g for g in self.generators if g.index in seen]
 
     def _inside_of(self, index: int) -> list[int]:
@@ -194,41 +177,3 @@ class DifferentialRing:
     def gradient(self, index: int) -> dict[str, Poly]:
         """The partial derivatives of a generator that has a gradient, by the variables' names."""
         return self._gradients.get(index, {})
-
-    def set_chain(self, generator: Poly, chain: Sequence[tuple[Poly, Poly]]) -> None:
-        """d generator = Σ outer · d inner over the pairs, worked out when it is asked for."""
-        self._chains[self._gens.index(generator)] = chain
-
-    def define(self, unknown: Poly, residual: Poly, rule: Callable[[str], Poly]) -> Generator:
-        """The unknown is where the residual is 0; `rule` gives its partial derivatives by name."""
-        index = self._gens.index(unknown)
-        at = next(k for k, g in enumerate(self.generators) if g.index == index)
-        self.generators[at] = replace(self.generators[at], argument=residual)
-        self._by_index[index] = self.generators[at]
-        self._inside.pop(index, None)
-        self._rules[index] = rule
-        return self.generators[at]
-
-    def _has_state(self, x: Poly) -> bool:
-        return any(self.depends(x, name) for name in ("p", "q"))
-
-    def _is_long_in_time(self, x: Poly) -> bool:
-        """Where the motion is linear no derivative has p and q, and each factor cos(t + c h)
-        doubles what is written out."""
-        return "t" in self.places and len(x) > _LONG
-
-    def named(self, x: Poly) -> Poly:
-        """x as a generator of its own; x itself where that is as short, or there is no room.
-
-        What is made from named parts is evaluated, and differentiated, part by part.
-        """
-        if len(x) < 2 or not (self._is_long_in_time(x) or self._has_state(x)):
-            return x
-        known = self.find("stage", x)
-        if known is not None:
-            return known
-        if len(self.generators) - len(self.variables) >= self.room:
-            return x
-        name = self.add("stage", x)
-        self.set_chain(name, [(self.one, x)])
-        return name

@@ -167,7 +167,7 @@ class Enclosures:
         at = _Point()
         for g, argument in self._generators:
             value = _value(g, argument, at, box)
-            if value is None or not value.is_finite():
+            if not value.is_finite():
                 return None
             at.values[g.index] = value
         terms, numbers = self._distinct
@@ -195,14 +195,12 @@ class _Point:
         return total
 
 
-def _value(g: Generator, argument: Terms, at: _Point, box: Mapping[str, Ball]) -> Ball | None:
+def _value(g: Generator, argument: Terms, at: _Point, box: Mapping[str, Ball]) -> Ball:
     if g.kind == "variable":
         return box[g.name]
     if g.kind == "pi":
         return flint.arb.pi()
-    if g.kind == "solved":
-        return None
-    return at(argument) if g.kind == "stage" else BALLS[g.kind](at(argument), g.degree)
+    return BALLS[g.kind](at(argument), g.degree)
 
 
 def _terms(x: Poly) -> Terms:

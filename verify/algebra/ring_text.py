@@ -57,7 +57,7 @@ def _of(ring: DifferentialRing, g: Generator) -> sympy.Expr:
 
 def _argument(ring: DifferentialRing, g: Generator) -> sympy.Expr:
     """What it is a function of; 0 where it is of nothing."""
-    if g.argument is None or g.kind == "solved":
+    if g.argument is None:
         return sympy.S.Zero
     function = in_rings().get(g.kind)
     # Of a product, which it mostly was, it is the shorter text; of a pair's argument it is a sum.

@@ -66,7 +66,7 @@ class _Generators:
         if where and sign_everywhere(self.ring, where(g.inner), strict=True) == 1:
             return True
         inside = self.ring.generators_in(self.ring.context.gens()[place])
-        if any(other.kind in ("variable", "solved") for other in inside):
+        if any(other.kind == "variable" for other in inside):
             return False
         ball = enclose(self.ring, self.ring.context.gens()[place], {}, _BITS)
         return bool(ball is not None and ball > 0)
@@ -80,7 +80,7 @@ def _positive_where(g: Generator) -> Callable[[Poly], Poly] | bool:
     """Whether it is positive everywhere, or what, made from its argument, is where it is."""
     if g.kind in ("pi", "root"):  # a root inside of where it is defined
         return True
-    if g.kind in ("inverse", "stage"):
+    if g.kind == "inverse":
         return lambda u: u
     function = in_rings().get(g.kind)
     return function is not None and function.positive
@@ -146,8 +146,6 @@ def is_convex(ring: DifferentialRing, elements: Iterable[Poly], inside: Poly) ->
     """
     half_spaces = _half_spaces(ring, ring.generators_in(inside))
     for g in ring.generators_in(*elements):
-        if g.kind == "solved":
-            return False
         shaped = g.inner if g.kind == "inverse" else _inside(g)
         for f, _ in _factors(shaped) if shaped is not None else ():
             shown = sign_everywhere(ring, f, strict=True)

@@ -92,16 +92,12 @@ class Translation:
             return self.field.polynomial(self.field.ring.gens[self.field.ring.places[g.name]])
         if g.kind == "pi":
             return self.angles.pi
-        if g.kind == "solved":
-            raise UndecidedError(f"{g.kind} is not handled here")
         u = self.of(g.inner)
         match g.kind:
             case "root":
                 return self.root(u, g.degree)
             case "inverse":
                 return u.inverse()
-            case "stage":
-                return u
         image = in_rings()[g.kind].image
         assert image is not None  # noqa: S101 - a ring has no other functions
         quotient: Quotient = image(self, u)
