@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from verify.pages.plotting import plot_work_precision as plot_work_precision
     from verify.pages.plotting_orbits import plot_energy_drift as plot_energy_drift
     from verify.pages.plotting_orbits import plot_orbit as plot_orbit
-    from verify.proof.modified.equation import ModifiedEquation as ModifiedEquation
+    from verify.proof.plane.modified.equation import ModifiedEquation as ModifiedEquation
     from verify.proof.proof import Proof as Proof
     from verify.scenes.results.orbit import OrbitTable as OrbitTable
     from verify.scenes.results.report import Report as Report
@@ -92,7 +92,7 @@ _NAMES = {
     "Scene": ("verify.scenes.scene", "a declaration of what is to be verified"),
     "load_scene": ("verify.scenes.scene", "the scene in a TOML file"),
     "Proof": ("verify.proof.proof", "what is proved of a step map"),
-    "ModifiedEquation": ("verify.proof.modified.equation", "what is known of a scheme's H̃"),
+    "ModifiedEquation": ("verify.proof.plane.modified.equation", "what is known of a scheme's H̃"),
     "RunResult": ("verify.calls.run_result", "what a run gave"),
     "OrbitTable": ("verify.scenes.results.orbit", "the states of a run"),
     "Sweep": ("verify.scenes.results.sweep", "what a sweep gave"),

@@ -9,13 +9,13 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.symmetry import Symmetry, by_series
 from verify.prose import prose
-from verify.schemes.conditions import Condition
-from verify.schemes.every_hamiltonian import StageEquations
-from verify.schemes.implicit_tableau import ImplicitTableau
-from verify.schemes.residue import condition_of
+from verify.schemes.conditions.condition import Condition
+from verify.schemes.conditions.every_hamiltonian import StageEquations
+from verify.schemes.conditions.implicit_tableau import ImplicitTableau
+from verify.schemes.conditions.residue import condition_of
+from verify.schemes.conditions.splitting_conditions import Splitting
+from verify.schemes.conditions.tree_conditions import TreeConditions
 from verify.schemes.scheme import Scheme
-from verify.schemes.splitting_conditions import Splitting
-from verify.schemes.tree_conditions import TreeConditions
 from verify.verdict import Verdict
 
 # Neither even nor odd in p or q, so that no symmetry of H hides one that the scheme has not.

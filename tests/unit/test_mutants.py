@@ -305,7 +305,7 @@ def test_what_is_near_and_cheap_is_asked_first() -> None:
     far, near, other, battery_ = (k.name for k in made)
     seconds = {far: 1, near: 9, other: 2, battery_: 5}
     sound = [{"killer": name, "seconds": s} for name, s in seconds.items()]
-    mutant = mutants("verify.schemes.splitting_conditions")[0]
+    mutant = mutants("verify.schemes.conditions.splitting_conditions")[0]
     assert [k.name for k in ordered(mutant, sound, made)] == [battery_, near, far, other]
 
 

@@ -27,8 +27,8 @@ from verify.integrators.user_code.step import contained, last_line
 from verify.prose import prose
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.report import Report
-from verify.schemes.conditions import Condition
-from verify.schemes.splitting_conditions import Splitting
+from verify.schemes.conditions.condition import Condition
+from verify.schemes.conditions.splitting_conditions import Splitting
 from verify.verdict import Verdict
 
 _LEAST = "is not installed: pip install 'areaproof[{}]'"

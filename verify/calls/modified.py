@@ -12,10 +12,10 @@ from verify.calls.given import (
 )
 from verify.errors import InputError
 from verify.hamiltonians import systems
-from verify.proof.modified.equation import ModifiedEquation
-from verify.proof.modified.every import MOST_ORDER as MOST_FOR_EVERY
-from verify.proof.modified.every import modified_for_every
-from verify.proof.modified.one import MOST_ORDER, modified_of
+from verify.proof.plane.modified.equation import ModifiedEquation
+from verify.proof.plane.modified.every import MOST_ORDER as MOST_FOR_EVERY
+from verify.proof.plane.modified.every import modified_for_every
+from verify.proof.plane.modified.one import MOST_ORDER, modified_of
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.scheme import Scheme
 

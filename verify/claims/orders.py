@@ -24,7 +24,7 @@ from verify.proof.proof import Proof
 from verify.prose import Formula, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.schemes import get
-from verify.schemes.conditions import NearbyOrder
+from verify.schemes.conditions.condition import NearbyOrder
 from verify.schemes.maps.step_map import StepMap
 from verify.verdict import Verdict
 

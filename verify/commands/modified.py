@@ -11,7 +11,7 @@ from verify.commands.shared.output import cut
 from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
-    from verify.proof.modified.equation import ModifiedEquation, Term
+    from verify.proof.plane.modified.equation import ModifiedEquation, Term
 
 
 @click.command()

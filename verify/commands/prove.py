@@ -114,7 +114,7 @@ def _prove_every(
 
 def _prove_one(exact: "Hamiltonian", scheme: str, certificate: Path | None) -> Answer:
     from verify.proof.order import prove as prove_order
-    from verify.proof.potential import potential_of
+    from verify.proof.plane.potential import potential_of
     from verify.proof.special_values import special_values
     from verify.schemes import get
 

@@ -9,7 +9,7 @@ from typing import Any, Self
 from verify.exploration.any_sample import AnySample
 from verify.scenes.run_sections import Grid
 from verify.scenes.scene import Scene
-from verify.schemes.every_hamiltonian import TaylorSeries
+from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 
 _MOST_TERMS = 40  # of a map in all its parts, so that a proof is made in a moment
 

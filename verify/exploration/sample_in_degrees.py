@@ -14,7 +14,7 @@ from verify.functions.function import CIRCLE
 from verify.scenes.run_sections import Grid
 from verify.scenes.scene import Scene
 from verify.scenes.values import InitialState
-from verify.schemes.every_hamiltonian import TaylorSeries
+from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 
 _MOST_TERMS = 30  # of what a step is made of, so that a proof is made of it in a moment
 _MOST_ORDER = 4  # of a scheme whose series is made

@@ -5,7 +5,7 @@ from fractions import Fraction
 
 from verify.integrators.places.place import Place
 from verify.integrators.probes.reading import Reading
-from verify.proof.potential import Potential, potential_of
+from verify.proof.plane.potential import Potential, potential_of
 from verify.proof.proof import Proof
 from verify.prose import Prose, prose, read_prose
 from verify.schemes.scheme import Scheme

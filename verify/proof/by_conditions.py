@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 
 from verify.proof.every_proof import EveryProof
 from verify.prose import Formula, Number, Prose, prose
-from verify.schemes.conditions import ByConditions, Condition, NearbyOrder
+from verify.schemes.conditions.condition import ByConditions, Condition, NearbyOrder
 from verify.schemes.scheme import Scheme
 from verify.verdict import Verdict
 

@@ -17,10 +17,10 @@ along the orbit that joins them, and yet has different values at its ends. ∎
 
 Where H depends on t both arguments hold in the jets of H(p, q, t) for D = ∂_t + X in place of X:
 the two-forms [a, b] of Dᵃp and D^b q are taken at one t, and D, which is X in the extended phase
-space, commutes with d and takes [a, b] to [a+1, b] + [a, b+1]. For odd η the leading coefficient
-is D·G for no G in the jets: an H without t is one of these H, for which D·G is X·G. Splittings and
-stages are proved by conditions on sizes, coefficients and times, `verify.schemes.timed`, which are
-necessary, too.
+space, commutes with d and takes [a, b] to [a+1, b] + [a, b+1]. For odd η the leading coefficient is
+D·G for no G in the jets: an H without t is one of these H, for which D·G is X·G. Splittings and
+stages are proved by conditions on sizes, coefficients and times, `verify.schemes.conditions.timed`,
+which are necessary, too.
 
 In n degrees of freedom S = JᵀΩJ − Ω stands for ΔJ; see `verify.proof.every_by_series`. The order of
 a splitting and that of a Gauss method follow from conditions on their coefficients. They suffice in
@@ -44,15 +44,15 @@ from verify.proof.every_proof import NONE, EveryProof
 from verify.proof.order import leading_of
 from verify.prose import Formula, Prose, prose, read_prose
 from verify.schemes import get
-from verify.schemes.conditions import ByConditions
-from verify.schemes.every_hamiltonian import BySeries, TaylorSeries
+from verify.schemes.conditions.condition import ByConditions
+from verify.schemes.conditions.every_hamiltonian import BySeries, TaylorSeries
+from verify.schemes.conditions.timed.for_scheme import conditions_for
+from verify.schemes.conditions.timed.mistakes import mistakes_of_splitting
+from verify.schemes.conditions.timed.splitting import TimedSplitting
+from verify.schemes.conditions.tree_conditions import TreeConditions, all_trees_hold
+from verify.schemes.conditions.words.kinetic import Kinetic
 from verify.schemes.maps import kind_of
 from verify.schemes.scheme import Scheme
-from verify.schemes.timed.for_scheme import conditions_for
-from verify.schemes.timed.mistakes import mistakes_of_splitting
-from verify.schemes.timed.splitting import TimedSplitting
-from verify.schemes.tree_conditions import TreeConditions, all_trees_hold
-from verify.schemes.words.kinetic import Kinetic
 from verify.verdict import Verdict
 
 _MOST_ORDER = 14  # the terms of L double with every order; lie14 takes 20 s

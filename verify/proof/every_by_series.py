@@ -23,12 +23,12 @@ from verify.proof.claimed import IN_DEGREES, IN_PLANE, Words
 from verify.proof.every_proof import EveryProof
 from verify.proof.telescoping import potential_of_lie, telescopes
 from verify.prose import Formula, Prose, joined, prose, read_prose
-from verify.schemes.conditions import Condition
-from verify.schemes.every_hamiltonian import BySeries, StageEquations, TaylorSeries
+from verify.schemes.conditions.condition import Condition
+from verify.schemes.conditions.every_hamiltonian import BySeries, StageEquations, TaylorSeries
 from verify.schemes.maps import kind_of
-from verify.schemes.maps.defect import DefectSeries
-from verify.schemes.maps.two_form import MOST_TERMS, TwoForm, lie_derivative
 from verify.schemes.scheme import Scheme
+from verify.schemes.steps.defect import DefectSeries
+from verify.schemes.steps.two_form import MOST_TERMS, TwoForm, lie_derivative
 from verify.verdict import Verdict
 
 _MORE = 3  # orders that are looked at beyond the first of S, in the plane; in n terms are too many

@@ -6,10 +6,10 @@ from verify.algebra.domain import EVERYWHERE, Domain
 from verify.proof.lie_argument import paragraph
 from verify.prose import Prose
 from verify.schemes import get
-from verify.schemes.conditions import Condition, NearbyOrder
-from verify.schemes.every_hamiltonian import TaylorSeries
+from verify.schemes.conditions.condition import Condition, NearbyOrder
+from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 from verify.schemes.maps.step_map import solvable
-from verify.schemes.maps.two_form import TwoForm
+from verify.schemes.steps.two_form import TwoForm
 from verify.verdict import Verdict
 
 NONE = Prose()

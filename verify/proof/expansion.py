@@ -22,10 +22,10 @@ from verify.hamiltonians.coordinates import PLANE
 from verify.late import sympy
 from verify.proof.parameters import not_zero_for
 from verify.schemes.maps.closed_form import ClosedForm, h_inside
-from verify.schemes.maps.defect import DefectSeries
-from verify.schemes.maps.step_algebra import State
 from verify.schemes.maps.step_map import StepMap
-from verify.schemes.maps.two_form import Place, TwoForm
+from verify.schemes.steps.defect import DefectSeries
+from verify.schemes.steps.step_algebra import State
+from verify.schemes.steps.two_form import Place, TwoForm
 
 MOST_ORDERS = 12  # Taylor coefficients looked at where a map is not a polynomial in h
 

@@ -21,12 +21,12 @@ from verify.proof.printed_formulas import nearby_defect, nearby_of_formulas, tol
 from verify.proof.proof import Proof
 from verify.proof.telescoping import telescopes_of_lie
 from verify.prose import Formula, Prose, prose
-from verify.schemes.conditions import Condition, NearbyOrder
+from verify.schemes.conditions.condition import Condition, NearbyOrder
+from verify.schemes.conditions.splitting_conditions import Splitting
+from verify.schemes.conditions.timed.for_scheme import conditions_for
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import splitting
-from verify.schemes.splitting_conditions import Splitting
-from verify.schemes.timed.for_scheme import conditions_for
 from verify.verdict import Verdict
 
 RESIDUE = Fraction(1, 2**100)  # and above it what the coefficients of the nearest leave
@@ -134,7 +134,7 @@ def _volume(step_map: StepMap, first: int, defect: Leading, most: int) -> Leadin
 
 def _telescoping(step_map: StepMap, first: int, defect: Leading) -> tuple[bool | None, str]:
     """Of lieη in several degrees; of other maps it is not known. In the plane see
-    `verify.proof.potential`."""
+    `verify.proof.plane.potential`."""
     eta = step_map.flow_up_to
     if step_map.planar or eta < 1 or defect.power != eta + 1 or defect.form is None:
         known = True if defect.decision.zero is True else None  # 0 is the derivative of 0

@@ -30,7 +30,7 @@ from verify.errors import InputError, LimitError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import AnySeries, series_of
 from verify.prose import Formula, Prose, prose
-from verify.schemes.conditions import Condition, NearbyOrder
+from verify.schemes.conditions.condition import Condition, NearbyOrder
 from verify.schemes.maps.by_formulas import map_by_formulas
 from verify.schemes.printed.asked import BITS, Asked, Named, ball_of
 from verify.schemes.printed.judged import WITHIN, Judged, judge

@@ -10,7 +10,7 @@ from verify.arithmetic.exact import text
 from verify.notebook import aligned_latex, cut, html_table, short_latex
 from verify.proof.expansion import Leading
 from verify.prose import Prose
-from verify.schemes.conditions import Condition, NearbyOrder
+from verify.schemes.conditions.condition import Condition, NearbyOrder
 from verify.schemes.maps.step_map import StepMap
 from verify.verdict import Verdict
 

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from verify.algebra.series.power_series import Derivatives, Series, at_moved
 from verify.hamiltonians.canonical_field import CanonicalField
 from verify.prose import Formula, Prose, prose, read_prose
-from verify.schemes.maps.step_algebra import State
 from verify.schemes.maps.step_map import StepMap
+from verify.schemes.steps.step_algebra import State
 from verify.verdict import Verdict
 
 
@@ -29,7 +29,7 @@ def by_series(step_map: StepMap, most: int) -> Symmetry:
     seen = -1
     for reach in dict.fromkeys([*range(2, most, 2), most]):  # terms multiply with every order
         expanded = step_map.series(reach)
-        if expanded is None:
+        if expanded is None or not _begins_with_z(*expanded):
             return Symmetry(Verdict.UNDECIDED, prose("the map's Taylor series is not at hand"))
         field, step = expanded
         gaps = [undone(field, x, step) for x in step]
@@ -46,6 +46,11 @@ def by_series(step_map: StepMap, most: int) -> Symmetry:
         seen = reach
     alike = read_prose(f"`Φ_(−h)` ∘ `Φ_h` is the identity up to `h^{most}` at least")
     return Symmetry(Verdict.UNDECIDED, alike)
+
+
+def _begins_with_z(field: CanonicalField, step: State) -> bool:
+    pairs = zip(step, field.start, strict=True)
+    return all(x.coefficients[0] == z for x, z in pairs)
 
 
 def undone(field: CanonicalField, x: Series, step: State) -> Series:

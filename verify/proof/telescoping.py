@@ -35,7 +35,7 @@ from verify.algebra.substitution import substitute
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import CanonicalField, Flow
 from verify.prose import Formula, Prose, prose, read_prose
-from verify.schemes.maps.two_form import TwoForm, lie_derivative, wedge
+from verify.schemes.steps.two_form import TwoForm, lie_derivative, wedge
 
 
 def potential_of_lie(flow: Flow, eta: int) -> TwoForm:

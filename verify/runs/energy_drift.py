@@ -17,8 +17,8 @@ from verify.arithmetic.number_system import bits_for
 from verify.arithmetic.systems import float64
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.modified.equation import ModifiedEquation
-from verify.proof.modified.one import MOST_ORDER, modified_of
+from verify.proof.plane.modified.equation import ModifiedEquation
+from verify.proof.plane.modified.one import MOST_ORDER, modified_of
 from verify.runs.orbit import orbit_of
 from verify.scenes.results.orbit import MOST_POINTS
 from verify.scenes.results.run import EnergyDrift, RunResult

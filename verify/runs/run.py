@@ -257,7 +257,7 @@ def proved(step_map: StepMap, h: Fraction, steps: int, digits: int) -> Bounded:
     step = step_map.written_defect
     if step is None or step_map.degrees > 1:
         return {}
-    if any(step.ring.depends(step.delta_j, name) for name in ("p", "q", "t")):
+    if any(step.ring.depends(step.delta_j, name) for name in (*step.field.names, "t")):
         return {}
     bits = int(4 * digits) + 64 + 2 * steps.bit_length()
     delta_j = enclose(step.ring, step.delta_j, {"h": h}, bits)

@@ -1,8 +1,8 @@
 """Explicit and implicit Runge–Kutta schemes by their coefficients."""
 
-from verify.schemes.conditions import ByConditions
-from verify.schemes.every_hamiltonian import BySeries, RungeKutta
-from verify.schemes.implicit_tableau import ImplicitTableau
+from verify.schemes.conditions.condition import ByConditions
+from verify.schemes.conditions.every_hamiltonian import BySeries, RungeKutta
+from verify.schemes.conditions.implicit_tableau import ImplicitTableau
 from verify.schemes.maps.kinds.implicit_runge_kutta import implicit_map
 from verify.schemes.scheme import Scheme
 

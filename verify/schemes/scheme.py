@@ -6,8 +6,8 @@ from functools import lru_cache
 
 from verify.drawable import drawn_by
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.schemes.conditions import ByConditions
-from verify.schemes.every_hamiltonian import BySeries
+from verify.schemes.conditions.condition import ByConditions
+from verify.schemes.conditions.every_hamiltonian import BySeries
 from verify.schemes.maps import kind_of
 from verify.schemes.maps.by_formulas import map_by_formulas
 from verify.schemes.maps.step_map import StepMap

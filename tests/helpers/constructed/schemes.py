@@ -10,13 +10,16 @@ from verify.proof import every
 from verify.proof.every import prove_every
 from verify.proof.every_proof import EveryProof
 from verify.schemes import get
-from verify.schemes.conditions import Condition
+from verify.schemes.conditions.condition import Condition
 from verify.schemes.scheme import Scheme
 
 
 def made_of(generic: Any, order: int, area: bool = False, base: str = "euler") -> Scheme:
     """A scheme named "made" with these claims; for one H it is the scheme `base`."""
-    return replace(get(base), name="made", every_h=generic, order=order, area_preserving=area)
+    true = get(base)
+    return replace(
+        true, name="made", every_h=generic, order=order, area_preserving=area, build=true.step_map
+    )
 
 
 def proof_of(

@@ -6,10 +6,10 @@ import sympy
 
 from verify import schemes
 from verify.algebra.ring import Poly, Ring
+from verify.schemes.conditions.splitting_conditions import Part, Splitting
+from verify.schemes.conditions.words.step_words import StepWords
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import splitting
-from verify.schemes.splitting_conditions import Part, Splitting
-from verify.schemes.words.step_words import StepWords
 
 SPLITTINGS = tuple(n for n in schemes.names() if isinstance(schemes.get(n).every_h, Splitting))
 

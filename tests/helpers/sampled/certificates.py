@@ -15,7 +15,7 @@ from verify.proof.certificates.every import of_every
 from verify.proof.certificates.one import of_one
 from verify.proof.every import prove_every
 from verify.proof.order import prove
-from verify.proof.potential import potential_of
+from verify.proof.plane.potential import potential_of
 from verify.schemes import get
 
 INVOLVED = (

@@ -19,7 +19,7 @@ from verify.arithmetic.number_system import interpreted
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import Kernel, Writer
 from verify.schemes import get
-from verify.schemes.implicit_tableau import ImplicitTableau
+from verify.schemes.conditions.implicit_tableau import ImplicitTableau
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.methods.runge_kutta import gauss4, gauss6, implicit_midpoint
 

@@ -13,8 +13,8 @@ import sympy
 
 from verify.arithmetic.systems import mpfr
 from verify.flows.extrapolation import Flow
-from verify.schemes.maps.step_algebra import StepAlgebra
 from verify.schemes.maps.step_map import StepMap
+from verify.schemes.steps.step_algebra import StepAlgebra
 
 DIGITS = 60
 _FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh", "atan")

@@ -18,7 +18,7 @@ from verify.proof.by_conditions import prove_by_conditions
 from verify.proof.every import counterexample
 from verify.proof.order import prove
 from verify.schemes import get
-from verify.schemes.every_hamiltonian import StageEquations, TaylorSeries
+from verify.schemes.conditions.every_hamiltonian import StageEquations, TaylorSeries
 from verify.schemes.maps.step_map import StepMap
 from verify.verdict import Verdict
 

@@ -27,7 +27,7 @@ from tests.helpers.sampled.formulas import (
 from verify.algebra.series.jets import Jets
 from verify.hamiltonians.jet_flow import JetFlow
 from verify.proof.telescoping import potential_of_lie
-from verify.schemes.every_hamiltonian import TaylorSeries
+from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 
 SMALL = Fraction(1, 10**45)
 

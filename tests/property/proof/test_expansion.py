@@ -31,7 +31,7 @@ from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import MOST_ORDERS, Expansion, Leading, first_nonzero
 from verify.proof.order import prove
-from verify.proof.potential import potential_of
+from verify.proof.plane.potential import potential_of
 from verify.proof.proof import Proof
 from verify.schemes import get
 from verify.schemes.maps.closed_form import h_inside

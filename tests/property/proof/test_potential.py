@@ -13,7 +13,7 @@ from verify.algebra.ring import Decision
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import Leading
 from verify.proof.order import prove
-from verify.proof.potential import Potential, potential_of
+from verify.proof.plane.potential import Potential, potential_of
 from verify.schemes import get
 
 few = drawn(12)

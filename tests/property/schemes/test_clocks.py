@@ -14,10 +14,10 @@ import sympy
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import convergence_of
+from verify.schemes.conditions.parts_in_time import right_times
+from verify.schemes.conditions.splitting_conditions import Splitting
+from verify.schemes.conditions.timed.splitting import TimedSplitting
 from verify.schemes.maps.kinds import splittings
-from verify.schemes.splitting import right_times
-from verify.schemes.splitting_conditions import Splitting
-from verify.schemes.timed.splitting import TimedSplitting
 
 Polynomial = dict[tuple[int, int, int], Fraction]  # by the powers of p, q, t
 MOST = 4

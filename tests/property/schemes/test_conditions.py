@@ -18,8 +18,8 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import prove_by_conditions
 from verify.proof.symmetry import by_series
 from verify.schemes import get
-from verify.schemes.every_hamiltonian import Stage, StageEquations
-from verify.schemes.residue import decimal_of
+from verify.schemes.conditions.every_hamiltonian import Stage, StageEquations
+from verify.schemes.conditions.residue import decimal_of
 from verify.verdict import Verdict
 
 quick = drawn(25)

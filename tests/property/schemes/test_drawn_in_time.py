@@ -155,9 +155,7 @@ def test_a_periodic_h_has_a_periodic_map(made: Hamiltonian) -> None:
     )
     periodic = waves and not outside.has(t)
     step = get("lie2").step_map(made).flat
-    values = sympy.lambdify(
-        (p, q, t, h), [step.ring.expression(x) for x in (step.p_next, step.q_next)], "mpmath"
-    )
+    values = sympy.lambdify((p, q, t, h), list(map(step.ring.expression, step.elements)), "mpmath")
     with mpmath.workdps(40):
         at = number(START["p"]), number(START["q"])
         one, other = (

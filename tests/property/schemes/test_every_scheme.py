@@ -15,7 +15,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.every import prove_every
 from verify.proof.order import prove
 from verify.schemes import get, names
-from verify.schemes.every_hamiltonian import TaylorSeries
+from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 from verify.schemes.methods.taylor.lie import eta_of
 from verify.verdict import Verdict
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from tests.helpers.sampled.formulas import rationals
-from verify.schemes.free_lie_words import (
+from verify.schemes.conditions.free_lie_words import (
     KINDS,
     MOST_ORDER,
     conditions,

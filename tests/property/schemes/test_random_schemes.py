@@ -18,8 +18,13 @@ from verify.proof.by_conditions import prove_by_conditions
 from verify.proof.every import counterexample, prove_every
 from verify.proof.order import prove
 from verify.schemes import get, names
-from verify.schemes.every_hamiltonian import RungeKutta, Stage, StageEquations, TaylorSeries
-from verify.schemes.tree_conditions import TreeConditions
+from verify.schemes.conditions.every_hamiltonian import (
+    RungeKutta,
+    Stage,
+    StageEquations,
+    TaylorSeries,
+)
+from verify.schemes.conditions.tree_conditions import TreeConditions
 from verify.verdict import Verdict
 
 SEPARABLE = "p**2/2 + p**3/3 + q**2/2 + q**4/4 + q**3/3"

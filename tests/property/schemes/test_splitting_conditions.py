@@ -20,9 +20,9 @@ from verify.algebra.embedding import embed
 from verify.errors import InputError
 from verify.proof.by_conditions import first_wrong, prove_by_conditions
 from verify.schemes import get
+from verify.schemes.conditions.splitting_conditions import MOST_ORDER, Splitting
 from verify.schemes.methods.user import splitting as own_splitting
 from verify.schemes.splitting import splitting
-from verify.schemes.splitting_conditions import MOST_ORDER, Splitting
 from verify.verdict import Verdict
 
 Surd = tuple[Fraction, Fraction]  # a + b √2

@@ -18,12 +18,18 @@ from verify.errors import InputError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes import get
-from verify.schemes.coloured_trees import Tree, condition_text, density, symmetry, vertices
-from verify.schemes.elementary_differentials import Differentials, cancel
-from verify.schemes.every_hamiltonian import TaylorSeries
-from verify.schemes.implicit_tableau import ImplicitTableau
-from verify.schemes.tree_conditions import MOST_ORDER, TreeConditions, gaps_of, trees
-from verify.schemes.tree_order import order_of
+from verify.schemes.conditions.coloured_trees import (
+    Tree,
+    condition_text,
+    density,
+    symmetry,
+    vertices,
+)
+from verify.schemes.conditions.elementary_differentials import Differentials, cancel
+from verify.schemes.conditions.every_hamiltonian import TaylorSeries
+from verify.schemes.conditions.implicit_tableau import ImplicitTableau
+from verify.schemes.conditions.tree_conditions import MOST_ORDER, TreeConditions, gaps_of, trees
+from verify.schemes.conditions.tree_order import order_of
 
 quick = drawn(25)
 

@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 from tests.examples import drawn
 from tests.helpers.sampled.formulas import monomial, rationals
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.growth_law import GrowthLaw, growth_law
+from verify.proof.plane.growth_law import GrowthLaw, growth_law
 from verify.runs.run import run
 from verify.scenes.results.run import RunResult
 from verify.studies.growth import prediction as growth

@@ -6,7 +6,7 @@ from sympy import Rational, S, sqrt
 from verify.audits.claims import claims_of
 from verify.audits.methods.integrator import ExactTableau, ReleasedIntegrator
 from verify.audits.methods.tableau import order_of, repair, symplecticity
-from verify.schemes.implicit_tableau import ImplicitTableau
+from verify.schemes.conditions.implicit_tableau import ImplicitTableau
 from verify.schemes.methods.runge_kutta.gauss4 import TABLEAU as GAUSS4
 from verify.schemes.methods.runge_kutta.gauss6 import TABLEAU as GAUSS6
 from verify.verdict import Verdict

@@ -22,7 +22,7 @@ from verify.kernels.statements import OBSERVABLES
 from verify.kernels.step.computation import Observed, computed, step_map_of
 from verify.kernels.step.program import Evaluator, Program, _nest
 from verify.schemes import get
-from verify.schemes.every_hamiltonian import TaylorSeries
+from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 from verify.schemes.maps.kinds.taylor_series import build
 
 MIXED = Hamiltonian.parse("p**4/4 + p**2*q**3/3 + p*q**2/5")

@@ -7,7 +7,7 @@ import pytest
 from verify.proof import every
 from verify.proof.by_conditions import prove_by_conditions
 from verify.proof.every import prove_every
-from verify.schemes.conditions import Condition
+from verify.schemes.conditions.condition import Condition
 from verify.schemes.scheme import Scheme
 from verify.verdict import Verdict
 

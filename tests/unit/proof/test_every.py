@@ -21,7 +21,12 @@ from verify.proof.every import prove_every
 from verify.proof.lie_argument import STEPS
 from verify.proof.telescoping import potential_of_lie, telescopes
 from verify.prose import read_prose
-from verify.schemes.every_hamiltonian import RungeKutta, Stage, StageEquations, TaylorSeries
+from verify.schemes.conditions.every_hamiltonian import (
+    RungeKutta,
+    Stage,
+    StageEquations,
+    TaylorSeries,
+)
 from verify.schemes.scheme import Scheme
 from verify.verdict import Verdict
 

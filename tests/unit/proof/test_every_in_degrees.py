@@ -15,7 +15,7 @@ from verify.proof import every_by_series as module
 from verify.proof.every import prove_every
 from verify.proof.order import prove
 from verify.schemes import get
-from verify.schemes.maps.two_form import TwoForm
+from verify.schemes.steps.two_form import TwoForm
 
 PAIR = "p1**2*q2 + (p2 + q1*p1)**3/3 + q1**2*q2**2*p2 + p1*p2*q1"
 DRIVEN = "p1**2*q2*t + (p2 + q1*p1)**3/3 + q1**2*q2**2*t**2 + p1*p2*q1*t"

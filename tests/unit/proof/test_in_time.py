@@ -11,7 +11,7 @@ from verify.errors import InputError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
-from verify.proof.potential import potential_of
+from verify.proof.plane.potential import potential_of
 from verify.proof.proof import Proof
 from verify.verdict import Verdict
 

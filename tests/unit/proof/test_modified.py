@@ -9,11 +9,11 @@ from verify import schemes
 from verify.algebra.symbols import H_STEP
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.modified import one as modified
-from verify.proof.modified import one as module
-from verify.proof.modified.equation import ModifiedEquation, Term, judged
-from verify.proof.modified.field import Vector
-from verify.proof.modified.one import modified_of
+from verify.proof.plane.modified import one as modified
+from verify.proof.plane.modified import one as module
+from verify.proof.plane.modified.equation import ModifiedEquation, Term, judged
+from verify.proof.plane.modified.field import Vector
+from verify.proof.plane.modified.one import modified_of
 from verify.schemes.maps.parts import parts_of
 from verify.schemes.maps.step_map import StepMap
 from verify.verdict import Verdict

@@ -12,11 +12,11 @@ from verify.algebra.series.jets import Jets, shown
 from verify.algebra.symbols import H_STEP
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.modified import every as modified_every
-from verify.proof.modified.every import Logarithm, modified_for_every, terms_of_splitting
-from verify.proof.modified.field import field_of
-from verify.proof.modified.one import modified_of
-from verify.schemes.splitting_conditions import Splitting
+from verify.proof.plane.modified import every as modified_every
+from verify.proof.plane.modified.every import Logarithm, modified_for_every, terms_of_splitting
+from verify.proof.plane.modified.field import field_of
+from verify.proof.plane.modified.one import modified_of
+from verify.schemes.conditions.splitting_conditions import Splitting
 from verify.verdict import Verdict
 
 # Hairer, Lubich, Wanner, IX.3 and IX.4, in our signs: by the exponentials, worked out by hand

@@ -10,8 +10,8 @@ from verify import schemes
 from verify.algebra.symbols import H_STEP
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.modified.equation import ModifiedEquation
-from verify.proof.modified.one import modified_of
+from verify.proof.plane.modified.equation import ModifiedEquation
+from verify.proof.plane.modified.one import modified_of
 from verify.runs.energy_drift import energy_drifts
 from verify.schemes.maps.parts import parts_of
 from verify.verdict import Verdict

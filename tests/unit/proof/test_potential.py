@@ -9,9 +9,9 @@ from tests.helpers.sampled.formulas import P, Q
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof import potential
 from verify.proof.order import prove
-from verify.proof.potential import Potential, potential_of
+from verify.proof.plane.potential import Potential, potential_of
 from verify.schemes import get
-from verify.schemes.maps.two_form import TwoForm
+from verify.schemes.steps.two_form import TwoForm
 
 OWN = "p_next = p - h*sin(q) - h**2/2*p*cos(q); q_next = q + h*(p - h/2*sin(q))"
 HOLDS = [

@@ -9,8 +9,8 @@ from verify.claims.findings import Findings
 from verify.claims.kinds import models
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.modified.one import modified_of
 from verify.proof.order import prove
+from verify.proof.plane.modified.one import modified_of
 from verify.proof.proof import Proof
 from verify.scenes.scene import Scene
 from verify.verdict import Verdict

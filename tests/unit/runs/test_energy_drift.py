@@ -9,7 +9,7 @@ import sympy
 
 import verify
 from verify.errors import InputError
-from verify.proof.modified import one as modified
+from verify.proof.plane.modified import one as modified
 from verify.runs import energy_drift
 from verify.runs.energy_drift import energy_drifts
 

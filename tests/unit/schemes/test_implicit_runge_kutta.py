@@ -17,7 +17,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
 from verify.proof.proof import Proof
 from verify.runs.run import run
-from verify.schemes.conditions import Condition
+from verify.schemes.conditions.condition import Condition
 from verify.schemes.maps.kinds.implicit_runge_kutta import implicit_map
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.scheme import Scheme

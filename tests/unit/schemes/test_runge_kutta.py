@@ -24,7 +24,7 @@ from verify.proof.order import prove
 from verify.proof.proof import Proof
 from verify.runs.derivatives import Derivatives
 from verify.runs.run import run
-from verify.schemes.every_hamiltonian import RungeKutta
+from verify.schemes.conditions.every_hamiltonian import RungeKutta
 from verify.schemes.maps.ball_algebra import step_in_balls
 from verify.schemes.maps.kinds.explicit_runge_kutta import build
 from verify.schemes.maps.step_map import StepMap

@@ -13,9 +13,9 @@ from verify import schemes
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
+from verify.schemes.conditions.splitting_conditions import Part, Splitting
 from verify.schemes.maps.kinds import splittings
 from verify.schemes.maps.step_map import StepMap
-from verify.schemes.splitting_conditions import Part, Splitting
 from verify.verdict import Verdict
 
 NONLINEAR = "p**2/2 - cos(q)"

@@ -29,15 +29,15 @@ from verify.algebra.series.jets import Jets
 from verify.errors import InputError
 from verify.proof.by_conditions import prove_by_conditions
 from verify.proof.every import prove_every
-from verify.schemes.free_lie_words import lyndon
-from verify.schemes.methods.splitting import blanes_moan4
-from verify.schemes.scheme import Scheme
-from verify.schemes.splitting import alternating, composed, palindrome
-from verify.schemes.splitting_conditions import (
+from verify.schemes.conditions.free_lie_words import lyndon
+from verify.schemes.conditions.splitting_conditions import (
     LETTERS,
     MOST_ORDER,
     Splitting,
 )
+from verify.schemes.methods.splitting import blanes_moan4
+from verify.schemes.scheme import Scheme
+from verify.schemes.splitting import alternating, composed, palindrome
 from verify.verdict import Verdict
 
 TINY, SMALL = sympy.Rational(1, 10**11), sympy.Rational(1, 10**6)

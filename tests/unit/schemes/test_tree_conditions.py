@@ -20,14 +20,14 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof import every
 from verify.proof.every import EveryProof, counterexample, prove_every
 from verify.proof.order import convergence_of, prove
-from verify.schemes.coloured_trees import condition_text, density, symmetry, vertices
-from verify.schemes.conditions import ByConditions, Condition
-from verify.schemes.elementary_differentials import Differentials, cancel
-from verify.schemes.implicit_tableau import ImplicitTableau
+from verify.schemes.conditions.coloured_trees import condition_text, density, symmetry, vertices
+from verify.schemes.conditions.condition import ByConditions, Condition
+from verify.schemes.conditions.elementary_differentials import Differentials, cancel
+from verify.schemes.conditions.implicit_tableau import ImplicitTableau
+from verify.schemes.conditions.tree_conditions import TreeConditions, trees
+from verify.schemes.conditions.tree_order import order_of
 from verify.schemes.maps.kinds.implicit_runge_kutta import implicit_map
 from verify.schemes.scheme import Scheme
-from verify.schemes.tree_conditions import TreeConditions, trees
-from verify.schemes.tree_order import order_of
 from verify.verdict import Verdict
 
 R = sympy.Rational

@@ -10,8 +10,8 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.every import prove_every
 from verify.proof.order import convergence_of
-from verify.schemes.splitting import right_times
-from verify.schemes.splitting_conditions import Splitting
+from verify.schemes.conditions.parts_in_time import right_times
+from verify.schemes.conditions.splitting_conditions import Splitting
 
 HALF = sympy.Rational(1, 2)
 DRIVEN = Hamiltonian.parse("p**2/2 + q**4/4 - q*cos(t)")

@@ -10,7 +10,7 @@ from verify.algebra.formula import symbol
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.growth_law import NoLawError, growth_law
+from verify.proof.plane.growth_law import NoLawError, growth_law
 from verify.runs.run import run
 from verify.scenes.results.growth import AverageResult
 from verify.scenes.results.run import RunResult

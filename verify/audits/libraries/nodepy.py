@@ -18,7 +18,7 @@ import sympy
 from verify.audits.methods.integrator import Compared, ExactTableau, ReleasedIntegrator
 from verify.audits.methods.scripted import by_script
 from verify.audits.methods.tableau import order_of
-from verify.schemes.implicit_tableau import ImplicitTableau
+from verify.schemes.conditions.implicit_tableau import ImplicitTableau
 from verify.verdict import Verdict
 
 TITLE = "nodepy"

@@ -21,7 +21,7 @@ from verify.audits.methods.integrator import (
 )
 from verify.audits.methods.scripted import HENON_HEILES, Driven, by_script, scripted
 from verify.audits.methods.tabled import full, quotient
-from verify.schemes.implicit_tableau import ImplicitTableau
+from verify.schemes.conditions.implicit_tableau import ImplicitTableau
 
 TITLE = "scipy"
 LIBRARY = "scipy"

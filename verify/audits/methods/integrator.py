@@ -6,7 +6,7 @@ from fractions import Fraction
 from typing import Any
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.schemes.implicit_tableau import ImplicitTableau
+from verify.schemes.conditions.implicit_tableau import ImplicitTableau
 from verify.verdict import Verdict
 
 Map = Callable[..., Any]  # of p, q, h, or of p, q, t, h; it returns p', q'

@@ -20,9 +20,15 @@ import sympy
 
 from verify.algebra.ring import Poly
 from verify.prose import Formula, Number, Prose, prose, read_prose
-from verify.schemes.coloured_trees import Tree, condition_text, equation_text, grafted, vertices
-from verify.schemes.implicit_tableau import ImplicitTableau, Numbers
-from verify.schemes.tree_conditions import MOST_ORDER, gaps_of, trees
+from verify.schemes.conditions.coloured_trees import (
+    Tree,
+    condition_text,
+    equation_text,
+    grafted,
+    vertices,
+)
+from verify.schemes.conditions.implicit_tableau import ImplicitTableau, Numbers
+from verify.schemes.conditions.tree_conditions import MOST_ORDER, gaps_of, trees
 
 ROUNDING = Fraction(1, 10**13)  # a residue below it is that of rounded coefficients
 WRONG = Fraction(1, 10**9)  # one above it is not, of 15 digits

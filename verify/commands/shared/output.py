@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
     from verify.integrators.results import Finding
     from verify.proof.every_proof import EveryProof
-    from verify.proof.potential import Potential
+    from verify.proof.plane.potential import Potential
     from verify.proof.proof import Proof
     from verify.proof.special_values import SpecialValue
     from verify.scenes.frozen import Frozen

@@ -30,7 +30,7 @@ from verify.exploration.oracles.ball_steps import (
 from verify.exploration.oracles.symplectic_matrices import Exact, exact
 from verify.exploration.property import Violation, only_if
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.schemes.every_hamiltonian import RungeKutta, TaylorSeries
+from verify.schemes.conditions.every_hamiltonian import RungeKutta, TaylorSeries
 
 _MOST_STEPS = 3
 

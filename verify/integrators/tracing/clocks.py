@@ -17,9 +17,9 @@ from verify.integrators.tracing.readings import NoReadingsError, Read, Readings
 from verify.integrators.tracing.step_map import traced_map
 from verify.integrators.tracing.trace import Node, in_order, written
 from verify.proof.order import convergence_of, size_of
+from verify.schemes.conditions.timed.mistakes import Reading, name_of
 from verify.schemes.maps.by_formulas import map_by_expressions
-from verify.schemes.maps.step_algebra import State
-from verify.schemes.timed.mistakes import Reading, name_of
+from verify.schemes.steps.step_algebra import State
 
 _MOST_WRITTEN = 3000  # operations of p' and q' as trees
 MOMENTS = {"t": Fraction(0), "t + h": Fraction(1), "t + h/2": Fraction(1, 2)}  # as parts of h

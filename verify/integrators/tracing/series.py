@@ -19,7 +19,7 @@ from verify.functions.function import Apply, Pair
 from verify.hamiltonians.canonical_field import CanonicalField
 from verify.integrators.tracing.number import OPERATORS
 from verify.integrators.tracing.trace import Node, expressions, in_order, through
-from verify.schemes.maps.step_algebra import State
+from verify.schemes.steps.step_algebra import State
 
 _HALF = Fraction(1, 2)
 _REACHES = (7, 9, 13)  # who asks for one more order asks for further ones

@@ -23,10 +23,10 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.tracing.linear_sums import Linear, Scalar, Scalars, added, product, scaled
 from verify.integrators.tracing.series import TracedSeries
 from verify.integrators.tracing.trace import Node, expressions, in_order, written
-from verify.schemes.conditions import Condition
+from verify.schemes.conditions.condition import Condition
 from verify.schemes.maps.closed_form import ClosedForm
-from verify.schemes.maps.step_algebra import State
 from verify.schemes.maps.step_map import StepMap
+from verify.schemes.steps.step_algebra import State
 
 _MOST_NODES, _MOST_SHEARS = 2000, 200
 Terms = list[tuple[Scalar, Node]]  # (coefficient, node): a sum

@@ -1,6 +1,6 @@
 """A scheme's step written into a kernel's program, without its derivatives by z or with them.
 
-See `verify.schemes.maps.step_algebra`; a value is an operation of a program. Equations are solved
+See `verify.schemes.steps.step_algebra`; a value is an operation of a program. Equations are solved
 by Newton's method, with derivatives taken in the loop's own program.
 
 Derivatives are made forwards, with what a step is made of. Those of f at a stage are elements of
@@ -20,7 +20,7 @@ from verify.hamiltonians.canonical_field import CanonicalField
 from verify.kernels.step.increments import increments
 from verify.kernels.step.operations import Loop, Program
 from verify.kernels.step.program import Evaluator
-from verify.schemes.maps.step_algebra import Number, StepAlgebra
+from verify.schemes.steps.step_algebra import Number, StepAlgebra
 
 Right = Callable[[StepAlgebra[Any], Sequence[Any]], list[Any]]
 

@@ -20,11 +20,11 @@ from verify.arithmetic.arb import Ball, bounds, in_reach
 from verify.errors import InputError
 from verify.proof.certificates.minimal_polynomial import MinimalPolynomials
 from verify.proof.certificates.numbers import MOST_DEGREE, Number, check_root
-from verify.schemes.every_hamiltonian import StageEquations
+from verify.schemes.conditions.every_hamiltonian import StageEquations
+from verify.schemes.conditions.splitting_conditions import Splitting
+from verify.schemes.conditions.timed.for_scheme import conditions_for
+from verify.schemes.conditions.tree_conditions import TreeConditions
 from verify.schemes.scheme import Scheme
-from verify.schemes.splitting_conditions import Splitting
-from verify.schemes.timed.for_scheme import conditions_for
-from verify.schemes.tree_conditions import TreeConditions
 
 _PRECISION = 512
 _HALVED = 300  # times an interval is, until it has one root

@@ -42,7 +42,7 @@ from verify.proof.certificates.statement import Statement, entries_of
 from verify.proof.every_by_series import series_in_jets
 from verify.proof.every_proof import EveryProof
 from verify.schemes import get
-from verify.schemes.every_hamiltonian import BySeries
+from verify.schemes.conditions.every_hamiltonian import BySeries
 from verify.verdict import Verdict
 
 _NOT_KNOWN = "the checker knows coefficients of what preserves area, and Taylor polynomials"

@@ -16,7 +16,7 @@ from verify.proof.certificates.statement import (
     in_the_plane,
 )
 from verify.proof.expansion import ClosedSeries, series_of
-from verify.proof.potential import Potential
+from verify.proof.plane.potential import Potential
 from verify.proof.proof import Proof
 from verify.proof.telescoping import potential_of_lie
 from verify.schemes.maps.step_map import StepMap

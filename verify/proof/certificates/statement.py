@@ -21,7 +21,7 @@ from verify.hamiltonians.coordinates import PLANE
 from verify.proof.certificates.by_coefficients import terms
 from verify.proof.certificates.checker import see_witness
 from verify.proof.certificates.file import FORMAT, Certificate
-from verify.schemes.maps.two_form import TwoForm
+from verify.schemes.steps.two_form import TwoForm
 
 _KINDS = ("sin", "cos", "exp", "inverse")
 

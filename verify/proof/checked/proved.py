@@ -10,7 +10,7 @@ from verify.proof.certificates.file import Certificate
 from verify.proof.certificates.one import of_one
 from verify.proof.every import prove_every
 from verify.proof.every_proof import EveryProof
-from verify.proof.potential import Potential
+from verify.proof.plane.potential import Potential
 from verify.proof.proof import Proof
 from verify.schemes.scheme import Scheme
 

@@ -21,7 +21,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.orbit import Orbit
 from verify.reference.compare.agreement import nearest_single
 from verify.reference.compare.setting import Setting
-from verify.schemes.splitting_conditions import Part, Splitting
+from verify.schemes.conditions.splitting_conditions import Part, Splitting
 
 _MOST_INEXACT = 4  # inputs of which all subsets are tried
 _OF_SCHEME = "scheme "

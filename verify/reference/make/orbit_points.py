@@ -14,7 +14,7 @@ from typing import Any, Literal
 
 import flint
 
-from verify.algebra.enclosure import enclose_over
+from verify.algebra.enclosure import enclose_all, enclose_over
 from verify.arithmetic.arb import around, in_reach, middle_and_radius, rational_ball
 from verify.arithmetic.exact import text
 from verify.arithmetic.flint_precision import working_precision
@@ -156,7 +156,9 @@ def _delta_j(orbit: Orbit, box: dict[str, flint.arb]) -> flint.arb | None:
         return flint.arb(0)
     h, written = rational_ball(orbit.step_size), step_map.written_defect
     if written is not None:
-        return enclose_over(written.ring, written.delta_j, {**box, "h": h})
+        # With z' itself, since ΔJ may be defined beyond H.
+        balls = enclose_all(written.ring, [written.delta_j, *written.elements], {**box, "h": h})
+        return None if balls is None else balls[0]
     try:
         _, slopes = step_in_balls(step_map.field, step_map.step or step_map.flat, box, h)
     except UndefinedError:

@@ -7,7 +7,7 @@ from verify.scenes.results.bounded_value import Value
 
 
 class AverageResult(OfScheme, WithProse):
-    """The growth law of Λ on one orbit: see `verify.proof.growth_law`.
+    """The growth law of Λ on one orbit: see `verify.proof.plane.growth_law`.
 
     `power`: ⟨g⟩ stands with h^power T (0: there is no law). `g` and `potential` are formulas.
     `telescopes`: whether the leading coefficient of ΔJ is X·`potential`, None where that is not

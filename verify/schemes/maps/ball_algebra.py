@@ -18,7 +18,7 @@ from verify.arithmetic.arb import Ball, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians.canonical_field import CanonicalField
 from verify.schemes.maps.closed_form import ClosedForm
-from verify.schemes.maps.step_algebra import Number, Step, StepAlgebra
+from verify.schemes.steps.step_algebra import Number, Step, StepAlgebra
 
 
 class UndefinedError(ArithmeticError):

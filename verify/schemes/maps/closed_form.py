@@ -12,9 +12,9 @@ from itertools import combinations
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.power_series import Series
 from verify.hamiltonians.canonical_field import CanonicalField
-from verify.schemes.maps.defect import DefectSeries
-from verify.schemes.maps.step_algebra import State
-from verify.schemes.maps.two_form import TwoForm, wedge
+from verify.schemes.steps.defect import DefectSeries
+from verify.schemes.steps.step_algebra import State
+from verify.schemes.steps.two_form import TwoForm, wedge
 
 _MOST_PRODUCTS = 40_000  # in all entries of S of several degrees, beyond which it is left as it is
 _MOST_TERMS = 300  # of J's entries together, beyond which det J is not multiplied out

@@ -13,9 +13,9 @@ from verify.effort import limited
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.late import sympy
 from verify.schemes.maps.closed_form import ClosedForm
-from verify.schemes.maps.step_algebra import Number, StepAlgebra
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.maps.written_out import TooLongError
+from verify.schemes.steps.step_algebra import Number, StepAlgebra
 
 
 @dataclass(frozen=True)

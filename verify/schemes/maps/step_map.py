@@ -1,7 +1,7 @@
 """The exact one-step map z → z' of one Hamiltonian, and its Jacobian J = ∂z'/∂z (Eq. 12).
 
 z = (p1 … pn, q1 … qn); n = 1 is the plane, z = (p, q). The step is written once, in the operations
-of `verify.schemes.maps.step_algebra`, and read as a series in h, as a closed form, in balls, or as
+of `verify.schemes.steps.step_algebra`, and read as a series in h, as a closed form, in balls, or as
 a kernel's program; a user's map is given in closed form. What it misses is S = JᵀΩJ − Ω, which in
 the plane is ΔJ dp∧dq, ΔJ = det J − 1 (Eq. 14).
 """
@@ -22,10 +22,9 @@ from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.late import sympy
 from verify.notebook import aligned_latex, short_latex
-from verify.schemes.conditions import Condition
+from verify.schemes.conditions.condition import Condition
 from verify.schemes.maps.ball_algebra import may_preserve
 from verify.schemes.maps.closed_form import ClosedForm, h_inside
-from verify.schemes.maps.step_algebra import State, Step, series_of
 from verify.schemes.maps.written_out import (
     TooLongError,
     elements_of,
@@ -33,6 +32,7 @@ from verify.schemes.maps.written_out import (
     is_polynomial,
     terms_in,
 )
+from verify.schemes.steps.step_algebra import State, Step, series_of
 
 # Of the largest composition that is written in closed form: terms in its parts, its own, those of
 # S, and how often coordinates occur in it.

@@ -16,10 +16,10 @@ from verify.algebra.ring import Poly
 from verify.hamiltonians.canonical_field import CanonicalField
 from verify.late import sympy
 from verify.schemes.maps.closed_form import arguments, terms_of
-from verify.schemes.maps.step_algebra import Number, StepAlgebra
+from verify.schemes.steps.step_algebra import Number, StepAlgebra
 
 if TYPE_CHECKING:
-    from verify.schemes.maps.step_algebra import Step
+    from verify.schemes.steps.step_algebra import Step
 
 
 class TooLongError(Exception):

@@ -16,7 +16,7 @@ from verify.arithmetic.arb import middle_and_radius, rational_ball
 from verify.arithmetic.exact import decimal
 from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
-from verify.schemes.conditions import Condition, NearbyOrder
+from verify.schemes.conditions.condition import Condition, NearbyOrder
 from verify.schemes.printed.asked import BITS, ball_of
 from verify.schemes.printed.judged import WITHIN, Judged
 from verify.schemes.printed.naming import Naming

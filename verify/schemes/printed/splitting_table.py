@@ -9,7 +9,7 @@ import sympy
 
 from verify.arithmetic.number import E
 from verify.errors import InputError
-from verify.schemes.free_lie_words import (
+from verify.schemes.conditions.free_lie_words import (
     KINDS,
     MOST_ORDER,
     LogCondition,
@@ -18,19 +18,20 @@ from verify.schemes.free_lie_words import (
     residue,
     step,
 )
+from verify.schemes.conditions.splitting_conditions import LETTERS
 from verify.schemes.printed.asked import Asked, Residues
 from verify.schemes.printed.judged import Judged, judge
 from verify.schemes.printed.printed_numbers import PrintedNumbers, power
-from verify.schemes.splitting_conditions import LETTERS
 
 _ODD = (1, 3, 5, 7, 9)
 
 
 @dataclass(frozen=True)
 class PrintedTable:
-    """`kind`: see `verify.schemes.free_lie_words`. `parts`: ("kick" or "drift", size) in the order
-    in which they are made, or ("step", size) of a composition; sizes are formulas in `numbers`,
-    which are decimals as printed, or exact formulas of numbers. InputError for what is none.
+    """`kind`: see `verify.schemes.conditions.free_lie_words`. `parts`: ("kick" or "drift", size) in
+    the order in which they are made, or ("step", size) of a composition; sizes are formulas in
+    `numbers`, which are decimals as printed, or exact formulas of numbers. InputError for what is
+    none.
     """
 
     kind: str
@@ -90,7 +91,7 @@ class PrintedTable:
         return replace(self, printed=numbers)
 
     def letters(self, sizes: Sequence[E]) -> list[Mapping[str, E]]:
-        """The parts for `verify.schemes.free_lie_words.step`, with these sizes."""
+        """The parts for `verify.schemes.conditions.free_lie_words.step`, with these sizes."""
         if self.kind == "composition":
             return [{str(n): power(x, n) for n in _ODD} for x in sizes]
         names = (name for name, _ in self.parts)

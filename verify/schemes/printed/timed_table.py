@@ -2,8 +2,8 @@
 
 Where each is the right one, the sum of the other kind's parts before it, the conditions without
 time are all that is asked, but of a quadratic T that depends on time
-(`verify.schemes.timed.splitting`).
-Where one is not, those of words with time tell (`verify.schemes.words.equations`).
+(`verify.schemes.conditions.timed.splitting`).
+Where one is not, those of words with time tell (`verify.schemes.conditions.words.equations`).
 """
 
 from collections.abc import Sequence
@@ -14,14 +14,14 @@ from typing import Any
 import sympy
 
 from verify.arithmetic.number import E
+from verify.schemes.conditions.splitting_conditions import LETTERS
+from verify.schemes.conditions.words.equations import TimedEquation, equations_of
+from verify.schemes.conditions.words.kinetic import Kinetic
+from verify.schemes.conditions.words.step_words import StepWords
 from verify.schemes.printed.asked import Asked, Named, both
 from verify.schemes.printed.judged import Judged, judge
 from verify.schemes.printed.printed_numbers import PrintedNumbers
 from verify.schemes.printed.splitting_table import PrintedTable, judge_order
-from verify.schemes.splitting_conditions import LETTERS
-from verify.schemes.words.equations import TimedEquation, equations_of
-from verify.schemes.words.kinetic import Kinetic
-from verify.schemes.words.step_words import StepWords
 from verify.verdict import Verdict
 
 _MOST_ORDER = 6  # with clocks that are not right: of higher ones there are too many words

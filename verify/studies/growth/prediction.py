@@ -1,9 +1,9 @@
 """The growth law of Λ held against runs: ⟨g⟩ of an orbit, and Λ of each run as it predicts it.
 
-What is predicted is S = log(1 + Λ) up to the remainder that `verify.proof.growth_law` states, and
-Λ = e^S − 1. The bounds printed are of the prediction's own numbers, not of that remainder. [B] is
-taken on the orbit of z₀, at the point nearest to z_N: that changes it by O(H(z_N) − H(z₀)), which
-is O(h^η T), and the prediction by less than the remainder.
+What is predicted is S = log(1 + Λ) up to the remainder that `verify.proof.plane.growth_law` states,
+and Λ = e^S − 1. The bounds printed are of the prediction's own numbers, not of that remainder. [B]
+is taken on the orbit of z₀, at the point nearest to z_N: that changes it by O(H(z_N) − H(z₀)),
+which is O(h^η T), and the prediction by less than the remainder.
 """
 
 import time
@@ -28,7 +28,7 @@ from verify.flows.closed_orbit import Start
 from verify.flows.extrapolation import NoFlowError
 from verify.flows.orbit_average import MOST_DIGITS, Average, average, bounded_part
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.growth_law import Element, GrowthLaw, NoLawError, growth_law
+from verify.proof.plane.growth_law import Element, GrowthLaw, NoLawError, growth_law
 from verify.prose import Prose
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.growth import AverageResult, PredictionResult

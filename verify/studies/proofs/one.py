@@ -16,8 +16,8 @@ from verify.prose import Prose
 from verify.scenes.results.proof import FormResult, Formulas, ProofResult
 from verify.schemes import get
 from verify.schemes.maps.step_map import StepMap, grouped
-from verify.schemes.maps.two_form import MOST_TERMS
 from verify.schemes.scheme import Scheme
+from verify.schemes.steps.two_form import MOST_TERMS
 
 _COST = 10_000_000  # of a proof, about
 _LONG = 12  # digits of a value that no formula is read with

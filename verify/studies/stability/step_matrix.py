@@ -1,6 +1,6 @@
 """The matrix of a step of a scheme on a linear system, exactly; whether its powers stay bounded.
 
-A scheme's step is made of few operations (`verify.schemes.maps.step_algebra`). Here a value is a
+A scheme's step is made of few operations (`verify.schemes.steps.step_algebra`). Here a value is a
 row: a linear function of z, and, inside of equations, of their unknowns too. So a step of size h, a
 rational, is a 2n × 2n matrix M of rationals.
 
@@ -23,7 +23,7 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes import get
-from verify.schemes.maps.step_algebra import Number, StepAlgebra
+from verify.schemes.steps.step_algebra import Number, StepAlgebra
 from verify.studies.stability.positive_roots import positive_roots
 
 _BITS, _MOST_BITS = 128, 4096

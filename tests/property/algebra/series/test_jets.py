@@ -24,7 +24,7 @@ from verify.algebra.series.power_series import Derivatives, Series, at_moved
 from verify.hamiltonians.jet_flow import JetFlow
 from verify.proof.every import prove_every
 from verify.proof.telescoping import potential_of_lie, telescopes
-from verify.schemes.maps.two_form import wedge
+from verify.schemes.steps.two_form import wedge
 
 ORDER = 3
 T = sympy.Symbol("t")

@@ -24,7 +24,7 @@ from verify.proof.certificates.every import of_every
 from verify.proof.certificates.file import FORMAT, checked
 from verify.proof.every import prove_every
 from verify.proof.every_proof import EveryProof
-from verify.schemes.every_hamiltonian import RungeKutta
+from verify.schemes.conditions.every_hamiltonian import RungeKutta
 from verify.verdict import Verdict
 
 OF_ONE_H = "p_next = p - h*q; q_next = q + h*p_next"

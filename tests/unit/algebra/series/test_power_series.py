@@ -11,7 +11,7 @@ from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.power_series import Derivatives, Series, at_moved
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes import get
-from verify.schemes.maps.defect import DefectSeries
+from verify.schemes.steps.defect import DefectSeries
 
 H = plain("h")
 MOST = 4

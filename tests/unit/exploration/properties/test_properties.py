@@ -19,7 +19,7 @@ from verify.proof.order import prove
 from verify.scenes.scene import scene_from
 from verify.schemes import get
 from verify.schemes.maps.step_map import StepMap
-from verify.schemes.maps.two_form import TwoForm
+from verify.schemes.steps.two_form import TwoForm
 
 Patch = pytest.MonkeyPatch
 Plant = Callable[[Sample, Patch], Sample]

@@ -24,7 +24,7 @@ from verify.exploration.properties.orders import planted_errors
 from verify.exploration.property import Violation
 from verify.exploration.sample import Sample
 from verify.proof.expansion import VANISHES
-from verify.proof.growth_law import GrowthLaw
+from verify.proof.plane.growth_law import GrowthLaw
 from verify.proof.proof import Proof
 from verify.studies.separation.chain import Chain
 

@@ -7,7 +7,7 @@ from tests.unit.pages.test_page import proof, report, scene
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.pages.page import render
 from verify.proof.order import prove
-from verify.proof.potential import potential_of
+from verify.proof.plane.potential import potential_of
 from verify.scenes.results.growth import GrowthLawResult
 from verify.schemes import get
 from verify.studies.growth.prediction import average_of

@@ -18,9 +18,9 @@ from verify.proof.certificates.established import Established, established
 from verify.proof.certificates.every import of_every
 from verify.proof.every import prove_every
 from verify.schemes import get, names
-from verify.schemes.implicit_tableau import ImplicitTableau
-from verify.schemes.splitting_conditions import Splitting
-from verify.schemes.tree_conditions import TreeConditions
+from verify.schemes.conditions.implicit_tableau import ImplicitTableau
+from verify.schemes.conditions.splitting_conditions import Splitting
+from verify.schemes.conditions.tree_conditions import TreeConditions
 from verify.verdict import Verdict
 
 SYMPLECTIC = [name for name in names() if get(name).area_preserving]

@@ -16,7 +16,7 @@ from verify.proof.checked.proved import (
 )
 from verify.proof.every import prove_every
 from verify.schemes import get
-from verify.schemes.every_hamiltonian import Stage, StageEquations
+from verify.schemes.conditions.every_hamiltonian import Stage, StageEquations
 
 
 def every(scheme: str, about: frozenset = ALL) -> Proved:

@@ -26,8 +26,8 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
 from verify.proof.proof import Proof
-from verify.schemes.maps.defect import DefectSeries
 from verify.schemes.maps.step_map import StepMap
+from verify.schemes.steps.defect import DefectSeries
 from verify.verdict import Verdict
 
 HARMONIC = Hamiltonian.parse("p**2/2 + q**2/2")

@@ -14,7 +14,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import prove
 from verify.proof.proof import Proof
 from verify.proof.symmetry import by_series
-from verify.schemes.every_hamiltonian import Stage, StageEquations
+from verify.schemes.conditions.every_hamiltonian import Stage, StageEquations
 from verify.verdict import Verdict
 
 FILES = schemes._FILES

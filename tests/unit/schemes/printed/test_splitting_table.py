@@ -9,10 +9,10 @@ import pytest
 from verify.audits.claims import claims_of
 from verify.audits.libraries import literature
 from verify.errors import InputError
-from verify.schemes.free_lie_words import KINDS, MOST_ORDER, conditions, residue, step
+from verify.schemes.conditions.free_lie_words import KINDS, MOST_ORDER, conditions, residue, step
+from verify.schemes.conditions.splitting_conditions import Splitting
 from verify.schemes.printed.printed_numbers import PrintedNumbers, evaluated
 from verify.schemes.printed.splitting_table import PrintedTable, judge_order
-from verify.schemes.splitting_conditions import Splitting
 from verify.verdict import Verdict
 
 TABLES = {integrator.name: integrator for integrator in literature.integrators()}

@@ -6,11 +6,11 @@ import pytest
 import sympy
 
 from verify.schemes import get
-from verify.schemes.implicit_tableau import ImplicitTableau
-from verify.schemes.timed.mistakes import Reading, mistakes_of_splitting, name_of
-from verify.schemes.timed.splitting import TimedSplitting
-from verify.schemes.timed.tableau import TimedTableau
-from verify.schemes.words.kinetic import Kinetic
+from verify.schemes.conditions.implicit_tableau import ImplicitTableau
+from verify.schemes.conditions.timed.mistakes import Reading, mistakes_of_splitting, name_of
+from verify.schemes.conditions.timed.splitting import TimedSplitting
+from verify.schemes.conditions.timed.tableau import TimedTableau
+from verify.schemes.conditions.words.kinetic import Kinetic
 
 R, ZERO, ONE, HALF = sympy.Rational, sympy.S.Zero, sympy.S.One, sympy.S.Half
 PARTS = get("yoshida4").every_h.parts

@@ -10,13 +10,13 @@ from tests.helpers.stepping.steps_in_time import agreement, flow, problem, runge
 from verify.errors import InputError
 from verify.proof.by_conditions import agreed_order
 from verify.schemes import get
-from verify.schemes.coloured_trees import all_trees, equation_text, of_all
-from verify.schemes.every_hamiltonian import Stage, StageEquations
-from verify.schemes.implicit_tableau import ImplicitTableau
-from verify.schemes.timed.for_scheme import conditions_for
-from verify.schemes.timed.runge_kutta import TimedTrees
-from verify.schemes.timed.tableau import TimedTableau
-from verify.schemes.words.kinetic import Kinetic
+from verify.schemes.conditions.coloured_trees import all_trees, equation_text, of_all
+from verify.schemes.conditions.every_hamiltonian import Stage, StageEquations
+from verify.schemes.conditions.implicit_tableau import ImplicitTableau
+from verify.schemes.conditions.timed.for_scheme import conditions_for
+from verify.schemes.conditions.timed.runge_kutta import TimedTrees
+from verify.schemes.conditions.timed.tableau import TimedTableau
+from verify.schemes.conditions.words.kinetic import Kinetic
 
 R, F = sympy.Rational, Fraction
 TIMED = of_all(1, timed=True)

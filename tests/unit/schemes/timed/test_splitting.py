@@ -12,13 +12,13 @@ from tests.helpers.stepping.steps_in_time import agreement, flow, problem, split
 from verify.errors import InputError
 from verify.proof.by_conditions import agreed_order
 from verify.schemes import get
-from verify.schemes.free_lie_words import conditions as plain_conditions
-from verify.schemes.splitting_conditions import Splitting
-from verify.schemes.timed.for_scheme import conditions_for
-from verify.schemes.timed.splitting import TimedSplitting
-from verify.schemes.words.kinetic import Kinetic
-from verify.schemes.words.quadratic import combinations
-from verify.schemes.words.words import joined, lyndon, text, words
+from verify.schemes.conditions.free_lie_words import conditions as plain_conditions
+from verify.schemes.conditions.splitting_conditions import Splitting
+from verify.schemes.conditions.timed.for_scheme import conditions_for
+from verify.schemes.conditions.timed.splitting import TimedSplitting
+from verify.schemes.conditions.words.kinetic import Kinetic
+from verify.schemes.conditions.words.quadratic import combinations
+from verify.schemes.conditions.words.words import joined, lyndon, text, words
 
 R, F = sympy.Rational, Fraction
 KINDS = {

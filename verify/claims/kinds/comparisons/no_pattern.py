@@ -3,7 +3,7 @@
 The pattern that is looked for is plain to see in a plot: one order of the initial values by |Λ|
 that is the same at every step size. Where there is one, the claim is refuted; where two step sizes
 have different orders, there is none. Any computed number has a law: that one is known (see
-`verify.proof.growth_law`) is no pattern of this kind.
+`verify.proof.plane.growth_law`) is no pattern of this kind.
 """
 
 from collections.abc import Sequence

@@ -16,7 +16,7 @@ from verify.exploration.any_sample import AnySample
 from verify.exploration.property import Silent, Violation, known, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.flows.extrapolation import Flow, NoFlowError
-from verify.proof.potential import potential_of
+from verify.proof.plane.potential import potential_of
 
 _IN, _OF_POTENTIALS = 3, 6  # one in so many samples
 _DIGITS, _BITS = 40, 220

@@ -13,8 +13,8 @@ from verify.errors import InputError
 from verify.exploration.oracles.ball_steps import BallState, ball_steps, sharp, unlike
 from verify.exploration.property import Violation, known, only_if, silent_at
 from verify.exploration.sample import Sample
-from verify.proof.growth_law import Element, GrowthLaw, NoLawError, growth_law
-from verify.schemes.every_hamiltonian import TaylorSeries
+from verify.proof.plane.growth_law import Element, GrowthLaw, NoLawError, growth_law
+from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 
 _STEP, _STEPS = Fraction(1, 2**256), 3
 _BITS_A_POWER, _SPARE = 256, 320

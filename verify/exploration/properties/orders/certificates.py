@@ -14,7 +14,7 @@ from verify.exploration.sample import Sample
 from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.proof.certificates.checker import check
 from verify.proof.certificates.one import of_one
-from verify.proof.potential import potential_of
+from verify.proof.plane.potential import potential_of
 
 _IN = 10  # one in so many samples
 _IN_DEGREES = 6

@@ -8,7 +8,7 @@ from verify.exploration.sample import Sample
 from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.proof.every import prove_every
 from verify.proof.every_proof import EveryProof
-from verify.proof.potential import potential_of
+from verify.proof.plane.potential import potential_of
 from verify.proof.proof import Proof
 from verify.verdict import Verdict
 

@@ -18,7 +18,12 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.oracles.ball_steps import BITS, sharp, unlike
 from verify.exploration.property import Violation, known, only_if
 from verify.exploration.sample import Sample
-from verify.schemes.every_hamiltonian import BySeries, RungeKutta, StageEquations, TaylorSeries
+from verify.schemes.conditions.every_hamiltonian import (
+    BySeries,
+    RungeKutta,
+    StageEquations,
+    TaylorSeries,
+)
 from verify.schemes.scheme import Scheme
 
 _MOST_ORDER = 5  # of a scheme: with more there are too many jets

@@ -11,8 +11,8 @@ from verify.hamiltonians.canonical_field import CanonicalField
 from verify.proof.claimed import Claimed
 from verify.proof.order import prove
 from verify.proof.proof import Proof
-from verify.schemes.maps.step_algebra import State, StepAlgebra
 from verify.schemes.maps.step_map import StepMap
+from verify.schemes.steps.step_algebra import State, StepAlgebra
 from verify.verdict import Verdict
 
 _IN = 2  # one in so many samples

@@ -24,7 +24,7 @@ from verify.exploration.sample import Sample
 from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.schemes.every_hamiltonian import RungeKutta, TaylorSeries
+from verify.schemes.conditions.every_hamiltonian import RungeKutta, TaylorSeries
 
 _UNIT = 100  # coefficients are whole multiples of 1/100
 

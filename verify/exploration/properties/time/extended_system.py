@@ -15,8 +15,8 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.any_sample import AnySample
 from verify.exploration.oracles.ball_steps import BITS, ball_steps, sharp, unlike
 from verify.exploration.property import Silent, Violation, known, only_if
-from verify.schemes.every_hamiltonian import RungeKutta
-from verify.schemes.splitting_conditions import Splitting
+from verify.schemes.conditions.every_hamiltonian import RungeKutta
+from verify.schemes.conditions.splitting_conditions import Splitting
 
 Point = tuple[Ball, ...]  # the coordinates, and t
 

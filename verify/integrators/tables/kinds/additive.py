@@ -7,7 +7,7 @@ from pydantic import Field
 
 from verify.integrators.tables.tableaux.claims import Block, BlocksEntry, of_blocks
 from verify.integrators.tables.told import TableClaim
-from verify.schemes.coloured_trees import of_all
+from verify.schemes.conditions.coloured_trees import of_all
 
 
 class Entry(BlocksEntry):

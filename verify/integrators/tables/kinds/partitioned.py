@@ -6,7 +6,7 @@ from pydantic import StrictBool
 
 from verify.integrators.tables.tableaux.claims import Block, BlocksEntry, of_blocks
 from verify.integrators.tables.told import TableClaim
-from verify.schemes.coloured_trees import alternating, of_all
+from verify.schemes.conditions.coloured_trees import alternating, of_all
 
 
 class Entry(BlocksEntry):

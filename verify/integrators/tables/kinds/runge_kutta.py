@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from verify.integrators.tables.tableaux.claims import Block, BlocksEntry, of_blocks
 from verify.integrators.tables.told import TableClaim
-from verify.schemes.coloured_trees import of_all
+from verify.schemes.conditions.coloured_trees import of_all
 
 
 class Entry(Block, BlocksEntry):

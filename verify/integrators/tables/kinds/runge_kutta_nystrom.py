@@ -11,9 +11,9 @@ from verify.integrators.tables.entry import Row
 from verify.integrators.tables.tableaux.claims import TableauEntry, of_tableau
 from verify.integrators.tables.tableaux.table import TableauTable, square
 from verify.integrators.tables.told import TableClaim
-from verify.schemes.coloured_trees import NYSTROM
+from verify.schemes.conditions.coloured_trees import NYSTROM
+from verify.schemes.conditions.tree_weights import Tableau
 from verify.schemes.printed.naming import Naming
-from verify.schemes.tree_weights import Tableau
 
 
 class Entry(TableauEntry):

@@ -30,12 +30,12 @@ from verify.integrators.tables.told import (
 )
 from verify.prose import prose
 from verify.scenes.frozen import Frozen
-from verify.schemes.coloured_trees import Grammar
+from verify.schemes.conditions.coloured_trees import Grammar
+from verify.schemes.conditions.tree_weights import Tableau
 from verify.schemes.printed.asked import Asked
 from verify.schemes.printed.judged import Judged, judge
 from verify.schemes.printed.naming import Naming
 from verify.schemes.printed.printed_numbers import PrintedNumbers
-from verify.schemes.tree_weights import Tableau
 from verify.verdict import Verdict
 
 

@@ -15,7 +15,7 @@ import sympy
 from verify.arithmetic.number import E
 from verify.errors import InputError
 from verify.integrators.tables.tableaux.table import TableauTable
-from verify.schemes.coloured_trees import (
+from verify.schemes.conditions.coloured_trees import (
     Grammar,
     Tree,
     all_trees,
@@ -24,9 +24,9 @@ from verify.schemes.coloured_trees import (
     symmetry,
     vertices,
 )
+from verify.schemes.conditions.tree_weights import Block, dot
 from verify.schemes.printed.asked import Asked, Named, Residues, both
 from verify.schemes.printed.judged import Judged, Misprint, judge
-from verify.schemes.tree_weights import Block, dot
 from verify.verdict import Verdict
 
 _MOST_TREES = 2500
@@ -112,7 +112,7 @@ def row_sums_asked(table: TableauTable, crossed: tuple[bool, ...] = ()) -> Asked
 
 def judge_row_sums(table: TableauTable) -> Judged:
     """Whether the times are row sums: where there are two parts, of p' and of q', those of either
-    one, since time may go with each (`verify.schemes.timed.tableau`)."""
+    one, since time may go with each (`verify.schemes.conditions.timed.tableau`)."""
     either = list(product((False, True), repeat=2)) if "_p" in table.names else [()]
     found = [judge(table.printed, row_sums_asked(table, crossed), 1) for crossed in either]
     return next((x for x in found if x.holds), found[0])

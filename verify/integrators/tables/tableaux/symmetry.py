@@ -22,10 +22,17 @@ from typing import Any
 from verify.arithmetic.number import E
 from verify.integrators.tables.tableaux.order import zero_or
 from verify.integrators.tables.tableaux.table import TableauTable
-from verify.schemes.coloured_trees import Grammar, Tree, all_trees, product_text, trees, vertices
+from verify.schemes.conditions.coloured_trees import (
+    Grammar,
+    Tree,
+    all_trees,
+    product_text,
+    trees,
+    vertices,
+)
+from verify.schemes.conditions.tree_weights import Block, Tableau, TreeWeights, Vector
 from verify.schemes.printed.asked import Asked, Named
 from verify.schemes.printed.judged import Judged, judge
-from verify.schemes.tree_weights import Block, Tableau, TreeWeights, Vector
 from verify.verdict import Verdict
 
 _VERTICES = 6  # of two trees together; and of a tree of the doubled method, beside tall ones

@@ -11,9 +11,9 @@ import sympy
 
 from verify.arithmetic.number import E
 from verify.errors import InputError
-from verify.schemes.coloured_trees import Grammar
+from verify.schemes.conditions.coloured_trees import Grammar
+from verify.schemes.conditions.tree_weights import Block, Tableau, TreeWeights
 from verify.schemes.printed.printed_numbers import PrintedNumbers
-from verify.schemes.tree_weights import Block, Tableau, TreeWeights
 
 MOST_STAGES = 40
 Texts = tuple[str, ...]
@@ -23,7 +23,7 @@ Entries = tuple[sympy.Expr, ...]
 @dataclass(frozen=True)
 class TableauTable:
     """`blocks`: one for each colour of the grammar. `names`: what stands after A, b and c of each.
-    `nystrom`: the second block is of q' = p: see `verify.schemes.tree_weights`.
+    `nystrom`: the second block is of q' = p: see `verify.schemes.conditions.tree_weights`.
     `weighing`: what the weights are called.
 
     InputError where the blocks do not fit together.

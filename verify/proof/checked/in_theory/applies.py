@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from verify.proof.assistant.stated import Shipped
 from verify.proof.checked.proved import About, Proved
-from verify.schemes.every_hamiltonian import TaylorSeries
+from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 
 
 @dataclass(frozen=True)

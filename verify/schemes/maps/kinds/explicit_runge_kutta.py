@@ -5,8 +5,8 @@ from functools import partial
 
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.schemes.conditions import Condition
-from verify.schemes.every_hamiltonian import RungeKutta
+from verify.schemes.conditions.condition import Condition
+from verify.schemes.conditions.every_hamiltonian import RungeKutta
 from verify.schemes.maps.step_map import StepMap
 
 KIND = RungeKutta

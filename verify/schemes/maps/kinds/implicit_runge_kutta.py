@@ -20,12 +20,12 @@ from verify.algebra.symbols import H_STEP, P, Q
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.late import sympy
-from verify.schemes.conditions import Condition
-from verify.schemes.implicit_tableau import ImplicitTableau, implicit_step
+from verify.schemes.conditions.condition import Condition
+from verify.schemes.conditions.implicit_tableau import ImplicitTableau, implicit_step
+from verify.schemes.conditions.tree_conditions import TreeConditions
+from verify.schemes.conditions.tree_order import order_of
 from verify.schemes.maps.by_formulas import map_by_expressions
 from verify.schemes.maps.step_map import StepMap
-from verify.schemes.tree_conditions import TreeConditions
-from verify.schemes.tree_order import order_of
 
 KIND = TreeConditions
 

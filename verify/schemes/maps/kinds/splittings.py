@@ -13,10 +13,10 @@ from verify.algebra.series.jets import JetsInDegrees
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.schemes.conditions import Condition
+from verify.schemes.conditions.condition import Condition
+from verify.schemes.conditions.parts_in_time import all_times, shears_step
+from verify.schemes.conditions.splitting_conditions import Splitting, expressed
 from verify.schemes.maps.step_map import StepMap
-from verify.schemes.splitting import all_times, shears_step
-from verify.schemes.splitting_conditions import Splitting, expressed
 
 KIND = Splitting
 

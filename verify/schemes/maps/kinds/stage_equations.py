@@ -13,12 +13,12 @@ from verify.algebra.symbols import H_STEP, P, Q
 from verify.effort import limited
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.schemes.conditions import Condition
-from verify.schemes.every_hamiltonian import Stage, StageEquations
+from verify.schemes.conditions.condition import Condition
+from verify.schemes.conditions.every_hamiltonian import Stage, StageEquations
+from verify.schemes.conditions.splitting_conditions import Splitting
 from verify.schemes.maps.by_formulas import map_by_expressions
 from verify.schemes.maps.kinds import splittings
 from verify.schemes.maps.step_map import StepMap
-from verify.schemes.splitting_conditions import Splitting
 
 KIND = StageEquations
 

@@ -2,8 +2,8 @@
 
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.schemes.conditions import Condition
-from verify.schemes.every_hamiltonian import TaylorSeries
+from verify.schemes.conditions.condition import Condition
+from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 from verify.schemes.maps.step_map import StepMap
 
 KIND = TaylorSeries

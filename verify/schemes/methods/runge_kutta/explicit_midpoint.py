@@ -2,7 +2,7 @@
 
 from fractions import Fraction
 
-from verify.schemes.every_hamiltonian import RungeKutta
+from verify.schemes.conditions.every_hamiltonian import RungeKutta
 from verify.schemes.runge_kutta import explicit
 
 SCHEME = explicit(

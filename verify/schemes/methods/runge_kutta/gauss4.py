@@ -2,9 +2,9 @@
 
 import sympy
 
-from verify.schemes.implicit_tableau import ImplicitTableau
+from verify.schemes.conditions.implicit_tableau import ImplicitTableau
+from verify.schemes.conditions.tree_conditions import TreeConditions
 from verify.schemes.runge_kutta import implicit
-from verify.schemes.tree_conditions import TreeConditions
 
 _QUARTER, _HALF, _ROOT = sympy.Rational(1, 4), sympy.Rational(1, 2), sympy.sqrt(3)
 TABLEAU = ImplicitTableau.of(

@@ -2,9 +2,9 @@
 
 import sympy
 
-from verify.schemes.implicit_tableau import ImplicitTableau
+from verify.schemes.conditions.implicit_tableau import ImplicitTableau
+from verify.schemes.conditions.tree_conditions import TreeConditions
 from verify.schemes.runge_kutta import implicit
-from verify.schemes.tree_conditions import TreeConditions
 
 _OUTER, _INNER, _ROOT = sympy.Rational(5, 36), sympy.Rational(2, 9), sympy.sqrt(15)
 TABLEAU = ImplicitTableau.of(

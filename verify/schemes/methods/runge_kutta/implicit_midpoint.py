@@ -7,8 +7,8 @@ from fractions import Fraction
 
 import sympy
 
-from verify.schemes.every_hamiltonian import Stage, StageEquations
-from verify.schemes.implicit_tableau import ImplicitTableau
+from verify.schemes.conditions.every_hamiltonian import Stage, StageEquations
+from verify.schemes.conditions.implicit_tableau import ImplicitTableau
 from verify.schemes.runge_kutta import implicit
 
 TABLEAU = ImplicitTableau.of(rows=((sympy.Rational(1, 2),),), weights=(1,))

@@ -2,7 +2,7 @@
 
 from fractions import Fraction
 
-from verify.schemes.every_hamiltonian import RungeKutta
+from verify.schemes.conditions.every_hamiltonian import RungeKutta
 from verify.schemes.runge_kutta import explicit
 
 _ZERO, _HALF, _ONE = Fraction(0), Fraction(1, 2), Fraction(1)

@@ -10,7 +10,7 @@ they are those of one generating function, h H(p', q, t), so that det J ≡ 1.
 
 from fractions import Fraction
 
-from verify.schemes.every_hamiltonian import Stage, StageEquations
+from verify.schemes.conditions.every_hamiltonian import Stage, StageEquations
 from verify.schemes.scheme import Scheme
 
 _ONE = Fraction(1)

@@ -12,7 +12,7 @@ import re
 
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.schemes.every_hamiltonian import TaylorSeries
+from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 from verify.schemes.maps.kinds.taylor_series import build
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.scheme import Scheme

@@ -11,10 +11,11 @@ For an H that depends on time a part may have its own, in parts of h from the st
 
 from verify.algebra.formula import parse
 from verify.errors import InputError
+from verify.schemes.conditions.parts_in_time import right_times
+from verify.schemes.conditions.splitting_conditions import LETTERS, MOST_ORDER, Part
 from verify.schemes.printed.nearby_order import nearby_of
 from verify.schemes.scheme import Scheme
-from verify.schemes.splitting import right_times, splitting
-from verify.schemes.splitting_conditions import LETTERS, MOST_ORDER, Part
+from verify.schemes.splitting import splitting
 
 EXAMPLES = ()  # its names are the users' own
 _MOST_PARTS = 200

@@ -24,14 +24,15 @@ from verify.algebra.formula import symbol
 from verify.algebra.symbols import H_STEP
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.schemes.every_hamiltonian import RungeKutta, TaylorSeries
+from verify.schemes.conditions.every_hamiltonian import RungeKutta, TaylorSeries
+from verify.schemes.conditions.parts_in_time import sums_before
+from verify.schemes.conditions.splitting_conditions import Part, Splitting
 from verify.schemes.maps.by_formulas import map_by_expressions
 from verify.schemes.maps.kinds import explicit_runge_kutta
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.methods.taylor.lie import lie_map
 from verify.schemes.scheme import Scheme
-from verify.schemes.splitting import splitting, sums_before
-from verify.schemes.splitting_conditions import Part, Splitting
+from verify.schemes.splitting import splitting
 
 EXAMPLES = ()  # its names are the users' own
 _NAME = re.compile(r"\s*(?P<base>[^,;]+?)\s*,\s*clock\s+(?P<clock>.*\S)\s*")

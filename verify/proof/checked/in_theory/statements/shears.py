@@ -3,7 +3,7 @@
 from verify.proof.assistant.stated import Shipped
 from verify.proof.checked.in_theory.applies import Applies
 from verify.proof.checked.proved import Proved
-from verify.schemes.splitting_conditions import Splitting
+from verify.schemes.conditions.splitting_conditions import Splitting
 
 
 def _theorems(proved: Proved) -> tuple[Shipped, ...]:

@@ -3,7 +3,7 @@
 from verify.proof.assistant.stated import Shipped
 from verify.proof.checked.in_theory.applies import Applies
 from verify.proof.checked.proved import Proved
-from verify.schemes.every_hamiltonian import Stage, StageEquations
+from verify.schemes.conditions.every_hamiltonian import Stage, StageEquations
 
 
 def _theorems(proved: Proved) -> tuple[Shipped, ...]:

@@ -3,7 +3,7 @@
 from verify.proof.assistant.stated import Shipped
 from verify.proof.checked.in_theory.applies import Applies
 from verify.proof.checked.proved import Proved
-from verify.schemes.tree_conditions import TreeConditions
+from verify.schemes.conditions.tree_conditions import TreeConditions
 
 
 def _theorems(proved: Proved) -> tuple[Shipped, ...]:

@@ -14,14 +14,14 @@ from typing import Protocol
 import sympy
 
 from verify.errors import InputError
-from verify.schemes.conditions import ByConditions
-from verify.schemes.every_hamiltonian import RungeKutta, StageEquations
-from verify.schemes.splitting_conditions import Splitting
-from verify.schemes.timed.runge_kutta import TimedTrees
-from verify.schemes.timed.splitting import TimedSplitting
-from verify.schemes.timed.tableau import TimedTableau
-from verify.schemes.tree_conditions import TreeConditions
-from verify.schemes.words.kinetic import Kinetic
+from verify.schemes.conditions.condition import ByConditions
+from verify.schemes.conditions.every_hamiltonian import RungeKutta, StageEquations
+from verify.schemes.conditions.splitting_conditions import Splitting
+from verify.schemes.conditions.timed.runge_kutta import TimedTrees
+from verify.schemes.conditions.timed.splitting import TimedSplitting
+from verify.schemes.conditions.timed.tableau import TimedTableau
+from verify.schemes.conditions.tree_conditions import TreeConditions
+from verify.schemes.conditions.words.kinetic import Kinetic
 
 Times = Sequence[sympy.Expr | None] | None
 

@@ -1,8 +1,8 @@
 """Elementary differentials of f = (−H_q, H_p), and which sums of them vanish for every H.
 
 F(τ) = f, and F([t_1 … t_m]) = f⁽ᵐ⁾(F(t_1), …, F(t_m)); a leaf of time differentiates by t. The
-trees are those of `verify.schemes.coloured_trees`, of one colour for f, or of two for its parts
-(−H_q, 0) and (0, H_p).
+trees are those of `verify.schemes.conditions.coloured_trees`, of one colour for f, or of two for
+its parts (−H_q, 0) and (0, H_p).
 """
 
 from collections.abc import Mapping, Sequence
@@ -12,7 +12,7 @@ from typing import Generic, Protocol, TypeVar
 from verify.algebra.generator import terms_of
 from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.number import E
-from verify.schemes.coloured_trees import TIME, Tree, symmetry
+from verify.schemes.conditions.coloured_trees import TIME, Tree, symmetry
 
 E_co = TypeVar("E_co", covariant=True)
 

@@ -13,7 +13,7 @@ import flint
 
 from verify.algebra.enclosure import enclosed
 from verify.algebra.ring import Poly, Ring
-from verify.schemes.timed.splitting import TimedSplitting
+from verify.schemes.conditions.timed.splitting import TimedSplitting
 
 _PRECISION = 192
 

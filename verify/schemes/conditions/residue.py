@@ -4,7 +4,7 @@ from verify.algebra.enclosure import enclose
 from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.arb import in_reach, middle_and_radius
 from verify.arithmetic.exact import known_digits
-from verify.schemes.conditions import Condition
+from verify.schemes.conditions.condition import Condition
 
 _PRECISIONS = (128, 512, 2048)
 

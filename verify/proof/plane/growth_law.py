@@ -54,7 +54,7 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.expansion import MOST_ORDERS
 from verify.proof.order import prove
-from verify.proof.potential import Potential, potential_of
+from verify.proof.plane.potential import Potential, potential_of
 from verify.proof.proof import Proof
 from verify.proof.telescoping import potential_of_lie
 from verify.prose import read_prose

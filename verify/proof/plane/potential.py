@@ -26,7 +26,7 @@ from verify.errors import InputError
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.proof.proof import Proof
 from verify.proof.telescoping import potential_of_lie
-from verify.schemes.every_hamiltonian import TaylorSeries
+from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 from verify.schemes.scheme import Scheme
 
 _MOST_MONOMIALS, _MOST_DEGREE = 300, 20

@@ -20,8 +20,8 @@ from verify.algebra.series.jets import JetsInDegrees, Poly, Series
 from verify.hamiltonians.jet_flow import JetFlow
 from verify.late import sympy
 from verify.prose import count
-from verify.schemes.conditions import Condition
-from verify.schemes.maps.step_algebra import StepAlgebra, series_of
+from verify.schemes.conditions.condition import Condition
+from verify.schemes.steps.step_algebra import StepAlgebra, series_of
 
 At = TypeVar("At")
 Slope = TypeVar("Slope")

@@ -35,11 +35,11 @@ from verify.algebra.ring import Poly, Ring
 from verify.errors import InputError
 from verify.late import sympy
 from verify.prose import count
-from verify.schemes.conditions import Condition, NearbyOrder
-from verify.schemes.every_hamiltonian import StageEquations
-from verify.schemes.residue import condition_of
-from verify.schemes.words.equations import TimedEquation, equations_of_words
-from verify.schemes.words.step_words import StepWords
+from verify.schemes.conditions.condition import Condition, NearbyOrder
+from verify.schemes.conditions.every_hamiltonian import StageEquations
+from verify.schemes.conditions.residue import condition_of
+from verify.schemes.conditions.words.equations import TimedEquation, equations_of_words
+from verify.schemes.conditions.words.step_words import StepWords
 
 # "kick" or "drift", and what part of h it takes: what needs no root may be a Fraction, whose scheme
 # then needs no sympy.
@@ -59,7 +59,7 @@ class Splitting:
     `times`: of an H that depends on time, when each
     part is made, in parts of h from the step's start, where that is given. `nearby`: of sizes that
     are printed decimals, the order that exact ones near them have; `nearby_in_time`: of sizes or
-    `times` that are. It is a `verify.schemes.conditions.ByConditions`.
+    `times` that are. It is a `verify.schemes.conditions.condition.ByConditions`.
     """
 
     given: tuple[Part, ...]

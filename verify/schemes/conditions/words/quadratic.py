@@ -17,7 +17,7 @@ from math import lcm
 
 import flint
 
-from verify.schemes.words.words import Letter, Word, joined, lyndon
+from verify.schemes.conditions.words.words import Letter, Word, joined, lyndon
 
 Combination = tuple[tuple[int, Word], ...]
 Hamiltonian = flint.fmpq_mpoly

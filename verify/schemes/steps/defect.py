@@ -11,8 +11,8 @@ from typing import Any, Generic, TypeVar
 from verify.algebra.generator import Poly
 from verify.algebra.series.power_series import CoefficientRing, Series
 from verify.hamiltonians.canonical_field import Flow
-from verify.schemes.maps.step_algebra import State
-from verify.schemes.maps.two_form import TwoForm, wedge
+from verify.schemes.steps.step_algebra import State
+from verify.schemes.steps.two_form import TwoForm, wedge
 
 F = TypeVar("F", bound=Flow)
 Matrix = list[list[Series]]

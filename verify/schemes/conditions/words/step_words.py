@@ -14,7 +14,7 @@ from collections.abc import Iterable, Sequence
 from functools import cache
 from typing import Any, Protocol
 
-from verify.schemes.words.words import Letter, Word, cuts, endings, weight
+from verify.schemes.conditions.words.words import Letter, Word, cuts, endings, weight
 
 TimedPart = tuple[str, Any, Any]  # "K" or "D", what part of h it takes, and at what part its time
 

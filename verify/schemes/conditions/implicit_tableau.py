@@ -14,10 +14,10 @@ import sympy
 
 from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
-from verify.schemes.conditions import Condition
-from verify.schemes.maps.step_algebra import Number, Step, StepAlgebra
-from verify.schemes.residue import condition_of
-from verify.schemes.tree_weights import RingWeights, Tableau
+from verify.schemes.conditions.condition import Condition
+from verify.schemes.conditions.residue import condition_of
+from verify.schemes.conditions.tree_weights import RingWeights, Tableau
+from verify.schemes.steps.step_algebra import Number, Step, StepAlgebra
 
 SHOWN = 5  # digits of a residue
 

@@ -1,19 +1,20 @@
 """Order of a splitting for H = T(p, t) + V(q, t), by conditions on its parts and their times.
 
-The step's coefficient of each word in the letters K_n and D_n (`verify.schemes.words.words`) is to
-be that of the exact flow. A product of exponentials of letters is group-like, so that where all
-coefficients of weights below n agree, the difference at weight n is a Lie polynomial: those of
-Lyndon words suffice, 2, 2, 4, 7, 15, 28, 62, 126 of weights 1 … 8 where T depends on p alone, and
-2, 3, 6, 12, 28, 61, 148, 345 where it depends on t. They are needed: the Hamiltonians of brackets
-of letters, K_n standing for any V_n(q) and D_n for any T_n(p), are independent in the plane up to
-weight 8 (a test has their rank). Without letters of n > 0 these are the conditions of
-`verify.schemes.splitting_conditions`; and where the clocks are right they are all that is asked
-(below).
+The step's coefficient of each word in the letters K_n and D_n
+(`verify.schemes.conditions.words.words`) is to be that of the exact flow. A product of exponentials
+of letters is group-like, so that where all coefficients of weights below n agree, the difference at
+weight n is a Lie polynomial: those of Lyndon words suffice, 2, 2, 4, 7, 15, 28, 62, 126 of weights
+1 … 8 where T depends on p alone, and 2, 3, 6, 12, 28, 61, 148, 345 where it depends on t. They are
+needed: the Hamiltonians of brackets of letters, K_n standing for any V_n(q) and D_n for any T_n(p),
+are independent in the plane up to weight 8 (a test has their rank). Without letters of n > 0 these
+are the conditions of `verify.schemes.conditions.splitting_conditions`; and where the clocks are
+right they are all that is asked (below).
 
 For quadratic T brackets vanish or are equal from weight 4 on. There the conditions are those
-combinations of coefficients in the generator of the step (`verify.schemes.words.step_words`) that
-count (`verify.schemes.words.quadratic`): 2, 2, 4, 6, 12, 20, 39, 67 for p²/(2m), and 2, 3, 6, 11,
-23, 45, 93, 182 for p²/(2m(t)).
+combinations of coefficients in the generator of the step
+(`verify.schemes.conditions.words.step_words`) that count
+(`verify.schemes.conditions.words.quadratic`): 2, 2, 4, 6, 12, 20, 39, 67 for p²/(2m), and 2, 3, 6,
+11, 23, 45, 93, 182 for p²/(2m(t)).
 
 The time at which each part of a splitting reads its force or its velocity.
 
@@ -40,8 +41,8 @@ import sympy
 
 from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
-from verify.schemes.conditions import Condition
-from verify.schemes.splitting_conditions import (
+from verify.schemes.conditions.condition import Condition
+from verify.schemes.conditions.splitting_conditions import (
     LETTERS,
     MOST_ORDER,
     Nearby,
@@ -49,9 +50,9 @@ from verify.schemes.splitting_conditions import (
     Splitting,
     WordConditions,
 )
-from verify.schemes.words.equations import equations_of
-from verify.schemes.words.kinetic import Kinetic
-from verify.schemes.words.step_words import StepWords, TimedPart
+from verify.schemes.conditions.words.equations import equations_of
+from verify.schemes.conditions.words.kinetic import Kinetic
+from verify.schemes.conditions.words.step_words import StepWords, TimedPart
 
 Times = tuple[sympy.Expr | None, ...]  # of the parts, as parts of h; None where it is the right one
 
@@ -74,7 +75,7 @@ class TimedSplitting:
 
     `times`: s of each part, None for the right one; ValueError unless there are as many as parts.
     `nearby`: of sizes or times that are printed decimals, the order that exact ones near them have.
-    It is a `verify.schemes.conditions.ByConditions`.
+    It is a `verify.schemes.conditions.condition.ByConditions`.
     """
 
     parts: tuple[Part, ...]

@@ -1,7 +1,8 @@
 """The modified Hamiltonian of a scheme for every H at once, in the derivatives of H.
 
-Schemes with a series over the jets are treated as for one H (`verify.proof.modified.field`), and
-as the derivatives are free, everything is decided. Two kinds are given by irrational coefficients:
+Schemes with a series over the jets are treated as for one H (`verify.proof.plane.modified.field`),
+and as the derivatives are free, everything is decided. Two kinds are given by irrational
+coefficients:
 - Runge–Kutta methods: z' = z + Σ_t h^|t| b·Φ(t) F(t)/σ(t), where the weights b·Φ(t) are rational,
   as those of Gauss methods are: their conjugates are the method with its stages swapped;
 - splittings, whose terms are the logarithm of their product of exponentials.
@@ -28,18 +29,18 @@ from verify.algebra.series.jets import Jets, Series, shown
 from verify.algebra.series.jets import Poly as JetPoly
 from verify.errors import InputError
 from verify.proof.by_conditions import nearby_order
-from verify.proof.modified.equation import ModifiedEquation, Term, judged
-from verify.proof.modified.field import Vector, divergence, field_of, modified_field
-from verify.proof.modified.one import hamiltonian_in_jets
+from verify.proof.plane.modified.equation import ModifiedEquation, Term, judged
+from verify.proof.plane.modified.field import Vector, divergence, field_of, modified_field
+from verify.proof.plane.modified.one import hamiltonian_in_jets
 from verify.schemes import get
-from verify.schemes.coloured_trees import symmetry
-from verify.schemes.conditions import ByConditions
-from verify.schemes.elementary_differentials import Differentials
-from verify.schemes.every_hamiltonian import BySeries
-from verify.schemes.free_lie_words import of_logarithm, words
+from verify.schemes.conditions.coloured_trees import symmetry
+from verify.schemes.conditions.condition import ByConditions
+from verify.schemes.conditions.elementary_differentials import Differentials
+from verify.schemes.conditions.every_hamiltonian import BySeries
+from verify.schemes.conditions.free_lie_words import of_logarithm, words
+from verify.schemes.conditions.splitting_conditions import LETTERS, Splitting
+from verify.schemes.conditions.tree_conditions import TreeConditions, trees
 from verify.schemes.maps.step_map import solvable
-from verify.schemes.splitting_conditions import LETTERS, Splitting
-from verify.schemes.tree_conditions import TreeConditions, trees
 
 _KICK, _DRIFT = LETTERS["kick"], LETTERS["drift"]
 Sum = dict[tuple[int, ...], Poly]  # numbers by monomials of the jets

@@ -2,19 +2,20 @@
 
 Map and exact flow agree up to h^p for every smooth f exactly where Σ_i b_i Φ_i(t) = 1/γ(t) for
 every tree t of at most p vertices, some of whose leaves are of time: Butcher's theorem for the
-system with t' = 1 beside it (`verify.schemes.coloured_trees`). A branch puts into Φ_i(t) the factor
-Σ_j a_ij Φ_j, a leaf of time the stage's time c_i. Where c = A 1, a leaf of time has the factor of
-any leaf, and the densities know no colours: each condition is one without time.
+system with t' = 1 beside it (`verify.schemes.conditions.coloured_trees`). A branch puts into Φ_i(t)
+the factor Σ_j a_ij Φ_j, a leaf of time the stage's time c_i. Where c = A 1, a leaf of time has the
+factor of any leaf, and the densities know no colours: each condition is one without time.
 
-So with right clocks the conditions are those of `verify.schemes.tree_conditions`, as long as each
-tree's own holds. Combinations that count in the plane alone do not carry over: f'f' is −det Hess H
-there, but with time the field's derivative has a column f_t more. So where conditions of n vertices
-fail, what is left at hⁿ, Σ (b·Φ(t) − 1/γ(t)) F(t)/σ(t) over all trees, is looked at as a polynomial
-in the derivatives of H by p, q and t; first for H without time, which are among them.
+So with right clocks the conditions are those of `verify.schemes.conditions.tree_conditions`, as
+long as each tree's own holds. Combinations that count in the plane alone do not carry over: f'f' is
+−det Hess H there, but with time the field's derivative has a column f_t more. So where conditions
+of n vertices fail, what is left at hⁿ, Σ (b·Φ(t) − 1/γ(t)) F(t)/σ(t) over all trees, is looked at
+as a polynomial in the derivatives of H by p, q and t; first for H without time, which are among
+them.
 
 The derivatives of H(p, q, t) in the plane that differentials of trees are made of.
 
-See `verify.schemes.elementary_differentials`.
+See `verify.schemes.conditions.elementary_differentials`.
 """
 
 from collections.abc import Iterator, Sequence
@@ -26,14 +27,18 @@ import flint
 import sympy
 
 from verify.errors import InputError
-from verify.schemes.coloured_trees import PLAIN, Tree, all_trees, has_time, of_all
-from verify.schemes.conditions import Condition
-from verify.schemes.elementary_differentials import Differentials, cancel
-from verify.schemes.implicit_tableau import SHOWN
-from verify.schemes.residue import condition_of
-from verify.schemes.timed.tableau import TimedNumbers, TimedTableau
-from verify.schemes.tree_conditions import MOST_ORDER, TreeConditions, conditions_of_trees
-from verify.schemes.words.kinetic import Kinetic
+from verify.schemes.conditions.coloured_trees import PLAIN, Tree, all_trees, has_time, of_all
+from verify.schemes.conditions.condition import Condition
+from verify.schemes.conditions.elementary_differentials import Differentials, cancel
+from verify.schemes.conditions.implicit_tableau import SHOWN
+from verify.schemes.conditions.residue import condition_of
+from verify.schemes.conditions.timed.tableau import TimedNumbers, TimedTableau
+from verify.schemes.conditions.tree_conditions import (
+    MOST_ORDER,
+    TreeConditions,
+    conditions_of_trees,
+)
+from verify.schemes.conditions.words.kinetic import Kinetic
 
 
 class TreeJets:
@@ -77,7 +82,7 @@ _MOST_TIMED = 8  # vertices: of which there are 1042 trees with leaves of time
 @dataclass(frozen=True)
 class TimedTrees:
     """A Runge–Kutta method for every H(p, q, t) (`kinetic`: for every H = T + V(q, t) with T of
-    that class). It is a `verify.schemes.conditions.ByConditions`."""
+    that class). It is a `verify.schemes.conditions.condition.ByConditions`."""
 
     tableau: TimedTableau
     kinetic: Kinetic | None = None

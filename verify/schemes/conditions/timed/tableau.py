@@ -17,9 +17,9 @@ import sympy
 
 from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
-from verify.schemes.every_hamiltonian import RungeKutta, StageEquations
-from verify.schemes.implicit_tableau import ImplicitTableau
-from verify.schemes.tree_weights import RingWeights, Tableau
+from verify.schemes.conditions.every_hamiltonian import RungeKutta, StageEquations
+from verify.schemes.conditions.implicit_tableau import ImplicitTableau
+from verify.schemes.conditions.tree_weights import RingWeights, Tableau
 
 Clock = tuple[sympy.Expr | None, ...]  # of the stages, as parts of h; None where it is right
 Given = Sequence[sympy.Expr | int | None] | None  # None where all are right

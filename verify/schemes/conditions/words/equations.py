@@ -1,6 +1,6 @@
 """Conditions on a step's coefficients of words, as they can be asked over any numbers.
 
-See `verify.schemes.timed.splitting`, which decides them in a ring.
+See `verify.schemes.conditions.timed.splitting`, which decides them in a ring.
 """
 
 from dataclasses import dataclass
@@ -8,10 +8,10 @@ from fractions import Fraction
 from functools import cache
 from typing import Any
 
-from verify.schemes.words.kinetic import Kinetic
-from verify.schemes.words.quadratic import Combination, combinations
-from verify.schemes.words.step_words import StepWords, factors
-from verify.schemes.words.words import Word, lyndon, of_the_flow, text, weight
+from verify.schemes.conditions.words.kinetic import Kinetic
+from verify.schemes.conditions.words.quadratic import Combination, combinations
+from verify.schemes.conditions.words.step_words import StepWords, factors
+from verify.schemes.conditions.words.words import Word, lyndon, of_the_flow, text, weight
 
 _PLAIN = 3  # the weight up to which a quadratic T asks for as much as any T
 

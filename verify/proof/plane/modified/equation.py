@@ -1,4 +1,4 @@
-"""What is known of a scheme's modified equation; see `verify.proof.modified.field`."""
+"""What is known of a scheme's modified equation; see `verify.proof.plane.modified.field`."""
 
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -12,7 +12,7 @@ from verify.errors import InputError
 from verify.notebook import aligned_latex, cut, html_table, short_latex
 from verify.proof.by_conditions import told_nearby
 from verify.prose import Prose, prose, read_prose
-from verify.schemes.conditions import NearbyOrder
+from verify.schemes.conditions.condition import NearbyOrder
 from verify.schemes.scheme import Scheme
 from verify.verdict import Verdict
 

@@ -13,7 +13,7 @@ from typing import Generic, TypeAlias, TypeVar
 
 from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.number import E
-from verify.schemes.coloured_trees import TIME, Tree, density
+from verify.schemes.conditions.coloured_trees import TIME, Tree, density
 
 S = TypeVar("S")
 T = TypeVar("T")

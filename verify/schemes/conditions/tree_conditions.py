@@ -27,12 +27,12 @@ from verify.algebra.ring import Poly
 from verify.algebra.series.jets import Jets
 from verify.errors import InputError
 from verify.prose import count
-from verify.schemes.coloured_trees import PLAIN, Tree, all_trees, equation_text
-from verify.schemes.conditions import Condition
-from verify.schemes.elementary_differentials import Differentials, cancel
-from verify.schemes.implicit_tableau import SHOWN, ImplicitTableau
-from verify.schemes.residue import condition_of
-from verify.schemes.tree_weights import RingWeights
+from verify.schemes.conditions.coloured_trees import PLAIN, Tree, all_trees, equation_text
+from verify.schemes.conditions.condition import Condition
+from verify.schemes.conditions.elementary_differentials import Differentials, cancel
+from verify.schemes.conditions.implicit_tableau import SHOWN, ImplicitTableau
+from verify.schemes.conditions.residue import condition_of
+from verify.schemes.conditions.tree_weights import RingWeights
 
 MOST_ORDER = 10
 
@@ -95,7 +95,7 @@ def conditions_of_trees(
     """Each tree's condition; or, in place of those that fail, the one that their trees cancel for
     every H.
 
-    `names`: see `verify.schemes.coloured_trees.equation_text`.
+    `names`: see `verify.schemes.conditions.coloured_trees.equation_text`.
     """
     found = {
         tree: condition_of(

@@ -1,9 +1,9 @@
 """The modified Hamiltonian of a step map, term by term, for one H.
 
-See `verify.proof.modified.field`. Each term is decided: its divergence is the zero function, and
-then it is Hamiltonian; or a point shows that it is not, and no modified Hamiltonian reaches there.
-The first divergence that is not 0 is held against the leading term of ΔJ, which is made from the
-determinant of the map and shares no code with the terms.
+See `verify.proof.plane.modified.field`. Each term is decided: its divergence is the zero function,
+and then it is Hamiltonian; or a point shows that it is not, and no modified Hamiltonian reaches
+there. The first divergence that is not 0 is held against the leading term of ΔJ, which is made from
+the determinant of the map and shares no code with the terms.
 
 The function G whose Hamiltonian vector field (−∂G/∂q, ∂G/∂p) is a given one, where one is found.
 
@@ -31,10 +31,10 @@ from verify.algebra.series.power_series import partials
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.proof.expansion import MOST_ORDERS, Expansion, Leading
-from verify.proof.modified.equation import ModifiedEquation, Term, judged
-from verify.proof.modified.field import Vector, divergence, field_of, modified_field
 from verify.proof.order import leading_of, nearby_of_scheme
-from verify.proof.potential import among_polynomials
+from verify.proof.plane.modified.equation import ModifiedEquation, Term, judged
+from verify.proof.plane.modified.field import Vector, divergence, field_of, modified_field
+from verify.proof.plane.potential import among_polynomials
 from verify.proof.telescoping import multisets
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.scheme import Scheme

@@ -17,10 +17,10 @@ from verify.algebra.enclosure import enclose, enclosed, points
 from verify.algebra.series.power_series import partials
 from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians.canonical_field import CanonicalField
-from verify.schemes.coloured_trees import symmetry
-from verify.schemes.elementary_differentials import Differentials
-from verify.schemes.implicit_tableau import ImplicitTableau
-from verify.schemes.tree_conditions import MOST_ORDER, gaps_of
+from verify.schemes.conditions.coloured_trees import symmetry
+from verify.schemes.conditions.elementary_differentials import Differentials
+from verify.schemes.conditions.implicit_tableau import ImplicitTableau
+from verify.schemes.conditions.tree_conditions import MOST_ORDER, gaps_of
 
 _POINTS = 8
 _PRECISION = 192
