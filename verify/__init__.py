@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from verify.calls.flow import flow as flow
     from verify.calls.modified import modified_hamiltonian as modified_hamiltonian
     from verify.calls.prove import prove as prove
+    from verify.calls.report import Report as Report
     from verify.calls.run import run as run
     from verify.calls.run_result import RunResult as RunResult
     from verify.calls.separate import separate as separate
@@ -41,7 +42,6 @@ if TYPE_CHECKING:
     from verify.proof.plane.modified.equation import ModifiedEquation as ModifiedEquation
     from verify.proof.proof import Proof as Proof
     from verify.scenes.results.orbit import OrbitTable as OrbitTable
-    from verify.scenes.results.report import Report as Report
     from verify.scenes.results.separation import SeparationGrid as SeparationGrid
     from verify.scenes.results.separation import SeparationResult as SeparationResult
     from verify.scenes.results.separation_in_degrees import (
@@ -106,7 +106,7 @@ _NAMES = {
         "verify.scenes.results.separation_in_degrees",
         "such separations over step sizes",
     ),
-    "Report": ("verify.scenes.results.report", "a whole report"),
+    "Report": ("verify.calls.report", "a whole report"),
     "Verdict": ("verify.verdict", "PROVED, ENCLOSED, MEASURED, REFUTED or UNDECIDED"),
     "InputError": ("verify.errors", "bad input, in one line that says what is allowed"),
 }

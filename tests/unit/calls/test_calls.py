@@ -1,5 +1,6 @@
 """Each call from Python: what it gives, old forms of it, and what it says of planted errors."""
 
+import json
 import math
 from fractions import Fraction
 from typing import Any
@@ -9,6 +10,9 @@ import pytest
 import verify
 from tests.helpers.maps import by_formulas
 from verify import Hamiltonian, Verdict
+from verify.errors import InputError
+from verify.scenes.results import report as results
+from verify.scenes.results import run as values
 from verify.schemes import get
 
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + delta*q**4/4", {"delta": 1})
@@ -55,6 +59,19 @@ def test_an_orbit_is_made_once_and_points_thin_it() -> None:
     assert again.orbit.rows[::5] == found.orbit.rows
     assert "orbit" not in found.model_dump()
     assert again == found.with_points(0)
+    with pytest.raises(InputError, match="has its values alone"):
+        values.RunResult.model_validate_json(found.model_dump_json()).orbit  # noqa: B018
+
+
+def test_runs_of_a_report_that_is_read_have_orbits() -> None:
+    found = verify.run(DUFFING, "lie2", **START)
+    scene = {"name": "one", "title": "", "source": "", "time": None, "proofs": (), "criteria": (),
+             **DUFFING.texts, "runs": [found.model_dump()], "series": ()}  # fmt: skip
+    made = {"command": "", "versions": {}, "machine": "", "seconds": 0, "kept": 0, "computed": 1}
+    whole = {"title": "", "claims": (), "scenes": [scene], "left_out": (), "provenance": made}
+    report = verify.Report.model_validate_json(json.dumps(whole))
+    assert report.scenes[0].runs[0].orbit.rows == found.orbit.rows
+    assert report.model_dump_json() == results.Report.model_validate(whole).model_dump_json()
 
 
 def test_progress_is_told_to_a_function_of_the_callers() -> None:

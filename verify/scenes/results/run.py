@@ -133,8 +133,8 @@ class RunResult(OfScheme):
         raise self._only_values()
 
     def _only_values(self) -> InputError:
-        """Of a run in a report; `verify.calls.run_result` has what does a run again."""
-        return InputError("run", self.scheme, "is a report's, which has no more than its values")
+        """What does a run again is in a room above: see `verify.calls.run_result`."""
+        return InputError("run", self.scheme, "has its values alone; verify.RunResult has more")
 
     def __repr__(self) -> str:
         values = ", ".join(f"{name} = {value}" for name, value in self.values.items())
