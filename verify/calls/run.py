@@ -57,9 +57,10 @@ def run(
     arithmetic: float64, fixed, mpfr, mpmath, ball, or auto, the fastest that certifies the digits.
         Left out: float64, or auto where `digits` is given.
     digits: significant digits wanted; float64 gives those that it knows.
-    observables: of delta_j_max, mse, lambda, lambda_plain, lambda_max; in n degrees of freedom also
-        symplectic_defect_max, the greatest |entry| of any S = JᵀΩJ − Ω, and symplectic_defect, that
-        of all steps together. Left out: those that the command tells.
+    observables: of delta_j_max, mse, lambda, lambda_plain, lambda_max, and energy_error_max, the
+        greatest |H − H₀|; in n degrees of freedom also symplectic_defect_max, the greatest |entry|
+        of any S = JᵀΩJ − Ω, and symplectic_defect, that of all steps together. Left out: those that
+        the command tells.
     points: so many states, at most, in `orbit` and in `series`, 1 … 10,000; 0 leaves `series` out.
     progress: None for a bar in a notebook, True for one anywhere, False, or a function that is
         called with the number of steps done.

@@ -11,9 +11,9 @@ from verify.calls.run import run_in_turn
 from verify.errors import InputError
 from verify.execution.ensembles import MOST_AT_ONCE
 from verify.lockstep import Course, together
+from verify.scenes.observables import CLOSED_FORM
 from verify.scenes.results.run import RunResult
 from verify.scenes.results.sweep import Sweep
-from verify.scenes.values import CLOSED_FORM
 
 _MOST = 100_000  # runs
 

@@ -2,9 +2,13 @@
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from typing import Literal, NamedTuple
+from typing import Annotated, NamedTuple
 
+from pydantic import AfterValidator
+
+from verify import observables
 from verify.arithmetic.arb import Ball, ball, lg, middle_and_radius, shown
+from verify.errors import unknown
 from verify.prose import Number, Prose, prose
 from verify.scenes.results.run import RunResult
 from verify.verdict import Verdict
@@ -21,22 +25,32 @@ class Compared(NamedTuple):
         return self.formula(*(ball(run.values[name]) for name in self.needs))
 
 
+def _itself(value: Ball) -> Ball:
+    return value
+
+
 QUANTITIES = {
-    "mse": Compared("MSE", ("mse",), lambda mse: mse),
-    "lambda": Compared("Λ", ("lambda",), lambda end: end),
-    "lambda_max": Compared("max |Λ|", ("lambda_max",), lambda largest: largest),
+    **{n: Compared(each.label, (n,), _itself) for n, each in observables.by_name().items()},
     "lg_mse": Compared("lg MSE", ("mse",), lg),
     "lg_abs_lambda": Compared("lg |Λ|", ("lambda",), lambda end: lg(abs(end))),
     "abs_lambda": Compared("|Λ|", ("lambda",), abs),
     "mse_over_lambda": Compared("MSE/|Λ|", ("mse", "lambda"), lambda mse, end: mse / abs(end)),
-    "delta_j_max": Compared("max |ΔJ|", ("delta_j_max",), lambda largest: largest),
-    "symplectic_defect_max": Compared("max |S|", ("symplectic_defect_max",), lambda s: s),
-    "symplectic_defect": Compared("max |W|", ("symplectic_defect",), lambda w: w),
 }
-Quantity = Literal[  # that claims compare; the last two in n degrees of freedom
-    "mse", "abs_lambda", "mse_over_lambda", "delta_j_max", "symplectic_defect_max",
-    "symplectic_defect",
-]  # fmt: skip
+
+
+_COMPARED = (
+    *(name for name, each in observables.by_name().items() if not each.signed),
+    *("abs_lambda", "mse_over_lambda"),
+)
+
+
+def _compared(name: str) -> str:
+    if name not in _COMPARED:
+        raise unknown("quantity", name, _COMPARED)
+    return name
+
+
+Quantity = Annotated[str, AfterValidator(_compared)]  # that claims compare, none of them negative
 
 
 class NoValueError(Exception):

@@ -117,7 +117,8 @@ def _result(
     from verify.execution.keeping import Keeper, name_of
     from verify.hamiltonians.start import check_start
     from verify.runs.run import run as run_scheme
-    from verify.scenes.values import AUTO, REPORTED, rounded_down, steps_from
+    from verify.scenes.observables import REPORTED
+    from verify.scenes.values import AUTO, rounded_down, steps_from
 
     start: dict[str, Any] = {"q": listed(q, exact), "p": listed(p, exact), "t0": t0}
     check_start(exact, **start)

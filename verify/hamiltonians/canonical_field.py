@@ -123,6 +123,13 @@ class CanonicalField(Flow):
         return self.names == PLANE
 
     @cached_property
+    def quadratic(self) -> bool:
+        """Whether H is seen to be a polynomial of degree 2 in z, at most, and without t."""
+        second = (y for x in self.slopes for y in self.gradient(x))
+        depends = self.ring.depends
+        return not self.timed and not any(depends(y, name) for y in second for name in self.names)
+
+    @cached_property
     def separable(self) -> bool:
         """Whether H = T(p) + V(q): all its mixed derivatives are the zero function."""
         n, ring = self.degrees, self.ring

@@ -10,6 +10,7 @@ from typing import Annotated, Any, NamedTuple
 
 from pydantic import PlainSerializer, PlainValidator, TypeAdapter
 
+from verify import observables
 from verify.arithmetic.exact import decimal
 from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic, State
@@ -24,12 +25,7 @@ from verify.lockstep import Course, clock
 from verify.scenes.results.run import SeriesPoint
 
 Progress = Callable[[int], None]  # called with the number of steps done
-_ACCUMULATORS = {"lambda": "lam", "lambda_max": "lam_top", "mse": "mse", "delta_j_max": "top",
-                 "lambda_plain": "plain", "symplectic_defect_max": "s_top"}  # fmt: skip
-_FORM = "symplectic_defect"  # the greatest entry of W
 ENTRIES = "symplectic_defect_entries"  # with it W's own entries are noted in `tangents`
-# Powers of the 2^s that the kernel carries.
-_SCALED = {"lam": 1, "lam_top": 1, "mse": 2, "top": 1, "dj": 1, "s_top": 1, "w": 1}
 _EXTREMES = ("dj_low", "dj_high", "lam_low", "lam_high")
 Exact = Annotated[Fraction, PlainValidator(fraction_of), PlainSerializer(fraction_text)]
 Note = Mapping[str, Fraction]
@@ -106,8 +102,9 @@ class ChunkedLoop:
         self.state: State = self._first_state()
         self._at = {name: k for k, name in enumerate(kernel.state_names)}
         self._extreme = [name for name in _EXTREMES if name in self._at]
-        asked = sorted(run.observables & {*_ACCUMULATORS, _FORM})
-        self._observables = (*kernel.coordinates, *asked)
+        asked = sorted(run.observables & observables.by_name().keys())
+        self._observables = {name: observables.by_name()[name] for name in asked}
+        self._noted = (*kernel.coordinates, *asked)
         self._form = [
             name
             for name in kernel.state_names
@@ -222,7 +219,7 @@ class ChunkedLoop:
             if seen:
                 series = series.and_then(self._point(len(trail) * self.section + 1, seen))
                 seen = {}
-            trail = trail.and_then(LazyNote(self._observables, self._final, state, done))
+            trail = trail.and_then(LazyNote(self._noted, self._final, state, done))
         self._now = _Now(done, self.seconds, state, seen, trail, tangents, series)
 
     def _extremes(self, state: State) -> dict[str, Fraction]:
@@ -236,24 +233,24 @@ class ChunkedLoop:
 
     def _of_tangent(self, name: str, state: State, done: int) -> Fraction:
         if name in self._form:
-            return self._unscaled("w", self._total(name, state, self._exact))
+            return self._unscaled(1, self._total(name, state, self._exact))
         return Fraction(done) if name == "done" else self._exact(state[self._at[name]])
 
     def _final(self, name: str, state: State, done: int) -> Fraction:
         """p, q or an observable after the steps done, as the exact rational that it is."""
         value = self._observed(name, state, done, self._exact)
-        return value - 1 if name == "lambda_plain" else value
+        return value - self._observables[name].begins if name in self._observables else value
 
     def _observed(
         self, name: str, state: State, done: int, of: Callable[[Number], Fraction]
     ) -> Fraction:
-        """The same of what is carried, or of its radii; Π det J as it is."""
-        if name == _FORM:
-            sizes = (abs(self._total(entry, state, of)) for entry in self._form)
-            return self._unscaled("w", max(sizes, default=Fraction(0)))
-        carried = _ACCUMULATORS.get(name, name)
-        total = self._unscaled(carried, self._total(carried, state, of))
-        return total / done if name == "mse" else total
+        """The same of what is carried, or of its radii, with what it began with."""
+        if name not in self._observables:
+            return self._total(name, state, of)
+        each = self._observables[name]
+        carried = self._form if each.carried == "w_" else [each.carried]
+        totals = (self._total(entry, state, of) for entry in carried)
+        return each.read([self._unscaled(each.shift, total) for total in totals], done)
 
     def _total(self, carried: str, state: State, of: Callable[[Number], Fraction]) -> Fraction:
         """What is carried under a name, with what a compensated kernel carries beside it."""
@@ -265,8 +262,8 @@ class ChunkedLoop:
     def _exact(self, x: Number) -> Fraction:
         return Fraction(x) if isinstance(x, float) else self.arithmetic.exact(x)
 
-    def _unscaled(self, name: str, value: Fraction) -> Fraction:
-        scale = self.shift * _SCALED.get(name, 0)
+    def _unscaled(self, times: int, value: Fraction) -> Fraction:
+        scale = self.shift * times
         return value / (1 << scale) if scale else value
 
     def radii(self) -> dict[str, Fraction]:
@@ -275,12 +272,12 @@ class ChunkedLoop:
         if radius is None or self.done < self.run.steps:
             return {}
         state, done = self.state, self.done
-        return {n: self._observed(n, state, done, radius) for n in self._observables}
+        return {n: self._observed(n, state, done, radius) for n in self._noted}
 
     def _point(self, first: int, seen: Mapping[str, Fraction]) -> SeriesPoint:
         def pair(name: str) -> tuple[str, str]:
             ends = (seen[f"{name}_{end}"] for end in ("low", "high"))
-            low, high = (self._unscaled(name, x) for x in ends)
+            low, high = (self._unscaled(1, x) for x in ends)
             return decimal(low, 7), decimal(high, 7)
 
         return SeriesPoint(first=first, last=self.done, delta_j=pair("dj"), lam=pair("lam"))

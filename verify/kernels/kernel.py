@@ -16,12 +16,11 @@ from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.arithmetic.systems.float64 import nearest_double
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.clock import clock_of
-from verify.kernels.statements import CLOSED_FORM, Statements
+from verify.kernels.statements import TANGENT, Statements, is_scaled, needs_of
 from verify.kernels.step import newton
 from verify.kernels.step.computation import Computation, Observed, computed, step_map_of
 from verify.kernels.step.kinds import may_leave_range
 from verify.kernels.step.lowering import Lowering
-from verify.scenes.observables import OF_FORM
 from verify.schemes.maps.step_map import StepMap
 
 SCALES = ("kappa", "down", "shift")  # 2^s h^r, 2^−s and s itself
@@ -78,17 +77,12 @@ class Writer:
         scaled: bool = True,
     ) -> None:
         self.arithmetic = arithmetic
-        self.scaled = (
-            scaled and arithmetic.absolute and bool(observables & {*CLOSED_FORM, *OF_FORM})
-        )
+        self.scaled = scaled and arithmetic.absolute and is_scaled(observables)
         asked = Observed(
             pipelined=arithmetic.pipelined,
             scaled=self.scaled,
-            delta_j=bool(observables & CLOSED_FORM),
-            determinant="lambda_plain" in observables,
-            tangent="tangent" in observables,
-            symplectic="symplectic_defect_max" in observables,
-            carried="symplectic_defect" in observables,
+            tangent=TANGENT in observables,
+            needs=frozenset(needs_of(observables)),
         )
         self.made: Computation = computed(step_map, asked)
         self.coordinates = self.made.coordinates

@@ -14,6 +14,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from verify import observables
 from verify.arithmetic.exact import decimal
 from verify.errors import InputError, unknown
 from verify.pages.figures import (
@@ -41,11 +42,7 @@ from verify.scenes.results.stability import StabilityMapResult
 from verify.scenes.results.work_precision import WorkPrecisionResult
 
 QUANTITIES = {
-    "lambda": "|Λ|",
-    "lambda_plain": "|Λ|, the plain way",
-    "lambda_max": "max |Λ|",
-    "mse": "MSE",
-    "delta_j_max": "max |ΔJ|",
+    **{name: each.plotted or each.label for name, each in observables.by_name().items()},
     "energy_error": "max |H − H₀|",
     "solution_error": "solution error",
 }

@@ -45,19 +45,20 @@ above the diagonal. Where the map is nearly symplectic B stays near Ω, however 
 
 from collections.abc import Mapping
 from fractions import Fraction
+from functools import cached_property
 
 import flint
 
+from verify import observables
 from verify.arithmetic.arb import bounds, in_reach, rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import Arithmetic
 from verify.kernels.rounding import PRECISION, Ball
-from verify.kernels.statements import CLOSED_FORM
+from verify.kernels.statements import needs_of
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs import form_bound
 from verify.runs.derivatives import Derivatives, norm
 from verify.runs.step_rounding import StepErrors, StepRounding
-from verify.scenes.observables import OF_FORM
 
 _ROUNDED = flint.arb(2) ** -48  # of an entry of MᵀΩM or of det M, relative to ‖M‖²
 
@@ -105,6 +106,13 @@ def certify(
 
 
 class _Certificate:
+    """What observables are bounded from; see `verify.observables.observable.Certificate`."""
+
+    rounded: StepErrors
+    derivatives: Derivatives
+    error: Ball
+    summed: Ball
+
     def __init__(self, run: KernelRun, arithmetic: Arithmetic, outcome: Outcome, note: int) -> None:
         self.run, self.arithmetic, self.values = run, arithmetic, outcome.trail[note]
         self.rounding = StepRounding(run, arithmetic, outcome, note)
@@ -115,26 +123,31 @@ class _Certificate:
     # -- the orbit ----------------------------------------------------------------------------
 
     def bounds(self) -> dict[str, Fraction] | None:
-        derivatives = self.derivatives()
-        steps = self.rounding.errors()
-        if derivatives is None or steps is None:
+        derivatives, rounded = self._derivatives(), self.rounding.errors()
+        if derivatives is None or rounded is None:
             return None
-        orbit = self.orbit(steps, derivatives)
+        self.derivatives, self.rounded = derivatives, rounded
+        orbit = self.orbit()
         if orbit is None:
             return None
-        error, summed = orbit
-        found = dict.fromkeys(self.names, error)
-        found |= self.observables(steps, derivatives, error, summed)
-        found |= self.of_form(steps, derivatives, error, summed)
+        self.error, self.summed = orbit
+        bounds_of = {name: each.bound for name, each in observables.by_name().items()}
+        found = dict.fromkeys(self.names, self.error)
+        for name in sorted(self.run.observables & bounds_of.keys()):
+            of = bounds_of[name]
+            bound = of(self) if of else None
+            if bound is not None:
+                found[name] = bound.abs_upper()
         return {name: bounds(x)[1] for name, x in found.items() if in_reach(x)}
 
-    def derivatives(self) -> Derivatives | None:
+    def _derivatives(self) -> Derivatives | None:
         """Those of the step."""
-        exact, scheme, asked = self.run.hamiltonian, self.run.scheme, self.run.observables
-        volume, form = bool(asked & CLOSED_FORM), bool(asked & {*OF_FORM})
+        exact, scheme, needs = self.run.hamiltonian, self.run.scheme, needs_of(self.run.observables)
+        volume, form = "delta_j" in needs, bool(needs & {"symplectic", "carried"})
         return Derivatives.of(exact, scheme, volume=volume, form=form)
 
-    def motion(self, steps: StepErrors) -> form_bound.Motion | None:
+    @cached_property
+    def motion(self) -> form_bound.Motion | None:
         """How M has grown; None where nothing follows from it."""
         seen, count, size = self.seen, self.steps, len(self.names)
         # Of float64's own sums, over the steps and in each sum of squares.
@@ -144,23 +157,23 @@ class _Certificate:
         if not (growth.is_finite() and least > 0):
             return None
         # Q: it multiplies every bound by e^Q, so that a large one says nothing.
-        rate = steps.tangent * growth / least
+        rate = self.rounded.tangent * growth / least
         if not rate < _MOST_GROWTH:
             return None
         top = square_of_norm(size, highest, least).sqrt()
         mean = square_of_norm(size, growth / (count + 1), least)
         return form_bound.Motion(count, least, rate, top, (count * (count + 1) * mean).sqrt())
 
-    def orbit(self, steps: StepErrors, derivatives: Derivatives) -> tuple[Ball, Ball] | None:
+    def orbit(self) -> tuple[Ball, Ball] | None:
         """(a bound of ‖e_k‖ for all k, one of Σ ‖e_k‖)."""
-        motion = self.motion(steps)
+        motion = self.motion
         if motion is None:
             return None
         least, rate, top, path = motion.least, motion.rate, motion.top, motion.path
         # X without its quadratic term. Twice the error that it gives is E*, over which B is taken.
-        alone = rate.exp() * (self.first_error() + path / least * steps.state)
+        alone = rate.exp() * (self.first_error() + path / least * self.rounded.state)
         error = (2 * top * alone).abs_upper()
-        second = derivatives.second(self.rounding.fixed(), self.rounding.box(error))
+        second = self.derivatives.second(self.rounding.fixed(), self.rounding.box(error))
         start = (alone + rate.exp() * path / least * second * error * error / 2).abs_upper()
         # The bootstrap: with E* in the quadratic term the bound must stay within E*.
         if not top * start <= error:
@@ -174,83 +187,92 @@ class _Certificate:
 
     # -- the observables ----------------------------------------------------------------------
 
-    def of_form(
-        self, steps: StepErrors, derivatives: Derivatives, error: Ball, summed: Ball
-    ) -> dict[str, Ball]:
-        """S and W; see `verify.runs.form_bound`."""
-        asked, scale = self.run.observables, self.scale
-        if not asked & {*OF_FORM}:
-            return {}
-        rounding = self.rounding
-        fixed, box = rounding.fixed(), rounding.box(error)
-        size, slope = derivatives.form(fixed, box)
-        result = {}
-        if "symplectic_defect_max" in asked:
-            result["symplectic_defect_max"] = slope * error + scale * steps.defect
-        motion = self.motion(steps)
-        if "symplectic_defect" in asked and motion is not None:
-            most = form_bound.MOST * motion.top
-            matrix = (rounding.adding(most, steps.values[f"d{x}"]) for x in rounding.kernel.matrix)
-            entries = [x for name, x in steps.values.items() if name.startswith("dw_")]
-            largest = flint.arb(0)
-            for x in entries:
-                largest = largest.max(rounding.adding(most * most / scale, x))
-            result["symplectic_defect"] = form_bound.of_form(
-                motion,
-                summed=summed,
-                second=derivatives.second(fixed, box),
-                size=size,
-                slope=slope,
-                of_matrix=norm(matrix),
-                of_entry=scale * largest,
-            )
-        return {name: x.abs_upper() for name, x in result.items()}
+    @cached_property
+    def _box(self) -> tuple[dict[str, Ball], dict[str, Ball]]:
+        """What does not change, and the states visited, widened by the error."""
+        return self.rounding.fixed(), self.rounding.box(self.error)
 
-    def observables(
-        self,
-        steps: StepErrors,
-        derivatives: Derivatives,
-        error: Ball,
-        summed: Ball,
-    ) -> dict[str, Ball]:
-        asked, count = self.run.observables, self.steps
-        if not asked & {"delta_j_max", "mse", "lambda", "lambda_max"}:
-            return {}
-        scale = self.scale
-        slope = derivatives.gradient(self.rounding.fixed(), self.rounding.box(error)) / scale
-        moved = slope * summed + count * steps.delta_j  # Σ |D̂_k − D(z_k)|
-        # A square differs by at most |x − y| (|x| + |y|), each at most `size`.
-        size = steps.size + slope * error
-        result = {}
-        if "delta_j_max" in asked:
-            result["delta_j_max"] = scale * (slope * error + steps.delta_j)
-        if "mse" in asked:
-            added = self.added(
-                rational_ball(self.values["mse"]) * count / scale / scale, size * size
-            )
-            result["mse"] = scale * scale * (2 * size * moved / count + added)
-        if asked & {"lambda", "lambda_max"}:
-            # What bounds the error of the last Λ bounds that of each before it: all sums are to N.
-            bound = self.of_lambda(moved, size)
-            result |= {name: bound for name in ("lambda", "lambda_max") if name in asked}
-        return {name: x.abs_upper() for name, x in result.items()}
+    @cached_property
+    def slope(self) -> Ball:
+        """A bound of the gradient of D."""
+        return self.derivatives.gradient(*self._box) / self.scale
 
-    def added(self, total: Ball, term: Ball) -> Ball:
+    @cached_property
+    def size(self) -> Ball:
+        """A bound of |D|, computed or true."""
+        return self.rounded.size + self.slope * self.error
+
+    @cached_property
+    def moved(self) -> Ball:
+        """One of Σ |D̂_k − D(z_k)|."""
+        return self.slope * self.summed + self.steps * self.rounded.delta_j
+
+    def total(self, name: str) -> Ball:
+        """An observable as it was computed."""
+        return rational_ball(self.values[name])
+
+    def adding(self, total: Ball, term: Ball) -> Ball:
         """The rounding of one term and of its addition to a sum of non-negative terms."""
         return self.unit if self.arithmetic.absolute else self.unit * (total + term) * 2
 
-    def of_lambda(self, moved: Ball, size: Ball) -> Ball:
+    # -- S and W: see `verify.runs.form_bound` ----------------------------------------------------
+
+    @cached_property
+    def _form(self) -> tuple[Ball, Ball]:
+        return self.derivatives.form(*self._box)
+
+    def slope_of_form(self) -> Ball:
+        """A bound of the gradients of S."""
+        return self._form[1]
+
+    def bound_of_form(self) -> Ball | None:
+        """Of W."""
+        motion, rounding, values = self.motion, self.rounding, self.rounded.values
+        if motion is None:
+            return None
+        size, slope = self._form
+        most = form_bound.MOST * motion.top
+        matrix = (rounding.adding(most, values[f"d{x}"]) for x in rounding.kernel.matrix)
+        entries = [x for name, x in values.items() if name.startswith("dw_")]
+        largest = flint.arb(0)
+        for x in entries:
+            largest = largest.max(rounding.adding(most * most / self.scale, x))
+        return form_bound.of_form(
+            motion,
+            summed=self.summed,
+            second=self.derivatives.second(*self._box),
+            size=size,
+            slope=slope,
+            of_matrix=norm(matrix),
+            of_entry=self.scale * largest,
+        )
+
+    # -- the energy -------------------------------------------------------------------------------
+
+    def bound_of_energy(self) -> Ball:
+        """Of the greatest |H − H₀|: with Ĥ_k the sum of k computed changes of H,
+        |Ĥ_k − (H(z_k) − H(z_0))| ≤ 2 G E + k (G ε + η), G the greatest gradient of H, and η the
+        rounding of one step's change of H and of its addition to the sum."""
+        box = self.rounding.box(self.error + self.rounded.state, last=True)
+        slope = self.derivatives.energy(self.rounding.fixed(), box)
+        change = self.rounded.values["de"]
+        adding = self.rounding.adding(self.total("energy_error_max"), change)
+        return 2 * slope * self.error + self.steps * (slope * self.rounded.state + adding)
+
+    # -- Λ ----------------------------------------------------------------------------------------
+
+    def bound_of_product(self) -> Ball:
         scale, count = self.scale, self.steps
         low, high = self.seen["least"], self.seen["most"]
-        largest, jump = abs(low).max(abs(high)), scale * size
+        largest, jump = abs(low).max(abs(high)), scale * self.size
         # Logarithms of the factors and of the product are taken: both must stay positive.
         if not (jump < 1 and low > -1):
             return flint.arb.nan()
         drift = count * self.of_product(scale, jump, largest) / (1 + low)
-        shift = (scale * moved / (1 - jump)).expm1() * drift.exp() * (1 + high)
+        shift = (scale * self.moved / (1 - jump)).expm1() * drift.exp() * (1 + high)
         apart = drift.expm1() * (1 + high)  # of 1 + Λ and the product of the computed factors
         if self.arithmetic.absolute:
-            return shift + scale * count * (size * apart + self.unit)
+            return shift + scale * count * (self.size * apart + self.unit)
         return shift + apart
 
     def of_product(self, scale: Ball, jump: Ball, largest: Ball) -> Ball:

@@ -10,12 +10,15 @@ from functools import lru_cache
 
 import flint
 
+from verify.algebra.enclosure import Enclosures
 from verify.errors import InputError
+from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.rounding import Ball, Rounded, analyse
 from verify.kernels.step.computation import Observed, computed, step_map_of
 from verify.kernels.step.partials import Partials
 from verify.kernels.step.program import Program
+from verify.observables.observable import Need
 
 _ZERO = flint.arb(0)
 
@@ -30,6 +33,7 @@ class Derivatives:
     """Indices in `program`: of z' and det J − 1 `values`, of second derivatives of z', and of the
     gradients of det J − 1 and of S's entries, one after the other."""
 
+    hamiltonian: Hamiltonian
     program: Program
     parameters: tuple[str, ...]
     values: tuple[int, ...]
@@ -51,16 +55,16 @@ class Derivatives:
             return None
         if step.implicit:
             return None
-        asked = Observed(
-            pipelined=False, scaled=False, delta_j=volume, determinant=False, tangent=False,
-            symplectic=form, slopes=True,
-        )  # fmt: skip
+        needs: dict[Need, bool] = {"delta_j": volume, "symplectic": form}
+        needed = frozenset(need for need, asked in needs.items() if asked)
+        asked = Observed(pipelined=False, scaled=False, tangent=False, needs=needed, slopes=True)
         made = computed(step, asked)
         program = made.program.copy()
         partials = Partials(program, [program.input(n, static=False) for n in made.coordinates])
         second = [x for row in made.slopes for at in row for x in partials.gradient(at)]
         defect = tuple(made.defect.values())
         return cls(
+            hamiltonian,
             program,
             made.parameters,
             (*(made.outputs[f"d{name}"] for name in made.coordinates), made.outputs["dj"]),
@@ -81,6 +85,11 @@ class Derivatives:
         found = self._over(self.of_volume, fixed, box)
         return flint.arb.nan() if found is None else norm(found)
 
+    def energy(self, fixed: Mapping[str, Ball], box: Mapping[str, Ball]) -> Ball:
+        """A bound of ‖∇H‖ in the box."""
+        found = _gradient_of_energy(self.hamiltonian).over({**fixed, **box})
+        return flint.arb.nan() if found is None else norm(found)
+
     def form(self, fixed: Mapping[str, Ball], box: Mapping[str, Ball]) -> tuple[Ball, Ball]:
         """Bounds in the box of Frobenius' norm of S, and of that of its gradients."""
         found = self._over((*self.defect, *self.of_defect), fixed, box)
@@ -97,3 +106,9 @@ class Derivatives:
         inputs = {n: Rounded(x, _ZERO) for n, x in {**box, **parameters, **others}.items()}
         found = analyse(self.program, self.program.live(wanted), inputs, lambda *_: _ZERO)
         return None if found is None else [found[at].interval for at in wanted]
+
+
+@lru_cache(maxsize=32)
+def _gradient_of_energy(hamiltonian: Hamiltonian) -> Enclosures:
+    field, _ = canonical_field(hamiltonian)
+    return Enclosures(field.ring, field.gradient(field.energy))

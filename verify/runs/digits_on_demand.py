@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from verify import arithmetic as number_systems
+from verify import observables
 from verify.arithmetic.number_system import Arithmetic, NumberSystem, UnsupportedError
 from verify.kernels.chunked_loop import Progress
 from verify.kernels.stepping import KernelRun, Outcome
@@ -30,8 +31,6 @@ WORTH_COMPILING = (
 )
 _MOST_DEGREES = 8  # beyond, the Pfaffian of a certificate's matrices is too long
 _SHORT = 1000  # steps that take less time than a certificate does: nothing is foreseen of them
-# Of N, by which bounds grow where the tangent map grows linearly; others like N³.
-_POWERS = {"lambda": 4, "lambda_max": 4, "symplectic_defect": 9}
 _MORE = 20  # digits that cost such a run nothing, and are there for an observable that is small
 _W = "symplectic_defect"
 METHOD_OF_W = f"{METHOD}; W held against a run with {_MORE} more digits"
@@ -171,6 +170,12 @@ def _finer(own: Arithmetic, missing: int) -> Arithmetic:
     return number_systems.get(own.name, digits_of(own) + missing + 2)
 
 
+def power_of(name: str) -> int:
+    """The power of N by which a value's bound grows where the tangent map grows linearly."""
+    each = observables.by_name().get(name)
+    return each.growth if each else 3
+
+
 class _Foresight:
     """Asked at a run's first checkpoint whether its digits will do; `missing` says how many."""
 
@@ -189,7 +194,7 @@ class _Foresight:
         if "lambda" in sizes:
             sizes["lambda"] = max(abs(seen["least"]), abs(seen["most"]))
         short = [
-            missing_digits(sizes[n], error * growth ** _POWERS.get(n, 3), self.digits)
+            missing_digits(sizes[n], error * growth ** power_of(n), self.digits)
             for n, error in errors.items()
             if sizes.get(n)
         ]

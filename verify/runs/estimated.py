@@ -13,6 +13,7 @@ from fractions import Fraction
 from typing import Literal
 
 from verify import arithmetic as number_systems
+from verify import observables
 from verify.arithmetic.exact import magnitude
 from verify.arithmetic.number_system import Arithmetic
 from verify.hamiltonians.coordinates import PLANE
@@ -103,8 +104,14 @@ def resolved(kernel_run: KernelRun, own: Arithmetic, first: Outcome, digits: int
 
 
 def _rounded(name: str, value: Fraction) -> Fraction:
-    """The size of what was rounded on the way to a value: Λ the plain way is a product less 1."""
-    return abs(value) + (1 if name == "lambda_plain" else 0)
+    """The size of what was rounded on the way to a value."""
+    return abs(value) + _begins(name)
+
+
+def _begins(name: str) -> int:
+    """What was taken off it in the end: Λ the plain way is a product less 1."""
+    each = observables.by_name().get(name)
+    return each.begins if each else 0
 
 
 def digits_of(own: Arithmetic) -> int:
@@ -121,6 +128,6 @@ def missing_digits(value: Fraction, bound: Fraction, digits: int) -> int:
 
 def missing_of(name: str, value: Fraction, bound: Fraction, digits: int) -> int:
     """The same for an observable of that name."""
-    if name == "lambda_plain" and abs(value) <= bound:
+    if _begins(name) and abs(value) <= bound:
         value = Fraction(1)  # a product that may be exactly 1: no precision finds a digit of 0
     return missing_digits(value, bound, digits)

@@ -13,12 +13,13 @@ What is looked at are the states that the run has noted, so that what lies betwe
 not seen.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
 from verify import arithmetic as number_systems
+from verify import observables as kinds
 from verify.algebra.enclosure import enclose
 from verify.arithmetic.arb import in_reach, middle_and_radius
 from verify.arithmetic.exact import Exact, positive, rational, text, whole
@@ -38,7 +39,7 @@ from verify.runs.digits_on_demand import Measured, choose, measure
 from verify.runs.estimated import Bounded, Bounds
 from verify.runs.float64 import bounded
 from verify.runs.start import Start
-from verify.scenes.observables import OF_DEFECT, check_observables, observed
+from verify.scenes.observables import check_observables, observed
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.run import RunResult
 from verify.scenes.values import AUTO, MAX_DIGITS, MAX_STEPS
@@ -100,7 +101,8 @@ class AskedRun:
         check_times(hamiltonian, self.begun.t0, h, steps)
         whole("points", points, 0)
         step_map = step_map_of(hamiltonian, scheme)
-        self.known = proved(step_map, h, steps, digits) if self.wanted or points else {}
+        looked_at = {*self.wanted, *(("lambda",) if points else ())}
+        self.known = proved(step_map, looked_at, h, steps, digits)
         needed = frozenset(o for o in self.wanted if o not in self.known)
         self.kernel_run = KernelRun(
             hamiltonian,
@@ -177,7 +179,7 @@ def proved_run(
     """
     wanted = observed(hamiltonian, observables)
     check(hamiltonian, steps, digits, wanted)
-    known = proved(step_map_of(hamiltonian, scheme), step_size, steps, digits)
+    known = proved(step_map_of(hamiltonian, scheme), wanted, step_size, steps, digits)
     if not wanted or not set(wanted) <= set(known):
         return None
     found = Bounds({}, "a proof, and no run", rigorous=True)
@@ -249,23 +251,22 @@ def _series_needs(known: Mapping[str, object], points: int) -> frozenset[str]:
 # -- what a proof gives ---------------------------------------------------------------------------
 
 
-def proved(step_map: StepMap, h: Fraction, steps: int, digits: int) -> Bounded:
-    """max |ΔJ|, MSE and Λ with their bounds, where no run is needed for them; S and W too."""
+def proved(
+    step_map: StepMap, asked: Iterable[str], h: Fraction, steps: int, digits: int
+) -> Bounded:
+    """Those of the observables with their bounds for which no run is needed."""
+    every = {name: kinds.by_name()[name] for name in asked}
     zero = Fraction(0), Fraction(0)
-    if step_map.preserves_area:
-        return dict.fromkeys(OF_DEFECT, zero)
+    known = {name: zero for name, each in every.items() if each.vanishes(step_map)}
     step = step_map.written_defect
-    if step is None or step_map.degrees > 1:
-        return {}
+    if step_map.preserves_area or step is None or step_map.degrees > 1:
+        return known
     if any(step.ring.depends(step.delta_j, name) for name in (*step.field.names, "t")):
-        return {}
+        return known
     bits = int(4 * digits) + 64 + 2 * steps.bit_length()
     delta_j = enclose(step.ring, step.delta_j, {"h": h}, bits)
     if delta_j is None:
-        return {}
+        return known
     with working_precision(bits):
-        lam = (1 + delta_j) ** steps - 1
-        found = {"delta_j_max": abs(delta_j), "mse": delta_j**2, "lambda": lam}
-        if delta_j > -1:  # (1 + ΔJ)^k moves in one direction
-            found["lambda_max"] = abs(lam)
-        return {name: middle_and_radius(x) for name, x in found.items() if in_reach(x)}
+        found = {n: each.constant(delta_j, steps) for n, each in every.items() if each.constant}
+        return known | {n: middle_and_radius(x) for n, x in found.items() if x and in_reach(x)}

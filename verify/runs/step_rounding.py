@@ -38,6 +38,7 @@ class StepRounding:
     def __init__(self, run: KernelRun, arithmetic: Arithmetic, outcome: Outcome, note: int) -> None:
         assert outcome.kernel is not None  # noqa: S101 - the caller's condition
         self.run, self.arithmetic, self.kernel = run, arithmetic, outcome.kernel
+        self.last = outcome.trail[note]
         self.shift = outcome.shift
         self.steps = int(outcome.tangents[note]["done"])
         self.seen = {n: rational_ball(x) for n, x in outcome.tangents[note].items()}
@@ -47,14 +48,17 @@ class StepRounding:
 
     # -- where the run has been -----------------------------------------------------------------
 
-    def box(self, margin: Ball) -> dict[str, Ball]:
-        """The states visited, widened; float64's rounding of them is within 2^−50."""
+    def box(self, margin: Ball, *, last: bool = False) -> dict[str, Ball]:
+        """The states at which a step was made, and the last one where it is asked for, widened;
+        float64's rounding of them is within 2^−50."""
         around = flint.arb(0, 1)
         found = {}
         for n in self.names:
             low, high = self.seen[f"{n}_low"], self.seen[f"{n}_high"]
             rounded = flint.arb(2) ** -50 * (1 + abs(low) + abs(high))
             found[n] = low.union(high) + around * (margin + rounded)
+            if last:
+                found[n] = found[n].union(rational_ball(self.last[n]) + around * margin)
         return found
 
     def times(self) -> Ball:

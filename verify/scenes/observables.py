@@ -2,20 +2,22 @@
 
 from collections.abc import Sequence
 
+from verify import observables
 from verify.errors import InputError, unknown
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.scenes.values import CLOSED_FORM, OBSERVABLES
+from verify.observables.observable import Observable
 
-# In n degrees of freedom S is no longer ΔJ times Ω.
-OF_FORM = ("symplectic_defect_max", "symplectic_defect")
-# Made of S, or of ΔJ, alone, and 0 after every step where that vanishes.
-OF_DEFECT = (*OF_FORM, *CLOSED_FORM, "lambda_max")
-SEVERAL = OF_DEFECT
-_USUAL = (*OF_FORM, *CLOSED_FORM)
-# By the operations of a step: S has n(2n − 1) entries, det J is a Pfaffian, W is made of products
-# of matrices.
-_MOST_DEGREES = {"symplectic_defect_max": 8, "symplectic_defect": 4, "mse": 4, "delta_j_max": 4,
-                 "lambda": 4, "lambda_max": 4}  # fmt: skip
+_EVERY = observables.by_name()
+_BY_PLACE = sorted((each.usual, name) for name, each in _EVERY.items() if each.usual is not None)
+_USUAL = tuple(name for _, name in _BY_PLACE)
+CLOSED_FORM = tuple(name for name in _USUAL if not _EVERY[name].in_plane)
+REPORTED = (*CLOSED_FORM, "lambda_plain")  # of float64, whose plain way is what is looked at
+
+
+def names(*, planar: bool) -> tuple[str, ...]:
+    """All that may be asked for in the plane, or in some number of degrees of freedom."""
+    fits = (lambda x: not x.in_plane) if planar else (lambda x: x.most_degrees != 0)
+    return tuple(name for name, each in _EVERY.items() if fits(each))
 
 
 def observed(hamiltonian: Hamiltonian, asked: Sequence[str] | None) -> tuple[str, ...]:
@@ -24,25 +26,32 @@ def observed(hamiltonian: Hamiltonian, asked: Sequence[str] | None) -> tuple[str
         return tuple(asked)
     if hamiltonian.planar:
         return CLOSED_FORM
-    return tuple(name for name in _USUAL if hamiltonian.degrees <= _MOST_DEGREES[name])
+    return tuple(name for name in _USUAL if _carried(hamiltonian, _EVERY[name]))
 
 
 def carries_defect(hamiltonian: Hamiltonian) -> bool:
     """Whether W is carried in so many degrees of freedom."""
-    return hamiltonian.degrees <= _MOST_DEGREES["symplectic_defect"]
+    return _carried(hamiltonian, _EVERY["symplectic_defect"])
+
+
+def _carried(hamiltonian: Hamiltonian, observable: Observable) -> bool:
+    most = observable.most_degrees
+    return hamiltonian.planar or most is None or hamiltonian.degrees <= most
 
 
 def check_observables(hamiltonian: Hamiltonian, asked: Sequence[str]) -> None:
-    """InputError for a name that there is not, or that is not for so many degrees of freedom."""
-    known, degrees = OBSERVABLES if hamiltonian.planar else SEVERAL, hamiltonian.degrees
+    """InputError for a name that there is not, or that is not for such an H."""
+    there = names(planar=hamiltonian.planar)
     for name in asked:
-        if hamiltonian.planar and name in OF_FORM:
-            same = {"symplectic_defect_max": "delta_j_max", "symplectic_defect": "lambda"}[name]
-            raise InputError(
-                "observable", name, f"is |{same}| in one degree of freedom; ask for it"
-            )
-        if name not in known:
-            raise unknown("observable", name, known)
-        if degrees > _MOST_DEGREES.get(name, degrees):
-            problem = f"is for up to {_MOST_DEGREES[name]} degrees of freedom; H has {degrees}"
+        each = _EVERY.get(name)
+        if hamiltonian.planar and each and each.in_plane:
+            problem = f"is |{each.in_plane}| in one degree of freedom; ask for it"
+            raise InputError("observable", name, problem)
+        if each is None or name not in there:
+            raise unknown("observable", name, there)
+        if hamiltonian.time_dependent and not each.timed:
+            raise InputError("observable", name, "is for an H that does not depend on t")
+        if not _carried(hamiltonian, each):
+            most = each.most_degrees
+            problem = f"is for up to {most} degrees of freedom; H has {hamiltonian.degrees}"
             raise InputError("observable", name, problem)

@@ -6,11 +6,10 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
+from verify import observables
 from verify.errors import InputError, unknown
 from verify.scenes.frozen import Section
-from verify.scenes.observables import OF_FORM
 from verify.scenes.values import (
-    OBSERVABLES,
     ArithmeticName,
     Digits,
     InitialValue,
@@ -42,9 +41,9 @@ class Grid(Section):
     digits: Digits = 17
     """Significant digits that are asked for."""
     observables: tuple[str, ...] | None = None
-    """What is computed: `delta_j_max`, `mse`, `lambda`, `lambda_plain`, `lambda_max`; in n degrees
-    of freedom also `symplectic_defect_max` and `symplectic_defect`. Left out: ΔJ, MSE and Λ, and
-    these two."""
+    """What is computed: `delta_j_max`, `mse`, `lambda`, `lambda_plain`, `lambda_max`,
+    `energy_error_max`; in n degrees of freedom also `symplectic_defect_max` and
+    `symplectic_defect`. Left out: ΔJ, MSE and Λ, and these two."""
     separate: bool = False
     """Whether truncation is separated from rounding in Λ of each of these runs; in n degrees of
     freedom in W."""
@@ -59,8 +58,8 @@ class Grid(Section):
     def _check(self) -> Self:
         one_length(self.time, self.steps)
         for name in self.observables or ():
-            if name not in (*OBSERVABLES, *OF_FORM):
-                raise unknown("observable", name, OBSERVABLES)
+            if name not in observables.by_name():
+                raise unknown("observable", name, observables.by_name())
         if self.growth and self.observables and "lambda" not in self.observables:
             raise InputError("growth", self.growth, "wants lambda among the observables")
         distinct("step_sizes", self.step_sizes)

@@ -18,9 +18,6 @@ from verify.scenes.frozen import Frozen
 MAX_STEPS = 10**12
 MAX_DIGITS = 10_000
 AUTO = number_systems.AUTO
-CLOSED_FORM = ("delta_j_max", "mse", "lambda")
-REPORTED = (*CLOSED_FORM, "lambda_plain")
-OBSERVABLES = (*REPORTED, "lambda_max")  # the last: the greatest |Λ| after any of the steps
 
 # Marks which of two models a table is read as; what names a key leaves it out.
 OF_ONE, OF_SEVERAL = "«one»", "«several»"

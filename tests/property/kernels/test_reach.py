@@ -25,8 +25,8 @@ from verify.kernels.kernel import Writer, kernel_for
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.a_posteriori import certify
 from verify.runs.run import run
+from verify.scenes.observables import CLOSED_FORM, REPORTED
 from verify.scenes.results.run import RunResult
-from verify.scenes.values import CLOSED_FORM, REPORTED
 
 FIXED, LIKE, TRUE = fixed.at_bits(128 - FRACTION_OF), mpfr.at_bits(112), mpfr.at_bits(500)
 

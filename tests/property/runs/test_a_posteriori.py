@@ -19,7 +19,7 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.a_posteriori import certify
 from verify.runs.run import run
-from verify.scenes.values import REPORTED
+from verify.scenes.observables import REPORTED
 
 
 def polynomial(degree: int, terms: int, variables: str = "pq") -> st.SearchStrategy[str]:

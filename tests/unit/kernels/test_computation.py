@@ -18,9 +18,10 @@ from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import kernel_for
-from verify.kernels.statements import OBSERVABLES
+from verify.kernels.statements import EXTREMES, TANGENT
 from verify.kernels.step.computation import Observed, computed, step_map_of
 from verify.kernels.step.program import Evaluator, Program, _nest
+from verify.scenes import observables
 from verify.schemes import get
 from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 from verify.schemes.maps.kinds.taylor_series import build
@@ -144,8 +145,9 @@ def test_all_precisions_and_number_systems_share_a_program_and_leave_it_as_it_is
         made = kernel_for(MIXED, "lie2", arithmetic.get(name, digits), frozenset({"lambda"}))
         assert made.lowering.program is first.lowering.program
         assert (made.source == source) == (name == "mpfr")  # guards differ
-    for observables in (frozenset(OBSERVABLES), frozenset({"lambda", "tangent"}), frozenset()):
-        other = kernel_for(MIXED, "lie2", arithmetic.get("mpfr", 20), observables)
+    every = {*observables.names(planar=True), EXTREMES, TANGENT}
+    for asked in (frozenset(every), frozenset({"lambda", "tangent"}), frozenset()):
+        other = kernel_for(MIXED, "lie2", arithmetic.get("mpfr", 20), asked)
         assert other.lowering.program is not first.lowering.program
     assert written(first.lowering.program) == before
     float64 = kernel_for(MIXED, "lie2", arithmetic.get("float64", 17), frozenset({"lambda"}))
@@ -154,7 +156,7 @@ def test_all_precisions_and_number_systems_share_a_program_and_leave_it_as_it_is
 
 def test_maps_that_are_equal_and_not_the_same_share_nothing() -> None:
     """A map is known by itself: one with a planted error is another one."""
-    asked = Observed(pipelined=False, scaled=False, delta_j=True, determinant=False, tangent=False)
+    asked = Observed(pipelined=False, scaled=False, tangent=False, needs=frozenset({"delta_j"}))
     one, two = (build(TaylorSeries(2), MIXED) for _ in range(2))
     assert computed(one, asked) is computed(one, asked)
     assert computed(one, asked) is not computed(two, asked)

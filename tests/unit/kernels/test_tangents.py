@@ -38,9 +38,7 @@ ENERGIES: dict[str, Callable[..., Any]] = {
 }
 POINT = [Fraction(n, d) for n, d in ((3, 7), (-2, 5), (5, 8), (4, 9))]
 H, DIGITS, ITERATIONS = Fraction(1, 50), 60, 60
-ASKED = Observed(
-    pipelined=False, scaled=False, delta_j=False, determinant=False, tangent=False, slopes=True
-)
+ASKED = Observed(pipelined=False, scaled=False, tangent=False, slopes=True)
 
 
 def number(x: Fraction) -> Any:

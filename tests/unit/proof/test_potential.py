@@ -7,8 +7,8 @@ import sympy
 
 from tests.helpers.sampled.formulas import P, Q
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof import potential
 from verify.proof.order import prove
+from verify.proof.plane import potential
 from verify.proof.plane.potential import Potential, potential_of
 from verify.schemes import get
 from verify.schemes.steps.two_form import TwoForm

@@ -20,7 +20,7 @@ from verify.kernels.stepping import KernelRun
 from verify.runs.a_posteriori import certify
 from verify.runs.derivatives import Derivatives
 from verify.runs.run import run
-from verify.scenes.values import REPORTED
+from verify.scenes.observables import REPORTED
 
 FREE = "p**2/2"
 WIDE = fixed.at_bits(112)

@@ -21,6 +21,7 @@ from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.exact import of_mpf
 from verify.arithmetic.flint_precision import working_precision
 from verify.kernels.rounding import PRECISION, Rounded
+from verify.observables import by_name
 from verify.runs import a_posteriori, form_bound
 from verify.runs.a_posteriori import _Certificate
 from verify.runs.derivatives import Derivatives, norm
@@ -28,9 +29,7 @@ from verify.runs.step_rounding import StepErrors
 
 SEEDS = range(40)
 SIZES = 2, 4, 6, 8
-ALL = frozenset(
-    {"delta_j_max", "mse", "lambda", "lambda_max", "symplectic_defect_max", "symplectic_defect"}
-)
+ALL = {name: each.bound for name, each in by_name().items() if each.bound}
 
 
 class Told(Derivatives):
@@ -49,19 +48,26 @@ class Told(Derivatives):
         noted: Noted = self.noted  # type: ignore[attr-defined]
         return ball(self._at(noted.slope, box) * noted.scale)
 
+    def energy(self, _: Any, box: Mapping[str, Any]) -> flint.arb:
+        assert box["last"]
+        return ball(self._at(self.noted.steep, box))  # type: ignore[attr-defined]
+
     def form(self, _: Any, box: Mapping[str, Any]) -> tuple[flint.arb, flint.arb]:
         size, slope = self._at(self.noted.form, box)  # type: ignore[attr-defined]
         return ball(size), ball(slope)
 
 
-def certificate(noted: Noted) -> tuple[_Certificate, StepErrors]:
-    """A certificate of a run that noted this, and what its steps lose."""
+def certificate(noted: Noted) -> _Certificate:
+    """A certificate of a run that noted this."""
     made = object.__new__(_Certificate)
     zero = Rounded(flint.arb(0), flint.arb(0))
     # ‖of_matrix‖ is of one entry alone, and the greatest of_entry of two.
-    values = {"dm": zero, "dw_1": zero, "dw_2": zero}
+    values = {"dm": zero, "dw_1": zero, "dw_2": zero, "de": zero}
 
     def adding(size: flint.arb, x: Rounded) -> flint.arb:
+        if x is values["de"]:
+            assert size.overlaps(ball(noted.risen))
+            return ball(noted.of_energy)
         if x is values["dm"]:
             assert size.overlaps(3 * motion.top)
             return ball(noted.of_matrix)
@@ -70,20 +76,21 @@ def certificate(noted: Noted) -> tuple[_Certificate, StepErrors]:
         return part if x is values["dw_2"] else part / 3
 
     names = tuple("pq") if noted.size == 2 else tuple(f"z{k}" for k in range(noted.size))
-    values["dm"], values["dw_1"] = (Rounded(flint.arb(k), flint.arb(0)) for k in (1, 2))
+    for k, name in enumerate(("dm", "dw_1", "de"), start=1):
+        values[name] = Rounded(flint.arb(k), flint.arb(0))
     # The first error, as two coordinates that are off by 3/5 and 4/5 of it.
     off = dict(zip(names, (Fraction(3, 5), Fraction(-4, 5)), strict=False))
     start, first = {n: Fraction(k) for k, n in enumerate(names)}, of_mpf(noted.start)
     rounded = {Fraction(k): k + first * off.get(n, Fraction(0)) for k, n in enumerate(names)}
     vars(made).update(
-        run=SimpleNamespace(observables=ALL, start=start),
+        run=SimpleNamespace(start=start),
         arithmetic=SimpleNamespace(
             absolute=noted.absolute, number=rounded.__getitem__, exact=lambda x: x
         ),
-        values={"mse": of_mpf(noted.squares)},
+        values={"mse": of_mpf(noted.squares), "energy_error_max": of_mpf(noted.risen)},
         rounding=SimpleNamespace(
             fixed=dict,
-            box=lambda margin: {"widened": margin},
+            box=lambda margin, last=False: {"widened": margin, "last": last},
             adding=adding,
             kernel=SimpleNamespace(matrix=["m"]),
         ),
@@ -93,26 +100,26 @@ def certificate(noted: Noted) -> tuple[_Certificate, StepErrors]:
         unit=ball(noted.unit),
         scale=ball(noted.scale),
     )
-    errors = StepErrors(
+    made.rounded = StepErrors(
         state=ball(noted.state), delta_j=ball(noted.delta_j), tangent=ball(noted.tangent),
         size=ball(noted.largest), defect=ball(noted.defect), values=values,
     )  # fmt: skip
-    found = made.motion(errors)
+    made.derivatives = Told(noted)
+    found = made.motion
     assert found is not None
     motion = found
-    return made, errors
+    return made
 
 
 def bounds_of(noted: Noted) -> dict[str, Real]:
     """What the certificate says of a run that noted this."""
     with working_precision(PRECISION):
-        made, errors = certificate(noted)
-        told = Told(noted)
-        orbit = made.orbit(errors, told)
+        made = certificate(noted)
+        orbit = made.orbit()
         assert orbit is not None
+        made.error, made.summed = orbit
         found = {"state": orbit[0], "path": orbit[1]}
-        found |= made.observables(errors, told, *orbit)
-        found |= made.of_form(errors, told, *orbit)
+        found |= {name: bound(made).abs_upper() for name, bound in ALL.items()}
         return {name: number(x) for name, x in found.items()}
 
 
@@ -129,6 +136,7 @@ def by_formulas(noted: Noted) -> dict[str, Real]:
         "lambda_max": product,
         "symplectic_defect_max": run_bounds.of_defect_max(noted),
         "symplectic_defect": run_bounds.of_defect(noted),
+        "energy_error_max": run_bounds.of_energy_error(noted),
     }
 
 
@@ -145,9 +153,10 @@ def test_every_bound_of_a_run_is_what_its_formula_says(size: int) -> None:
 TERMS: dict[str, Callable[[Noted], Noted]] = {
     name: lambda noted, name=name: replace(noted, **{name: ctx.mpf(0)})  # type: ignore[misc]
     for name in ("start", "state", "delta_j", "tangent", "largest", "defect", "of_matrix",
-                 "of_entry", "squares", "unit")
+                 "of_entry", "of_energy", "squares", "unit")
 } | {
     "second": lambda noted: replace(noted, second=lambda _: ctx.mpf(0)),
+    "steep": lambda noted: replace(noted, steep=lambda _: ctx.mpf(0)),
     "slope": lambda noted: replace(noted, slope=lambda _: ctx.mpf(0)),
     "form's size": lambda noted: replace(noted, form=lambda x: (ctx.mpf(0), noted.form(x)[1])),
     "form's slope": lambda noted: replace(noted, form=lambda x: (noted.form(x)[0], ctx.mpf(0))),
@@ -170,11 +179,12 @@ def test_where_the_quadratic_term_grows_beyond_twice_the_linear_one_nothing_is_c
     for seed in SEEDS:
         noted = drawn(seed, 2)
         with working_precision(PRECISION):
-            made, errors = certificate(noted)
-            _, reach = made.orbit(errors, Told(noted)) or (None, None)
+            made = certificate(noted)
+            _, reach = made.orbit() or (None, None)
             assert reach is not None
             steep = replace(noted, second=lambda _, noted=noted: 10**9 * noted.second(0))
-            assert made.orbit(errors, Told(steep)) is None
+            made.derivatives = Told(steep)
+            assert made.orbit() is None
 
 
 def test_a_form_that_may_be_larger_than_was_counted_has_no_bound() -> None:

@@ -16,8 +16,8 @@ from verify.execution.keeping import Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.chunked_loop import ChunkedLoop
 from verify.runs.run import run
+from verify.scenes.observables import CLOSED_FORM, REPORTED
 from verify.scenes.results.run import RunResult
-from verify.scenes.values import CLOSED_FORM, REPORTED
 
 PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
 STEPS, POINTS = 96, 6

@@ -23,8 +23,8 @@ from verify.kernels.kernel import kernel_for
 from verify.runs import float64 as float_bounds
 from verify.runs.float64 import DIRECT_STEPS
 from verify.runs.run import run
+from verify.scenes.observables import CLOSED_FORM, REPORTED
 from verify.scenes.results.run import RunResult
-from verify.scenes.values import CLOSED_FORM, REPORTED
 
 VECTORS = vectors()
 VALUES = ("lambda", "mse", "delta_j_max", "q", "p")

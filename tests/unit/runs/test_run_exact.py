@@ -29,8 +29,8 @@ from tests.helpers.sampled.formulas import (
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.run import run
+from verify.scenes.observables import REPORTED
 from verify.scenes.results.run import RunResult
-from verify.scenes.values import REPORTED
 
 DIGITS = 40
 Map = tuple[sympy.Expr, sympy.Expr]

@@ -19,8 +19,8 @@ from verify.arithmetic.number_system import ESCAPE_BITS
 from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.run import run
+from verify.scenes.observables import CLOSED_FORM, REPORTED
 from verify.scenes.results.run import RunResult
-from verify.scenes.values import CLOSED_FORM, REPORTED
 
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + delta*q**4/4")
 PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")

@@ -1,4 +1,4 @@
-"""What a proof says is 0 of a run is what is made of the defect, and not all that may be asked."""
+"""What a proof says is 0 of a run is what each observable says of the map, and nothing else."""
 
 from fractions import Fraction
 
@@ -6,40 +6,75 @@ import pytest
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.step.computation import step_map_of
+from verify.observables import by_name
 from verify.runs import run as runs
-from verify.scenes import observables
-from verify.scenes.observables import OF_DEFECT, OF_FORM, SEVERAL
+from verify.scenes.observables import names
 
 PLANE = Hamiltonian.parse("p**2/2 - cos(q)")
 TWO_DEGREES = Hamiltonian.parse("(p1**2 + p2**2)/2 + q1**2*q2 + q1**2 + q2**2")
-NOT_OF_THE_DEFECT = "energy_error_max"
+QUADRATIC = Hamiltonian.parse("(p1**2 + p2**2)/2 + q1**2 + q1*q2 + q2**2")
 
 
-def proved(hamiltonian: Hamiltonian, scheme: str) -> runs.Bounded:
-    return runs.proved(step_map_of(hamiltonian, scheme), Fraction(1, 10), 10, 20)
+def proved(hamiltonian: Hamiltonian, scheme: str) -> set[str]:
+    asked = names(planar=hamiltonian.planar)
+    found = runs.proved(step_map_of(hamiltonian, scheme), asked, Fraction(1, 10), 10, 20)
+    assert set(map(tuple, found.values())) <= {(0, 0)}
+    return {*found}
 
 
 @pytest.mark.parametrize("hamiltonian", [PLANE, TWO_DEGREES])
-def test_what_may_be_asked_beside_the_defect_is_not_said_to_be_0(
-    hamiltonian: Hamiltonian, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    for module in (observables, runs):
-        monkeypatch.setattr(module, "SEVERAL", (*SEVERAL, NOT_OF_THE_DEFECT), raising=False)
-    found = proved(hamiltonian, "stormer-verlet")
-    assert NOT_OF_THE_DEFECT not in found
-    assert {"lambda", "lambda_max", "mse", "delta_j_max"} <= found.keys()
-    assert set(map(tuple, found.values())) == {(0, 0)}
+def test_what_may_be_asked_beside_the_defect_is_not_said_to_be_0(hamiltonian: Hamiltonian) -> None:
+    known = proved(hamiltonian, "stormer-verlet")
+    assert {"lambda", "lambda_max", "mse", "delta_j_max"} <= known
+    assert not known & {"energy_error_max", "lambda_plain"}
 
 
 def test_what_is_said_to_be_0_is_0_in_a_run_that_steps() -> None:
     """A run of a scheme whose defect is not 0 has none of them at 0, so that 0 says something."""
-    names = [name for name in OF_DEFECT if name in SEVERAL]
+    known = proved(TWO_DEGREES, "stormer-verlet")
+    assert {"symplectic_defect_max", "symplectic_defect"} <= known
     keys = {"q": [1, Fraction(1, 2)], "p": [0, 1], "steps": 5, "digits": 20, "t0": 0}
-    asked = {**keys, "step_size": Fraction(1, 10), "observables": names}
+    asked = {**keys, "step_size": Fraction(1, 10), "observables": sorted(known)}
     kept = runs.run(TWO_DEGREES, "stormer-verlet", **asked)
     lost = runs.run(TWO_DEGREES, "lie2", **asked)
-    for name in names:
+    for name in known:
         assert Fraction(kept.values[name].value) == 0
         assert Fraction(lost.values[name].value) != 0
-    assert set(OF_FORM) <= set(names)
-    assert proved(TWO_DEGREES, "lie2") == {}
+    assert proved(TWO_DEGREES, "lie2") == set()
+
+
+CONSERVED = [("p**2/2 + q**2/2", "implicit-midpoint"), ("p*q", "gauss4"), ("cos(q)", "lie2"),
+             ("exp(p)", "rk4"), (str(QUADRATIC.expression), "gauss6")]  # fmt: skip
+NOT_CONSERVED = [("p**2/2 + q**2/2", "lie3"), ("p**2/2 + q**2/2", "stormer-verlet"),
+                 ("p**2/2 + q**3/3", "implicit-midpoint"), ("exp(p) + q", "stormer-verlet"),
+                 ("p**2/2 + cos(t)*q**2", "implicit-midpoint"),
+                 (str(QUADRATIC.expression), "stormer-verlet")]  # fmt: skip
+
+
+@pytest.mark.parametrize(("formula", "scheme"), CONSERVED)
+def test_the_energy_is_kept_where_a_proof_says_so(formula: str, scheme: str) -> None:
+    exact = Hamiltonian.parse(formula)
+    assert step_map_of(exact, scheme).conserves_energy
+    start = {"q": 1, "p": Fraction(1, 2)} if exact.planar else {"q": [1, 2], "p": [0, 3]}
+    found = runs.run(exact, scheme, **start, step_size=Fraction(1, 8), steps=9, digits=20,
+                     arithmetic="mpfr", observables=["energy_error_max"])  # fmt: skip
+    assert found.exact == ("energy_error_max",)
+    assert found.values["energy_error_max"].value == "0"
+
+
+@pytest.mark.parametrize(("formula", "scheme"), NOT_CONSERVED)
+def test_no_energy_is_said_to_be_kept_that_is_not(formula: str, scheme: str) -> None:
+    assert not step_map_of(Hamiltonian.parse(formula), scheme).conserves_energy
+
+
+def test_each_observable_says_itself_when_it_vanishes() -> None:
+    class Keeping:
+        preserves_area, conserves_energy = True, False
+
+    class Conserving:
+        preserves_area, conserves_energy = False, True
+
+    vanishing = {name for name, each in by_name().items() if each.vanishes(Keeping())}
+    assert vanishing == {*by_name()} - {"lambda_plain", "energy_error_max"}
+    conserved = {name for name, each in by_name().items() if each.vanishes(Conserving())}
+    assert conserved == {"energy_error_max"}

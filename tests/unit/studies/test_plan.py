@@ -12,9 +12,9 @@ from verify.execution.execute import compute_task
 from verify.execution.plan import Plan
 from verify.reference.make.scene_plan import plan_references
 from verify.runs.task import RunTask
+from verify.scenes.observables import CLOSED_FORM
 from verify.scenes.results.proof import ProofResult
 from verify.scenes.scene import load_scene
-from verify.scenes.values import CLOSED_FORM
 from verify.studies.growth.task import GrowthTask
 from verify.studies.plan import plan_scenes
 from verify.studies.proofs.one import ProofTask

@@ -11,10 +11,10 @@ from verify.claims.on_runs import RunClaim
 from verify.claims.orders import OF_DELTA_J, OF_LAMBDA
 from verify.execution.task import Task
 from verify.prose import Prose, joined, prose
+from verify.scenes.observables import CLOSED_FORM
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.run_sections import Grid
 from verify.scenes.scene import Scene
-from verify.scenes.values import CLOSED_FORM
 from verify.studies.kinds.proofs import proof_task
 from verify.verdict import Verdict
 

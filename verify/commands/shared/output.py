@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import click
 
+from verify import observables
 from verify.commands.shared.answer import picked
 
 if TYPE_CHECKING:
@@ -24,15 +25,6 @@ if TYPE_CHECKING:
 
 _WIDTH, _NAMES = 88, 10  # of a line, and of the name that it begins with
 _LONGEST = 400  # characters of a formula on the terminal
-_LABELS = {
-    "lambda": "Λ",
-    "lambda_plain": "Λ, plain",
-    "mse": "MSE",
-    "delta_j_max": "max |ΔJ|",
-    "q": "q",
-    "p": "p",
-}
-_IN_DEGREES = {"symplectic_defect_max": "max |S|", "symplectic_defect": "max |W|"}
 
 
 class Agreeing(Protocol):
@@ -176,8 +168,13 @@ def print_proof(
 
 
 def run_json(result: "RunResult") -> dict[str, Any]:
-    labels = {**_LABELS, **({} if isinstance(result.q, str) else _IN_DEGREES)}
-    values = {name: _told(result, name) for name in labels}
+    from verify.scenes.observables import REPORTED, names
+
+    # A key for each that is usual, and for what was computed beside them.
+    every, planar = observables.by_name(), isinstance(result.q, str)
+    there = dict.fromkeys((*names(planar=planar), *REPORTED))
+    told = (n for n in there if every[n].usual or n in REPORTED or n in result.values)
+    values = {name: _told(result, name) for name in (*told, "q", "p")}
     return {
         **{name: value for name, (value, _) in values.items()},
         **picked(result, "steps", "digits", "arithmetic", "fallback", "left_domain"),
@@ -219,8 +216,9 @@ def print_run(result: "RunResult") -> None:
     if result.status != "finished":
         click.echo(unfinished(result))
         return
+    labels = {name: each.short or each.label for name, each in observables.by_name().items()}
     coordinates = {name: name for name in result.values if name[1:].isdigit()}
-    for name, label in {**_IN_DEGREES, **_LABELS, **coordinates}.items():
+    for name, label in {**labels, "q": "q", "p": "p", **coordinates}.items():
         if name in result.values:
             value = result.values[name]
             shown = str(value) if value.unknown else f"{value.value}  ± {value.bound}"

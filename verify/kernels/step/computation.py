@@ -23,6 +23,7 @@ from verify.kernels.step.pfaffian import Pfaffian, change_of_volume
 from verify.kernels.step.program import Evaluator, Program
 from verify.kernels.step.program_algebra import Dual, ProgramAlgebra, TangentAlgebra, Value
 from verify.kernels.step.tangent_map import Tangent
+from verify.observables.observable import Need
 from verify.schemes import get
 from verify.schemes.maps.closed_form import ClosedForm
 from verify.schemes.maps.step_map import StepMap
@@ -33,8 +34,7 @@ Matrix = list[list[int]]  # of indices
 
 @dataclass(frozen=True)
 class Observed:
-    """ΔJ; the determinant of the four entries; A − 1 of the tangent map; in n degrees of freedom
-    the entries of S, and M and W; see `verify.kernels.statements`. K = J − 1 itself.
+    """What is asked of a step: what observables need, A − 1 of the tangent map, K = J − 1 itself.
 
     `scaled`: ΔJ is divided by the power of h that it has, and multiplied by κ. `pipelined` as in
     `verify.arithmetic.number_system.Arithmetic`.
@@ -42,21 +42,23 @@ class Observed:
 
     pipelined: bool
     scaled: bool
-    delta_j: bool
-    determinant: bool
     tangent: bool
-    symplectic: bool = False
-    carried: bool = False
+    needs: frozenset[Need] = frozenset()
     slopes: bool = False
+
+    @property
+    def defect(self) -> bool:
+        """Whether S is needed, or ΔJ."""
+        return bool(self.needs & {"delta_j", "symplectic", "carried"})
 
 
 @dataclass(frozen=True, eq=False)
 class Computation:
-    """`outputs`: the indices of the increments of the coordinates, as `dp`, of ΔJ, `dj`, and of
-    det J where it is asked for, `det`; of M's and W's entries, too. `power` is the r of κ;
-    `parameters` are those of H; `timed` says whether it depends on t, which is one more input then.
-    `coordinates` name the state; `defect` has the entries of S that are asked for, `slopes` K by
-    rows, where that is. Nobody writes into the program any more.
+    """`outputs`: the indices of the increments of the coordinates, as `dp`, of ΔJ, `dj`, and where
+    they are asked for of det J, `det`, of H, `de`, and of M's and W's entries. `power` is the r of
+    κ; `parameters` are those of H; `timed` says whether it depends on t, which is one more input
+    then. `coordinates` name the state; `defect` has the entries of S that are asked for, `slopes` K
+    by rows, where that is. Nobody writes into the program any more.
     """
 
     program: Program
@@ -142,7 +144,7 @@ def _sum_of(closed: ClosedForm, places: Sequence[Place], power: int) -> Poly:
 class _Step:
     def __init__(self, step_map: StepMap, asked: Observed) -> None:
         self.step_map, self.asked = step_map, asked
-        wanted = asked.delta_j or asked.symplectic or asked.carried
+        wanted = asked.defect
         begun = _begun(step_map, asked.pipelined, asked.scaled, wanted)
         self.program, self.named = begun.program.copy(), begun.named
         self.names, self.forms = step_map.hamiltonian.coordinates, dict(begun.forms)
@@ -158,17 +160,19 @@ class _Step:
         outputs["dj"] = program.constant(Fraction(0))
         if not self.preserved and self.closed is None:
             self.forms = self.from_slopes()
-        if asked.delta_j and self.forms:
+        if "delta_j" in asked.needs and self.forms:
             outputs["dj"] = self.volume()
-        if asked.determinant:
+        if "determinant" in asked.needs:
             outputs["det"] = self.determinant()
-        if asked.carried and self.forms:
+        if "carried" in asked.needs and self.forms:
             outputs |= self.carried()
+        if "energy" in asked.needs:
+            outputs["de"] = self.change_of_energy()
         tangent = None
         if asked.tangent:
             tangent = Tangent(program)
             tangent.take([x for row in self.slopes for x in row], self.points)
-        shown = self.forms if asked.symplectic else {}
+        shown = self.forms if "symplectic" in asked.needs else {}
         defect = {f"s_{a}_{b}": at for (a, b), at in shown.items()}
         return Computation(
             program, outputs, tangent, self.power, exact.symbols, exact.time_dependent,
@@ -205,7 +209,8 @@ class _Step:
         asked, field = self.asked, self.step_map.field
         plain = ProgramAlgebra(self.program, field, self.named, asked.pipelined)
         self.points = plain.points
-        wanted = asked.tangent or asked.determinant or asked.carried or asked.slopes
+        of_slopes = asked.needs & {"determinant", "carried"}
+        wanted = asked.tangent or asked.slopes or of_slopes
         assert self.step_map.step is not None  # noqa: S101 - the caller looks
         if wanted or not self.preserved:
             return self.step_map.step(TangentAlgebra(plain, coordinates=len(self.names)))
@@ -266,6 +271,17 @@ class _Step:
             (a, b), (c, d) = self.slopes
             a, d = (program.add(program.quotient(1, 1), x) for x in (a, d))
         return program.add(program.mul(a, d), program.neg(program.mul(b, c)))
+
+    def change_of_energy(self) -> int:
+        """H after the step, less H before it."""
+        program, field = self.program, self.step_map.field
+        moves = dict(zip(self.names, self.changes, strict=True))
+        after = {**self.named, **{n: program.add(self.named[n], x) for n, x in moves.items()}}
+        before, later = (
+            Evaluator(program, field.ring, at, self.asked.pipelined).evaluate(field.energy)
+            for at in (self.named, after)
+        )
+        return program.add(later, program.neg(before))
 
     def carried(self) -> dict[str, int]:
         """The increments of M and of W."""

@@ -58,6 +58,7 @@ Unit = tuple[AnyData, str, str, int]  # what `recomputed` takes
 _MOST_BYTES_OF_ALL = 8 * MOST_BYTES  # of the files that are listed; they are held in memory
 _WORTH_A_POOL = 150  # recomputations, below which starting workers costs more than it gains
 _VERSION = re.compile(r"[0-9]+(\.[0-9a-z+]+)*")
+_NO_MORE = ("numba",)  # what data may name that were made with it, and is not used any more
 
 
 @dataclass
@@ -256,7 +257,8 @@ def _check_provenance(manifest: Manifest, scenes: dict[str, Scene], found: Check
     wanted = _other_command(manifest, scenes)
     if wanted is not None:
         Place(found, MANIFEST, "command").differs("", wanted, manifest.command)
-    place, given = Place(found, MANIFEST, "versions"), list(manifest.versions)
+    place = Place(found, MANIFEST, "versions")
+    given = [name for name in manifest.versions if name not in _NO_MORE]
     place.must(given == list(versions()), "", ", ".join(versions()), ", ".join(given))
     for name, version in manifest.versions.items():
         place.must(_VERSION.fullmatch(version), name, "a version", version)

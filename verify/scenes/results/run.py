@@ -9,6 +9,7 @@ from typing import Literal, Self
 
 from pydantic import PrivateAttr
 
+from verify import observables
 from verify.errors import InputError
 from verify.notebook import aligned_latex, html_table, number_latex
 from verify.scenes.frozen import Frozen, OfScheme, Seconds
@@ -31,19 +32,6 @@ class EnergyDrift:
     def largest(self) -> float:
         """The largest |H̃ − H̃₀|."""
         return max((abs(x) for x in self.values if x is not None), default=0.0)
-
-
-_SHOWN = {
-    "lambda": ("Λ", r"\Lambda"),
-    "lambda_plain": ("Λ, the plain way", r"\Lambda_{\text{plain}}"),
-    "lambda_max": ("max |Λ|", r"\max |\Lambda|"),
-    "mse": ("MSE", r"\text{MSE}"),
-    "delta_j_max": ("max |ΔJ|", r"\max |\Delta J|"),
-    "symplectic_defect_max": ("max |S|", r"\max |S|"),
-    "symplectic_defect": ("max |W|", r"\max |W|"),
-    "q": ("q", "q"),
-    "p": ("p", "p"),
-}
 
 
 class SeriesPoint(Frozen):
@@ -172,6 +160,7 @@ class RunResult(OfScheme):
 
     def _shown(self) -> list[tuple[str, str, Value]]:
         """The values, each with its label as text and in LaTeX; coordinates come last."""
-        several = {n: (n, f"{n[0]}_{{{n[1:]}}}") for n in self.values if n[1:].isdigit()}
-        each = (_SHOWN | several).items()
-        return [(*shown, self.values[name]) for name, shown in each if name in self.values]
+        shown = {name: (each.label, each.tex) for name, each in observables.by_name().items()}
+        shown |= {"q": ("q", "q"), "p": ("p", "p")}
+        shown |= {n: (n, f"{n[0]}_{{{n[1:]}}}") for n in self.values if n[1:].isdigit()}
+        return [(*names, self.values[n]) for n, names in shown.items() if n in self.values]

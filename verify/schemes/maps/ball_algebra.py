@@ -147,24 +147,50 @@ def step_in_balls(
 
 
 _POINTS, _BITS = 8, 128
+Point = Mapping[str, Ball]
 
 
 def may_preserve(field: CanonicalField, step: Step) -> bool:
     """Whether no point is seen at which S = JᵀΩJ − Ω is not 0; most steps show one at once."""
-    names = [name for name in field.ring.variables if name != "h"]
-    n, one = len(field.names) // 2, Fraction(1, 16)
+    n = len(field.names) // 2
     omega = flint.arb_mat(2 * n, 2 * n)
     for i in range(n):
         omega[i, n + i], omega[n + i, i] = flint.arb(1), flint.arb(-1)
+
+    def gap(_: Point, __: Sequence[Ball], slopes: flint.arb_mat) -> Sequence[Ball]:
+        across = slopes.transpose() * omega
+        found: Sequence[Ball] = (across + omega * slopes + across * slopes).entries()
+        return found
+
+    return _may_vanish(field, step, gap)
+
+
+def may_conserve(field: CanonicalField, step: Step | ClosedForm) -> bool:
+    """Whether no point is seen at which H changes in a step."""
+    energy = Enclosures(field.ring, [field.energy])
+
+    def gap(point: Point, changes: Sequence[Ball], _: flint.arb_mat) -> Sequence[Ball]:
+        moved = {name: point[name] + x for name, x in zip(field.names, changes, strict=True)}
+        before, after = energy.over(point), energy.over({**point, **moved})
+        return [after[0] - before[0]] if before and after else []
+
+    return _may_vanish(field, step, gap)
+
+
+def _may_vanish(
+    field: CanonicalField,
+    step: Step | ClosedForm,
+    gap: Callable[[Point, Sequence[Ball], flint.arb_mat], Sequence[Ball]],
+) -> bool:
+    """Whether no point is seen at which one of these balls, made of a step, excludes 0."""
+    names, h = [name for name in field.ring.variables if name != "h"], Fraction(1, 16)
     with working_precision(_BITS):
-        for point in islice(points(names), _POINTS):
-            box = {name: rational_ball(x) for name, x in point.items()}
+        for at in islice(points(names), _POINTS):
+            point = {name: rational_ball(x) for name, x in at.items()}
             try:
-                _, slopes = step_in_balls(field, step, box, rational_ball(one))
+                found = gap(point, *step_in_balls(field, step, point, rational_ball(h)))
             except UndefinedError:
                 continue
-            across = slopes.transpose() * omega
-            gap = across + omega * slopes + across * slopes
-            if any(x.is_finite() and not x.contains(0) for x in gap.entries()):
+            if any(x.is_finite() and not x.contains(0) for x in found):
                 return False
     return True

@@ -23,7 +23,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.late import sympy
 from verify.notebook import aligned_latex, short_latex
 from verify.schemes.conditions.condition import Condition
-from verify.schemes.maps.ball_algebra import may_preserve
+from verify.schemes.maps.ball_algebra import may_conserve, may_preserve
 from verify.schemes.maps.closed_form import ClosedForm, h_inside
 from verify.schemes.maps.written_out import (
     TooLongError,
@@ -57,8 +57,9 @@ class StepMap:
     `conditions`: where all of them hold the map is symplectic, for every H that the scheme takes.
     `known_order()`: up to which power of h it agrees with the exact flow and no further, where that
     is known without the series; else None. `asked`: where the scheme's own formulas are defined.
-    `implicit`: equations are solved for it. `expand`: z' up to h^most over a ring that comes with
-    it, of a map whose steps are not looked into.
+    `implicit`: equations are solved for it. `keeps_quadratic`: where the conditions hold it keeps
+    every quadratic invariant of the motion too. `expand`: z' up to h^most over a ring that comes
+    with it, of a map whose steps are not looked into.
     """
 
     hamiltonian: Hamiltonian
@@ -69,6 +70,7 @@ class StepMap:
     known_order: Callable[[], int | None] = lambda: None
     asked: Domain = EVERYWHERE
     implicit: bool = False
+    keeps_quadratic: bool = False
     expand: Callable[[int], tuple[CanonicalField, State]] | None = None
 
     def __repr__(self) -> str:
@@ -226,6 +228,25 @@ class StepMap:
                 return False
             return self.closed is not None and self.closed.symplectic
         return self._given is not None and self._given.symplectic
+
+    @cached_property
+    def conserves_energy(self) -> bool:
+        """True where H is shown to be the same after every step."""
+        field, step = self.field, self.step or self._given
+        if self.keeps_quadratic and self.symplectic_by_conditions and field.quadratic:
+            return True
+        if field.timed or self.implicit or step is None or not may_conserve(field, step):
+            return False
+        if self.closed is None:
+            return False
+        before, ring = self.hamiltonian.exact, self.closed.ring
+        sides = zip(self.hamiltonian.coordinates, self.closed.elements, strict=True)
+        after = before.xreplace({symbol(name): ring.expression(x) for name, x in sides})
+        try:
+            whole, (change,) = canonical_field(self.hamiltonian, after - before)
+        except InputError:
+            return False
+        return whole.ring.vanishes(change) is True
 
     @property
     def has_closed_form(self) -> bool:

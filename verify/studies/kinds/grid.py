@@ -3,15 +3,16 @@
 from fractions import Fraction
 from typing import Any
 
+from verify import observables
 from verify.execution.plan import Plan
 from verify.execution.study import Results, Study, called, known_results, toml_section
 from verify.kernels.run_inputs import SECTIONS
+from verify.observables.observable import of_defect
 from verify.runs.digits_on_demand import WORTH_COMPILING
 from verify.runs.task import RunTask
-from verify.scenes.observables import OF_FORM, observed
+from verify.scenes.observables import observed
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene
-from verify.scenes.values import CLOSED_FORM
 from verify.studies.separation.mixed_run import POINTS
 from verify.studies.separation.task import does_for_first_link
 
@@ -71,7 +72,9 @@ def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
     name, tasks = called(scene), grid_tasks(scene, scheme)
     exact = scene.exact_hamiltonian()
     asked = set(observed(exact, scene.grid.observables)) if scene.grid else set()
-    if preserves and asked and asked <= {*CLOSED_FORM, *OF_FORM}:
+    every = observables.by_name()
+    vanishing = {name for name, each in every.items() if each.vanishes is of_defect}
+    if preserves and asked and asked <= vanishing:
         why = "ΔJ ≡ 0 is proved: ΔJ, MSE and Λ are exactly 0"
         if not exact.planar:
             why = "S ≡ 0 is proved: S, W, ΔJ, MSE and Λ are exactly 0"

@@ -31,6 +31,7 @@ from verify.studies.separation.working import Kind, Link, Working, WorkingRun, e
 
 PARTS = ("input", "trajectory", "determinant", "product")  # of rounding, in the chain's order
 PARTS_IN_TIME = ("input", "clock", "trajectory", "determinant", "product")
+_LAMBDA = ("lambda",)
 _WHOLES = ("lambda_working", "truncation", "total")
 QUANTITIES = (*_WHOLES, *PARTS)
 # Digits that the differences between links cancel: float64's 16, less those by which a long run
@@ -241,11 +242,11 @@ def _proved(step_map: StepMap | None, kernel_run: KernelRun, digits: int) -> Lin
         marks_of(kernel_run.steps),
         digits + len(str(kernel_run.steps)),
     )
-    if step_map is None or "lambda" not in proved(step_map, h, 1, digits):
+    if step_map is None or not proved(step_map, _LAMBDA, h, 1, digits):
         return None
     if step_map.preserves_area:
         return exact_link([Fraction(0)] * len(marks), "ΔJ ≡ 0")
-    found = [proved(step_map, h, n, digits)["lambda"] for n in marks]
+    found = [proved(step_map, _LAMBDA, h, n, digits)["lambda"] for n in marks]
     worst = max(bound for _, bound in found)
     return Link(Trail.of(x for x, _ in found), worst, "enclosed", "ΔJ is constant")
 

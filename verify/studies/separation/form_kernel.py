@@ -32,6 +32,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.step.computation import Computation, Observed, computed, step_map_of
 from verify.kernels.step.lowering import Lowering
 from verify.kernels.step.program import Program
+from verify.observables.observable import Need
 from verify.studies.separation.kernel import AT, Mixed, assemble, box_of, prefixed_lines, scope_of
 
 Rows = Sequence[Sequence[str]]  # of names; an empty one is 0
@@ -61,10 +62,8 @@ class Step:
 
         Raises NotImplementedError where a step solves equations."""
         step = step_map_of(hamiltonian, scheme)
-        asked = Observed(
-            pipelined=pipelined, scaled=False, delta_j=False, determinant=False, tangent=False,
-            symplectic=form, carried=form, slopes=True,
-        )  # fmt: skip
+        needs: frozenset[Need] = frozenset({"symplectic", "carried"} if form else ())
+        asked = Observed(pipelined=pipelined, scaled=False, tangent=False, needs=needs, slopes=True)
         made = computed(step, asked)
         return cls(made, made.program, tuple(map(tuple, made.slopes)))
 

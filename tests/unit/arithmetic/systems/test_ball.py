@@ -26,8 +26,8 @@ from verify.kernels.kernel import kernel_for
 from verify.kernels.stepping import KernelRun
 from verify.runs import enclosed as ball_bounds
 from verify.runs.run import run
+from verify.scenes.observables import CLOSED_FORM, REPORTED
 from verify.scenes.results.run import RunResult
-from verify.scenes.values import CLOSED_FORM, REPORTED
 
 VECTORS = vectors()
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + q**4/4")

@@ -22,7 +22,7 @@ from verify.lockstep import alone
 from verify.runs.digits_on_demand import measure
 from verify.runs.float64 import bounded
 from verify.runs.run import run
-from verify.scenes.values import REPORTED
+from verify.scenes.observables import REPORTED
 
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + 7*q**4/12")
 DIVIDING = Hamiltonian.parse("p**2/2 + 1/(q**2 + a) + q/(3 + p**2)", {"a": "2/7"})

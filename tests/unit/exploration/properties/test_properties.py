@@ -14,8 +14,8 @@ from verify.exploration.property import Violation
 from verify.exploration.sample import Sample
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import kernel_for
-from verify.proof import growth_law as growth
 from verify.proof.order import prove
+from verify.proof.plane import growth_law as growth
 from verify.scenes.scene import scene_from
 from verify.schemes import get
 from verify.schemes.maps.step_map import StepMap

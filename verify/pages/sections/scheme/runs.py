@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
+from verify import observables
 from verify.pages.figures.captioned_plot import computed
 from verify.pages.sections.by_key import by_key
 from verify.pages.sections.rows import Group, Row, shown, told
@@ -14,15 +15,6 @@ from verify.pages.text.typography import number, start, value, whole
 from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.run import RunResult
-
-_COLUMNS = {
-    "mse": "MSE",
-    "delta_j_max": "max |ΔJ|",
-    "lambda": "Λ by closed form",
-    "lambda_plain": "Λ the plain way",
-    "symplectic_defect_max": "max |S|",
-    "symplectic_defect": "max |W|",
-}
 
 
 @dataclass(frozen=True)
@@ -41,20 +33,21 @@ class RunTable:
 
 def _view(scene: SceneResult, proof: ProofResult, _: str) -> RunTable | None:
     runs = [run for run in scene.runs if run.scheme == proof.scheme]
-    names = [n for n in _COLUMNS if any(n in run.values for run in runs)]
+    columns = {name: each.heading or each.label for name, each in observables.by_name().items()}
+    names = [n for n in columns if any(n in run.values for run in runs)]
     if not names and all(run.status == "finished" for run in runs):
         return None
     failed = [run for run in runs if _failed(run)]
     (held,) = shown([runs], _failed)
     return RunTable(
-        columns=tuple(_COLUMNS[n] for n in names) or ("outcome",),
+        columns=tuple(columns[n] for n in names) or ("outcome",),
         groups=tuple(_groups(held, names)),
         count=len(runs),
         told=told(len(runs), len(held), len(failed)),
         computed=computed(runs),
         certainty=_certainty(runs),
         notes=(*_fallbacks(runs), *_beyond(runs)),
-        proved=tuple(_COLUMNS[n] for n in names if all(n in run.exact for run in runs)),
+        proved=tuple(columns[n] for n in names if all(n in run.exact for run in runs)),
     )
 
 

@@ -63,6 +63,7 @@ def by_equations(hamiltonian: Hamiltonian, tableau: ImplicitTableau) -> StepMap:
         conditions=tableau.area_conditions(),
         known_order=known_order,
         implicit=True,
+        keeps_quadratic=True,  # Hairer, Lubich, Wanner, theorem IV.2.2
     )
 
 

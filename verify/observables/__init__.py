@@ -1,0 +1,19 @@
+"""What a run may be asked for beside its last state: `kinds/` has one observable a file.
+
+A file of `kinds/` defines `OBSERVABLE`, all that is asked of that observable anywhere: of a
+kernel, of a proof, of a certificate, in scenes and on pages.
+"""
+
+from functools import cache
+
+from verify.discovery import Catalogue
+from verify.observables.observable import Observable
+
+_FILES = Catalogue(f"{__name__}.kinds", [f"{folder}/kinds" for folder in __path__])
+
+
+@cache
+def by_name() -> dict[str, Observable]:
+    """All observables by their names, in the order in which they are shown."""
+    every = [_FILES.module(name).OBSERVABLE for name in _FILES.names]
+    return {each.name: each for each in sorted(every, key=lambda each: each.order)}

@@ -1,0 +1,1 @@
+"""The observables, one a file."""

@@ -1,0 +1,22 @@
+"""The greatest |Λ| after any of the steps.
+
+What bounds the error of the last Λ bounds that of each before it: all its sums are to N.
+"""
+
+from verify.observables.observable import Observable
+
+OBSERVABLE = Observable(
+    "lambda_max",
+    "max |Λ|",
+    r"\max |\Lambda|",
+    order=5,
+    needs="delta_j",
+    lines=lambda loop: [*loop.product(), *loop.largest("lam_top", "lam", "sum")],
+    carried="lam_top",
+    shift=1,
+    # (1 + ΔJ)^k moves in one direction.
+    constant=lambda delta_j, steps: abs((1 + delta_j) ** steps - 1) if delta_j > -1 else None,
+    bound=lambda at: at.bound_of_product(),
+    growth=4,
+    most_degrees=4,
+)
