@@ -34,7 +34,7 @@ from verify.late import sympy
 
 _FORMAT = "hamiltonian 1"
 _MOST_BYTES, _MOST_TERMS = 2**20, 2000
-_CODE = ("algebra/**/*.py", "hamiltonians/**/*.py", "arithmetic/exact.py")
+_CODE = ("algebra/**/*.py", "functions/**/*.py", "hamiltonians/**/*.py", "arithmetic/exact.py")
 _LIBRARIES = ("sympy", "python-flint")
 
 

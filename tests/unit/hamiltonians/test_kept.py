@@ -14,7 +14,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
+from tests.helpers.imports import NAMES, rooms_of
 from tests.paths import ROOT
+from tests.unit.test_imports import GROUND, edges_of
 from verify import strategies
 from verify.algebra.ring_record import record_of, recorded
 from verify.arithmetic.exact import text
@@ -219,6 +221,18 @@ def test_where_the_code_is_not_there_to_look_at_nothing_is_kept(
     assert type(twice("p**2/2 - cos(q)")[1]) is Hamiltonian
     assert not cache.exists()
     kept._readers.cache_clear()
+
+
+def test_all_rooms_that_read_a_formula_are_in_its_name() -> None:
+    edges, seen = edges_of(NAMES), set()
+    waiting = ["verify.hamiltonians.kept"]
+    while waiting:
+        module = waiting.pop()
+        if module not in seen:
+            seen.add(module)
+            waiting += edges[module]
+    above_ground = {rooms_of(module) for module in seen} - {*GROUND}
+    assert {pattern.partition("/")[0] for pattern in kept._CODE} == above_ground
 
 
 def test_without_a_folder_nothing_is_kept(monkeypatch: pytest.MonkeyPatch, cache: Path) -> None:
