@@ -62,7 +62,7 @@ FORMULAS = {
     "H = p**2/2 + q": "column 3: a formula has no =; write its right side alone",
     "p**2/2 + \\omega*q": "this is LaTeX; write omega without the backslash",
     "p**2/2 + q!": "! is not allowed; write a factorial as the number",
-    "p**2/2 + abs(q)": "abs is not smooth, and H must be; allowed: atan",
+    "p**2/2 + abs(q)": "abs is not smooth, and H must be; allowed: asinh, atan",
     "p**2/2 + Heaviside(q)": "a formula has no cases, since H must be smooth",
     "p**2/2 + e**q": "exponent q must be a rational number; write exp(q)",
     "p**2/2 + 1j*q": "'1j' is not a number; H is real",

@@ -220,6 +220,8 @@ def defined(form: Format, kind: str, x: Fraction) -> bool | None:
             return x > Fraction(1, 2**26) - unit / 2
         case "inverse":
             return abs(x) > Fraction(1, 2**14) - unit / 2
+        case "asinh":
+            return x > -RANGE  # whose size is no number
     return True
 
 

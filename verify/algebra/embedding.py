@@ -191,8 +191,8 @@ class _Builder:
 
     def other(self, function: sympy.Expr) -> None:
         """A function of its own, whose derivative is made of its argument."""
-        ring, u, made = self.ring, self.element(function.args[0]), _function(function)
-        same = ring.find(made.name, u)
+        ring, u, rule = self.ring, self.element(function.args[0]), _function(function)
+        same = ring.find(rule.name, u)
         if same is not None:
             self.known[function] = same
             return
@@ -201,8 +201,8 @@ class _Builder:
             x = ring.reduce(x)
             return self.inverse(x, function) if name == "inverse" else self.root(x, 2, function)
 
-        outer = made.derivative(u, None, apply)
-        generator = ring.add(made.name, u)
+        outer = rule.derivative(u, None, apply)
+        generator = ring.add(rule.name, u)
         ring.set_gradient(generator, outer, u)
         self.known[function] = generator
 

@@ -11,6 +11,7 @@ from verify.algebra.differential_ring import DifferentialRing
 from verify.algebra.generator import Generator, Poly, terms_of
 from verify.arithmetic.flint_precision import working_precision
 from verify.functions import in_rings
+from verify.functions.function import Function
 
 Ball = flint.arb
 _FAR_POINTS = 200
@@ -68,10 +69,10 @@ def power_of(x: Ball, n: int) -> Ball:
     return half * x if n % 2 else half
 
 
-def _by_method(name: str) -> Callable[[Ball, int], Ball]:
-    """The function that arb has as a method of that name."""
-    method: Callable[[Ball], Ball] = getattr(flint.arb, name)
-    return lambda x, _: method(x)
+def _of_balls(function: Function) -> Callable[[Ball, int], Ball]:
+    """The function as it is of balls, in the form that a root has, of a degree."""
+    of_balls: Callable[[Ball], Ball] = function.of_balls(flint.arb)
+    return lambda x, _: of_balls(x)
 
 
 def square(x: Ball) -> Ball:
@@ -81,7 +82,7 @@ def square(x: Ball) -> Ball:
 
 
 BALLS: dict[str, Callable[[Ball, int], Ball]] = {
-    **{name: _by_method(name) for name in in_rings()},
+    **{name: _of_balls(function) for name, function in in_rings().items()},
     "root": lambda x, n: x.root(n),
     "inverse": lambda x, _: 1 / x,
 }

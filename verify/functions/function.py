@@ -54,7 +54,8 @@ class FixedPoint:
 class Function:
     """`name`: in formulas, as sympy, arb, MPFR, mpmath, `math` and the C library know it.
 
-    - `slope`: its derivative, from the argument; or `equation`, from the value.
+    - `slope`: its derivative, from the argument; or `equation`, from the value. Without a pair it
+      is made with "inverse" and "sqrt" alone, which a ring has.
     - `lipschitz`: what its slope nowhere exceeds, which is 1: it then stays in a range that its
       argument is in, such as fixed point's; None where the slope has no bound.
     - `domain`: where it is defined; None: everywhere.
@@ -64,6 +65,7 @@ class Function:
     - `turns`: whether sums of it, as of arctangents, are the same but for multiples of π.
     - `bounded`: whether it is between −1 and 1. `positive`: whether it is > 0 everywhere, or what,
       made from its argument, is > 0 where it is.
+    - `ball`: a ball around its values on one, where arb's own method is too wide.
     - `fixed`: in fixed point; None: that has none.
     - `numpy`: its name there; `shown`: on pages; `tex`: a command of TeX's; each as its name tells
       where nothing is given. `synonyms`: what others write for it, which a refused formula is told.
@@ -80,6 +82,7 @@ class Function:
     turns: bool = False
     bounded: bool = False
     positive: Callable[[Number], Number] | bool = False
+    ball: Callable[[Number], Number] | None = None
     fixed: FixedPoint | None = None
     numpy: str = ""
     shown: str = ""
@@ -91,6 +94,11 @@ class Function:
         names = {"numpy": self.numpy or self.name, "shown": shown, "tex": self.tex or f"\\{shown}"}
         for field, text in names.items():
             object.__setattr__(self, field, text)
+
+    def of_balls(self, arb: Any) -> Callable[[Number], Number]:
+        """The function of arb's balls, which are of that type."""
+        method: Callable[[Number], Number] = self.ball or getattr(arb, self.name)
+        return method
 
     def derivative(self, x: Number, y: Number, apply: Apply) -> Number:
         """f'(x), where y = f(x)."""

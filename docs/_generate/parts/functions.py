@@ -20,10 +20,10 @@ def _row(function: Function) -> tuple[str, ...]:
     if domain is not None:
         argument = domain.inside(sympy.Symbol("x"))
         inside = f"{domain.through} {argument} {_RELATIONS[domain.relation]} 0".strip()
-    made = function.image is None and function.fixed is None
+    composed = function.image is None and function.fixed is None
     return (
         code(function.name),
         codes(function.synonyms),
         inside,
-        "of others" if made else "yes" if function.fixed else "no",
+        "of others" if composed else "yes" if function.fixed else "no",
     )

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from mpmath.ctx_mp import MPContext
 
+from tests.helpers.function_values import off
 from tests.paths import ROOT
 from verify import arithmetic, functions
 from verify.algebra.formula import FUNCTIONS, function, parse
-from verify.arithmetic.number_system import Arithmetic
 from verify.flows.extrapolation_of_many import arrays
 from verify.functions.function import Function
 from verify.integrators.tracing.dual import slope_of
@@ -25,7 +25,7 @@ PLACES = [Fraction(n, 7) for n in (-9, -2, 1, 5, 12)]
 SYSTEMS = [("float64", 17), ("mpmath", 50), ("mpfr", 50), ("ball", 50), ("fixed", 30)]
 
 
-def of(name: str, x: Any) -> Any:
+def value_of(name: str, x: Any) -> Any:
     """A function of a number of mpmath's."""
     return 1 / x if name == "inverse" else getattr(MP, name)(x)
 
@@ -53,13 +53,13 @@ def test_the_derivative_is_that_of_mpmath(name: str) -> None:
     f = BY_NAME[name]
     for place in filter(lambda x: inside(f, x), PLACES):
         x = number(place)
-        slope = f.derivative(x, of(name, x), of)
-        assert abs(slope - MP.diff(lambda y: of(name, y), x)) < MP.mpf(10) ** -25
+        slope = f.derivative(x, value_of(name, x), value_of)
+        assert abs(slope - MP.diff(lambda y: value_of(name, y), x)) < MP.mpf(10) ** -25
         assert f.lipschitz is None or abs(slope) <= f.lipschitz
-        assert not f.bounded or abs(of(name, x)) <= 1
+        assert not f.bounded or abs(value_of(name, x)) <= 1
         if f.positive is not False:
             where = True if f.positive is True else f.positive(place) > 0
-            assert (of(name, x) > 0) == where
+            assert (value_of(name, x) > 0) == where
 
 
 @pytest.mark.parametrize("name", BY_NAME)
@@ -69,7 +69,7 @@ def test_the_slope_of_dual_numbers_is_the_derivative(name: str) -> None:
         for place in filter(lambda x: inside(f, x), PLACES):
             x = gmpy2.mpfr(gmpy2.mpq(place))
             slope = slope_of(name, x, getattr(gmpy2, name)(x))
-            gap = MP.mpf(str(slope)) - MP.diff(lambda y: of(name, y), number(place))
+            gap = MP.mpf(str(slope)) - MP.diff(lambda y: value_of(name, y), number(place))
             assert abs(gap) < MP.mpf(10) ** -25
 
 
@@ -78,45 +78,64 @@ def test_a_function_of_a_pair_is_made_of_its_parts(name: str) -> None:
     f, x = BY_NAME[name], MP.mpf("0.7")
     assert f.pair
     assert f.parts
-    made = f.parts(of(f.pair.odd, x), of(f.pair.even, x), lambda y, z: y / z)
-    assert abs(made - of(name, x)) < MP.mpf(10) ** -50
+    whole = f.parts(value_of(f.pair.odd, x), value_of(f.pair.even, x), lambda y, z: y / z)
+    assert abs(whole - value_of(name, x)) < MP.mpf(10) ** -50
 
 
 @pytest.mark.parametrize(("system", "digits"), SYSTEMS)
 @pytest.mark.parametrize("name", functions.in_rings())
 def test_every_number_system_has_it_as_mpmath_does(name: str, system: str, digits: int) -> None:
-    made = arithmetic.get(system, digits)
-    if name not in made.functions:
-        assert made.absolute
+    numbers = arithmetic.get(system, digits)
+    if name not in numbers.functions:
+        assert numbers.absolute
         assert BY_NAME[name].fixed is None
         return
     for place in filter(lambda x: inside(BY_NAME[name], x), PLACES):
-        assert off(made, name, place) < Fraction(1, 2 ** (min(made.bits, 180) - 5))
-
-
-def off(made: Arithmetic, name: str, x: Fraction) -> Fraction:
-    """How far the arithmetic's value is from mpmath's, at the number next to x."""
-    called = made.compile(f"def f(x): return {name}(x)\n", "f", made.functions)
-    with made.context():
-        at = made.number(x)
-        value = made.exact(called(at))
-    return abs(value - true(name, made.exact(at)))
-
-
-def true(name: str, x: Fraction, digits: int = 400) -> Fraction:
-    """The value by mpmath, to so many digits."""
-    context = MPContext()
-    context.dps = digits
-    exact = getattr(context, name)(context.mpf(x.numerator) / x.denominator)
-    sign, mantissa, exponent, _ = exact._mpf_
-    return (-1) ** sign * int(mantissa) * Fraction(2) ** exponent
+        assert off(numbers, name, place) < Fraction(1, 2 ** (min(numbers.bits, 180) - 5))
 
 
 @pytest.mark.parametrize("name", functions.in_rings())
 def test_arrays_of_long_doubles_have_it(name: str) -> None:
     places = np.array([float(x) for x in PLACES if inside(BY_NAME[name], x)], dtype=np.longdouble)
     for value, x in zip(arrays().functions[name](places), places, strict=True):
-        assert abs(float(value) - float(of(name, MP.mpf(float(x))))) < 1e-15 * max(1, abs(value))
+        exact = float(value_of(name, MP.mpf(float(x))))
+        assert abs(float(value) - exact) < 1e-15 * max(1, abs(exact))
+
+
+# -- one file -------------------------------------------------------------------------------------
+
+CHECKER = "verify/reference/check/tape.py"  # which shares nothing with the rest
+
+
+def files_that_name(pattern: str) -> set[str]:
+    word = re.compile(rf"(?<![\w.]){pattern}(?!\w)")
+    return {
+        path.relative_to(ROOT).as_posix()
+        for path in (ROOT / "verify").rglob("*.py")
+        if word.search(path.read_text(encoding="utf-8"))
+    }
+
+
+def test_a_function_is_named_in_its_own_file_and_where_it_is_checked() -> None:
+    """So adding one touches two files."""
+    assert files_that_name("(?:arc|a|ar)sinh") == {
+        "verify/functions/elementary/asinh.py",
+        CHECKER,
+    }
+
+
+def test_others_that_name_a_function_are_made_of_it_alone() -> None:
+    assert files_that_name("(?:a|arc)tan") == {
+        "verify/functions/elementary/atan.py",
+        CHECKER,
+        "verify/reference/check/taylor.py",  # the checker's own recurrence
+        "verify/algebra/identities/angles.py",  # what is true of arctangents alone
+        "verify/algebra/identities/relations.py",
+        "verify/algebra/mistakes/nodes.py",  # asin and acos, as a formula writes them
+        "verify/algebra/ring.py",  # its text
+        "verify/integrators/tracing/derived.py",  # arcsin, arctan2
+        "verify/integrators/tracing/number.py",  # its text
+    }
 
 
 def test_no_library_is_imported_for_the_objects() -> None:

@@ -44,4 +44,4 @@ def _ball(node: sympy.Expr) -> flint.arb | None:
     if node.is_Pow:
         return arguments[0] ** arguments[1]
     function = function_of(node)
-    return None if function is None else getattr(arguments[0], function.name)()
+    return None if function is None else function.of_balls(flint.arb)(arguments[0])

@@ -16,8 +16,8 @@ _MADE = {
     "log10": "(log{0}/log(10))", "log2": "(log{0}/log(2))", "log1p": "log(1 + {0})",
     "expm1": "(exp{0} - 1)", "square": "({0}**2)", "cbrt": "({0}**(1/3))", "pow": "({0}**{1})",
     "power": "({0}**{1})", "hypot": "sqrt({0}**2 + {1}**2)", "asin": "atan({0}/sqrt(1 - {0}**2))",
-    "acos": "(pi/2 - atan({0}/sqrt(1 - {0}**2)))", "asinh": "log({0} + sqrt({0}**2 + 1))",
-    "acosh": "log({0} + sqrt({0}**2 - 1))", "atanh": "(log((1 + {0})/(1 - {0}))/2)",
+    "acos": "(pi/2 - atan({0}/sqrt(1 - {0}**2)))", "acosh": "log({0} + sqrt({0}**2 - 1))",
+    "atanh": "(log((1 + {0})/(1 - {0}))/2)",
 }  # fmt: skip
 _OTHERS = {
     **{name: form for name, form in _MADE.items() if name not in by_name()},

@@ -57,7 +57,8 @@ def at_bits(bits: int) -> Arithmetic:
         finite=in_range,
         context=context,
         functions={
-            **{f: getattr(flint.arb, f) for f in (*in_rings(), "sin_cos", "sqrt", "root")},
+            **{name: function.of_balls(flint.arb) for name, function in in_rings().items()},
+            **{name: getattr(flint.arb, name) for name in ("sin_cos", "sqrt", "root")},
             "pi": pi,
             "minimum": flint.arb.min,
             "maximum": flint.arb.max,

@@ -9,7 +9,7 @@ from llvmlite import ir
 
 from verify.arithmetic.wide.functions import Functions
 from verify.arithmetic.wide.limbs import Value, constant
-from verify.arithmetic.wide.size import WORD
+from verify.arithmetic.wide.size import INTEGER_BITS, WORD
 
 MORE = WORD  # bits after the point that the finer numbers have
 
@@ -51,9 +51,9 @@ class FinerNumbers:
 
     def absolute(self, x: Number) -> Number:
         """|x|, which the least number has not."""
-        size = self.signed(x, x)
-        zero = constant(0, self.functions.width)
-        self.valid = self.b.and_(self.valid, self.b.icmp_signed(">=", size.value, zero))
+        size, functions = self.signed(x, x), self.functions
+        top = constant(1 << functions.fraction + INTEGER_BITS - 1, functions.width)
+        self.valid = self.b.and_(self.valid, self.b.icmp_unsigned("<", size.value, top))
         return size
 
     def signed(self, size: Number, like: Number) -> Number:

@@ -66,7 +66,6 @@ def hypot(*x: Any) -> Any:
 _MADE: dict[str, Callable[[Any], Any]] = {
     "arcsin": _arcsin,
     "arccos": lambda x: x.kind.pi() / 2 - _arcsin(x),
-    "arcsinh": lambda x: _log(x + _root(x * x + 1)),
     "arccosh": lambda x: _log(x + _root(x - 1) * _root(x + 1)),
     "arctanh": lambda x: _log((1 + x) / (1 - x)) / 2,
     "cbrt": _cbrt,

@@ -148,10 +148,10 @@ class Lowering:
 
     def _radicand(self, op: Root) -> Fraction | None:
         """What it is the root of, where that is a number and there is no function for the root."""
-        of = self.program.ops[op.args[0]]
-        if op.degree == 2 or "root" in self.functions or of.kind != "const":
+        inner = self.program.ops[op.args[0]]
+        if op.degree == 2 or "root" in self.functions or inner.kind != "const":
             return None
-        return of.value if of.value > 0 else None
+        return inner.value if inner.value > 0 else None
 
     def named_constants(
         self, number: Callable[[Fraction], Number], roots: Sequence[int] | None = None

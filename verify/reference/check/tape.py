@@ -12,7 +12,8 @@ from typing import Any
 
 Node = tuple[Any, ...]  # (kind, operands …); operands are indices of earlier nodes
 PAIRS = {"sin": "cos", "cos": "sin", "sinh": "cosh", "cosh": "sinh"}
-_FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh", "atan")
+# Its own list, as all else here: one of those that made the data may lack what these have.
+_FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh", "atan", "asinh")
 
 
 class NotReadError(ValueError):
@@ -97,13 +98,17 @@ class Tape:
         return self.node("power", Fraction(exponent), x)
 
     def function(self, name: str, x: int) -> int:
-        """A function that formulas have, of x; tan and tanh are quotients, a root is a power."""
+        """A function that formulas have, of x; tan and tanh are quotients, a root is a power, and
+        asinh x is log(x + √(1 + x²))."""
         if name in ("tan", "tanh"):
             above, below = ("sin", "cos") if name == "tan" else ("sinh", "cosh")
             inverse = self.power(self.function(below, x), Fraction(-1))
             return self.mul(self.function(above, x), inverse)
         if name == "sqrt":
             return self.power(x, Fraction(1, 2))
+        if name == "asinh":
+            square = self.add(self.const(1), self.mul(x, x))
+            return self.function("log", self.add(x, self.function("sqrt", square)))
         if name == "atan":
             return self.node("atan", x, self.add(self.const(1), self.mul(x, x)))
         if name in PAIRS:

@@ -56,9 +56,9 @@ TOLD = {
     "q\x00": ("U+0000 at column 2 is not allowed; leave it out", "q"),
     "np.cos(q)": ("column 1: unknown function 'np.cos'; write cos(q)", "cos(q)"),
     "math.cos(2*q)": ("write cos(2*q)", "cos(2*q)"),
-    "tah(q)": ("unknown function 'tah'; is tanh meant? allowed: atan", "tanh(q)"),
+    "tah(q)": ("unknown function 'tah'; is tanh meant? allowed: asinh, atan", "tanh(q)"),
     "COS(q)": ("is cos meant?", "cos(q)"),
-    "V(q)": ("unknown function 'V'; allowed: atan, cos", "q"),
+    "V(q)": ("unknown function 'V'; allowed: asinh, atan, cos", "q"),
     "ln(q)": ("write log(q)", "log(q)"),
     "pow(q, 2)": ("write (q**2)", "(q**2)"),
     "log(q, 10)": ("log takes one argument; write (log(q)/log(10))", "(log(q)/log(10))"),
@@ -76,7 +76,7 @@ TOLD = {
     "007*q": ("write 7 for 007", "7*q"),
     "1j*q": ("'1j' is not a number; H is real", "q"),
     "|q|": ("column 1: |…| is an absolute value, which is not smooth", "sqrt(q**2 + 1)"),
-    "abs(q)": ("abs is not smooth, and H must be; allowed: atan", "sqrt(q**2 + 1)"),
+    "abs(q)": ("abs is not smooth, and H must be; allowed: asinh, atan", "sqrt(q**2 + 1)"),
     "q!": ("column 2: ! is not allowed; write a factorial", "q"),
     "p'**2": ("column 2: a prime is no part of a name", "p**2"),
     "'q'": ("leave out the quotation marks", "q"),
@@ -118,6 +118,7 @@ def test_a_mistake_is_named_with_its_place_and_what_to_write(
 
 # As sympy knows those whose names are none of its own.
 _SYMPY = {
+    "arsinh": sympy.asinh, "arsh": sympy.asinh,
     "tg": sympy.tan, "atg": sympy.atan, "sh": sympy.sinh, "ch": sympy.cosh, "th": sympy.tanh,
     "cosec": sympy.csc, "ctg": sympy.cot, "square": lambda x: x**2,
     "expm1": lambda x: sympy.exp(x) - 1,

@@ -35,6 +35,7 @@ FUNCTIONS: list[Callable[..., Any]] = [
     lambda p, q, h: (math.tan(q + h), math.tanh(p * h + q)),
     lambda p, q, h: (math.exp(h * q), math.log(2 + q * q + h)),
     lambda p, q, h: (math.sqrt(1 + p * p + h), math.atan(q - h * p)),
+    lambda p, q, h: (math.asinh(p * h - q), np.arcsinh(q * q + h)),
     lambda p, q, h: (math.sinh(h + p), np.cosh(h * q)),
     lambda p, q, h: ((q + h) ** -2, (1 + q * q + h) ** 1.5),
     lambda p, q, h: (p / (1 + h * q), math.pow(q + h, 3)),

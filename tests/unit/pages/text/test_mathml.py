@@ -113,6 +113,7 @@ FORMULAS = [
     "q**(3/2)/(1 + p**2)**(1/2)",
     "(1 + q)**(1/3)*sqrt(2)/3",
     "exp(p*q)**2*sin(p + q)*tan(q)**2/7",
+    "asinh(q)**2*asinh(p + 1)",
     "-(-(p - 1))*(1 - q)",
     "1/q**2 - 1/(1 + exp(q))",
     "pi*q/2 + exp(1)",
@@ -179,8 +180,8 @@ def is_name(element: ElementTree.Element) -> bool:
     return letters.tag == "mi" and (letters.text or "") in NAMES
 
 
-NAMES = {"sin", "cos", "tan", "sinh", "cosh", "tanh", "ln", "arctan"}
-OURS = {"ln": "log", "arctan": "atan"}
+NAMES = {"sin", "cos", "tan", "sinh", "cosh", "tanh", "ln", "arctan", "arsinh"}
+OURS = {"ln": "log", "arctan": "atan", "arsinh": "asinh"}
 
 
 def called(head: ElementTree.Element, rest: Iterator[ElementTree.Element]) -> float:

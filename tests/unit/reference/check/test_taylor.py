@@ -17,6 +17,7 @@ FORMULAS = [
     "(1 - exp(-a*q))**2 + sqrt(1 + p**2)",
     "sin(p*q)*cosh(q) + log(1 + q**2)",
     "tanh(q) + tan(p/3) + atan(p*q) + sinh(p)",
+    "asinh(q*p)**2 + asinh(-p)",
     "(1 + q**2)**(2/3) - -p**3 + pi*q",
     "p**5*q**3/(1 + p**2)",
 ]
