@@ -225,7 +225,6 @@ COMMANDS: dict[str, tuple[str, ...]] = {
         ("--arguments=x,v,g: is no order of p, q and h, such as q,p,h",),
     "report ok.tml -o out": ("file=ok.tml: No such file", "is ok.toml meant?"),
     "report papers -o out": ("SCENE=papers: unknown; is paper meant?",),
-    "export --system henon-heiles --scheme lie2": ("takes p and q, one degree of freedom",),
     "modified --system henon-heiles --scheme lie2": ("takes p and q, one degree of freedom",),
     "report nosuch -o out": ("SCENE=nosuch: unknown; allowed: paper, ", "integrators, or a TOML"),
     "report integrator -o out": ("SCENE=integrator: unknown; is integrators meant?",),

@@ -16,14 +16,16 @@ import verify
 from tests.helpers.maps import by_formulas
 from verify import InputError, schemes
 from verify.algebra.formula import symbol
-from verify.algebra.symbols import H_STEP, P, Q
+from verify.algebra.symbols import H_STEP
 from verify.calls.given import hamiltonian_from
 from verify.schemes.maps.parts import parts_of
 
 Functions = tuple[Callable[..., Any], Callable[..., Any], Callable[..., Any]]
 JULIA = ("sin", "cos", "tan", "exp", "log", "sqrt", "atan", "sinh", "cosh")
-POINT = (0.625, -0.75, 0.125)  # p, q, h, which are doubles
+H_VALUE = 0.125  # doubles, as all of these
+POINTS = {1: (0.625, -0.75), 2: (0.625, -0.375, -0.75, 0.5)}  # of p, then of q, by degrees
 DELTA, TIME = 1.5, 0.375
+COUPLED = "(p1**2 + p2**2)/2 - cos(q1)*cos(q2) + q1*q2/3"
 DRIVEN = "p**2/2 - (1 + cos(2*t)/2)*cos(q)"
 OWN = "p_next = p - h*q**3/(1 + h**2*q**2); q_next = q + h*p_next/3"
 CASES = [
@@ -40,25 +42,33 @@ CASES = [
     (DRIVEN, "rk4"),
     (DRIVEN, "stormer-verlet"),
     ("p**2/(2 + t**2) + q**4/4 - q*exp(-t)", "yoshida4"),
+    (COUPLED, "lie2"),
+    (COUPLED, "stormer-verlet"),
+    ("henon-heiles", "yoshida4"),
+    ("henon-heiles", "explicit-midpoint"),
+    ("(p1*q2 + p2)**2/2 + q1*q2*exp(p1/2)", "lie1"),
+    ("(p1**2 + p2**2)/2 + q1**2*q2*cos(t)", "stormer-verlet"),
 ]
 
 
 def known(system: str, name: str) -> list[mpmath.mpf]:
     """p', q', the entries of J, and ΔJ at the point with 40 digits, by sympy alone."""
     step_map = schemes.get(name).step_map(hamiltonian_from(system))
+    z = [symbol(x) for x in step_map.hamiltonian.coordinates]
+    size = len(z)
     with mpmath.workdps(40):
-        point = [mpmath.mpf(x) for x in POINT]
+        point = [mpmath.mpf(x) for x in POINTS[step_map.degrees]]
         delta = {symbol("delta"): sympy.Rational(3, 2), symbol("t"): sympy.Rational(3, 8)}
-        jacobian = mpmath.eye(2)
+        jacobian = mpmath.eye(size)
         for part in parts_of(step_map) or (step_map.flat,):
-            pair = [part.ring.expression(x).subs(delta) for x in part.elements]
-            slopes = [x.diff(y) for x in pair for y in (P, Q)]
-            values = sympy.lambdify((P, Q, H_STEP), [*pair, *slopes], "mpmath")(*point)
-            own = mpmath.matrix([values[2:4], values[4:6]])
-            jacobian = own * jacobian
-            point[:2] = values[:2]
-        det = jacobian[0, 0] * jacobian[1, 1] - jacobian[0, 1] * jacobian[1, 0]
-        return [*point[:2], *jacobian, det - 1]
+            moved = [part.ring.expression(x).subs(delta) for x in part.elements]
+            slopes = [x.diff(y) for x in moved for y in z]
+            read = sympy.lambdify((*z, H_STEP), [*moved, *slopes], "mpmath")
+            values = read(*point, mpmath.mpf(H_VALUE))
+            own = [values[k : k + size] for k in range(size, len(values), size)]
+            jacobian = mpmath.matrix(own) * jacobian
+            point = values[:size]
+        return [*point, *jacobian, mpmath.det(jacobian) - 1]
 
 
 def python_code(system: str, name: str) -> Functions:
@@ -92,10 +102,10 @@ def c_code(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str, str], Fun
         source, library = folder / f"{own}.c", folder / f"{own}.so"
         source.write_text(verify.export(system, name, "c", name=own))
         subprocess.run([compiler, *flags, str(source), "-o", str(library), "-lm"], check=True)
-        loaded = ctypes.CDLL(str(library))
+        loaded, size = ctypes.CDLL(str(library)), len(hamiltonian_from(system).coordinates)
         return (
-            _filled(getattr(loaded, own), 2),
-            _filled(getattr(loaded, f"{own}_jacobian"), 4),
+            _filled(getattr(loaded, own), size),
+            _filled(getattr(loaded, f"{own}_jacobian"), size**2),
             _returned(getattr(loaded, f"{own}_delta_j")),
         )
 
@@ -118,9 +128,10 @@ def _returned(function: Any) -> Callable[..., float]:
 
 def check(functions: Functions, system: str, name: str) -> None:
     step, jacobian, delta_j = functions
-    given = (*POINT, DELTA) if system == "duffing" else POINT
-    if "t**" in system or "*t" in system:
-        given = (*POINT[:2], TIME, POINT[2])
+    exact = hamiltonian_from(system)
+    time = (TIME,) if exact.time_dependent else ()
+    more = (DELTA,) if system == "duffing" else ()
+    given = (*POINTS[exact.degrees], *time, H_VALUE, *more)
     wanted = known(system, name)
     found = [*step(*given), *jacobian(*given)]
     for own, exact in zip(found, wanted, strict=False):
@@ -157,6 +168,14 @@ def test_a_planted_error_in_the_code_is_seen() -> None:
     for functions in wrong:
         with pytest.raises(AssertionError):
             check(functions, "duffing", "lie2")
+    step, jacobian, delta_j = python_code(COUPLED, "lie2")
+    check((step, jacobian, delta_j), COUPLED, "lie2")
+    with pytest.raises(AssertionError):  # a Jacobian by columns
+        check((step, lambda *x: transposed(jacobian(*x)), delta_j), COUPLED, "lie2")
+
+
+def transposed(entries: Any) -> list[Any]:
+    return [entries[4 * b + a] for a in range(4) for b in range(4)]
 
 
 def test_names_that_mean_something_else_there_are_changed() -> None:
