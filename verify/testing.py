@@ -27,7 +27,9 @@ from verify.integrators.user_code.loading import callee_from
 from verify.integrators.user_code.step import TIME_LIMIT
 from verify.verdict import Verdict
 
-__all__ = ["assert_area_order", "assert_area_preserving", "assert_convergence_order"]
+__all__ = [
+    "assert_area_order", "assert_area_preserving", "assert_convergence_order", "assert_symplectic",
+]  # fmt: skip
 
 StepFunction = Callable[..., Any]
 
@@ -50,6 +52,19 @@ def assert_area_preserving(
     """
     __tracebackhide__ = True
     return _asserted(step, hamiltonian, Claims(area_preserving=True), options)
+
+
+def assert_symplectic(
+    step: StepFunction, hamiltonian: Hamiltonian | str, **options: Any
+) -> Finding:
+    """AssertionError unless JᵀΩJ ≡ Ω for the map z ↦ step(z, h), and it is a scheme for H.
+
+    In n degrees of freedom `step(p, q, h)` takes and returns arrays of n numbers, and the message
+    has the entry of S = JᵀΩJ − Ω that is not 0. In one degree it is the same as
+    `assert_area_preserving`, which says the rest.
+    """
+    __tracebackhide__ = True
+    return _asserted(step, hamiltonian, Claims(symplectic=True), options)
 
 
 def assert_area_order(

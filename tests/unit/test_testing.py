@@ -4,10 +4,16 @@ from typing import Any
 
 import pytest
 
+import verify
 from tests.helpers.programs import user_steps as own_steps
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.testing import assert_area_order, assert_area_preserving, assert_convergence_order
+from verify.testing import (
+    assert_area_order,
+    assert_area_preserving,
+    assert_convergence_order,
+    assert_symplectic,
+)
 
 
 def test_what_holds_passes_and_returns_what_was_found() -> None:
@@ -25,6 +31,52 @@ def test_what_does_not_hold_fails_with_the_counterexample() -> None:
         assert_area_order(own_steps.lie2, "pendulum", 4)
     with pytest.raises(AssertionError, match=r"order 3 is claimed; the map agrees .* h\^2 only"):
         assert_convergence_order(own_steps.verlet, "pendulum", 3)
+
+
+HENON = "(p1**2 + p2**2 + q1**2 + q2**2)/2 + q1**2*q2 - q2**3/3"
+
+
+def force(q: Any) -> Any:
+    return [-q[0] - 2 * q[0] * q[1], -q[1] - q[0] ** 2 + q[1] ** 2]
+
+
+def euler_b(p: Any, q: Any, h: Any) -> Any:
+    p = [x + h * f for x, f in zip(p, force(q), strict=True)]
+    return p, [x + h * v for x, v in zip(q, p, strict=True)]
+
+
+def euler(p: Any, q: Any, h: Any) -> Any:
+    moved = [x + h * v for x, v in zip(q, p, strict=True)]
+    return [x + h * f for x, f in zip(p, force(q), strict=True)], moved
+
+
+def stretched(p: Any, q: Any, h: Any) -> Any:
+    """It preserves volume, and no more: h² of p1 is gained, and of p2 lost."""
+    p, q = euler_b(p, q, h)
+    return [p[0] * (1 + h * h), p[1] / (1 + h * h)], q
+
+
+def test_a_step_in_several_degrees_is_symplectic_or_not() -> None:
+    found = assert_symplectic(euler_b, HENON)
+    assert (found.verdict, found.symplectic) == ("PROVED", True)
+    for step in (euler, stretched):
+        with pytest.raises(AssertionError, match="REFUTED: that it is symplectic is claimed"):
+            assert_symplectic(step, HENON)
+    assert assert_area_preserving(stretched, HENON).area_preserving is True
+    assert assert_symplectic(own_steps.verlet, "pendulum").verdict == "PROVED"
+    with pytest.raises(AssertionError, match="REFUTED: det J ≡ 1"):
+        assert_symplectic(own_steps.lie2, "pendulum")
+
+
+def test_a_scheme_in_several_degrees_is_held_to_what_it_claims() -> None:
+    for scheme, holds in (("stormer-verlet", True), ("lie2", False)):
+        found = verify.check(HENON, scheme, symplectic=True)
+        assert found.verdict == ("PROVED" if holds else "REFUTED")
+        assert found.area_preserving is holds
+    with pytest.raises(InputError, match="symplectic=True is claimed"):
+        verify.check(HENON, "lie2", area_preserving=True)
+    with pytest.raises(InputError, match="symplectic=1: must be True or False"):
+        verify.check(HENON, "lie2", symplectic=1)  # type: ignore[arg-type]
 
 
 def test_area_alone_is_not_enough() -> None:

@@ -33,6 +33,7 @@ def check(
     parameters: GivenParameters = None,
     order: int | None = None,
     area_preserving: bool = False,
+    symplectic: bool = False,
     arguments: str | None = None,
     p: Exact | Sequence[Exact] | None = None,
     q: Exact | Sequence[Exact] | None = None,
@@ -49,7 +50,8 @@ def check(
         is called; a scheme's name,
         'p_next = …; q_next = …', a Scheme or a StepMap is proved.
     order: the order of convergence that is claimed of it, at least; a scheme's own where left out.
-    area_preserving: whether det J ≡ 1 is claimed of it.
+    area_preserving, symplectic: whether det J ≡ 1 is claimed of it, or JᵀΩJ ≡ Ω, which is the same
+        in one degree of freedom.
     arguments: such as "q,p,h", where the function's arguments are not named so.
     p, q: a state to look at first, numbers or, in n degrees of freedom, lists of n; `step_size`:
         the largest that is looked at; `within`: a defect that is allowed.
@@ -65,19 +67,24 @@ def check(
     exact = hamiltonian_from(system, parameters)
     if order is not None:
         order = whole("order", order, 1, MOST_CLAIMED)
-    if not isinstance(area_preserving, bool):
-        raise InputError("area_preserving", area_preserving, "must be True or False")
+    for name, claimed in (("area_preserving", area_preserving), ("symplectic", symplectic)):
+        if not isinstance(claimed, bool):
+            raise InputError(name, claimed, "must be True or False")
     if not callable(step) or isinstance(step, Scheme):
         found = scheme_from(step)
         step_map = step_map_from(found, exact)
-        if isinstance(found, Scheme) and order is None and not area_preserving:
+        keeps = symplectic or (area_preserving and exact.degrees == 1)
+        if area_preserving and not keeps:
+            problem = "of a scheme in several degrees of freedom symplectic=True is claimed"
+            raise InputError("area_preserving", area_preserving, problem)
+        if isinstance(found, Scheme) and order is None and not keeps:
             return prove(step_map, found)
-        return prove(step_map, _claiming(found, order, area_preserving))
+        return prove(step_map, _claiming(found, order, keeps))
     callee = callee_from(
         step, exact.coordinates, arguments=arguments, parameters=dict(exact.values),
         time_limit=time_limit,
     )  # fmt: skip
-    claims = Claims(order=order, area_preserving=area_preserving)
+    claims = Claims(order=order, area_preserving=area_preserving, symplectic=symplectic)
     return check_integrator(callee, exact, claims, request_of(exact, p, q, step_size, within))
 
 

@@ -84,7 +84,7 @@ def prove_every(
     )
     _check_length(blank, scheme, every_h)
     if degrees == 1 and timed and not isinstance(every_h, TaylorSeries):
-        return _in_time(scheme, conditions_for(every_h), least)
+        return _in_time(blank, scheme, conditions_for(every_h), least)
     if isinstance(every_h, ByConditions) and (degrees == 1 or not isinstance(every_h, BySeries)):
         by_conditions = _in_plane if degrees == 1 else _in_degrees
         return by_conditions(blank, scheme, every_h, least)
@@ -155,8 +155,9 @@ def counterexample(scheme: Scheme, separable: bool) -> tuple[str, int] | None:
 # -- where H depends on time ----------------------------------------------------------------------
 
 
-def _in_time(scheme: Scheme, timed: ByConditions, least: int) -> EveryProof:
-    """By the coefficients and the times; where they leave det J open, by an H without t."""
+def _in_time(blank: EveryProof, scheme: Scheme, timed: ByConditions, least: int) -> EveryProof:
+    """By the coefficients and the times; where they leave det J open, by the series, if the scheme
+    has one, and else by an H without t."""
     found = replace(prove_by_conditions(scheme, timed, least), timed=True)
     if isinstance(timed, TimedSplitting):
         named = mistakes_of_splitting(timed) if found.verdict is Verdict.REFUTED else []
@@ -166,6 +167,10 @@ def _in_time(scheme: Scheme, timed: ByConditions, least: int) -> EveryProof:
     agreed = found.convergence_order or 0
     if agreed < scheme.order or found.verdict is not Verdict.UNDECIDED:
         return found
+    if isinstance(scheme.every_h, BySeries):
+        by_series = prove_by_series(blank, scheme, scheme.every_h)
+        if by_series.verdict is Verdict.PROVED:
+            return replace(by_series, conditions=found.conditions)
     without = prove_every(scheme.name)  # t, which are some of these H
     if without.area_preserving is not False:
         return found

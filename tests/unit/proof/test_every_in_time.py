@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import pytest
+import sympy
 
 from tests.helpers.lie_derivatives import lie_derivatives
 from verify import schemes
@@ -156,12 +157,17 @@ def test_other_schemes_are_refused_in_one_line(monkeypatch: pytest.MonkeyPatch) 
 def test_explicit_stages_have_the_order_that_the_prover_in_n_degrees_has(
     scheme: str, order: int
 ) -> None:
-    """By an H without t, of which no higher order is true; the other prover makes S itself."""
+    """With the coefficient itself, which for an H without t is that of the proof without it."""
     found, made = prove_every(scheme, timed=True), prove_every(scheme, degrees=2, timed=True)
-    assert (found.verdict, found.order, found.leading) == ("PROVED", order, "")
+    assert (found.verdict, found.order, found.area_preserving) == ("PROVED", order, False)
     assert (made.verdict, made.order, made.volume_order) == ("PROVED", order, order)
-    with pytest.raises(InputError, match="the checker knows"):
-        of_every(found)
+    assert (found.convergence_order, found.convergence_decided) == (order - 1, True)
+    assert [c.holds for c in found.conditions].count(False) > 0
+    leading, without = map(sympy.sympify, (found.leading, prove_every(scheme).leading))
+    of_t = [x for x in leading.free_symbols if x.name.endswith("t")]
+    assert of_t
+    assert sympy.expand(leading.subs(dict.fromkeys(of_t, 0)) - without) == 0
+    assert of_every(found)
 
 
 @pytest.mark.parametrize(
