@@ -60,19 +60,25 @@ def in_reach(x: Ball) -> bool:
 
 
 def middle_and_radius(x: Ball) -> tuple[Fraction, Fraction]:
-    """The ball's middle and radius as exact rationals; it must be in reach.
+    """The ball's middle and radius as exact rationals; of one that is too small those of a wider
+    one around 0.
 
-    Raises OverflowError for one that is not: as a rational it would fill all memory.
+    Raises OverflowError for one that is too large: as a rational it would fill all memory.
     """
-    middle, radius = (_rational(*part.man_exp()) for part in (x.mid(), flint.arb(x.rad())))
-    return middle, radius
+    middle, off = _rational(*x.mid().man_exp())
+    radius, more = _rational(*flint.arb(x.rad()).man_exp())
+    return middle, radius + off + more
 
 
-def _rational(mantissa: flint.fmpz, exponent: flint.fmpz) -> Fraction:
+def _rational(mantissa: flint.fmpz, exponent: flint.fmpz) -> tuple[Fraction, Fraction]:
+    """The number, and 0; or, where it is too small, 0 and a bound of its size."""
     numerator, power = int(mantissa), int(exponent)
-    if abs(power) > _MOST_EXPONENT:
-        raise OverflowError("a ball is too large, or too small, for a rational")
-    return Fraction(numerator << power) if power > 0 else Fraction(numerator, 1 << -power)
+    if power > _MOST_EXPONENT:
+        raise OverflowError("a ball is too large for a rational")
+    if power < -_MOST_EXPONENT:
+        return Fraction(0), Fraction(abs(numerator), 1 << _MOST_EXPONENT)
+    exact = Fraction(numerator << power) if power > 0 else Fraction(numerator, 1 << -power)
+    return exact, Fraction(0)
 
 
 def bounds(x: Ball) -> tuple[Fraction, Fraction]:

@@ -234,9 +234,25 @@ def test_the_radius_is_what_flint_says_and_not_less() -> None:
     assert math.isclose(float(made.radius(third)), float(third.rad()), rel_tol=1e-9)
 
 
-def test_a_ball_beyond_reach_is_refused_and_no_rational() -> None:
-    for exponent in (2**40, -(2**40)):
-        far = flint.arb(2) ** exponent
-        with pytest.raises(OverflowError, match="too"):
-            middle_and_radius(far)
+def test_a_ball_too_large_is_refused_and_one_too_small_is_around_0() -> None:
+    with pytest.raises(OverflowError, match="too large"):
+        middle_and_radius(flint.arb(2) ** 2**40)
+    for tiny in (flint.arb(3) ** -(2**40), -(flint.arb(3) ** -(2**40))):
+        middle, radius = middle_and_radius(tiny)
+        assert middle == 0
+        assert 0 < radius < Fraction(1, 2**100_000)
+        assert abs(tiny) < flint.arb(2) ** -100_000
+    middle, radius = middle_and_radius(flint.arb(1, flint.arb(2) ** -(2**40)))
+    assert middle == 1
+    assert 0 < radius < Fraction(1, 2**100_000)
     assert middle_and_radius(flint.arb(2) ** -1000) == (Fraction(1, 2**1000), 0)
+
+
+def test_a_defect_that_is_next_to_nothing_is_no_crash() -> None:
+    """exp(−q²) far out: the least ΔJ of a step is of an exponent that no rational is made of."""
+    found = run(Hamiltonian.parse("p**2/2 + exp(-q**2)"), "lie1", q=1, p=1, steps=100, points=1,
+                step_size=Fraction(5, 2), arithmetic="ball", digits=1)  # fmt: skip
+    assert found.status == "finished"
+    low, high = map(Fraction, found.series[0].delta_j)
+    assert low < 0 < high
+    assert abs(low) < Fraction(1, 10**30_000)
