@@ -18,8 +18,8 @@ from verify.commands.shared.tasks import perform, with_tasks
 from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
+    from verify.studies.stability.equilibrium import LinearAtEquilibrium
     from verify.studies.stability.linear import LinearStability
-    from verify.studies.stability.linear_in_degrees import LinearInDegrees
 
 _OF_H = ("system", "hamiltonian", "params", "q", "p", "step_sizes")
 _SHOWN = 12  # digits on a terminal
@@ -73,17 +73,17 @@ def _print_oscillator(found: "LinearStability", delta_j: str) -> None:
 def _at_equilibrium(scheme: str, given: Mapping[str, Any]) -> Answer:
     from verify.arithmetic.exact import positive
     from verify.hamiltonians.start import point_of
-    from verify.studies.stability.linear_in_degrees import linear_in_degrees
+    from verify.studies.stability.equilibrium import linear_at_equilibrium
 
     exact = hamiltonian_of(given["system"], given["hamiltonian"], given["params"])
     origin = ",".join(["0"] * exact.degrees)
     q, p = (listed(given[name] or origin, exact) for name in ("q", "p"))
     sizes = [positive(h, "step_size") for h in given["step_sizes"]]
-    found = linear_in_degrees(exact, scheme, point_of(exact, q, p), sizes)
+    found = linear_at_equilibrium(exact, scheme, point_of(exact, q, p), sizes)
     return Answer(lambda: _data(found), lambda: _print_equilibrium(found))
 
 
-def _data(found: "LinearInDegrees") -> dict[str, Any]:
+def _data(found: "LinearAtEquilibrium") -> dict[str, Any]:
     from verify.arithmetic.exact import text
     from verify.hamiltonians.start import shown_of
 
@@ -109,7 +109,7 @@ def _data(found: "LinearInDegrees") -> dict[str, Any]:
     }
 
 
-def _print_equilibrium(found: "LinearInDegrees") -> None:
+def _print_equilibrium(found: "LinearAtEquilibrium") -> None:
     from verify.arithmetic.exact import plain, rational, text
 
     at = ", ".join(f"{name} = {text(x)}" for name, x in found.point.items() if x) or "the origin"
@@ -132,7 +132,7 @@ def _print_equilibrium(found: "LinearInDegrees") -> None:
         click.echo(f"  h = {text(h):6} {_SAID[bounded]}")
 
 
-def _frequencies(found: "LinearInDegrees") -> str:
+def _frequencies(found: "LinearAtEquilibrium") -> str:
     each = [
         f.decimal(_SHOWN) + f" ({f.multiplicity} times)" * (f.multiplicity > 1)
         for f in found.frequencies

@@ -5,8 +5,8 @@ from fractions import Fraction
 import pytest
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.studies.stability.equilibrium import linear_at_equilibrium
 from verify.studies.stability.limits import linear_limit
-from verify.studies.stability.linear_in_degrees import linear_in_degrees
 from verify.studies.stability.nearby_linear import linear_stability
 
 HALF = ("0.11888010966548", "0.29619504261126", "0.38111989033452", "0.40760991477748")
@@ -56,7 +56,7 @@ def test_at_an_equilibrium_the_largest_step_is_that_of_exact_coefficients() -> N
     oscillators = Hamiltonian.parse("p1**2/2 + p2**2/2 + 2*q1**2 + q2**2/2")
     origin = dict.fromkeys(("p1", "p2", "q1", "q2"), Fraction(0))
     steps = [Fraction("2.3"), Fraction("2.34")]
-    found = linear_in_degrees(oscillators, scheme_of(HALF), origin, steps)
+    found = linear_at_equilibrium(oscillators, scheme_of(HALF), origin, steps)
     assert abs(Fraction(found.step_size) - LONGEST / 2) < Fraction(1, 10**5)
     assert found.decided == {steps[0]: True, steps[1]: False}
 

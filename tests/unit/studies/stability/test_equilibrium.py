@@ -13,7 +13,7 @@ from verify.errors import InputError
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
-from verify.studies.stability.linear_in_degrees import LinearInDegrees, linear_in_degrees
+from verify.studies.stability.equilibrium import LinearAtEquilibrium, linear_at_equilibrium
 from verify.studies.stability.step_matrix import stays_bounded
 
 COUPLED = Hamiltonian.parse("(p1**2 + p2**2 + q1**2 + q2**2)/2 + 2*(q1 - q2)**2")  # ω = 1 and 3
@@ -25,10 +25,10 @@ def chain(n: int) -> Hamiltonian:
     return systems.get("fput").hamiltonian({"n": n, "alpha": "1/4", "beta": "1/2"})
 
 
-def at(hamiltonian: Hamiltonian, scheme: str, *sizes: str, **point: int) -> LinearInDegrees:
+def at(hamiltonian: Hamiltonian, scheme: str, *sizes: str, **point: int) -> LinearAtEquilibrium:
     origin = dict.fromkeys(hamiltonian.coordinates, Fraction(0))
     given = origin | {name: Fraction(x) for name, x in point.items()}
-    return linear_in_degrees(hamiltonian, scheme, given, [Fraction(h) for h in sizes])
+    return linear_at_equilibrium(hamiltonian, scheme, given, [Fraction(h) for h in sizes])
 
 
 @pytest.mark.parametrize("n", [2, 3, 8])
@@ -59,7 +59,7 @@ def test_a_field_across_the_plane_parts_two_equal_frequencies() -> None:
 )
 def test_the_matrix_of_a_step_says_the_same_as_the_interval(scheme: str, limit: str) -> None:
     """The matrix is not asked where the interval allows h; here it is for both sides of the end."""
-    from verify.studies.stability import linear_in_degrees as module
+    from verify.studies.stability import equilibrium as module
 
     found = at(COUPLED, scheme)
     assert found.step_size_exact == limit

@@ -57,7 +57,7 @@ class Frequency:
 
 
 @dataclass(frozen=True)
-class LinearInDegrees:
+class LinearAtEquilibrium:
     """`frequencies`: from the smallest on; less than n of them, with multiplicities, where motion
     near the equilibrium is not oscillation alone. `interval`: of hω, where H's quadratic part is a
     sum of oscillators; else None. `decided`: whether powers of a step stay bounded, for each h that
@@ -113,12 +113,12 @@ class LinearInDegrees:
         return str(sympy.radsimp(y / omega))
 
 
-def linear_in_degrees(
+def linear_at_equilibrium(
     hamiltonian: Hamiltonian,
     scheme: str,
     point: Mapping[str, Fraction],
     step_sizes: Sequence[Fraction] = (),
-) -> LinearInDegrees:
+) -> LinearAtEquilibrium:
     """At the equilibrium `point`, by the names of H's coordinates.
 
     Raises InputError where H depends on time or a parameter has no value, where the point is none,
@@ -135,7 +135,7 @@ def linear_in_degrees(
         problem = "is needed: H's quadratic part there is no sum of oscillators T(p) + V(q)"
         raise InputError("step_sizes", NOT_GIVEN, problem)
     interval, frequencies = linear_stability(scheme) if splits else None, _frequencies(matrix)
-    found = LinearInDegrees(scheme, hamiltonian, point, tuple(frequencies), interval)
+    found = LinearAtEquilibrium(scheme, hamiltonian, point, tuple(frequencies), interval)
     decided: dict[Fraction, bool | None] = {}
     for h in step_sizes:
         step = None if found.allows(h) else _step(scheme, hamiltonian, hessian, h)
