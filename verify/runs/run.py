@@ -258,15 +258,13 @@ def proved(
     every = {name: kinds.by_name()[name] for name in asked}
     zero = Fraction(0), Fraction(0)
     known = {name: zero for name, each in every.items() if each.vanishes(step_map)}
-    step = step_map.written_defect
-    if step_map.preserves_area or step is None or step_map.degrees > 1:
-        return known
-    if any(step.ring.depends(step.delta_j, name) for name in (*step.field.names, "t")):
+    constant = {name: each.constant for name, each in every.items() if each.constant}
+    if step_map.preserves_area or not constant or step_map.uniform_delta_j is None:
         return known
     bits = int(4 * digits) + 64 + 2 * steps.bit_length()
-    delta_j = enclose(step.ring, step.delta_j, {"h": h}, bits)
+    delta_j = enclose(step_map.flat.ring, step_map.uniform_delta_j, {"h": h}, bits)
     if delta_j is None:
         return known
     with working_precision(bits):
-        found = {n: each.constant(delta_j, steps) for n, each in every.items() if each.constant}
+        found = {name: of(delta_j, steps) for name, of in constant.items()}
         return known | {n: middle_and_radius(x) for n, x in found.items() if x and in_reach(x)}

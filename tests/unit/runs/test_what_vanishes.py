@@ -78,3 +78,31 @@ def test_each_observable_says_itself_when_it_vanishes() -> None:
     assert vanishing == {*by_name()} - {"lambda_plain", "energy_error_max"}
     conserved = {name for name, each in by_name().items() if each.vanishes(Conserving())}
     assert conserved == {"energy_error_max"}
+
+
+UNIFORM = [("p**2/2 + q**2/2", "rk4"), ("p**2/2 + q**2/2", "lie2"), ("p*q + q**3/3", "rk4"),
+           ("p*q + q**3/3", "explicit-midpoint")]  # fmt: skip
+
+
+@pytest.mark.parametrize(("formula", "scheme"), UNIFORM)
+def test_where_delta_j_is_a_number_its_observables_are_known_without_a_run(
+    formula: str, scheme: str
+) -> None:
+    exact, h = Hamiltonian.parse(formula), Fraction(1, 8)
+    asked = ["delta_j_max", "mse", "lambda", "lambda_max"]
+    keys = {"q": 1, "p": Fraction(1, 2), "step_size": h, "steps": 9, "digits": 20}
+    found = runs.run(exact, scheme, **keys, observables=asked)
+    assert set(found.exact) == {*asked}
+    plain = runs.run(exact, scheme, **keys, arithmetic="mpfr", observables=["lambda_plain"])
+    seen, known = plain.values["lambda_plain"], found.values["lambda"]
+    apart = abs(Fraction(known.value) - Fraction(seen.value))
+    assert apart <= Fraction(known.bound) + Fraction(seen.bound)
+    assert Fraction(known.value) != 0
+
+
+@pytest.mark.parametrize("formula", ["p**2/2 - cos(q)", "p**2/2 + (1 + cos(t)/3)*q**2/2"])
+@pytest.mark.parametrize("scheme", ["rk4", "explicit-midpoint", "lie2"])
+def test_a_delta_j_that_changes_from_step_to_step_is_not_called_a_number(
+    formula: str, scheme: str
+) -> None:
+    assert step_map_of(Hamiltonian.parse(formula), scheme).uniform_delta_j is None

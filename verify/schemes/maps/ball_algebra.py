@@ -177,6 +177,19 @@ def may_conserve(field: CanonicalField, step: Step | ClosedForm) -> bool:
     return _may_vanish(field, step, gap)
 
 
+def may_be_uniform(field: CanonicalField, step: Step | ClosedForm) -> bool:
+    """Whether no two points are seen at which det J differs."""
+    first: list[Ball] = []
+
+    def gap(_: Point, __: Sequence[Ball], slopes: flint.arb_mat) -> Sequence[Ball]:
+        size = slopes.nrows()
+        one = flint.arb_mat([[flint.arb(i == j) for j in range(size)] for i in range(size)])
+        first.append((one + slopes).det())
+        return [first[-1] - first[0]]
+
+    return _may_vanish(field, step, gap)
+
+
 def _may_vanish(
     field: CanonicalField,
     step: Step | ClosedForm,

@@ -23,7 +23,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.late import sympy
 from verify.notebook import aligned_latex, short_latex
 from verify.schemes.conditions.condition import Condition
-from verify.schemes.maps.ball_algebra import may_conserve, may_preserve
+from verify.schemes.maps.ball_algebra import may_be_uniform, may_conserve, may_preserve
 from verify.schemes.maps.closed_form import ClosedForm, h_inside
 from verify.schemes.maps.written_out import (
     TooLongError,
@@ -228,6 +228,18 @@ class StepMap:
                 return False
             return self.closed is not None and self.closed.symplectic
         return self._given is not None and self._given.symplectic
+
+    @cached_property
+    def uniform_delta_j(self) -> Poly | None:
+        """ΔJ of a map in the plane, in the ring of its closed form, where it is shown to depend on
+        h and H's parameters alone; else None."""
+        step = self.step or self._given
+        if self.degrees > 1 or step is None or self.implicit:
+            return None
+        if not may_be_uniform(self.field, step) or self.closed is None:
+            return None
+        ring, delta_j = self.closed.ring, self.closed.delta_j
+        return None if any(ring.depends(delta_j, n) for n in (*self.field.names, "t")) else delta_j
 
     @cached_property
     def conserves_energy(self) -> bool:
