@@ -2,6 +2,7 @@
 
 from fractions import Fraction
 from itertools import combinations
+from math import isqrt
 from typing import ClassVar, Literal
 
 from verify.scenes.frozen import Frozen, OfScheme, Said, Seconds, WithProse
@@ -21,8 +22,9 @@ class FormValue(Frozen):
     bound: Rows
 
     @classmethod
-    def of(cls, entries: tuple[Value, ...], size: int) -> "FormValue":
+    def of(cls, entries: tuple[Value, ...]) -> "FormValue":
         """That of the entries above the diagonal, row by row."""
+        size = (1 + isqrt(1 + 8 * len(entries))) // 2  # of rows: size (size − 1)/2 entries
         zero = Value(value="0", bound="0")
         full = [[zero] * size for _ in range(size)]
         for (a, b), entry in zip(combinations(range(size), 2), entries, strict=True):
@@ -88,7 +90,7 @@ class FormAt(Frozen):
 
 
 class PowerLawResult(WithProse):
-    """A `verify.studies.separation.form_result.PowerLaw`: measured, not proved."""
+    """A `verify.studies.separation.growth.PowerLaw`: measured, not proved."""
 
     exponent: str | None
     standard_error: str | None
@@ -119,7 +121,7 @@ class TangentGrowth(WithProse):
     2 × 2 minors, as which a 2-form grows, and which is below ‖M_N‖². `finite_time_lyapunov`:
     ln(‖M_N‖/√(2n))/T per unit of time, `time` T. `motion`: whether ‖M‖ grew exponentially in this
     run, and then `cause`, whose that growth is: `at_half_step` is the exponent over the same time
-    with half the step size (`verify.studies.separation.form_result`). `law`, `law_of_areas`: those
+    with half the step size (`verify.studies.separation.tangent`). `law`, `law_of_areas`: those
     of ‖M‖² and ‖∧²M‖ where it did not. `per_area`: the greatest |entry| of the truncation of W_N,
     over ‖∧²M_N‖.
     """
@@ -139,7 +141,7 @@ class TangentGrowth(WithProse):
 
 class SeparationInDegrees(OfScheme):
     """Truncation and rounding in W of one run in float64, in n degrees of freedom; see
-    `verify.studies.separation.form_chain`.
+    `verify.studies.separation.ways.matrices`.
 
     `coordinates` name the rows and columns of all matrices. `plain` takes W = MᵀΩM − Ω of float64's
     M, `closed_form` sums MᵀSM. All are None where `status` is not "finished"; `reason` says why.

@@ -12,8 +12,8 @@ from verify.scenes.observables import OF_FORM, observed
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene
 from verify.scenes.values import CLOSED_FORM
-from verify.studies.separation.mixed_run import POINTS
 from verify.studies.separation.task import does_for_first_link
+from verify.studies.separation.ways.determinants import POINTS
 
 
 def grid_task(

@@ -9,7 +9,6 @@ from typing import Any
 
 from verify.execution.plan import Plan
 from verify.execution.study import Results, Section, Study, called, known_results
-from verify.kernels.step.computation import step_map_of
 from verify.scenes.results.separation import SeparationResult
 from verify.scenes.results.separation_in_degrees import SeparationInDegrees
 from verify.scenes.run_sections import Grid
@@ -54,8 +53,6 @@ def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
     grids = (*_own(scene), *_beside(scene))
     what, why = ("Λ", "ΔJ ≡ 0") if exact.planar else ("W", "S ≡ 0")
     without = f"{why} is proved: the truncation part is exactly 0" if preserves else ""
-    if grids and not exact.planar and not preserves and step_map_of(exact, scheme).implicit:
-        without = "it solves equations; in n degrees of freedom its Jacobian is not followed"
     for grid in grids:
         if without:
             plan.leave_out(f"{name}: truncation separated from rounding for {scheme}", without)

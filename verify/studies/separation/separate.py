@@ -30,18 +30,19 @@ small ΔJ is. `closed_form`: ΔJ from its own closed form, where nothing cancels
 Λ = expm1(Σ log1p(ΔJ_k)) with the sum's own errors added at the end. Truncation, input and
 trajectory are the same for both.
 
-In n degrees of freedom W is split so, entry by entry (`verify.studies.separation.form_chain`):
+In n degrees of freedom W is split so, entry by entry (`verify.studies.separation.ways.matrices`):
 `plain` is what a program does that multiplies the steps' Jacobians and takes MᵀΩM − Ω at the end,
-`closed_form` is that of `verify run` (`verify.studies.separation.form_run`). How W and the tangent
-map grow is told in `verify.studies.separation.form_result`.
+`closed_form` is that of `verify run`. How W and the tangent map grow is told in
+`verify.studies.separation.growth` and `verify.studies.separation.tangent`.
 
-How far the parts are known is told in `verify.studies.separation.working` and
-`verify.runs.estimated`, what is made of a run's checkpoints and of a grid of step sizes in
-`verify.studies.separation.growth`.
+How far the parts are known is told in `verify.studies.separation.ways.determinants`,
+`verify.studies.separation.ways.matrix_bounds` and `verify.runs.estimated`, what is made of a run's
+checkpoints and of a grid of step sizes in `verify.studies.separation.growth`.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
+from functools import partial
 from typing import Any, Protocol, TypeAlias
 
 from verify import arithmetic as number_systems
@@ -59,12 +60,11 @@ from verify.runs.start import Start
 from verify.scenes.results.separation import WAYS, CrossoverResult, SeparationGrid, SeparationResult
 from verify.scenes.results.separation_in_degrees import SeparationGridInDegrees, SeparationInDegrees
 from verify.schemes import canonical
-from verify.studies.separation.chain import Chains, separated_chains
-from verify.studies.separation.form_chain import form_chains
-from verify.studies.separation.form_result import split_in_degrees
 from verify.studies.separation.growth import crossover
-from verify.studies.separation.mixed_run import Stopped
-from verify.studies.separation.way import Way, evaluation
+from verify.studies.separation.links import Chains, separated_chains
+from verify.studies.separation.result import Split, evaluation, form_evaluation
+from verify.studies.separation.stepper.run import Stopped
+from verify.studies.separation.tangent import tangent_growth
 
 Progress = Callable[[int], None]  # called with a number of steps just done, of 3 N in all
 RUNS = 3  # of N steps each: two in exact arithmetic's stead and one in both
@@ -98,8 +98,8 @@ def separate_in_turn(
     `t0`: when it starts, of an H that depends on time. `digits`: significant digits wanted of every
     part. `arithmetic` stands for exact arithmetic; `auto` takes the fastest that can. `run`: one of
     the same steps in the plane that is asked for too, and done once for both. Raises InputError for
-    h ≤ 0, N < 1, a parameter without a value, unknown names, and for float64, which is what is
-    examined; in n degrees of freedom for more than 4 of them, and a scheme that solves equations.
+    h ≤ 0, N < 1, a parameter without a value, unknown names, more than 4 degrees of freedom, and
+    for float64, which is what is examined.
     """
     scheme, h, planar = canonical(scheme), positive(step_size, "step_size"), hamiltonian.planar
     begun = Start(hamiltonian, scheme, h, point_of(hamiltonian, q, p), rational(t0, "t0"))
@@ -119,26 +119,26 @@ def separate_in_turn(
     if not planar:
         result |= {"coordinates": hamiltonian.coordinates, "tangent": None}
     try:
-        if planar:
-            chains = yield from separated_chains(*asked, keeper, run)
-            result |= _split(chains, digits)
-        else:
-            forms = yield from form_chains(*asked, keeper)
-            result |= split_in_degrees(forms, begun, steps, digits)
+        chains = yield from separated_chains(*asked, keeper, run)
+        result |= _split(chains, begun, steps, digits)
     except Stopped as stopped:
         ends = {"status": stopped.status, "failed_step": stopped.step, "reason": stopped.reason}
         result |= ends
     return SeparationResult(**result) if planar else SeparationInDegrees(**result)
 
 
-def _split(chains: Chains, digits: int) -> dict[str, Any]:
-    """What the chains of Λ give of a result."""
-    closed = chains.closed_form and evaluation(Way([chains.closed_form]), digits)
+def _split(chains: Chains, begun: Start, steps: int, digits: int) -> dict[str, Any]:
+    """What the chains give of a result."""
+    sizes, closed = chains.sizes, chains.closed_form and Split(chains.closed_form)
+    evaluated = partial(form_evaluation, sizes=sizes) if sizes else evaluation
+    methods = dict.fromkeys(x for chain in chains.plain for x in chain.methods)
+    tangent = closed and sizes and tangent_growth(closed, sizes, begun, steps)
     return {
         "arithmetic": chains.arithmetic,
-        "plain": evaluation(Way([chains.plain]), digits),
-        "closed_form": closed,
-        "error_method": "; ".join(chains.plain.methods),
+        "plain": evaluated(Split(chains.plain), digits),
+        "closed_form": closed and evaluated(closed, digits),
+        **({"tangent": tangent} if tangent else {}),
+        "error_method": "; ".join(methods),
         "seconds": chains.seconds,
     }
 

@@ -1,27 +1,36 @@
-"""A mixed kernel's run from checkpoint to checkpoint: float64, with exact arithmetic beside it.
+"""A float64 run from checkpoint to checkpoint, with exact arithmetic beside it.
 
-A mixed kernel on its way: its states by names, at the stops that are asked for.
+What is carried becomes links at every checkpoint. How far they are known: what float64 made is
+exact. Of a wide link the way counts the rounding; where it has no bound, the link is held against a
+rerun with 15 more digits, and twice the greatest difference at any checkpoint, and what the last
+bits may hide of it, is its bound, an estimate.
 """
 
 import math
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from itertools import takewhile
-from typing import Any, ClassVar, Generic, Literal, TypeVar
+from typing import Any, Literal
 
-from verify.arithmetic.arb import rational_ball
+from verify import arithmetic as number_systems
 from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
+from verify.arithmetic.systems import float64
 from verify.execution.keeping import fraction_of, fraction_text
 from verify.kernels.chunked_loop import last_good
-from verify.kernels.rounding import Ball, Rounded
 from verify.kernels.stepping import KernelRun
 from verify.lockstep import Course
-from verify.studies.separation.kernel import AT, Mixed
+from verify.runs.estimated import digits_of
+from verify.studies.separation.stepper.kernel import AT, mixed_kernel
+from verify.studies.separation.stepper.trail import Links, exact_links, links_of
+from verify.studies.separation.stepper.way import MixedKernel, Size, State, Way
 
-State = Mapping[str, Any]  # a float or a wide number; its name begins with f or with w
+Advance = Callable[[int], None]  # called with the number of steps just done
+MORE_DIGITS = 15
+COUNTED = "rounding counted"
+RERUN = f"rerun with {MORE_DIGITS} more digits"
 
 
 class Carried(Mapping[str, Any]):
@@ -48,7 +57,7 @@ class Stepper:
 
     def __init__(
         self,
-        kernel: Mixed,
+        kernel: MixedKernel,
         arithmetic: Arithmetic,
         fixed: Sequence[Number],
         also: Callable[[State], bool] = lambda _: True,
@@ -74,14 +83,6 @@ class Stepper:
         return all(map(math.isfinite, map(state.__getitem__, self._vital))) and self.also(state)
 
 
-Advance = Callable[[int], None]  # called with the number of steps just done
-POINTS = 2048  # checkpoints of a run
-MORE_DIGITS = 15
-COUNTED = "rounding counted"
-RERUN = f"rerun with {MORE_DIGITS} more digits"
-K = TypeVar("K", bound=Mixed)
-
-
 class Stopped(Exception):  # noqa: N818 - no error, an answer
     """A run of the chain that has no last value."""
 
@@ -92,45 +93,113 @@ class Stopped(Exception):  # noqa: N818 - no error, an answer
         self.status, self.step, self.reason = status, step, reason
 
 
-def marks_of(steps: int, points: int = POINTS) -> tuple[int, ...]:
+def marks_of(steps: int, points: int) -> tuple[int, ...]:
     """The numbers of steps at the checkpoints, as a run of so many sections notes them."""
     section = -(-steps // points)
     return tuple(min(k, steps) for k in range(section, steps + section, section))
 
 
-class MixedRun(ABC, Generic[K]):
+def rounded_inputs(run: KernelRun) -> dict[str, float]:
+    """The start and the parameters that the kernel takes, as float64; Stopped where one is not."""
+    exact = {**run.start, **{n: run.parameters[n] for n in run.hamiltonian.parameters}}
+    number = float64.make(17).number
+    rounded: dict[str, float] = {name: number(value) for name, value in exact.items()}
+    for name, value in rounded.items():
+        if not math.isfinite(value):
+            raise Stopped("left range", 1, f"{name} is beyond the range of float64")
+    return rounded
+
+
+@dataclass(frozen=True)
+class Working:
+    """The links that one run of the mixed kernel gives; None where one was not followed.
+
+    `factors`: each step's determinant, or Jacobian, is float64's; `closed_factors`: its ΔJ, or S.
+    None, as `closed_form`, where some 1 + ΔJ ≤ 0, which has no logarithm. `sizes`: of the product
+    of Jacobians at every checkpoint, where W is followed.
+    """
+
+    clock: Links | None
+    trajectory: Links | None
+    factors: Links
+    plain: Links
+    closed_factors: Links | None
+    closed_form: Links | None
+    sizes: tuple[Size, ...]
+
+
+class MixedRun:
     """The float64 run of a run, with exact arithmetic beside it; `follow` as in the kernel.
 
     `inputs`: h, the coordinates and the kernel's parameters, as the float64 numbers that they are
     rounded to.
     """
 
-    points: ClassVar[int] = POINTS
+    def __init__(self, way: Way, run: KernelRun, follow: bool) -> None:
+        self.way, self.run, self.follow = way, run, follow
+        self.inputs = rounded_inputs(run)
+        self.marks = marks_of(run.steps, way.points)
 
-    def __init__(self, run: KernelRun, inputs: dict[str, float], follow: bool) -> None:
-        self.run, self.inputs, self.follow = run, inputs, follow
-        self.marks = marks_of(run.steps, self.points)
+    def step_through(self, arithmetic: Arithmetic, advance: Advance) -> Course[Working]:
+        """All steps; raises Stopped where float64 leaves its range."""
+        way, kernel = self.way, self.kernel(arithmetic)
+        states = yield from self._states(kernel, arithmetic, advance)
+        bounds = way.bounds(kernel, arithmetic, self.inputs, states[-1], self.run.steps)
+        again, finer = states, arithmetic
+        if any(bounds.get(name) is None for name in kernel.followed):
+            finer = number_systems.get(arithmetic.name, digits_of(arithmetic) + MORE_DIGITS)
+            again = yield from self._states(self.kernel(finer), finer, lambda _: None)
+        links: dict[str, Links] = {}
+        for name in kernel.followed:
+            values = [way.read(state, name, arithmetic) for state in states]
+            bound = bounds.get(name)
+            if bound is not None:
+                links[name] = links_of(values, bound, "enclosed", COUNTED)
+                continue
+            fine = [way.read(state, name, finer) for state in again]
+            pairs = zip(values, fine, strict=True)
+            apart = max(abs(x - y) for a, b in pairs for x, y in zip(a, b, strict=True))
+            estimate = 2 * apart + way.hides(again, name, arithmetic)
+            links[name] = links_of(fine, estimate, "estimated", RERUN)
+        plain, sizes = map(way.plain, states), (way.size(state, arithmetic) for state in states)
+        return Working(
+            links.get("clock"),
+            links.get("trajectory"),
+            links["factors"],
+            _of_float64(plain),
+            *self._closed(kernel, states, links),
+            tuple(size for size in sizes if size),
+        )
 
-    @abstractmethod
-    def _kernel(self, arithmetic: Arithmetic) -> K:
+    def _closed(
+        self, kernel: MixedKernel, states: Sequence[State], links: Mapping[str, Links]
+    ) -> tuple[Links | None, Links | None]:
+        """The links of the closed form."""
+        if not kernel.closed:
+            nothing = (Fraction(0),) * len(links["factors"])
+            return (exact_links([nothing] * len(states), self.way.vanishes),) * 2
+        values = list(map(self.way.closed_form, states))
+        if not all(math.isfinite(x) for each in values for x in each):
+            return None, None
+        return links["closed"], _of_float64(values)
+
+    def kernel(self, arithmetic: Arithmetic) -> MixedKernel:
         """The kernel with this arithmetic beside float64."""
+        return mixed_kernel(
+            self.way, self.run.hamiltonian, self.run.scheme, arithmetic, self.follow
+        )
 
-    def _limits(self, kernel: K, arithmetic: Arithmetic) -> list[Number]:
-        """What the kernel compares its state with."""
-        return []
-
-    def _in_range(self, state: State) -> bool:
-        """What must hold of a state beside that its float64 numbers are finite."""
-        return True
-
-    def _states(self, kernel: K, arithmetic: Arithmetic, advance: Advance) -> Course[list[State]]:
+    def _states(
+        self, kernel: MixedKernel, arithmetic: Arithmetic, advance: Advance
+    ) -> Course[list[State]]:
         """What the kernel carries, at every checkpoint."""
-        given = [self.inputs[n] for n in ("h", *kernel.parameters)]
-        wide = [arithmetic.number(Fraction(x)) for x in given]
-        fixed = [*given, *wide, *self._limits(kernel, arithmetic)]
+        narrow = list(kernel.inputs(self.inputs).values())
+        wide = [arithmetic.number(Fraction(x)) for x in narrow]
+        limits = self.way.limits(kernel, arithmetic, self.inputs)
+        fixed = [*narrow, *wide, *limits]
         label = f"beside {arithmetic.name} {arithmetic.bits} {self.inputs} {kernel.source}"
         states = self._kept(label, arithmetic)
-        stepper = Stepper(kernel, arithmetic, fixed, self._in_range)
+        stepper = Stepper(kernel, arithmetic, fixed, self.way.in_range)
         state = states[-1] if states else self._first_state(kernel, arithmetic)
         done = self.marks[len(states) - 1] if states else 0
         arithmetic.expect(kernel.function, self.run.steps - done)
@@ -158,7 +227,7 @@ class MixedRun(ABC, Generic[K]):
             return section, min(chunk, self.run.steps - done) // section
         return min(chunk, left), 1
 
-    def _first_state(self, kernel: K, arithmetic: Arithmetic) -> State:
+    def _first_state(self, kernel: MixedKernel, arithmetic: Arithmetic) -> State:
         state: dict[str, Any] = {}
         for name in kernel.state_names:
             if name in kernel.start:
@@ -186,27 +255,6 @@ class MixedRun(ABC, Generic[K]):
         ]
 
 
-def named_inputs(kernel: Mixed, inputs: Mapping[str, float]) -> dict[str, float]:
-    """h and the parameters by the names that the source has for them."""
-    named = {f"x{k}": inputs[n] for k, n in enumerate(kernel.parameters)}
-    return {"h": inputs["h"], **named}
-
-
-def visited(
-    kernel: Mixed, inputs: Mapping[str, float], last: State, cut: Ball
-) -> dict[str, Rounded]:
-    """What a wide program is evaluated at, over the region that the float64 states visited, each
-    number within `cut` of its float64. `last`: what the kernel carried in the end."""
-    region = {n: rational_ball(Fraction(x)) for n, x in named_inputs(kernel, inputs).items()}
-    for name in (n.removesuffix("_low") for n in last if n.endswith("_low")):
-        low, high = (rational_ball(Fraction(last[f"{name}_{side}"])) for side in ("low", "high"))
-        region[name.removeprefix("f_")] = low.union(high)
-    if "f_t" in last:
-        first, end = (rational_ball(Fraction(x)) for x in (inputs["t"], last["f_t"]))
-        region["t"] = first.union(end)
-    return {name: Rounded(x, cut) for name, x in region.items()}
-
-
 def _number(arithmetic: Arithmetic, name: str, value: Fraction) -> Number:
     """What a name that begins with f or with w holds: a float64 or a wide number."""
     return float(value) if name[0] == "f" else arithmetic.number(value)
@@ -215,3 +263,7 @@ def _number(arithmetic: Arithmetic, name: str, value: Fraction) -> Number:
 def as_rational(x: Number, arithmetic: Arithmetic) -> Fraction:
     """The rational that a float64 or a wide number is."""
     return Fraction(x) if isinstance(x, float) else arithmetic.exact(x)
+
+
+def _of_float64(values: Iterable[tuple[float, ...]]) -> Links:
+    return exact_links([tuple(map(Fraction, each)) for each in values], "a float64")
