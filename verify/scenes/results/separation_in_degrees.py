@@ -7,7 +7,15 @@ from typing import ClassVar, Literal
 
 from verify.scenes.frozen import Frozen, OfScheme, Said, Seconds, WithProse
 from verify.scenes.results.bounded_value import Value
-from verify.scenes.results.separation import Chain, CrossoverResult, GrowthResult, parts_table
+from verify.scenes.results.separation import (
+    Chain,
+    EvaluationResult,
+    GridOf,
+    GrowthResult,
+    SeparationGrid,
+    SeparationResult,
+    parts_table,
+)
 
 FORM_ROUNDING = ("input", "trajectory", "derivatives", "product")
 FORM_SHOWN = {"w_working": "W in float64", "truncation": "truncation", "total": "rounding"}
@@ -182,18 +190,15 @@ class SeparationInDegrees(OfScheme):
         return parts_table(self, "W", FORM_SHOWN, lambda matrix: str(matrix.largest), meaning)
 
 
-class SeparationGridInDegrees(Frozen):
+class SeparationGridInDegrees(GridOf[SeparationInDegrees]):
     """The separation of W for several step sizes, in the order given, and the crossover of the
     greatest entries, each way."""
-
-    points: tuple[SeparationInDegrees, ...]
-    plain: CrossoverResult
-    closed_form: CrossoverResult
-
-    def __repr__(self) -> str:
-        sizes = ", ".join(point.step_size for point in self.points)
-        return f"SeparationGridInDegrees({len(self.points)} step sizes: {sizes})"
 
     def _repr_html_(self) -> str:
         """Each step size in full, one below the other."""
         return "".join(point._repr_html_() for point in self.points)
+
+
+AnyEvaluation = EvaluationResult | FormEvaluation
+AnySeparation = SeparationResult | SeparationInDegrees
+AnyGrid = SeparationGrid | SeparationGridInDegrees
