@@ -149,7 +149,8 @@ class Float64Step:
         self.exact, self.h = exact.with_symbols(), h
         self.given = {name: float(value) for name, value in exact.values}
         step_map, size = step_map_of(self.exact, scheme), len(exact.coordinates)
-        self.step = Matrices(size).narrow(step_map, number_systems.get("float64", 17))
+        working = number_systems.get("float64", 17)
+        self.step = Matrices(size).step(step_map, working, exactly=False)
 
     def values(self, inputs: dict[str, float]) -> list[float]:
         import math

@@ -40,10 +40,10 @@ How far the parts are known is told in `verify.studies.separation.ways.determina
 checkpoints and of a grid of step sizes in `verify.studies.separation.growth`.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
 from functools import partial
-from typing import Any, Protocol, TypeAlias
+from typing import Any
 
 from verify import arithmetic as number_systems
 from verify.arithmetic import AUTO
@@ -58,7 +58,13 @@ from verify.lockstep import Course, alone
 from verify.runs.run import AskedRun, check
 from verify.runs.start import Start
 from verify.scenes.results.separation import WAYS, CrossoverResult, SeparationGrid, SeparationResult
-from verify.scenes.results.separation_in_degrees import SeparationGridInDegrees, SeparationInDegrees
+from verify.scenes.results.separation_in_degrees import (
+    AnyEvaluation,
+    AnyGrid,
+    AnySeparation,
+    SeparationGridInDegrees,
+    SeparationInDegrees,
+)
 from verify.schemes import canonical
 from verify.studies.separation.growth import crossover
 from verify.studies.separation.links import Chains, separated_chains
@@ -69,10 +75,8 @@ from verify.studies.separation.tangent import tangent_growth
 Progress = Callable[[int], None]  # called with a number of steps just done, of 3 N in all
 RUNS = 3  # of N steps each: two in exact arithmetic's stead and one in both
 
-Separation: TypeAlias = SeparationResult | SeparationInDegrees
 
-
-def separate(hamiltonian: Hamiltonian, scheme: str, **asked: Any) -> Separation:
+def separate(hamiltonian: Hamiltonian, scheme: str, **asked: Any) -> AnySeparation:
     """The same as `separate_in_turn`, which takes the same arguments, alone."""
     return alone(separate_in_turn(hamiltonian, scheme, **asked))
 
@@ -91,7 +95,7 @@ def separate_in_turn(
     progress: Progress | None = None,
     keeper: Keeper = NOTHING,
     run: AskedRun | None = None,
-) -> Course[Separation]:
+) -> Course[AnySeparation]:
     """Λ of a float64 run of `steps` steps from (q, p), split into truncation and rounding; in n
     degrees of freedom, where q and p are lists, W.
 
@@ -147,16 +151,12 @@ def separate_grid(
     hamiltonian: Hamiltonian,
     scheme: str,
     *,
-    q: Given,
-    p: Given,
     step_sizes: Sequence[Exact],
     steps: int | None = None,
     time: Exact | None = None,
-    t0: Exact = 0,
     digits: int = 17,
-    arithmetic: str = AUTO,
-    progress: Progress | None = None,
-) -> SeparationGrid | SeparationGridInDegrees:
+    **asked: Any,
+) -> AnyGrid:
     """`separate` for several step sizes, over N = `steps` steps or N = ⌊time / h⌋ each.
 
     Raises InputError as `separate` does, and where a step size is given twice, or not exactly one
@@ -165,35 +165,21 @@ def separate_grid(
     counts = grid(step_sizes, steps, time)
     for _, count in counts:
         check(hamiltonian, count, digits, ())  # before the first of them is run
+    asked |= {"digits": digits}
     return as_grid(
-        [
-            separate(
-                hamiltonian, scheme, q=q, p=p, step_size=h, steps=count, t0=t0, digits=digits,
-                arithmetic=arithmetic, progress=progress,
-            )
-            for h, count in counts
-        ]
-    )  # fmt: skip
+        [separate(hamiltonian, scheme, step_size=h, steps=count, **asked) for h, count in counts]
+    )
 
 
-def as_grid(
-    points: Sequence[Separation],
-) -> SeparationGrid | SeparationGridInDegrees:
+def as_grid(points: Sequence[AnySeparation]) -> AnyGrid:
     """Separations for several step sizes, with the crossover of each way to evaluate Λ, or W."""
-    crossed = {
-        way: crossing((point.step_size, getattr(point, way)) for point in points) for way in WAYS
-    }
-    if any(isinstance(point, SeparationInDegrees) for point in points):
-        return SeparationGridInDegrees.model_validate({"points": tuple(points), **crossed})
-    return SeparationGrid.model_validate({"points": tuple(points), **crossed})
+    crossed = {way: crossing((x.step_size, getattr(x, way)) for x in points) for way in WAYS}
+    in_degrees = any(isinstance(point, SeparationInDegrees) for point in points)
+    model = SeparationGridInDegrees if in_degrees else SeparationGrid
+    return model.model_validate({"points": tuple(points), **crossed})
 
 
-class _Way(Protocol):
-    @property
-    def largest(self) -> Mapping[str, str]: ...
-
-
-def crossing(ways: Iterable[tuple[str, _Way | None]]) -> CrossoverResult:
+def crossing(ways: Iterable[tuple[str, AnyEvaluation | None]]) -> CrossoverResult:
     """Where rounding overtakes truncation, of step sizes with what was found of each, one way."""
     parts = ((h, way.largest["truncation"], way.largest["total"]) for h, way in ways if way)
     at = crossover([(Fraction(h), Fraction(x), Fraction(y)) for h, x, y in parts])

@@ -39,7 +39,7 @@ def test_a_region_holds_all_states_that_delta_j_was_taken_at_and_no_more(
     kernel = mixed_kernel(Determinants(), run.hamiltonian, run.scheme, exact, follow)
     try:
         states = [working._first_state(kernel, exact)]
-        states += alone(working._states(kernel, exact, lambda _: None))
+        states += alone(working.stepped(exact, lambda _: None)).states
     except Stopped:
         assume(False)
         raise

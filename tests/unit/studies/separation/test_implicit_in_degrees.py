@@ -64,7 +64,7 @@ def run_of(start: dict[str, Fraction], scheme: str, steps: int) -> list[Any]:
     """What is carried after each step."""
     run = MixedRun(Matrices(4), KernelRun(HENON, scheme, start, steps, frozenset(), 0), False)
     arithmetic = number_systems.get("mpfr", 40)
-    return alone(run._states(run.kernel(arithmetic), arithmetic, lambda _: None))
+    return list(alone(run.stepped(arithmetic, lambda _: None)).states)
 
 
 def states_and_jacobians(scheme: str) -> tuple[list[list[float]], list[Matrix]]:

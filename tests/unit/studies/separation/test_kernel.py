@@ -74,8 +74,7 @@ def states(
     run = KernelRun(hamiltonian, scheme, start, steps, WORKING, 10)
     made = arithmetic.get(name, 50)
     working = MixedRun(Determinants(), run, follow=False)
-    kernel = mixed_kernel(Determinants(), run.hamiltonian, scheme, made, follow=False)
-    found = alone(working._states(kernel, made, lambda _: None))
+    found = alone(working.stepped(made, lambda _: None)).states
     return dict(zip(marks_of(steps, POINTS), found, strict=True))
 
 

@@ -45,13 +45,13 @@ def mixed_kernel(
     if timed and arithmetic.absolute:
         raise UnsupportedError(f"{arithmetic.name} follows no float64 clock")
     working = float64.make(17)
-    narrow = Side(way.narrow(step_map, working), working, "f_")
-    wide = Side(way.wide(step_map, arithmetic), arithmetic, "w_")
+    narrow = Side(way.step(step_map, working, exactly=False), working, "f_")
+    wide = Side(way.step(step_map, arithmetic, exactly=True), arithmetic, "w_")
     step, coordinates = narrow.step, narrow.step.coordinates
     clocked = replace(wide, prefix=AT) if follow and timed else None
-    entries = [at for row in step.slopes for at in row]
-    before, inside = narrow.lines([*step.outputs.values(), *step.defect.values(), *entries])
-    exact, regions, sides = way.exact(wide.step), [f"f_{n}" for n in coordinates], list[str]()
+    before, inside = narrow.lines([*step.outputs.values(), *step.defect.values(), *narrow.entries])
+    exact = wide.entries or [wide.step.outputs["dj"]]
+    regions, sides = [f"f_{n}" for n in coordinates], list[str]()
     if follow:
         static, dynamic = wide.lines(exact)
         before += static

@@ -7,10 +7,9 @@ bits may hide of it, is its bound, an estimate.
 """
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import partial
 from itertools import takewhile
 from typing import Any, Literal
 
@@ -20,67 +19,18 @@ from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.arithmetic.systems import float64
 from verify.execution.keeping import fraction_of, fraction_text
 from verify.kernels.chunked_loop import last_good
+from verify.kernels.notes import LazyNote
 from verify.kernels.stepping import KernelRun
 from verify.lockstep import Course
 from verify.runs.estimated import digits_of
 from verify.studies.separation.stepper.kernel import AT, mixed_kernel
-from verify.studies.separation.stepper.trail import Links, exact_links, links_of
-from verify.studies.separation.stepper.way import MixedKernel, Size, State, Way
+from verify.studies.separation.stepper.trail import Entries, Links, exact_links, links_of
+from verify.studies.separation.stepper.way import MixedKernel, Size, State, Stepped, Way
 
 Advance = Callable[[int], None]  # called with the number of steps just done
 MORE_DIGITS = 15
 COUNTED = "rounding counted"
 RERUN = f"rerun with {MORE_DIGITS} more digits"
-
-
-class Carried(Mapping[str, Any]):
-    """A kernel's state by its names; a number is made where it is looked at."""
-
-    def __init__(self, at: Mapping[str, int], state: Sequence[Number]) -> None:
-        self._at, self.numbers = at, state
-
-    def __getitem__(self, name: str) -> Any:
-        return self.numbers[self._at[name]]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._at)
-
-    def __len__(self) -> int:
-        return len(self._at)
-
-
-class Stepper:
-    """A mixed kernel with all that stays the same from step to step.
-
-    `also`: what must hold of a state in range beside that its float64 numbers are finite.
-    """
-
-    def __init__(
-        self,
-        kernel: MixedKernel,
-        arithmetic: Arithmetic,
-        fixed: Sequence[Number],
-        also: Callable[[State], bool] = lambda _: True,
-    ) -> None:
-        self.kernel, self.arithmetic, self.fixed, self.also = kernel, arithmetic, fixed, also
-        self._at = {name: k for k, name in enumerate(kernel.state_names)}
-        # The sums of logarithms may be undefined while the orbit and the plain way go on.
-        self._vital = [n for n in self._at if n[0] == "f" and n not in ("f_sum", "f_rest")]
-
-    def states(
-        self, state: State, every: int, stops: int = 1, beyond: int = 0
-    ) -> Course[list[State]]:
-        """Those at the next stops; fewer where float64 leaves its range on the way.
-
-        `beyond`: so many steps will be asked for after these.
-        """
-        begun = state.numbers if isinstance(state, Carried) else [state[n] for n in self._at]
-        kernel = self.kernel.function
-        found = yield from self.arithmetic.states(kernel, every, stops, self.fixed, begun, beyond)
-        return list(takewhile(self._finite, (Carried(self._at, x) for x in found)))
-
-    def _finite(self, state: State) -> bool:
-        return all(map(math.isfinite, map(state.__getitem__, self._vital))) and self.also(state)
 
 
 class Stopped(Exception):  # noqa: N818 - no error, an answer
@@ -142,71 +92,79 @@ class MixedRun:
 
     def step_through(self, arithmetic: Arithmetic, advance: Advance) -> Course[Working]:
         """All steps; raises Stopped where float64 leaves its range."""
-        way, kernel = self.way, self.kernel(arithmetic)
-        states = yield from self._states(kernel, arithmetic, advance)
-        bounds = way.bounds(kernel, arithmetic, self.inputs, states[-1], self.run.steps)
-        again, finer = states, arithmetic
+        way, run = self.way, (yield from self.stepped(arithmetic, advance))
+        kernel, bounds, again = run.kernel, way.bounds(run), run
         if any(bounds.get(name) is None for name in kernel.followed):
             finer = number_systems.get(arithmetic.name, digits_of(arithmetic) + MORE_DIGITS)
-            again = yield from self._states(self.kernel(finer), finer, lambda _: None)
+            again = yield from self.stepped(finer, lambda _: None)
         links: dict[str, Links] = {}
         for name in kernel.followed:
-            values = [way.read(state, name, arithmetic) for state in states]
-            bound = bounds.get(name)
+            bound, values = bounds.get(name), self._read(run, name)
             if bound is not None:
                 links[name] = links_of(values, bound, "enclosed", COUNTED)
                 continue
-            fine = [way.read(state, name, finer) for state in again]
+            fine = self._read(again, name)
             pairs = zip(values, fine, strict=True)
             apart = max(abs(x - y) for a, b in pairs for x, y in zip(a, b, strict=True))
-            estimate = 2 * apart + way.hides(again, name, arithmetic)
-            links[name] = links_of(fine, estimate, "estimated", RERUN)
-        plain, sizes = map(way.plain, states), (way.size(state, arithmetic) for state in states)
+            bound = 2 * apart + way.hides(replace(again, arithmetic=arithmetic), name)
+            links[name] = links_of(fine, bound, "estimated", RERUN)
+        sizes = (way.size(state, arithmetic) for state in run.states)
         return Working(
             links.get("clock"),
             links.get("trajectory"),
             links["factors"],
-            _of_float64(plain),
-            *self._closed(kernel, states, links),
+            _of_float64(map(way.plain, run.states)),
+            *self._closed(run, links),
             tuple(size for size in sizes if size),
         )
 
+    def _read(self, run: Stepped, name: str) -> list[Entries]:
+        return [self.way.read(state, name, run.arithmetic) for state in run.states]
+
     def _closed(
-        self, kernel: MixedKernel, states: Sequence[State], links: Mapping[str, Links]
+        self, run: Stepped, links: Mapping[str, Links]
     ) -> tuple[Links | None, Links | None]:
         """The links of the closed form."""
-        if not kernel.closed:
+        if not run.kernel.closed:
             nothing = (Fraction(0),) * len(links["factors"])
-            return (exact_links([nothing] * len(states), self.way.vanishes),) * 2
-        values = list(map(self.way.closed_form, states))
+            return (exact_links([nothing] * len(run.states), self.way.vanishes),) * 2
+        values = list(map(self.way.closed_form, run.states))
         if not all(math.isfinite(x) for each in values for x in each):
             return None, None
         return links["closed"], _of_float64(values)
 
-    def kernel(self, arithmetic: Arithmetic) -> MixedKernel:
-        """The kernel with this arithmetic beside float64."""
-        return mixed_kernel(
-            self.way, self.run.hamiltonian, self.run.scheme, arithmetic, self.follow
-        )
-
-    def _states(
-        self, kernel: MixedKernel, arithmetic: Arithmetic, advance: Advance
-    ) -> Course[list[State]]:
-        """What the kernel carries, at every checkpoint."""
-        narrow = list(kernel.inputs(self.inputs).values())
+    def stepped(self, arithmetic: Arithmetic, advance: Advance) -> Course[Stepped]:
+        """All steps with this arithmetic beside float64."""
+        run, way, inputs = self.run, self.way, self.inputs
+        kernel = mixed_kernel(way, run.hamiltonian, run.scheme, arithmetic, self.follow)
+        narrow = list(kernel.inputs(inputs).values())
         wide = [arithmetic.number(Fraction(x)) for x in narrow]
-        limits = self.way.limits(kernel, arithmetic, self.inputs)
-        fixed = [*narrow, *wide, *limits]
-        label = f"beside {arithmetic.name} {arithmetic.bits} {self.inputs} {kernel.source}"
+        fixed = [*narrow, *wide, *way.limits(kernel, arithmetic, inputs)]
+        label = f"beside {arithmetic.name} {arithmetic.bits} {inputs} {kernel.source}"
         states = self._kept(label, arithmetic)
-        stepper = Stepper(kernel, arithmetic, fixed, self.way.in_range)
         state = states[-1] if states else self._first_state(kernel, arithmetic)
         done = self.marks[len(states) - 1] if states else 0
-        arithmetic.expect(kernel.function, self.run.steps - done)
-        while done < self.run.steps:
+        # The sums of logarithms may be undefined while the orbit and the plain way go on.
+        vital = [n for n in kernel.state_names if n[0] == "f" and n not in ("f_sum", "f_rest")]
+        at = {name: k for k, name in enumerate(kernel.state_names)}
+
+        def in_range(state: State) -> bool:
+            return all(math.isfinite(state[name]) for name in vital) and way.in_range(state)
+
+        def states_after(every: int, stops: int = 1) -> Course[list[State]]:
+            """Those at the next stops; fewer where float64 leaves its range on the way."""
+            numbers = state.state if isinstance(state, LazyNote) else [state[n] for n in at]
+            beyond = run.steps - done - every * stops
+            after = yield from arithmetic.states(
+                kernel.function, every, stops, fixed, numbers, beyond
+            )
+            notes = (LazyNote(kernel.state_names, lambda n, x, _: x[at[n]], x, 0) for x in after)
+            return list(takewhile(in_range, notes))
+
+        arithmetic.expect(kernel.function, run.steps - done)
+        while done < run.steps:
             every, stops = self._ahead(done, len(states), arithmetic.chunk)
-            beyond = self.run.steps - done - every * stops
-            after = yield from stepper.states(state, every, stops, beyond)
+            after = yield from states_after(every, stops)
             for state in after:
                 done += every
                 advance(every)
@@ -216,9 +174,9 @@ class MixedRun:
             if len(after) < stops and arithmetic.absolute:
                 raise UnsupportedError(f"the orbit leaves the range of {arithmetic.name}")
             if len(after) < stops:
-                done += yield from last_good(every, partial(stepper.states, state))
+                done += yield from last_good(every, states_after)
                 raise Stopped("left range", done + 1, "float64 leaves its range")
-        return states
+        return Stepped(kernel, arithmetic, inputs, run.steps, states)
 
     def _ahead(self, done: int, at: int, chunk: int) -> tuple[int, int]:
         """So many steps to the next stop and so many stops: marks, or on the way to the next."""

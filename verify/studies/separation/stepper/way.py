@@ -16,11 +16,12 @@ from typing import Any, ClassVar, NamedTuple
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic
-from verify.kernels.rounding import Ball, Rounded
+from verify.kernels.rounding import Ball, Rounded, analyse, rounding_of
 from verify.kernels.step import newton
 from verify.kernels.step.computation import Computation
 from verify.kernels.step.lowering import Lowering
 from verify.kernels.stepping import KernelRun, Outcome
+from verify.runs.estimated import working_digits
 from verify.schemes.maps.step_map import StepMap
 from verify.studies.separation.stepper.trail import Entries, Links
 
@@ -52,6 +53,11 @@ class Side:
         """K's entries; "" where one is 0."""
         zero = self.step.program.is_constant
         return [["" if zero(at, 0) else self.name(at) for at in row] for row in self.step.slopes]
+
+    @property
+    def entries(self) -> list[int]:
+        """All entries of K, of a step that has it."""
+        return [at for row in self.step.slopes for at in row]
 
     def lines(self, roots: Sequence[int]) -> tuple[list[str], list[str]]:
         """The lines before the loop and in it that make these values."""
@@ -113,18 +119,6 @@ class MixedKernel:
         named = {f"x{k}": rounded[n] for k, n in enumerate(self.wide.parameters)}
         return {"h": rounded["h"], **named}
 
-    def visited(self, rounded: Mapping[str, float], last: State, cut: Ball) -> dict[str, Rounded]:
-        """What the wide program is evaluated at, over the region that the float64 states visited,
-        each number within `cut` of its float64. `last`: what was carried in the end."""
-        region = {n: rational_ball(Fraction(x)) for n, x in self.inputs(rounded).items()}
-        for name in (n.removesuffix("_low") for n in last if n.endswith("_low")):
-            low, high = (rational_ball(Fraction(last[f"{name}_{side}"])) for side in _SIDES)
-            region[name.removeprefix("f_")] = low.union(high)
-        if "f_t" in last:
-            first, end = (rational_ball(Fraction(x)) for x in (rounded["t"], last["f_t"]))
-            region["t"] = first.union(end)
-        return {name: Rounded(x, cut) for name, x in region.items()}
-
 
 class Size(NamedTuple):
     """‖M‖² and ‖∧²M‖² in Frobenius' norm: the sum of all squares of entries, and of 2 × 2 minors.
@@ -135,6 +129,41 @@ class Size(NamedTuple):
 
     norm: Fraction
     areas: Fraction
+
+
+@dataclass(frozen=True)
+class Stepped:
+    """So many steps from rounded `inputs`, and what the kernel carried at every checkpoint."""
+
+    kernel: MixedKernel
+    arithmetic: Arithmetic
+    inputs: Mapping[str, float]
+    steps: int
+    states: Sequence[State]
+
+    @property
+    def last(self) -> State:
+        """What it carried in the end."""
+        return self.states[-1]
+
+    def visited(self, cut: Ball) -> dict[str, Rounded]:
+        """What the wide program is evaluated at, over the region that the float64 states visited,
+        each number within `cut` of its float64."""
+        last = self.last
+        region = {n: rational_ball(Fraction(x)) for n, x in self.kernel.inputs(self.inputs).items()}
+        for name in (n.removesuffix("_low") for n in last if n.endswith("_low")):
+            low, high = (rational_ball(Fraction(last[f"{name}_{side}"])) for side in _SIDES)
+            region[name.removeprefix("f_")] = low.union(high)
+        if "f_t" in last:
+            first, end = (rational_ball(Fraction(x)) for x in (self.inputs["t"], last["f_t"]))
+            region["t"] = first.union(end)
+        return {name: Rounded(x, cut) for name, x in region.items()}
+
+    def analysed(self, roots: Sequence[int], cut: Ball) -> list[Rounded] | None:
+        """The wide program's values there, and their errors; None where one is not defined."""
+        program, rounding = self.kernel.wide.program, rounding_of(self.arithmetic)
+        values = analyse(program, program.live(roots), self.visited(cut), rounding)
+        return None if values is None else [values[at] for at in roots]
 
 
 class Way(ABC):
@@ -156,19 +185,10 @@ class Way(ABC):
     hidden: ClassVar[int | None] = None
     vanishes: ClassVar[str]
 
-    # -- the kernel ---------------------------------------------------------------------------
-
     @abstractmethod
-    def narrow(self, step_map: StepMap, working: Arithmetic) -> Computation:
-        """What float64 computes in a step."""
-
-    @abstractmethod
-    def wide(self, step_map: StepMap, arithmetic: Arithmetic) -> Computation:
-        """What is computed exactly at its states; UnsupportedError where that cannot be."""
-
-    @abstractmethod
-    def exact(self, wide: Computation) -> list[int]:
-        """The values of this that the first links are made of."""
+    def step(self, step_map: StepMap, arithmetic: Arithmetic, exactly: bool) -> Computation:
+        """What float64 computes in a step, or what is computed `exactly` at its states: ΔJ, or K.
+        UnsupportedError where that cannot be."""
 
     @abstractmethod
     def lines(self, narrow: Side, wide: Side | None, clocked: Side | None) -> Lines:
@@ -180,7 +200,7 @@ class Way(ABC):
         """What the kernel compares its state with."""
         return []
 
-    # -- what is read of its states -----------------------------------------------------------
+    # -- what is read of a state --------------------------------------------------------------
 
     @abstractmethod
     def read(self, state: State, name: str, arithmetic: Arithmetic) -> Entries:
@@ -199,27 +219,17 @@ class Way(ABC):
         return True
 
     def size(self, state: State, arithmetic: Arithmetic) -> Size | None:
-        """How large the product of Jacobians is."""
+        """How large the product of Jacobians is, of W."""
         return None
 
     # -- how far it is known ------------------------------------------------------------------
 
     @abstractmethod
-    def bounds(
-        self,
-        kernel: MixedKernel,
-        arithmetic: Arithmetic,
-        inputs: Mapping[str, float],
-        last: State,
-        steps: int,
-    ) -> Mapping[str, Fraction | None]:
-        """A rigorous bound of all that was followed, or None where there is none.
-
-        `last`: what the kernel carried in the end.
-        """
+    def bounds(self, run: Stepped) -> Mapping[str, Fraction | None]:
+        """A rigorous bound of all that was followed, or None where there is none."""
 
     @abstractmethod
-    def hides(self, states: Sequence[State], name: str, arithmetic: Arithmetic) -> Fraction:
+    def hides(self, run: Stepped, name: str) -> Fraction:
         """What the last bits may hide from two runs that are held against each other."""
 
     # -- runs in exact arithmetic's stead -----------------------------------------------------
@@ -232,6 +242,6 @@ class Way(ABC):
     def values(self, run: Outcome, last: Fraction) -> list[Entries]:
         """What a run has at its checkpoints; `last` is known of its last observable."""
 
-    @abstractmethod
     def digits_beside(self, run: KernelRun, exact: StepMap, wanted: int, compiled: bool) -> int:
         """The digits beside float64 for so many of the links."""
+        return working_digits(wanted, run.steps)

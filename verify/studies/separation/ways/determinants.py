@@ -23,7 +23,7 @@ is within 1.5 · 1.01 · N |θ| ≤ 4 N |ρ| of the exact one, as long as this i
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import ClassVar
@@ -36,8 +36,8 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number import Number
 from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.kernels.kernel import Kernel, Writer
-from verify.kernels.rounding import PRECISION, analyse, rounding_of
-from verify.kernels.step.computation import Computation, common_power
+from verify.kernels.rounding import PRECISION
+from verify.kernels.step.computation import common_power
 from verify.kernels.step.kinds import may_leave_range
 from verify.kernels.stepping import KernelRun, Outcome, limits
 from verify.runs.estimated import working_digits
@@ -47,7 +47,15 @@ from verify.schemes import get
 from verify.schemes.maps.step_map import StepMap
 from verify.studies.separation.stepper.run import marks_of
 from verify.studies.separation.stepper.trail import Entries, Links, exact_links, links_of
-from verify.studies.separation.stepper.way import FOLLOWED, Lines, MixedKernel, Side, State, Way
+from verify.studies.separation.stepper.way import (
+    FOLLOWED,
+    Lines,
+    MixedKernel,
+    Side,
+    State,
+    Stepped,
+    Way,
+)
 
 WORKING = frozenset({"lambda", "lambda_plain"})  # with these `verify run` steps in float64, too
 POINTS = 2048  # checkpoints of a run
@@ -74,14 +82,11 @@ class Determinants(Way):
 
     # -- the kernel ---------------------------------------------------------------------------
 
-    def narrow(self, step_map: StepMap, working: Arithmetic) -> Computation:
-        return _uncompiled(step_map, working, WORKING)
-
-    def wide(self, step_map: StepMap, arithmetic: Arithmetic) -> Computation:
-        return _uncompiled(step_map, arithmetic, self.observables)
-
-    def exact(self, wide: Computation) -> list[int]:
-        return [wide.outputs["dj"]]
+    def step(self, step_map: StepMap, arithmetic: Arithmetic, exactly: bool) -> Kernel:
+        """The arithmetic's own kernel, not compiled; ΔJ is not divided by a power of h."""
+        observables = self.observables if exactly else WORKING
+        uncompiled = replace(arithmetic, compile=lambda *_: lambda *_: ())
+        return Writer(step_map, uncompiled, observables, False, scaled=False).kernel()
 
     def lines(self, narrow: Side, wide: Side | None, clocked: Side | None) -> Lines:
         start: dict[str, int] = {}
@@ -131,31 +136,24 @@ class Determinants(Way):
 
     # -- how far it is known ------------------------------------------------------------------
 
-    def bounds(
-        self,
-        kernel: MixedKernel,
-        arithmetic: Arithmetic,
-        inputs: Mapping[str, float],
-        last: State,
-        steps: int,
-    ) -> Mapping[str, Fraction | None]:
+    def bounds(self, run: Stepped) -> Mapping[str, Fraction | None]:
         counted: dict[str, Fraction | None] = {}
-        for name in kernel.followed:
+        for name in run.kernel.followed:
             # What a wide state does to the steps after it is not counted.
             error: Fraction | None = None if name == "clock" else Fraction(0)
             if name == "trajectory":
-                error = _error_of_delta_j(kernel, arithmetic, inputs, last)
-            top = arithmetic.exact(last[f"w_{name}_top"])
-            counted[name] = _accumulated(steps, top, error, arithmetic)
+                error = _error_of_delta_j(run)
+            top = run.arithmetic.exact(run.last[f"w_{name}_top"])
+            counted[name] = _accumulated(run.steps, top, error, run.arithmetic)
         if any(bound is None for name, bound in counted.items() if name != "clock"):
             return dict.fromkeys(counted)
         return counted
 
-    def hides(self, states: Sequence[State], name: str, arithmetic: Arithmetic) -> Fraction:
-        if arithmetic.absolute:
-            return _unit(arithmetic)
-        number = arithmetic.exact
-        return _unit(arithmetic) * max(abs(number(state[f"w_{name}"])) for state in states)
+    def hides(self, run: Stepped, name: str) -> Fraction:
+        if run.arithmetic.absolute:
+            return _unit(run.arithmetic)
+        sizes = (abs(run.arithmetic.exact(state[f"w_{name}"])) for state in run.states)
+        return _unit(run.arithmetic) * max(sizes)
 
     # -- runs in exact arithmetic's stead -----------------------------------------------------
 
@@ -181,12 +179,6 @@ class Determinants(Way):
         # Along given states only the number of roundings grows; a step's are below 10^6 units.
         size = run.start["h"] ** _power_of_area(exact, run.scheme)
         return wanted + max(0, -magnitude(size)) + len(str(run.steps)) + 6
-
-
-def _uncompiled(step_map: StepMap, arithmetic: Arithmetic, observables: frozenset[str]) -> Kernel:
-    """The arithmetic's own kernel, not compiled; ΔJ is not divided by a power of h."""
-    uncompiled = replace(arithmetic, compile=lambda *_: lambda *_: ())
-    return Writer(step_map, uncompiled, observables, False, scaled=False).kernel()
 
 
 def _check(wide: Side) -> None:
@@ -215,18 +207,13 @@ def _accumulate(name: str, own: str, start: dict[str, int]) -> list[str]:
     ]
 
 
-def _error_of_delta_j(
-    kernel: MixedKernel, arithmetic: Arithmetic, inputs: Mapping[str, float], last: State
-) -> Fraction | None:
+def _error_of_delta_j(run: Stepped) -> Fraction | None:
     """B: the error of one wide ΔJ, all over the region that the float64 states have visited."""
-    program, root = kernel.wide.program, kernel.wide.outputs["dj"]
     with working_precision(PRECISION):
         # A float64 goes to a fixed-point number but for what is below its last place.
-        cut = flint.arb(2) ** -arithmetic.bits if arithmetic.absolute else flint.arb(0)
-        region = kernel.visited(inputs, last, cut)
-        values = analyse(program, program.live([root]), region, rounding_of(arithmetic))
-        error = None if values is None else values[root].error
-        return None if error is None or not in_reach(error) else bounds(error)[1]
+        cut = flint.arb(2) ** -run.arithmetic.bits if run.arithmetic.absolute else flint.arb(0)
+        values = run.analysed([run.kernel.wide.outputs["dj"]], cut)
+        return bounds(values[0].error)[1] if values and in_reach(values[0].error) else None
 
 
 def _accumulated(

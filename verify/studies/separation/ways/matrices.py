@@ -32,17 +32,16 @@ from verify.arithmetic.number_system import Arithmetic, UnsupportedError
 from verify.kernels.chunked_loop import ENTRIES
 from verify.kernels.step.computation import Computation, Observed, computed, step_map_of
 from verify.kernels.stepping import KernelRun, Outcome
-from verify.runs.estimated import working_digits
 from verify.scenes.results.separation_in_degrees import FORM_ROUNDING
 from verify.schemes.maps.step_map import StepMap
 from verify.studies.separation.stepper.run import marks_of
 from verify.studies.separation.stepper.trail import Entries, Links, exact_links
 from verify.studies.separation.stepper.way import (
     Lines,
-    MixedKernel,
     Side,
     Size,
     State,
+    Stepped,
     Way,
 )
 from verify.studies.separation.ways.matrix_bounds import counted
@@ -68,16 +67,16 @@ class Matrices(Way):
 
     # -- the kernel ---------------------------------------------------------------------------
 
-    def narrow(self, step_map: StepMap, working: Arithmetic) -> Computation:
-        return _computed(step_map, working, form=not step_map.preserves_area)
-
-    def wide(self, step_map: StepMap, arithmetic: Arithmetic) -> Computation:
-        if arithmetic.absolute:
+    def step(self, step_map: StepMap, arithmetic: Arithmetic, exactly: bool) -> Computation:
+        """With K, and in float64 with S, M and W."""
+        if exactly and arithmetic.absolute:
             raise UnsupportedError(f"{arithmetic.name} follows no matrices")
-        return _computed(step_map, arithmetic, form=False)
-
-    def exact(self, wide: Computation) -> list[int]:
-        return [at for row in wide.slopes for at in row]
+        form = not (exactly or step_map.preserves_area)
+        asked = Observed(
+            pipelined=arithmetic.pipelined, scaled=False, delta_j=False, determinant=False,
+            tangent=False, symplectic=form, carried=form, slopes=True,
+        )  # fmt: skip
+        return computed(step_map, asked)
 
     def lines(self, narrow: Side, wide: Side | None, clocked: Side | None) -> Lines:
         return matrix_lines(narrow, wide, clocked)
@@ -122,20 +121,13 @@ class Matrices(Way):
 
     # -- how far it is known ------------------------------------------------------------------
 
-    def bounds(
-        self,
-        kernel: MixedKernel,
-        arithmetic: Arithmetic,
-        inputs: Mapping[str, float],
-        last: State,
-        steps: int,
-    ) -> Mapping[str, Fraction | None]:
-        return counted(kernel, arithmetic, inputs, last, steps)
+    def bounds(self, run: Stepped) -> Mapping[str, Fraction | None]:
+        return counted(run)
 
-    def hides(self, states: Sequence[State], name: str, arithmetic: Arithmetic) -> Fraction:
-        names = [n for n in states[0] if n.startswith(f"w_{name}_")]
-        size = Fraction(max(abs(float(state[n])) for state in states for n in names))
-        return (1 + size * size) * Fraction(1, 1 << (arithmetic.bits - 4))
+    def hides(self, run: Stepped, name: str) -> Fraction:
+        names = [n for n in run.last if n.startswith(f"w_{name}_")]
+        size = Fraction(max(abs(float(state[n])) for state in run.states for n in names))
+        return (1 + size * size) * Fraction(1, 1 << (run.arithmetic.bits - 4))
 
     # -- runs in exact arithmetic's stead -----------------------------------------------------
 
@@ -149,18 +141,6 @@ class Matrices(Way):
     def values(self, run: Outcome, last: Fraction) -> list[Entries]:
         names = [n for n in run.tangents[0] if n.startswith("w_")]
         return [tuple(note[n] for n in names) for note in run.tangents]
-
-    def digits_beside(self, run: KernelRun, exact: StepMap, wanted: int, compiled: bool) -> int:
-        return working_digits(wanted, run.steps)
-
-
-def _computed(step_map: StepMap, arithmetic: Arithmetic, form: bool) -> Computation:
-    """A step with K; `form`: with S, M and W."""
-    asked = Observed(
-        pipelined=arithmetic.pipelined, scaled=False, delta_j=False, determinant=False,
-        tangent=False, symplectic=form, carried=form, slopes=True,
-    )  # fmt: skip
-    return computed(step_map, asked)
 
 
 def of_product(entry: Callable[[int, int], Any], size: int, one: int = 1) -> tuple[Any, ...]:

@@ -25,47 +25,37 @@ import flint
 
 from verify.arithmetic.arb import bounds, in_reach, rational_ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.arithmetic.number_system import Arithmetic
-from verify.kernels.rounding import PRECISION, Ball, analyse, rounding_of
+from verify.kernels.rounding import PRECISION, Ball
 from verify.runs.derivatives import norm
-from verify.studies.separation.stepper.way import MixedKernel, State
+from verify.studies.separation.stepper.way import Stepped
 
 _FLOAT = flint.arb(2) ** -45  # of sums of squares in float64, relative
 _ENTRY = flint.arb(2) ** -44  # of an entry of MᵀΩM in float64, relative to ‖M‖²
 
 
-def counted(
-    kernel: MixedKernel,
-    arithmetic: Arithmetic,
-    inputs: Mapping[str, float],
-    last: State,
-    steps: int,
-) -> Mapping[str, Fraction | None]:
+def counted(run: Stepped) -> Mapping[str, Fraction | None]:
     """Bounds of the error of every entry of W at every checkpoint, of all that was followed but
-    the clock; None where there is none. `last`: what the kernel carried in the end."""
+    the clock; None where there is none."""
     with working_precision(PRECISION):
-        count = _Count(kernel, arithmetic, last, steps)
+        count = _Count(run)
         errors = {"factors": count.of_product("factors", flint.arb(0), count.top("f_j_norm"))}
-        if "trajectory" in kernel.followed:
-            size, lost = count.evaluated(inputs)
+        if "trajectory" in run.kernel.followed:
+            size, lost = count.evaluated()
             errors["trajectory"] = count.of_product("trajectory", lost, 1 + size)
-        if kernel.closed:
+        if run.kernel.closed:
             errors["closed"] = count.of_sum()
         return {n: bounds(x)[1] if in_reach(x) else None for n, x in errors.items()}
 
 
 class _Count:
-    def __init__(
-        self, kernel: MixedKernel, arithmetic: Arithmetic, last: State, steps: int
-    ) -> None:
-        self.kernel, self.arithmetic, self.last = kernel, arithmetic, last
-        self.steps, self.size = steps, len(kernel.wide.coordinates)
+    def __init__(self, run: Stepped) -> None:
+        self.run, self.steps, self.size = run, run.steps, len(run.kernel.wide.coordinates)
         # 2n products, their sum, and its sum with M: twice half a unit each, and second order.
-        self.unit = (self.size + 3) * flint.arb(2) ** (1 - arithmetic.bits)
+        self.unit = (self.size + 3) * flint.arb(2) ** (1 - run.arithmetic.bits)
 
     def top(self, name: str) -> Ball:
         """The root of a greatest sum of squares; for M not below that of 1."""
-        return (rational_ball(Fraction(self.last[name])) * (1 + _FLOAT)).sqrt().abs_upper()
+        return (rational_ball(Fraction(self.run.last[name])) * (1 + _FLOAT)).sqrt().abs_upper()
 
     def norm_of(self, matrix: str) -> Ball:
         least = flint.arb(self.size).sqrt()  # of M₀ = 1
@@ -101,12 +91,10 @@ class _Count:
         rounded = (2 * self.unit + self.steps * self.unit) * 2 * term
         return (self.steps * (size * (2 * top * apart + apart * apart) + rounded)).abs_upper()
 
-    def evaluated(self, inputs: Mapping[str, float]) -> tuple[Ball, Ball]:
+    def evaluated(self) -> tuple[Ball, Ball]:
         """‖K‖ over the region that the float64 states visited, and the error of the wide K."""
-        kernel = self.kernel
-        box = kernel.visited(inputs, self.last, flint.arb(0))
-        program, roots = kernel.wide.program, [at for row in kernel.wide.slopes for at in row]
-        found = analyse(program, program.live(roots), box, rounding_of(self.arithmetic))
-        if found is None:
+        slopes = self.run.kernel.wide.slopes
+        values = self.run.analysed([at for row in slopes for at in row], flint.arb(0))
+        if values is None:
             return flint.arb.nan(), flint.arb.nan()
-        return norm(found[at].magnitude for at in roots), norm(found[at].error for at in roots)
+        return norm(x.magnitude for x in values), norm(x.error for x in values)
