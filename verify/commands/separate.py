@@ -22,11 +22,11 @@ _WIDTH = 88  # of a line of prose
 _LABELS = {"plain": "plain", "closed_form": "closed form"}
 
 
-def separation_json(found: "AnyGrid") -> dict[str, Any]:
+def separation_json(grid: "AnyGrid") -> dict[str, Any]:
     """The first step size's parts, and those of all of them as `grid`; of W each is a matrix."""
-    points = [_separated(point) for point in found.points]
-    crossover = {way: getattr(found, way).model_dump(mode="json") for way in _LABELS}
-    seconds = f"{sum(point.seconds for point in found.points):.6f}"
+    points = [_separated(point) for point in grid.points]
+    crossover = {way: getattr(grid, way).model_dump(mode="json") for way in _LABELS}
+    seconds = f"{sum(point.seconds for point in grid.points):.6f}"
     return {**points[0], "crossover": crossover, "grid": points, "seconds": seconds}
 
 
@@ -71,18 +71,18 @@ def _evaluated(way: "AnyEvaluation | None", without: type[Any]) -> dict[str, Any
     }
 
 
-def print_separation(found: "AnyGrid") -> None:
+def print_separation(grid: "AnyGrid") -> None:
     """Each step size, and where rounding overtakes truncation."""
-    for point in found.points:
+    for point in grid.points:
         click.echo(f"h = {point.step_size}, {point.steps} steps")
         if point.status != "finished":
             at = f" at step {point.failed_step}" if point.failed_step else ""
             click.echo(f"  {point.status}{at}: {point.reason}")
         else:
             _print_parts(point)
-    if len(found.points) > 1:
+    if len(grid.points) > 1:
         for way, label in _LABELS.items():
-            click.echo(f"rounding overtakes truncation, {label}: {_crossed(getattr(found, way))}")
+            click.echo(f"rounding overtakes truncation, {label}: {_crossed(getattr(grid, way))}")
 
 
 def _print_parts(point: "AnySeparation") -> None:

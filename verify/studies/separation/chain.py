@@ -36,20 +36,14 @@ class Chain:
         truncation + all parts = lambda_working, exactly.
         """
         first, last = self._between(name)
-        if first is None:
-            return last.trail, last.bound
-        if first is last:
-            return Trail((0,) * len(self.marks), 1), Fraction(0)
-        return last.trail - first.trail, first.bound + last.bound
+        trail = last.trail - first.trail if first else last.trail
+        return trail, _bound(first, last)
 
     def final(self, name: str) -> tuple[Fraction, Fraction]:
         """A quantity after the last step, and the bound of its error."""
         first, last = self._between(name)
-        if first is None:
-            return last.trail[-1], last.bound
-        if first is last:
-            return Fraction(0), Fraction(0)
-        return last.trail[-1] - first.trail[-1], first.bound + last.bound
+        value = last.trail[-1] - first.trail[-1] if first else last.trail[-1]
+        return value, _bound(first, last)
 
     def _between(self, name: str) -> tuple[Link | None, Link]:
         before, after = self._ends(name)
@@ -75,9 +69,9 @@ class Chain:
                 continue
             allowed = abs(value) / (4 * Fraction(10) ** digits)
             for k in (end for end in self._ends(name) if end is not None):
-                own = self.links[k].bound
-                if own > allowed:
-                    lacking[k] = max(lacking[k], magnitude(own / allowed) + 1)
+                excess = self.links[k].bound / allowed
+                if excess > 1:
+                    lacking[k] = max(lacking[k], magnitude(excess) + 1)
         return lacking
 
     @property
@@ -89,6 +83,13 @@ class Chain:
     def methods(self) -> tuple[str, ...]:
         """How the errors of the links were bounded, the last one's apart, each way once."""
         return tuple(dict.fromkeys(link.method for link in self.links[:-1]))
+
+
+def _bound(first: Link | None, last: Link) -> Fraction:
+    """Of the difference; what one object has from itself is exactly 0."""
+    if first is last:
+        return Fraction(0)
+    return first.bound + last.bound if first else last.bound
 
 
 def lacking(chains: Sequence[Chain], digits: int, hidden: int | None = None) -> list[int]:

@@ -196,24 +196,24 @@ def grid(
         raise InputError("steps, time", NOT_GIVEN, "give one of the two")
     if not step_sizes:
         raise InputError("step_sizes", step_sizes, "give one at least")
-    found: dict[Fraction, int] = {}
-    for given in step_sizes:
-        h = positive(given, "step_size")
-        if h in found:
-            raise InputError("step_size", given, "is given twice")
+    counts: dict[Fraction, int] = {}
+    for size in step_sizes:
+        h = positive(size, "step_size")
+        if h in counts:
+            raise InputError("step_size", size, "is given twice")
         if steps is None:
             count = int(positive(time if time is not None else 0, "time") / h)
             if count < 1:
                 raise InputError("time", time, f"is shorter than the step size {text(h)}")
-            found[h] = count
+            counts[h] = count
         else:
-            found[h] = steps
-    return list(found.items())
+            counts[h] = steps
+    return list(counts.items())
 
 
 def check_reference(arithmetic: str) -> None:
     """InputError for what cannot stand for exact arithmetic."""
-    known = [AUTO, *(name for name in number_systems.names() if name != float64.NAME)]
-    if arithmetic not in known:
+    allowed = [AUTO, *(name for name in number_systems.names() if name != float64.NAME)]
+    if arithmetic not in allowed:
         wrong = "is what is examined" if arithmetic == float64.NAME else "unknown"
-        raise InputError("arithmetic", arithmetic, f"{wrong}; allowed: {', '.join(known)}")
+        raise InputError("arithmetic", arithmetic, f"{wrong}; allowed: {', '.join(allowed)}")

@@ -60,10 +60,10 @@ def halved(begun: Start, steps: int, rate: float) -> Halved:
         return Halved("undecided", None)
     tops = [note["growth_top"] for note in outcome.tangents]
     size, time = len(hamiltonian.coordinates), steps * h
-    own = finite_time_lyapunov(math.log(float(tops[-1])) / 2, size, float(time))
-    alike = rate < _ALIKE * own and own < _ALIKE * rate
+    halved_rate = finite_time_lyapunov(math.log(float(tops[-1])) / 2, size, float(time))
+    alike = rate < _ALIKE * halved_rate and halved_rate < _ALIKE * rate
     grows = motion_of(marks_of(2 * steps, POINTS), tops) == "exponential"
-    return Halved("motion" if alike and grows else "undecided" if alike else "scheme", own)
+    return Halved("motion" if alike and grows else "undecided" if alike else "scheme", halved_rate)
 
 
 def tangent_growth(split: Split, sizes: Sequence[Size], begun: Start, steps: int) -> TangentGrowth:

@@ -79,16 +79,16 @@ class SeparationTask(_Separation):
 
     def compute(self, keeper: Keeper) -> SeparationResult:
         """The separation, as a result."""
-        own = self.run.asked_run(keeper) if self.run else None
-        split: SeparationResult = alone(self._separated(keeper, own))
+        run = self.run.asked_run(keeper) if self.run else None
+        split: SeparationResult = alone(self._separated(keeper, run))
         return split
 
     def compute_in_turn(self, keeper: Keeper) -> Course[dict[str, Frozen]]:
         """The separation, and the run where that was done for it."""
-        own = self.run.asked_run(keeper) if self.run else None
-        results: dict[str, Frozen] = {self.key: (yield from self._separated(keeper, own))}
-        if self.run and own and own.done:
-            results[self.run.key] = yield from own.result()
+        run = self.run.asked_run(keeper) if self.run else None
+        results: dict[str, Frozen] = {self.key: (yield from self._separated(keeper, run))}
+        if self.run and run and run.done:
+            results[self.run.key] = yield from run.result()
         return results
 
 

@@ -28,9 +28,9 @@ class Trail(Sequence[Fraction]):
         """These values."""
         if isinstance(values, Trail):
             return values
-        known = tuple(values)
-        common = lcm(*{x.denominator for x in known})
-        return cls((x.numerator * (common // x.denominator) for x in known), common)
+        numbers = tuple(values)
+        common = lcm(*{x.denominator for x in numbers})
+        return cls((x.numerator * (common // x.denominator) for x in numbers), common)
 
     def __len__(self) -> int:
         return len(self.numerators)

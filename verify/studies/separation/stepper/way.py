@@ -77,8 +77,9 @@ class Side:
 
     @property
     def _lowering(self) -> Lowering:
-        own = self.arithmetic
-        return Lowering(self.step.program, own.functions, bits=own.bits, guard=own.guard)
+        program, arithmetic = self.step.program, self.arithmetic
+        functions, bits, guard = arithmetic.functions, arithmetic.bits, arithmetic.guard
+        return Lowering(program, functions, bits=bits, guard=guard)
 
 
 class Lines(NamedTuple):

@@ -96,13 +96,17 @@ class Determinants(Way):
             inside += _accumulate("trajectory", wide.output("dj"), start)
         if clocked:
             inside += _accumulate("clock", clocked.output("dj"), start)
-        inside += ["w_own = wide(f_det) - w_one", *_accumulate("factors", "w_own", start)]
+        inside += ["w_factor = wide(f_det) - w_one", *_accumulate("factors", "w_factor", start)]
         start["f_plain"] = 1
         inside.append("f_plain = f_plain * f_det")
         step = narrow.step
         closed = not step.program.is_constant(step.outputs["dj"], 0)
         if closed:
-            inside += ["w_own = wide(f_dj)", *_accumulate("closed", "w_own", start), *_CLOSED_SUM]
+            inside += [
+                "w_factor = wide(f_dj)",
+                *_accumulate("closed", "w_factor", start),
+                *_CLOSED_SUM,
+            ]
             start |= {"f_sum": 0, "f_rest": 0}
         followed = tuple(name for name in FOLLOWED if f"w_{name}" in start)
         return Lines(inside, start, followed, closed)
@@ -196,12 +200,12 @@ def _check(wide: Side) -> None:
         )
 
 
-def _accumulate(name: str, own: str, start: dict[str, int]) -> list[str]:
+def _accumulate(name: str, factor: str, start: dict[str, int]) -> list[str]:
     """Λ ← Λ + e + Λ e, and the greatest |Λ| on the way, which its error bound needs."""
     lam, top = f"w_{name}", f"w_{name}_top"
     start |= {lam: 0, top: 0}
     return [
-        f"{lam} = {lam} + ({own} + {lam} * {own})",
+        f"{lam} = {lam} + ({factor} + {lam} * {factor})",
         f"w_size = abs({lam})",
         f"if w_size > {top}: {top} = w_size",
     ]
@@ -217,13 +221,13 @@ def _error_of_delta_j(run: Stepped) -> Fraction | None:
 
 
 def _accumulated(
-    steps: int, top: Fraction, own: Fraction | None, arithmetic: Arithmetic
+    steps: int, top: Fraction, error: Fraction | None, arithmetic: Arithmetic
 ) -> Fraction | None:
-    """The bound of the module's docstring; M = `top`, B = `own`."""
-    if own is None or top > Fraction(1, 2):
+    """The bound of the module's docstring; M = `top`, B = `error`."""
+    if error is None or top > Fraction(1, 2):
         return None
     rounded = 3 * _unit(arithmetic) if arithmetic.absolute else 12 * _unit(arithmetic) * top
-    bound = 4 * steps * (rounded + 2 * own)
+    bound = 4 * steps * (rounded + 2 * error)
     return bound if bound <= Fraction(1, 100) else None
 
 

@@ -146,14 +146,14 @@ class Matrices(Way):
 def of_product(entry: Callable[[int, int], Any], size: int, one: int = 1) -> tuple[Any, ...]:
     """The entries of MᵀΩM − Ω above the diagonal, row by row, in the arithmetic of M's entries; or
     times `one`, of an M that is times its root."""
-    n, found = size // 2, []
+    n, entries = size // 2, []
     for a, b in combinations(range(size), 2):
         total = entry(0, a) * entry(n, b) - entry(n, a) * entry(0, b)
         for i in range(1, n):
             total = total + entry(i, a) * entry(n + i, b)
             total = total - entry(n + i, a) * entry(i, b)
-        found.append(total - one if b == n + a else total)
-    return tuple(found)
+        entries.append(total - one if b == n + a else total)
+    return tuple(entries)
 
 
 def size_of(matrix: Sequence[Sequence[int]], one: int) -> Size:

@@ -74,8 +74,8 @@ class _Count:
             return top * rate / (1 - rate) if moved < 1 and rate < 1 else flint.arb.nan()
 
         guess = (2 * bound(flint.arb(0))).abs_upper()
-        found = bound(guess)
-        return found.abs_upper() if found <= guess else flint.arb.nan()
+        again = bound(guess)
+        return again.abs_upper() if again <= guess else flint.arb.nan()
 
     def of_product(self, matrix: str, lost: Ball, factor: Ball) -> Ball:
         """Of W = MᵀΩM − Ω."""

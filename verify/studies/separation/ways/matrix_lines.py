@@ -7,8 +7,8 @@ defect S of the step, as the float64 kernel of `verify run` has them, bit for bi
     w_clock       the same of a wide state that steps by float64's clock
     w_factors     M ← J̃ M exactly, J̃ the float64 matrix 1 + K̃, each entry rounded once (plain)
     f_plain       M ← J̃ M in float64: products of rows and columns, added from the left (plain)
-    w_m     M ← M + K̃ M exactly, and w_closed  W ← W + MᵀS̃M exactly (closed form)
-    f_m     M ← M + K̃ M, and f_closed  W ← W + MᵀS̃M in float64 (closed form)
+    w_m           M ← M + K̃ M exactly, and w_closed  W ← W + MᵀS̃M exactly (closed form)
+    f_m           M ← M + K̃ M, and f_closed  W ← W + MᵀS̃M in float64 (closed form)
 
 Of the first four W = MᵀΩM − Ω, which holds exactly for exact products and so cancels nothing that
 more digits do not give back; the fourth takes it in float64, as a program would.
@@ -16,8 +16,8 @@ more digits do not give back; the fourth takes it in float64, as a program would
 Names of entries end in their row and column, M₁₂ of w_trajectory is w_trajectory_0_1.
 """
 
-from collections.abc import Callable, Sequence
-from itertools import combinations
+from collections.abc import Sequence
+from itertools import combinations, product
 
 from verify.studies.separation.stepper.way import FOLLOWED, Lines, Side
 
@@ -31,7 +31,7 @@ def matrix_lines(narrow: Side, wide: Side | None, clocked: Side | None) -> Lines
     products = [f"w_{name}" for name, side in sides.items() if side]
     inside = [x for n, side in sides.items() if side for x in _moved(f"w_{n}", side.slopes)]
     products += ["w_factors", *["w_m"] * closed]
-    inside += _plain(narrow) + (_closed(narrow) if closed else [])
+    inside += _plain(narrow.slopes) + (_closed(narrow) if closed else [])
     watched = [name for name in products if name != "w_clock"]
     tops, more = _watched(narrow, watched, closed)
     matrices = [*products, "f_plain", *["f_m"] * closed]
@@ -42,9 +42,8 @@ def matrix_lines(narrow: Side, wide: Side | None, clocked: Side | None) -> Lines
     return Lines(inside + more, start | dict.fromkeys(tops, 0), followed, closed)
 
 
-def _places(names: Sequence[str]) -> list[tuple[int, int]]:
-    every = range(len(names))
-    return [(a, b) for a in every for b in every]
+def _places(rows: Sequence[object]) -> list[tuple[int, int]]:
+    return [(a, b) for a, b in product(range(len(rows)), repeat=2)]
 
 
 def _sum(row: Sequence[str], column: Sequence[str]) -> str:
@@ -61,70 +60,66 @@ def _product(rows: Rows, matrix: str) -> list[list[str]]:
 
 def _moved(matrix: str, slopes: Rows) -> list[str]:
     """M ← M + K M."""
-    changed = _product(slopes, matrix)
-    return _assigned(matrix, changed, lambda name, change: f"{name} + ({change})")
+    return _assigned(matrix, _product(slopes, matrix), "{name} + ({entry})")
 
 
-def _assigned(
-    matrix: str, entries: Sequence[Sequence[str]], made: Callable[[str, str], str]
-) -> list[str]:
-    """All entries are made before the first is assigned; those that do not change are left."""
-    places = [(a, b) for a, row in enumerate(entries) for b, entry in enumerate(row) if entry]
-    kind = matrix[:2]
+def _assigned(matrix: str, entries: Rows, written: str = "{entry}") -> list[str]:
+    """All entries are made before the first is assigned; those that do not change are left.
+
+    `written`: of an entry's `name` and of what is given for it.
+    """
+    kind, changed = matrix[:2], [(a, b) for a, b in _places(entries) if entries[a][b]]
+    after = (written.format(name=f"{matrix}_{a}_{b}", entry=entries[a][b]) for a, b in changed)
     return [
-        *(f"{kind}new_{a}_{b} = {made(f'{matrix}_{a}_{b}', entries[a][b])}" for a, b in places),
-        *(f"{matrix}_{a}_{b} = {kind}new_{a}_{b}" for a, b in places),
+        *(f"{kind}new_{a}_{b} = {x}" for (a, b), x in zip(changed, after, strict=True)),
+        *(f"{matrix}_{a}_{b} = {kind}new_{a}_{b}" for a, b in changed),
     ]
 
 
-def _plain(narrow: Side) -> list[str]:
+def _widened(matrix: str, entries: Rows) -> tuple[list[str], list[list[str]]]:
+    """The lines that make float64's entries exact, and what the names of these are."""
+    names = [[x and f"{matrix}_{a}_{b}" for b, x in enumerate(r)] for a, r in enumerate(entries)]
+    places = [(a, b) for a, b in _places(entries) if entries[a][b]]
+    return [f"{names[a][b]} = wide({entries[a][b]})" for a, b in places], names
+
+
+def _plain(slopes: Rows) -> list[str]:
     """J̃ = 1 + K̃ and its products, in float64 and exactly."""
-    lines, slopes, rows = [], narrow.slopes, []
-    for a, row in enumerate(slopes):
-        own = []
-        for b, entry in enumerate(row):
-            if a == b or entry:
-                lines.append(f"f_j_{a}_{b} = " + (f"1.0 + {entry or '0.0'}" if a == b else entry))
-                lines.append(f"w_j_{a}_{b} = wide(f_j_{a}_{b})")
-            own.append(f"j_{a}_{b}" if a == b or entry else "")
-        rows.append(own)
-    for matrix in ("w_factors", "f_plain"):
-        named = [[name and matrix[:2] + name for name in row] for row in rows]
-        lines += _assigned(matrix, _product(named, matrix), lambda _, entry: entry)
-    return lines
+    entries = {(a, b): slopes[a][b] for a, b in _places(slopes) if a == b or slopes[a][b]}
+    for k in range(len(slopes)):
+        entries[k, k] = f"1.0 + {slopes[k][k] or '0.0'}"
+    rows = [["" for _ in slopes] for _ in slopes]
+    for a, b in entries:
+        rows[a][b] = f"f_j_{a}_{b}"
+    lines, exact = _widened("w_j", rows)
+    return [
+        *(f"f_j_{a}_{b} = {entry}" for (a, b), entry in entries.items()),
+        *lines,
+        *_assigned("w_factors", _product(exact, "w_factors")),
+        *_assigned("f_plain", _product(rows, "f_plain")),
+    ]
 
 
 def _closed(narrow: Side) -> list[str]:
     """M ← M + K̃ M and W ← W + MᵀS̃M, exactly and in float64."""
-    slopes, defect = narrow.slopes, narrow.step.defect
-    size = len(slopes)
-    lines, exact = [], [["" for _ in range(size)] for _ in range(size)]
-    for a, row in enumerate(slopes):
-        for b, entry in enumerate(row):
-            if entry:
-                lines.append(f"w_k_{a}_{b} = wide({entry})")
-                exact[a][b] = f"w_k_{a}_{b}"
-    form = [["" for _ in range(size)] for _ in range(size)]
-    for name, at in defect.items():
-        i, k = map(int, name.split("_")[1:])
+    every, places = range(len(narrow.slopes)), _places(narrow.slopes)
+    lines, exact = _widened("w_k", narrow.slopes)
+    form = [["" for _ in every] for _ in every]
+    for name, at in narrow.step.defect.items():
+        a, b = map(int, name.split("_")[1:])
         if not narrow.step.program.is_constant(at, 0):
-            form[i][k], form[k][i] = f"w_s_{i}_{k}", f"w_s_{k}_{i}"
-            lines += [f"{form[i][k]} = wide({narrow.name(at)})", f"{form[k][i]} = -{form[i][k]}"]
-    right, every = _product(form, "w_m"), range(size)
-    lines += [f"w_r_{a}_{b} = {right[a][b]}" for a in every for b in every if right[a][b]]
-    for a in every:
-        for b in range(a + 1, size):
-            terms = [f"w_m_{c}_{a} * w_r_{c}_{b}" for c in range(size) if right[c][b]]
-            if terms:
-                lines.append(f"w_closed_{a}_{b} = w_closed_{a}_{b} + ({' + '.join(terms)})")
-            lines.append(f"f_closed_{a}_{b} = f_closed_{a}_{b} + ({narrow.output(f'dw_{a}_{b}')})")
+            form[a][b], form[b][a] = f"w_s_{a}_{b}", f"w_s_{b}_{a}"
+            lines += [f"{form[a][b]} = wide({narrow.name(at)})", f"{form[b][a]} = -{form[a][b]}"]
+    right = _product(form, "w_m")
+    lines += [f"w_r_{a}_{b} = {right[a][b]}" for a, b in places if right[a][b]]
+    for a, b in combinations(every, 2):
+        column = [f"w_r_{c}_{b}" if right[c][b] else "" for c in every]
+        added = _sum([f"w_m_{c}_{a}" for c in every], column)
+        lines += [f"w_closed_{a}_{b} = w_closed_{a}_{b} + ({added})"] if added else []
+        lines.append(f"f_closed_{a}_{b} = f_closed_{a}_{b} + ({narrow.output(f'dw_{a}_{b}')})")
     lines += _moved("w_m", exact)
-    lines += [
-        f"f_m_{a}_{b} = f_m_{a}_{b} + ({narrow.output(f'dm_{a}_{b}')})"
-        for a in every
-        for b in every
-    ]
-    return lines
+    return lines + [f"f_m_{a}_{b} = f_m_{a}_{b} + ({narrow.output(f'dm_{a}_{b}')})"
+                    for a, b in places]  # fmt: skip
 
 
 def _watched(narrow: Side, products: Sequence[str], closed: bool) -> tuple[list[str], list[str]]:
