@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from tests.helpers.sampled.formulas import monomial, polynomials, rationals
 from verify import arithmetic as number_systems
+from verify.execution.keeping import Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.lockstep import alone
 from verify.studies.separation.chain import Chain
@@ -46,6 +47,23 @@ def area_chains(*asked: Any, **more: Any) -> AreaChains:
     chains = alone(separated_chains(*asked, **more))
     (plain,), (closed,) = chains.plain, chains.closed_form or (None,)
     return AreaChains(plain, closed, chains.arithmetic, chains.seconds)
+
+
+class Remembering(Keeper):
+    """Keeps every checkpoint, in memory."""
+
+    def __init__(self) -> None:
+        super().__init__(None, "")
+        self.kept: dict[str, dict[str, Any]] = {}
+
+    def load(self, label: str) -> dict[str, Any] | None:
+        return self.kept.get(label)
+
+    def due(self, label: str) -> bool:
+        return True
+
+    def save(self, label: str, data: dict[str, Any]) -> None:
+        self.kept[label] = data
 
 
 def only(links: Links | None) -> Link | None:

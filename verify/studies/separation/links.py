@@ -162,11 +162,17 @@ class LinksOnDemand:
 
     def chains(self) -> Course[EachWay]:
         """The chains of the plain way and those of the closed form."""
-        shared = yield from self.shared()
+        # Before the longer runs: where float64 leaves its range there is nothing to separate.
         working = yield from self.working()
-        first, *others = self.way.parts
-        timed = self.kernel_run.hamiltonian.time_dependent
-        parts = (first, *["clock"] * timed, *others)
+        first = self.proved("first") or (yield from self._reference(self.kernel_run, "first"))
+        second = first
+        if not self.same:
+            second = self.proved("second") or (yield from self._reference(self.rounded, "second"))
+        shared, parts = [first, second, working.trajectory or second], self.way.parts
+        if self.kernel_run.hamiltonian.time_dependent:
+            exact = _clock_is_exact(self.rounded)
+            shared.insert(2, second if exact or working.clock is None else working.clock)
+            parts = (parts[0], "clock", *parts[1:])
 
         def chains(*links: Links) -> tuple[Chain, ...]:
             each = zip(*shared, *links, strict=True)
@@ -176,20 +182,6 @@ class LinksOnDemand:
         if working.closed_factors is None or working.closed_form is None:
             return plain, None
         return plain, chains(working.closed_factors, working.closed_form)
-
-    def shared(self) -> Course[list[Links]]:
-        """The links before those in which ways to evaluate differ."""
-        # Before the longer runs: where float64 leaves its range there is nothing to separate.
-        working = yield from self.working()
-        first = self.proved("first") or (yield from self._reference(self.kernel_run, "first"))
-        second = first
-        if not self.same:
-            second = self.proved("second") or (yield from self._reference(self.rounded, "second"))
-        links = [first, second]
-        if self.kernel_run.hamiltonian.time_dependent:
-            exact = _clock_is_exact(self.rounded)
-            links.append(second if exact or working.clock is None else working.clock)
-        return [*links, working.trajectory or second]
 
     def to_digits(self, digits: int) -> Course[EachWay]:
         """The chains, whose links are made again as long as some lack digits: how many the

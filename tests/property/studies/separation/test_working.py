@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 from tests.examples import drawn
 from tests.helpers.sampled.separations import (
     KNOWN,
+    Remembering,
     area_chains,
     only,
     separated,
@@ -202,23 +203,6 @@ def test_a_determinant_below_0_leaves_the_closed_form_out(steps: int, h: int) ->
 
 
 # -- interruptions --------------------------------------------------------------------------------
-
-
-class Remembering(Keeper):
-    """Keeps every checkpoint, in memory."""
-
-    def __init__(self) -> None:
-        super().__init__(None, "")
-        self.kept: dict[str, dict[str, Any]] = {}
-
-    def load(self, label: str) -> dict[str, Any] | None:
-        return self.kept.get(label)
-
-    def due(self, label: str) -> bool:
-        return True
-
-    def save(self, label: str, data: dict[str, Any]) -> None:
-        self.kept[label] = data
 
 
 @cache

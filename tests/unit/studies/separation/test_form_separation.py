@@ -6,11 +6,11 @@ from typing import Any
 
 import pytest
 
+from tests.helpers.sampled.separations import Remembering
 from tests.helpers.stepping import form_separation as oracle
 from tests.helpers.stepping.form_separation import MP, Float64Step
 from verify import arithmetic as number_systems
 from verify.errors import InputError
-from verify.execution.keeping import Keeper
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
@@ -239,23 +239,6 @@ def test_where_w_is_large_nothing_is_counted_and_a_rerun_estimates() -> None:
     assert "rerun with 15 more digits" in found.closed_form[0].methods
 
 
-class KeepsAll(Keeper):
-    """Keeps every checkpoint, in memory."""
-
-    def __init__(self) -> None:
-        super().__init__(None, "")
-        self.kept: dict[str, Any] = {}
-
-    def due(self, _: str) -> bool:
-        return True
-
-    def save(self, label: str, data: Any) -> None:
-        self.kept[label] = data
-
-    def load(self, label: str) -> dict[str, Any] | None:
-        return self.kept.get(label)
-
-
 @pytest.mark.left_to_ci
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("name", ["henon-heiles", "driven-henon-heiles"])
@@ -263,7 +246,7 @@ def test_an_interrupted_run_goes_on_with_the_same_bits(name: str) -> None:
     exact, _, z, h, steps = CASES[name]
     start = dict(zip(exact.coordinates, map(Fraction, z), strict=True)) | {"h": Fraction(h)}
     start |= {"t": Fraction(T0)} if exact.time_dependent else {}
-    keeper = KeepsAll()
+    keeper = Remembering()
     whole = alone(separated_chains(exact, "lie2", start, steps, 17, keeper=keeper))
     beside = [label for label in keeper.kept if label.startswith("beside ")]
     assert beside
