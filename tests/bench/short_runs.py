@@ -22,8 +22,8 @@ from verify import lockstep
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import kernel_for
 from verify.runs.run import run
-from verify.studies.separation.chain import separated_chains
-from verify.studies.separation.mixed_run import Stopped
+from verify.studies.separation.links import separated_chains
+from verify.studies.separation.stepper.run import Stopped
 
 STEPS, H = 8, Fraction(1, 100)
 P, Q = Fraction(1, 3), Fraction(1, 2)

@@ -15,7 +15,7 @@ from verify.arithmetic.processor import LANES
 from verify.arithmetic.systems import fixed
 from verify.arithmetic.wide.size import INTEGER_BITS
 from verify.kernels.kernel import kernel_for
-from verify.studies.separation.kernel import mixed_kernel
+from verify.studies.separation.stepper.kernel import mixed_kernel
 
 NATIVE = [name for name, path in paths.PATHS.items() if path.needed and path.there]
 IN_LANES = [*NATIVE, "portable"]

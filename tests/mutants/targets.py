@@ -16,7 +16,7 @@ PATTERNS = (
     "flows/orbit_average.py",
     "proof/**/*.py",
     "schemes/**/*.py",
-    "studies/separation/*.py",
+    "studies/separation/**/*.py",
 )
 # Where a mistake makes a wrong verdict, or a bound that does not hold.
 SOUNDNESS = (

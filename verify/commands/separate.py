@@ -14,50 +14,36 @@ from verify.commands.shared.input import listed, scheme_option, start_options, w
 from verify.commands.shared.output import plain_json, print_once
 
 if TYPE_CHECKING:
-    from verify.scenes.results.separation import (
-        CrossoverResult,
-        EvaluationResult,
-        Parts,
-        SeparationGrid,
-        SeparationResult,
-    )
-    from verify.scenes.results.separation_in_degrees import (
-        FormEvaluation,
-        FormParts,
-        SeparationGridInDegrees,
-        SeparationInDegrees,
-    )
-
-    Grid = SeparationGrid | SeparationGridInDegrees
-    Point = SeparationResult | SeparationInDegrees
-    Evaluation = EvaluationResult | FormEvaluation
+    from verify.hamiltonians.hamiltonian import Hamiltonian
+    from verify.scenes.results.separation import CrossoverResult
+    from verify.scenes.results.separation_in_degrees import AnyEvaluation, AnyGrid, AnySeparation
 
 _WIDTH = 88  # of a line of prose
 _LABELS = {"plain": "plain", "closed_form": "closed form"}
 
 
-def separation_json(found: "Grid") -> dict[str, Any]:
+def separation_json(grid: "AnyGrid") -> dict[str, Any]:
     """The first step size's parts, and those of all of them as `grid`; of W each is a matrix."""
-    points = [_separated(point) for point in found.points]
-    crossover = {way: getattr(found, way).model_dump(mode="json") for way in _LABELS}
-    seconds = f"{sum(point.seconds for point in found.points):.6f}"
+    points = [_separated(point) for point in grid.points]
+    crossover = {way: getattr(grid, way).model_dump(mode="json") for way in _LABELS}
+    seconds = f"{sum(point.seconds for point in grid.points):.6f}"
     return {**points[0], "crossover": crossover, "grid": points, "seconds": seconds}
 
 
-def _separated(point: "Point") -> dict[str, Any]:
+def _separated(point: "AnySeparation") -> dict[str, Any]:
     from verify.scenes.results.separation import Parts, SeparationResult
     from verify.scenes.results.separation_in_degrees import FormParts
 
-    parts: type[Parts | FormParts] = Parts
     names: dict[str, Any] = {}
     motion: dict[str, Any] = {}
     if not isinstance(point, SeparationResult):
-        parts, names = FormParts, {"coordinates": list(point.coordinates)}
+        names = {"coordinates": list(point.coordinates)}
         motion = {"tangent": plain_json(point.tangent) if point.tangent else None}
+    without = FormParts if names else Parts
     return {
         **names,
-        **_evaluated(point.plain, parts),
-        "closed_form": _evaluated(point.closed_form, parts),
+        **_evaluated(point.plain, without),
+        "closed_form": _evaluated(point.closed_form, without),
         **motion,
         **picked(point, "step_size", "steps", "digits"),
         "working_arithmetic": "float64",
@@ -66,18 +52,17 @@ def _separated(point: "Point") -> dict[str, Any]:
     }
 
 
-def _evaluated(way: "Evaluation | None", parts: "type[Parts | FormParts]") -> dict[str, Any]:
-    """`parts`: how they are called where there are none."""
-    names = (type(way.parts) if way else parts).model_fields
-    values = {n: getattr(way.parts, n) if way else None for n in names}
-    working, *_ = names
-    shown = {n: value.value if value else None for n, value in values.items()}
+def _evaluated(way: "AnyEvaluation | None", without: type[Any]) -> dict[str, Any]:
+    """`without`: the model whose names the parts have where there are none."""
+    working, *names = (type(way.parts) if way else without).model_fields
+    values = {n: getattr(way.parts, n) for n in (working, *names)} if way else {}
+    shown = {n: values[n].value if way else None for n in (working, *names)}
     law = getattr(way, "law", None)  # of W alone
     return {
         working: shown.pop(working),
         "truncation": shown.pop("truncation"),
         "rounding": shown,
-        "error_bound": {n: value.bound for n, value in values.items() if value},
+        "error_bound": {n: value.bound for n, value in values.items()},
         "error_kind": way.error_kind if way else None,
         "largest": way.largest if way else None,
         "growth": {n: plain_json(g) for n, g in way.growth.items()} if way else None,
@@ -86,21 +71,21 @@ def _evaluated(way: "Evaluation | None", parts: "type[Parts | FormParts]") -> di
     }
 
 
-def print_separation(found: "Grid") -> None:
+def print_separation(grid: "AnyGrid") -> None:
     """Each step size, and where rounding overtakes truncation."""
-    for point in found.points:
+    for point in grid.points:
         click.echo(f"h = {point.step_size}, {point.steps} steps")
         if point.status != "finished":
             at = f" at step {point.failed_step}" if point.failed_step else ""
             click.echo(f"  {point.status}{at}: {point.reason}")
         else:
             _print_parts(point)
-    if len(found.points) > 1:
+    if len(grid.points) > 1:
         for way, label in _LABELS.items():
-            click.echo(f"rounding overtakes truncation, {label}: {_crossed(getattr(found, way))}")
+            click.echo(f"rounding overtakes truncation, {label}: {_crossed(getattr(grid, way))}")
 
 
-def _print_parts(point: "Point") -> None:
+def _print_parts(point: "AnySeparation") -> None:
     from verify.scenes.results.separation import SHOWN, SeparationResult
     from verify.scenes.results.separation_in_degrees import FORM_SHOWN
 
@@ -138,7 +123,7 @@ def _cell(point: Any, value: Any) -> str:
     return f"{value.largest.value:24} {at}"
 
 
-def _grows(way: "Evaluation", label: str) -> str:
+def _grows(way: "AnyEvaluation", label: str) -> str:
     """How rounding grows with N; in n degrees of freedom how W does."""
     law, growth = getattr(way, "law", None), way.growth["total"]
     if law is None:
@@ -150,10 +135,6 @@ def _crossed(way: "CrossoverResult") -> str:
     if way.bracket is None:
         return way.reason
     return f"h* = {way.step_size or '?'}, {way.bracket[0]} … {way.bracket[1]} ({way.reason})"
-
-
-if TYPE_CHECKING:
-    from verify.hamiltonians.hamiltonian import Hamiltonian
 
 
 @click.command()

@@ -17,9 +17,9 @@ from verify.exploration.sample import Sample
 from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.lockstep import alone
-from verify.studies.separation.chain import separated_chains
-from verify.studies.separation.mixed_run import Stopped
-from verify.studies.separation.trail import Trail
+from verify.studies.separation.links import separated_chains
+from verify.studies.separation.stepper.run import Stopped
+from verify.studies.separation.stepper.trail import Trail
 
 DIGITS = 40  # of what stands for exact arithmetic
 _SHARE = 10  # of them, a digit of Λ's parts: these need more by themselves
@@ -56,9 +56,10 @@ def rounding_share(sample: Sample, digits: int = DIGITS) -> float | None:
     if _stays(sample, digits) is None:
         return None
     try:
-        chain = alone(separated_chains(*sample.kernel_inputs, max(1, digits // _SHARE))).plain
+        chains = alone(separated_chains(*sample.kernel_inputs, max(1, digits // _SHARE)))
     except Stopped:
         return None
+    (chain,) = chains.plain
     truncation, rounding = (_greatest(*chain.trail(n)) for n in ("truncation", "total"))
     return None if not truncation or not rounding else _lg(rounding / truncation)
 

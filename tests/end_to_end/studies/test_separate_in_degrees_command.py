@@ -86,6 +86,15 @@ def test_people_read_the_greatest_entries_and_what_grew(
     assert "the motion's" not in out
 
 
+def test_of_a_scheme_that_solves_equations_all_of_w_is_rounding(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    found = separated(capsys, scheme="implicit-midpoint")
+    assert found["status"] == "finished"
+    assert not any(any(map(Fraction, row)) for row in found["truncation"])
+    assert any(any(map(Fraction, row)) for row in found["rounding"]["total"])
+
+
 def test_an_orbit_that_leaves_the_range_says_where(capsys: pytest.CaptureFixture[str]) -> None:
     found = separated(capsys, q="0.9,0.9", steps="2000", step_size="0.05")
     assert (found["status"], found["failed_step"], found["w_working"]) == ("left range", 121, None)
@@ -97,7 +106,6 @@ def test_an_orbit_that_leaves_the_range_says_where(capsys: pytest.CaptureFixture
         ({"q": "0.3"}, "--q=0.3: has 1 of 2 numbers; H is of q1, q2"),
         ({"p": "0.1,x"}, "p2=x"),
         ({"step_size": "0"}, "--step-size=0"),
-        ({"scheme": "implicit-midpoint"}, "--scheme=implicit-midpoint: solves equations"),
         ({"arithmetic": "float64"}, "is what is examined"),
     ],
 )

@@ -1,16 +1,21 @@
 """Drawn separations of truncation from rounding, for their properties."""
 
+from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
 from hypothesis import assume
 from hypothesis import strategies as st
 
 from tests.helpers.sampled.formulas import monomial, polynomials, rationals
 from verify import arithmetic as number_systems
+from verify.execution.keeping import Keeper
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.lockstep import alone
-from verify.studies.separation.chain import Chains, separated_chains
-from verify.studies.separation.mixed_run import Stopped
+from verify.studies.separation.chain import Chain
+from verify.studies.separation.links import separated_chains
+from verify.studies.separation.stepper.run import Stopped
+from verify.studies.separation.stepper.trail import Link, Links
 
 sizes = st.builds(lambda n, k: Fraction(n, 2 * 7**k), st.integers(0, 8), st.integers(0, 9))
 starts = st.fractions(min_value=-1, max_value=1, max_denominator=30)
@@ -27,13 +32,52 @@ def bent(draw: st.DrawFn) -> str:
     return f"p**2/2 + {monomial(draw(rationals(4)), 'pq', (0, 3))} + {extra}"
 
 
+@dataclass(frozen=True)
+class AreaChains:
+    """The chains of Λ, one for each way to evaluate it."""
+
+    plain: Chain
+    closed_form: Chain | None
+    arithmetic: str
+    seconds: float
+
+
+def area_chains(*asked: Any, **more: Any) -> AreaChains:
+    """Those of `separated_chains`, which takes the same arguments, in the plane."""
+    chains = alone(separated_chains(*asked, **more))
+    (plain,), (closed,) = chains.plain, chains.closed_form or (None,)
+    return AreaChains(plain, closed, chains.arithmetic, chains.seconds)
+
+
+class Remembering(Keeper):
+    """Keeps every checkpoint, in memory."""
+
+    def __init__(self) -> None:
+        super().__init__(None, "")
+        self.kept: dict[str, dict[str, Any]] = {}
+
+    def load(self, label: str) -> dict[str, Any] | None:
+        return self.kept.get(label)
+
+    def due(self, label: str) -> bool:
+        return True
+
+    def save(self, label: str, data: dict[str, Any]) -> None:
+        self.kept[label] = data
+
+
+def only(links: Links | None) -> Link | None:
+    """The link of Λ among those of a float64 run."""
+    return links[0] if links else None
+
+
 def separated(
     text: str, scheme: str, start: dict[str, Fraction], steps: int, digits: int, name: str
-) -> tuple[Chains, list[int]]:
+) -> tuple[AreaChains, list[int]]:
     advanced: list[int] = []
     run = Hamiltonian.parse(text), scheme, start, steps
     try:
-        return alone(separated_chains(*run, digits, name, advanced.append)), advanced
+        return area_chains(*run, digits, name, advanced.append), advanced
     except Stopped:
         assume(False)
         raise

@@ -15,8 +15,10 @@ from typing import Any
 
 import mpmath
 
+from verify import arithmetic as number_systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.studies.separation.form_kernel import Step
+from verify.kernels.step.computation import step_map_of
+from verify.studies.separation.ways.matrices import Matrices
 
 MP = mpmath.MPContext()
 MP.dps = 80
@@ -143,10 +145,12 @@ def exact_w(
 class Float64Step:
     """The float64 step of a scheme, its operations done one by one in Python."""
 
-    def __init__(self, exact: Hamiltonian, scheme: str, h: float, closed: bool = True) -> None:
+    def __init__(self, exact: Hamiltonian, scheme: str, h: float) -> None:
         self.exact, self.h = exact.with_symbols(), h
         self.given = {name: float(value) for name, value in exact.values}
-        self.step = Step.of(self.exact, scheme, pipelined=True, form=closed)
+        step_map, size = step_map_of(self.exact, scheme), len(exact.coordinates)
+        working = number_systems.get("float64", 17)
+        self.step = Matrices(size).step(step_map, working, exactly=False)
 
     def values(self, inputs: dict[str, float]) -> list[float]:
         import math
@@ -174,33 +178,33 @@ class Float64Step:
         return found
 
     def run(self, z: Sequence[float], t0: float, steps: int) -> "Float64Run":
-        made, size = self.step.made, len(z)
-        given = {"h": self.h} | {f"x{k}": self.given[n] for k, n in enumerate(made.parameters)}
+        step, size = self.step, len(z)
+        given = {"h": self.h} | {f"x{k}": self.given[n] for k, n in enumerate(step.parameters)}
         state, t, run = list(z), t0, Float64Run([], [], [], [], [], {})
         m = [[float(a == b) for b in range(size)] for a in range(size)]
         w = dict.fromkeys(combinations(range(size), 2), 0.0)
         for _ in range(steps):
             carried = {f"m_{a}_{b}": m[a][b] for a in range(size) for b in range(size)}
             found = self.values(
-                {**given, **carried, "t": t, **dict(zip(made.coordinates, state, strict=True))}
+                {**given, **carried, "t": t, **dict(zip(step.coordinates, state, strict=True))}
             )
-            k = [[found[at] for at in row] for row in self.step.slopes]
+            k = [[found[at] for at in row] for row in step.slopes]
             run.states.append(state)
             run.times.append(t)
             run.slopes.append(k)
             run.defects.append(
-                {tuple(map(int, n.split("_")[1:])): found[at] for n, at in made.defect.items()}
+                {tuple(map(int, n.split("_")[1:])): found[at] for n, at in step.defect.items()}
             )
             j = [[1.0 + x if a == b else x for b, x in enumerate(row)] for a, row in enumerate(k)]
             run.jacobians.append(j)
-            if made.defect:
+            if step.defect:
                 for a, b in w:
-                    w[a, b] += found[made.outputs[f"dw_{a}_{b}"]]
+                    w[a, b] += found[step.outputs[f"dw_{a}_{b}"]]
                 m = [
-                    [m[a][b] + found[made.outputs[f"dm_{a}_{b}"]] for b in range(size)]
+                    [m[a][b] + found[step.outputs[f"dm_{a}_{b}"]] for b in range(size)]
                     for a in range(size)
                 ]
-            change = [found[made.outputs[f"d{n}"]] for n in made.coordinates]
+            change = [found[step.outputs[f"d{n}"]] for n in step.coordinates]
             state, t = [a + b for a, b in zip(state, change, strict=True)], t + self.h
         run.closed.update(w)
         return run

@@ -9,7 +9,7 @@ from verify.exploration.measures import MEASURES, _greatest, digits_lost, growth
 from verify.exploration.sample import Sample
 from verify.scenes.scene import scene_from
 from verify.studies.separation.separate import separate
-from verify.studies.separation.trail import Trail
+from verify.studies.separation.stepper.trail import Trail
 
 
 def sample(formula: str, q: str, p: str, h: str, steps: int, scheme: str = "lie2") -> Sample:

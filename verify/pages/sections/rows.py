@@ -9,12 +9,10 @@ from markupsafe import Markup
 
 from verify.pages.figures.separation_caption import end_of
 from verify.pages.text.typography import start, whole
-from verify.scenes.results.separation import SeparationGrid, SeparationResult
-from verify.scenes.results.separation_in_degrees import SeparationGridInDegrees, SeparationInDegrees
+from verify.scenes.results.separation_in_degrees import AnyGrid, AnySeparation
 
 MOST_ROWS = 600  # of a table; the others are in results.json
 Member = TypeVar("Member")
-Separated = SeparationResult | SeparationInDegrees
 
 
 @dataclass(frozen=True)
@@ -66,11 +64,9 @@ def told(count: int, shown: int, failures: int = 0) -> str:
     return f"{whole(shown)} of {whole(count)} are shown{which}; all are in results.json."
 
 
-def groups_of_grids(
-    grids: Sequence[SeparationGrid | SeparationGridInDegrees], row: Callable[[Any], Row | None]
-) -> Iterator[Group]:
+def groups_of_grids(grids: Sequence[AnyGrid], row: Callable[[Any], Row | None]) -> Iterator[Group]:
     """A group for each grid with a row; as many rows as are shown, of all that there are."""
-    every: list[Sequence[Separated]] = [grid.points for grid in grids]
+    every: list[Sequence[AnySeparation]] = [grid.points for grid in grids]
     for grid, held in zip(grids, shown(every, _unsplit), strict=True):
         points = sorted(held, key=lambda point: Fraction(point.step_size))
         rows = [found for point in points if (found := row(point))]
@@ -78,11 +74,11 @@ def groups_of_grids(
             yield Group(start(points[0]) + end_of(grid.points), rows)
 
 
-def told_of_points(points: Sequence[Separated]) -> str:
+def told_of_points(points: Sequence[AnySeparation]) -> str:
     """As `told`; what could not be separated is what failed."""
     (held,) = shown([points], _unsplit)
     return told(len(points), len(held), sum(map(_unsplit, points)))
 
 
-def _unsplit(point: Separated) -> bool:
+def _unsplit(point: AnySeparation) -> bool:
     return point.plain is None

@@ -5,7 +5,7 @@ What stands for a run is the greatest |truncation| and |rounding| along it, sinc
 """
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from decimal import Decimal
 from math import isfinite
 
@@ -15,6 +15,7 @@ from verify.pages.figures.logarithm import lg
 from verify.pages.figures.separation_caption import PLAIN
 from verify.pages.text.typography import between, counted, every, listed, whole
 from verify.scenes.results.separation import WAYS, EvaluationResult, SeparationResult
+from verify.scenes.results.separation_in_degrees import AnySeparation
 
 
 def finding(points: Sequence[SeparationResult], where: str = "") -> Iterator[str]:
@@ -82,22 +83,25 @@ def growth_finding(points: Sequence[SeparationResult]) -> str:
     return f"How rounding grows with N: {'; '.join(said)}." if said else ""
 
 
-def computed(points: Sequence[SeparationResult]) -> str:
+def computed(
+    points: Sequence[AnySeparation], bounds: Callable[[Counter[str]], str] | None = None
+) -> str:
+    """What stood for exact arithmetic, and how errors were bounded; `bounds` tells of the kinds."""
     finished = [p for p in points if p.plain]
     if not finished:
         return ""
     systems = listed(dict.fromkeys(p.arithmetic for p in finished))
-    kinds = Counter(
-        evaluation.error_kind
-        for p in finished
-        for evaluation in (p.plain, p.closed_form)
-        if evaluation
-    )
+    ways = (way for p in finished for way in (p.plain, p.closed_form))
+    kinds = Counter(str(way.error_kind) for way in ways if way)
     methods = "; ".join(dict.fromkeys(p.error_method for p in finished))
-    bounds = "all enclosed" if set(kinds) == {"enclosed"} else "all estimated"
-    if len(kinds) > 1:
-        bounds = listed(f"{n} {kind}" for kind, n in kinds.most_common())
-    return f"In place of exact arithmetic: {systems}. Error bounds {bounds}: {methods}."
+    told = (bounds or _each_kind)(kinds)
+    return f"In place of exact arithmetic: {systems}. Error bounds {told}: {methods}."
+
+
+def _each_kind(kinds: Counter[str]) -> str:
+    if len(kinds) == 1:
+        return f"all {next(iter(kinds))}"
+    return listed(f"{n} {kind}" for kind, n in kinds.most_common())
 
 
 def _of(n: int, count: int) -> str:

@@ -1,7 +1,7 @@
 """Truncation and rounding in Λ as they were found, and how they show themselves in a notebook."""
 
 from collections.abc import Callable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal, TypeVar
 
 from verify.frames import library, nearest_float
 from verify.notebook import html_table
@@ -161,16 +161,23 @@ class CrossoverResult(Frozen):
     reason: str
 
 
-class SeparationGrid(Frozen):
-    """The separation for several step sizes, in the order given, and the crossover of each way."""
+P = TypeVar("P")  # a separation
 
-    points: tuple[SeparationResult, ...]
+
+class GridOf(Frozen, Generic[P]):
+    """Separations for several step sizes, in the order given, and the crossover of each way."""
+
+    points: tuple[P, ...]
     plain: CrossoverResult
     closed_form: CrossoverResult
 
     def __repr__(self) -> str:
-        sizes = ", ".join(point.step_size for point in self.points)
-        return f"SeparationGrid({len(self.points)} step sizes: {sizes})"
+        sizes = ", ".join(point.step_size for point in list[Any](self.points))
+        return f"{type(self).__name__}({len(self.points)} step sizes: {sizes})"
+
+
+class SeparationGrid(GridOf[SeparationResult]):
+    """The separation for several step sizes, in the order given, and the crossover of each way."""
 
     @property
     def rows(self) -> list[dict[str, str]]:

@@ -2,11 +2,20 @@
 
 from fractions import Fraction
 from itertools import combinations
+from math import isqrt
 from typing import ClassVar, Literal
 
 from verify.scenes.frozen import Frozen, OfScheme, Said, Seconds, WithProse
 from verify.scenes.results.bounded_value import Value
-from verify.scenes.results.separation import Chain, CrossoverResult, GrowthResult, parts_table
+from verify.scenes.results.separation import (
+    Chain,
+    EvaluationResult,
+    GridOf,
+    GrowthResult,
+    SeparationGrid,
+    SeparationResult,
+    parts_table,
+)
 
 FORM_ROUNDING = ("input", "trajectory", "derivatives", "product")
 FORM_SHOWN = {"w_working": "W in float64", "truncation": "truncation", "total": "rounding"}
@@ -21,8 +30,9 @@ class FormValue(Frozen):
     bound: Rows
 
     @classmethod
-    def of(cls, entries: tuple[Value, ...], size: int) -> "FormValue":
+    def of(cls, entries: tuple[Value, ...]) -> "FormValue":
         """That of the entries above the diagonal, row by row."""
+        size = (1 + isqrt(1 + 8 * len(entries))) // 2  # of rows: size (size − 1)/2 entries
         zero = Value(value="0", bound="0")
         full = [[zero] * size for _ in range(size)]
         for (a, b), entry in zip(combinations(range(size), 2), entries, strict=True):
@@ -88,7 +98,7 @@ class FormAt(Frozen):
 
 
 class PowerLawResult(WithProse):
-    """A `verify.studies.separation.form_result.PowerLaw`: measured, not proved."""
+    """A `verify.studies.separation.growth.PowerLaw`: measured, not proved."""
 
     exponent: str | None
     standard_error: str | None
@@ -119,7 +129,7 @@ class TangentGrowth(WithProse):
     2 × 2 minors, as which a 2-form grows, and which is below ‖M_N‖². `finite_time_lyapunov`:
     ln(‖M_N‖/√(2n))/T per unit of time, `time` T. `motion`: whether ‖M‖ grew exponentially in this
     run, and then `cause`, whose that growth is: `at_half_step` is the exponent over the same time
-    with half the step size (`verify.studies.separation.form_result`). `law`, `law_of_areas`: those
+    with half the step size (`verify.studies.separation.tangent`). `law`, `law_of_areas`: those
     of ‖M‖² and ‖∧²M‖ where it did not. `per_area`: the greatest |entry| of the truncation of W_N,
     over ‖∧²M_N‖.
     """
@@ -139,7 +149,7 @@ class TangentGrowth(WithProse):
 
 class SeparationInDegrees(OfScheme):
     """Truncation and rounding in W of one run in float64, in n degrees of freedom; see
-    `verify.studies.separation.form_chain`.
+    `verify.studies.separation.ways.matrices`.
 
     `coordinates` name the rows and columns of all matrices. `plain` takes W = MᵀΩM − Ω of float64's
     M, `closed_form` sums MᵀSM. All are None where `status` is not "finished"; `reason` says why.
@@ -180,18 +190,15 @@ class SeparationInDegrees(OfScheme):
         return parts_table(self, "W", FORM_SHOWN, lambda matrix: str(matrix.largest), meaning)
 
 
-class SeparationGridInDegrees(Frozen):
+class SeparationGridInDegrees(GridOf[SeparationInDegrees]):
     """The separation of W for several step sizes, in the order given, and the crossover of the
     greatest entries, each way."""
-
-    points: tuple[SeparationInDegrees, ...]
-    plain: CrossoverResult
-    closed_form: CrossoverResult
-
-    def __repr__(self) -> str:
-        sizes = ", ".join(point.step_size for point in self.points)
-        return f"SeparationGridInDegrees({len(self.points)} step sizes: {sizes})"
 
     def _repr_html_(self) -> str:
         """Each step size in full, one below the other."""
         return "".join(point._repr_html_() for point in self.points)
+
+
+AnyEvaluation = EvaluationResult | FormEvaluation
+AnySeparation = SeparationResult | SeparationInDegrees
+AnyGrid = SeparationGrid | SeparationGridInDegrees

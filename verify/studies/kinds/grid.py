@@ -13,8 +13,8 @@ from verify.runs.task import RunTask
 from verify.scenes.observables import observed
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene
-from verify.studies.separation.mixed_run import POINTS
 from verify.studies.separation.task import does_for_first_link
+from verify.studies.separation.ways.determinants import POINTS
 
 
 def grid_task(

@@ -4,12 +4,11 @@ In n degrees of freedom it is W that is split.
 """
 
 from collections.abc import Iterator, Sequence
-from itertools import repeat
+from itertools import chain, repeat
 from typing import Any
 
 from verify.execution.plan import Plan
 from verify.execution.study import Results, Section, Study, called, known_results
-from verify.kernels.step.computation import step_map_of
 from verify.scenes.results.separation import SeparationResult
 from verify.scenes.results.separation_in_degrees import SeparationInDegrees
 from verify.scenes.run_sections import Grid
@@ -51,18 +50,15 @@ def _beside(scene: Scene) -> list[Grid]:
 
 def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
     name, exact = called(scene), scene.exact_hamiltonian()
-    grids = (*_own(scene), *_beside(scene))
     what, why = ("Λ", "ΔJ ≡ 0") if exact.planar else ("W", "S ≡ 0")
-    without = f"{why} is proved: the truncation part is exactly 0" if preserves else ""
-    if grids and not exact.planar and not preserves and step_map_of(exact, scheme).implicit:
-        without = "it solves equations; in n degrees of freedom its Jacobian is not followed"
-    for grid in grids:
-        if without:
-            plan.leave_out(f"{name}: truncation separated from rounding for {scheme}", without)
+    title = f"{name}: truncation separated from rounding"
+    for grid in (*_own(scene), *_beside(scene)):
+        if preserves:
+            without = f"{why} is proved: the truncation part is exactly 0"
+            plan.leave_out(f"{title} for {scheme}", without)
             continue
-        for row in _rows(scene, scheme, grid):
-            for task in row:
-                plan.need(task, f"{name}: truncation separated from rounding in {what}")
+        for task in chain.from_iterable(_rows(scene, scheme, grid)):
+            plan.need(task, f"{title} in {what}")
 
 
 def _found(scene: Scene, results: Results) -> dict[str, Any]:

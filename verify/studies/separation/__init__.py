@@ -1,1 +1,1 @@
-"""Truncation and four kinds of rounding in Λ of a float64 run, which add up exactly."""
+"""Truncation and kinds of rounding in Λ, or W, of a float64 run, which add up exactly."""

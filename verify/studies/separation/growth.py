@@ -1,4 +1,4 @@
-"""How the rounding part of Λ grows with N, and the step size where it overtakes truncation.
+"""How rounding and W grow with N, and the step size where rounding overtakes truncation.
 
 Growth. Rounding errors of one sign add up to a drift, proportional to N; errors of both signs, as
 good as independent, make a random walk, whose size is N^½ (P. Henrici, Discrete Variable Methods,
@@ -16,6 +16,14 @@ values 86 % are named so, 13 % are left undecided and 1 % taken for a drift.) Ne
 rounded states have an energy that walks and a phase that adds it up, so that the trajectory's part
 may well grow like N^(3/2).
 
+W and the tangent map. W_N = Σ_k M_kᵀ S_k M_k, M_k the tangent map of k steps, so that W can grow
+though no step's S does: it is a 2-form, and grows as areas do under M, like σ₁σ₂ of M's two
+greatest singular values, which is ‖M‖² at most. Where motion is quasi-periodic ‖M‖ grows like N at
+most; the same fit of max |W| says whether W stays bounded or grows like N or N². In chaos ‖M‖ grows
+exponentially and no power is fitted: what W grows by then is the motion's. Whether it grew so is
+told as everywhere (`verify.runs.tangent_growth`), and of an M that has hardly grown nothing is
+said. All of that is measured, and not proved.
+
 Crossover. For each step size, the greatest |truncation| and |rounding| at any checkpoint stand for
 the run: Λ of an even-order scheme telescopes to a boundary term, which passes through 0 again and
 again, so that the last value alone may be small by chance.
@@ -29,21 +37,29 @@ from typing import Any, Literal
 
 from verify.arithmetic.arb import slope
 from verify.prose import Number, Prose, prose
-from verify.studies.separation.trail import Trail
+from verify.runs.tangent_growth import is_exponential
+from verify.studies.separation.stepper.trail import Trail
 
 Name = Literal["random walk", "drift", "undecided"]
+Law = Literal["bounded", "N", "N²", "exponential", "undecided"]
+Motion = Literal["exponential", "polynomial", "undecided"]
 _FIRST = 8  # values that a maximum is taken of, at least
 _MOST = 32  # checkpoints of a fit
-LEAST = 5
+_LEAST = 5
 _DECADES = 1.5
 _ABOVE = 10  # times the error bound
 _WANDERING = 1.65
-WIDTH = 2.5  # standard errors, each way
+_WIDTH = 2.5  # standard errors, each way
 _NAMES: dict[float, tuple[Name, str]] = {  # by the one exponent that the interval holds
     0.0: ("undecided", "0"),
     0.5: ("random walk", "½"),
     1.0: ("drift", "1"),
 }
+_LAWS: tuple[Law, ...] = ("bounded", "N", "N²")  # by their exponents
+_NEAR = 0.25  # of a whole exponent, at least
+_GROWN = 10  # times ‖M‖² has grown where something is said of how
+_DECADES_OF_LAW = 1.2
+_SHORT = "too few checkpoints above noise for a fit"
 
 
 @dataclass(frozen=True)
@@ -73,6 +89,13 @@ class Growth(Fit):
 
 
 @dataclass(frozen=True)
+class PowerLaw(Fit):
+    """That of a greatest size."""
+
+    name: Law
+
+
+@dataclass(frozen=True)
 class Crossover:
     """The step size below which rounding is the larger part, and the two it was found between."""
 
@@ -99,7 +122,7 @@ class Envelope:
 
     def reaches(self, decades: float) -> bool:
         """Whether they are enough, over so many decades of N."""
-        return len(self.chosen) >= LEAST and self.reach >= decades * math.log(10)
+        return len(self.chosen) >= _LEAST and self.reach >= decades * math.log(10)
 
     def slope(self) -> tuple[float, float]:
         """The fitted exponent and its standard error."""
@@ -114,19 +137,47 @@ def growth(marks: Sequence[int], values: Sequence[Fraction], noise: Fraction) ->
         decades = f"{envelope.reach / math.log(10):.1f}"
         reason = prose(
             f"{len(envelope.chosen)} checkpoints above noise over {decades} decades of N; "
-            f"a fit takes {LEAST} over {_DECADES}"
+            f"a fit takes {_LEAST} over {_DECADES}"
         )
         return Growth(None, None, "undecided", reason, *seen)
     exponent, scatter = envelope.slope()
     error = max(scatter, _WANDERING * envelope.reach**-1.5)
-    held = [at for at in _NAMES if abs(exponent - at) <= WIDTH * error]
+    held = [at for at in _NAMES if abs(exponent - at) <= _WIDTH * error]
     name = _NAMES[held[0]][0] if len(held) == 1 else "undecided"
     holds = " and ".join(_NAMES[at][1] for at in held) or "neither ½ nor 1"
-    reason = prose(*with_error(exponent, WIDTH * error), f" holds {holds}")
+    reason = prose(*_with_error(exponent, _WIDTH * error), f" holds {holds}")
     return Growth(exponent, error, name, reason, *seen)
 
 
-def with_error(exponent: float, width: float) -> tuple[Number, str, Number]:
+def motion_of(marks: Sequence[int], squares: Sequence[Fraction]) -> Motion:
+    """Whether ‖M‖ grew exponentially in this run; from ‖M‖²."""
+    if len(marks) < _LEAST or max(squares) < _GROWN * squares[0]:
+        return "undecided"
+    grown = is_exponential([float(n) for n in marks], [log(x) / 2 for x in squares])
+    return "undecided" if grown is None else "exponential" if grown else "polynomial"
+
+
+def power_law(
+    marks: Sequence[int], values: Sequence[Fraction], noise: Fraction, motion: Motion
+) -> PowerLaw:
+    """The law of sizes at equidistant numbers of steps, each known to within `noise`."""
+    envelope = Envelope(marks, values, noise)
+    if not envelope.tops[-1]:
+        return PowerLaw(None, None, "bounded", prose("exactly 0 at every checkpoint"))
+    if motion == "exponential":
+        return PowerLaw(None, None, "exponential", prose("‖M‖ grows exponentially: no power fits"))
+    if not envelope.reaches(_DECADES_OF_LAW):
+        return PowerLaw(None, None, "undecided", prose(_SHORT))
+    exponent, error = envelope.slope()
+    width = max(_NEAR, _WIDTH * error)
+    held = [k for k in range(len(_LAWS)) if abs(exponent - k) <= width]
+    name: Law = _LAWS[held[0]] if len(held) == 1 else "undecided"
+    near = f" is near {held[0]}" if len(held) == 1 else " is near no whole exponent, or near two"
+    shown = _with_error(exponent, _WIDTH * error)
+    return PowerLaw(exponent, error, name, prose("fitted exponent ", *shown, near))
+
+
+def _with_error(exponent: float, width: float) -> tuple[Number, str, Number]:
     """The exponent, and its interval."""
     return Number(f"{exponent:.3f}"), " ± ", Number(f"{width:.3f}")
 

@@ -1,77 +1,125 @@
 """The links of a separation, each made when it is asked for, at its own number of digits.
 
-What one degree of freedom and several have in common: a link is of Λ, or one for each entry of W.
-
-What is known is not run: a link that a proof gives, and the second where every input is a float64.
-Equal links are one object, and the part between them is exactly 0.
+A link is of Λ, or one for each entry of W. What is known is not run: a link that a proof gives, and
+the second where every input is a float64. Equal links are one object, and the part between them is
+exactly 0. So where the proof gives ΔJ ≡ 0, or S ≡ 0, all links before float64's factors are exactly
+0, and the closed form's too; where ΔJ does not depend on (p, q), Λ₀ is a closed form and Λ₂ = Λ₁.
+Where every input is a float64, Λ₁ = Λ₀; after one step Λ₂ = Λ₁, for the first ΔJ is taken at the
+initial value.
 """
 
 import copy
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, ClassVar, Generic, TypeVar
 
 from verify import arithmetic as number_systems
 from verify.arithmetic import AUTO
-from verify.arithmetic.number_system import NumberSystem
-from verify.kernels.stepping import KernelRun, Outcome
+from verify.arithmetic.number_system import NumberSystem, UnsupportedError
+from verify.errors import InputError
+from verify.execution.keeping import NOTHING, Keeper
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.step.computation import step_map_of
+from verify.kernels.stepping import KernelRun
 from verify.lockstep import Course, clock
 from verify.runs.digits_on_demand import Measured, choose, measure
 from verify.runs.estimated import working_digits
 from verify.runs.run import AskedRun
-from verify.studies.separation.mixed_run import POINTS, Advance, Stopped, marks_of
-from verify.studies.separation.trail import Trail
-from verify.studies.separation.working import Kind, Link, Working, rounded_inputs
+from verify.schemes.maps.step_map import StepMap
+from verify.studies.separation.chain import Chain, lacking
+from verify.studies.separation.stepper.run import (
+    Advance,
+    MixedRun,
+    Stopped,
+    Working,
+    marks_of,
+    rounded_inputs,
+)
+from verify.studies.separation.stepper.trail import Kind, Links, links_of
+from verify.studies.separation.stepper.way import Size, Way
+from verify.studies.separation.ways.determinants import Determinants
+from verify.studies.separation.ways.matrices import Matrices
 
 _MANTISSAS = 2**53  # whole numbers up to here are float64s
 _DOUBLINGS = 6
 _ATTEMPTS = 4
-AsLink = Callable[[Sequence[Fraction]], Link]  # of values at the checkpoints
+EachWay = tuple[tuple[Chain, ...], tuple[Chain, ...] | None]
 
 
-L = TypeVar("L")  # Link, or one for each entry
-W = TypeVar("W", bound=Working[Any])
-C = TypeVar("C")  # chains
+@dataclass(frozen=True)
+class Chains:
+    """The chains of the plain way and of the closed form, one for Λ, or for each entry of W above
+    the diagonal. The closed form has none where some det J ≤ 0.
+
+    `arithmetic` stood for exact arithmetic; `sizes`: of M at the checkpoints, for W.
+    """
+
+    plain: tuple[Chain, ...]
+    closed_form: tuple[Chain, ...] | None
+    sizes: tuple[Size, ...]
+    arithmetic: str
+    seconds: float
 
 
-class LinksOnDemand(ABC, Generic[L, W]):
-    """The links that all ways to evaluate share, and how many digits each is asked for."""
+def way_of(hamiltonian: Hamiltonian) -> Way:
+    """The way in which its runs are followed."""
+    return Determinants() if hamiltonian.planar else Matrices(len(hamiltonian.coordinates))
 
-    observable: ClassVar[str]  # of a run in exact arithmetic's stead
-    points: ClassVar[int] = POINTS  # checkpoints
+
+def separated_chains(
+    hamiltonian: Hamiltonian,
+    scheme: str,
+    start: dict[str, Fraction],
+    steps: int,
+    digits: int,
+    arithmetic: str = AUTO,
+    advance: Advance = lambda _: None,
+    keeper: Keeper = NOTHING,
+    run: AskedRun | None = None,
+) -> Course[Chains]:
+    """Of a scheme's run from exact inputs, every part to so many digits where that can be had.
+
+    `arithmetic` stands for exact arithmetic; `auto` takes the fastest that can. `advance` is called
+    with the steps just done, of three runs of N steps. `run`, of these steps and checkpoints, is
+    taken for the first link. Raises Stopped where Λ, or W, has no value.
+    """
+    way = way_of(hamiltonian)
+    kernel_run = KernelRun(
+        hamiltonian, scheme, start, steps, way.observables, 0, keeper, sections=way.points
+    )
+    links = LinksOnDemand(way, kernel_run, step_map_of(hamiltonian, scheme), arithmetic, digits)
+    links.advance = advance
+    if run is not None:
+        links.take(run)
+    plain, closed = yield from links.to_digits(digits)
+    working = yield from links.working()
+    return Chains(plain, closed, working.sizes, links.arithmetic, links.seconds)
+
+
+class LinksOnDemand:
+    """The links of all ways to evaluate, and how many digits each is asked for."""
 
     def __init__(
-        self, kernel_run: KernelRun, arithmetic: str, digits: int, advance: Advance
+        self, way: Way, kernel_run: KernelRun, step_map: StepMap, arithmetic: str, digits: int
     ) -> None:
-        """`auto` takes the fastest arithmetic that can."""
+        """`step_map`: for the exact parameters. `digits` are wanted of every part. `auto` takes the
+        fastest arithmetic that can."""
         self._begun = clock()
+        digits += way.cancelled
         self.arithmetic = choose(kernel_run, digits) if arithmetic == AUTO else arithmetic
-        self.kernel_run, self.advance = kernel_run, advance
-        self.marks = marks_of(kernel_run.steps, self.points)
-        self.digits = {"first": digits, "second": digits, "beside": digits}
-        self.inputs = rounded_inputs(kernel_run)
-        self.rounded = _with_inputs(kernel_run, self.inputs)
+        self.way, self.kernel_run, self.step_map = way, kernel_run, step_map
+        self.advance: Advance = lambda _: None
+        self.marks = marks_of(kernel_run.steps, way.points)
+        self.digits = {"first": digits, "second": digits, "beside": digits + way.products}
+        self.rounded = _with_rounded_inputs(kernel_run)
         self.same = (
             self.rounded.start == kernel_run.start
             and self.rounded.parameters == kernel_run.parameters
         )
-        self._known: dict[str, L | None] = {}
+        self._proved: dict[str, Links | None] = {}
         self._asked: AskedRun | None = None
-        self._working: W | None = None
-        self._made: dict[str, L] = {}
-
-    @abstractmethod
-    def beside(self) -> Course[W]:
-        """The run in float64, exact arithmetic beside it; Stopped where it leaves its range."""
-
-    @abstractmethod
-    def of_proof(self, name: str) -> L | None:
-        """The `first` link or the `second` to its digits, where a proof gives it."""
-
-    @abstractmethod
-    def read(self, run: Outcome, last: Fraction, as_link: AsLink) -> L:
-        """The link of a run in exact arithmetic's stead, of whose last value `last` is known."""
+        self._working: Working | None = None
+        self._made: dict[str, Links] = {}
 
     @property
     def seconds(self) -> float:
@@ -83,42 +131,67 @@ class LinksOnDemand(ABC, Generic[L, W]):
         self._asked = run
         self.digits["first"] = run.digits
 
-    def proved(self, name: str) -> L | None:
-        """The same, made once."""
-        if name not in self._known:
-            self._known[name] = self.of_proof(name)
-        return self._known[name]
+    def proved(self, name: str) -> Links | None:
+        """The `first` link or the `second` to its digits, where a proof gives it; made once."""
+        if name not in self._proved:
+            run = self.kernel_run if name == "first" else self.rounded
+            exact = _map_for_parameters(self.step_map, run)
+            self._proved[name] = self.way.proved(run, exact, self.digits[name])
+        return self._proved[name]
 
-    def working(self) -> Course[W]:
-        """The same, done once."""
+    def working(self) -> Course[Working]:
+        """The run in float64, exact arithmetic beside it, done once; Stopped where it leaves its
+        range."""
         if self._working is None:
-            self._working = yield from self.beside()
+            self._working = yield from self._beside()
         return self._working
 
-    def shared(self) -> Course[list[L]]:
-        """The links before those in which ways to evaluate differ."""
+    def _beside(self) -> Course[Working]:
+        """In what can follow float64 everywhere where another cannot, or has no bound of its
+        rounding."""
+        way, run, wanted = self.way, self.kernel_run, self.digits["beside"]
+        mixed = MixedRun(way, run, self.proved("second") is None and run.steps > 1)
+        compiled = number_systems.about(self.arithmetic).compiles
+        digits = way.digits_beside(run, self.step_map, wanted, compiled)
+        asked = number_systems.get(self.system(digits), digits)
+        last = last_system().make(working_digits(wanted, run.steps))
+        try:
+            return (yield from mixed.step_through(asked if asked.rounding else last, self.advance))
+        except UnsupportedError:
+            return (yield from mixed.step_through(last, self.advance))
+
+    def chains(self) -> Course[EachWay]:
+        """The chains of the plain way and those of the closed form."""
         # Before the longer runs: where float64 leaves its range there is nothing to separate.
         working = yield from self.working()
         first = self.proved("first") or (yield from self._reference(self.kernel_run, "first"))
         second = first
         if not self.same:
             second = self.proved("second") or (yield from self._reference(self.rounded, "second"))
-        links = [first, second]
+        shared, parts = [first, second, working.trajectory or second], self.way.parts
         if self.kernel_run.hamiltonian.time_dependent:
-            known = _clock_is_exact(self.rounded)
-            links.append(second if known or working.clock is None else working.clock)
-        return [*links, working.trajectory or second]
+            exact = _clock_is_exact(self.rounded)
+            shared.insert(2, second if exact or working.clock is None else working.clock)
+            parts = (parts[0], "clock", *parts[1:])
 
-    def to_digits(
-        self, make: Callable[[], Course[C]], lacking: Callable[[C], Sequence[int]]
-    ) -> Course[C]:
-        """What is made of the links, which are made again as long as some lack digits of it: how
-        many the differences cancel is known once they are there."""
+        def chains(*links: Links) -> tuple[Chain, ...]:
+            each = zip(*shared, *links, strict=True)
+            return tuple(Chain(self.marks, entry, parts) for entry in each)
+
+        plain = chains(working.factors, working.plain)
+        if working.closed_factors is None or working.closed_form is None:
+            return plain, None
+        return plain, chains(working.closed_factors, working.closed_form)
+
+    def to_digits(self, digits: int) -> Course[EachWay]:
+        """The chains, whose links are made again as long as some lack digits: how many the
+        differences cancel is known once they are there."""
         for attempt in range(_ATTEMPTS):
-            found = yield from make()
-            if not self.refine(lacking(found), attempt):
+            plain, closed = yield from self.chains()
+            short = lacking([*plain, *(closed or ())], digits, self.way.hidden)
+            if not self.refine(short, attempt):
                 break
-        return found
+        return plain, closed
 
     def refine(self, lacking: Sequence[int], attempt: int = 0) -> bool:
         """Asks for so many more digits of the links; False where none lacks any.
@@ -135,7 +208,7 @@ class LinksOnDemand(ABC, Generic[L, W]):
             if more:
                 self.digits[name] += more + 2 << attempt
                 self._made.pop(name, None)
-                self._known.pop(name, None)
+                self._proved.pop(name, None)
         if wanted["beside"]:
             self._working = None
         return any(wanted.values())
@@ -145,7 +218,7 @@ class LinksOnDemand(ABC, Generic[L, W]):
         asked = number_systems.about(self.arithmetic)
         return asked.name if digits <= asked.most_digits else last_system().name
 
-    def _reference(self, kernel_run: KernelRun, name: str) -> Course[L]:
+    def _reference(self, kernel_run: KernelRun, name: str) -> Course[Links]:
         if name not in self._made:
             digits, asked = self.digits[name], self._asked
             if name == "first" and asked and digits <= asked.digits:
@@ -168,25 +241,25 @@ class LinksOnDemand(ABC, Generic[L, W]):
 
         return progress
 
-    def _in_exact_stead(self, kernel_run: KernelRun, digits: int, measured: Measured) -> L:
+    def _in_exact_stead(self, kernel_run: KernelRun, digits: int, measured: Measured) -> Links:
         """A run to so many digits; Stopped where a run cannot give them."""
-        found, run = measured.bounds, measured.outcome
-        if found.status != "finished":
-            reason = f"in exact arithmetic: {found.method}"
-            raise Stopped(found.status, found.failed_step, reason)
-        value, bound = found.values[self.observable]
-        kind: Kind = "enclosed" if found.rigorous else "estimated"
+        bounds, run, observable = measured.bounds, measured.outcome, self.way.observable
+        if bounds.status != "finished":
+            reason = f"in exact arithmetic: {bounds.method}"
+            raise Stopped(bounds.status, bounds.failed_step, reason)
+        value, bound = bounds.values[observable]
+        kind: Kind = "enclosed" if bounds.rigorous else "estimated"
         # A rigorous bound is the run's own, and the last value's is the greatest. An estimate may
         # be that of a run with more digits; the checkpoints must be those of a run that agrees
         # with it.
         more = working_digits(digits, kernel_run.steps)
         for _ in range(_DOUBLINGS):
             done = run.done == kernel_run.steps
-            if done and abs(run.values[self.observable] - value) <= bound:
-                return self.read(run, value, lambda x: Link(Trail.of(x), bound, kind, found.method))
+            if done and abs(run.values[observable] - value) <= bound:
+                return links_of(self.way.values(run, value), bound, kind, bounds.method)
             more *= 2
             run = kernel_run.run(last_system().make(more))
-        raise Stopped("unresolved", None, f"in exact arithmetic: {found.method}")
+        raise Stopped("unresolved", None, f"in exact arithmetic: {bounds.method}")
 
 
 def last_system() -> NumberSystem:
@@ -202,10 +275,21 @@ def _clock_is_exact(rounded: KernelRun) -> bool:
     return latest / unit <= _MANTISSAS
 
 
-def _with_inputs(kernel_run: KernelRun, inputs: dict[str, float]) -> KernelRun:
+def _with_rounded_inputs(kernel_run: KernelRun) -> KernelRun:
     """The same run from the rounded inputs; parameters that the kernel has inside stay exact."""
-    rounded = copy.copy(kernel_run)
+    rounded, inputs = copy.copy(kernel_run), rounded_inputs(kernel_run)
     rounded.start = {n: Fraction(inputs[n]) for n in kernel_run.start}
     parameters = {n: Fraction(inputs[n]) for n in kernel_run.hamiltonian.parameters}
     rounded.parameters = {**kernel_run.parameters, **parameters}
     return rounded
+
+
+def _map_for_parameters(exact: StepMap, run: KernelRun) -> StepMap | None:
+    """The step map for a run's parameters; None where H is not defined for them."""
+    values = {n: run.parameters[n] for n in run.hamiltonian.parameters}
+    if values == {n: v for n, v in exact.hamiltonian.values if n in values}:
+        return exact
+    try:
+        return step_map_of(run.hamiltonian.with_values(values), run.scheme)
+    except InputError:
+        return None

@@ -30,19 +30,20 @@ small ΔJ is. `closed_form`: ΔJ from its own closed form, where nothing cancels
 Λ = expm1(Σ log1p(ΔJ_k)) with the sum's own errors added at the end. Truncation, input and
 trajectory are the same for both.
 
-In n degrees of freedom W is split so, entry by entry (`verify.studies.separation.form_chain`):
+In n degrees of freedom W is split so, entry by entry (`verify.studies.separation.ways.matrices`):
 `plain` is what a program does that multiplies the steps' Jacobians and takes MᵀΩM − Ω at the end,
-`closed_form` is that of `verify run` (`verify.studies.separation.form_run`). How W and the tangent
-map grow is told in `verify.studies.separation.form_result`.
+`closed_form` is that of `verify run`. How W and the tangent map grow is told in
+`verify.studies.separation.growth` and `verify.studies.separation.tangent`.
 
-How far the parts are known is told in `verify.studies.separation.working` and
-`verify.runs.estimated`, what is made of a run's checkpoints and of a grid of step sizes in
-`verify.studies.separation.growth`.
+How far the parts are known is told in `verify.studies.separation.ways.determinants`,
+`verify.studies.separation.ways.matrix_bounds` and `verify.runs.estimated`, what is made of a run's
+checkpoints and of a grid of step sizes in `verify.studies.separation.growth`.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
-from typing import Any, Protocol, TypeAlias
+from functools import partial
+from typing import Any
 
 from verify import arithmetic as number_systems
 from verify.arithmetic import AUTO
@@ -57,22 +58,25 @@ from verify.lockstep import Course, alone
 from verify.runs.run import AskedRun, check
 from verify.runs.start import Start
 from verify.scenes.results.separation import WAYS, CrossoverResult, SeparationGrid, SeparationResult
-from verify.scenes.results.separation_in_degrees import SeparationGridInDegrees, SeparationInDegrees
+from verify.scenes.results.separation_in_degrees import (
+    AnyEvaluation,
+    AnyGrid,
+    AnySeparation,
+    SeparationGridInDegrees,
+    SeparationInDegrees,
+)
 from verify.schemes import canonical
-from verify.studies.separation.chain import Chains, separated_chains
-from verify.studies.separation.form_chain import form_chains
-from verify.studies.separation.form_result import split_in_degrees
 from verify.studies.separation.growth import crossover
-from verify.studies.separation.mixed_run import Stopped
-from verify.studies.separation.way import Way, evaluation
+from verify.studies.separation.links import Chains, separated_chains
+from verify.studies.separation.result import Split, evaluation, form_evaluation
+from verify.studies.separation.stepper.run import Stopped
+from verify.studies.separation.tangent import tangent_growth
 
 Progress = Callable[[int], None]  # called with a number of steps just done, of 3 N in all
 RUNS = 3  # of N steps each: two in exact arithmetic's stead and one in both
 
-Separation: TypeAlias = SeparationResult | SeparationInDegrees
 
-
-def separate(hamiltonian: Hamiltonian, scheme: str, **asked: Any) -> Separation:
+def separate(hamiltonian: Hamiltonian, scheme: str, **asked: Any) -> AnySeparation:
     """The same as `separate_in_turn`, which takes the same arguments, alone."""
     return alone(separate_in_turn(hamiltonian, scheme, **asked))
 
@@ -91,15 +95,15 @@ def separate_in_turn(
     progress: Progress | None = None,
     keeper: Keeper = NOTHING,
     run: AskedRun | None = None,
-) -> Course[Separation]:
+) -> Course[AnySeparation]:
     """Λ of a float64 run of `steps` steps from (q, p), split into truncation and rounding; in n
     degrees of freedom, where q and p are lists, W.
 
     `t0`: when it starts, of an H that depends on time. `digits`: significant digits wanted of every
     part. `arithmetic` stands for exact arithmetic; `auto` takes the fastest that can. `run`: one of
     the same steps in the plane that is asked for too, and done once for both. Raises InputError for
-    h ≤ 0, N < 1, a parameter without a value, unknown names, and for float64, which is what is
-    examined; in n degrees of freedom for more than 4 of them, and a scheme that solves equations.
+    h ≤ 0, N < 1, a parameter without a value, unknown names, more than 4 degrees of freedom, and
+    for float64, which is what is examined.
     """
     scheme, h, planar = canonical(scheme), positive(step_size, "step_size"), hamiltonian.planar
     begun = Start(hamiltonian, scheme, h, point_of(hamiltonian, q, p), rational(t0, "t0"))
@@ -119,26 +123,26 @@ def separate_in_turn(
     if not planar:
         result |= {"coordinates": hamiltonian.coordinates, "tangent": None}
     try:
-        if planar:
-            chains = yield from separated_chains(*asked, keeper, run)
-            result |= _split(chains, digits)
-        else:
-            forms = yield from form_chains(*asked, keeper)
-            result |= split_in_degrees(forms, begun, steps, digits)
+        chains = yield from separated_chains(*asked, keeper, run)
+        result |= _split(chains, begun, steps, digits)
     except Stopped as stopped:
         ends = {"status": stopped.status, "failed_step": stopped.step, "reason": stopped.reason}
         result |= ends
     return SeparationResult(**result) if planar else SeparationInDegrees(**result)
 
 
-def _split(chains: Chains, digits: int) -> dict[str, Any]:
-    """What the chains of Λ give of a result."""
-    closed = chains.closed_form and evaluation(Way([chains.closed_form]), digits)
+def _split(chains: Chains, begun: Start, steps: int, digits: int) -> dict[str, Any]:
+    """What the chains give of a result."""
+    sizes, closed = chains.sizes, chains.closed_form and Split(chains.closed_form)
+    evaluated = partial(form_evaluation, sizes=sizes) if sizes else evaluation
+    methods = dict.fromkeys(x for chain in chains.plain for x in chain.methods)
+    tangent = closed and sizes and tangent_growth(closed, sizes, begun, steps)
     return {
         "arithmetic": chains.arithmetic,
-        "plain": evaluation(Way([chains.plain]), digits),
-        "closed_form": closed,
-        "error_method": "; ".join(chains.plain.methods),
+        "plain": evaluated(Split(chains.plain), digits),
+        "closed_form": closed and evaluated(closed, digits),
+        **({"tangent": tangent} if tangent else {}),
+        "error_method": "; ".join(methods),
         "seconds": chains.seconds,
     }
 
@@ -147,16 +151,12 @@ def separate_grid(
     hamiltonian: Hamiltonian,
     scheme: str,
     *,
-    q: Given,
-    p: Given,
     step_sizes: Sequence[Exact],
     steps: int | None = None,
     time: Exact | None = None,
-    t0: Exact = 0,
     digits: int = 17,
-    arithmetic: str = AUTO,
-    progress: Progress | None = None,
-) -> SeparationGrid | SeparationGridInDegrees:
+    **asked: Any,
+) -> AnyGrid:
     """`separate` for several step sizes, over N = `steps` steps or N = ⌊time / h⌋ each.
 
     Raises InputError as `separate` does, and where a step size is given twice, or not exactly one
@@ -165,35 +165,21 @@ def separate_grid(
     counts = grid(step_sizes, steps, time)
     for _, count in counts:
         check(hamiltonian, count, digits, ())  # before the first of them is run
+    asked |= {"digits": digits}
     return as_grid(
-        [
-            separate(
-                hamiltonian, scheme, q=q, p=p, step_size=h, steps=count, t0=t0, digits=digits,
-                arithmetic=arithmetic, progress=progress,
-            )
-            for h, count in counts
-        ]
-    )  # fmt: skip
+        [separate(hamiltonian, scheme, step_size=h, steps=count, **asked) for h, count in counts]
+    )
 
 
-def as_grid(
-    points: Sequence[Separation],
-) -> SeparationGrid | SeparationGridInDegrees:
+def as_grid(points: Sequence[AnySeparation]) -> AnyGrid:
     """Separations for several step sizes, with the crossover of each way to evaluate Λ, or W."""
-    crossed = {
-        way: crossing((point.step_size, getattr(point, way)) for point in points) for way in WAYS
-    }
-    if any(isinstance(point, SeparationInDegrees) for point in points):
-        return SeparationGridInDegrees.model_validate({"points": tuple(points), **crossed})
-    return SeparationGrid.model_validate({"points": tuple(points), **crossed})
+    crossed = {way: crossing((x.step_size, getattr(x, way)) for x in points) for way in WAYS}
+    in_degrees = any(isinstance(point, SeparationInDegrees) for point in points)
+    model = SeparationGridInDegrees if in_degrees else SeparationGrid
+    return model.model_validate({"points": tuple(points), **crossed})
 
 
-class _Way(Protocol):
-    @property
-    def largest(self) -> Mapping[str, str]: ...
-
-
-def crossing(ways: Iterable[tuple[str, _Way | None]]) -> CrossoverResult:
+def crossing(ways: Iterable[tuple[str, AnyEvaluation | None]]) -> CrossoverResult:
     """Where rounding overtakes truncation, of step sizes with what was found of each, one way."""
     parts = ((h, way.largest["truncation"], way.largest["total"]) for h, way in ways if way)
     at = crossover([(Fraction(h), Fraction(x), Fraction(y)) for h, x, y in parts])
@@ -210,24 +196,24 @@ def grid(
         raise InputError("steps, time", NOT_GIVEN, "give one of the two")
     if not step_sizes:
         raise InputError("step_sizes", step_sizes, "give one at least")
-    found: dict[Fraction, int] = {}
-    for given in step_sizes:
-        h = positive(given, "step_size")
-        if h in found:
-            raise InputError("step_size", given, "is given twice")
+    counts: dict[Fraction, int] = {}
+    for size in step_sizes:
+        h = positive(size, "step_size")
+        if h in counts:
+            raise InputError("step_size", size, "is given twice")
         if steps is None:
             count = int(positive(time if time is not None else 0, "time") / h)
             if count < 1:
                 raise InputError("time", time, f"is shorter than the step size {text(h)}")
-            found[h] = count
+            counts[h] = count
         else:
-            found[h] = steps
-    return list(found.items())
+            counts[h] = steps
+    return list(counts.items())
 
 
 def check_reference(arithmetic: str) -> None:
     """InputError for what cannot stand for exact arithmetic."""
-    known = [AUTO, *(name for name in number_systems.names() if name != float64.NAME)]
-    if arithmetic not in known:
+    allowed = [AUTO, *(name for name in number_systems.names() if name != float64.NAME)]
+    if arithmetic not in allowed:
         wrong = "is what is examined" if arithmetic == float64.NAME else "unknown"
-        raise InputError("arithmetic", arithmetic, f"{wrong}; allowed: {', '.join(known)}")
+        raise InputError("arithmetic", arithmetic, f"{wrong}; allowed: {', '.join(allowed)}")

@@ -14,17 +14,16 @@ from verify.scenes.frozen import Frozen
 from verify.scenes.results.separation import SeparationResult
 from verify.scenes.results.separation_in_degrees import SeparationInDegrees
 from verify.scenes.values import Number, StepSize
-from verify.studies.separation.chain import CANCELLED
-from verify.studies.separation.form_run import POINTS as POINTS_OF_FORM
-from verify.studies.separation.mixed_run import POINTS
 from verify.studies.separation.separate import separate_in_turn
+from verify.studies.separation.ways.determinants import Determinants
+from verify.studies.separation.ways.matrices import Matrices
 
 DIGITS = 6  # of each part, in a scene
 
 
 def does_for_first_link(arithmetic: str, digits: int) -> bool:
     """Whether a run in that arithmetic is certified, and has digits enough for the first link."""
-    return arithmetic not in (float64.NAME, ball.NAME) and digits >= DIGITS + CANCELLED
+    return arithmetic not in (float64.NAME, ball.NAME) and digits >= DIGITS + Determinants.cancelled
 
 
 class _Separation(StartTask):
@@ -56,7 +55,7 @@ class SeparationTask(_Separation):
 
     result = SeparationResult
     runs = 3
-    points = POINTS
+    points = Determinants.points
     point_cost = 80_000
     kind: Literal["separation"] = "separation"
     run: RunTask | None = None
@@ -80,16 +79,16 @@ class SeparationTask(_Separation):
 
     def compute(self, keeper: Keeper) -> SeparationResult:
         """The separation, as a result."""
-        own = self.run.asked_run(keeper) if self.run else None
-        split: SeparationResult = alone(self._separated(keeper, own))
+        run = self.run.asked_run(keeper) if self.run else None
+        split: SeparationResult = alone(self._separated(keeper, run))
         return split
 
     def compute_in_turn(self, keeper: Keeper) -> Course[dict[str, Frozen]]:
         """The separation, and the run where that was done for it."""
-        own = self.run.asked_run(keeper) if self.run else None
-        results: dict[str, Frozen] = {self.key: (yield from self._separated(keeper, own))}
-        if self.run and own and own.done:
-            results[self.run.key] = yield from own.result()
+        run = self.run.asked_run(keeper) if self.run else None
+        results: dict[str, Frozen] = {self.key: (yield from self._separated(keeper, run))}
+        if self.run and run and run.done:
+            results[self.run.key] = yield from run.result()
         return results
 
 
@@ -98,7 +97,7 @@ class FormSeparationTask(_Separation):
 
     result = SeparationInDegrees
     runs = 8  # of which those beside float64 are done twice and carry matrices
-    points = POINTS_OF_FORM
+    points = Matrices.points
     point_cost = 400_000
     kind: Literal["separation in degrees"] = "separation in degrees"
 

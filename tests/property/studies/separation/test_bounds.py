@@ -16,7 +16,9 @@ from tests.helpers.sampled.separations import (
     FIXED,
     KNOWN,
     SHORT,
+    area_chains,
     bent,
+    only,
     separated,
     sizes,
     starts,
@@ -28,11 +30,11 @@ from verify.arithmetic.number_system import Arithmetic
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
 from verify.lockstep import alone
-from verify.studies.separation.chain import QUANTITIES, Chain, separated_chains
-from verify.studies.separation.kernel import WORKING
-from verify.studies.separation.mixed_run import Stopped
+from verify.studies.separation.chain import QUANTITIES, Chain
 from verify.studies.separation.separate import separate
-from verify.studies.separation.working import Link, WorkingRun, _accumulated, rounded_inputs
+from verify.studies.separation.stepper.run import MixedRun, Stopped
+from verify.studies.separation.stepper.trail import Link
+from verify.studies.separation.ways.determinants import WORKING, Determinants, _accumulated
 
 few = drawn(10)
 some = drawn(14)
@@ -92,7 +94,7 @@ def test_bounds_of_few_bits_hold_against_many_at_every_checkpoint(
     run = KernelRun(
         Hamiltonian.parse(text), f"lie{eta}", {"p": p, "q": q, "h": h}, steps, WORKING, 10
     )
-    working = WorkingRun(run, rounded_inputs(run), follow=True)
+    working = MixedRun(Determinants(), run, follow=True)
     coarse_, fine_ = number_systems.get("mpfr", 17), number_systems.get("mpfr", 90)
     try:
         coarse, fine = (alone(working.step_through(x, lambda _: None)) for x in (coarse_, fine_))
@@ -100,7 +102,7 @@ def test_bounds_of_few_bits_hold_against_many_at_every_checkpoint(
         assume(False)
         raise
     for name in ("trajectory", "factors", "closed_factors"):
-        x, y = getattr(coarse, name), getattr(fine, name)
+        x, y = only(getattr(coarse, name)), only(getattr(fine, name))
         assert (x is None) == (y is None)
         if x is not None:
             apart = [abs(a - b) for a, b in zip(x.trail, y.trail, strict=True)]
@@ -111,9 +113,9 @@ def test_bounds_of_few_bits_hold_against_many_at_every_checkpoint(
                 assert x.bound <= loose
             if top > Fraction(1, 2):
                 assert (x.kind, "rerun" in x.method) == ("estimated", True)
-    assert coarse.plain.trail == fine.plain.trail
-    assert len(coarse.plain.trail) == len(working.marks) == steps
-    assert coarse.plain.bound == 0
+    assert coarse.plain[0].trail == fine.plain[0].trail
+    assert len(coarse.plain[0].trail) == len(working.marks) == steps
+    assert coarse.plain[0].bound == 0
 
 
 QUARTIC = "p**2/2 + q**2/2 + delta*q**4/4"
@@ -132,20 +134,20 @@ def test_fixed_point_beside_float64_is_within_its_bound(
 ) -> None:
     hamiltonian = Hamiltonian.parse(QUARTIC, {"delta": delta})
     run = KernelRun(hamiltonian, "lie2", {"p": p, "q": q, "h": h}, steps, WORKING, 10)
-    working = WorkingRun(run, rounded_inputs(run), follow=True)
+    working = MixedRun(Determinants(), run, follow=True)
     coarse, fine = (
         alone(working.step_through(x, lambda _: None))
         for x in (FIXED, number_systems.get("mpfr", 90))
     )
     for name in ("trajectory", "factors", "closed_factors"):
-        x, y = getattr(coarse, name), getattr(fine, name)
+        x, y = only(getattr(coarse, name)), only(getattr(fine, name))
         agree(x, y)
         if x.kind == "enclosed":
             assert 0 < x.bound <= 10**7 * steps * Fraction(1, 2**FIXED.bits)
-    assert coarse.plain.trail == fine.plain.trail
+    assert coarse.plain[0].trail == fine.plain[0].trail
     assert coarse.closed_form is not None
     assert fine.closed_form is not None
-    assert coarse.closed_form.trail == fine.closed_form.trail
+    assert coarse.closed_form[0].trail == fine.closed_form[0].trail
 
 
 @some
@@ -200,7 +202,7 @@ def test_a_large_lambda_is_estimated_and_a_small_one_counted(
     for h in (Fraction(1, 3), Fraction(1, 300)):
         run = Hamiltonian.parse(DUFFING), "lie1", {"p": p, "q": q, "h": h}, steps
         try:
-            plain = alone(separated_chains(*run, 17, "mpfr")).plain
+            plain = area_chains(*run, 17, "mpfr").plain
         except Stopped:
             continue
         middle = plain.links[3]

@@ -13,12 +13,12 @@ from tests.examples import drawn
 from verify.arithmetic.exact import magnitude
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.studies.separation.chain import PARTS, QUANTITIES, Chain, Kind
+from verify.studies.separation.chain import PARTS, QUANTITIES, Chain
 from verify.studies.separation.growth import crossover, log_spaced
-from verify.studies.separation.mixed_run import marks_of
 from verify.studies.separation.separate import as_grid, grid, separate, separate_grid
-from verify.studies.separation.trail import Trail
-from verify.studies.separation.working import Link
+from verify.studies.separation.stepper.run import marks_of
+from verify.studies.separation.stepper.trail import Kind, Link, Trail
+from verify.studies.separation.ways.determinants import POINTS
 
 quick = drawn(40)
 values = st.builds(Fraction, st.integers(-50, 50), st.integers(1, 10**6))
@@ -102,7 +102,7 @@ def test_a_bound_that_just_suffices_lacks_nothing(size: Fraction, digits: int, m
 @quick
 @given(st.one_of(st.integers(1, 10**5), st.integers(1, 9)))
 def test_checkpoints_are_equidistant_and_end_with_the_run(steps: int) -> None:
-    marks = marks_of(steps)
+    marks = marks_of(steps, POINTS)
     assert marks[-1] == steps
     assert len(marks) <= 2048
     assert len(marks) > 1024 or len(marks) == steps

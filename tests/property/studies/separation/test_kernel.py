@@ -13,9 +13,9 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
 from verify.lockstep import alone
 from verify.studies.separation.chain import QUANTITIES, Chain
-from verify.studies.separation.kernel import WORKING, mixed_kernel
-from verify.studies.separation.mixed_run import Stopped
-from verify.studies.separation.working import WorkingRun, rounded_inputs
+from verify.studies.separation.stepper.kernel import mixed_kernel
+from verify.studies.separation.stepper.run import MixedRun, Stopped
+from verify.studies.separation.ways.determinants import WORKING, Determinants
 
 few = drawn(10)
 
@@ -35,11 +35,11 @@ def test_a_region_holds_all_states_that_delta_j_was_taken_at_and_no_more(
 ) -> None:
     """And the greatest |Λ| is that of a step: a checkpoint is made at each."""
     run = KernelRun(Hamiltonian.parse(text), scheme, {"p": p, "q": q, "h": h}, steps, WORKING, 10)
-    working, exact = WorkingRun(run, rounded_inputs(run), follow), number_systems.get("mpfr", 25)
-    kernel = mixed_kernel(run.hamiltonian, run.scheme, exact, follow)
+    working, exact = MixedRun(Determinants(), run, follow), number_systems.get("mpfr", 25)
+    kernel = mixed_kernel(Determinants(), run.hamiltonian, run.scheme, exact, follow)
     try:
         states = [working._first_state(kernel, exact)]
-        states += alone(working._states(kernel, exact, lambda _: None))
+        states += alone(working.stepped(exact, lambda _: None)).states
     except Stopped:
         assume(False)
         raise
@@ -55,12 +55,10 @@ def test_a_region_holds_all_states_that_delta_j_was_taken_at_and_no_more(
             if follow:
                 visited = path[: max(k, 1)]
                 assert (state[f"{name}_low"], state[f"{name}_high"]) == (min(visited), max(visited))
-    followed = {
-        n for n in ("trajectory", "determinant", "closed") if f"w_{n}" in kernel.state_names
-    }
+    followed = {n for n in ("trajectory", "factors", "closed") if f"w_{n}" in kernel.state_names}
     closed = scheme != "symplectic-euler"  # of which ΔJ is 0 as it is written
     assert kernel.closed == closed
-    assert followed == {"determinant", *["closed"] * closed, *["trajectory"] * follow}
+    assert followed == {"factors", *["closed"] * closed, *["trajectory"] * follow}
     for name in followed:
         sizes = [abs(exact.exact(state[f"w_{name}"])) for state in states]
         tops = [exact.exact(state[f"w_{name}_top"]) for state in states]

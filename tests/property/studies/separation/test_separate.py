@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 
 from tests.examples import drawn
 from tests.helpers.sampled.formulas import monomial, polynomials, rationals
+from tests.helpers.sampled.separations import AreaChains, area_chains
 from tests.helpers.stepping.exact_separation import links
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.lockstep import alone
-from verify.studies.separation.chain import PARTS, QUANTITIES, Chain, Chains, separated_chains
-from verify.studies.separation.mixed_run import Stopped
+from verify.studies.separation.chain import PARTS, QUANTITIES, Chain
+from verify.studies.separation.stepper.run import Stopped
 
 starts = st.fractions(min_value=-1, max_value=1, max_denominator=30)
 step_sizes = st.fractions(min_value="1/50", max_value="1/3", max_denominator=50)
@@ -21,10 +21,10 @@ SHORT = Fraction(1, 2**3000)  # what the oracle rounds off
 quick = drawn(40)
 
 
-def chains(text: str, eta: int, start: dict[str, Fraction], steps: int) -> Chains:
+def chains(text: str, eta: int, start: dict[str, Fraction], steps: int) -> AreaChains:
     run = Hamiltonian.parse(text), f"lie{eta}", start, steps
     try:
-        return alone(separated_chains(*run, 17, "mpfr"))
+        return area_chains(*run, 17, "mpfr")
     except Stopped:
         assume(False)
         raise

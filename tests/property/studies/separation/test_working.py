@@ -14,7 +14,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from tests.helpers.sampled.separations import KNOWN, separated, starts, step_sizes
+from tests.helpers.sampled.separations import (
+    KNOWN,
+    Remembering,
+    area_chains,
+    only,
+    separated,
+    starts,
+    step_sizes,
+)
 from verify import arithmetic as number_systems
 from verify.arithmetic.number_system import Arithmetic
 from verify.execution.keeping import Keeper
@@ -22,10 +30,11 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
 from verify.lockstep import alone
 from verify.runs.run import run
-from verify.studies.separation.chain import PARTS, QUANTITIES, Chain, separated_chains
-from verify.studies.separation.kernel import WORKING
+from verify.studies.separation.chain import PARTS, QUANTITIES, Chain
 from verify.studies.separation.separate import separate
-from verify.studies.separation.working import Link, WorkingRun, rounded_inputs
+from verify.studies.separation.stepper.run import MixedRun
+from verify.studies.separation.stepper.trail import Link
+from verify.studies.separation.ways.determinants import WORKING, Determinants
 
 few = drawn(10)
 some = drawn(14)
@@ -122,7 +131,7 @@ def test_the_second_link_is_the_first_of_the_rounded_inputs(
         values = {"delta": of(delta)}
         hamiltonian = Hamiltonian.parse("p**2/2 + q**2/2 + delta*q**4/4", values)
         start = {"p": of(p), "q": of(q), "h": of(h)}
-        return alone(separated_chains(hamiltonian, "lie2", start, steps, 25, "mpfr")).plain
+        return area_chains(hamiltonian, "lie2", start, steps, 25, "mpfr").plain
 
     one, other = chain(lambda x: x), chain(lambda x: Fraction(float(x)))
     for a, b in zip(one.links[1].trail, other.links[0].trail, strict=True):
@@ -196,23 +205,6 @@ def test_a_determinant_below_0_leaves_the_closed_form_out(steps: int, h: int) ->
 # -- interruptions --------------------------------------------------------------------------------
 
 
-class Remembering(Keeper):
-    """Keeps every checkpoint, in memory."""
-
-    def __init__(self) -> None:
-        super().__init__(None, "")
-        self.kept: dict[str, dict[str, Any]] = {}
-
-    def load(self, label: str) -> dict[str, Any] | None:
-        return self.kept.get(label)
-
-    def due(self, label: str) -> bool:
-        return True
-
-    def save(self, label: str, data: dict[str, Any]) -> None:
-        self.kept[label] = data
-
-
 @cache
 def number_system(name: str) -> Arithmetic:
     return number_systems.get(name, 40)
@@ -241,9 +233,9 @@ def test_a_run_that_is_interrupted_goes_on_to_the_same_bits(
         if sum(told) > after:
             raise KeyboardInterrupt
 
-    def working(of: Keeper) -> WorkingRun:
+    def working(of: Keeper) -> MixedRun:
         kernel_run = KernelRun(Hamiltonian.parse(text), "lie2", start, steps, WORKING, 10, of)
-        return WorkingRun(kernel_run, rounded_inputs(kernel_run), follow=True)
+        return MixedRun(Determinants(), kernel_run, follow=True)
 
     once = alone(working(Keeper(None, "")).step_through(made, lambda _: None))
     if after < steps:
@@ -254,5 +246,5 @@ def test_a_run_that_is_interrupted_goes_on_to_the_same_bits(
     # The step that was told last was not kept.
     assert sum(rest) == (steps - sum(told[:-1]) if after < steps else steps)
     for link in ("trajectory", "factors", "plain", "closed_factors", "closed_form"):
-        assert went(getattr(again, link)) == went(getattr(once, link))
+        assert went(only(getattr(again, link))) == went(only(getattr(once, link)))
     assert set(PARTS) < set(QUANTITIES)

@@ -78,7 +78,7 @@ def one_order_less(sample: SampleInDegrees, patch: Patch) -> None:
 
 
 def sums_for_products(_: SampleInDegrees, patch: Patch) -> None:
-    patch.setattr(Statements, "product_of_factors", lambda self: self.sum_up("lam", "dj"))
+    patch.setattr(Statements, "product", lambda self: self.sum_up("lam", "dj"))
 
 
 def boasting(sample: SampleInDegrees, _: Patch) -> SampleInDegrees:

@@ -90,7 +90,7 @@ def sums_for_products(sample: Sample, patch: Patch) -> Sample:
     from verify.kernels.statements import Statements
 
     kernel_for.cache_clear()
-    patch.setattr(Statements, "product_of_factors", lambda self: self.sum_up("lam", "dj"))
+    patch.setattr(Statements, "product", lambda self: self.sum_up("lam", "dj"))
     return sample
 
 

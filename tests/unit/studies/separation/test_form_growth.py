@@ -9,9 +9,9 @@ from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.tangent_growth import finite_time_lyapunov
 from verify.scenes.results.separation_in_degrees import TangentGrowth
-from verify.studies.separation.form_result import motion_of, power_law
-from verify.studies.separation.form_run import of_product, size_of
+from verify.studies.separation.growth import motion_of, power_law
 from verify.studies.separation.separate import separate
+from verify.studies.separation.ways.matrices import of_product, size_of
 
 MARKS = tuple(range(4, 2049, 4))
 HENON = systems.get("henon-heiles").hamiltonian({})

@@ -16,9 +16,10 @@ from verify.kernels.kernel import Kernel, Writer
 from verify.kernels.stepping import KernelRun
 from verify.lockstep import alone
 from verify.schemes import get
-from verify.studies.separation.kernel import WORKING, MixedKernel, mixed_kernel
-from verify.studies.separation.mixed_run import marks_of
-from verify.studies.separation.working import WorkingRun, rounded_inputs
+from verify.studies.separation.stepper.kernel import mixed_kernel
+from verify.studies.separation.stepper.run import MixedRun, marks_of
+from verify.studies.separation.stepper.way import MixedKernel
+from verify.studies.separation.ways.determinants import POINTS, WORKING, Determinants
 
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + delta*q**4/4", {"delta": 1})
 PENDULUM = Hamiltonian.parse("p**2/2 - cos(q)")
@@ -61,7 +62,9 @@ def by_llvm(hamiltonian: Hamiltonian, scheme: str) -> Kernel:
 
 
 def mixed(hamiltonian: Hamiltonian, scheme: str, follow: bool = True) -> MixedKernel:
-    return mixed_kernel(hamiltonian.with_symbols(), scheme, arithmetic.get("mpfr", 40), follow)
+    return mixed_kernel(
+        Determinants(), hamiltonian.with_symbols(), scheme, arithmetic.get("mpfr", 40), follow
+    )
 
 
 def states(
@@ -70,10 +73,9 @@ def states(
     """What the mixed kernel carries, by the number of steps."""
     run = KernelRun(hamiltonian, scheme, start, steps, WORKING, 10)
     made = arithmetic.get(name, 50)
-    working = WorkingRun(run, rounded_inputs(run), follow=False)
-    kernel = mixed_kernel(run.hamiltonian, scheme, made, follow=False)
-    found = alone(working._states(kernel, made, lambda _: None))
-    return dict(zip(marks_of(steps), found, strict=True))
+    working = MixedRun(Determinants(), run, follow=False)
+    found = alone(working.stepped(made, lambda _: None)).states
+    return dict(zip(marks_of(steps, POINTS), found, strict=True))
 
 
 def test_compiled_functions_have_the_bits_of_pythons() -> None:

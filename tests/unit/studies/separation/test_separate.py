@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from tests.helpers.sampled.separations import area_chains
 from tests.paths import vectors
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import fixed, mpfr
@@ -15,12 +16,13 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun
 from verify.lockstep import alone
 from verify.runs.run import run
-from verify.studies.separation import kernel as separation_kernel
-from verify.studies.separation.chain import PARTS, QUANTITIES, Chain, separated_chains
-from verify.studies.separation.kernel import WORKING, mixed_kernel
+from verify.studies.separation.chain import PARTS, QUANTITIES, Chain
 from verify.studies.separation.links import LinksOnDemand
 from verify.studies.separation.separate import separate
-from verify.studies.separation.working import WorkingRun, rounded_inputs
+from verify.studies.separation.stepper import kernel as separation_kernel
+from verify.studies.separation.stepper.kernel import mixed_kernel
+from verify.studies.separation.stepper.run import MixedRun
+from verify.studies.separation.ways.determinants import WORKING, Determinants
 
 VECTORS = vectors()
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + delta*q**4/4", {"delta": 1})
@@ -33,9 +35,7 @@ def chain_of(
     hamiltonian: Hamiltonian, scheme: str, steps: int = 300, name: str = "plain", **start: Any
 ) -> Chain:
     at = {"p": Fraction(1, 3), "q": Fraction(3, 2), "h": Fraction(1, 1000), **start}
-    found: Chain = getattr(
-        alone(separated_chains(hamiltonian, scheme, at, steps, 17, "mpfr")), name
-    )
+    found: Chain = getattr(area_chains(hamiltonian, scheme, at, steps, 17, "mpfr"), name)
     return found
 
 
@@ -53,7 +53,7 @@ def test_a_long_run_is_asked_for_enough_digits_at_once(
 ) -> None:
     """However small the step, and so Λ; of lie2 beside float64 in numbers of three limbs."""
     refined, formats = [], []
-    refine, step_through = LinksOnDemand.refine, WorkingRun.step_through
+    refine, step_through = LinksOnDemand.refine, MixedRun.step_through
 
     def noted_refine(self: Any, *lacking: Any) -> bool:
         refined.append(refine(self, *lacking))
@@ -64,7 +64,7 @@ def test_a_long_run_is_asked_for_enough_digits_at_once(
         return step_through(self, arithmetic, advance)
 
     monkeypatch.setattr(LinksOnDemand, "refine", noted_refine)
-    monkeypatch.setattr(WorkingRun, "step_through", noted_steps)
+    monkeypatch.setattr(MixedRun, "step_through", noted_steps)
     at = {**AT, "q": "0.3", "step_size": h}
     assert separate(hamiltonian, scheme, **at, steps=70_000, digits=6).status == "finished"
     assert refined == [False]
@@ -86,7 +86,7 @@ def test_the_working_value_is_what_run_reports_for_float64() -> None:
 def test_fixed_and_mpfr_find_the_same_parts(hamiltonian: Hamiltonian) -> None:
     start = {"p": Fraction(1, 3), "q": Fraction(3, 2), "h": Fraction(1, 1000)}
     run = hamiltonian, "lie2", start, 1000
-    found = [alone(separated_chains(*run, 17, name)) for name in ("fixed", "mpfr")]
+    found = [area_chains(*run, 17, name) for name in ("fixed", "mpfr")]
     for way in ("plain", "closed_form"):
         one, other = (getattr(each, way) for each in found)
         assert one.kind == other.kind == "enclosed"
@@ -208,12 +208,12 @@ def test_counted_bounds_hold_for_few_bits_and_are_not_far_off(
 ) -> None:
     start = {"p": Fraction(1, 3), "q": Fraction(3, 2), "h": Fraction(1, 50)}
     kernel_run = KernelRun(hamiltonian, "lie2", start, 600, WORKING, 10)
-    working = WorkingRun(kernel_run, rounded_inputs(kernel_run), follow=True)
+    working = MixedRun(Determinants(), kernel_run, follow=True)
     coarse, fine = (
         alone(working.step_through(x, lambda _: None)) for x in (made, mpfr.at_bits(300))
     )
     for name in ("trajectory", "factors", "closed_factors"):
-        x, y = getattr(coarse, name), getattr(fine, name)
+        (x,), (y,) = getattr(coarse, name), getattr(fine, name)
         assert x.kind == y.kind == "enclosed"
         error = max(abs(a - b) for a, b in zip(x.trail, y.trail, strict=True))
         assert 0 < error <= x.bound <= 10**5 * error, name
@@ -225,7 +225,7 @@ def test_where_rounding_cannot_be_counted_a_rerun_estimates_it() -> None:
     assert max(map(abs, chain.links[2].trail)) > Fraction(1, 2)
     assert chain.links[2].kind == chain.links[3].kind == "estimated"
     start = {"p": Fraction(1, 3), "q": Fraction(3, 2), "h": Fraction(1, 20)}
-    finer = alone(separated_chains(DUFFING, "lie1", start, 100, 40, "mpfr")).plain
+    finer = area_chains(DUFFING, "lie1", start, 100, 40, "mpfr").plain
     for name in QUANTITIES:
         (x, dx), (y, dy) = chain.final(name), finer.final(name)
         assert abs(x - y) <= dx + dy, name

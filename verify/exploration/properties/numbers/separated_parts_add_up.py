@@ -18,9 +18,10 @@ from verify.exploration.property import Silent, Violation, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.lockstep import alone
 from verify.schemes.maps.step_map import StepMap
-from verify.studies.separation.chain import Chain, separated_chains
-from verify.studies.separation.kernel import WORKING
-from verify.studies.separation.mixed_run import Stopped
+from verify.studies.separation.chain import Chain
+from verify.studies.separation.links import separated_chains
+from verify.studies.separation.stepper.run import Stopped
+from verify.studies.separation.ways.determinants import WORKING
 
 _IN = 2  # one in so many samples
 _DIGITS = 8
@@ -31,15 +32,14 @@ def holds(sample: Sample) -> None:
     with silent_at(Stopped):
         chains = alone(separated_chains(*sample.kernel_inputs, _DIGITS))
     wanted = _lambda_by_balls(sample)
-    for chain in (chains.plain, chains.closed_form):
-        if chain is not None:
-            _must_add_up(chain)
-            for count, true in enumerate(wanted, start=1):
-                _must_reach(chain, ("truncation", *chain.parts)[:count], true)
+    for chain in (*chains.plain, *(chains.closed_form or ())):
+        _must_add_up(chain)
+        for count, true in enumerate(wanted, start=1):
+            _must_reach(chain, ("truncation", *chain.parts)[:count], true)
     if sample.timed and not _clock_is_exact(sample):
         return
     bare = sample.run("float64", 17, *WORKING).values["lambda_plain"]
-    beside = chains.plain.final("lambda_working")[0]
+    beside = chains.plain[0].final("lambda_working")[0]
     one, other = float(bare), float(beside)  # the program's last subtraction, of 1, rounds
     if one != other:
         raise Violation(f"float64 gives {one!r}, and beside exact numbers {other!r}")

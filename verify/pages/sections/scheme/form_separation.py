@@ -9,6 +9,7 @@ from markupsafe import Markup
 from verify.pages.figures.captioned_plot import few, few_digits
 from verify.pages.sections.rows import Group, Row, groups_of_grids, told_of_points
 from verify.pages.sections.section import Section
+from verify.pages.sections.separation_finding import computed
 from verify.pages.text import words
 from verify.pages.text.prose import prose
 from verify.pages.text.typography import listed, start, step, whole
@@ -17,7 +18,6 @@ from verify.scenes.results.report import SceneResult
 from verify.scenes.results.separation import WAYS
 from verify.scenes.results.separation_in_degrees import (
     FORM_ROUNDING,
-    FormEvaluation,
     SeparationGridInDegrees,
     SeparationInDegrees,
 )
@@ -52,7 +52,7 @@ def _view(scene: SceneResult, proof: ProofResult, _: str) -> FormSeparationView 
         crossed=tuple(_crossed(grid) for grid in beside),
         count=len(rows),
         told=told_of_points(rows),
-        computed=_computed(rows),
+        computed=computed(rows, listed),
     )
 
 
@@ -72,20 +72,6 @@ def _crossed(grid: SeparationGridInDegrees) -> str:
     ways = [(label, getattr(grid, way)) for way, label in WAYS.items()]
     found = (f"{label}: {f'h* ≈ {x.step_size}' if x.step_size else x.reason}" for label, x in ways)
     return f"Rounding overtakes truncation, from {start(grid.points[0])}: {listed(found)}."
-
-
-def _computed(rows: Sequence[SeparationInDegrees]) -> str:
-    held = [point for point in rows if point.plain]
-    if not held:
-        return ""
-    systems = listed(dict.fromkeys(point.arithmetic for point in held))
-    kinds = dict.fromkeys(way.error_kind for point in held for way in _ways(point) if way)
-    methods = "; ".join(dict.fromkeys(point.error_method for point in held))
-    return f"In place of exact arithmetic: {systems}. Error bounds {listed(kinds)}: {methods}."
-
-
-def _ways(point: SeparationInDegrees) -> tuple[FormEvaluation | None, FormEvaluation | None]:
-    return point.plain, point.closed_form
 
 
 # -- tables ---------------------------------------------------------------------------------------

@@ -1,14 +1,17 @@
-"""What a run has at its checkpoints, as exact rationals over one denominator.
+"""Values at a run's checkpoints, as exact rationals over one denominator, and links of them.
 
 A separation subtracts, compares and takes maxima of tens of thousands of them, and nearly all are
 whole multiples of one power of 2: so each of these is an operation of integers.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import accumulate
 from math import lcm
-from typing import Any
+from typing import Any, Literal
+
+Kind = Literal["enclosed", "estimated"]
 
 
 class Trail(Sequence[Fraction]):
@@ -25,9 +28,9 @@ class Trail(Sequence[Fraction]):
         """These values."""
         if isinstance(values, Trail):
             return values
-        known = tuple(values)
-        common = lcm(*{x.denominator for x in known})
-        return cls((x.numerator * (common // x.denominator) for x in known), common)
+        numbers = tuple(values)
+        common = lcm(*{x.denominator for x in numbers})
+        return cls((x.numerator * (common // x.denominator) for x in numbers), common)
 
     def __len__(self) -> int:
         return len(self.numerators)
@@ -80,3 +83,30 @@ class Trail(Sequence[Fraction]):
     def _over(self, denominator: int) -> tuple[int, ...]:
         factor = denominator // self.denominator
         return self.numerators if factor == 1 else tuple(n * factor for n in self.numerators)
+
+
+@dataclass(frozen=True)
+class Link:
+    """Λ, or an entry of W, at every checkpoint, each value within `bound` of what it stands for.
+
+    Two links that a proof shows to be equal are the same object.
+    """
+
+    trail: Trail
+    bound: Fraction
+    kind: Kind
+    method: str
+
+
+Links = tuple[Link, ...]  # of Λ alone, or one for each entry of W above its diagonal, row by row
+Entries = tuple[Fraction, ...]  # the values of these at one checkpoint
+
+
+def links_of(values: Iterable[Entries], bound: Fraction, kind: Kind, method: str) -> Links:
+    """A link for each entry, from all entries at every checkpoint."""
+    return tuple(Link(Trail.of(each), bound, kind, method) for each in zip(*values, strict=True))
+
+
+def exact_links(values: Iterable[Entries], method: str) -> Links:
+    """The same of values that are exact."""
+    return links_of(values, Fraction(0), "enclosed", method)

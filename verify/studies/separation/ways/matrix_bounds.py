@@ -25,55 +25,48 @@ import flint
 
 from verify.arithmetic.arb import bounds, in_reach, rational_ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.arithmetic.number_system import Arithmetic
-from verify.kernels.rounding import PRECISION, Ball, analyse, rounding_of
+from verify.kernels.rounding import PRECISION, Ball
 from verify.runs.derivatives import norm
-from verify.studies.separation.form_kernel import FormKernel
-from verify.studies.separation.mixed_run import State, visited
+from verify.studies.separation.stepper.way import Stepped
 
 _FLOAT = flint.arb(2) ** -45  # of sums of squares in float64, relative
 _ENTRY = flint.arb(2) ** -44  # of an entry of MᵀΩM in float64, relative to ‖M‖²
 
 
-def counted(
-    kernel: FormKernel, arithmetic: Arithmetic, inputs: Mapping[str, float], last: State, steps: int
-) -> Mapping[str, Fraction | None]:
-    """Bounds of the error of every entry of W at every checkpoint, by the letters of what was
-    carried; None where there is none. `last`: what the kernel carried in the end."""
-    if arithmetic.rounding is None or arithmetic.absolute:
-        return {}
+def counted(run: Stepped) -> Mapping[str, Fraction | None]:
+    """Bounds of the error of every entry of W at every checkpoint, of all that was followed but
+    the clock; None where there is none."""
     with working_precision(PRECISION):
-        count = _Count(kernel, arithmetic, last, steps)
-        found = {"w_n": count.of_product("w_n", flint.arb(0), count.top("f_j_norm"))}
-        if "w_t" in kernel.products:
-            size, lost = count.evaluated(inputs)
-            found["w_t"] = count.of_product("w_t", lost, 1 + size)
-        if kernel.closed:
-            found["w_w"] = count.of_sum()
-        return {n: bounds(x)[1] if in_reach(x) else None for n, x in found.items()}
+        count = _Count(run)
+        errors = {"factors": count.of_product("factors", flint.arb(0), count.top("f_j_norm"))}
+        if "trajectory" in run.kernel.followed:
+            size, lost = count.evaluated()
+            errors["trajectory"] = count.of_product("trajectory", lost, 1 + size)
+        if run.kernel.closed:
+            errors["closed"] = count.of_sum()
+        return {n: bounds(x)[1] if in_reach(x) else None for n, x in errors.items()}
 
 
 class _Count:
-    def __init__(self, kernel: FormKernel, arithmetic: Arithmetic, last: State, steps: int) -> None:
-        self.kernel, self.arithmetic, self.last = kernel, arithmetic, last
-        self.steps, self.size = steps, len(kernel.coordinates)
+    def __init__(self, run: Stepped) -> None:
+        self.run, self.steps, self.size = run, run.steps, len(run.kernel.wide.coordinates)
         # 2n products, their sum, and its sum with M: twice half a unit each, and second order.
-        self.unit = (self.size + 3) * flint.arb(2) ** (1 - arithmetic.bits)
+        self.unit = (self.size + 3) * flint.arb(2) ** (1 - run.arithmetic.bits)
 
     def top(self, name: str) -> Ball:
         """The root of a greatest sum of squares; for M not below that of 1."""
-        return (rational_ball(Fraction(self.last[name])) * (1 + _FLOAT)).sqrt().abs_upper()
+        return (rational_ball(Fraction(self.run.last[name])) * (1 + _FLOAT)).sqrt().abs_upper()
 
     def norm_of(self, matrix: str) -> Ball:
         least = flint.arb(self.size).sqrt()  # of M₀ = 1
-        return self.top(f"f_{matrix[2:]}_norm").max(least)
+        return self.top(f"f_{matrix}_norm").max(least)
 
     def apart(self, matrix: str, lost: Ball, factor: Ball) -> Ball:
         """E: `lost` is what A is off, `factor` a bound of ‖A‖, or of 1 + ‖A − 1‖."""
         top = self.norm_of(matrix)
         # An entry of δ is a rounded sum of products of |A| and |M̂|; what A is off is times M̂.
         rounded = top * (lost + self.unit * (factor + lost))
-        form = self.top(f"f_{matrix[2:]}_form") + self.size * _ENTRY * top * top
+        form = self.top(f"f_{matrix}_form") + self.size * _ENTRY * top * top
 
         def bound(apart: Ball) -> Ball:
             moved = form + 2 * top * apart + apart * apart
@@ -81,8 +74,8 @@ class _Count:
             return top * rate / (1 - rate) if moved < 1 and rate < 1 else flint.arb.nan()
 
         guess = (2 * bound(flint.arb(0))).abs_upper()
-        found = bound(guess)
-        return found.abs_upper() if found <= guess else flint.arb.nan()
+        again = bound(guess)
+        return again.abs_upper() if again <= guess else flint.arb.nan()
 
     def of_product(self, matrix: str, lost: Ball, factor: Ball) -> Ball:
         """Of W = MᵀΩM − Ω."""
@@ -91,19 +84,17 @@ class _Count:
 
     def of_sum(self) -> Ball:
         """Of Σ MᵀSM, with float64's S and K."""
-        top, size = self.norm_of("w_m"), self.top("f_s_norm")
-        apart = self.apart("w_m", flint.arb(0), 1 + self.top("f_k_norm"))
+        top, size = self.norm_of("m"), self.top("f_s_norm")
+        apart = self.apart("m", flint.arb(0), 1 + self.top("f_k_norm"))
         term = size * (top + apart) * (top + apart)
         # Two products of matrices are rounded, and the sum at every step.
         rounded = (2 * self.unit + self.steps * self.unit) * 2 * term
         return (self.steps * (size * (2 * top * apart + apart * apart) + rounded)).abs_upper()
 
-    def evaluated(self, inputs: Mapping[str, float]) -> tuple[Ball, Ball]:
+    def evaluated(self) -> tuple[Ball, Ball]:
         """‖K‖ over the region that the float64 states visited, and the error of the wide K."""
-        kernel = self.kernel
-        box = visited(kernel, inputs, self.last, flint.arb(0))
-        program, roots = kernel.wide.program, kernel.wide.roots()
-        found = analyse(program, program.live(roots), box, rounding_of(self.arithmetic))
-        if found is None:
+        slopes = self.run.kernel.wide.slopes
+        values = self.run.analysed([at for row in slopes for at in row], flint.arb(0))
+        if values is None:
             return flint.arb.nan(), flint.arb.nan()
-        return norm(found[at].magnitude for at in roots), norm(found[at].error for at in roots)
+        return norm(x.magnitude for x in values), norm(x.error for x in values)

@@ -1,0 +1,1 @@
+"""A float64 run, step by step, with exact arithmetic beside it."""

@@ -1,0 +1,227 @@
+"""A float64 run from checkpoint to checkpoint, with exact arithmetic beside it.
+
+What is carried becomes links at every checkpoint. How far they are known: what float64 made is
+exact. Of a wide link the way counts the rounding; where it has no bound, the link is held against a
+rerun with 15 more digits, and twice the greatest difference at any checkpoint, and what the last
+bits may hide of it, is its bound, an estimate.
+"""
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import takewhile
+from typing import Any, Literal
+
+from verify import arithmetic as number_systems
+from verify.arithmetic.number import Number
+from verify.arithmetic.number_system import Arithmetic, UnsupportedError
+from verify.arithmetic.systems import float64
+from verify.execution.keeping import fraction_of, fraction_text
+from verify.kernels.chunked_loop import last_good
+from verify.kernels.notes import LazyNote
+from verify.kernels.stepping import KernelRun
+from verify.lockstep import Course
+from verify.runs.estimated import digits_of
+from verify.studies.separation.stepper.kernel import AT, mixed_kernel
+from verify.studies.separation.stepper.trail import Entries, Links, exact_links, links_of
+from verify.studies.separation.stepper.way import MixedKernel, Size, State, Stepped, Way
+
+Advance = Callable[[int], None]  # called with the number of steps just done
+MORE_DIGITS = 15
+COUNTED = "rounding counted"
+RERUN = f"rerun with {MORE_DIGITS} more digits"
+
+
+class Stopped(Exception):  # noqa: N818 - no error, an answer
+    """A run of the chain that has no last value."""
+
+    def __init__(
+        self, status: Literal["left range", "unresolved"], step: int | None, reason: str
+    ) -> None:
+        super().__init__(reason)
+        self.status, self.step, self.reason = status, step, reason
+
+
+def marks_of(steps: int, points: int) -> tuple[int, ...]:
+    """The numbers of steps at the checkpoints, as a run of so many sections notes them."""
+    section = -(-steps // points)
+    return tuple(min(k, steps) for k in range(section, steps + section, section))
+
+
+def rounded_inputs(run: KernelRun) -> dict[str, float]:
+    """The start and the parameters that the kernel takes, as float64; Stopped where one is not."""
+    exact = {**run.start, **{n: run.parameters[n] for n in run.hamiltonian.parameters}}
+    number = float64.make(17).number
+    rounded: dict[str, float] = {name: number(value) for name, value in exact.items()}
+    for name, value in rounded.items():
+        if not math.isfinite(value):
+            raise Stopped("left range", 1, f"{name} is beyond the range of float64")
+    return rounded
+
+
+@dataclass(frozen=True)
+class Working:
+    """The links that one run of the mixed kernel gives; None where one was not followed.
+
+    `factors`: each step's determinant, or Jacobian, is float64's; `closed_factors`: its ΔJ, or S.
+    None, as `closed_form`, where some 1 + ΔJ ≤ 0, which has no logarithm. `sizes`: of the product
+    of Jacobians at every checkpoint, where W is followed.
+    """
+
+    clock: Links | None
+    trajectory: Links | None
+    factors: Links
+    plain: Links
+    closed_factors: Links | None
+    closed_form: Links | None
+    sizes: tuple[Size, ...]
+
+
+class MixedRun:
+    """The float64 run of a run, with exact arithmetic beside it; `follow` as in the kernel.
+
+    `inputs`: h, the coordinates and the kernel's parameters, as the float64 numbers that they are
+    rounded to.
+    """
+
+    def __init__(self, way: Way, run: KernelRun, follow: bool) -> None:
+        self.way, self.run, self.follow = way, run, follow
+        self.inputs = rounded_inputs(run)
+        self.marks = marks_of(run.steps, way.points)
+
+    def step_through(self, arithmetic: Arithmetic, advance: Advance) -> Course[Working]:
+        """All steps; raises Stopped where float64 leaves its range."""
+        way, run = self.way, (yield from self.stepped(arithmetic, advance))
+        kernel, bounds, again = run.kernel, way.bounds(run), run
+        if any(bounds.get(name) is None for name in kernel.followed):
+            finer = number_systems.get(arithmetic.name, digits_of(arithmetic) + MORE_DIGITS)
+            again = yield from self.stepped(finer, lambda _: None)
+        links: dict[str, Links] = {}
+        for name in kernel.followed:
+            bound, values = bounds.get(name), self._read(run, name)
+            if bound is not None:
+                links[name] = links_of(values, bound, "enclosed", COUNTED)
+                continue
+            fine = self._read(again, name)
+            pairs = zip(values, fine, strict=True)
+            apart = max(abs(x - y) for a, b in pairs for x, y in zip(a, b, strict=True))
+            bound = 2 * apart + way.hides(replace(again, arithmetic=arithmetic), name)
+            links[name] = links_of(fine, bound, "estimated", RERUN)
+        sizes = (way.size(state, arithmetic) for state in run.states)
+        return Working(
+            links.get("clock"),
+            links.get("trajectory"),
+            links["factors"],
+            _of_float64(map(way.plain, run.states)),
+            *self._closed(run, links),
+            tuple(size for size in sizes if size),
+        )
+
+    def _read(self, run: Stepped, name: str) -> list[Entries]:
+        return [self.way.read(state, name, run.arithmetic) for state in run.states]
+
+    def _closed(
+        self, run: Stepped, links: Mapping[str, Links]
+    ) -> tuple[Links | None, Links | None]:
+        """The links of the closed form."""
+        if not run.kernel.closed:
+            nothing = (Fraction(0),) * len(links["factors"])
+            return (exact_links([nothing] * len(run.states), self.way.vanishes),) * 2
+        values = list(map(self.way.closed_form, run.states))
+        if not all(math.isfinite(x) for each in values for x in each):
+            return None, None
+        return links["closed"], _of_float64(values)
+
+    def stepped(self, arithmetic: Arithmetic, advance: Advance) -> Course[Stepped]:
+        """All steps with this arithmetic beside float64."""
+        run, way, inputs = self.run, self.way, self.inputs
+        kernel = mixed_kernel(way, run.hamiltonian, run.scheme, arithmetic, self.follow)
+        narrow = list(kernel.inputs(inputs).values())
+        wide = [arithmetic.number(Fraction(x)) for x in narrow]
+        fixed = [*narrow, *wide, *way.limits(kernel, arithmetic, inputs)]
+        label = f"beside {arithmetic.name} {arithmetic.bits} {inputs} {kernel.source}"
+        states = self._kept(label, arithmetic)
+        state = states[-1] if states else self._first_state(kernel, arithmetic)
+        done = self.marks[len(states) - 1] if states else 0
+        # The sums of logarithms may be undefined while the orbit and the plain way go on.
+        vital = [n for n in kernel.state_names if n[0] == "f" and n not in ("f_sum", "f_rest")]
+        at = {name: k for k, name in enumerate(kernel.state_names)}
+
+        def in_range(state: State) -> bool:
+            return all(math.isfinite(state[name]) for name in vital) and way.in_range(state)
+
+        def states_after(every: int, stops: int = 1) -> Course[list[State]]:
+            """Those at the next stops; fewer where float64 leaves its range on the way."""
+            numbers = state.state if isinstance(state, LazyNote) else [state[n] for n in at]
+            beyond = run.steps - done - every * stops
+            after = yield from arithmetic.states(
+                kernel.function, every, stops, fixed, numbers, beyond
+            )
+            notes = (LazyNote(kernel.state_names, lambda n, x, _: x[at[n]], x, 0) for x in after)
+            return list(takewhile(in_range, notes))
+
+        arithmetic.expect(kernel.function, run.steps - done)
+        while done < run.steps:
+            every, stops = self._ahead(done, len(states), arithmetic.chunk)
+            after = yield from states_after(every, stops)
+            for state in after:
+                done += every
+                advance(every)
+                if done == self.marks[len(states)]:
+                    states.append(state)
+                self._keep(label, states, arithmetic)
+            if len(after) < stops and arithmetic.absolute:
+                raise UnsupportedError(f"the orbit leaves the range of {arithmetic.name}")
+            if len(after) < stops:
+                done += yield from last_good(every, states_after)
+                raise Stopped("left range", done + 1, "float64 leaves its range")
+        return Stepped(kernel, arithmetic, inputs, run.steps, states)
+
+    def _ahead(self, done: int, at: int, chunk: int) -> tuple[int, int]:
+        """So many steps to the next stop and so many stops: marks, or on the way to the next."""
+        left, section = self.marks[at] - done, self.marks[0]
+        if left == section <= chunk:
+            return section, min(chunk, self.run.steps - done) // section
+        return min(chunk, left), 1
+
+    def _first_state(self, kernel: MixedKernel, arithmetic: Arithmetic) -> State:
+        state: dict[str, Any] = {}
+        for name in kernel.state_names:
+            if name in kernel.start:
+                value = Fraction(kernel.start[name])
+            else:  # of a coordinate or t, or an end of the region that it visits
+                bare = name.removeprefix(AT).removeprefix("f_")
+                value = Fraction(self.inputs[bare.removesuffix("_low").removesuffix("_high")])
+            state[name] = _number(arithmetic, name, value)
+        return state
+
+    def _keep(self, label: str, states: Sequence[State], arithmetic: Arithmetic) -> None:
+        """Writes the checkpoints so far, where that is due."""
+        if self.run.keeper.due(label):
+            texts = [
+                {n: fraction_text(as_rational(x, arithmetic)) for n, x in s.items()} for s in states
+            ]
+            self.run.keeper.save(label, {"found": texts})
+
+    def _kept(self, label: str, arithmetic: Arithmetic) -> list[State]:
+        """The checkpoints that an interrupted run has left."""
+        kept = self.run.keeper.load(label) or {"found": []}
+        return [
+            {n: _number(arithmetic, n, fraction_of(x)) for n, x in state.items()}
+            for state in kept["found"]
+        ]
+
+
+def _number(arithmetic: Arithmetic, name: str, value: Fraction) -> Number:
+    """What a name that begins with f or with w holds: a float64 or a wide number."""
+    return float(value) if name[0] == "f" else arithmetic.number(value)
+
+
+def as_rational(x: Number, arithmetic: Arithmetic) -> Fraction:
+    """The rational that a float64 or a wide number is."""
+    return Fraction(x) if isinstance(x, float) else arithmetic.exact(x)
+
+
+def _of_float64(values: Iterable[tuple[float, ...]]) -> Links:
+    return exact_links([tuple(map(Fraction, each)) for each in values], "a float64")

@@ -1,0 +1,244 @@
+"""The links of Λ in the plane, which is a product of determinants.
+
+    w_trajectory  Λ ← Λ + ΔJ(z̃_k) + Λ ΔJ(z̃_k), the step map's own ΔJ, exactly, at rounded inputs
+    w_clock       the same of a wide state that steps by float64's clock
+    w_factors     the same with d̃_k − 1, d̃_k the determinant that float64 found
+    w_closed      the same with the ΔJ that float64 found from the closed form
+    f_plain       Π d̃_k in float64
+    f_sum, f_rest Σ log1p of float64's ΔJ, in float64, with Knuth's two-sum: the plain additions'
+                  errors are summed apart, and Λ = expm1(f_sum + f_rest)
+
+How far Λ₂ and Λ₃ are known. They are products along given float64 states, so that nothing is
+magnified, and their rounding is counted:
+
+Let P̂' = P̂ (1 + e) + ρ be a step of the product as it was computed, P̂ = 1 + Λ̂, and let M ≤ 1/2
+be the greatest |Λ̂| of all steps, which the kernel carries along. The step's operations, each
+within u = 2^(1 − bits) of its exact result, are e, t = Λ̂ e, s = e + t and Λ̂ + s. From |Λ̂ + s| ≤
+(1 + u) M it follows that |s| ≤ 2.01 M, |e| ≤ 4.02 M, |t| ≤ 2.02 M, so |ρ| ≤ 12 u M; in fixed point
+additions are exact, e and t are within a unit 2^−bits each, and |ρ| ≤ 3 units. If e itself is
+within B of its exact value (see `verify.kernels.rounding`), |ρ| grows by 2 B. As P̂' ≥ 1/2, every
+step multiplies by 1 + θ at most beside the exact factor, |θ| ≤ 2.01 |ρ|; after N steps the product
+is within 1.5 · 1.01 · N |θ| ≤ 4 N |ρ| of the exact one, as long as this is below 1/100. Where M >
+1/2, or B is not known, a rerun with more digits estimates the error instead.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import ClassVar
+
+import flint
+
+from verify.arithmetic.arb import bounds, in_reach
+from verify.arithmetic.exact import magnitude
+from verify.arithmetic.flint_precision import working_precision
+from verify.arithmetic.number import Number
+from verify.arithmetic.number_system import Arithmetic, UnsupportedError
+from verify.kernels.kernel import Kernel, Writer
+from verify.kernels.rounding import PRECISION
+from verify.kernels.step.computation import common_power
+from verify.kernels.step.kinds import may_leave_range
+from verify.kernels.stepping import KernelRun, Outcome, limits
+from verify.runs.estimated import working_digits
+from verify.runs.run import proved
+from verify.scenes.results.separation import ROUNDING
+from verify.schemes import get
+from verify.schemes.maps.step_map import StepMap
+from verify.studies.separation.stepper.run import marks_of
+from verify.studies.separation.stepper.trail import Entries, Links, exact_links, links_of
+from verify.studies.separation.stepper.way import (
+    FOLLOWED,
+    Lines,
+    MixedKernel,
+    Side,
+    State,
+    Stepped,
+    Way,
+)
+
+WORKING = frozenset({"lambda", "lambda_plain"})  # with these `verify run` steps in float64, too
+POINTS = 2048  # checkpoints of a run
+_CLOSED_SUM = (
+    "f_log = f_log1p(f_dj)",
+    "f_total = f_sum + f_log",
+    "f_part = f_total - f_sum",
+    "f_rest = f_rest + ((f_sum - (f_total - f_part)) + (f_log - f_part))",
+    "f_sum = f_total",
+)
+
+
+@dataclass(frozen=True)
+class Determinants(Way):
+    """Λ = Π det J − 1 of a run in the plane."""
+
+    observable: ClassVar = "lambda"
+    observables: ClassVar = frozenset({"lambda"})
+    points: ClassVar = POINTS
+    parts: ClassVar = ROUNDING
+    # Float64's 16 digits, less those by which a long run magnifies what is rounded.
+    cancelled: ClassVar = 14
+    vanishes: ClassVar = "ΔJ ≡ 0"
+
+    # -- the kernel ---------------------------------------------------------------------------
+
+    def step(self, step_map: StepMap, arithmetic: Arithmetic, exactly: bool) -> Kernel:
+        """The arithmetic's own kernel, not compiled; ΔJ is not divided by a power of h."""
+        observables = self.observables if exactly else WORKING
+        uncompiled = replace(arithmetic, compile=lambda *_: lambda *_: ())
+        return Writer(step_map, uncompiled, observables, False, scaled=False).kernel()
+
+    def lines(self, narrow: Side, wide: Side | None, clocked: Side | None) -> Lines:
+        start: dict[str, int] = {}
+        inside = [f"f_det = {narrow.output('det')}", f"f_dj = {narrow.output('dj')}"]
+        if wide:
+            _check(wide)
+            inside += _accumulate("trajectory", wide.output("dj"), start)
+        if clocked:
+            inside += _accumulate("clock", clocked.output("dj"), start)
+        inside += ["w_factor = wide(f_det) - w_one", *_accumulate("factors", "w_factor", start)]
+        start["f_plain"] = 1
+        inside.append("f_plain = f_plain * f_det")
+        step = narrow.step
+        closed = not step.program.is_constant(step.outputs["dj"], 0)
+        if closed:
+            inside += [
+                "w_factor = wide(f_dj)",
+                *_accumulate("closed", "w_factor", start),
+                *_CLOSED_SUM,
+            ]
+            start |= {"f_sum": 0, "f_rest": 0}
+        followed = tuple(name for name in FOLLOWED if f"w_{name}" in start)
+        return Lines(inside, start, followed, closed)
+
+    def limits(
+        self, kernel: MixedKernel, arithmetic: Arithmetic, inputs: Mapping[str, float]
+    ) -> list[Number]:
+        """Of p, q and Λ; UnsupportedError where they start beyond it."""
+        if not isinstance(kernel.wide, Kernel) or not kernel.limits:
+            return []
+        exact = {n: Fraction(x) for n, x in kernel.inputs(inputs).items()}
+        room = limits(kernel.wide, exact, {n: Fraction(inputs[n]) for n in ("p", "q")})
+        if room is None:
+            name = arithmetic.name
+            raise UnsupportedError(f"a step from the start may leave the range of {name}")
+        return [float(room.p), float(room.q), arithmetic.number(room.part)]
+
+    # -- what is read of its states -----------------------------------------------------------
+
+    def read(self, state: State, name: str, arithmetic: Arithmetic) -> Entries:
+        return (arithmetic.exact(state[f"w_{name}"]),)
+
+    def plain(self, state: State) -> tuple[float, ...]:
+        return (state["f_plain"] - 1.0,)
+
+    def closed_form(self, state: State) -> tuple[float, ...]:
+        try:
+            return (math.expm1(state["f_sum"] + state["f_rest"]),)
+        except OverflowError:
+            return (math.inf,)
+
+    # -- how far it is known ------------------------------------------------------------------
+
+    def bounds(self, run: Stepped) -> Mapping[str, Fraction | None]:
+        counted: dict[str, Fraction | None] = {}
+        for name in run.kernel.followed:
+            # What a wide state does to the steps after it is not counted.
+            error: Fraction | None = None if name == "clock" else Fraction(0)
+            if name == "trajectory":
+                error = _error_of_delta_j(run)
+            top = run.arithmetic.exact(run.last[f"w_{name}_top"])
+            counted[name] = _accumulated(run.steps, top, error, run.arithmetic)
+        if any(bound is None for name, bound in counted.items() if name != "clock"):
+            return dict.fromkeys(counted)
+        return counted
+
+    def hides(self, run: Stepped, name: str) -> Fraction:
+        if run.arithmetic.absolute:
+            return _unit(run.arithmetic)
+        sizes = (abs(run.arithmetic.exact(state[f"w_{name}"])) for state in run.states)
+        return _unit(run.arithmetic) * max(sizes)
+
+    # -- runs in exact arithmetic's stead -----------------------------------------------------
+
+    def proved(self, run: KernelRun, exact: StepMap | None, digits: int) -> Links | None:
+        """Λ at every checkpoint where ΔJ is a constant."""
+        h, marks = run.start["h"], marks_of(run.steps, POINTS)
+        digits += len(str(run.steps))
+        if exact is None or not proved(exact, self.observables, h, 1, digits):
+            return None
+        if exact.preserves_area:
+            return exact_links([(Fraction(0),)] * len(marks), self.vanishes)
+        values = [proved(exact, self.observables, h, n, digits)["lambda"] for n in marks]
+        worst = max(bound for _, bound in values)
+        return links_of([(x,) for x, _ in values], worst, "enclosed", "ΔJ is constant")
+
+    def values(self, run: Outcome, last: Fraction) -> list[Entries]:
+        return [*((note["lambda"],) for note in run.trail[:-1]), (last,)]
+
+    def digits_beside(self, run: KernelRun, exact: StepMap, wanted: int, compiled: bool) -> int:
+        """After the point: a compiled kernel takes the longer the more there are."""
+        if not compiled:
+            return working_digits(wanted, run.steps)
+        # Along given states only the number of roundings grows; a step's are below 10^6 units.
+        size = run.start["h"] ** _power_of_area(exact, run.scheme)
+        return wanted + max(0, -magnitude(size)) + len(str(run.steps)) + 6
+
+
+def _check(wide: Side) -> None:
+    """Where the range is limited, only what stays within it by the state's limits alone."""
+    program, arithmetic = wide.step.program, wide.arithmetic
+    operations = (program.ops[i] for i in program.live([wide.step.outputs["dj"]]))
+    partial = {
+        op.function.name if op.kind == "call" else op.kind
+        for op in operations
+        if may_leave_range(op)
+    }
+    if arithmetic.absolute and partial:
+        raise UnsupportedError(
+            f"{', '.join(sorted(partial))} may leave the range of {arithmetic.name}"
+        )
+
+
+def _accumulate(name: str, factor: str, start: dict[str, int]) -> list[str]:
+    """Λ ← Λ + e + Λ e, and the greatest |Λ| on the way, which its error bound needs."""
+    lam, top = f"w_{name}", f"w_{name}_top"
+    start |= {lam: 0, top: 0}
+    return [
+        f"{lam} = {lam} + ({factor} + {lam} * {factor})",
+        f"w_size = abs({lam})",
+        f"if w_size > {top}: {top} = w_size",
+    ]
+
+
+def _error_of_delta_j(run: Stepped) -> Fraction | None:
+    """B: the error of one wide ΔJ, all over the region that the float64 states have visited."""
+    with working_precision(PRECISION):
+        # A float64 goes to a fixed-point number but for what is below its last place.
+        cut = flint.arb(2) ** -run.arithmetic.bits if run.arithmetic.absolute else flint.arb(0)
+        values = run.analysed([run.kernel.wide.outputs["dj"]], cut)
+        return bounds(values[0].error)[1] if values and in_reach(values[0].error) else None
+
+
+def _accumulated(
+    steps: int, top: Fraction, error: Fraction | None, arithmetic: Arithmetic
+) -> Fraction | None:
+    """The bound of the module's docstring; M = `top`, B = `error`."""
+    if error is None or top > Fraction(1, 2):
+        return None
+    rounded = 3 * _unit(arithmetic) if arithmetic.absolute else 12 * _unit(arithmetic) * top
+    bound = 4 * steps * (rounded + 2 * error)
+    return bound if bound <= Fraction(1, 100) else None
+
+
+def _unit(arithmetic: Arithmetic) -> Fraction:
+    """One operation's error at most: relative, and twice that of rounding to nearest; or a unit."""
+    return Fraction(1 if arithmetic.absolute else 2, 2**arithmetic.bits)
+
+
+def _power_of_area(step_map: StepMap, scheme: str) -> int:
+    """By about which power of h Λ is small: r − 1 where ΔJ has h^r, as far as that is seen."""
+    if step_map.preserves_area:
+        return 0
+    seen = common_power(step_map)
+    return seen - 1 if seen else 1 + (get(scheme).order or 0)

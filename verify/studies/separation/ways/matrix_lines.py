@@ -1,0 +1,159 @@
+"""What a kernel carries of matrices, at each float64 state z̃ of a run in n degrees of freedom.
+
+With K = J − 1 of the step, by the derivatives of the step's own operations, and the symplectic
+defect S of the step, as the float64 kernel of `verify run` has them, bit for bit:
+
+    w_trajectory  M ← M + K M with K exactly at z̃
+    w_clock       the same of a wide state that steps by float64's clock
+    w_factors     M ← J̃ M exactly, J̃ the float64 matrix 1 + K̃, each entry rounded once (plain)
+    f_plain       M ← J̃ M in float64: products of rows and columns, added from the left (plain)
+    w_m           M ← M + K̃ M exactly, and w_closed  W ← W + MᵀS̃M exactly (closed form)
+    f_m           M ← M + K̃ M, and f_closed  W ← W + MᵀS̃M in float64 (closed form)
+
+Of the first four W = MᵀΩM − Ω, which holds exactly for exact products and so cancels nothing that
+more digits do not give back; the fourth takes it in float64, as a program would.
+
+Names of entries end in their row and column, M₁₂ of w_trajectory is w_trajectory_0_1.
+"""
+
+from collections.abc import Sequence
+from itertools import combinations, product
+
+from verify.studies.separation.stepper.way import FOLLOWED, Lines, Side
+
+Rows = Sequence[Sequence[str]]  # of names; an empty one is 0
+
+
+def matrix_lines(narrow: Side, wide: Side | None, clocked: Side | None) -> Lines:
+    """The lines of the matrices; `wide` and `clocked` where K is followed exactly."""
+    names, closed = narrow.step.coordinates, bool(narrow.step.defect)
+    sides = {"trajectory": wide, "clock": clocked}
+    products = [f"w_{name}" for name, side in sides.items() if side]
+    inside = [x for n, side in sides.items() if side for x in _moved(f"w_{n}", side.slopes)]
+    products += ["w_factors", *["w_m"] * closed]
+    inside += _plain(narrow.slopes) + (_closed(narrow) if closed else [])
+    watched = [name for name in products if name != "w_clock"]
+    tops, more = _watched(narrow, watched, closed)
+    matrices = [*products, "f_plain", *["f_m"] * closed]
+    start = {f"{matrix}_{a}_{b}": int(a == b) for matrix in matrices for a, b in _places(names)}
+    sums = ("f_closed", "w_closed") * closed
+    start |= {f"{w}_{a}_{b}": 0 for w in sums for a, b in _places(names) if a < b}
+    followed = tuple(name for name in FOLLOWED if f"w_{name}_0_1" in start)
+    return Lines(inside + more, start | dict.fromkeys(tops, 0), followed, closed)
+
+
+def _places(rows: Sequence[object]) -> list[tuple[int, int]]:
+    return [(a, b) for a, b in product(range(len(rows)), repeat=2)]
+
+
+def _sum(row: Sequence[str], column: Sequence[str]) -> str:
+    """The sum of products, from the left; terms that are 0 for certain are left out."""
+    pairs = zip(row, column, strict=True)
+    return " + ".join(f"{a} * {b}" for a, b in pairs if a and b)
+
+
+def _product(rows: Rows, matrix: str) -> list[list[str]]:
+    every = range(len(rows))
+    columns = [[f"{matrix}_{c}_{b}" for c in every] for b in every]
+    return [[_sum(row, column) for column in columns] for row in rows]
+
+
+def _moved(matrix: str, slopes: Rows) -> list[str]:
+    """M ← M + K M."""
+    return _assigned(matrix, _product(slopes, matrix), "{name} + ({entry})")
+
+
+def _assigned(matrix: str, entries: Rows, written: str = "{entry}") -> list[str]:
+    """All entries are made before the first is assigned; those that do not change are left.
+
+    `written`: of an entry's `name` and of what is given for it.
+    """
+    kind, changed = matrix[:2], [(a, b) for a, b in _places(entries) if entries[a][b]]
+    after = (written.format(name=f"{matrix}_{a}_{b}", entry=entries[a][b]) for a, b in changed)
+    return [
+        *(f"{kind}new_{a}_{b} = {x}" for (a, b), x in zip(changed, after, strict=True)),
+        *(f"{matrix}_{a}_{b} = {kind}new_{a}_{b}" for a, b in changed),
+    ]
+
+
+def _widened(matrix: str, entries: Rows) -> tuple[list[str], list[list[str]]]:
+    """The lines that make float64's entries exact, and what the names of these are."""
+    names = [[x and f"{matrix}_{a}_{b}" for b, x in enumerate(r)] for a, r in enumerate(entries)]
+    places = [(a, b) for a, b in _places(entries) if entries[a][b]]
+    return [f"{names[a][b]} = wide({entries[a][b]})" for a, b in places], names
+
+
+def _plain(slopes: Rows) -> list[str]:
+    """J̃ = 1 + K̃ and its products, in float64 and exactly."""
+    entries = {(a, b): slopes[a][b] for a, b in _places(slopes) if a == b or slopes[a][b]}
+    for k in range(len(slopes)):
+        entries[k, k] = f"1.0 + {slopes[k][k] or '0.0'}"
+    rows = [["" for _ in slopes] for _ in slopes]
+    for a, b in entries:
+        rows[a][b] = f"f_j_{a}_{b}"
+    lines, exact = _widened("w_j", rows)
+    return [
+        *(f"f_j_{a}_{b} = {entry}" for (a, b), entry in entries.items()),
+        *lines,
+        *_assigned("w_factors", _product(exact, "w_factors")),
+        *_assigned("f_plain", _product(rows, "f_plain")),
+    ]
+
+
+def _closed(narrow: Side) -> list[str]:
+    """M ← M + K̃ M and W ← W + MᵀS̃M, exactly and in float64."""
+    every, places = range(len(narrow.slopes)), _places(narrow.slopes)
+    lines, exact = _widened("w_k", narrow.slopes)
+    form = [["" for _ in every] for _ in every]
+    for name, at in narrow.step.defect.items():
+        a, b = map(int, name.split("_")[1:])
+        if not narrow.step.program.is_constant(at, 0):
+            form[a][b], form[b][a] = f"w_s_{a}_{b}", f"w_s_{b}_{a}"
+            lines += [f"{form[a][b]} = wide({narrow.name(at)})", f"{form[b][a]} = -{form[a][b]}"]
+    right = _product(form, "w_m")
+    lines += [f"w_r_{a}_{b} = {right[a][b]}" for a, b in places if right[a][b]]
+    for a, b in combinations(every, 2):
+        column = [f"w_r_{c}_{b}" if right[c][b] else "" for c in every]
+        added = _sum([f"w_m_{c}_{a}" for c in every], column)
+        lines += [f"w_closed_{a}_{b} = w_closed_{a}_{b} + ({added})"] if added else []
+        lines.append(f"f_closed_{a}_{b} = f_closed_{a}_{b} + ({narrow.output(f'dw_{a}_{b}')})")
+    lines += _moved("w_m", exact)
+    return lines + [f"f_m_{a}_{b} = f_m_{a}_{b} + ({narrow.output(f'dm_{a}_{b}')})"
+                    for a, b in places]  # fmt: skip
+
+
+def _watched(narrow: Side, products: Sequence[str], closed: bool) -> tuple[list[str], list[str]]:
+    """What a bound needs of every step, in float64: the greatest ‖M‖² of each product and
+    ‖MᵀΩM − Ω‖², and the greatest ‖J̃‖², ‖K̃‖² and ‖S̃‖². The names that carry it, and lines."""
+    names, tops, lines = narrow.step.coordinates, list[str](), list[str]()
+    size, half = len(names), len(names) // 2
+
+    def keep(name: str, value: str) -> None:
+        tops.append(name)
+        lines.append(f"f_seen = {value}")
+        lines.append(f"if not f_seen <= {name}: {name} = f_seen")
+
+    def squares(entries: Sequence[str]) -> str:
+        return " + ".join(f"{x} * {x}" for x in entries if x) or "0.0"
+
+    for matrix in products:
+        lines += [f"f_x_{a}_{b} = approx({matrix}_{a}_{b})" for a, b in _places(names)]
+        keep(f"f_{matrix[2:]}_norm", squares([f"f_x_{a}_{b}" for a, b in _places(names)]))
+        places = list(combinations(range(size), 2))
+        for a, b in places:
+            areas = (
+                f"f_x_{i}_{a} * f_x_{half + i}_{b} - f_x_{half + i}_{a} * f_x_{i}_{b}"
+                for i in range(half)
+            )
+            lines.append(f"f_y_{a}_{b} = {' + '.join(areas)}{' - 1.0' * (b == half + a)}")
+        # In chaos W may be as large as its root is float64's range: there is no bound then anyway.
+        form = squares([f"f_y_{a}_{b}" for a, b in places])
+        keep(f"f_{matrix[2:]}_form", f"min(2.0 * ({form}), 1e300)")
+    slopes = narrow.slopes
+    jacobian = [f"f_j_{a}_{b}" for a, b in _places(names) if a == b or slopes[a][b]]
+    keep("f_j_norm", squares(jacobian))
+    if closed:
+        keep("f_k_norm", squares([x for row in slopes for x in row]))
+        defect = [narrow.name(at) for at in narrow.step.defect.values()]
+        keep("f_s_norm", f"2.0 * ({squares(defect)})")
+    return tops, lines
