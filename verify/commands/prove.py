@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.shared import output as show
+from verify.commands.shared import proofs as show
 from verify.commands.shared.answer import Answer, answering, picked
 from verify.commands.shared.destinations import OUT_FILE
 from verify.commands.shared.input import hamiltonian_of, hamiltonian_options, scheme_option
-from verify.commands.shared.output import agreement, cut, line, order_json, print_checks
+from verify.commands.shared.output import cut, line
 from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
@@ -93,7 +93,6 @@ def prove(
 def _prove_every(
     scheme: str, separable: bool, timed: bool, degrees: int | None, certificate: Path | None
 ) -> Answer:
-    from verify.commands.shared.in_degrees import print_symplectic
     from verify.proof.every import prove_every
 
     begun = time.perf_counter()
@@ -104,7 +103,7 @@ def _prove_every(
 
         _write(of_every(proof), certificate)
     texts = {"hamiltonian": proof.quantifier}
-    shown = partial(print_symplectic, texts, proof.scheme)
+    shown = partial(show.print_symplectic, texts, proof.scheme)
     return Answer(
         lambda: show.proof_json(texts, proof.scheme, proof, seconds, **show.checks_json(proof)),
         lambda: (_print_every if proof.planar else shown)(proof),
@@ -113,6 +112,7 @@ def _prove_every(
 
 
 def _prove_one(exact: "Hamiltonian", scheme: str, certificate: Path | None) -> Answer:
+    from verify.proof.certificates.one import of_one
     from verify.proof.order import prove as prove_order
     from verify.proof.plane.potential import potential_of
     from verify.proof.special_values import special_values
@@ -121,43 +121,28 @@ def _prove_one(exact: "Hamiltonian", scheme: str, certificate: Path | None) -> A
     begun = time.perf_counter()
     chosen = get(scheme)
     proof = prove_order(chosen.step_map(exact), chosen)
-    if not proof.planar:
-        return _of_form(proof, exact, chosen, begun, certificate)
-    potential = potential_of(proof, chosen)
-    special = special_values(proof, chosen)
+    potential = potential_of(proof, chosen) if proof.planar else None
+    special = special_values(proof, chosen) if proof.planar else ()
     seconds = f"{time.perf_counter() - begun:.6f}"
     if certificate is not None:
-        from verify.proof.certificates.one import of_one
+        _write(_certificate(partial(of_one, proof, potential), proof, exact, chosen), certificate)
 
-        _write(_certificate(lambda: of_one(proof, potential), proof, exact, chosen), certificate)
+    def more() -> dict[str, Any]:
+        if potential is None:
+            return show.checks_json(proof)
+        return {"delta_j": proof.step_map.delta_j_text, "telescopes": potential.holds,
+                "potential": potential.text, "special_values": list(map(_special_json, special)),
+                "witness": show.point_json(proof.witness)}  # fmt: skip
+
+    def told() -> None:
+        if potential is None:  # of p1 … pn and q1 … qn: S in place of ΔJ
+            show.print_symplectic(exact.texts, chosen.name, proof)
+        else:
+            show.print_proof(exact, chosen.name, proof, potential, special)
+
     return Answer(
-        lambda: show.proof_json(
-            exact.texts, chosen.name, proof, seconds,
-            delta_j=proof.step_map.delta_j_text, telescopes=potential.holds,
-            potential=potential.text, special_values=list(map(_special_json, special)),
-            witness=show.point_json(proof.witness),
-        ),
-        lambda: show.print_proof(exact, chosen.name, proof, potential, special),
-        failed=proof.verdict == "REFUTED",
-    )  # fmt: skip
-
-
-def _of_form(
-    proof: "Proof", exact: "Hamiltonian", chosen: "Scheme", begun: float, certificate: Path | None
-) -> Answer:
-    """Of p1 … pn and q1 … qn: S in place of ΔJ."""
-    from verify.commands.shared.in_degrees import print_symplectic
-
-    seconds = f"{time.perf_counter() - begun:.6f}"
-    if certificate is not None:
-        from verify.proof.certificates.one import of_one
-
-        _write(_certificate(partial(of_one, proof), proof, exact, chosen), certificate)
-    return Answer(
-        lambda: show.proof_json(
-            exact.texts, chosen.name, proof, seconds, **show.checks_json(proof)
-        ),
-        lambda: print_symplectic(exact.texts, chosen.name, proof),
+        lambda: show.proof_json(exact.texts, chosen.name, proof, seconds, **more()),
+        told,
         failed=proof.verdict == "REFUTED",
     )
 
@@ -166,8 +151,9 @@ def _special_json(special: "SpecialValue") -> dict[str, Any]:
     from verify.arithmetic.exact import text
 
     proof, keys = special.proof, ("verdict", "reason", "area_preserving")
-    return {"parameter": special.parameter, "value": text(special.value), **order_json(proof.order),
-            **picked(proof, *keys), "domain": proof.domain.texts}  # fmt: skip
+    order, value = show.order_json(proof.order), text(special.value)
+    return {"parameter": special.parameter, "value": value, **order, **picked(proof, *keys),
+            "domain": proof.domain.texts}  # fmt: skip
 
 
 def _certificate(
@@ -219,5 +205,5 @@ def _print_every(proof: "EveryProof") -> None:
         line("telescopes", ("yes: " if proof.telescopes else "no: ") + cut(proof.why))
     if proof.domain:
         line("where", proof.domain.prose)
-    line("the map", f"agrees with the exact flow {agreement(proof)}")
-    print_checks(proof)
+    line("the map", f"agrees with the exact flow {show.agreement(proof)}")
+    show.print_checks(proof)

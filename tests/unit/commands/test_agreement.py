@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from verify.commands.shared.output import agreement, agreement_json
+from verify.commands.shared.proofs import agreement, agreement_json
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.every import prove_every
 from verify.proof.order import prove

@@ -14,9 +14,10 @@ from verify.commands.checks.looking import (
     request_from,
     step_size_option,
 )
-from verify.commands.shared import output as show
+from verify.commands.shared import proofs as show
 from verify.commands.shared.answer import Answer, answering, picked
 from verify.commands.shared.input import time_limit_option, with_hamiltonian
+from verify.commands.shared.output import cut
 from verify.commands.shared.progress import clock
 from verify.errors import NOT_GIVEN, InputError
 
@@ -193,7 +194,6 @@ def _json(exact: "Hamiltonian", target: str, finding: "Finding", seconds: str) -
 def _print(exact: "Hamiltonian", target: str, finding: "Finding") -> None:
     from dataclasses import replace
 
-    from verify.commands.shared.in_degrees import print_symplectic
     from verify.integrators.results import potential_of_finding
 
     proof, degrees = finding.proof, finding.degrees
@@ -201,10 +201,10 @@ def _print(exact: "Hamiltonian", target: str, finding: "Finding") -> None:
         show.print_proof(exact, target, proof, potential_of_finding(finding))
     elif proof is not None and not proof.planar:
         shown = replace(proof, verdict=finding.verdict, reason=finding.reason)
-        print_symplectic(exact.texts, target, shown)
+        show.print_symplectic(exact.texts, target, shown)
     else:
         show.print_head(exact, target, finding)
         if finding.leading is not None and finding.order is not None and degrees == 1:
-            click.echo(f"  ΔJ       ({show.cut(finding.leading)})·h^{finding.order} + …")
+            click.echo(f"  ΔJ       ({cut(finding.leading)})·h^{finding.order} + …")
         print_measured(finding)
     print_notes(finding)
