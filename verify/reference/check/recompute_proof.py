@@ -15,8 +15,7 @@ from verify.reference.check.difference import Place
 from verify.reference.check.taylor import Expansion, Number, number
 from verify.reference.check.textbook import Field, Step, defect, flow_series, step_of
 from verify.reference.make.columns import state_columns
-from verify.reference.make.models import Proof
-from verify.reference.make.models_in_degrees import AnyData, AnyProof
+from verify.reference.make.models import AnyData, AnyProof
 
 Point = Mapping[str, Fraction]
 Powers = Mapping[str, list[Number]]  # coefficients of h⁰ … by an entry's or a coordinate's name
@@ -55,8 +54,7 @@ class _Looking:
     def __init__(self, known: Field, proof: AnyProof, row: Place, most: int) -> None:
         self.known, self.proof, self.row, self.most = known, proof, row, most
         self.step = step_of(proof.scheme, known)
-        entries = {_AREA: proof.leading} if isinstance(proof, Proof) else proof.leading
-        self.leading = {name: known.tape.read(formula) for name, formula in entries.items()}
+        self.leading = {name: known.tape.read(x) for name, x in proof.entries.items()}
         self.looked, self.seen = 0, {"order": False, "convergence_order": False}
 
     def at(self, point: Point) -> None:

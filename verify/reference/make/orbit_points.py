@@ -28,17 +28,18 @@ from verify.hamiltonians.start import point_of
 from verify.kernels.orbit import Orbit
 from verify.kernels.step.computation import step_map_of
 from verify.lockstep import Course
-from verify.reference.make.columns import (
-    AFTER_A_STEP,
-    MAY_LACK,
-    AnyFlowPoint,
-    AnyOrbitPoint,
-    orbit_columns,
-)
+from verify.reference.make.columns import AFTER_A_STEP, MAY_LACK, orbit_columns
 from verify.reference.make.correct_rounding import correctly_rounded, near_zero
 from verify.runs.run import AskedRun
-from verify.scenes.results.reference import FlowPoint, Kind, OrbitPoint, Rounded
-from verify.scenes.results.reference_in_degrees import FlowPointInDegrees, OrbitPointInDegrees
+from verify.scenes.results.reference import (
+    FlowPoint,
+    FlowPointInDegrees,
+    Kind,
+    OrbitPoint,
+    OrbitPointInDegrees,
+    OrbitRow,
+    Rounded,
+)
 from verify.scenes.results.run import RunResult
 from verify.scenes.values import AUTO
 from verify.schemes.maps.ball_algebra import UndefinedError, step_in_balls
@@ -56,7 +57,7 @@ def orbit_points(orbit: Orbit, steps: Sequence[int], digits: int) -> Course[tupl
     return tuple(points)
 
 
-def _point(orbit: Orbit, step: int, digits: int) -> Course[AnyOrbitPoint]:
+def _point(orbit: Orbit, step: int, digits: int) -> Course[OrbitRow]:
     start = point_of(orbit.hamiltonian, orbit.q, orbit.p)
     beside = orbit_columns(orbit.hamiltonian.degrees)
     observables = tuple(x for x in beside if x not in MAY_LACK)
@@ -116,7 +117,7 @@ def _orbit_point(
     values: Mapping[str, Rounded | None] = MappingProxyType({}),
     kind: Kind | None = None,
     failed_step: int | None = None,
-) -> AnyOrbitPoint:
+) -> OrbitRow:
     model = OrbitPoint if orbit.hamiltonian.planar else OrbitPointInDegrees
     numbers = _state(orbit.hamiltonian, values)
     numbers |= {name: values.get(name) for name in orbit_columns(orbit.hamiltonian.degrees)}
@@ -177,41 +178,41 @@ def solution_points(
     t0: Fraction,
     times: Mapping[int, Fraction],
     digits: int,
-) -> Iterator[AnyFlowPoint]:
+) -> Iterator[Any]:
     """The exact flow from the coordinates in `start` and t0, at these times after it by their N, to
     so many digits."""
+    model = FlowPoint if hamiltonian.planar else FlowPointInDegrees
     for step, time in times.items():
-        yield _flow_point(hamiltonian, start, t0, step, time, digits)
+        status, kind, values = _followed(hamiltonian, start, t0, time, digits)
+        state: dict[str, Any] = {"status": status, "kind": kind, **_state(hamiltonian, values)}
+        yield model(step=step, time=text(time), **state)
 
 
-def _flow_point(
+def _followed(
     hamiltonian: Hamiltonian,
     start: Mapping[str, Fraction],
     t0: Fraction,
-    step: int,
     time: Fraction,
     digits: int,
-) -> AnyFlowPoint:
-    model = FlowPoint if hamiltonian.planar else FlowPointInDegrees
-    row: dict[str, Any] = {"step": step, "time": text(time), "status": "not followed", "kind": None}
+) -> tuple[str, Kind | None, Mapping[str, Rounded | None]]:
+    """The status of a row of the exact flow, what its radii are, and its values."""
     try:
         for guard in _GUARDS:
-            if step == 0:  # the initial value itself, also where H is not defined
+            if time == 0:  # the initial value itself, also where H is not defined
                 at = Solution(start, Fraction(0), "the initial value itself")
             else:
                 at = solution_in_degrees(hamiltonian, start, time, digits + guard, t0)
             known = {name: (x, at.bound) for name, x in at.point.items()}
             values = _all_rounded(known, start, digits, guard)
             if all(values.values()):
-                row["status"], row["kind"] = "finished", "enclosed" if at.enclosed else "estimated"
-                return model(**row, **_state(hamiltonian, values))
+                return "finished", "enclosed" if at.enclosed else "estimated", values
     except InputError as error:
         if error.name != "digits":
             raise
     except NoFlowError:
         if _blows_up(hamiltonian, start, time):
-            row["status"] = "blows up"
-    return model(**row, **_state(hamiltonian, {}))
+            return "blows up", None, {}
+    return "not followed", None, {}
 
 
 def _blows_up(hamiltonian: Hamiltonian, start: Mapping[str, Fraction], time: Fraction) -> bool:
