@@ -5,7 +5,7 @@ from fractions import Fraction
 import flint
 
 from verify.reference.check.taylor import Number, number
-from verify.reference.check.textbook import Field, Matrix, Step, Vector, defect, identity, product
+from verify.reference.check.textbook import Field, Step, Vector, defect, identity
 from verify.reference.make.models import AnyRun
 
 
@@ -22,41 +22,39 @@ class Orbit:
         self.z: Vector = [flint.arb(number(start[name])) for name in known.names]
         self._t0 = start.get("t", Fraction(0))
         self.done, self.lam, self.squares, self.largest = 0, *(flint.arb(0) for _ in range(3))
-        self.matrix = identity(len(known.names))
-        self._next: tuple[Vector, Matrix] | None = None
+        self._square = len(known.names), len(known.names)
+        self.matrix = flint.arb_mat(*self._square, identity(len(known.names)))
+        self._next: tuple[Vector, flint.arb_mat] | None = None
 
     @property
     def t(self) -> Number:
         """When it is."""
         return flint.arb(number(self._t0 + self.done * self._size))
 
-    def ahead(self) -> tuple[Vector, Matrix]:
+    def ahead(self) -> tuple[Vector, flint.arb_mat]:
         """The state after the next step, and that step's Jacobian."""
         if self._next is None:
-            self._next = self.step(self.z, self.h, self.t)
+            after, jacobian = self.step(self.z, self.h, self.t)
+            self._next = after, flint.arb_mat(*self._square, jacobian)
         return self._next
 
     def to(self, count: int) -> None:
         """Goes on to the state after so many steps; TooWideError where a ball is not finite."""
         while self.done < count:
             self.z, jacobian = self.ahead()
-            change = self._delta_j(jacobian)
+            change = jacobian.det() - 1
             self.squares += change * change
             self.lam += change + self.lam * change
             self.largest = self.largest.max(self._greatest_defect(jacobian))
-            self.matrix = product(jacobian, self.matrix, len(self.z))
+            self.matrix = jacobian * self.matrix
             self.done, self._next = self.done + 1, None
             if not _finite(self.z):
                 raise TooWideError
 
-    def _delta_j(self, jacobian: Matrix) -> Number:
-        size = len(self.z)
-        return flint.arb_mat(size, size, jacobian).det() - 1
-
-    def _greatest_defect(self, jacobian: Matrix) -> Number:
+    def _greatest_defect(self, jacobian: flint.arb_mat) -> Number:
         total = flint.arb(0)
-        for x in defect(jacobian, self.known.degrees).values():
-            total = total.max(abs(flint.arb(x)))
+        for x in defect(jacobian.entries(), self.known.degrees).values():
+            total = total.max(abs(x))
         return total
 
     def values(self) -> dict[str, Number]:
@@ -70,7 +68,7 @@ class Orbit:
         after, jacobian = self.ahead()
         beside = {"energy": self.known.energy(self.z, self.t)}
         if _finite(after):
-            beside["delta_j"] = self._delta_j(jacobian)
+            beside["delta_j"] = jacobian.det() - 1
         return values | {name: x for name, x in beside.items() if x.is_finite()}
 
 

@@ -69,14 +69,6 @@ def identity(size: int) -> Matrix:
     return [int(k % (size + 1) == 0) for k in range(size**2)]
 
 
-def product(x: Matrix, y: Matrix, size: int) -> Matrix:
-    """x y."""
-    lines = range(size)
-    return [
-        sum((x[r * size + k] * y[k * size + c] for k in lines), 0) for r in lines for c in lines
-    ]
-
-
 def defect(j: Matrix, degrees: int) -> dict[tuple[int, int], Number]:
     """JᵀΩJ − Ω, Ω = Σ dp_i∧dq_i, above its diagonal; of one degree of freedom det J − 1."""
     half = 2 * degrees**2  # entries of the rows of all p
@@ -236,7 +228,6 @@ SHEARS: dict[str, Callable[[], list[tuple[str, Number]]]] = {
 def shears(field: Field, parts: Callable[[], list[tuple[str, Number]]]) -> Step:
     """p ← p − a h ∂V/∂q(q, s), q ← q + a h ∂T/∂p(p, s), and J's rows by A likewise."""
     size = len(field.names)
-    columns = range(size)
     made: dict[int, list[tuple[str, Number]]] = {}
 
     def step(z: Vector, h: Number, t: Number) -> tuple[Vector, Matrix]:
@@ -251,10 +242,8 @@ def shears(field: Field, parts: Callable[[], list[tuple[str, Number]]]) -> Step:
             reads["drift" if kind == "kick" else "kick"] += own
             for row, x in rows.f:
                 z[row] += own * known.value(x)
-            for row, column, x in rows.a:  # the rows that are read are not added to
-                bend, into, out = own * known.value(x), row * size, column * size
-                for k in columns:
-                    j[into + k] += bend * j[out + k]
+            bends = [(row, column, own * known.value(x)) for row, column, x in rows.a]
+            _add_product(j, bends, j, size)  # the rows that are read are not added to
         return z, j
 
     return step
