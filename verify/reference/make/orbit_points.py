@@ -40,7 +40,6 @@ from verify.scenes.results.reference import (
     OrbitRow,
     Rounded,
 )
-from verify.scenes.results.run import RunResult
 from verify.scenes.values import AUTO
 from verify.schemes.maps.ball_algebra import UndefinedError, step_in_balls
 
@@ -67,7 +66,14 @@ def _point(orbit: Orbit, step: int, digits: int) -> Course[OrbitRow]:
         known |= dict.fromkeys(at_first, (Fraction(0), Fraction(0)))
         kind: Kind = "enclosed"
         if step > 0:
-            after = yield from _run(orbit, step, digits + guard, observables)
+            asked = AskedRun(
+                **vars(orbit),
+                steps=step,
+                arithmetic=AUTO,
+                digits=digits + guard,
+                observables=observables,
+            )
+            after = yield from asked.result()
             if after.status == "left range":
                 return _orbit_point(orbit, step, "left range", failed_step=after.failed_step)
             if after.status == "unresolved":
@@ -79,22 +85,6 @@ def _point(orbit: Orbit, step: int, digits: int) -> Course[OrbitRow]:
         if all(values.values()):
             return _orbit_point(orbit, step, "finished", values, kind=kind)
     return _orbit_point(orbit, step, "unresolved")
-
-
-def _run(orbit: Orbit, steps: int, digits: int, observables: Sequence[str]) -> Course[RunResult]:
-    asked = AskedRun(
-        orbit.hamiltonian,
-        orbit.scheme,
-        q=orbit.q,
-        p=orbit.p,
-        step_size=orbit.step_size,
-        t0=orbit.t0,
-        steps=steps,
-        arithmetic=AUTO,
-        digits=digits,
-        observables=observables,
-    )
-    return asked.result()
 
 
 def _all_rounded(
