@@ -35,7 +35,7 @@ from verify.reference.make.models import (
     MODELS,
     AnyData,
     Manifest,
-    format_in,
+    format_at,
     format_of,
 )
 from verify.reference.make.reading import json_of, rows_of
@@ -153,7 +153,7 @@ def _by_itself(folder: Path, own: Path | None, found: Checked) -> Iterator[tuple
     read: dict[str, AnyData | None] = {}
     for name, content in contents.items():  # all are read before one is held against another
         if name.endswith(".json") and name not in SCHEMAS:
-            form = format_in(content)
+            form = format_at(folder / name)
             read[name] = _model(MODELS[form], form, content, name, found)
         elif name.endswith(".csv"):
             rows_of(content, name)

@@ -13,7 +13,7 @@ from pydantic import ValidationError
 from verify.arithmetic.exact import rational
 from verify.arithmetic.systems.float64 import nearest_double
 from verify.errors import InputError, unknown
-from verify.files import opened, read_bytes
+from verify.files import read_bytes
 from verify.formats import check_format
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import point_of
@@ -26,14 +26,13 @@ from verify.reference.make.models import (
     MODELS,
     AnyData,
     AnyRun,
-    format_in,
+    format_at,
 )
 from verify.reference.make.orbit_points import Bounded
 from verify.reference.make.reading import json_of
 from verify.reference.make.writing import MANIFEST, SCHEMAS
 from verify.scenes.results.reference import OrbitRow, Rounded
 
-_HEAD = 200  # bytes of a file
 _EXPONENT_DIGITS = 6
 _NONE = {
     DATA_FORMAT: "has no reference data; give a folder that `verify reference make` wrote",
@@ -151,20 +150,11 @@ def load(folder: Path, scene: str | None, *, planar: bool = True) -> Published:
     if scene is not None and f"{scene}.json" in names:
         names = {f"{scene}.json"}
     form = DATA_FORMAT if planar else DATA_IN_DEGREES_FORMAT
-    names = {name for name in names if _format(folder / name) == form}
+    names = {name for name in names if format_at(folder / name) == form}
     runs = [run for name in sorted(names) for run in _runs(folder / name, form)]
     if not runs:
         raise InputError("--data", str(folder), _NONE[form])
     return Published(runs)
-
-
-def _format(path: Path) -> str:
-    """The format of a file of data."""
-    try:
-        with opened(path) as file:
-            return format_in(file.read(_HEAD))
-    except InputError:  # whoever reads it says so
-        return DATA_FORMAT
 
 
 def _runs(path: Path, form: str) -> Iterator[PublishedRun]:

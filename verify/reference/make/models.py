@@ -5,10 +5,12 @@ freedom they are lists.
 """
 
 from fractions import Fraction
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field
 
+from verify.formats import names_format
 from verify.reference.make.columns import start_columns, state_columns
 from verify.scenes.frozen import Frozen
 from verify.scenes.results.reference import (
@@ -26,7 +28,6 @@ DATA_FORMAT: DataFormat = "areaproof reference data 1"
 DATA_IN_DEGREES_FORMAT: DataInDegreesFormat = "areaproof reference data in degrees 1"
 MANIFEST_FORMAT: ManifestFormat = "areaproof reference manifest 1"
 _SHA256 = r"^[0-9a-f]{64}$"
-_HEAD = 100  # bytes of a file, in which its format stands: a key that comes first
 _EXACT = r"^-?[0-9]+(\.[0-9]+|/[0-9]+)?$"
 Exact = Annotated[str, Field(pattern=_EXACT)]
 _List = Annotated[tuple[Exact, ...], Field(min_length=2)]
@@ -48,9 +49,7 @@ Ascending = Field(description="one a chosen step, ascending")
 class Started(Frozen):
     """A start, and the step size with which it is gone on from there."""
 
-    step_size: Annotated[
-        Exact, Field(description="the step size h exactly: a decimal or a quotient")
-    ]
+    step_size: Exact = Field(description="the step size h exactly: a decimal or a quotient")
     q: Any
     p: Any
 
@@ -82,46 +81,43 @@ class Started(Frozen):
 
 
 class _InPlane(Started):
-    q: Annotated[Exact, Field(description="the initial displacement q exactly")]
-    p: Annotated[Exact, Field(description="the initial momentum p exactly")]
+    q: Exact = Field(description="the initial displacement q exactly")
+    p: Exact = Field(description="the initial momentum p exactly")
     digits: Digits
 
 
 class _InTime(_InPlane):
-    t0: Annotated[Exact, Field(description="the time at the start exactly")]
+    t0: Exact = Field(description="the time at the start exactly")
 
 
 class _InDegrees(Started):
-    q: Annotated[_List, Field(description="the initial displacements q1 … qn exactly")]
-    p: Annotated[_List, Field(description="the initial momenta p1 … pn exactly")]
-    t0: Annotated[
-        Exact | None,
-        Field(description="the time at the start exactly; null where H does not depend on time"),
-    ]
+    q: _List = Field(description="the initial displacements q1 … qn exactly")
+    p: _List = Field(description="the initial momenta p1 … pn exactly")
+    t0: Exact | None = Field(
+        description="the time at the start exactly; null where H does not depend on time"
+    )
     digits: Digits
 
 
 class OfScheme(Frozen):
     """A row that is of one scheme."""
 
-    scheme: Annotated[
-        str, Field(description="the scheme, by the name that `verify run --scheme` takes")
-    ]
+    scheme: str = Field(description="the scheme, by the name that `verify run --scheme` takes")
 
 
 class Proof(OfScheme):
     """What is proved of one scheme for this H, by exact algebra."""
 
     verdict: Proved
-    area_preserving: Annotated[
-        bool | None, Field(description="whether ΔJ is 0 for all p, q and h; null: not decided")
-    ]
-    order: Annotated[
-        int | None, Field(ge=1, description="ΔJ = leading·h^order + …; null where ΔJ is 0 for all")
-    ]
-    leading: Annotated[
-        str, Field(description="the leading coefficient of ΔJ, a formula in p and q; 0 if ΔJ is 0")
-    ]
+    area_preserving: bool | None = Field(
+        description="whether ΔJ is 0 for all p, q and h; null: not decided"
+    )
+    order: int | None = Field(
+        ge=1, description="ΔJ = leading·h^order + …; null where ΔJ is 0 for all"
+    )
+    leading: str = Field(
+        description="the leading coefficient of ΔJ, a formula in p and q; 0 if ΔJ is 0"
+    )
     convergence_order: ConvergenceOrder
 
     @property
@@ -139,20 +135,17 @@ class ProofInDegrees(OfScheme):
     """What is proved of one scheme for this H, by exact algebra."""
 
     verdict: Proved
-    symplectic: Annotated[
-        bool | None, Field(description="whether S is 0 for all z and h; null: not decided")
-    ]
-    area_preserving: Annotated[
-        bool | None, Field(description="whether det J is 1 for all z and h; null: not decided")
-    ]
-    order: Annotated[
-        int | None, Field(ge=1, description="S = leading·h^order + …; null where S is 0 for all")
-    ]
-    leading: Annotated[
-        dict[str, str],
-        Field(description="the entries of the leading coefficient of S that are not 0, such as "
-              "dp1∧dq2, each a formula in z; none where S is 0, or where they are too long"),
-    ]  # fmt: skip
+    symplectic: bool | None = Field(description="whether S is 0 for all z and h; null: not decided")
+    area_preserving: bool | None = Field(
+        description="whether det J is 1 for all z and h; null: not decided"
+    )
+    order: int | None = Field(
+        ge=1, description="S = leading·h^order + …; null where S is 0 for all"
+    )
+    leading: dict[str, str] = Field(
+        description="the entries of the leading coefficient of S that are not 0, such as "
+        "dp1∧dq2, each a formula in z; none where S is 0, or where they are too long"
+    )
     convergence_order: ConvergenceOrder
 
     @property
@@ -164,7 +157,7 @@ class ProofInDegrees(OfScheme):
 class Run(_InPlane, OfScheme):
     """One scheme's orbit from one initial value with one step size."""
 
-    rows: Annotated[tuple[OrbitPoint, ...], Ascending]
+    rows: tuple[OrbitPoint, ...] = Ascending
 
 
 class RunInTime(_InTime, Run):
@@ -174,13 +167,13 @@ class RunInTime(_InTime, Run):
 class RunInDegrees(_InDegrees, OfScheme):
     """One scheme's orbit from one initial value with one step size."""
 
-    rows: Annotated[tuple[OrbitPointInDegrees, ...], Ascending]
+    rows: tuple[OrbitPointInDegrees, ...] = Ascending
 
 
 class Flow(_InPlane):
     """The exact solution of p' = −H_q, q' = H_p from one initial value, at the times N·h."""
 
-    rows: Annotated[tuple[FlowPoint, ...], Ascending]
+    rows: tuple[FlowPoint, ...] = Ascending
 
 
 class FlowInTime(_InTime, Flow):
@@ -190,16 +183,14 @@ class FlowInTime(_InTime, Flow):
 class FlowInDegrees(_InDegrees):
     """The exact solution of p' = −∂H/∂q, q' = ∂H/∂p from one initial value, at the times N·h."""
 
-    rows: Annotated[tuple[FlowPointInDegrees, ...], Ascending]
+    rows: tuple[FlowPointInDegrees, ...] = Ascending
 
 
 class _OfScene(Frozen):
-    format: Annotated[str, Field(description="this format")]
-    name: Annotated[Name, Field(description="the scene's name; the files begin with it")]
+    format: str = Field(description="this format")
+    name: Name = Field(description="the scene's name; the files begin with it")
     hamiltonian: str
-    parameters: Annotated[
-        dict[str, Exact], Field(description="each parameter's exact value by its name")
-    ]
+    parameters: dict[str, Exact] = Field(description="each parameter's exact value by its name")
 
     @property
     def count(self) -> int:
@@ -219,21 +210,16 @@ class Data(_OfScene):
 
     model_config = ConfigDict(title="areaproof reference data")
 
-    format: Annotated[DataFormat, Field(description="this format")]
-    hamiltonian: Annotated[
-        str,
-        Field(
-            description="the formula of H(p, q), or H(p, q, t), in p, q, t and the parameters; "
-            "** is a power"
-        ),
-    ]
-    proofs: Annotated[tuple[Proof, ...], Field(description="one a scheme")]
-    runs: Annotated[
-        tuple[RunInTime | Run, ...], Field(description="one a scheme, initial value and step size")
-    ]
-    flow: Annotated[
-        tuple[FlowInTime | Flow, ...], Field(description="one an initial value and step size")
-    ]
+    format: DataFormat = Field(description="this format")
+    hamiltonian: str = Field(
+        description="the formula of H(p, q), or H(p, q, t), in p, q, t and the parameters; "
+        "** is a power"
+    )
+    proofs: tuple[Proof, ...] = Field(description="one a scheme")
+    runs: tuple[RunInTime | Run, ...] = Field(
+        description="one a scheme, initial value and step size"
+    )
+    flow: tuple[FlowInTime | Flow, ...] = Field(description="one an initial value and step size")
 
     @property
     def degrees(self) -> int:
@@ -247,20 +233,14 @@ class DataInDegrees(_OfScene):
 
     model_config = ConfigDict(title="areaproof reference data in n degrees of freedom")
 
-    format: Annotated[DataInDegreesFormat, Field(description="this format")]
-    hamiltonian: Annotated[
-        str,
-        Field(description="the formula of H in p1 … pn, q1 … qn, t and the parameters; "
-              "** is a power"),
-    ]  # fmt: skip
-    degrees: Annotated[int, Field(ge=2, description="n, the degrees of freedom")]
-    proofs: Annotated[tuple[ProofInDegrees, ...], Field(description="one a scheme")]
-    runs: Annotated[
-        tuple[RunInDegrees, ...], Field(description="one a scheme, initial value and step size")
-    ]
-    flow: Annotated[
-        tuple[FlowInDegrees, ...], Field(description="one an initial value and step size")
-    ]
+    format: DataInDegreesFormat = Field(description="this format")
+    hamiltonian: str = Field(
+        description="the formula of H in p1 … pn, q1 … qn, t and the parameters; ** is a power"
+    )
+    degrees: int = Field(ge=2, description="n, the degrees of freedom")
+    proofs: tuple[ProofInDegrees, ...] = Field(description="one a scheme")
+    runs: tuple[RunInDegrees, ...] = Field(description="one a scheme, initial value and step size")
+    flow: tuple[FlowInDegrees, ...] = Field(description="one an initial value and step size")
 
 
 AnyProof = Proof | ProofInDegrees
@@ -275,27 +255,26 @@ def format_of(degrees: int) -> str:
     return DATA_FORMAT if degrees == 1 else DATA_IN_DEGREES_FORMAT
 
 
-def format_in(content: bytes) -> str:
-    """The format of a file of data that begins so, if it is in n degrees of freedom; else the
-    plane's."""
-    several = DATA_IN_DEGREES_FORMAT.encode() in content[:_HEAD]
+def format_at(path: Path) -> str:
+    """The format of a file of data; the plane's, too, where it names none."""
+    several = names_format(path, DATA_IN_DEGREES_FORMAT)
     return DATA_IN_DEGREES_FORMAT if several else DATA_FORMAT
 
 
 class SceneFile(Frozen):
     """A scene that data were made from."""
 
-    name: Annotated[Name, Field(description="the scene's name")]
-    toml: Annotated[str, Field(description="the scene as it was written, a TOML text")]
-    sha256: Annotated[Digest, Field(description="SHA-256 of that text in UTF-8")]
+    name: Name = Field(description="the scene's name")
+    toml: str = Field(description="the scene as it was written, a TOML text")
+    sha256: Digest = Field(description="SHA-256 of that text in UTF-8")
 
 
 class ListedFile(Frozen):
     """A file beside the manifest."""
 
-    name: Annotated[Name, Field(description="its name in the manifest's folder")]
-    bytes: Annotated[int, Field(ge=0, description="its size")]
-    sha256: Annotated[Digest, Field(description="SHA-256 of its content")]
+    name: Name = Field(description="its name in the manifest's folder")
+    bytes: int = Field(ge=0, description="its size")
+    sha256: Digest = Field(description="SHA-256 of its content")
 
 
 class Manifest(Frozen):
@@ -303,12 +282,8 @@ class Manifest(Frozen):
 
     model_config = ConfigDict(title="areaproof reference manifest")
 
-    format: Annotated[ManifestFormat, Field(description="this format")]
-    command: Annotated[str, Field(description="the command that made the files")]
-    versions: Annotated[
-        dict[str, str], Field(description="versions of Python and of the libraries that did")
-    ]
-    scenes: Annotated[tuple[SceneFile, ...], Field(description="what was asked for")]
-    files: Annotated[
-        tuple[ListedFile, ...], Field(description="all files but the manifest itself, by name")
-    ]
+    format: ManifestFormat = Field(description="this format")
+    command: str = Field(description="the command that made the files")
+    versions: dict[str, str] = Field(description="versions of Python and of the libraries that did")
+    scenes: tuple[SceneFile, ...] = Field(description="what was asked for")
+    files: tuple[ListedFile, ...] = Field(description="all files but the manifest itself, by name")

@@ -4,7 +4,6 @@ from fractions import Fraction
 from typing import Any, Literal
 
 from verify.arithmetic import automatic
-from verify.arithmetic.exact import text
 from verify.execution.keeping import Keeper
 from verify.execution.task import HamiltonianTask
 from verify.hamiltonians.start import point_of
@@ -22,27 +21,21 @@ class AtSteps(HamiltonianTask):
     """What is asked for from an initial value, after each of these numbers of steps."""
 
     imports = ("verify.reference.make.orbit_points",)
+    step_size: StepSize
     q: Coordinates
     p: Coordinates
     t0: Number | None = None
-    step_size: StepSize
-    steps: tuple[int, ...]
     digits: int
+    steps: tuple[int, ...]
 
     @property
     def inputs(self) -> dict[str, Any]:
         """Step size, initial value, t₀ and digits, as the files have them: in several degrees of
         freedom they have lists, and a t₀ of every H."""
-        exact = {"step_size": self.step_size, "q": self.q, "p": self.p, "t0": self.t0}
+        names = {"step_size", "q", "p", "t0", "digits"}
         if isinstance(self.q, Fraction) and self.t0 is None:
-            exact.pop("t0")
-        return {**{name: _texts(x) for name, x in exact.items()}, "digits": self.digits}
-
-
-def _texts(x: Fraction | tuple[Fraction, ...] | None) -> str | tuple[str, ...] | None:
-    if x is None:
-        return None
-    return text(x) if isinstance(x, Fraction) else tuple(map(text, x))
+            names.remove("t0")
+        return self.model_dump(include=names)
 
 
 class OrbitTask(AtSteps):
