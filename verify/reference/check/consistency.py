@@ -16,12 +16,12 @@ from verify.algebra.formula import parse
 from verify.arithmetic.exact import magnitude, text
 from verify.errors import InputError
 from verify.files import text_of
+from verify.hamiltonians.coordinates import coordinates_in
 from verify.reference.check.difference import Place
 from verify.reference.make.columns import (
     AFTER_A_STEP,
     MAY_LACK,
     Row,
-    state_columns,
     values_of,
 )
 from verify.reference.make.correct_rounding import correctly_rounded
@@ -51,7 +51,7 @@ def of_data(data: AnyData, scene: Scene, file: Place) -> None:
         return
     for proof in data.proofs:
         _proof(data, proof, file.at(f"proof of {proof.scheme}"))
-    state = state_columns(data.degrees)
+    state = coordinates_in(data.degrees)
     for of in (*data.runs, *data.flow):
         start = {name: x for name, x in of.start.items() if name != "t"}
         for row in of.rows:
@@ -94,7 +94,7 @@ def _given(of: AnyRun | AnyFlow) -> tuple[Any, ...]:
 
 def _proof(data: AnyData, proof: AnyProof, row: Place) -> None:
     """What is said of S at odds with itself, or not written as it must be; in the plane S is ΔJ."""
-    plane, state = data.degrees == 1, state_columns(data.degrees)
+    plane, state = data.degrees == 1, coordinates_in(data.degrees)
     column, nothing = ("area_preserving", "leading 0") if plane else _OF_ENTRIES
     keeps, told = proof.symplectic, f"order {proof.order}, leading {proof.leading}"
     zero = proof.order is None and proof.leading in ("0", {})
@@ -111,7 +111,7 @@ def _proof(data: AnyData, proof: AnyProof, row: Place) -> None:
 
 def _names(data: AnyData) -> list[str]:
     """What a formula of the data may be in."""
-    return [*state_columns(data.degrees), *(["t"] if data.timed else []), *data.parameters]
+    return [*coordinates_in(data.degrees), *(["t"] if data.timed else []), *data.parameters]
 
 
 def of_formula(formula: str, names: Sequence[str], column: str, row: Place) -> None:

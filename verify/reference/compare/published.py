@@ -15,11 +15,12 @@ from verify.arithmetic.systems.float64 import nearest_double
 from verify.errors import InputError, unknown
 from verify.files import read_bytes
 from verify.formats import check_format
+from verify.hamiltonians.coordinates import coordinates_in
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import point_of
 from verify.kernels.orbit import Orbit
 from verify.reference.compare.setting import numbers_of
-from verify.reference.make.columns import orbit_columns, state_columns, values_of
+from verify.reference.make.columns import orbit_columns, values_of
 from verify.reference.make.models import (
     DATA_FORMAT,
     DATA_IN_DEGREES_FORMAT,
@@ -69,7 +70,7 @@ class PublishedRun:
     def columns(self) -> tuple[str, ...]:
         """Those of its numbers, the state first."""
         degrees = self.hamiltonian.degrees
-        return *state_columns(degrees), *orbit_columns(degrees)
+        return *coordinates_in(degrees), *orbit_columns(degrees)
 
     @property
     def label(self) -> str:

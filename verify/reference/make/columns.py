@@ -1,13 +1,12 @@
 """Rows of tables: what a cell is, and which columns there are by the degrees of freedom of an H.
 
-In the plane p and q, with ΔJ of the next step; in several degrees of freedom p1 … pn, q1 … qn, with
-H, and S and W in place of ΔJ.
+Beside the coordinates there is in the plane ΔJ of the next step; in several degrees of freedom H,
+and S and W in place of ΔJ.
 """
 
 from itertools import count
 from typing import Any
 
-from verify.hamiltonians.coordinates import coordinates_in
 from verify.scenes.results.reference import Cell, FlowRow, OrbitRow
 
 Row = tuple[str, ...]
@@ -31,11 +30,6 @@ def start_columns(degrees: int) -> Row:
     if degrees == 1:
         return "q0", "p0"
     return tuple(f"{letter}0_{k}" for letter in "qp" for k in range(1, degrees + 1))
-
-
-def state_columns(degrees: int) -> Row:
-    """The names of those that hold the state: p first."""
-    return coordinates_in(degrees)
 
 
 def orbit_columns(degrees: int) -> Row:

@@ -11,7 +11,8 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field
 
 from verify.formats import names_format
-from verify.reference.make.columns import start_columns, state_columns
+from verify.hamiltonians.coordinates import coordinates_in
+from verify.reference.make.columns import start_columns
 from verify.scenes.frozen import Frozen
 from verify.scenes.results.reference import (
     FlowPoint,
@@ -76,7 +77,7 @@ class Started(Frozen):
     def start(self) -> dict[str, Fraction]:
         """The coordinates at the start, and t where H depends on time."""
         numbers, half = [*map(Fraction, self.texts.values())], len(self.texts) // 2
-        point = dict(zip(state_columns(half), numbers[half:] + numbers[:half], strict=True))
+        point = dict(zip(coordinates_in(half), numbers[half:] + numbers[:half], strict=True))
         return point if self.begins is None else point | {"t": Fraction(self.begins)}
 
 

@@ -9,12 +9,12 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from verify.hamiltonians.coordinates import coordinates_in
 from verify.reference.make.columns import (
     Row,
     cell,
     orbit_columns,
     start_columns,
-    state_columns,
     values_of,
 )
 from verify.reference.make.models import (
@@ -80,7 +80,7 @@ def schema_text(name: str) -> str:
 
 def tables(data: AnyData) -> dict[str, list[Row]]:
     """The same as tables of texts, by file name without its ending; the first row names columns."""
-    state = state_columns(data.degrees)
+    state = coordinates_in(data.degrees)
     beside = (*state, *orbit_columns(data.degrees))
     return {
         f"{data.name}-proofs": list(_proof_rows(data)),
