@@ -163,32 +163,40 @@ TABLEAUS: dict[str, tuple[_Rows, tuple[Fraction, ...]]] = {
 
 
 def runge_kutta(field: Field, rows: _Rows, weights: tuple[Fraction, ...]) -> Step:
-    """k_i = f(z + h Σ a_ij k_j), K_i = A(…) (1 + h Σ a_ij K_j), z' = z + h Σ b_i k_i."""
+    """k_i = f(z + h Σ a_ij k_j), z' = z + h Σ b_i k_i, and J by the variational equation."""
     size = len(field.names)
-    known, f, a = field.all.expansion, field.all.f, field.all.a
 
     def step(z: Vector, h: Number, t: Number) -> tuple[Vector, Matrix]:
-        slopes: list[Vector] = []  # k_i, then K_i row by row
+        slopes: list[Vector] = []
 
         def moved(row: Sequence[Fraction]) -> Vector:
             total: Vector = [*z, *identity(size)]
             for b, slope in zip(row, slopes, strict=True):
                 if b:
-                    by = h * number(b)
-                    total = [x + by * s for x, s in zip(total, slope, strict=True)]
+                    total = _added(total, h * number(b), slope)
             return total
 
         for row in rows:
-            at = moved(row)
-            known.begin([*at[:size], t + h * number(sum(row, _F(0)))])
-            turned: Matrix = [0] * size**2
-            entries = [(r, c, known.value(x)) for r, c, x in a]
-            _add_product(turned, entries, at[size:], size)
-            slopes.append([*(known.value(x) for _, x in f), *turned])
+            slopes.append(_slope(field.all, moved(row), t + h * number(sum(row, _F(0))), size))
         after = moved(weights)
         return after[:size], after[size:]
 
     return step
+
+
+def _slope(rows: Rows, at: Vector, t: Number, size: int) -> Vector:
+    """f, then A M row by row, of z and then M row by row; 0 in what are not the rows."""
+    known = rows.expansion
+    known.begin([*at[:size], t])
+    f, turned = [0] * size, [0] * size**2
+    for row, x in rows.f:
+        f[row] = known.value(x)
+    _add_product(turned, [(r, c, known.value(x)) for r, c, x in rows.a], at[size:], size)
+    return [*f, *turned]
+
+
+def _added(x: Vector, by: Number, slope: Vector) -> Vector:
+    return [a + by * b for a, b in zip(x, slope, strict=True)]
 
 
 def _add_product(
@@ -233,17 +241,11 @@ def shears(field: Field, parts: Callable[[], list[tuple[str, Number]]]) -> Step:
     def step(z: Vector, h: Number, t: Number) -> tuple[Vector, Matrix]:
         if flint.ctx.prec not in made:
             made[flint.ctx.prec] = parts()
-        z, j, reads = list(z), identity(size), {"kick": t, "drift": t}
+        at, reads = [*z, *identity(size)], {"kick": t, "drift": t}
         for kind, share in made[flint.ctx.prec]:
             rows = field.of_q if kind == "kick" else field.of_p
-            known = rows.expansion
-            known.begin([*z, reads[kind]])
-            own = h * share
-            reads["drift" if kind == "kick" else "kick"] += own
-            for row, x in rows.f:
-                z[row] += own * known.value(x)
-            bends = [(row, column, own * known.value(x)) for row, column, x in rows.a]
-            _add_product(j, bends, j, size)  # the rows that are read are not added to
-        return z, j
+            at = _added(at, h * share, _slope(rows, at, reads[kind], size))
+            reads["drift" if kind == "kick" else "kick"] += h * share
+        return at[:size], at[size:]
 
     return step
