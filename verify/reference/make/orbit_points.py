@@ -9,8 +9,7 @@ numbers round to one decimal.
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
-from types import MappingProxyType
-from typing import Any, Literal
+from typing import Any
 
 import flint
 
@@ -37,7 +36,6 @@ from verify.scenes.results.reference import (
     Kind,
     OrbitPoint,
     OrbitPointInDegrees,
-    OrbitRow,
     Rounded,
 )
 from verify.scenes.values import AUTO
@@ -45,18 +43,25 @@ from verify.schemes.maps.ball_algebra import UndefinedError, step_in_balls
 
 _GUARDS = (10, 25, 60, 150)  # digits beyond those asked for, in turn
 _BITS = 64  # beyond the digits, for the roundings of one step, or of H
+_UNKNOWN: dict[str, Any] = {"status": "unresolved", "kind": None, "failed_step": None}
 Bounded = tuple[Fraction, Fraction]  # a value and its bound
+Numbers = Mapping[str, Rounded | None]  # by the names of their columns
 
 
 def orbit_points(orbit: Orbit, steps: Sequence[int], digits: int) -> Course[tuple[Any, ...]]:
     """The orbit after each of these numbers of steps, every number to so many digits."""
-    points = []
+    exact, points = orbit.hamiltonian, []
+    model = OrbitPoint if exact.planar else OrbitPointInDegrees
     for step in steps:
-        points.append((yield from _point(orbit, step, digits)))
+        told, values = yield from _after_steps(orbit, step, digits)
+        numbers = _state(exact, values)
+        numbers |= {name: values.get(name) for name in orbit_columns(exact.degrees)}
+        points.append(model(step=step, **_UNKNOWN | told, **numbers))
     return tuple(points)
 
 
-def _point(orbit: Orbit, step: int, digits: int) -> Course[OrbitRow]:
+def _after_steps(orbit: Orbit, step: int, digits: int) -> Course[tuple[dict[str, Any], Numbers]]:
+    """What is known after so many steps, and the numbers, if they are."""
     start = point_of(orbit.hamiltonian, orbit.q, orbit.p)
     beside = orbit_columns(orbit.hamiltonian.degrees)
     observables = tuple(x for x in beside if x not in MAY_LACK)
@@ -75,7 +80,7 @@ def _point(orbit: Orbit, step: int, digits: int) -> Course[OrbitRow]:
             )
             after = yield from asked.result()
             if after.status == "left range":
-                return _orbit_point(orbit, step, "left range", failed_step=after.failed_step)
+                return {"status": "left range", "failed_step": after.failed_step}, {}
             if after.status == "unresolved":
                 break
             kind = after.error_kind
@@ -83,8 +88,8 @@ def _point(orbit: Orbit, step: int, digits: int) -> Course[OrbitRow]:
         known |= _at_state(orbit, step, known, digits + guard)
         values = _all_rounded(known, start, digits, guard)
         if all(values.values()):
-            return _orbit_point(orbit, step, "finished", values, kind=kind)
-    return _orbit_point(orbit, step, "unresolved")
+            return {"status": "finished", "kind": kind}, values
+    return {}, {}
 
 
 def _all_rounded(
@@ -100,21 +105,7 @@ def _all_rounded(
     return values
 
 
-def _orbit_point(
-    orbit: Orbit,
-    step: int,
-    status: Literal["finished", "left range", "unresolved"],
-    values: Mapping[str, Rounded | None] = MappingProxyType({}),
-    kind: Kind | None = None,
-    failed_step: int | None = None,
-) -> OrbitRow:
-    model = OrbitPoint if orbit.hamiltonian.planar else OrbitPointInDegrees
-    numbers = _state(orbit.hamiltonian, values)
-    numbers |= {name: values.get(name) for name in orbit_columns(orbit.hamiltonian.degrees)}
-    return model(step=step, status=status, failed_step=failed_step, kind=kind, **numbers)
-
-
-def _state(hamiltonian: Hamiltonian, values: Mapping[str, Rounded | None]) -> dict[str, Any]:
+def _state(hamiltonian: Hamiltonian, values: Numbers) -> dict[str, Any]:
     """p and q of a row: a number each, or a list; None where there are none."""
     names = hamiltonian.coordinates
     if hamiltonian.planar or not values:
@@ -173,18 +164,18 @@ def solution_points(
     so many digits."""
     model = FlowPoint if hamiltonian.planar else FlowPointInDegrees
     for step, time in times.items():
-        status, kind, values = _followed(hamiltonian, start, t0, time, digits)
+        status, kind, values = _solution_at(hamiltonian, start, t0, time, digits)
         state: dict[str, Any] = {"status": status, "kind": kind, **_state(hamiltonian, values)}
         yield model(step=step, time=text(time), **state)
 
 
-def _followed(
+def _solution_at(
     hamiltonian: Hamiltonian,
     start: Mapping[str, Fraction],
     t0: Fraction,
     time: Fraction,
     digits: int,
-) -> tuple[str, Kind | None, Mapping[str, Rounded | None]]:
+) -> tuple[str, Kind | None, Numbers]:
     """The status of a row of the exact flow, what its radii are, and its values."""
     try:
         for guard in _GUARDS:
