@@ -161,7 +161,8 @@ def load(folder: Path, scene: str | None, *, planar: bool = True) -> Published:
 def _runs(path: Path, form: str) -> Iterator[PublishedRun]:
     data, name = _data(path, form), path.name
     hamiltonian = Hamiltonian.parse(data.hamiltonian, data.parameters)
-    if hamiltonian.time_dependent and not data.timed:
+    begun = data.timed and all(run.begins is not None for run in data.runs)
+    if hamiltonian.time_dependent and not begun:
         problem = "is no reference data: its H depends on t, and its runs have no t0"
         raise InputError("file", name, problem)
     for run in data.runs:

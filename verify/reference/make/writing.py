@@ -133,7 +133,8 @@ def _rows(
         inputs = [
             *(getattr(of, name) for name in (*named, "step_size")),
             *of.texts.values(),
-            *(cell(getattr(of, name)) for name in (*time, "digits")),
+            *(cell(of.begins) for _ in time),
+            cell(of.digits),
         ]
         for row in of.rows:
             values = values_of(row, data.degrees)
