@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from verify.errors import InputError
-from verify.files import read_bytes
+from verify.files import opened, read_bytes
 
 _BEGINNING = 200  # bytes within which our files name their format
 
@@ -62,10 +62,11 @@ newer; this version reads 'areaproof certificate 2'
 
 def names_format(path: Path, wanted: str) -> bool:
     """Whether a file's beginning names this format, of whatever version; False where none is."""
-    if not path.is_file():
+    try:
+        with opened(path) as file:
+            return wanted.rpartition(" ")[0].encode() in file.read(_BEGINNING)
+    except InputError:
         return False
-    with path.open("rb") as file:
-        return wanted.rpartition(" ")[0].encode() in file.read(_BEGINNING)
 
 
 def _age(found: object, wanted: str) -> str:

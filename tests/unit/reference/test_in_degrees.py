@@ -13,12 +13,15 @@ import pytest
 
 from tests.helpers.constructed.reference import made, put, repaired
 from verify.errors import InputError
+from verify.execution.execute import Store, execute
+from verify.execution.executors import THIS_PROCESS
 from verify.reference.check.check import Checked, check
 from verify.reference.compare.compare import Compared, compare
 from verify.reference.compare.findings import Verdict
 from verify.reference.compare.published import load
 from verify.reference.compare.submitted import has_degrees, read
-from verify.reference.make.make import PUBLISHED
+from verify.reference.make.make import PUBLISHED, data_of
+from verify.reference.make.scene_plan import plan_references
 from verify.reference.make.writing import OF_DEGREES
 from verify.scenes.scene import scene_from_toml
 
@@ -156,7 +159,7 @@ DAMAGES: dict[str, Callable[[Any], Any]] = {
 @pytest.mark.parametrize("damage", DAMAGES)
 def test_what_is_damaged_is_found(damage: str, folder: Path, tmp_path: Path) -> None:
     """Also where all files are made from the damaged numbers again, so that they fit together."""
-    from verify.reference.make.models_in_degrees import DataInDegrees
+    from verify.reference.make.models import DataInDegrees
 
     data = json.loads((folder / "heiles.json").read_text())
     DAMAGES[damage](data)
@@ -170,7 +173,7 @@ def test_what_is_damaged_is_found(damage: str, folder: Path, tmp_path: Path) -> 
 def test_a_state_of_another_length_is_found(
     letter: str, many: int, folder: Path, tmp_path: Path
 ) -> None:
-    from verify.reference.make.models_in_degrees import DataInDegrees
+    from verify.reference.make.models import DataInDegrees
 
     data = json.loads((folder / "heiles.json").read_text())
     row = data["runs"][1]["rows"][2]
@@ -205,6 +208,18 @@ def test_an_orbit_that_is_not_defined_any_more_has_left(tmp_path: Path) -> None:
     raw["runs"][0]["rows"][3]["failed_step"] += 1
     put(tmp_path / "set", [type(data).model_validate(raw)], {"pole": LEAVES})
     assert [x.column for x in look(tmp_path / "set").differences] == ["failed_step"]
+
+
+def test_results_that_were_kept_make_the_same_data() -> None:
+    """Also where a row of the flow has no numbers, and so is one of the plane's, too."""
+    scene = scene_from_toml(LEAVES.replace("flow = false", ""), "pole")
+    results = execute(plan_references([scene]), Store(None), where=THIS_PROCESS)
+    kept = {
+        k: type(x).model_validate_json(x.model_dump_json(by_alias=True)) for k, x in results.items()
+    }
+    data = data_of(scene, results)
+    assert "not followed" in {row.status for row in data.flow[0].rows}
+    assert data_of(scene, kept) == data
 
 
 def test_a_folder_of_both_kinds_is_checked_and_read(folder: Path, tmp_path: Path) -> None:

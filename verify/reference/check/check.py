@@ -30,12 +30,13 @@ from verify.formats import check_format
 from verify.reference.check import consistency
 from verify.reference.check.difference import Findings, Place
 from verify.reference.check.recompute import recomputed
-from verify.reference.make.models import DATA_FORMAT, MANIFEST_FORMAT, Data, Manifest
-from verify.reference.make.models_in_degrees import (
-    DATA_IN_DEGREES_FORMAT,
+from verify.reference.make.models import (
+    MANIFEST_FORMAT,
+    MODELS,
     AnyData,
-    DataInDegrees,
-    is_of_degrees,
+    Manifest,
+    format_at,
+    format_of,
 )
 from verify.reference.make.reading import json_of, rows_of
 from verify.reference.make.scene_plan import size_of
@@ -52,8 +53,6 @@ from verify.reference.make.writing import (
 from verify.scenes.scene import Scene, scene_from_toml
 
 M = TypeVar("M", bound=BaseModel)
-OF_PLANE: tuple[type[AnyData], str] = Data, DATA_FORMAT
-OF_SEVERAL: tuple[type[AnyData], str] = DataInDegrees, DATA_IN_DEGREES_FORMAT
 Unit = tuple[AnyData, str, str, int]  # what `recomputed` takes
 _MOST_BYTES_OF_ALL = 8 * MOST_BYTES  # of the files that are listed; they are held in memory
 _WORTH_A_POOL = 150  # recomputations, below which starting workers costs more than it gains
@@ -154,8 +153,8 @@ def _by_itself(folder: Path, own: Path | None, found: Checked) -> Iterator[tuple
     read: dict[str, AnyData | None] = {}
     for name, content in contents.items():  # all are read before one is held against another
         if name.endswith(".json") and name not in SCHEMAS:
-            model, form = OF_SEVERAL if is_of_degrees(content) else OF_PLANE
-            read[name] = _model(model, form, content, name, found)
+            form = format_at(folder / name)
+            read[name] = _model(MODELS[form], form, content, name, found)
         elif name.endswith(".csv"):
             rows_of(content, name)
     for each in manifest.files:
@@ -283,8 +282,8 @@ def _other_command(manifest: Manifest, scenes: dict[str, Scene]) -> str | None:
 
 def _complete(manifest: Manifest, scenes: dict[str, Scene], found: Checked) -> None:
     """Whether each scene has its files, and each file its scene."""
-    planar = {name: scene.exact_hamiltonian().planar for name, scene in scenes.items()}
-    wanted = names_of(planar, parquet="--parquet" in manifest.command.split())
+    formats = {name: format_of(x.exact_hamiltonian().degrees) for name, x in scenes.items()}
+    wanted = names_of(formats, parquet="--parquet" in manifest.command.split())
     names = [each.name for each in manifest.files]
     one_each = len(scenes) == len(manifest.scenes)
     Place(found, MANIFEST, "scenes").must(one_each, "", "one of each name", "two")

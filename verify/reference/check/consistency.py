@@ -9,34 +9,31 @@ import ast
 import re
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from itertools import zip_longest
+from itertools import combinations, zip_longest
 from typing import Any
 
 from verify.algebra.formula import parse
 from verify.arithmetic.exact import magnitude, text
 from verify.errors import InputError
 from verify.files import text_of
+from verify.hamiltonians.coordinates import coordinates_in
 from verify.reference.check.difference import Place
-from verify.reference.make.cells import Row
 from verify.reference.make.columns import (
     AFTER_A_STEP,
     MAY_LACK,
-    AnyFlowPoint,
-    AnyOrbitPoint,
-    state_columns,
+    Row,
     values_of,
 )
 from verify.reference.make.correct_rounding import correctly_rounded
-from verify.reference.make.models import Proof
-from verify.reference.make.models_in_degrees import AnyData, AnyFlow, AnyRun, ProofInDegrees
+from verify.reference.make.models import AnyData, AnyFlow, AnyProof, AnyRun
 from verify.reference.make.reading import rows_of
 from verify.reference.make.scene_plan import orbit_tasks, proof_tasks, solution_tasks
 from verify.reference.make.writing import csv_text
-from verify.scenes.results.reference import Rounded
+from verify.scenes.results.reference import FlowRow, OrbitRow, Rounded
 from verify.scenes.scene import Scene
 
 # A number's text is looked at as a text: as a rational, 1e+999999999 would fill all memory.
-ENTRY = re.compile(r"d([pq][0-9]+)∧d([pq][0-9]+)")
+_OF_ENTRIES = "symplectic", "no leading entries"
 _NUMBER = re.compile(r"-?([1-9](?:\.[0-9]+)?)e([+-][0-9]{2,9})")
 
 
@@ -53,14 +50,10 @@ def of_data(data: AnyData, scene: Scene, file: Place) -> None:
     if len(file.findings.differences) > before:
         return
     for proof in data.proofs:
-        row = file.at(f"proof of {proof.scheme}")
-        if isinstance(proof, Proof):
-            _area_proof(data, proof, row)
-        else:
-            _form_proof(data, proof, row)
-    state = state_columns(data.degrees)
+        _proof(data, proof, file.at(f"proof of {proof.scheme}"))
+    state = coordinates_in(data.degrees)
     for of in (*data.runs, *data.flow):
-        start = {name: of.start[name] for name in state}
+        start = {name: x for name, x in of.start.items() if name != "t"}
         for row in of.rows:
             at, values = file.at(f"{of.label}, step {row.step}"), values_of(row, data.degrees)
             lengths = [x for x in values if x[0] in "pq"]
@@ -99,36 +92,26 @@ def _given(of: AnyRun | AnyFlow) -> tuple[Any, ...]:
     return tuple(getattr(of, name) for name in names if hasattr(of, name))
 
 
-def _area_proof(data: AnyData, proof: Proof, row: Place) -> None:
-    zero = (proof.order, proof.leading) == (None, "0")
-    found = f"order {proof.order}, leading {proof.leading}"
-    preserving = proof.area_preserving
-    row.must(zero or not preserving, "area_preserving", "no order, and leading 0", found)
-    ordered = preserving is not False or proof.order is not None
-    row.must(ordered, "order", "a number, since ΔJ is not 0", "null")
-    of_formula(proof.leading, _names(data), "leading", row)
-
-
-def _form_proof(data: AnyData, proof: ProofInDegrees, row: Place) -> None:
-    """The same in several degrees of freedom, of all entries of S."""
-    names = _names(data)
-    keeps = proof.symplectic
-    none = proof.order is None and not proof.leading
-    told = f"order {proof.order}, leading {proof.leading}"
-    row.must(none or not keeps, "symplectic", "no order, and no leading entries", told)
-    row.must(keeps is not False or proof.order is not None, "order", "a number", "null")
+def _proof(data: AnyData, proof: AnyProof, row: Place) -> None:
+    """What is said of S at odds with itself, or not written as it must be; in the plane S is ΔJ."""
+    plane, state = data.degrees == 1, coordinates_in(data.degrees)
+    column, nothing = ("area_preserving", "leading 0") if plane else _OF_ENTRIES
+    keeps, told = proof.symplectic, f"order {proof.order}, leading {proof.leading}"
+    zero = proof.order is None and proof.leading in ("0", {})
+    row.must(zero or not keeps, column, f"no order, and {nothing}", told)
+    why = ", since ΔJ is not 0" if plane else ""
+    row.must(keeps is not False or proof.order is not None, "order", f"a number{why}", "null")
     weaker = not (keeps and proof.area_preserving is False)
     row.must(weaker, "area_preserving", "true, since S is 0", "false")
-    for entry, formula in proof.leading.items():
-        match = ENTRY.fullmatch(entry)
-        there = match and set(match.groups()) <= set(state_columns(data.degrees))
-        row.must(there, "leading", "entries such as dp1∧dq1", entry)
-        of_formula(formula, names, f"leading {entry}", row)
+    entries = {f"d{a}∧d{b}" for a, b in combinations(state, 2)}
+    for entry, formula in proof.entries.items():
+        row.must(plane or entry in entries, "leading", "entries such as dp1∧dq1", entry)
+        of_formula(formula, _names(data), f"leading {entry}".strip(), row)
 
 
 def _names(data: AnyData) -> list[str]:
     """What a formula of the data may be in."""
-    return [*state_columns(data.degrees), *(["t"] if data.timed else []), *data.parameters]
+    return [*coordinates_in(data.degrees), *(["t"] if data.timed else []), *data.parameters]
 
 
 def of_formula(formula: str, names: Sequence[str], column: str, row: Place) -> None:
@@ -148,7 +131,7 @@ _AT_FIRST = {"lambda": Fraction(0), "symplectic_defect": Fraction(0)}
 
 
 def _row(
-    row: AnyOrbitPoint | AnyFlowPoint,
+    row: OrbitRow | FlowRow,
     values: Mapping[str, Rounded | None],
     start: Mapping[str, Fraction],
     digits: int,
@@ -166,7 +149,7 @@ def _row(
             _cell(name, value, digits, size if name in start else Fraction(1), at)
     wanted = "enclosed or estimated" if row.kind is None else "null"
     at.must((row.kind is not None) == finished, "kind", wanted, str(row.kind))
-    if isinstance(row, AnyOrbitPoint):
+    if isinstance(row, OrbitRow):
         _failed_step(row, at)
     if row.step == 0:  # the initial value
         known = finished and row.kind == "enclosed"
@@ -177,7 +160,7 @@ def _row(
                 at.must(value.value == rounded.value, name, rounded.value, value.value)
 
 
-def _failed_step(row: AnyOrbitPoint, at: Place) -> None:
+def _failed_step(row: OrbitRow, at: Place) -> None:
     left, step = row.status == "left range", row.failed_step
     at.must((step is not None) == left, "failed_step", "a step" if left else "null", str(step))
     within = step is None or 1 <= step <= row.step

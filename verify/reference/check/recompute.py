@@ -1,11 +1,10 @@
 """Values of reference data once more: in balls, from the textbook's formulas, by Taylor arithmetic.
 
 Nothing here is shared with what made them: the formula of H is read by
-`verify.reference.check.tape`, steps and Jacobians are those of `verify.reference.check.textbook`.
-In the plane det J is a d − b c of the four entries. In several degrees of freedom W is taken from
-the product of the Jacobians, M, as MᵀΩM − Ω, and det J from the whole matrix: the data were made
-with sums along the orbit and with Pfaffians. The number system is flint's balls, so that what is
-recomputed of a scheme's orbit is rigorous.
+`verify.reference.check.tape`, steps and Jacobians are those of `verify.reference.check.textbook`. W
+is taken from the product of the Jacobians, M, as MᵀΩM − Ω, and det J from the whole matrix: in
+several degrees of freedom the data were made with sums along the orbit and with Pfaffians. The
+number system is flint's balls, so that what is recomputed of a scheme's orbit is rigorous.
 """
 
 from contextlib import suppress
@@ -15,16 +14,16 @@ from itertools import zip_longest
 import flint
 
 from verify.arithmetic.exact import magnitude
-from verify.reference.check.ball_orbit import Orbit, TooWideError, orbit_of
+from verify.reference.check.ball_orbit import Orbit, TooWideError
 from verify.reference.check.difference import Findings, Place
 from verify.reference.check.exact_flow import BlowsUpError, states_at
 from verify.reference.check.recompute_proof import proof_again, shown
 from verify.reference.check.tape import NotReadError
 from verify.reference.check.taylor import Number, number
 from verify.reference.check.textbook import Field, Step, UnknownSchemeError, Vector, step_of
-from verify.reference.make.columns import AFTER_A_STEP, AnyFlowPoint, AnyOrbitPoint, values_of
-from verify.reference.make.models_in_degrees import AnyData, AnyFlow, AnyRun
-from verify.scenes.results.reference import Rounded
+from verify.reference.make.columns import AFTER_A_STEP, values_of
+from verify.reference.make.models import AnyData, AnyFlow, AnyRun
+from verify.scenes.results.reference import FlowRow, OrbitRow, Rounded
 
 _FIRST_BITS, _MORE_PER_DIGIT, _DOUBLINGS = 320, 4, 5
 _SHARP = 5  # digits beyond those printed to which an exact value must be met
@@ -72,7 +71,7 @@ def _run(known: Field, run: AnyRun, file: str, found: Findings) -> None:
 
 def _orbit(known: Field, step: Step, run: AnyRun, file: Place, *, final: bool) -> None:
     """Every row of a run; TooWideError where a ball does not tell. `final`: the last try."""
-    orbit = orbit_of(known, step, run)
+    orbit = Orbit(known, step, run)
     size = _size(run)
     left: int | None = None
     for row in run.rows:
@@ -105,7 +104,7 @@ def _orbit(known: Field, step: Step, run: AnyRun, file: Place, *, final: bool) -
             _compare_cell(name, cell, values[name], run.digits, scale, at)
 
 
-def _leaves_range(orbit: Orbit, row: AnyOrbitPoint, at: Place, final: bool) -> int | None:
+def _leaves_range(orbit: Orbit, row: OrbitRow, at: Place, final: bool) -> int | None:
     """The step after which the orbit is beyond 2^4000, or not defined; None where it is neither.
 
     A ball that is not finite may be too wide only: that is not taken for an answer before `final`.
@@ -190,7 +189,7 @@ def _flow(known: Field, flow: AnyFlow, file: str, found: Findings) -> None:
     last.is_left_out("more digits do not tell")
 
 
-def _reached(known: Field, flow: AnyFlow, row: AnyFlowPoint, state: Vector, at: Place) -> None:
+def _reached(known: Field, flow: AnyFlow, row: FlowRow, state: Vector, at: Place) -> None:
     """A row whose time was reached."""
     at.findings.recomputed += 1
     if row.status == "blows up":
@@ -203,7 +202,7 @@ def _reached(known: Field, flow: AnyFlow, row: AnyFlowPoint, state: Vector, at: 
 
 
 def _not_reached(
-    known: Field, flow: AnyFlow, row: AnyFlowPoint, why: Exception | None, at: Place
+    known: Field, flow: AnyFlow, row: FlowRow, why: Exception | None, at: Place
 ) -> None:
     """A row whose time was not reached: it may blow up; if it does not, H is still what it was."""
     if row.status == "blows up" and isinstance(why, BlowsUpError):

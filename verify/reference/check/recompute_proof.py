@@ -14,9 +14,7 @@ import flint
 from verify.reference.check.difference import Place
 from verify.reference.check.taylor import Expansion, Number, number
 from verify.reference.check.textbook import Field, Step, defect, flow_series, step_of
-from verify.reference.make.columns import state_columns
-from verify.reference.make.models import Proof
-from verify.reference.make.models_in_degrees import AnyData, AnyProof
+from verify.reference.make.models import AnyData, AnyProof
 
 Point = Mapping[str, Fraction]
 Powers = Mapping[str, list[Number]]  # coefficients of h⁰ … by an entry's or a coordinate's name
@@ -43,7 +41,7 @@ def proof_again(known: Field, data: AnyData, proof: AnyProof, file: Place) -> No
             return
     unordered = _MOST_ORDER if known.degrees == 1 else _OF_SEVERAL
     looking = _Looking(known, proof, row, max(order or unordered, (convergence or 0) + 1))
-    for point in _points(data):
+    for point in _points(known, data):
         with flint.ctx.workprec(_BITS), _length_of_series(looking.most + 1):
             looking.at(point)
     looking.end()
@@ -55,8 +53,7 @@ class _Looking:
     def __init__(self, known: Field, proof: AnyProof, row: Place, most: int) -> None:
         self.known, self.proof, self.row, self.most = known, proof, row, most
         self.step = step_of(proof.scheme, known)
-        entries = {_AREA: proof.leading} if isinstance(proof, Proof) else proof.leading
-        self.leading = {name: known.tape.read(formula) for name, formula in entries.items()}
+        self.leading = {name: known.tape.read(x) for name, x in proof.entries.items()}
         self.looked, self.seen = 0, {"order": False, "convergence_order": False}
 
     def at(self, point: Point) -> None:
@@ -144,15 +141,14 @@ def shown(ball: Number, digits: int) -> str:
     return str(ball.str(digits + 2, radius=False))
 
 
-def _points(data: AnyData) -> Iterator[Point]:
+def _points(known: Field, data: AnyData) -> Iterator[Point]:
     """Points near the initial values, of no pattern, with times; no coordinate is 0."""
-    names = state_columns(data.degrees)
-    pairs = list(zip(names[: data.degrees], names[data.degrees :], strict=True))
+    momenta, places = known.names[: known.degrees], known.names[known.degrees :]
     starts = {tuple(run.start.values()): run.start for run in data.runs}
     for start in list(starts.values())[:3]:
         for by_p, by_q, later in _MOVES:
             point = {"t": start.get("t", Fraction(0)) + later}
-            for k, (p, q) in enumerate(pairs):
+            for k, (p, q) in enumerate(zip(momenta, places, strict=True)):
                 x, y, more = start[p], start[q], Fraction(k, 40)
                 point[p] = (x or y / 3 or Fraction(2, 3)) * (by_p + more)
                 point[q] = (y or x / 5 or Fraction(4, 5)) * (by_q + more)

@@ -69,14 +69,6 @@ def identity(size: int) -> Matrix:
     return [int(k % (size + 1) == 0) for k in range(size**2)]
 
 
-def product(x: Matrix, y: Matrix, size: int) -> Matrix:
-    """x y."""
-    lines = range(size)
-    return [
-        sum((x[r * size + k] * y[k * size + c] for k in lines), 0) for r in lines for c in lines
-    ]
-
-
 def defect(j: Matrix, degrees: int) -> dict[tuple[int, int], Number]:
     """JᵀΩJ − Ω, Ω = Σ dp_i∧dq_i, above its diagonal; of one degree of freedom det J − 1."""
     half = 2 * degrees**2  # entries of the rows of all p
@@ -171,32 +163,40 @@ TABLEAUS: dict[str, tuple[_Rows, tuple[Fraction, ...]]] = {
 
 
 def runge_kutta(field: Field, rows: _Rows, weights: tuple[Fraction, ...]) -> Step:
-    """k_i = f(z + h Σ a_ij k_j), K_i = A(…) (1 + h Σ a_ij K_j), z' = z + h Σ b_i k_i."""
+    """k_i = f(z + h Σ a_ij k_j), z' = z + h Σ b_i k_i, and J by the variational equation."""
     size = len(field.names)
-    known, f, a = field.all.expansion, field.all.f, field.all.a
 
     def step(z: Vector, h: Number, t: Number) -> tuple[Vector, Matrix]:
-        slopes: list[Vector] = []  # k_i, then K_i row by row
+        slopes: list[Vector] = []
 
         def moved(row: Sequence[Fraction]) -> Vector:
             total: Vector = [*z, *identity(size)]
             for b, slope in zip(row, slopes, strict=True):
                 if b:
-                    by = h * number(b)
-                    total = [x + by * s for x, s in zip(total, slope, strict=True)]
+                    total = _added(total, h * number(b), slope)
             return total
 
         for row in rows:
-            at = moved(row)
-            known.begin([*at[:size], t + h * number(sum(row, _F(0)))])
-            turned: Matrix = [0] * size**2
-            entries = [(r, c, known.value(x)) for r, c, x in a]
-            _add_product(turned, entries, at[size:], size)
-            slopes.append([*(known.value(x) for _, x in f), *turned])
+            slopes.append(_slope(field.all, moved(row), t + h * number(sum(row, _F(0))), size))
         after = moved(weights)
         return after[:size], after[size:]
 
     return step
+
+
+def _slope(rows: Rows, at: Vector, t: Number, size: int) -> Vector:
+    """f, then A M row by row, of z and then M row by row; 0 in what are not the rows."""
+    known = rows.expansion
+    known.begin([*at[:size], t])
+    f, turned = [0] * size, [0] * size**2
+    for row, x in rows.f:
+        f[row] = known.value(x)
+    _add_product(turned, [(r, c, known.value(x)) for r, c, x in rows.a], at[size:], size)
+    return [*f, *turned]
+
+
+def _added(x: Vector, by: Number, slope: Vector) -> Vector:
+    return [a + by * b for a, b in zip(x, slope, strict=True)]
 
 
 def _add_product(
@@ -236,25 +236,16 @@ SHEARS: dict[str, Callable[[], list[tuple[str, Number]]]] = {
 def shears(field: Field, parts: Callable[[], list[tuple[str, Number]]]) -> Step:
     """p ← p − a h ∂V/∂q(q, s), q ← q + a h ∂T/∂p(p, s), and J's rows by A likewise."""
     size = len(field.names)
-    columns = range(size)
     made: dict[int, list[tuple[str, Number]]] = {}
 
     def step(z: Vector, h: Number, t: Number) -> tuple[Vector, Matrix]:
         if flint.ctx.prec not in made:
             made[flint.ctx.prec] = parts()
-        z, j, reads = list(z), identity(size), {"kick": t, "drift": t}
+        at, reads = [*z, *identity(size)], {"kick": t, "drift": t}
         for kind, share in made[flint.ctx.prec]:
             rows = field.of_q if kind == "kick" else field.of_p
-            known = rows.expansion
-            known.begin([*z, reads[kind]])
-            own = h * share
-            reads["drift" if kind == "kick" else "kick"] += own
-            for row, x in rows.f:
-                z[row] += own * known.value(x)
-            for row, column, x in rows.a:  # the rows that are read are not added to
-                bend, into, out = own * known.value(x), row * size, column * size
-                for k in columns:
-                    j[into + k] += bend * j[out + k]
-        return z, j
+            at = _added(at, h * share, _slope(rows, at, reads[kind], size))
+            reads["drift" if kind == "kick" else "kick"] += h * share
+        return at[:size], at[size:]
 
     return step

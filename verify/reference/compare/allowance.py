@@ -1,9 +1,8 @@
 """What rounding may do to each number of a run, for programs that work with a given unit roundoff.
 
 A few roundings of the state in each step are there in any case. What comes from earlier steps is
-followed where a difference is larger (`verify.reference.compare.scatter`, and in n degrees of
-freedom `verify.reference.compare.scatter`). A program that finds ΔJ as a d − b c − 1 rounds the
-products, however small ΔJ is; and so each factor of Λ.
+followed where a difference is larger (`verify.reference.compare.scatter`). A program that finds ΔJ
+as a d − b c − 1 rounds the products, however small ΔJ is; and so each factor of Λ.
 """
 
 import math
@@ -93,17 +92,16 @@ def products(orbit: Orbit, done: int, known: dict[str, Bounded]) -> Fraction:
         box |= {"h": rational_ball(orbit.step_size)}
         if orbit.hamiltonian.time_dependent:
             box["t"] = rational_ball(orbit.t0 + done * orbit.step_size)
-        whole = [flint.arb(x) for x in (1, 0, 0, 1)]  # the entries' sizes, of all substeps so far
+        whole = flint.arb_mat(2, 2, [1, 0, 0, 1])  # the entries' sizes, of all substeps so far
         for step in parts:
             rows = (*step.jacobian, step.elements) if step else ()
             own = enclose_all(step.ring, [x for row in rows for x in row], box) if step else None
             if own is None:
                 return Fraction(1)
-            a, b, c, d, box["p"], box["q"] = own
-            a, b, c, d = (abs(x) for x in (a, b, c, d))
-            e, f, g, h = whole
-            whole = [a * e + b * g, a * f + b * h, c * e + d * g, c * f + d * h]
-        total = whole[0] * whole[3] + whole[1] * whole[2]
+            *entries, box["p"], box["q"] = own
+            whole = flint.arb_mat(2, 2, [abs(x) for x in entries]) * whole
+        a, b, c, d = whole.entries()
+        total = a * d + b * c
         if not in_reach(total):
             return Fraction(1)
         return max(Fraction(1), sum(middle_and_radius(total), Fraction(0)))

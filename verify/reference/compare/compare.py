@@ -139,10 +139,7 @@ def _separated(off: list[_Off]) -> Separated | None:
     if not off:
         return None
     _, apart, step, label, orbit = max(off, key=lambda x: x[:2])
-    result = separate(
-        orbit.hamiltonian, orbit.scheme, q=orbit.q, p=orbit.p,
-        step_size=orbit.step_size, steps=step, t0=orbit.t0, digits=_SEPARATED_DIGITS,
-    )  # fmt: skip
+    result = separate(**vars(orbit), steps=step, digits=_SEPARATED_DIGITS)
     assert isinstance(result, SeparationResult)  # noqa: S101 - tables are of the plane
     return Separated(label, step, apart, result) if result.plain else None
 

@@ -4,11 +4,11 @@ Adding a mistake is adding a line. In n degrees of freedom fewer are tried, as r
 What may be wrong with a column beside the state is in `verify.reference.compare.column_meanings`.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import combinations
+from itertools import chain, combinations
 from math import isfinite
 from typing import Any
 
@@ -46,11 +46,30 @@ class Mistake:
     setting: Setting
 
 
+Change = tuple[str, str, dict[str, Any]]  # a mistake's name, what it says, and what it changes
+
+
 def of_inputs(right: Setting) -> Iterator[Mistake]:
     """Inputs that are doubles; no program that works with doubles can be told by them."""
+    changes = _of_doubles(right.orbit) if right.orbit.hamiltonian.planar else ()
+    return _mistakes(right, changes)
+
+
+def of_states(right: Setting) -> Iterator[Mistake]:
+    """All that can be seen in doubles."""
     orbit = right.orbit
     if not orbit.hamiltonian.planar:
-        return
+        return _mistakes(right, _in_degrees(right))
+    first = chain(_of_columns(orbit), _of_clock(orbit), _of_scheme(orbit))
+    return _mistakes(right, chain(first, _staggered(right, orbit), _of_step(orbit)))
+
+
+def _mistakes(right: Setting, changes: Iterable[Change]) -> Iterator[Mistake]:
+    for name, says, change in changes:
+        yield Mistake(name, says, replace(right, **change))
+
+
+def _of_doubles(orbit: Orbit) -> Iterator[Change]:
     exact = {"h": orbit.step_size, "q0": orbit.q, "p0": orbit.p, **dict(orbit.hamiltonian.values)}
     if orbit.hamiltonian.time_dependent:
         exact["t0"] = orbit.t0
@@ -62,78 +81,60 @@ def of_inputs(right: Setting) -> Iterator[Mistake]:
         changed = {n: Fraction(doubles[n]) for n in names}
         shown = " and ".join(f"{n} is the double nearest to {short(exact[n])}" for n in names)
         says = f"your {shown}, and not exactly that"
-        name = f"double-{'-'.join(names)}"
-        yield Mistake(name, says, replace(right, orbit=_with(orbit, changed)))
+        yield f"double-{'-'.join(names)}", says, {"orbit": _with(orbit, changed)}
 
 
-def of_states(right: Setting) -> Iterator[Mistake]:
-    """All that can be seen in doubles."""
-    if not right.orbit.hamiltonian.planar:
-        yield from _in_degrees(right)
-        return
-    yield from _of_columns(right, right.orbit)
-    if right.orbit.hamiltonian.time_dependent:
-        yield from _of_clock(right, right.orbit)
-    yield from _of_scheme(right)
-    yield from _staggered(right, right.orbit)
-    yield from _of_step(right, right.orbit)
-
-
-def _in_degrees(right: Setting) -> Iterator[Mistake]:
+def _in_degrees(right: Setting) -> Iterator[Change]:
     """Of the schemes those that the reference data have, which need not be run."""
     degrees = range(1, right.orbit.hamiltonian.degrees + 1)
     pairs = tuple((f"p{k}", f"q{k}") for k in degrees)
-    yield Mistake("swapped", "your columns of p and q are in each other's place",
-                  replace(right, exchanged=pairs))  # fmt: skip
+    yield "swapped", "your columns of p and q are in each other's place", {"exchanged": pairs}
     for i, j in combinations(degrees, 2):
         says = f"your degrees of freedom {i} and {j} are in each other's place"
-        pairs = tuple((f"{x}{i}", f"{x}{j}") for x in "pq")
-        yield Mistake(f"degrees-{i}-{j}", says, replace(right, exchanged=pairs))
-    yield Mistake("sign-of-p", "your p has the other sign", replace(right, negated=True))
+        yield f"degrees-{i}-{j}", says, {"exchanged": tuple((f"{x}{i}", f"{x}{j}") for x in "pq")}
+    yield "sign-of-p", "your p has the other sign", {"negated": True}
     for late, when in ((1, "later"), (-1, "earlier")):
-        says = f"your rows are those of one step {when}"
-        yield Mistake(f"late{late:+d}", says, replace(right, late=late))
+        yield f"late{late:+d}", f"your rows are those of one step {when}", {"late": late}
     for other in right.points.of_other_schemes(right.orbit):
         says = f"your numbers are those of {other.scheme}, and not of {right.orbit.scheme}"
-        yield Mistake(f"scheme-{other.scheme}", says, replace(right, orbit=other))
+        yield f"scheme-{other.scheme}", says, {"orbit": other}
 
 
-def _of_columns(right: Setting, orbit: Orbit) -> Iterator[Mistake]:
+def _of_columns(orbit: Orbit) -> Iterator[Change]:
     exchanged, swap = replace(orbit, q=orbit.p, p=orbit.q), (("p", "q"),)
-    backwards = Hamiltonian(-orbit.hamiltonian.expression, orbit.hamiltonian.values)
-    changes: tuple[tuple[str, str, dict[str, Any]], ...] = (
-        ("swapped-columns", "your columns p and q are swapped", {"exchanged": swap}),
-        ("swapped-start", "your initial p and q are swapped", {"orbit": exchanged}),
-        ("swapped-throughout", "p and q are swapped, in your columns and at the start",
-         {"orbit": exchanged, "exchanged": swap}),
-        ("negated-p", "your p has the other sign", {"negated": True}),
-        ("negated-start", "your initial p has the other sign",
-         {"orbit": replace(orbit, p=-orbit.p)}),
-        ("backwards", "your time runs backwards: p' = +∂H/∂q, q' = −∂H/∂p",
-         {"orbit": replace(orbit, hamiltonian=backwards)}),
-        ("late+1", "your step index is too low by one", {"late": 1}),
-        ("late-1", "your step index is too high by one", {"late": -1}),
-    )  # fmt: skip
-    for name, says, change in changes:
-        yield Mistake(name, says, replace(right, **change))
+    turned = replace(orbit, p=-orbit.p)
+    energy = Hamiltonian(-orbit.hamiltonian.expression, orbit.hamiltonian.values)
+    backwards = replace(orbit, hamiltonian=energy)
+    yield "swapped-columns", "your columns p and q are swapped", {"exchanged": swap}
+    yield "swapped-start", "your initial p and q are swapped", {"orbit": exchanged}
+    says = "p and q are swapped, in your columns and at the start"
+    yield "swapped-throughout", says, {"orbit": exchanged, "exchanged": swap}
+    yield "negated-p", "your p has the other sign", {"negated": True}
+    yield "negated-start", "your initial p has the other sign", {"orbit": turned}
+    says = "your time runs backwards: p' = +∂H/∂q, q' = −∂H/∂p"
+    yield "backwards", says, {"orbit": backwards}
+    yield "late+1", "your step index is too low by one", {"late": 1}
+    yield "late-1", "your step index is too high by one", {"late": -1}
 
 
-def _of_clock(right: Setting, orbit: Orbit) -> Iterator[Mistake]:
+def _of_clock(orbit: Orbit) -> Iterator[Change]:
+    if not orbit.hamiltonian.time_dependent:
+        return
     for how, says in _CLOCKS.items():
         name = f"{orbit.scheme}, clock {how}"
         with suppress(InputError):  # a scheme of which there is no such clock
             wrong = replace(orbit, scheme=schemes.get(name).name)
-            yield Mistake(f"{_OF_SCHEME}{name}", says, replace(right, orbit=wrong))
+            yield f"{_OF_SCHEME}{name}", says, {"orbit": wrong}
     t0, h = orbit.t0, orbit.step_size
-    begins = [("zero-t0", "your time begins at 0", Fraction(0))] if t0 else []
+    zero = f"your time begins at 0, and not at {short(t0)}"
+    begins = [("zero-t0", zero, Fraction(0))] if t0 else []
     begins += [("clock+1", "your clock is a step ahead", t0 + h),
                ("clock-1", "your clock is a step behind", t0 - h)]  # fmt: skip
     for name, says, begin in begins:
-        told = f"{says}, and not at {short(t0)}" if name == "zero-t0" else says
-        yield Mistake(name, told, replace(right, orbit=replace(orbit, t0=begin)))
+        yield name, says, {"orbit": replace(orbit, t0=begin)}
 
 
-def _of_step(right: Setting, orbit: Orbit) -> Iterator[Mistake]:
+def _of_step(orbit: Orbit) -> Iterator[Change]:
     h, values = orbit.step_size, orbit.hamiltonian.values
     changes = [
         ("half-step", "your h is half what it should be", {"h": h / 2}),
@@ -148,24 +149,21 @@ def _of_step(right: Setting, orbit: Orbit) -> Iterator[Mistake]:
             if other != value:
                 changes.append((f"{what}-{name}", f"your {name} is {short(other)}", {name: other}))
     for name, says, change in changes:
-        yield Mistake(name, says, replace(right, orbit=_with(orbit, change)))
+        yield name, says, {"orbit": _with(orbit, change)}
 
 
-def _of_scheme(right: Setting) -> Iterator[Mistake]:
+def _of_scheme(orbit: Orbit) -> Iterator[Change]:
     """Its relatives by name, then all other schemes."""
-    mine = right.orbit.scheme
-    said = dict(_relatives(mine))
+    said = dict(_relatives(orbit.scheme))
     known = sorted(schemes.names(), key=lambda x: x.startswith("implicit") - x.startswith("lie"))
     for name in known:
         said.setdefault(name, f"{_OTHER}{name}")
-    said.pop(mine, None)
+    said.pop(orbit.scheme, None)
     for name, says in said.items():
-        yield Mistake(
-            f"{_OF_SCHEME}{name}", says, replace(right, orbit=replace(right.orbit, scheme=name))
-        )
+        yield f"{_OF_SCHEME}{name}", says, {"orbit": replace(orbit, scheme=name)}
 
 
-def _staggered(right: Setting, orbit: Orbit) -> Iterator[Mistake]:
+def _staggered(right: Setting, orbit: Orbit) -> Iterator[Change]:
     """A leapfrog's p between its q's, or q between its p's, of a splitting a/2; b; a/2.
 
     That is the splitting b; a of a start that is half an a farther, or a; b of one that is behind.
@@ -177,12 +175,12 @@ def _staggered(right: Setting, orbit: Orbit) -> Iterator[Mistake]:
     (first, half), (second, whole), _ = parts
     name = "p" if first == "kick" else "q"
     both = ((first, 2 * half), (second, whole))
-    for sign, order, says in ((1, both[::-1], "ahead"), (-1, both, "behind")):
+    for sign, order, when in ((1, both[::-1], "ahead"), (-1, both, "behind")):
         start = _a_part_on(right, name, _named(both), sign)
         if start is not None:
-            other = replace(orbit, scheme=_named(order))
-            yield Mistake(f"half-{name}-{says}", f"your {name} is half a step {says}: leapfrog",
-                          replace(right, orbit=_with(other, {f"{name}0": start})))  # fmt: skip
+            other = _with(replace(orbit, scheme=_named(order)), {f"{name}0": start})
+            says = f"your {name} is half a step {when}: leapfrog"
+            yield f"half-{name}-{when}", says, {"orbit": other}
 
 
 def _a_part_on(right: Setting, name: str, scheme: str, sign: int) -> Fraction | None:

@@ -13,36 +13,31 @@ from pydantic import ValidationError
 from verify.arithmetic.exact import rational
 from verify.arithmetic.systems.float64 import nearest_double
 from verify.errors import InputError, unknown
-from verify.files import opened, read_bytes
+from verify.files import read_bytes
 from verify.formats import check_format
+from verify.hamiltonians.coordinates import coordinates_in
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import point_of
 from verify.kernels.orbit import Orbit
 from verify.reference.compare.setting import numbers_of
-from verify.reference.make.columns import (
-    AnyOrbitPoint,
-    orbit_columns,
-    start_columns,
-    state_columns,
-    values_of,
-)
-from verify.reference.make.models import DATA_FORMAT, Data, Run
-from verify.reference.make.models_in_degrees import (
+from verify.reference.make.columns import orbit_columns, values_of
+from verify.reference.make.models import (
+    DATA_FORMAT,
     DATA_IN_DEGREES_FORMAT,
-    DataInDegrees,
-    RunInDegrees,
-    is_of_degrees,
+    MODELS,
+    AnyData,
+    AnyRun,
+    format_at,
 )
 from verify.reference.make.orbit_points import Bounded
 from verify.reference.make.reading import json_of
 from verify.reference.make.writing import MANIFEST, SCHEMAS
-from verify.scenes.results.reference import Rounded
+from verify.scenes.results.reference import OrbitRow, Rounded
 
-_HEAD = 200  # bytes of a file
 _EXPONENT_DIGITS = 6
-_NONE = {  # whether data of the plane are wanted
-    True: "has no reference data; give a folder that `verify reference make` wrote",
-    False: "has no reference data of p1 … pn, q1 … qn, as the table's columns are",
+_NONE = {
+    DATA_FORMAT: "has no reference data; give a folder that `verify reference make` wrote",
+    DATA_IN_DEGREES_FORMAT: "has no reference data of p1 … pn, q1 … qn, as the table's columns are",
 }
 Inputs = Mapping[str, str | float]  # the scheme, and h and the start to the nearest double
 
@@ -53,16 +48,13 @@ class PublishedRun:
 
     scene: str
     hamiltonian: Hamiltonian
-    run: Run | RunInDegrees
+    run: AnyRun
 
     @cached_property
     def texts(self) -> dict[str, str]:
         """What a run of a scene is told by, by a table's columns: scheme, step_size, and q0 and p0,
         or q0_1 … p0_n."""
-        run = self.run
-        start = (run.q, run.p) if isinstance(run, Run) else (*run.q, *run.p)
-        named = zip(start_columns(self.hamiltonian.degrees), start, strict=True)
-        return {"scheme": run.scheme, "step_size": run.step_size, **dict(named)}
+        return {"scheme": self.run.scheme, "step_size": self.run.step_size, **self.run.texts}
 
     @cached_property
     def exact(self) -> dict[str, Fraction]:
@@ -78,7 +70,7 @@ class PublishedRun:
     def columns(self) -> tuple[str, ...]:
         """Those of its numbers, the state first."""
         degrees = self.hamiltonian.degrees
-        return *state_columns(degrees), *orbit_columns(degrees)
+        return *coordinates_in(degrees), *orbit_columns(degrees)
 
     @property
     def label(self) -> str:
@@ -97,11 +89,10 @@ class PublishedRun:
     @property
     def t0(self) -> Fraction | None:
         """When it starts, where H depends on time."""
-        text = getattr(self.run, "t0", None)
-        return None if text is None else rational(text, "t0")
+        return None if self.run.begins is None else rational(self.run.begins, "t0")
 
     @cached_property
-    def rows(self) -> dict[int, AnyOrbitPoint]:
+    def rows(self) -> dict[int, OrbitRow]:
         """Its rows by step."""
         return {row.step: row for row in self.run.rows}
 
@@ -159,26 +150,19 @@ def load(folder: Path, scene: str | None, *, planar: bool = True) -> Published:
     names = {path.name for path in folder.glob("*.json")} - {MANIFEST, *SCHEMAS}
     if scene is not None and f"{scene}.json" in names:
         names = {f"{scene}.json"}
-    names = {name for name in names if _is_of_degrees(folder / name) is not planar}
-    runs = [run for name in sorted(names) for run in _runs(folder / name, planar)]
+    form = DATA_FORMAT if planar else DATA_IN_DEGREES_FORMAT
+    names = {name for name in names if format_at(folder / name) == form}
+    runs = [run for name in sorted(names) for run in _runs(folder / name, form)]
     if not runs:
-        raise InputError("--data", str(folder), _NONE[planar])
+        raise InputError("--data", str(folder), _NONE[form])
     return Published(runs)
 
 
-def _is_of_degrees(path: Path) -> bool:
-    """Whether a file's format is that of data in n degrees of freedom."""
-    try:
-        with opened(path) as file:
-            return is_of_degrees(file.read(_HEAD))
-    except InputError:  # whoever reads it says so
-        return False
-
-
-def _runs(path: Path, planar: bool) -> Iterator[PublishedRun]:
-    data, name = _data(path, planar), path.name
+def _runs(path: Path, form: str) -> Iterator[PublishedRun]:
+    data, name = _data(path, form), path.name
     hamiltonian = Hamiltonian.parse(data.hamiltonian, data.parameters)
-    if hamiltonian.time_dependent and not data.timed:
+    begun = data.timed and all(run.begins is not None for run in data.runs)
+    if hamiltonian.time_dependent and not begun:
         problem = "is no reference data: its H depends on t, and its runs have no t0"
         raise InputError("file", name, problem)
     for run in data.runs:
@@ -189,11 +173,10 @@ def _runs(path: Path, planar: bool) -> Iterator[PublishedRun]:
         yield PublishedRun(data.name, hamiltonian, run)
 
 
-def _data(path: Path, planar: bool) -> Data | DataInDegrees:
-    raw = json_of(read_bytes(path), path.name)
-    check_format(raw, DATA_FORMAT if planar else DATA_IN_DEGREES_FORMAT, path.name)
+def _data(path: Path, form: str) -> AnyData:
+    raw = check_format(json_of(read_bytes(path), path.name), form, path.name)
     try:
-        return (Data if planar else DataInDegrees).model_validate(raw)
+        return MODELS[form].model_validate(raw)
     except ValidationError as error:
         told = error.errors(include_url=False)[0]
         where = ".".join(map(str, told["loc"]))

@@ -21,7 +21,7 @@ Jacobian rounds their products, however small they are: the columns of these run
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -112,14 +112,10 @@ class Carried:
 
     def _after(self, point: Mapping[str, Fraction], steps: int) -> dict[str, Fraction] | None:
         """The numbers after so many steps from a point; None where they cannot be had."""
-        orbit, each = self._orbit, list(point.values())
-        half = len(each) // 2
+        each, half = list(point.values()), len(point) // 2
+        aside = replace(self._orbit, p=each[:half], q=each[half:])
         try:
-            done = run(
-                orbit.hamiltonian, orbit.scheme, p=each[:half], q=each[half:],
-                step_size=orbit.step_size, steps=steps, t0=orbit.t0,
-                arithmetic=float64.NAME, observables=_OBSERVED,
-            )  # fmt: skip
+            done = run(**vars(aside), steps=steps, arithmetic=float64.NAME, observables=_OBSERVED)
         except (InputError, ArithmeticError):
             return None
         if done.status != "finished":

@@ -12,14 +12,15 @@ from verify.arithmetic.number_system import UnsupportedError
 from verify.errors import InputError
 from verify.kernels.orbit import Orbit
 from verify.lockstep import alone
-from verify.reference.make.columns import AnyOrbitPoint, values_of
+from verify.reference.make.columns import values_of
 from verify.reference.make.orbit_points import Bounded, orbit_points
+from verify.scenes.results.reference import OrbitRow
 
 _MOST_STEPS = 2_000_000  # run; what is farther is not known
 _MOST_STEPS_IN_DEGREES = 20_000
 
 
-def numbers_of(point: AnyOrbitPoint, degrees: int) -> dict[str, Bounded]:
+def numbers_of(point: OrbitRow, degrees: int) -> dict[str, Bounded]:
     """The numbers that a point has, by their columns' names."""
     known = values_of(point, degrees).items()
     return {name: (Fraction(x.value), Fraction(x.radius)) for name, x in known if x}
@@ -28,11 +29,11 @@ def numbers_of(point: AnyOrbitPoint, degrees: int) -> dict[str, Bounded]:
 class Points:
     """Orbits after some steps: from the reference data where they have them, else by a run."""
 
-    def __init__(self, known: Mapping[Orbit, tuple[int, Mapping[int, AnyOrbitPoint]]]) -> None:
+    def __init__(self, known: Mapping[Orbit, tuple[int, Mapping[int, OrbitRow]]]) -> None:
         """`known`: of an orbit its digits, and its points by step."""
         self._known = known
 
-    def at(self, orbit: Orbit, step: int, digits: int) -> AnyOrbitPoint | None:
+    def at(self, orbit: Orbit, step: int, digits: int) -> OrbitRow | None:
         """To so many digits and no fewer; None where there is no such state."""
         have, rows = self._known.get(orbit, (0, {}))
         if have >= digits and step in rows:
@@ -77,7 +78,7 @@ class Setting:
 
 
 @lru_cache(maxsize=4096)
-def _run_at(orbit: Orbit, step: int, digits: int) -> AnyOrbitPoint | None:
+def _run_at(orbit: Orbit, step: int, digits: int) -> OrbitRow | None:
     if step > (_MOST_STEPS if orbit.hamiltonian.planar else _MOST_STEPS_IN_DEGREES):
         return None
     try:

@@ -1,23 +1,28 @@
-"""The columns that hold the numbers of a row, by the degrees of freedom of its H.
+"""Rows of tables: what a cell is, and which columns there are by the degrees of freedom of an H.
 
-In the plane p and q, with ΔJ of the next step; in several degrees of freedom p1 … pn, q1 … qn, with
-H, and S and W in place of ΔJ.
+Beside the coordinates there is in the plane ΔJ of the next step; in several degrees of freedom H,
+and S and W in place of ΔJ.
 """
 
-from collections.abc import Sequence
 from itertools import count
+from typing import Any
 
-from verify.hamiltonians.coordinates import coordinates_in
-from verify.reference.make.cells import Row
-from verify.scenes.results.reference import FlowPoint, OrbitPoint, Rounded
-from verify.scenes.results.reference_in_degrees import FlowPointInDegrees, OrbitPointInDegrees
+from verify.scenes.results.reference import Cell, FlowRow, OrbitRow
 
-AnyOrbitPoint = OrbitPoint | OrbitPointInDegrees
-AnyFlowPoint = FlowPoint | FlowPointInDegrees
+Row = tuple[str, ...]
 _OF_PLANE = ("delta_j", "mse", "lambda")
 _OF_SEVERAL = ("energy", "symplectic_defect_max", "symplectic_defect", "lambda")
 AFTER_A_STEP = ("mse", "symplectic_defect_max")  # what there is not for N = 0
 MAY_LACK = ("delta_j", "energy")
+
+
+def cell(value: Any) -> str:
+    """The text of a value; empty for None; of entries by name, NAME: VALUE with semicolons."""
+    if value is None:
+        return ""
+    if isinstance(value, dict):
+        return "; ".join(f"{name}: {x}" for name, x in value.items())
+    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def start_columns(degrees: int) -> Row:
@@ -27,25 +32,19 @@ def start_columns(degrees: int) -> Row:
     return tuple(f"{letter}0_{k}" for letter in "qp" for k in range(1, degrees + 1))
 
 
-def state_columns(degrees: int) -> Row:
-    """The names of those that hold the state: p first."""
-    return coordinates_in(degrees)
-
-
 def orbit_columns(degrees: int) -> Row:
     """The names of those that an orbit has beside its state."""
     return _OF_PLANE if degrees == 1 else _OF_SEVERAL
 
 
-def values_of(row: AnyOrbitPoint | AnyFlowPoint, degrees: int) -> dict[str, Rounded | None]:
+def values_of(row: OrbitRow | FlowRow, degrees: int) -> dict[str, Cell]:
     """The numbers of a row by the names of their columns; None for one that there is not."""
-    values: dict[str, Rounded | None] = {}
+    values: dict[str, Cell] = {}
     for letter, numbers in (("p", row.p), ("q", row.q)):
-        each: Sequence[Rounded | None]
         each = numbers if isinstance(numbers, tuple) else (numbers,) * degrees
         names = [letter] if degrees == 1 else (f"{letter}{k}" for k in count(1))
         values |= dict(zip(names, each, strict=False))
-    if isinstance(row, AnyOrbitPoint):
-        *others, _ = orbit_columns(degrees)
-        values |= {name: getattr(row, name) for name in others} | {"lambda": row.lam}
+    if isinstance(row, OrbitRow):
+        beside = orbit_columns(degrees)
+        values |= {name: getattr(row, "lam" if name == "lambda" else name) for name in beside}
     return values

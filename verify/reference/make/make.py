@@ -12,8 +12,14 @@ from verify.errors import InputError
 from verify.execution.machine import versions
 from verify.files import MOST_BYTES, read_text, write_atomically
 from verify.formats import names_format
-from verify.reference.make.models import DATA_FORMAT, MANIFEST_FORMAT, Data, Manifest, SceneFile
-from verify.reference.make.models_in_degrees import DATA_IN_DEGREES_FORMAT, AnyData, DataInDegrees
+from verify.reference.make.models import (
+    MANIFEST_FORMAT,
+    MODELS,
+    AnyData,
+    Manifest,
+    SceneFile,
+    format_of,
+)
 from verify.reference.make.scene_plan import orbit_tasks, proof_tasks, size_of, solution_tasks
 from verify.reference.make.writing import (
     MANIFEST,
@@ -27,6 +33,7 @@ from verify.reference.make.writing import (
     tables,
 )
 from verify.scenes.results.proof import ProofResult
+from verify.scenes.results.reference import OrbitResult, SolutionResult
 from verify.scenes.scene import Scene, load_scene
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,79}")
@@ -70,22 +77,27 @@ def committed_scenes() -> list[Path]:
 def data_of(scene: Scene, results: Mapping[str, Any]) -> AnyData:
     """A scene's data from the results of its tasks, by their keys."""
     exact = scene.exact_hamiltonian()
+    form = format_of(exact.degrees)
     content = {
+        "format": form,
         "name": scene.name,
         **exact.texts,
+        **({} if exact.planar else {"degrees": exact.degrees}),
         "proofs": [_proof(task.scheme, results[task.key]) for task in proof_tasks(scene)],
         "runs": [
-            {"scheme": task.scheme, **task.inputs, "rows": results[task.key].points}
+            {"scheme": task.scheme, **task.inputs, "rows": _rows(results[task.key])}
             for task in orbit_tasks(scene)
         ],
         "flow": [
-            {**task.inputs, "rows": results[task.key].points} for task in solution_tasks(scene)
+            {**task.inputs, "rows": _rows(results[task.key])} for task in solution_tasks(scene)
         ],
     }
-    if exact.planar:
-        return Data.model_validate({"format": DATA_FORMAT, **content})
-    head = {"format": DATA_IN_DEGREES_FORMAT, "degrees": exact.degrees}
-    return DataInDegrees.model_validate({**head, **content})
+    return MODELS[form].model_validate(content)
+
+
+def _rows(result: OrbitResult | SolutionResult) -> list[dict[str, Any]]:
+    """Its rows, of which some may be of either format where they are read again."""
+    return [point.model_dump() for point in result.points]
 
 
 def _proof(scheme: str, result: ProofResult) -> dict[str, Any]:
@@ -101,11 +113,9 @@ def _proof(scheme: str, result: ProofResult) -> dict[str, Any]:
 def alone(folder: Path, asked: Sequence[SceneText], *, parquet: bool) -> None:
     """InputError where the folder holds what is not made again, and would be extra in a check, or
     a file of one of our names that is not ours."""
-    planar = {each.scene.name: each.scene.exact_hamiltonian().planar for each in asked}
-    made = {MANIFEST, *names_of(planar, parquet=parquet)}
-    forms: dict[str, str] = {f"{name}.json": DATA_FORMAT if planar[name] else DATA_IN_DEGREES_FORMAT
-             for name in planar}  # fmt: skip
-    forms |= {MANIFEST: MANIFEST_FORMAT}
+    formats = {x.scene.name: format_of(x.scene.exact_hamiltonian().degrees) for x in asked}
+    made = {MANIFEST, *names_of(formats, parquet=parquet)}
+    forms = {MANIFEST: MANIFEST_FORMAT, **{f"{name}.json": x for name, x in formats.items()}}
     there = {path.name: path for path in folder.iterdir()}
     other = sorted(there.keys() - made)
     other += [x for x, form in forms.items() if x in there and not names_format(there[x], form)]
@@ -118,7 +128,7 @@ def alone(folder: Path, asked: Sequence[SceneText], *, parquet: bool) -> None:
 
 def files_of(data: Sequence[AnyData], *, parquet: bool = False) -> dict[str, bytes]:
     """The content of all files but the manifest, by name."""
-    schemas = schemas_for(isinstance(each, Data) for each in data)
+    schemas = schemas_for(each.format for each in data)
     files = {name: schema_text(name).encode() for name in schemas}
     for each in data:
         files[f"{each.name}.json"] = json_text(each).encode()

@@ -1,28 +1,39 @@
-"""What the files of reference data hold. The published JSON Schemas are made from these models."""
+"""What the files of reference data hold. The published JSON Schemas are made from these models.
+
+The formats are two: in the plane q and p of a start are a number each, and S is ΔJ; in n degrees of
+freedom they are lists.
+"""
 
 from fractions import Fraction
-from typing import Annotated, Literal
+from pathlib import Path
+from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field
 
+from verify.formats import names_format
+from verify.hamiltonians.coordinates import coordinates_in
+from verify.reference.make.columns import start_columns
 from verify.scenes.frozen import Frozen
-from verify.scenes.results.reference import FlowPoint, OrbitPoint
+from verify.scenes.results.reference import (
+    FlowPoint,
+    FlowPointInDegrees,
+    OrbitPoint,
+    OrbitPointInDegrees,
+)
 from verify.verdict import Verdict
 
 DataFormat = Literal["areaproof reference data 1"]
+DataInDegreesFormat = Literal["areaproof reference data in degrees 1"]
 ManifestFormat = Literal["areaproof reference manifest 1"]
 DATA_FORMAT: DataFormat = "areaproof reference data 1"
+DATA_IN_DEGREES_FORMAT: DataInDegreesFormat = "areaproof reference data in degrees 1"
 MANIFEST_FORMAT: ManifestFormat = "areaproof reference manifest 1"
 _SHA256 = r"^[0-9a-f]{64}$"
 _EXACT = r"^-?[0-9]+(\.[0-9]+|/[0-9]+)?$"
 Exact = Annotated[str, Field(pattern=_EXACT)]
+_List = Annotated[tuple[Exact, ...], Field(min_length=2)]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=120)]
 Digest = Annotated[str, Field(pattern=_SHA256)]
-SceneName = Annotated[Name, Field(description="the scene's name; the files begin with it")]
-Parameters = Annotated[
-    dict[str, Exact], Field(description="each parameter's exact value by its name")
-]
-StepSize = Annotated[Exact, Field(description="the step size h exactly: a decimal or a quotient")]
 Digits = Annotated[int, Field(ge=1, description="significant digits of each number")]
 Proved = Annotated[Verdict, Field(description="PROVED where all of this row is proved")]
 ConvergenceOrder = Annotated[
@@ -33,154 +44,238 @@ ConvergenceOrder = Annotated[
         "where all coefficients that were looked at agree",
     ),
 ]
+Ascending = Field(description="one a chosen step, ascending")
 
 
 class Started(Frozen):
-    """What begins somewhere: `told` is its step size and start, in words."""
+    """A start, and the step size with which it is gone on from there."""
+
+    step_size: Exact = Field(description="the step size h exactly: a decimal or a quotient")
+    q: Any
+    p: Any
 
     @property
     def label(self) -> str:
-        """The scheme, or that it is the exact flow, and its inputs."""
-        return f"{getattr(self, 'scheme', 'exact flow')}, {self.told}"
+        """The scheme, or that it is the exact flow, and its inputs in words."""
+        q, p = (x if isinstance(x, str) else f"({', '.join(x)})" for x in (self.q, self.p))
+        at = f"(q, p) = ({q}, {p})" if isinstance(self.q, str) else f"q = {q}, p = {p}"
+        begins = "" if self.begins is None else f", t0 = {self.begins}"
+        return f"{getattr(self, 'scheme', 'exact flow')}, h = {self.step_size}, {at}{begins}"
 
     @property
-    def told(self) -> str:
-        raise NotImplementedError
-
-
-class Tables(Frozen):
-    """What is of one scene: proofs, runs and exact solutions."""
+    def begins(self) -> str | None:
+        """The time at the start, where H depends on time."""
+        return getattr(self, "t0", None)
 
     @property
-    def count(self) -> int:
-        """The rows of all tables."""
-        proofs, runs, flow = (getattr(self, name) for name in ("proofs", "runs", "flow"))
-        return len(proofs) + sum(len(each.rows) for each in (*runs, *flow))
+    def texts(self) -> dict[str, str]:
+        """q and p at the start by the columns of a table."""
+        q, p = ((x,) if isinstance(x, str) else x for x in (self.q, self.p))
+        return dict(zip(start_columns(len(q)), (*q, *p), strict=False))  # a file may be wrong
+
+    @property
+    def start(self) -> dict[str, Fraction]:
+        """The coordinates at the start, and t where H depends on time."""
+        numbers, half = [*map(Fraction, self.texts.values())], len(self.texts) // 2
+        point = dict(zip(coordinates_in(half), numbers[half:] + numbers[:half], strict=True))
+        return point if self.begins is None else point | {"t": Fraction(self.begins)}
+
+
+class _InPlane(Started):
+    q: Exact = Field(description="the initial displacement q exactly")
+    p: Exact = Field(description="the initial momentum p exactly")
+    digits: Digits
+
+
+class _InTime(_InPlane):
+    t0: Exact = Field(description="the time at the start exactly")
+
+
+class _InDegrees(Started):
+    q: _List = Field(description="the initial displacements q1 … qn exactly")
+    p: _List = Field(description="the initial momenta p1 … pn exactly")
+    t0: Exact | None = Field(
+        description="the time at the start exactly; null where H does not depend on time"
+    )
+    digits: Digits
 
 
 class OfScheme(Frozen):
     """A row that is of one scheme."""
 
-    scheme: Annotated[
-        str, Field(description="the scheme, by the name that `verify run --scheme` takes")
-    ]
+    scheme: str = Field(description="the scheme, by the name that `verify run --scheme` takes")
 
 
 class Proof(OfScheme):
     """What is proved of one scheme for this H, by exact algebra."""
 
     verdict: Proved
-    area_preserving: Annotated[
-        bool | None, Field(description="whether ΔJ is 0 for all p, q and h; null: not decided")
-    ]
-    order: Annotated[
-        int | None, Field(ge=1, description="ΔJ = leading·h^order + …; null where ΔJ is 0 for all")
-    ]
-    leading: Annotated[
-        str, Field(description="the leading coefficient of ΔJ, a formula in p and q; 0 if ΔJ is 0")
-    ]
+    area_preserving: bool | None = Field(
+        description="whether ΔJ is 0 for all p, q and h; null: not decided"
+    )
+    order: int | None = Field(
+        ge=1, description="ΔJ = leading·h^order + …; null where ΔJ is 0 for all"
+    )
+    leading: str = Field(
+        description="the leading coefficient of ΔJ, a formula in p and q; 0 if ΔJ is 0"
+    )
     convergence_order: ConvergenceOrder
 
-
-class _FromStart(Started):
-    step_size: StepSize
-    q: Annotated[Exact, Field(description="the initial displacement q exactly")]
-    p: Annotated[Exact, Field(description="the initial momentum p exactly")]
-    digits: Digits
+    @property
+    def symplectic(self) -> bool | None:
+        """Whether S is 0, of which ΔJ is all."""
+        return self.area_preserving
 
     @property
-    def start(self) -> dict[str, Fraction]:
-        """q and p at the start, and t₀ where H depends on time."""
-        return {"q": Fraction(self.q), "p": Fraction(self.p)}
+    def entries(self) -> dict[str, str]:
+        """The entries of S's leading coefficient: one, which needs no name."""
+        return {"": self.leading}
+
+
+class ProofInDegrees(OfScheme):
+    """What is proved of one scheme for this H, by exact algebra."""
+
+    verdict: Proved
+    symplectic: bool | None = Field(description="whether S is 0 for all z and h; null: not decided")
+    area_preserving: bool | None = Field(
+        description="whether det J is 1 for all z and h; null: not decided"
+    )
+    order: int | None = Field(
+        ge=1, description="S = leading·h^order + …; null where S is 0 for all"
+    )
+    leading: dict[str, str] = Field(
+        description="the entries of the leading coefficient of S that are not 0, such as "
+        "dp1∧dq2, each a formula in z; none where S is 0, or where they are too long"
+    )
+    convergence_order: ConvergenceOrder
 
     @property
-    def told(self) -> str:
-        """Step size and start, in words."""
-        return f"h = {self.step_size}, (q, p) = ({self.q}, {self.p})"
+    def entries(self) -> dict[str, str]:
+        """The entries of S's leading coefficient that are not 0."""
+        return self.leading
 
 
-class _FromTime(_FromStart):
-    """Of an H that depends on time."""
-
-    t0: Annotated[Exact, Field(description="the time at the start exactly")]
-
-    @property
-    def start(self) -> dict[str, Fraction]:
-        return super().start | {"t": Fraction(self.t0)}
-
-    @property
-    def told(self) -> str:
-        return f"{super().told}, t0 = {self.t0}"
-
-
-class Run(_FromStart, OfScheme):
+class Run(_InPlane, OfScheme):
     """One scheme's orbit from one initial value with one step size."""
 
-    rows: Annotated[tuple[OrbitPoint, ...], Field(description="one a chosen step, ascending")]
+    rows: tuple[OrbitPoint, ...] = Ascending
 
 
-class RunInTime(_FromTime, Run):
+class RunInTime(_InTime, Run):
     """The same for an H that depends on time, from a time on."""
 
 
-class Flow(_FromStart):
+class RunInDegrees(_InDegrees, OfScheme):
+    """One scheme's orbit from one initial value with one step size."""
+
+    rows: tuple[OrbitPointInDegrees, ...] = Ascending
+
+
+class Flow(_InPlane):
     """The exact solution of p' = −H_q, q' = H_p from one initial value, at the times N·h."""
 
-    rows: Annotated[tuple[FlowPoint, ...], Field(description="one a chosen step, ascending")]
+    rows: tuple[FlowPoint, ...] = Ascending
 
 
-class FlowInTime(_FromTime, Flow):
+class FlowInTime(_InTime, Flow):
     """The same for an H that depends on time; N·h is the time since the start."""
 
 
-class Data(Tables):
+class FlowInDegrees(_InDegrees):
+    """The exact solution of p' = −∂H/∂q, q' = ∂H/∂p from one initial value, at the times N·h."""
+
+    rows: tuple[FlowPointInDegrees, ...] = Ascending
+
+
+class _OfScene(Frozen):
+    format: str = Field(description="this format")
+    name: Name = Field(description="the scene's name; the files begin with it")
+    hamiltonian: str
+    parameters: dict[str, Exact] = Field(description="each parameter's exact value by its name")
+
+    @property
+    def count(self) -> int:
+        """The rows of all tables."""
+        own = dict(self)
+        return len(own["proofs"]) + sum(len(each.rows) for each in (*own["runs"], *own["flow"]))
+
+    @property
+    def timed(self) -> bool:
+        """Whether H depends on time."""
+        own = dict(self)
+        return any(each.begins is not None for each in (*own["runs"], *own["flow"]))
+
+
+class Data(_OfScene):
     """Reference data of one scene: one Hamiltonian, its schemes, step sizes and initial values."""
 
     model_config = ConfigDict(title="areaproof reference data")
 
-    format: Annotated[DataFormat, Field(description="this format")]
-    name: SceneName
-    hamiltonian: Annotated[
-        str,
-        Field(
-            description="the formula of H(p, q), or H(p, q, t), in p, q, t and the parameters; "
-            "** is a power"
-        ),
-    ]
-    parameters: Parameters
-    proofs: Annotated[tuple[Proof, ...], Field(description="one a scheme")]
-    runs: Annotated[
-        tuple[RunInTime | Run, ...], Field(description="one a scheme, initial value and step size")
-    ]
-    flow: Annotated[
-        tuple[FlowInTime | Flow, ...], Field(description="one an initial value and step size")
-    ]
+    format: DataFormat = Field(description="this format")
+    hamiltonian: str = Field(
+        description="the formula of H(p, q), or H(p, q, t), in p, q, t and the parameters; "
+        "** is a power"
+    )
+    proofs: tuple[Proof, ...] = Field(description="one a scheme")
+    runs: tuple[RunInTime | Run, ...] = Field(
+        description="one a scheme, initial value and step size"
+    )
+    flow: tuple[FlowInTime | Flow, ...] = Field(description="one an initial value and step size")
 
     @property
     def degrees(self) -> int:
         """n, the degrees of freedom."""
         return 1
 
-    @property
-    def timed(self) -> bool:
-        """Whether H depends on time."""
-        return any(isinstance(of, _FromTime) for of in (*self.runs, *self.flow))
+
+class DataInDegrees(_OfScene):
+    """Reference data of one scene in n degrees of freedom: one H(p1 … pn, q1 … qn), its schemes,
+    step sizes and initial values."""
+
+    model_config = ConfigDict(title="areaproof reference data in n degrees of freedom")
+
+    format: DataInDegreesFormat = Field(description="this format")
+    hamiltonian: str = Field(
+        description="the formula of H in p1 … pn, q1 … qn, t and the parameters; ** is a power"
+    )
+    degrees: int = Field(ge=2, description="n, the degrees of freedom")
+    proofs: tuple[ProofInDegrees, ...] = Field(description="one a scheme")
+    runs: tuple[RunInDegrees, ...] = Field(description="one a scheme, initial value and step size")
+    flow: tuple[FlowInDegrees, ...] = Field(description="one an initial value and step size")
+
+
+AnyProof = Proof | ProofInDegrees
+AnyRun = Run | RunInDegrees
+AnyFlow = Flow | FlowInDegrees
+AnyData = Data | DataInDegrees
+MODELS: dict[str, type[AnyData]] = {DATA_FORMAT: Data, DATA_IN_DEGREES_FORMAT: DataInDegrees}
+
+
+def format_of(degrees: int) -> str:
+    """The format of data in so many degrees of freedom."""
+    return DATA_FORMAT if degrees == 1 else DATA_IN_DEGREES_FORMAT
+
+
+def format_at(path: Path) -> str:
+    """The format of a file of data; the plane's, too, where it names none."""
+    several = names_format(path, DATA_IN_DEGREES_FORMAT)
+    return DATA_IN_DEGREES_FORMAT if several else DATA_FORMAT
 
 
 class SceneFile(Frozen):
     """A scene that data were made from."""
 
-    name: Annotated[Name, Field(description="the scene's name")]
-    toml: Annotated[str, Field(description="the scene as it was written, a TOML text")]
-    sha256: Annotated[Digest, Field(description="SHA-256 of that text in UTF-8")]
+    name: Name = Field(description="the scene's name")
+    toml: str = Field(description="the scene as it was written, a TOML text")
+    sha256: Digest = Field(description="SHA-256 of that text in UTF-8")
 
 
 class ListedFile(Frozen):
     """A file beside the manifest."""
 
-    name: Annotated[Name, Field(description="its name in the manifest's folder")]
-    bytes: Annotated[int, Field(ge=0, description="its size")]
-    sha256: Annotated[Digest, Field(description="SHA-256 of its content")]
+    name: Name = Field(description="its name in the manifest's folder")
+    bytes: int = Field(ge=0, description="its size")
+    sha256: Digest = Field(description="SHA-256 of its content")
 
 
 class Manifest(Frozen):
@@ -188,12 +283,8 @@ class Manifest(Frozen):
 
     model_config = ConfigDict(title="areaproof reference manifest")
 
-    format: Annotated[ManifestFormat, Field(description="this format")]
-    command: Annotated[str, Field(description="the command that made the files")]
-    versions: Annotated[
-        dict[str, str], Field(description="versions of Python and of the libraries that did")
-    ]
-    scenes: Annotated[tuple[SceneFile, ...], Field(description="what was asked for")]
-    files: Annotated[
-        tuple[ListedFile, ...], Field(description="all files but the manifest itself, by name")
-    ]
+    format: ManifestFormat = Field(description="this format")
+    command: str = Field(description="the command that made the files")
+    versions: dict[str, str] = Field(description="versions of Python and of the libraries that did")
+    scenes: tuple[SceneFile, ...] = Field(description="what was asked for")
+    files: tuple[ListedFile, ...] = Field(description="all files but the manifest itself, by name")

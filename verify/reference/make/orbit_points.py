@@ -9,8 +9,7 @@ numbers round to one decimal.
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
-from types import MappingProxyType
-from typing import Any, Literal
+from typing import Any
 
 import flint
 
@@ -28,35 +27,41 @@ from verify.hamiltonians.start import point_of
 from verify.kernels.orbit import Orbit
 from verify.kernels.step.computation import step_map_of
 from verify.lockstep import Course
-from verify.reference.make.columns import (
-    AFTER_A_STEP,
-    MAY_LACK,
-    AnyFlowPoint,
-    AnyOrbitPoint,
-    orbit_columns,
-)
+from verify.reference.make.columns import AFTER_A_STEP, MAY_LACK, orbit_columns
 from verify.reference.make.correct_rounding import correctly_rounded, near_zero
 from verify.runs.run import AskedRun
-from verify.scenes.results.reference import FlowPoint, Kind, OrbitPoint, Rounded
-from verify.scenes.results.reference_in_degrees import FlowPointInDegrees, OrbitPointInDegrees
-from verify.scenes.results.run import RunResult
+from verify.scenes.results.reference import (
+    FlowPoint,
+    FlowPointInDegrees,
+    Kind,
+    OrbitPoint,
+    OrbitPointInDegrees,
+    Rounded,
+)
 from verify.scenes.values import AUTO
 from verify.schemes.maps.ball_algebra import UndefinedError, step_in_balls
 
 _GUARDS = (10, 25, 60, 150)  # digits beyond those asked for, in turn
 _BITS = 64  # beyond the digits, for the roundings of one step, or of H
+_UNKNOWN: dict[str, Any] = {"status": "unresolved", "kind": None, "failed_step": None}
 Bounded = tuple[Fraction, Fraction]  # a value and its bound
+Numbers = Mapping[str, Rounded | None]  # by the names of their columns
 
 
 def orbit_points(orbit: Orbit, steps: Sequence[int], digits: int) -> Course[tuple[Any, ...]]:
     """The orbit after each of these numbers of steps, every number to so many digits."""
-    points = []
+    exact, points = orbit.hamiltonian, []
+    model = OrbitPoint if exact.planar else OrbitPointInDegrees
     for step in steps:
-        points.append((yield from _point(orbit, step, digits)))
+        told, values = yield from _after_steps(orbit, step, digits)
+        numbers = _state(exact, values)
+        numbers |= {name: values.get(name) for name in orbit_columns(exact.degrees)}
+        points.append(model(step=step, **_UNKNOWN | told, **numbers))
     return tuple(points)
 
 
-def _point(orbit: Orbit, step: int, digits: int) -> Course[AnyOrbitPoint]:
+def _after_steps(orbit: Orbit, step: int, digits: int) -> Course[tuple[dict[str, Any], Numbers]]:
+    """What is known after so many steps, and the numbers, if they are."""
     start = point_of(orbit.hamiltonian, orbit.q, orbit.p)
     beside = orbit_columns(orbit.hamiltonian.degrees)
     observables = tuple(x for x in beside if x not in MAY_LACK)
@@ -66,9 +71,16 @@ def _point(orbit: Orbit, step: int, digits: int) -> Course[AnyOrbitPoint]:
         known |= dict.fromkeys(at_first, (Fraction(0), Fraction(0)))
         kind: Kind = "enclosed"
         if step > 0:
-            after = yield from _run(orbit, step, digits + guard, observables)
+            asked = AskedRun(
+                **vars(orbit),
+                steps=step,
+                arithmetic=AUTO,
+                digits=digits + guard,
+                observables=observables,
+            )
+            after = yield from asked.result()
             if after.status == "left range":
-                return _orbit_point(orbit, step, "left range", failed_step=after.failed_step)
+                return {"status": "left range", "failed_step": after.failed_step}, {}
             if after.status == "unresolved":
                 break
             kind = after.error_kind
@@ -76,24 +88,8 @@ def _point(orbit: Orbit, step: int, digits: int) -> Course[AnyOrbitPoint]:
         known |= _at_state(orbit, step, known, digits + guard)
         values = _all_rounded(known, start, digits, guard)
         if all(values.values()):
-            return _orbit_point(orbit, step, "finished", values, kind=kind)
-    return _orbit_point(orbit, step, "unresolved")
-
-
-def _run(orbit: Orbit, steps: int, digits: int, observables: Sequence[str]) -> Course[RunResult]:
-    asked = AskedRun(
-        orbit.hamiltonian,
-        orbit.scheme,
-        q=orbit.q,
-        p=orbit.p,
-        step_size=orbit.step_size,
-        t0=orbit.t0,
-        steps=steps,
-        arithmetic=AUTO,
-        digits=digits,
-        observables=observables,
-    )
-    return asked.result()
+            return {"status": "finished", "kind": kind}, values
+    return {}, {}
 
 
 def _all_rounded(
@@ -109,21 +105,7 @@ def _all_rounded(
     return values
 
 
-def _orbit_point(
-    orbit: Orbit,
-    step: int,
-    status: Literal["finished", "left range", "unresolved"],
-    values: Mapping[str, Rounded | None] = MappingProxyType({}),
-    kind: Kind | None = None,
-    failed_step: int | None = None,
-) -> AnyOrbitPoint:
-    model = OrbitPoint if orbit.hamiltonian.planar else OrbitPointInDegrees
-    numbers = _state(orbit.hamiltonian, values)
-    numbers |= {name: values.get(name) for name in orbit_columns(orbit.hamiltonian.degrees)}
-    return model(step=step, status=status, failed_step=failed_step, kind=kind, **numbers)
-
-
-def _state(hamiltonian: Hamiltonian, values: Mapping[str, Rounded | None]) -> dict[str, Any]:
+def _state(hamiltonian: Hamiltonian, values: Numbers) -> dict[str, Any]:
     """p and q of a row: a number each, or a list; None where there are none."""
     names = hamiltonian.coordinates
     if hamiltonian.planar or not values:
@@ -177,41 +159,41 @@ def solution_points(
     t0: Fraction,
     times: Mapping[int, Fraction],
     digits: int,
-) -> Iterator[AnyFlowPoint]:
+) -> Iterator[Any]:
     """The exact flow from the coordinates in `start` and t0, at these times after it by their N, to
     so many digits."""
+    model = FlowPoint if hamiltonian.planar else FlowPointInDegrees
     for step, time in times.items():
-        yield _flow_point(hamiltonian, start, t0, step, time, digits)
+        status, kind, values = _solution_at(hamiltonian, start, t0, time, digits)
+        state: dict[str, Any] = {"status": status, "kind": kind, **_state(hamiltonian, values)}
+        yield model(step=step, time=text(time), **state)
 
 
-def _flow_point(
+def _solution_at(
     hamiltonian: Hamiltonian,
     start: Mapping[str, Fraction],
     t0: Fraction,
-    step: int,
     time: Fraction,
     digits: int,
-) -> AnyFlowPoint:
-    model = FlowPoint if hamiltonian.planar else FlowPointInDegrees
-    row: dict[str, Any] = {"step": step, "time": text(time), "status": "not followed", "kind": None}
+) -> tuple[str, Kind | None, Numbers]:
+    """The status of a row of the exact flow, what its radii are, and its values."""
     try:
         for guard in _GUARDS:
-            if step == 0:  # the initial value itself, also where H is not defined
+            if time == 0:  # the initial value itself, also where H is not defined
                 at = Solution(start, Fraction(0), "the initial value itself")
             else:
                 at = solution_in_degrees(hamiltonian, start, time, digits + guard, t0)
             known = {name: (x, at.bound) for name, x in at.point.items()}
             values = _all_rounded(known, start, digits, guard)
             if all(values.values()):
-                row["status"], row["kind"] = "finished", "enclosed" if at.enclosed else "estimated"
-                return model(**row, **_state(hamiltonian, values))
+                return "finished", "enclosed" if at.enclosed else "estimated", values
     except InputError as error:
         if error.name != "digits":
             raise
     except NoFlowError:
         if _blows_up(hamiltonian, start, time):
-            row["status"] = "blows up"
-    return model(**row, **_state(hamiltonian, {}))
+            return "blows up", None, {}
+    return "not followed", None, {}
 
 
 def _blows_up(hamiltonian: Hamiltonian, start: Mapping[str, Fraction], time: Fraction) -> bool:

@@ -5,7 +5,7 @@ from importlib.util import find_spec
 
 from verify.errors import NOT_GIVEN, InputError
 from verify.files import MOST_BYTES
-from verify.reference.make.cells import Row
+from verify.reference.make.columns import Row
 from verify.reference.make.reading import MOST_CELLS
 
 

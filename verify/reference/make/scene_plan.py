@@ -5,12 +5,8 @@ from itertools import product
 from typing import Any
 
 from verify.execution.plan import Plan
-from verify.reference.make.tasks import (
-    OrbitInDegreesTask,
-    OrbitTask,
-    SolutionInDegreesTask,
-    SolutionTask,
-)
+from verify.reference.make.columns import orbit_columns
+from verify.reference.make.tasks import OrbitTask, SolutionTask
 from verify.scenes.scene import Scene
 from verify.scenes.sections import Reference
 from verify.studies.kinds.proofs import proof_task
@@ -25,10 +21,11 @@ def plan_references(scenes: Sequence[Scene]) -> Plan:
     plan = Plan()
     for scene in scenes:
         name = scene.name or scene.title or "scene"
+        numbers = "ΔJ, MSE and Λ" if scene.exact_hamiltonian().planar else "H, S, W and Λ"
         for proof in proof_tasks(scene):
             plan.need(proof, f"{name}: orders and leading coefficients")
         for orbit in orbit_tasks(scene):
-            plan.need(orbit, f"{name}: state, {orbit.numbers} at chosen steps")
+            plan.need(orbit, f"{name}: state, {numbers} at chosen steps")
         for solution in solution_tasks(scene):
             plan.need(solution, f"{name}: the exact flow at their times")
     return plan
@@ -39,7 +36,7 @@ def size_of(scene: Scene) -> int:
     size, degrees = 0, scene.exact_hamiltonian().degrees
     for section in scene.reference:
         rows = len(section.initial_values) * len(section.step_sizes) * len(section.steps)
-        numbers = 2 * degrees + (3 if degrees == 1 else 4)
+        numbers = 2 * degrees + len(orbit_columns(degrees))
         size += rows * len(schemes_of(scene, section)) * (numbers * section.digits + 300 * degrees)
         size += rows * section.flow * (2 * degrees * section.digits + 200 * degrees)
     return size
@@ -57,20 +54,18 @@ def proof_tasks(scene: Scene) -> Iterator[ProofTask]:
         yield proof_task(scene, name, formulas=False)
 
 
-def orbit_tasks(scene: Scene) -> Iterator[OrbitTask | OrbitInDegreesTask]:
+def orbit_tasks(scene: Scene) -> Iterator[OrbitTask]:
     """Section by section: scheme, initial value, step size."""
-    kind = OrbitTask if scene.exact_hamiltonian().planar else OrbitInDegreesTask
     for section in scene.reference:
         for scheme, given in product(schemes_of(scene, section), _starts(scene, section)):
-            yield kind(scheme=scheme, **given)
+            yield OrbitTask(scheme=scheme, **given)
 
 
-def solution_tasks(scene: Scene) -> Iterator[SolutionTask | SolutionInDegreesTask]:
+def solution_tasks(scene: Scene) -> Iterator[SolutionTask]:
     """Section by section, where the flow is asked for: initial value, step size."""
-    kind = SolutionTask if scene.exact_hamiltonian().planar else SolutionInDegreesTask
     for section in (x for x in scene.reference if x.flow):
         for given in _starts(scene, section):
-            yield kind(**given)
+            yield SolutionTask(**given)
 
 
 def _starts(scene: Scene, section: Reference) -> Iterator[dict[str, Any]]:

@@ -1,10 +1,9 @@
 """The tasks of reference data: an orbit and the exact flow, every number correctly rounded."""
 
 from fractions import Fraction
-from typing import Any, ClassVar, Literal
+from typing import Any, Literal
 
 from verify.arithmetic import automatic
-from verify.arithmetic.exact import text
 from verify.execution.keeping import Keeper
 from verify.execution.task import HamiltonianTask
 from verify.hamiltonians.start import point_of
@@ -12,7 +11,6 @@ from verify.kernels.orbit import Orbit
 from verify.lockstep import Course, alone
 from verify.scenes.frozen import Frozen
 from verify.scenes.results.reference import OrbitResult, SolutionResult
-from verify.scenes.results.reference_in_degrees import OrbitInDegreesResult, SolutionInDegreesResult
 from verify.scenes.values import Coordinates, Number, StepSize
 
 ROW_COST = 1_000_000  # of a row of reference data, however few its steps
@@ -23,33 +21,28 @@ class AtSteps(HamiltonianTask):
     """What is asked for from an initial value, after each of these numbers of steps."""
 
     imports = ("verify.reference.make.orbit_points",)
+    step_size: StepSize
     q: Coordinates
     p: Coordinates
     t0: Number | None = None
-    step_size: StepSize
-    steps: tuple[int, ...]
     digits: int
+    steps: tuple[int, ...]
 
     @property
     def inputs(self) -> dict[str, Any]:
         """Step size, initial value, t₀ and digits, as the files have them: in several degrees of
         freedom they have lists, and a t₀ of every H."""
-        exact = {"step_size": self.step_size, "q": self.q, "p": self.p, "t0": self.t0}
+        names = {"step_size", "q", "p", "t0", "digits"}
         if isinstance(self.q, Fraction) and self.t0 is None:
-            exact.pop("t0")
-        return {**{name: _texts(x) for name, x in exact.items()}, "digits": self.digits}
+            names.remove("t0")
+        return self.model_dump(include=names)
 
 
-def _texts(x: Fraction | tuple[Fraction, ...] | None) -> str | tuple[str, ...] | None:
-    if x is None:
-        return None
-    return text(x) if isinstance(x, Fraction) else tuple(map(text, x))
-
-
-class OrbitAtSteps(AtSteps):
+class OrbitTask(AtSteps):
     """A scheme's orbit after each of these numbers of steps, correctly rounded."""
 
-    numbers: ClassVar[str]
+    result = OrbitResult
+    kind: Literal["orbit"] = "orbit"
     scheme: str
 
     @property
@@ -57,88 +50,36 @@ class OrbitAtSteps(AtSteps):
         return ROW_COST * len(self.steps) + automatic()[-1].cost * sum(self.steps)
 
     @property
-    def orbit(self) -> Orbit:
-        """What is run."""
-        exact, t0 = self.exact_hamiltonian(), self.t0 or Fraction()
-        return Orbit(exact, self.scheme, self.step_size, self.q, self.p, t0=t0)
-
-
-class OrbitTask(OrbitAtSteps):
-    """State, ΔJ, MSE and Λ."""
-
-    result = OrbitResult
-    numbers = "ΔJ, MSE and Λ"
-    kind: Literal["orbit"] = "orbit"
-
-    @property
     def ensemble(self) -> str | None:
         """Orbits of one scheme's map, whatever the step size and the initial value."""
         return f"{self.kind} {self.scheme} {self.hamiltonian}"
 
-    def compute(self, keeper: Keeper) -> OrbitResult:
-        from verify.reference.make.orbit_points import orbit_points
-
-        points = alone(orbit_points(self.orbit, self.steps, self.digits))
-        return OrbitResult.model_validate({"points": points})
+    def compute(self, keeper: Keeper) -> Frozen:
+        return alone(self.compute_in_turn(keeper))[self.key]
 
     def compute_in_turn(self, keeper: Keeper) -> Course[dict[str, Frozen]]:
         from verify.reference.make.orbit_points import orbit_points
 
-        points = yield from orbit_points(self.orbit, self.steps, self.digits)
-        return {self.key: OrbitResult.model_validate({"points": points})}
+        exact, t0 = self.exact_hamiltonian(), self.t0 or Fraction()
+        orbit = Orbit(exact, self.scheme, self.step_size, self.q, self.p, t0=t0)
+        points = yield from orbit_points(orbit, self.steps, self.digits)
+        return {self.key: OrbitResult(points=points)}
 
 
-class OrbitInDegreesTask(OrbitAtSteps):
-    """State, H, S, W and Λ."""
-
-    result = OrbitInDegreesResult
-    numbers = "H, S, W and Λ"
-    kind: Literal["orbit in degrees"] = "orbit in degrees"
-
-    def compute(self, keeper: Keeper) -> OrbitInDegreesResult:
-        from verify.reference.make.orbit_points import orbit_points
-
-        points = alone(orbit_points(self.orbit, self.steps, self.digits))
-        return OrbitInDegreesResult.model_validate({"points": points})
-
-
-class SolutionAtSteps(AtSteps):
+class SolutionTask(AtSteps):
     """The exact flow at the times N·h for each of these N, correctly rounded."""
+
+    result = SolutionResult
+    kind: Literal["solution"] = "solution"
 
     @property
     def cost(self) -> int:
         return FLOW_ROW_COST * len(self.steps)
 
-    @property
-    def times(self) -> dict[str, Any]:
-        """Where the exact flow begins, and the times after it by their N."""
-        exact = self.exact_hamiltonian()
-        after = {n: n * self.step_size for n in self.steps}
-        start = point_of(exact, self.q, self.p)
-        return {"hamiltonian": exact, "start": start, "t0": self.t0 or Fraction(), "times": after}
-
-
-class SolutionTask(SolutionAtSteps):
-    """p and q."""
-
-    result = SolutionResult
-    kind: Literal["solution"] = "solution"
-
     def compute(self, keeper: Keeper) -> SolutionResult:
         from verify.reference.make.orbit_points import solution_points
 
-        points = solution_points(**self.times, digits=self.digits)
-        return SolutionResult.model_validate({"points": tuple(points)})
-
-
-class SolutionInDegreesTask(SolutionAtSteps):
-    """p1 … pn, q1 … qn."""
-
-    result = SolutionInDegreesResult
-    kind: Literal["solution in degrees"] = "solution in degrees"
-
-    def compute(self, keeper: Keeper) -> SolutionInDegreesResult:
-        from verify.reference.make.orbit_points import solution_points
-
-        points = solution_points(**self.times, digits=self.digits)
-        return SolutionInDegreesResult.model_validate({"points": tuple(points)})
+        exact, t0 = self.exact_hamiltonian(), self.t0 or Fraction()
+        start, times = point_of(exact, self.q, self.p), {n: n * self.step_size for n in self.steps}
+        points = solution_points(exact, start, t0, times, self.digits)
+        return SolutionResult(points=tuple(points))

@@ -9,14 +9,24 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from verify.reference.make.cells import Row, cell
-from verify.reference.make.columns import orbit_columns, start_columns, state_columns, values_of
-from verify.reference.make.models import Data, ListedFile, Manifest, Proof
-from verify.reference.make.models_in_degrees import (
+from verify.hamiltonians.coordinates import coordinates_in
+from verify.reference.make.columns import (
+    Row,
+    cell,
+    orbit_columns,
+    start_columns,
+    values_of,
+)
+from verify.reference.make.models import (
+    MODELS,
     AnyData,
     AnyFlow,
     AnyRun,
+    Data,
     DataInDegrees,
+    ListedFile,
+    Manifest,
+    Proof,
     ProofInDegrees,
 )
 
@@ -70,7 +80,7 @@ def schema_text(name: str) -> str:
 
 def tables(data: AnyData) -> dict[str, list[Row]]:
     """The same as tables of texts, by file name without its ending; the first row names columns."""
-    state = state_columns(data.degrees)
+    state = coordinates_in(data.degrees)
     beside = (*state, *orbit_columns(data.degrees))
     return {
         f"{data.name}-proofs": list(_proof_rows(data)),
@@ -79,17 +89,15 @@ def tables(data: AnyData) -> dict[str, list[Row]]:
     }
 
 
-def schemas_for(planar: Iterable[bool]) -> tuple[str, ...]:
-    """The schemas of a folder whose scenes are of the plane, or not: those that it needs, and the
-    manifest's."""
-    kinds = set(planar)
-    needed = {"data.schema.json": True in kinds or not kinds, OF_DEGREES: False in kinds}
-    return tuple(name for name in SCHEMAS if needed.get(name, True))
+def schemas_for(formats: Iterable[str]) -> tuple[str, ...]:
+    """The schemas of a folder that has data of these formats, and the manifest's."""
+    needed = {MODELS[name] for name in formats} or {Data}
+    return tuple(name for name, model in SCHEMAS.items() if model in {*needed, Manifest})
 
 
-def names_of(scenes: Mapping[str, bool], *, parquet: bool) -> set[str]:
+def names_of(scenes: Mapping[str, str], *, parquet: bool) -> set[str]:
     """The files that scenes of these names have, with the schemas and without the manifest; of each
-    it is said whether it is of the plane."""
+    the data's format is given."""
     found = set(schemas_for(scenes.values()))
     for name in scenes:
         found.add(f"{name}.json")
@@ -106,14 +114,11 @@ def csv_text(rows: list[Row]) -> str:
 
 
 def _proof_rows(data: AnyData) -> Iterator[Row]:
-    """An entry of a leading coefficient stands as NAME: FORMULA, entries between semicolons."""
     names = (Proof if isinstance(data, Data) else ProofInDegrees).model_fields
     yield ("hamiltonian", "parameters", *names)
     parameters = "; ".join(f"{name} = {value}" for name, value in data.parameters.items())
     for proof in data.proofs:
         content = proof.model_dump(mode="json")
-        if isinstance(proof, ProofInDegrees):
-            content["leading"] = "; ".join(f"{at}: {x}" for at, x in proof.leading.items())
         yield (data.hamiltonian, parameters, *(cell(content[name]) for name in names))
 
 
@@ -126,9 +131,10 @@ def _rows(
     yield (*named, "step_size", *start_columns(data.degrees), *time, "digits", *told, *pairs)
     for of in tables:
         inputs = [
-            *(cell(getattr(of, name)) for name in (*named, "step_size")),
-            *(x for z in (of.q, of.p) for x in ((z,) if isinstance(z, str) else z)),
-            *(cell(getattr(of, name)) for name in (*time, "digits")),
+            *(getattr(of, name) for name in (*named, "step_size")),
+            *of.texts.values(),
+            *(cell(of.begins) for _ in time),
+            cell(of.digits),
         ]
         for row in of.rows:
             values = values_of(row, data.degrees)

@@ -1,9 +1,10 @@
 """An orbit and the exact flow at chosen steps, every number correctly rounded; for reference data.
 
-A description here is what the published JSON Schema says of a key.
+In the plane p and q are a number each, in n degrees of freedom a list each. A description here is
+what the published JSON Schema says of a key.
 """
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field
 
@@ -21,6 +22,8 @@ KindOrNone = Annotated[
     ),
 ]
 _P, _Q = "the momentum p", "the displacement q"
+_EACH_P, _EACH_Q = "the momenta p1 … pn", "the displacements q1 … qn"
+_ENTRIES = "an entry of its matrix in p1 … pn, q1 … qn"
 
 
 class Rounded(Frozen):
@@ -37,8 +40,12 @@ class Rounded(Frozen):
     )
 
 
+Cell = Rounded | None
+Cells = tuple[Rounded, ...] | None
+
+
 class OrbitRow(Frozen):
-    """What is known after `step` steps but for its numbers."""
+    """What is known after `step` steps, but for the numbers beside the state."""
 
     model_config = ConfigDict(populate_by_name=True)
 
@@ -53,36 +60,58 @@ class OrbitRow(Frozen):
         description="the step that left the range, 1 being the first; else null"
     )
     kind: KindOrNone
+    p: Any
+    q: Any
 
 
 class OrbitPoint(OrbitRow):
     """What is known after `step` steps; the values are None unless `status` is "finished"."""
 
-    p: Rounded | None = Field(description=f"{_P} after N steps")
-    q: Rounded | None = Field(description=f"{_Q} after N steps")
-    delta_j: Rounded | None = Field(
+    p: Cell = Field(description=f"{_P} after N steps")
+    q: Cell = Field(description=f"{_Q} after N steps")
+    delta_j: Cell = Field(
         description="ΔJ = det J − 1 of the step that begins at that state; null too where no "
         "step is defined there, or it is given by equations and det J is not known to be 1"
     )
-    mse: Rounded | None = Field(
-        description="(1/N) Σ ΔJ_k² over the steps k = 0 … N−1; null too where N is 0"
+    mse: Cell = Field(description="(1/N) Σ ΔJ_k² over the steps k = 0 … N−1; null too where N is 0")
+    lam: Cell = Field(alias="lambda", description="Λ = Π(1 + ΔJ_k) − 1 over the steps k = 0 … N−1")
+
+
+class OrbitPointInDegrees(OrbitRow):
+    """What is known after `step` steps; the values are None unless `status` is "finished"."""
+
+    p: Cells = Field(description=f"{_EACH_P} after N steps")
+    q: Cells = Field(description=f"{_EACH_Q} after N steps")
+    energy: Cell = Field(
+        description="H at that state, and at the time t0 + N h where it depends on time; null too "
+        "where H is not defined there"
     )
-    lam: Rounded | None = Field(
-        alias="lambda", description="Λ = Π(1 + ΔJ_k) − 1 over the steps k = 0 … N−1"
+    symplectic_defect_max: Cell = Field(
+        description=f"S = JᵀΩJ − Ω, J being ∂z after a step by ∂z before it, Ω = Σ dp_i∧dq_i: the "
+        f"greatest |{_ENTRIES}| of any of the steps k = 0 … N−1; null too where N is 0"
     )
+    symplectic_defect: Cell = Field(
+        description="W = MᵀΩM − Ω, M being ∂z after N steps by ∂z at the start: the greatest "
+        f"|{_ENTRIES}|"
+    )
+    lam: Cell = Field(alias="lambda", description="Λ = Π det J_k − 1 over the steps k = 0 … N−1")
 
 
 class OrbitResult(Frozen):
     """One scheme's orbit at the steps that were asked for."""
 
-    points: tuple[OrbitPoint, ...]
+    points: tuple[OrbitPoint | OrbitPointInDegrees, ...]
 
 
 class FlowRow(Frozen):
-    """When a solution is looked at."""
+    """The exact solution at the time N·h; p and q are None unless `status` is "finished"."""
 
     step: int = Field(ge=0, description="N, where the time is N·h")
     time: str = Field(description="the time N·h exactly: a decimal or a quotient")
+    status: str
+    kind: KindOrNone
+    p: Any
+    q: Any
 
 
 class FlowPoint(FlowRow):
@@ -92,12 +121,21 @@ class FlowPoint(FlowRow):
         description="finished: p and q are there; blows up: the exact solution has left every "
         "bound by then; not followed: it could not be had"
     )
-    kind: KindOrNone
-    p: Rounded | None = Field(description=f"{_P} at that time")
-    q: Rounded | None = Field(description=f"{_Q} at that time")
+    p: Cell = Field(description=f"{_P} at that time")
+    q: Cell = Field(description=f"{_Q} at that time")
+
+
+class FlowPointInDegrees(FlowRow):
+    """The exact solution at the time N·h; p and q are None unless `status` is "finished"."""
+
+    status: Literal["finished", "not followed"] = Field(
+        description="finished: p and q are there; not followed: they could not be had"
+    )
+    p: Cells = Field(description=f"{_EACH_P} at that time")
+    q: Cells = Field(description=f"{_EACH_Q} at that time")
 
 
 class SolutionResult(Frozen):
     """The exact flow at the times that were asked for."""
 
-    points: tuple[FlowPoint, ...]
+    points: tuple[FlowPoint | FlowPointInDegrees, ...]

@@ -16,6 +16,7 @@ from verify.errors import InputError
 from verify.files import write_atomically
 from verify.reference.check.check import Checked, check
 from verify.reference.check.recompute import recomputed
+from verify.reference.compare.published import load as published
 from verify.reference.make.make import alone, load
 from verify.reference.make.models import Data
 from verify.reference.make.writing import MANIFEST
@@ -234,3 +235,26 @@ def test_a_table_that_would_fill_the_memory_is_one_line(
     parquet.write_table(table, out, compression="zstd", store_schema=False)
     with pytest.raises(InputError, match=f"mine.parquet.*{says}"):
         parquet_rows(out.getvalue(), "mine.parquet")
+
+
+IN_TIME = """
+hamiltonian = "p**2/2 + q**2/2 + q*cos(t)"
+schemes = ["lie1", "lie2"]
+[[reference]]
+step_sizes = [0.1]
+initial_values = [{ q = 1, p = 0 }]
+steps = [0, 1]
+digits = 9
+flow = false
+"""
+
+
+def test_a_run_without_a_time_among_those_that_have_one_differs(tmp_path: Path) -> None:
+    scenes = {"driven": IN_TIME}
+    (data,) = made(scenes)
+    raw = data.model_dump(mode="json", by_alias=True)
+    del raw["runs"][0]["t0"]
+    put(tmp_path / "set", [Data.model_validate(raw)], scenes)
+    assert check(tmp_path / "set", share=1, seed=1).differences
+    with pytest.raises(InputError, match="H depends on t, and its runs have no t0"):
+        published(tmp_path / "set", None)
