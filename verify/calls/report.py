@@ -5,11 +5,13 @@ from verify.scenes.results import report as results
 
 
 class SceneResult(results.SceneResult):
-    __doc__ = results.SceneResult.__doc__
+    """A scene's results, whose runs can be done again."""
+
     runs: tuple[RunResult, ...]
     series: tuple[RunResult, ...]
 
 
 class Report(results.Report):
-    __doc__ = results.Report.__doc__
+    """A report and all its numbers, whose runs can be done again; see the class that it is of."""
+
     scenes: tuple[SceneResult, ...]

@@ -11,7 +11,12 @@ from verify.scenes.results.run import EnergyDrift
 
 
 class RunResult(results.RunResult):
-    __doc__ = results.RunResult.__doc__
+    """One run of N steps of a scheme, in one arithmetic, which can be done again.
+
+    `values` holds p, q and the observables asked for, each with its bound; `status` says how it
+    ended, and `error_kind` whether every bound is rigorous. All fields are told at
+    `verify.scenes.results.run.RunResult`.
+    """
 
     @classmethod
     def of(cls, result: results.RunResult) -> Self:
@@ -20,16 +25,26 @@ class RunResult(results.RunResult):
 
     @cached_property
     def orbit(self) -> OrbitTable:
+        """The states as arrays and exact texts: every step up to 10,000 or `points`, else thinned.
+
+        Raises InputError where the run ended without values.
+        """
         from verify.runs.orbit import orbit_of
 
         return orbit_of(self, self._points)
 
     def solution_errors(self, points: int = 200) -> tuple[tuple[Fraction, Value], ...]:
+        """(t, |z − φ_t(z₀)|) at so many states at most; InputError where no exact solution is
+        known."""
         from verify.runs.solution_error import solution_errors
 
         return solution_errors(self, points)
 
     def energy_drifts(self, order: int = 4, points: int = 1000) -> list[EnergyDrift]:
+        """H̃ − H̃₀ at so many states at most, for H and for H̃ with each term up to h^order.
+
+        Raises InputError where the scheme has no H̃ but H.
+        """
         from verify.runs.energy_drift import energy_drifts
 
         return energy_drifts(self, order, points)
