@@ -21,7 +21,7 @@ from verify.execution.plan import Plan
 from verify.exploration.claims import claim_property
 from verify.exploration.property import Property
 from verify.exploration.property_checks import outcome, properties_of
-from verify.exploration.sample_in_degrees import sample_of
+from verify.exploration.sample import Sample
 from verify.exploration.sample_space import SampleSpace
 from verify.exploration.scenes import scenes_of
 from verify.exploration.tasks import ExploreTask, ShrinkTask
@@ -156,7 +156,7 @@ def _again(asked: Exploration, earlier: Sequence[tuple[str, Scene]]) -> Iterator
     for name, scene in earlier:
         for each in asked.looks:
             if slug(each.name) == name:
-                wrong = outcome(each, sample_of(scene))[1]
+                wrong = outcome(each, Sample.of(scene))[1]
                 yield EarlierFailure(file=f"{scene.name}.toml", property=each.name, message=wrong)
 
 

@@ -22,7 +22,7 @@ from verify.arithmetic.exact import text
 from verify.errors import InputError
 from verify.exploration.different_scenes import by_shape, scene_of, shape_of
 from verify.exploration.measures import DIGITS, MEASURES, Measure
-from verify.exploration.sample_in_degrees import sample_of
+from verify.exploration.sample import Sample
 from verify.exploration.sample_space import SampleSpace
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.results.exploration import HuntResult, Worst
@@ -143,7 +143,7 @@ class MeasuredScenes:
         """What a scene measures; None too where there is nothing left to measure it with."""
         text = scene_text(scene)
         if text not in self.seen and self.left:
-            self.seen[text] = self.measure.of(sample_of(scene), DIGITS)
+            self.seen[text] = self.measure.of(Sample.of(scene), DIGITS)
         return self.seen.get(text)
 
     @property
@@ -171,7 +171,7 @@ def _confirmed(look: MeasuredScenes) -> Iterator[Worst]:
             return
         if shape in found:
             continue
-        again = look.measure.of(sample_of(scene_of(each)), 2 * DIGITS)
+        again = look.measure.of(Sample.of(scene_of(each)), 2 * DIGITS)
         if again is not None and abs(again - each.value) <= _AGREEMENT:
             found.add(shape)
             yield Worst(value=again, scene=each.scene)

@@ -12,9 +12,7 @@ from typing import Any
 
 from verify import arithmetic as number_systems
 from verify.arithmetic.exact import magnitude
-from verify.exploration.any_sample import AnySample
 from verify.exploration.sample import Sample
-from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.lockstep import alone
 from verify.studies.separation.chain import separated_chains
@@ -38,7 +36,7 @@ class Measure:
     value: Callable[[Any, int], float | None]
     several: str = ""
 
-    def of(self, sample: AnySample, digits: int) -> float | None:
+    def of(self, sample: Sample, digits: int) -> float | None:
         """Its value for a sample; None where it is not of so many degrees of freedom."""
         asked = self.said(sample.hamiltonian.degrees) or sample.hamiltonian.planar
         return self.value(sample, digits) if asked else None
@@ -69,7 +67,7 @@ def _greatest(trail: Trail, bound: Fraction) -> Fraction:
     return top if top > 10 * bound else Fraction(0)
 
 
-def digits_lost(sample: AnySample, digits: int = DIGITS) -> float | None:
+def digits_lost(sample: Sample, digits: int = DIGITS) -> float | None:
     """lg of the error of float64's coordinates after the run, in units of its roundoff.
 
     Relative to the farthest that the orbit is from the origin: where it comes near to that, no
@@ -82,14 +80,14 @@ def digits_lost(sample: AnySample, digits: int = DIGITS) -> float | None:
     return None if found.done < sample.steps else _lost(sample, exact, found)
 
 
-def _lost(sample: AnySample, exact: Outcome, found: Outcome) -> float | None:
+def _lost(sample: Sample, exact: Outcome, found: Outcome) -> float | None:
     names = tuple(sample.point)
     size = max(abs(x[n]) for x in (sample.point, *exact.trail) for n in names)
     error = max(abs(found.values[n] - exact.values[n]) for n in names)
     return None if not size or not error else _lg(error / (size * _ROUNDOFF))
 
 
-def growth(sample: AnySample, digits: int = DIGITS) -> float | None:
+def growth(sample: Sample, digits: int = DIGITS) -> float | None:
     """lg of the greatest |Λ| of the run, in numbers of so many digits: no rounding is in it; in n
     degrees of freedom of the greatest |entry| of W of the whole run."""
     name = "lambda_max" if sample.hamiltonian.planar else "symplectic_defect"
@@ -97,7 +95,7 @@ def growth(sample: AnySample, digits: int = DIGITS) -> float | None:
     return None if found is None or not found.values[name] else _lg(found.values[name])
 
 
-def defect_of_step(sample: AnySample, digits: int = DIGITS) -> float | None:
+def defect_of_step(sample: Sample, digits: int = DIGITS) -> float | None:
     """lg of the greatest |ΔJ| of the run, in n degrees of freedom of the greatest |entry| of S of
     any step, over h to the power that is proved of it."""
     name = "delta_j_max" if sample.hamiltonian.planar else "symplectic_defect_max"
@@ -115,10 +113,10 @@ def orbit(sample: Sample) -> list[tuple[Fraction, Fraction]]:
     return [(sample.q, sample.p), *((x["q"], x["p"]) for x in trail)]
 
 
-def _stays(sample: AnySample, digits: int, *observables: str) -> Outcome | None:
+def _stays(sample: Sample, digits: int, *observables: str) -> Outcome | None:
     """The run with so many digits; None where it goes far, or, in n degrees of freedom, where its
     kernel is long or nothing is to be observed."""
-    if isinstance(sample, SampleInDegrees) and (
+    if not sample.planar and (
         not sample.short or (observables and sample.step_map.symplectic_by_conditions)
     ):
         return None

@@ -2,63 +2,60 @@
 
 Asked of H without its couplings. J has the blocks that the plane's own maps have: S has ΔJ of each
 plane on its diagonal and nothing else, det J is their product, and W_N is Λ of each. By balls; of a
-step that solves equations by runs of 60 digits.
+step that solves equations by runs.
 """
 
 from collections.abc import Iterator, Sequence
-from fractions import Fraction
+from dataclasses import replace
 
 import sympy
 
 from verify.algebra.formula import symbol
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.oracles.ball_steps import BITS, BallState, ball_steps, defect, unlike
-from verify.exploration.oracles.mpfr_runs import RunInDegrees, must_agree
+from verify.exploration.oracles.mpfr_runs import end_of, must_agree
 from verify.exploration.property import Violation, only_if
-from verify.exploration.sample_in_degrees import SampleInDegrees
+from verify.exploration.sample import Sample
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
 _IN, _OF_EQUATIONS = 2, 4  # one in so many samples
 _MOST_STEPS = 3
-Part = tuple[Hamiltonian, dict[str, Fraction]]  # H_k as one of the plane, and its start
 
 
-def holds_in_degrees(sample: SampleInDegrees) -> None:
-    parts = list(_parts(sample))
-    together = Hamiltonian(sympy.Add(*(_of_degree(sample, k) for k in range(len(parts)))))
+def holds(sample: Sample) -> None:
+    only_if(not sample.planar)
+    planes = list(_planes(sample))
+    together = Hamiltonian(sympy.Add(*(_of_degree(sample, k) for k in range(len(planes)))))
     only_if(together.coordinates == sample.hamiltonian.coordinates and sample.brief)
     only_if(sample.is_turn(_IN if sample.scheme.explicit else _OF_EQUATIONS))
+    whole = replace(sample, hamiltonian=together)
     if not sample.scheme.explicit:
-        _by_runs(sample, together, parts)
+        only_if(sample.short)
+        _must_end_alike(whole, planes)
         return
-    steps = min(sample.steps, _MOST_STEPS)
-    step = sample.scheme.step_map(together)
-    start = sample.start if together.time_dependent else {
-        name: x for name, x in sample.start.items() if name != "t"
-    }  # fmt: skip
-    whole = ball_steps(step, start, steps)[-1].sharp()
-    planes = [_end_in_plane(sample, part, steps) for part in parts]
+    last, *others = (_last_state(each) for each in (whole, *planes))
     with working_precision(BITS):
-        _must_be_product(whole, planes)
+        _must_be_product(last, others)
 
 
-def _parts(sample: SampleInDegrees) -> Iterator[Part]:
-    """The planes; Silent where a degree has no term of its own."""
+def _planes(sample: Sample) -> Iterator[Sample]:
+    """Those of each degree; Silent where one has no term of its own."""
     n = sample.hamiltonian.degrees
     for k in range(n):
         expression = _of_degree(sample, k)
         only_if(bool(expression.free_symbols & _own(sample, k)))
-        p, q = (sample.hamiltonian.coordinates[half + k] for half in (0, n))
-        put = {symbol(p): symbol("p"), symbol(q): symbol("q")}
-        yield Hamiltonian(expression.xreplace(put)), {"p": sample.p[k], "q": sample.q[k]}
+        put = {symbol(sample.hamiltonian.coordinates[half + k]): symbol(letter)
+               for letter, half in (("p", 0), ("q", n))}  # fmt: skip
+        plane = replace(sample, hamiltonian=Hamiltonian(expression.xreplace(put)))
+        yield plane.at((sample.place[k], sample.place[n + k]))
 
 
-def _own(sample: SampleInDegrees, k: int) -> set[sympy.Symbol]:
+def _own(sample: Sample, k: int) -> set[sympy.Symbol]:
     names = sample.hamiltonian.coordinates
     return {symbol(names[k]), symbol(names[len(names) // 2 + k])}
 
 
-def _of_degree(sample: SampleInDegrees, k: int) -> sympy.Expr:
+def _of_degree(sample: Sample, k: int) -> sympy.Expr:
     """The terms of H that have coordinates of degree k and of no other."""
     every, own = set(map(symbol, sample.hamiltonian.coordinates)), _own(sample, k)
     terms = sympy.Add.make_args(sample.hamiltonian.exact)
@@ -66,12 +63,9 @@ def _of_degree(sample: SampleInDegrees, k: int) -> sympy.Expr:
                        x.free_symbols & (every - own)))  # fmt: skip
 
 
-def _end_in_plane(sample: SampleInDegrees, part: Part, steps: int) -> BallState:
-    hamiltonian, point = part
-    start = {**point, "h": sample.step_size}
-    if hamiltonian.time_dependent:
-        start["t"] = sample.t0
-    return ball_steps(sample.scheme.step_map(hamiltonian), start, steps)[-1].sharp()
+def _last_state(sample: Sample) -> BallState:
+    steps = min(sample.steps, _MOST_STEPS)
+    return ball_steps(sample.step_map, sample.start, steps)[-1].sharp()
 
 
 def _must_be_product(whole: BallState, planes: Sequence[BallState]) -> None:
@@ -95,10 +89,7 @@ def _must_be_product(whole: BallState, planes: Sequence[BallState]) -> None:
         raise Violation(f"Π det J is {unlike(found, product)}, the product of the planes'")
 
 
-def _by_runs(sample: SampleInDegrees, together: Hamiltonian, parts: Sequence[Part]) -> None:
-    only_if(sample.short)
-    found = RunInDegrees(together, sample.point, sample).end
-    for k, (hamiltonian, point) in enumerate(parts, start=1):
-        plane = RunInDegrees(hamiltonian, point, sample).end
-        own = {letter: found[f"{letter}{k}"] for letter in "pq"}
-        must_agree(own, plane, Fraction(1))
+def _must_end_alike(whole: Sample, planes: Sequence[Sample]) -> None:
+    found = end_of(whole)
+    for k, plane in enumerate(planes, start=1):
+        must_agree({letter: found[f"{letter}{k}"] for letter in "pq"}, end_of(plane))

@@ -27,7 +27,7 @@ _DIGITS = 8
 
 
 def holds(sample: Sample) -> None:
-    only_if(sample.is_turn(_IN) and sample.short)
+    only_if(sample.planar and sample.is_turn(_IN) and sample.short)
     with silent_at(Stopped):
         chains = alone(separated_chains(*sample.kernel_inputs, _DIGITS))
     wanted = _lambda_by_balls(sample)

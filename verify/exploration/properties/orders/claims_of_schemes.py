@@ -3,12 +3,12 @@
 Its ΔJ then has at least one order more than the scheme, as the exact flow has det J = 1.
 """
 
-from verify.exploration.any_sample import AnySample
 from verify.exploration.property import Violation, only_if
+from verify.exploration.sample import Sample
 from verify.verdict import Verdict
 
 
-def holds_in_any_degrees(sample: AnySample) -> None:
+def holds(sample: Sample) -> None:
     """In n degrees of freedom S takes the place of ΔJ."""
     only_if(sample.ordinary)
     proof, scheme = sample.proof, sample.scheme

@@ -2,22 +2,19 @@
 
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.any_sample import AnySample
 from verify.exploration.oracles.ball_steps import BITS, ball_steps, stepped, unlike
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
 from verify.proof.symmetry import by_series
 from verify.verdict import Verdict
 
-_IN = 3  # one in so many samples of the plane is looked at by series, too
+_IN = 3  # one in so many samples is looked at by series, too
 
 
-def holds_in_any_degrees(sample: AnySample) -> None:
-    only_if(sample.scheme.symmetric)
-    if isinstance(sample, Sample):
+def holds(sample: Sample) -> None:
+    only_if(sample.scheme.symmetric and (sample.planar or sample.brief))
+    if sample.is_turn(_IN) and sample.ordinary and not sample.step_map.implicit:
         _by_series(sample)
-    else:
-        only_if(sample.brief)
     first, last = ball_steps(sample.step_map, sample.start, 1)
     with working_precision(BITS):
         back = stepped(sample.step_map, last, rational_ball(-sample.step_size)).sharp()
@@ -28,7 +25,6 @@ def holds_in_any_degrees(sample: AnySample) -> None:
 
 
 def _by_series(sample: Sample) -> None:
-    if sample.is_turn(_IN) and sample.ordinary and not sample.step_map.implicit:
-        series = by_series(sample.step_map, sample.scheme.order + 1)
-        if series.verdict is Verdict.REFUTED:
-            raise Violation(f"by series it is not symmetric: {series.reason}")
+    series = by_series(sample.step_map, sample.scheme.order + 1)
+    if series.verdict is Verdict.REFUTED:
+        raise Violation(f"by series it is not symmetric: {series.reason}")

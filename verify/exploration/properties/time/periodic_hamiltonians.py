@@ -14,7 +14,6 @@ from verify.algebra.generator import Generator
 from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.any_sample import AnySample
 from verify.exploration.oracles.ball_steps import (
     BITS,
     BallState,
@@ -25,10 +24,11 @@ from verify.exploration.oracles.ball_steps import (
     unlike,
 )
 from verify.exploration.property import Violation, known, only_if
+from verify.exploration.sample import Sample
 from verify.functions.function import CIRCLE
 
 
-def holds_in_any_degrees(sample: AnySample) -> None:
+def holds(sample: Sample) -> None:
     """The same of the Jacobian."""
     only_if(sample.timed and sample.brief)
     frequency = known(_frequency(*sample.slopes))
