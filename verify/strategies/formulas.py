@@ -31,7 +31,6 @@ _Shapes = dict[str, tuple[int, bool | None]]
 _QUADRATIC: _Shapes = {"elliptic": (1, True), "hyperbolic": (1, False), "parabolic": (1, False)}
 _SHAPES: _Shapes = {"confining": (2, True), "open": (2, False), "free": (2, None)}
 _OPEN_FIRST: _Shapes = {"open": (2, False)} | _SHAPES  # p**2/2 + cos(q) is the simplest
-USUAL = Limits()
 _CHOICES = 16  # as many as the simplest formula of any plan takes
 
 
@@ -63,8 +62,8 @@ class Formula:
 
 
 def formulas(
-    kinds: Sequence[str] = KINDS,
-    limits: Limits = USUAL,
+    kinds: Sequence[str],
+    limits: Limits,
     *,
     separable: bool | None = None,
     bounded: bool | None = None,

@@ -18,10 +18,9 @@ from verify.schemes.methods.taylor.lie import eta_of
 from verify.schemes.scheme import Scheme
 from verify.strategies import numbers
 from verify.strategies.arguments import MOST_DEGREES, whole, yes_no
-from verify.strategies.drives import driven
-from verify.strategies.formulas import KINDS, USUAL, Formula, formulas
-from verify.strategies.formulas_in_degrees import Wanted, formulas_in_degrees
+from verify.strategies.formulas import Formula
 from verify.strategies.schemes import named, takers
+from verify.strategies.systems import System
 from verify.strategies.terms import Limits
 
 _SHORT = Limits(degree=4, terms=2)  # of each of several degrees of freedom
@@ -161,15 +160,14 @@ def _of_hamiltonians(
 def _formulas(
     separable: bool | None = None, time_dependent: bool = False, degrees: int = 1
 ) -> st.SearchStrategy[Formula]:
-    if degrees > 1:
-        wanted = Wanted(degrees, KINDS, _SHORT, separable=separable, time_dependent=time_dependent)
-        bare, with_names = (
-            formulas_in_degrees(replace(wanted, with_parameters=x)) for x in (False, True)
-        )
-        return st.one_of(bare, bare, with_names)
-    plain, named = (formulas(separable=separable, with_parameters=named) for named in (False, True))
-    still = st.one_of(plain, plain, named)
-    return driven(still, KINDS, USUAL) if time_dependent else still
+    system = System(
+        degrees,
+        Limits() if degrees == 1 else _SHORT,
+        separable=separable,
+        time_dependent=time_dependent,
+    )
+    bare, with_names = (replace(system, with_parameters=x).formulas() for x in (False, True))
+    return st.one_of(bare, bare, with_names)
 
 
 def _scene(formula: Formula, scheme: Scheme, run: Mapping[str, Any]) -> Scene:
