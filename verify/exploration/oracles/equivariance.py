@@ -73,9 +73,8 @@ def transformed_hamiltonian(sample: Sample, change: Change) -> Hamiltonian:
 def must_be_same_steps(sample: Sample, change: Change) -> None:
     """Violation where the run of K from M z is not the image of that of H, or S not that of S;
     Silent where one is not known. In the plane of one step, whose maps may be long."""
-    planar = sample.hamiltonian.planar
-    only_if(sample.brief and (planar or sample.scheme.explicit))
-    steps = 1 if planar else min(sample.steps, _MOST_STEPS)
+    only_if(sample.brief)
+    steps = 1 if sample.planar else min(sample.steps, _MOST_STEPS)
     ours = [state.sharp() for state in ball_steps(sample.step_map, sample.start, steps)]
     other = replace(
         sample,
@@ -86,7 +85,7 @@ def must_be_same_steps(sample: Sample, change: Change) -> None:
     ).at(moved(change, sample.point))
     # A part of H may have vanished with a coordinate: K is of fewer degrees then.
     only_if(other.hamiltonian.coordinates == sample.hamiltonian.coordinates)
-    only_if(planar or other.brief)
+    only_if(other.planar or other.brief)
     theirs = [state.sharp() for state in ball_steps(other.step_map, other.start, steps)]
     with working_precision(BITS):
         for mine, found in zip(ours[1:], theirs[1:], strict=True):

@@ -5,7 +5,7 @@ plane on its diagonal and nothing else, det J is their product, and W_N is Λ of
 step that solves equations by runs.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import sympy
@@ -16,6 +16,7 @@ from verify.exploration.oracles.ball_steps import BITS, BallState, ball_steps, d
 from verify.exploration.oracles.mpfr_runs import end_of, must_agree
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
+from verify.hamiltonians.coordinates import PLANE
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
 _IN, _OF_EQUATIONS = 2, 4  # one in so many samples
@@ -24,11 +25,12 @@ _MOST_STEPS = 3
 
 def holds(sample: Sample) -> None:
     only_if(not sample.planar)
-    planes = list(_planes(sample))
-    together = Hamiltonian(sympy.Add(*(_of_degree(sample, k) for k in range(len(planes)))))
+    parts = [_of_degree(sample, k) for k in range(sample.hamiltonian.degrees)]
+    together = Hamiltonian(sympy.Add(*parts))
     only_if(together.coordinates == sample.hamiltonian.coordinates and sample.brief)
     only_if(sample.is_turn(_IN if sample.scheme.explicit else _OF_EQUATIONS))
     whole = replace(sample, hamiltonian=together)
+    planes = [_plane(sample, k, part) for k, part in enumerate(parts)]
     if not sample.scheme.explicit:
         only_if(sample.short)
         _must_end_alike(whole, planes)
@@ -38,29 +40,24 @@ def holds(sample: Sample) -> None:
         _must_be_product(last, others)
 
 
-def _planes(sample: Sample) -> Iterator[Sample]:
-    """Those of each degree; Silent where one has no term of its own."""
-    n = sample.hamiltonian.degrees
-    for k in range(n):
-        expression = _of_degree(sample, k)
-        only_if(bool(expression.free_symbols & _own(sample, k)))
-        put = {symbol(sample.hamiltonian.coordinates[half + k]): symbol(letter)
-               for letter, half in (("p", 0), ("q", n))}  # fmt: skip
-        plane = replace(sample, hamiltonian=Hamiltonian(expression.xreplace(put)))
-        yield plane.at((sample.place[k], sample.place[n + k]))
-
-
-def _own(sample: Sample, k: int) -> set[sympy.Symbol]:
-    names = sample.hamiltonian.coordinates
-    return {symbol(names[k]), symbol(names[len(names) // 2 + k])}
-
-
 def _of_degree(sample: Sample, k: int) -> sympy.Expr:
-    """The terms of H that have coordinates of degree k and of no other."""
-    every, own = set(map(symbol, sample.hamiltonian.coordinates)), _own(sample, k)
+    """The terms of H that have coordinates of degree k and of no other; Silent without any."""
+    every = list(map(symbol, sample.hamiltonian.coordinates))
+    own = {every[k], every[sample.hamiltonian.degrees + k]}
+    others = set(every) - own
     terms = sympy.Add.make_args(sample.hamiltonian.exact)
-    return sympy.Add(*(x for x in terms if x.free_symbols & own and not
-                       x.free_symbols & (every - own)))  # fmt: skip
+    kept = [x for x in terms if x.free_symbols & own and not x.free_symbols & others]
+    only_if(bool(kept))
+    return sympy.Add(*kept)
+
+
+def _plane(sample: Sample, k: int, part: sympy.Expr) -> Sample:
+    """That of degree k, by itself."""
+    places = k, sample.hamiltonian.degrees + k
+    names = [symbol(sample.hamiltonian.coordinates[at]) for at in places]
+    put = dict(zip(names, map(symbol, PLANE), strict=True))
+    plane = replace(sample, hamiltonian=Hamiltonian(part.xreplace(put)))
+    return plane.at(sample.place[at] for at in places)
 
 
 def _last_state(sample: Sample) -> BallState:

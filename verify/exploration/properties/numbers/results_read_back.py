@@ -19,12 +19,11 @@ _LONGEST = 15  # terms of a map
 
 
 def holds(sample: Sample) -> None:
-    """The map's formulas are those of the plane."""
     if sample.is_turn(_SCENES):
         _must_be_same_scene(sample.scene)
     else:
         _must_be_same(sample)
-    if sample.planar and sample.is_turn(_MAPS):
+    if sample.is_turn(_MAPS) and sample.brief:
         _must_be_same_map(sample)
 
 
@@ -49,7 +48,7 @@ def _must_be_same_map(sample: Sample) -> None:
     parts = parts_of(sample.step_map)
     if parts is None or parts[-1].length > _LONGEST:
         return
-    closed, names = parts[-1], ("p_next", "q_next")
+    closed, names = parts[-1], [f"{name}_next" for name in sample.point]
     texts = [to_text(closed.ring.expression(x)) for x in closed.elements]
     formulas = dict(zip(names, texts, strict=True))
     read = map_by_formulas(sample.hamiltonian, formulas).flat

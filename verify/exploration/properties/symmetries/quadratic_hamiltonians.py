@@ -10,7 +10,6 @@ from fractions import Fraction
 from functools import lru_cache
 from math import factorial
 
-import flint
 import sympy
 
 from verify.algebra.enclosure import enclose
@@ -19,6 +18,7 @@ from verify.arithmetic.arb import middle_and_radius
 from verify.arithmetic.exact import short
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.oracles.ball_steps import BITS, Matrix, ball_steps, overlap
+from verify.exploration.oracles.symplectic_matrices import Exact, exact, identity
 from verify.exploration.property import Silent, Violation, known, only_if
 from verify.exploration.sample import Sample
 from verify.hamiltonians.canonical_field import canonical_field
@@ -85,10 +85,9 @@ def _stability_matrix(
     """R(hL), where L has −∂²H/∂q∂z in its upper half and ∂²H/∂p∂z in its lower."""
     n = len(form) // 2
     slopes = [[-h * x for x in row] for row in form[n:]] + [[h * x for x in r] for r in form[:n]]
-    exact = flint.fmpq_mat([[flint.fmpq(x.numerator, x.denominator) for x in r] for r in slopes])
-    one = flint.fmpq_mat([[int(a == b) for b in range(2 * n)] for a in range(2 * n)])
-    total, power = exact * 0, one
+    matrix = Exact([[exact(x) for x in row] for row in slopes])
+    total, power = matrix * 0, identity(2 * n)
     for c in coefficients:
-        total, power = total + power * flint.fmpq(c.numerator, c.denominator), power * exact
+        total, power = total + power * exact(c), power * matrix
     with working_precision(BITS):
         return Matrix(total)
