@@ -22,7 +22,7 @@ from verify.exploration.claims import claim_property
 from verify.exploration.property import Property
 from verify.exploration.property_checks import outcome, properties_of
 from verify.exploration.sample import Sample
-from verify.exploration.sample_space import SampleSpace
+from verify.exploration.sample_space import SampleSpace, check_scenes
 from verify.exploration.scenes import scenes_of
 from verify.exploration.tasks import ExploreTask, ShrinkTask
 from verify.files import write_atomically
@@ -57,10 +57,7 @@ class Exploration:
     drawn: SampleSpace = field(default_factory=SampleSpace)
 
     def __post_init__(self) -> None:
-        if not 1 <= self.examples <= MOST_EXAMPLES:
-            raise InputError("examples", self.examples, f"must be 1 … {MOST_EXAMPLES}")
-        if self.seed < 0:
-            raise InputError("seed", self.seed, "must be 0 or more")
+        check_scenes(self.seed, self.examples, MOST_EXAMPLES)
         names = [each.name for each in self.looks]
         if not names:
             raise InputError("properties", NOT_GIVEN, "give one at least")

@@ -10,10 +10,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from verify import arithmetic as number_systems
 from verify.arithmetic.exact import magnitude
 from verify.exploration.sample import Sample
-from verify.kernels.stepping import KernelRun, Outcome
+from verify.kernels.stepping import Outcome
 from verify.lockstep import alone
 from verify.studies.separation.chain import separated_chains
 from verify.studies.separation.mixed_run import Stopped
@@ -38,7 +37,7 @@ class Measure:
 
     def of(self, sample: Sample, digits: int) -> float | None:
         """Its value for a sample; None where it is not of so many degrees of freedom."""
-        asked = self.said(sample.hamiltonian.degrees) or sample.hamiltonian.planar
+        asked = self.said(sample.hamiltonian.degrees) or sample.planar
         return self.value(sample, digits) if asked else None
 
     def said(self, degrees: int) -> str:
@@ -90,26 +89,29 @@ def _lost(sample: Sample, exact: Outcome, found: Outcome) -> float | None:
 def growth(sample: Sample, digits: int = DIGITS) -> float | None:
     """lg of the greatest |Λ| of the run, in numbers of so many digits: no rounding is in it; in n
     degrees of freedom of the greatest |entry| of W of the whole run."""
-    name = "lambda_max" if sample.hamiltonian.planar else "symplectic_defect"
-    found = _stays(sample, digits, name)
-    return None if found is None or not found.values[name] else _lg(found.values[name])
+    value = _observed(sample, digits, "lambda_max" if sample.planar else "symplectic_defect")
+    return _lg(value) if value else None
 
 
 def defect_of_step(sample: Sample, digits: int = DIGITS) -> float | None:
     """lg of the greatest |ΔJ| of the run, in n degrees of freedom of the greatest |entry| of S of
     any step, over h to the power that is proved of it."""
-    name = "delta_j_max" if sample.hamiltonian.planar else "symplectic_defect_max"
     order = sample.proof.order if sample.ordinary else None
-    found = None if order is None else _stays(sample, digits, name)
-    if found is None or order is None or not found.values[name]:
+    if order is None:
         return None
-    return _lg(found.values[name] / sample.step_size**order)
+    value = _observed(sample, digits, "delta_j_max" if sample.planar else "symplectic_defect_max")
+    return _lg(value / sample.step_size**order) if value else None
+
+
+def _observed(sample: Sample, digits: int, name: str) -> Fraction | None:
+    """The observable of the run; None of one that goes far."""
+    run = _stays(sample, digits, name)
+    return run.values[name] if run else None
 
 
 def orbit(sample: Sample) -> list[tuple[Fraction, Fraction]]:
     """Points (q, p) of the run with 40 digits, from the initial value on."""
-    run = KernelRun(*sample.kernel_inputs, frozenset(), 0, sections=_POINTS)
-    trail = run.run(number_systems.get("mpfr", DIGITS)).trail
+    trail = sample.run("mpfr", DIGITS, sections=_POINTS).trail
     return [(sample.q, sample.p), *((x["q"], x["p"]) for x in trail)]
 
 

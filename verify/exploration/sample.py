@@ -14,6 +14,7 @@ from verify.flows.extrapolation import Flow
 from verify.functions.function import CIRCLE
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.kernels.run_inputs import SECTIONS
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.proof.order import prove
 from verify.proof.proof import Proof
@@ -216,9 +217,11 @@ class Sample:
         """What a `KernelRun` and a `Separation` begin with."""
         return self.hamiltonian, self.scheme.name, self.start, self.steps
 
-    def run(self, number_system: str, digits: int, *observables: str) -> Outcome:
-        """Its run in a kernel."""
-        run = KernelRun(*self.kernel_inputs, frozenset(observables), 0)
+    def run(
+        self, number_system: str, digits: int, *observables: str, sections: int = SECTIONS
+    ) -> Outcome:
+        """Its run in a kernel, with the trail of so many sections."""
+        run = KernelRun(*self.kernel_inputs, frozenset(observables), 0, sections=sections)
         return run.run(number_systems.get(number_system, digits))
 
     @property

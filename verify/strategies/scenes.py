@@ -1,9 +1,8 @@
 """Whole scenes: an H, a scheme that takes it, and a run of a few steps."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from functools import partial
 from typing import Any, NamedTuple
 
 from hypothesis import reject
@@ -78,11 +77,11 @@ def scenes(
     runs = _Runs(st.builds(_grid, counts, sizes, values), times)
     if hamiltonians is not None:
         return _of_hamiltonians(hamiltonians, schemes, runs)
-    formula = partial(_formulas, time_dependent=time_dependent, degrees=degrees)
+    system = System(degrees, Limits() if degrees == 1 else _SHORT, time_dependent=time_dependent)
     if schemes is not None:
-        return _of_schemes(schemes, formula, runs)
+        return _of_schemes(schemes, system, runs)
     found = named() if degrees == 1 else [x for x in named() if eta_of(x.name) not in _LONG_MAPS]
-    return _of_formulas(formula, runs, found)
+    return _of_system(system, runs, found)
 
 
 class _Runs(NamedTuple):
@@ -101,15 +100,10 @@ def _grid(steps: int, step_size: Fraction, initial_value: InitialValue | Initial
     return Grid(steps=steps, step_sizes=(step_size,), initial_values=(initial_value,))
 
 
-_Formulas = Callable[..., st.SearchStrategy[Formula]]
-
-
-def _of_formulas(
-    formula_of: _Formulas, runs: _Runs, found: Sequence[Scheme]
-) -> st.SearchStrategy[Scene]:
+def _of_system(system: System, runs: _Runs, found: Sequence[Scheme]) -> st.SearchStrategy[Scene]:
     of_any = st.sampled_from([scheme for scheme in found if not scheme.needs_separable])
     of_separable = st.sampled_from(found)
-    any_formula = formula_of()
+    any_formula = _formulas(system)
 
     @st.composite
     def drawn(draw: st.DrawFn) -> Scene:
@@ -121,9 +115,9 @@ def _of_formulas(
 
 
 def _of_schemes(
-    schemes: st.SearchStrategy[Scheme], formula_of: _Formulas, runs: _Runs
+    schemes: st.SearchStrategy[Scheme], system: System, runs: _Runs
 ) -> st.SearchStrategy[Scene]:
-    any_formula, separable = formula_of(), formula_of(separable=True)
+    any_formula, separable = (_formulas(replace(system, separable=x)) for x in (None, True))
 
     @st.composite
     def drawn(draw: st.DrawFn) -> Scene:
@@ -157,15 +151,8 @@ def _of_hamiltonians(
     return drawn()
 
 
-def _formulas(
-    separable: bool | None = None, time_dependent: bool = False, degrees: int = 1
-) -> st.SearchStrategy[Formula]:
-    system = System(
-        degrees,
-        Limits() if degrees == 1 else _SHORT,
-        separable=separable,
-        time_dependent=time_dependent,
-    )
+def _formulas(system: System) -> st.SearchStrategy[Formula]:
+    """One in three with parameters."""
     bare, with_names = (replace(system, with_parameters=x).formulas() for x in (False, True))
     return st.one_of(bare, bare, with_names)
 

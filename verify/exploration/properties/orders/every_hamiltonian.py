@@ -45,12 +45,12 @@ def _telescopes(sample: Sample) -> bool | None:
 
 
 def _contradiction(every: EveryProof, proof: Proof) -> str:
-    """In words; empty where there is none. None, as an order, is beyond all that are looked at."""
-    defect = "ΔJ" if every.planar else "S"
+    """In words, of S, which in the plane is ΔJ; empty where there is none. None, as an order, is
+    beyond all that are looked at."""
     if every.symplectic and proof.symplectic is False:
-        return f"{defect} has order {proof.order}"
+        return f"S has order {proof.order}"
     if every.order is not None and proof.order is not None and proof.order < every.order:
-        return f"{defect} has order {proof.order}, not {every.order}"
+        return f"S has order {proof.order}, not {every.order}"
     own, agreed = proof.convergence_order, every.convergence_order
     if own is not None and agreed is not None and own < agreed:
         return f"the map agrees with the flow up to h^{own}, not h^{agreed}"

@@ -52,17 +52,11 @@ def _must_be_alike(one: BallState, other: BallState) -> None:
 
 def _frequency(ring: Ring, slopes: Sequence[Poly]) -> Fraction | None:
     """ω, where t is in sin and cos of ω t + φ alone; None elsewhere."""
-    found = set[Fraction]()
     if any(x.degrees()[ring.places["t"]] > 0 for x in slopes):
         return None
-    for g in ring.generators_in(*slopes):
-        if g.argument is None or not ring.depends(g.argument, "t"):
-            continue
-        rate = _rate(ring, g)
-        if rate is None:
-            return None
-        found.add(rate)
-    return found.pop() if len(found) == 1 else None
+    functions = [g for g in ring.generators_in(*slopes) if g.argument is not None]
+    rates = {_rate(ring, g) for g in functions if ring.depends(g.inner, "t")}
+    return rates.pop() if len(rates) == 1 else None
 
 
 def _rate(ring: Ring, g: Generator) -> Fraction | None:
