@@ -14,12 +14,12 @@ from verify.flows.extrapolation import Flow
 from verify.functions.function import CIRCLE
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.start import point_of
 from verify.kernels.run_inputs import SECTIONS
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.proof.order import prove
 from verify.proof.proof import Proof
 from verify.scenes.scene import Scene
-from verify.scenes.values import InitialState, InitialValue
 from verify.schemes import get
 from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 from verify.schemes.maps.step_map import StepMap
@@ -38,13 +38,6 @@ class Most(NamedTuple):
 _IN_PLANE, _IN_DEGREES = Most(40, 20, 150), Most(30, 60, 250)
 _MOST_ORDER = 4  # of a scheme whose series is made in n degrees of freedom
 _OF_SHORT_SERIES = {"variable", CIRCLE.odd, CIRCLE.even}  # as other functions' are not
-
-
-def coordinates_at(start: InitialValue | InitialState) -> tuple[Fraction, ...]:
-    """The coordinates at an initial value in their order: p, then q."""
-    if isinstance(start, InitialValue):
-        return start.p, start.q
-    return *start.p, *start.q
 
 
 @dataclass(frozen=True)
@@ -70,11 +63,8 @@ class Sample:
         """
         if scene.grid is None:
             raise InputError("scene", scene.name, "has no [grid], which gives step and start")
-        h, hamiltonian = scene.grid.step_sizes[0], scene.exact_hamiltonian()
-        place = coordinates_at(scene.grid.initial_values[0])
-        if len(place) != len(hamiltonian.coordinates):
-            problem = f"starts elsewhere; allowed: {', '.join(hamiltonian.coordinates)}"
-            raise InputError("scene", scene.name, problem)
+        h, start = scene.grid.step_sizes[0], scene.grid.initial_values[0]
+        hamiltonian = scene.exact_hamiltonian()
         return cls(
             hamiltonian=hamiltonian,
             scheme=get(scene.schemes[0]),
@@ -82,7 +72,7 @@ class Sample:
             steps=scene.grid.steps_for(h),
             t0=scene.t0,
             scene=scene,
-            place=place,
+            place=tuple(point_of(hamiltonian, start.q, start.p).values()),
         )
 
     def at(self, place: Iterable[Fraction]) -> Self:

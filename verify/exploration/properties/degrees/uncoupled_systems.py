@@ -12,7 +12,15 @@ import sympy
 
 from verify.algebra.formula import symbol
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.oracles.ball_steps import BITS, BallState, ball_steps, defect, unlike
+from verify.exploration.oracles.ball_steps import (
+    BITS,
+    BallState,
+    Matrix,
+    ball_steps,
+    defect,
+    overlap,
+    unlike,
+)
 from verify.exploration.oracles.mpfr_runs import end_of, must_agree
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
@@ -66,24 +74,20 @@ def _last_state(sample: Sample) -> BallState:
 
 
 def _must_be_product(whole: BallState, planes: Sequence[BallState]) -> None:
-    n, form = len(planes), defect(whole.matrix)
+    n, blocks = len(planes), Matrix(2 * len(planes), 2 * len(planes))
     for k, plane in enumerate(planes):
-        for letter, half in (("p", 0), ("q", n)):
-            name, wanted = f"{letter}{k + 1}", plane.point[letter]
-            if not whole.point[name].overlaps(wanted):
-                raise Violation(f"{name} is {unlike(whole.point[name], wanted)}, in its plane")
-            for j in range(2 * n):
-                if j % n != k and not whole.matrix[half + k, j].contains(0):
-                    raise Violation(f"J of the run has an entry of {name} by another degree")
-        if not form[k, n + k].overlaps(plane.product - 1):
-            told = unlike(form[k, n + k], plane.product - 1)
+        for a, letter in enumerate(PLANE):
+            found, wanted = whole.point[f"{letter}{k + 1}"], plane.point[letter]
+            if not found.overlaps(wanted):
+                raise Violation(f"{letter}{k + 1} is {unlike(found, wanted)}, in its plane")
+            for b in range(2):
+                blocks[n * a + k, n * b + k] = plane.matrix[a, b]
+        area = defect(whole.matrix)[k, n + k]
+        if not area.overlaps(plane.product - 1):
+            told = unlike(area, plane.product - 1)
             raise Violation(f"W's entry dp{k + 1}∧dq{k + 1} is {told}, Λ of its plane")
-    product = planes[0].product
-    for plane in planes[1:]:
-        product *= plane.product
-    found = whole.matrix.det()
-    if not found.overlaps(product):
-        raise Violation(f"Π det J is {unlike(found, product)}, the product of the planes'")
+    if not overlap(whole.matrix, blocks):
+        raise Violation("J of the run does not have the planes' as its blocks")
 
 
 def _must_end_alike(whole: Sample, planes: Sequence[Sample]) -> None:

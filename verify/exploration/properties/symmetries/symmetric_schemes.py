@@ -14,7 +14,9 @@ _IN = 3  # one in so many samples is looked at by series, too
 def holds(sample: Sample) -> None:
     only_if(sample.scheme.symmetric and (sample.planar or sample.brief))
     if sample.is_turn(_IN) and sample.ordinary and not sample.step_map.implicit:
-        _by_series(sample)
+        series = by_series(sample.step_map, sample.scheme.order + 1)
+        if series.verdict is Verdict.REFUTED:
+            raise Violation(f"by series it is not symmetric: {series.reason}")
     first, last = ball_steps(sample.step_map, sample.start, 1)
     with working_precision(BITS):
         back = stepped(sample.step_map, last, rational_ball(-sample.step_size)).sharp()
@@ -22,9 +24,3 @@ def holds(sample: Sample) -> None:
         if not back.point[name].overlaps(first.point[name]):
             told = unlike(back.point[name], first.point[name])
             raise Violation(f"{name} comes back as {told}")
-
-
-def _by_series(sample: Sample) -> None:
-    series = by_series(sample.step_map, sample.scheme.order + 1)
-    if series.verdict is Verdict.REFUTED:
-        raise Violation(f"by series it is not symmetric: {series.reason}")
