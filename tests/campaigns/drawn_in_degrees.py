@@ -14,7 +14,7 @@ from collections import Counter
 
 from verify.exploration import properties
 from verify.exploration.property_checks import outcome, shrink
-from verify.exploration.sample_in_degrees import sample_of
+from verify.exploration.sample import Sample
 from verify.exploration.sample_space import SampleSpace
 from verify.exploration.scenes import sample_scene
 
@@ -41,7 +41,7 @@ def looked(degrees: int, timed: bool, count: int, seed: int) -> int:
     spoke, seconds, first = Counter[str](), Counter[str](), dict[str, int]()
     begun = time.process_time()
     for number in range(count):
-        sample = sample_of(sample_scene(space, seed, number))
+        sample = Sample.of(sample_scene(space, seed, number))
         for name in properties.names():
             before = time.process_time()
             speaks, wrong = outcome(properties.get(name), sample)

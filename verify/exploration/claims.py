@@ -21,7 +21,6 @@ from verify.errors import InputError
 from verify.execution.execute import Store, execute
 from verify.execution.executors import THIS_PROCESS
 from verify.execution.plan import Plan
-from verify.exploration.any_sample import AnySample
 from verify.exploration.property import Property, Violation, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.hamiltonians.canonical_field import canonical_field
@@ -71,14 +70,13 @@ def claim_property(text: str) -> Property:
     sentence = (
         str(read_prose(claim.statement)) or f"{claim.kind} of {claim.scheme}, as {claim.id} says"
     )
-    check = partial(_check, claim)
-    return Property(claim.id, sentence, check, claim.scheme, check)
+    return Property(claim.id, sentence, partial(_check, claim), claim.scheme)
 
 
-def _check(claim: Claim, sample: AnySample) -> None:
+def _check(claim: Claim, sample: Sample) -> None:
     """Raises Violation where the claim is refuted for the sample's H and run; in n degrees of
     freedom of claims that algebra decides, as a run's are of the plane."""
-    only_if(isinstance(sample, Sample) or (not claim.run_keys and sample.brief))
+    only_if(sample.planar or (not claim.run_keys and sample.brief))
     separable = isinstance(claim, QuantifiedClaim) and claim.of_separable
     only_if(not separable or canonical_field(sample.hamiltonian)[0].separable)
     asked = _of_scheme(sample, claim.scheme)
@@ -90,7 +88,7 @@ def _check(claim: Claim, sample: AnySample) -> None:
     only_if(found.verdict is not Verdict.UNDECIDED)
 
 
-def _of_scheme(sample: AnySample, name: str) -> AnySample:
+def _of_scheme(sample: Sample, name: str) -> Sample:
     """The sample with that scheme; Silent where the scheme does not take its H."""
     scene = sample.scene.model_copy(update={"schemes": (name,), "name": _NAME})
     asked = replace(sample, scheme=get(name), scene=scene)
@@ -99,7 +97,7 @@ def _of_scheme(sample: AnySample, name: str) -> AnySample:
     return asked
 
 
-def _verdict_on(claim: Claim, sample: AnySample) -> ClaimResult:
+def _verdict_on(claim: Claim, sample: Sample) -> ClaimResult:
     """The claim's result for the sample."""
     claim = claim.of_one(sample.hamiltonian).model_copy(update={"scene": _NAME})
     scenes = {_NAME: _scene(claim, sample)}
@@ -109,7 +107,7 @@ def _verdict_on(claim: Claim, sample: AnySample) -> ClaimResult:
     return claim.judge(Findings(scenes, {**known, **results}))
 
 
-def _scene(claim: Claim, sample: AnySample) -> Scene:
+def _scene(claim: Claim, sample: Sample) -> Scene:
     """The sample's scene, with the runs that the claim speaks of."""
     scene = sample.scene
     if not claim.run_keys:

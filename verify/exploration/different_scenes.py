@@ -5,7 +5,7 @@ from collections.abc import Iterable
 
 import sympy
 
-from verify.exploration.sample_in_degrees import sample_of
+from verify.exploration.sample import Sample
 from verify.scenes.results.exploration import Worst
 from verify.scenes.scene import Scene, scene_from
 from verify.scenes.toml_file import toml_data
@@ -45,7 +45,7 @@ def different(found: Iterable[Worst]) -> list[Worst]:
 def _are_alike(a: Worst, b: Worst) -> bool:
     if abs(a.value - b.value) > _NEAR:
         return False
-    one, other = (sample_of(scene_of(each)) for each in (a, b))
+    one, other = (Sample.of(scene_of(each)) for each in (a, b))
     if one.scheme.name != other.scheme.name:
         return False
     of_one, of_other = _terms(a), _terms(b)

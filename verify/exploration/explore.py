@@ -21,8 +21,8 @@ from verify.execution.plan import Plan
 from verify.exploration.claims import claim_property
 from verify.exploration.property import Property
 from verify.exploration.property_checks import outcome, properties_of
-from verify.exploration.sample_in_degrees import sample_of
-from verify.exploration.sample_space import SampleSpace
+from verify.exploration.sample import Sample
+from verify.exploration.sample_space import SampleSpace, check_scenes
 from verify.exploration.scenes import scenes_of
 from verify.exploration.tasks import ExploreTask, ShrinkTask
 from verify.files import write_atomically
@@ -57,10 +57,7 @@ class Exploration:
     drawn: SampleSpace = field(default_factory=SampleSpace)
 
     def __post_init__(self) -> None:
-        if not 1 <= self.examples <= MOST_EXAMPLES:
-            raise InputError("examples", self.examples, f"must be 1 … {MOST_EXAMPLES}")
-        if self.seed < 0:
-            raise InputError("seed", self.seed, "must be 0 or more")
+        check_scenes(self.seed, self.examples, MOST_EXAMPLES)
         names = [each.name for each in self.looks]
         if not names:
             raise InputError("properties", NOT_GIVEN, "give one at least")
@@ -156,7 +153,7 @@ def _again(asked: Exploration, earlier: Sequence[tuple[str, Scene]]) -> Iterator
     for name, scene in earlier:
         for each in asked.looks:
             if slug(each.name) == name:
-                wrong = outcome(each, sample_of(scene))[1]
+                wrong = outcome(each, Sample.of(scene))[1]
                 yield EarlierFailure(file=f"{scene.name}.toml", property=each.name, message=wrong)
 
 

@@ -14,7 +14,7 @@ from verify.execution.plan import Plan
 from verify.exploration.different_scenes import by_shape, different
 from verify.exploration.island_search import KEPT, MOST_EXAMPLES, by_value, hunted_scenes
 from verify.exploration.measures import MEASURES
-from verify.exploration.sample_space import SampleSpace
+from verify.exploration.sample_space import SampleSpace, check_scenes
 from verify.exploration.tasks import HuntTask
 from verify.scenes.results.exploration import HuntResult
 
@@ -43,10 +43,7 @@ class Hunt:
             allowed = ", ".join(name for name, x in MEASURES.items() if x.several)
             problem = f"is of one degree of freedom; allowed in more: {allowed}"
             raise InputError("maximise", self.measure, problem)
-        if not 1 <= self.examples <= MOST_EXAMPLES:
-            raise InputError("examples", self.examples, f"must be 1 … {MOST_EXAMPLES}")
-        if self.seed < 0:
-            raise InputError("seed", self.seed, "must be 0 or more")
+        check_scenes(self.seed, self.examples, MOST_EXAMPLES)
         if not 2 <= self.steps <= _MOST_STEPS:
             raise InputError("steps", self.steps, f"must be 2 … {_MOST_STEPS}")
         hunted_scenes(self.drawn, self.steps)

@@ -5,7 +5,7 @@ What is kept was measured twice, the second time with twice the digits.
 Scenes that differ from one in a single number, a little: where a local search looks next.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from fractions import Fraction
 from itertools import chain
@@ -18,22 +18,20 @@ from hypothesis.errors import Unsatisfiable
 
 from verify import strategies
 from verify.algebra.expressions.formula_text import to_text
-from verify.arithmetic.exact import text
 from verify.errors import InputError
 from verify.exploration.different_scenes import by_shape, scene_of, shape_of
 from verify.exploration.measures import DIGITS, MEASURES, Measure
-from verify.exploration.sample_in_degrees import sample_of
+from verify.exploration.sample import Sample
 from verify.exploration.sample_space import SampleSpace
+from verify.exploration.scenes import hamiltonians_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.results.exploration import HuntResult, Worst
 from verify.scenes.scene import Scene, scene_from
 from verify.scenes.toml_text import scene_text
-from verify.scenes.values import InitialState, InitialValue
-from verify.strategies.schemes import separable_for
+from verify.strategies.numbers import starts
 
 _FACTORS = (Fraction(1, 2), Fraction(4, 5), Fraction(5, 4), Fraction(2))
 _MOVES = tuple(sign * Fraction(1, 10**k) for k in (1, 2) for sign in (1, -1))
-Coordinates = tuple[Fraction, ...]
 _PLACES = 3  # decimals of a coefficient or a step size
 
 
@@ -46,45 +44,32 @@ def neighbours(
 ) -> Iterator[Scene]:
     """Each once: with another initial value in reach, step size within `steps`, or |coefficient| of
     H within `coefficients`; without that last bound a search would only make H ever larger."""
-    assert scene.grid is not None  # noqa: S101 - the caller's scenes are drawn
-    start, h = scene.grid.initial_values[0], scene.grid.step_sizes[0]
-    formula, at = scene.hamiltonian or "", _coordinates(start)
-    moved = [_moved(at, k, move) for move in _MOVES for k in range(len(at))]
+    sample = Sample.of(scene)
+    formula, at, h, n = scene.hamiltonian or "", sample.place, sample.step_size, len(sample.place)
+    order = (*range(n // 2, n), *range(n // 2))  # q, then p
+    moved = [(*at[:k], at[k] + move, *at[k + 1 :]) for move in _MOVES for k in order]
     sizes = [min(max(_rounded(h * factor), steps[0]), steps[1]) for factor in _FACTORS]
     others = chain(
         ((formula, at, size) for size in sizes),
         ((formula, other, h) for other in moved if max(map(abs, other)) <= reach),
-        ((other, at, h) for other in _formulas(scene.exact_hamiltonian(), coefficients)),
+        ((other, at, h) for other in _formulas(sample.hamiltonian, coefficients)),
     )
     seen = {(formula, at, h)}
     for other in others:
         if other not in seen:
             seen.add(other)
             with suppress(InputError):  # such as an H that is not defined there
-                yield _scene(scene, *other)
+                yield _scene(sample, *other)
 
 
-def _coordinates(start: InitialValue | InitialState) -> Coordinates:
-    """q, then p."""
-    if isinstance(start, InitialValue):
-        return start.q, start.p
-    return *start.q, *start.p
-
-
-def _moved(at: Coordinates, k: int, move: Fraction) -> Coordinates:
-    return *at[:k], at[k] + move, *at[k + 1 :]
-
-
-def _scene(scene: Scene, formula: str, at: Coordinates, h: Fraction) -> Scene:
-    assert scene.grid is not None  # noqa: S101 - as above
-    numbers, half = list(map(text, at)), len(at) // 2
-    q, p = (numbers[0], numbers[1]) if half == 1 else (numbers[:half], numbers[half:])
+def _scene(sample: Sample, formula: str, at: Iterable[Fraction], h: Fraction) -> Scene:
+    moved = sample.at(at)
     grid = {
-        "steps": scene.grid.steps,
-        "step_sizes": [text(h)],
-        "initial_values": [{"q": q, "p": p}],
+        "steps": sample.steps,
+        "step_sizes": [h],
+        "initial_values": [{"q": moved.q, "p": moved.p}],
     }
-    whole = {"hamiltonian": formula, "t0": text(scene.t0), "schemes": scene.schemes, "grid": grid}
+    whole = {"hamiltonian": formula, "t0": sample.t0, "schemes": sample.scene.schemes, "grid": grid}
     return scene_from(whole, "neighbour")
 
 
@@ -143,7 +128,7 @@ class MeasuredScenes:
         """What a scene measures; None too where there is nothing left to measure it with."""
         text = scene_text(scene)
         if text not in self.seen and self.left:
-            self.seen[text] = self.measure.of(sample_of(scene), DIGITS)
+            self.seen[text] = self.measure.of(Sample.of(scene), DIGITS)
         return self.seen.get(text)
 
     @property
@@ -171,7 +156,7 @@ def _confirmed(look: MeasuredScenes) -> Iterator[Worst]:
             return
         if shape in found:
             continue
-        again = look.measure.of(sample_of(scene_of(each)), 2 * DIGITS)
+        again = look.measure.of(Sample.of(scene_of(each)), 2 * DIGITS)
         if again is not None and abs(again - each.value) <= _AGREEMENT:
             found.add(shape)
             yield Worst(value=again, scene=each.scene)
@@ -223,15 +208,6 @@ def _climb(begin: Worst, look: MeasuredScenes) -> None:
                 break
 
 
-def _starts(
-    numbers: st.SearchStrategy[Fraction], degrees: int
-) -> st.SearchStrategy[InitialValue] | st.SearchStrategy[InitialState]:
-    if degrees == 1:
-        return st.builds(InitialValue, q=numbers, p=numbers)
-    of_each = st.tuples(*[numbers] * degrees)
-    return st.builds(InitialState, q=of_each, p=of_each)
-
-
 def hunted_scenes(drawn: SampleSpace, steps: int) -> st.SearchStrategy[Scene]:
     """Ordinary-looking ones: a few terms, initial values in tenths, h from 1/1000 to 1/10."""
     # No whole number that is drawn may be 100 or more: hypothesis likes to try those that stand in
@@ -239,17 +215,9 @@ def hunted_scenes(drawn: SampleSpace, steps: int) -> st.SearchStrategy[Scene]:
     # its sign is drawn as a number below 2·SIZE².
     tenths = st.integers(-_TENTHS, _TENTHS).map(lambda n: Fraction(n, 10))
     return strategies.scenes(
-        hamiltonians=strategies.hamiltonians(
-            drawn.kinds or strategies.KINDS,
-            degree=drawn.degree,
-            separable=separable_for(drawn.schemes),
-            time_dependent=drawn.time_dependent,
-            terms=3 if drawn.degrees == 1 else 2,
-            size=SIZE,
-            degrees=drawn.degrees,
-        ),
+        hamiltonians=hamiltonians_of(drawn, terms=3 if drawn.degrees == 1 else 2, size=SIZE),
         schemes=strategies.schemes(names=drawn.schemes or ("lie2",)),
-        initial_values=_starts(tenths, drawn.degrees),
+        initial_values=starts(tenths, drawn.degrees),
         initial_times=tenths,
         step_sizes=st.sampled_from([Fraction(n, 1000) for n in _THOUSANDTHS]),
         steps=(steps, steps),

@@ -10,12 +10,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from verify import arithmetic as number_systems
 from verify.arithmetic.exact import magnitude
-from verify.exploration.any_sample import AnySample
 from verify.exploration.sample import Sample
-from verify.exploration.sample_in_degrees import SampleInDegrees
-from verify.kernels.stepping import KernelRun, Outcome
+from verify.kernels.stepping import Outcome
 from verify.lockstep import alone
 from verify.studies.separation.links import separated_chains
 from verify.studies.separation.stepper.run import Stopped
@@ -38,9 +35,9 @@ class Measure:
     value: Callable[[Any, int], float | None]
     several: str = ""
 
-    def of(self, sample: AnySample, digits: int) -> float | None:
+    def of(self, sample: Sample, digits: int) -> float | None:
         """Its value for a sample; None where it is not of so many degrees of freedom."""
-        asked = self.said(sample.hamiltonian.degrees) or sample.hamiltonian.planar
+        asked = self.said(sample.hamiltonian.degrees) or sample.planar
         return self.value(sample, digits) if asked else None
 
     def said(self, degrees: int) -> str:
@@ -70,7 +67,7 @@ def _greatest(trail: Trail, bound: Fraction) -> Fraction:
     return top if top > 10 * bound else Fraction(0)
 
 
-def digits_lost(sample: AnySample, digits: int = DIGITS) -> float | None:
+def digits_lost(sample: Sample, digits: int = DIGITS) -> float | None:
     """lg of the error of float64's coordinates after the run, in units of its roundoff.
 
     Relative to the farthest that the orbit is from the origin: where it comes near to that, no
@@ -83,43 +80,46 @@ def digits_lost(sample: AnySample, digits: int = DIGITS) -> float | None:
     return None if found.done < sample.steps else _lost(sample, exact, found)
 
 
-def _lost(sample: AnySample, exact: Outcome, found: Outcome) -> float | None:
+def _lost(sample: Sample, exact: Outcome, found: Outcome) -> float | None:
     names = tuple(sample.point)
     size = max(abs(x[n]) for x in (sample.point, *exact.trail) for n in names)
     error = max(abs(found.values[n] - exact.values[n]) for n in names)
     return None if not size or not error else _lg(error / (size * _ROUNDOFF))
 
 
-def growth(sample: AnySample, digits: int = DIGITS) -> float | None:
+def growth(sample: Sample, digits: int = DIGITS) -> float | None:
     """lg of the greatest |Λ| of the run, in numbers of so many digits: no rounding is in it; in n
     degrees of freedom of the greatest |entry| of W of the whole run."""
-    name = "lambda_max" if sample.hamiltonian.planar else "symplectic_defect"
-    found = _stays(sample, digits, name)
-    return None if found is None or not found.values[name] else _lg(found.values[name])
+    value = _observed(sample, digits, "lambda_max" if sample.planar else "symplectic_defect")
+    return _lg(value) if value else None
 
 
-def defect_of_step(sample: AnySample, digits: int = DIGITS) -> float | None:
+def defect_of_step(sample: Sample, digits: int = DIGITS) -> float | None:
     """lg of the greatest |ΔJ| of the run, in n degrees of freedom of the greatest |entry| of S of
     any step, over h to the power that is proved of it."""
-    name = "delta_j_max" if sample.hamiltonian.planar else "symplectic_defect_max"
     order = sample.proof.order if sample.ordinary else None
-    found = None if order is None else _stays(sample, digits, name)
-    if found is None or order is None or not found.values[name]:
+    if order is None:
         return None
-    return _lg(found.values[name] / sample.step_size**order)
+    value = _observed(sample, digits, "delta_j_max" if sample.planar else "symplectic_defect_max")
+    return _lg(value / sample.step_size**order) if value else None
+
+
+def _observed(sample: Sample, digits: int, name: str) -> Fraction | None:
+    """The observable of the run; None of one that goes far."""
+    run = _stays(sample, digits, name)
+    return run.values[name] if run else None
 
 
 def orbit(sample: Sample) -> list[tuple[Fraction, Fraction]]:
     """Points (q, p) of the run with 40 digits, from the initial value on."""
-    run = KernelRun(*sample.kernel_inputs, frozenset(), 0, sections=_POINTS)
-    trail = run.run(number_systems.get("mpfr", DIGITS)).trail
+    trail = sample.run("mpfr", DIGITS, sections=_POINTS).trail
     return [(sample.q, sample.p), *((x["q"], x["p"]) for x in trail)]
 
 
-def _stays(sample: AnySample, digits: int, *observables: str) -> Outcome | None:
+def _stays(sample: Sample, digits: int, *observables: str) -> Outcome | None:
     """The run with so many digits; None where it goes far, or, in n degrees of freedom, where its
     kernel is long or nothing is to be observed."""
-    if isinstance(sample, SampleInDegrees) and (
+    if not sample.planar and (
         not sample.short or (observables and sample.step_map.symplectic_by_conditions)
     ):
         return None

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 from verify.exploration.sample import Sample
-from verify.exploration.sample_in_degrees import SampleInDegrees
 
 T = TypeVar("T")
 
@@ -46,24 +45,19 @@ class Property:
     """`check(sample)` raises Violation where the sentence is wrong for it, and Silent where it does
     not speak of it.
 
-    `in_degrees` does so of a sample in n degrees of freedom; a property without one speaks of none.
     Any other exception is an error of the code under test, too. `scheme`: that of which it speaks,
     where this is not the sample's.
     """
 
     name: str
     sentence: str
-    check: Callable[[Sample], None] | None
+    check: Callable[[Sample], None]
     scheme: str = ""
-    in_degrees: Callable[[SampleInDegrees], None] | None = None
 
-    def holds(self, sample: Sample | SampleInDegrees) -> bool:
+    def holds(self, sample: Sample) -> bool:
         """True, or False where the sentence does not speak of the sample; else as `check`."""
         try:
-            if isinstance(sample, Sample):
-                known(self.check)(sample)
-            else:
-                known(self.in_degrees)(sample)
+            self.check(sample)
         except Silent:
             return False
         return True

@@ -8,7 +8,6 @@ from verify.exploration import properties as catalogue
 from verify.exploration.claims import claim_property
 from verify.exploration.property import Property, Violation
 from verify.exploration.sample import Sample
-from verify.exploration.sample_in_degrees import SampleInDegrees, sample_of
 from verify.exploration.sample_space import SampleSpace
 from verify.exploration.scenes import sample_scene, simplest
 from verify.scenes.results.exploration import ExploreResult, Failure, ShrunkResult
@@ -30,7 +29,7 @@ def check_properties(
     looked_at, failed = Counter[str](), Counter[str]()
     first: dict[str, Failure] = {}
     for number in numbers:
-        sample = sample_of(sample_scene(space, seed, number))
+        sample = Sample.of(sample_scene(space, seed, number))
         for each in properties:
             spoke, wrong = outcome(each, sample)
             looked_at[each.name] += spoke
@@ -46,7 +45,7 @@ def check_properties(
     )
 
 
-def outcome(asked: Property, sample: Sample | SampleInDegrees) -> tuple[bool, str]:
+def outcome(asked: Property, sample: Sample) -> tuple[bool, str]:
     """Whether the property speaks of the sample, and what is wrong; empty where nothing is."""
     try:
         return asked.holds(sample), ""
@@ -59,7 +58,7 @@ def outcome(asked: Property, sample: Sample | SampleInDegrees) -> tuple[bool, st
 def shrink(asked: Property, space: SampleSpace, seed: int, number: int) -> ShrunkResult:
     """The simplest scene for which the property fails as for that scene of the seed."""
     scene, message = simplest(
-        space, seed, number, lambda scene: outcome(asked, sample_of(scene))[1]
+        space, seed, number, lambda scene: outcome(asked, Sample.of(scene))[1]
     )
     # Another scheme may have been drawn than the one that a claim speaks of.
     named = scene.model_copy(

@@ -1,41 +1,136 @@
-"""A drawn scene of the plane as properties look at it: an H, scheme, step size, start, t₀ and N."""
+"""A drawn scene as properties look at it: an H, scheme, step size, start, t₀ and N."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, Self
+from math import inf
+from typing import Any, NamedTuple, Self
 
-from verify.exploration.any_sample import AnySample
-from verify.scenes.run_sections import Grid
+from verify import arithmetic as number_systems
+from verify.algebra.ring import Poly, Ring
+from verify.errors import InputError
+from verify.flows.extrapolation import Flow
+from verify.functions.function import CIRCLE
+from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
+from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.start import point_of
+from verify.kernels.run_inputs import SECTIONS
+from verify.kernels.stepping import KernelRun, Outcome
+from verify.proof.order import prove
+from verify.proof.proof import Proof
 from verify.scenes.scene import Scene
+from verify.schemes import get
 from verify.schemes.conditions.every_hamiltonian import TaylorSeries
+from verify.schemes.maps.step_map import StepMap
+from verify.schemes.scheme import Scheme
 
-_MOST_TERMS = 40  # of a map in all its parts, so that a proof is made in a moment
+
+class Most(NamedTuple):
+    """The terms up to which a proof is made, a kernel written, a point looked at in a moment."""
+
+    proof: int
+    kernels: int
+    points: int
+
+
+# The plane counts a whole map, n degrees of freedom what a step is made of: see `Sample.terms`.
+_IN_PLANE, _IN_DEGREES = Most(40, 20, 150), Most(30, 60, 250)
+_MOST_ORDER = 4  # of a scheme whose series is made in n degrees of freedom
+_OF_SHORT_SERIES = {"variable", CIRCLE.odd, CIRCLE.even}  # as other functions' are not
 
 
 @dataclass(frozen=True)
-class Sample(AnySample):
-    """What a property is asked about; the map and its proof are made once for all of them."""
+class Sample:
+    """What a property is asked about; the map and its proof are made once for all of them.
 
-    most_of_kernels = 20
-    most_of_points = 150
-    p: Fraction
-    q: Fraction
+    `place`: the coordinates at the start, in their order.
+    """
+
+    hamiltonian: Hamiltonian
+    scheme: Scheme
+    step_size: Fraction
+    steps: int
+    t0: Fraction
+    scene: Scene
+    place: tuple[Fraction, ...]
 
     @classmethod
-    def _initial(cls, scene: Scene, grid: Grid) -> dict[str, Any]:
-        start = grid.in_the_plane[0]
-        return {"p": start.p, "q": start.q}
+    def of(cls, scene: Scene) -> Self:
+        """The first scheme, step size and initial value of a scene that has a [grid].
 
-    def at(self, values: Sequence[Fraction]) -> Self:
-        p, q = values
-        return replace(self, p=p, q=q)
+        Raises InputError for one that has none, or whose start is not one of its H.
+        """
+        if scene.grid is None:
+            raise InputError("scene", scene.name, "has no [grid], which gives step and start")
+        h, start = scene.grid.step_sizes[0], scene.grid.initial_values[0]
+        hamiltonian = scene.exact_hamiltonian()
+        return cls(
+            hamiltonian=hamiltonian,
+            scheme=get(scene.schemes[0]),
+            step_size=h,
+            steps=scene.grid.steps_for(h),
+            t0=scene.t0,
+            scene=scene,
+            place=tuple(point_of(hamiltonian, start.q, start.p).values()),
+        )
+
+    def at(self, place: Iterable[Fraction]) -> Self:
+        """The same from another point, whose coordinates are given in their order."""
+        return replace(self, place=tuple(place))
+
+    @property
+    def planar(self) -> bool:
+        """Whether it is of p and q."""
+        return self.hamiltonian.planar
 
     @property
     def point(self) -> dict[str, Fraction]:
-        """p and q at the start."""
-        return {"p": self.p, "q": self.q}
+        """The coordinates at the start, by name."""
+        return dict(zip(self.hamiltonian.coordinates, self.place, strict=True))
+
+    @property
+    def p(self) -> Any:
+        """The momentum at the start; in n degrees of freedom the tuple of them."""
+        return self.place[0] if self.planar else self.place[: self.hamiltonian.degrees]
+
+    @property
+    def q(self) -> Any:
+        """The displacement at the start; in n degrees of freedom the tuple of them."""
+        return self.place[1] if self.planar else self.place[self.hamiltonian.degrees :]
+
+    @cached_property
+    def step_map(self) -> StepMap:
+        """The map of one step, for this H; asked for where it is `brief`."""
+        return self.scheme.step_map(self.hamiltonian)
+
+    @cached_property
+    def proof(self) -> Proof:
+        """What is proved of the map: orders, the leading coefficient of its defect."""
+        return prove(self.step_map, self.scheme)
+
+    # -- how long it is ---------------------------------------------------------------------------
+
+    @property
+    def most(self) -> Most:
+        """The terms that it may have."""
+        return _IN_PLANE if self.planar else _IN_DEGREES
+
+    @cached_property
+    def terms(self) -> float:
+        """How many terms its map has in the plane; in n degrees of freedom its slopes, of a Taylor
+        series those of all its terms, made one after the other and as long as they are few."""
+        if self.planar:
+            return self.step_map.terms
+        field, generic = self.field, self.scheme.every_h
+        total: float = sum(map(len, field.slopes))
+        if not isinstance(generic, TaylorSeries):
+            return total
+        for n in range(2, generic.eta + 1):
+            if total > self.most.points:
+                return inf
+            total += sum(map(len, field.power(n)))
+        return total
 
     @cached_property
     def ordinary(self) -> bool:
@@ -46,8 +141,11 @@ class Sample(AnySample):
         composition's series for a rational H as many denominators.
         """
         scheme = self.scheme
-        if self.terms > _MOST_TERMS:
+        if self.terms > self.most.proof:
             return False
+        if not self.planar:
+            exact = self.step_map.symplectic_by_conditions or self._kinds <= _OF_SHORT_SERIES
+            return exact and scheme.order <= _MOST_ORDER
         if self.polynomial or scheme.order <= 2 or isinstance(scheme.every_h, TaylorSeries):
             return True
         return scheme.needs_separable and not self._kinds & {"inverse", "root"}
@@ -55,8 +153,81 @@ class Sample(AnySample):
     @property
     def short(self) -> bool:
         """Whether kernels of it are written in a moment."""
-        return self.ordinary and super().short
+        return self.terms <= self.most.kernels and (self.ordinary or not self.planar)
+
+    @property
+    def brief(self) -> bool:
+        """Whether its map is short enough to be looked at in a few points in a moment."""
+        return self.terms <= self.most.points
+
+    @property
+    def field(self) -> CanonicalField:
+        """H's own, with its derivatives by the coordinates."""
+        return canonical_field(self.hamiltonian)[0]
+
+    def flow(self, digits: int) -> Flow:
+        """The exact flow, to so many digits."""
+        return Flow(self.field, digits)
+
+    @property
+    def slopes(self) -> tuple[Ring, Sequence[Poly]]:
+        """The derivatives of the coordinates by t, in their order, and their ring."""
+        return self.field.ring, self.field.slopes
+
+    @property
+    def polynomial(self) -> bool:
+        """Whether H is a polynomial."""
+        return self._kinds <= {"variable"}
 
     @cached_property
-    def terms(self) -> int:
-        return self.step_map.terms
+    def _kinds(self) -> set[str]:
+        """Of what the slopes are made."""
+        ring, slopes = self.slopes
+        return {g.kind for g in ring.generators_in(*slopes)}
+
+    # -- which properties look at it --------------------------------------------------------------
+
+    @property
+    def turn(self) -> int:
+        """A number by which properties choose what they look at of a sample."""
+        p, q = self.place[0], self.place[self.hamiltonian.degrees]
+        return 7 * self.steps + abs(p.numerator) + q.denominator
+
+    def is_turn(self, one_in: int, after: int = 0) -> bool:
+        """Whether a property that takes long looks at this sample: at one in so many.
+
+        `after`: properties with different ones look at different samples.
+        """
+        return self.turn % one_in == after
+
+    # -- its run ----------------------------------------------------------------------------------
+
+    @property
+    def kernel_inputs(self) -> tuple[Hamiltonian, str, dict[str, Fraction], int]:
+        """What a `KernelRun` and a `Separation` begin with."""
+        return self.hamiltonian, self.scheme.name, self.start, self.steps
+
+    def run(
+        self, number_system: str, digits: int, *observables: str, sections: int = SECTIONS
+    ) -> Outcome:
+        """Its run in a kernel, with the trail of so many sections."""
+        run = KernelRun(*self.kernel_inputs, frozenset(observables), 0, sections=sections)
+        return run.run(number_systems.get(number_system, digits))
+
+    @property
+    def run_arguments(self) -> dict[str, Any]:
+        """What `run` and `separate` are called with beside H and the scheme."""
+        own = {"q": self.q, "p": self.p, "step_size": self.step_size, "steps": self.steps}
+        return own | {"t0": self.t0}
+
+    @property
+    def timed(self) -> bool:
+        """Whether H depends on t."""
+        return self.hamiltonian.time_dependent
+
+    @property
+    def start(self) -> dict[str, Fraction]:
+        """The coordinates and h by name, and t where H depends on it, as a run and an enclosure
+        want them."""
+        own = {**self.point, "h": self.step_size}
+        return own | {"t": self.t0} if self.timed else own

@@ -1,5 +1,6 @@
 """From what scenes are drawn."""
 
+from verify.errors import InputError
 from verify.scenes.frozen import Frozen
 
 
@@ -16,3 +17,11 @@ class SampleSpace(Frozen):
     schemes: tuple[str, ...] = ()
     time_dependent: bool = False
     degrees: int = 1
+
+
+def check_scenes(seed: int, examples: int, most: int) -> None:
+    """InputError unless so many scenes of the seed may be asked for."""
+    if not 1 <= examples <= most:
+        raise InputError("examples", examples, f"must be 1 … {most}")
+    if seed < 0:
+        raise InputError("seed", seed, "must be 0 or more")

@@ -17,6 +17,7 @@ from hypothesis.database import InMemoryExampleDatabase
 from verify import strategies
 from verify.exploration.property import Violation
 from verify.exploration.sample_space import SampleSpace
+from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.scene import Scene
 from verify.strategies.schemes import separable_for
 
@@ -31,23 +32,28 @@ Fault = Callable[[Scene], str]  # what is wrong with a scene; empty where nothin
 @lru_cache(maxsize=32)
 def scenes_of(drawn: SampleSpace) -> st.SearchStrategy[Scene]:
     """The strategy. Raises InputError for an unknown kind or scheme, and a degree below 1."""
-    given_schemes = strategies.schemes(names=drawn.schemes) if drawn.schemes else None
-    hamiltonians = None
-    if drawn.kinds or drawn.degree != SampleSpace().degree:
-        kinds = drawn.kinds or strategies.KINDS
-        hamiltonians = strategies.hamiltonians(
-            kinds,
-            degree=drawn.degree,
-            separable=separable_for(drawn.schemes),
-            time_dependent=drawn.time_dependent,
-            terms=_TERMS if drawn.degrees == 1 else _TERMS_IN_DEGREES,
-            degrees=drawn.degrees,
-        )
+    terms = _TERMS if drawn.degrees == 1 else _TERMS_IN_DEGREES
+    usual = not drawn.kinds and drawn.degree == SampleSpace().degree
     return strategies.scenes(
-        hamiltonians=hamiltonians,
-        schemes=given_schemes,
+        hamiltonians=None if usual else hamiltonians_of(drawn, terms),
+        schemes=strategies.schemes(names=drawn.schemes) if drawn.schemes else None,
         steps=(1, _MOST_STEPS),
-        time_dependent=drawn.time_dependent and hamiltonians is None,
+        time_dependent=drawn.time_dependent and usual,
+        degrees=drawn.degrees,
+    )
+
+
+def hamiltonians_of(
+    drawn: SampleSpace, terms: int, size: int = 9
+) -> st.SearchStrategy[Hamiltonian]:
+    """Those of the space; `terms` and `size` as `verify.strategies.hamiltonians` has them."""
+    return strategies.hamiltonians(
+        drawn.kinds or strategies.KINDS,
+        degree=drawn.degree,
+        separable=separable_for(drawn.schemes),
+        time_dependent=drawn.time_dependent,
+        terms=terms,
+        size=size,
         degrees=drawn.degrees,
     )
 

@@ -5,15 +5,20 @@ each is smooth for all real t, and is a function of q and t alone or of p and t 
 H = T + V stays so.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from hypothesis import strategies as st
 
 from verify.strategies.formulas import Formula
-from verify.strategies.terms import Drawer, Limits, Sum, power, times
+from verify.strategies.terms import Drawer, Limits, Sum
 
-_Form = Callable[[Drawer], str]
+Form = Sequence[str]  # one is drawn, with the numbers in it
+_FORCES: Sequence[Form] = (
+    ("q*t", "q*t**2", "q*t**3"),
+    ("q*cos({3}t)", "q*sin({3}t)"),
+    ("q*sin({3}t + t**2{/})",),  # its frequency grows
+)
 
 
 @st.composite
@@ -27,57 +32,17 @@ def driven(
 ) -> Formula:
     """Formulas with such a term beside, which in p and q is of one of the kinds, and of no higher
     degree than the limits say; `linear`: in q, which what grows faster than that outgrows."""
-    found = draw(still)
-    forms = _LINEAR if linear else [*_LINEAR, *_others(kinds, limits)]
-    return replace(found, text=found.text + _drive(Drawer(draw, limits), forms), timed=True)
-
-
-def _others(kinds: Sequence[str], limits: Limits) -> Iterator[_Form]:
-    if limits.degree > 1:
-        yield from (_parametric, _mass)
-    if "trigonometric" in kinds:
-        yield _shaken
-
-
-def _drive(d: Drawer, forms: Sequence[_Form]) -> str:
-    """The term, with its sign."""
+    formula, d, term = draw(still), Drawer(draw, limits), Sum()
+    forms = _FORCES if linear else [*_FORCES, *_others(kinds, limits)]
     sign, size = d.pick(("+", "-")), d.positive()
-    term = Sum()
-    term.add(size, d.pick(forms)(d))
-    return f" {sign} {term.written({})}"
+    term.add(size, d.filled(d.pick(d.pick(forms))))
+    return replace(formula, text=f"{formula.text} {sign} {term.written({})}", timed=True)
 
 
-def _force_of_power(d: Drawer) -> str:
-    return f"q*{power('t', d.whole(1, 3))}"
-
-
-def _force_of_waves(d: Drawer) -> str:
-    return f"q*{d.pick(('cos', 'sin'))}({times(d.inner(), 't')})"
-
-
-def _chirp(d: Drawer) -> str:
-    """A force whose frequency grows."""
-    return f"q*sin({times(d.inner(), 't')} + t**2{_over(d)})"
-
-
-def _parametric(d: Drawer) -> str:
-    """A stiffness that comes and goes."""
-    return f"{power('q', d.whole(2, min(4, d.limits.degree)))}*cos({times(d.inner(), 't')})"
-
-
-def _shaken(d: Drawer) -> str:
-    """A pendulum whose point of support moves."""
-    return f"cos({times(d.inner(), 't')})*cos(q)"
-
-
-def _mass(d: Drawer) -> str:
-    """A kinetic energy that dies out in both directions of time."""
-    return f"p**2/(1 + t**2{_over(d)})"
-
-
-def _over(d: Drawer) -> str:
-    number = d.whole(1, d.limits.size)
-    return "" if number == 1 else f"/{number}"
-
-
-_LINEAR: Sequence[_Form] = (_force_of_power, _force_of_waves, _chirp)
+def _others(kinds: Sequence[str], limits: Limits) -> Iterator[Form]:
+    if limits.degree > 1:
+        # A stiffness that comes and goes; a kinetic energy that dies out in both directions.
+        yield [f"q**{n}*cos({{3}}t)" for n in range(2, min(4, limits.degree) + 1)]
+        yield ["p**2/(1 + t**2{/})"]
+    if "trigonometric" in kinds:  # a pendulum whose point of support moves
+        yield ["cos({3}t)*cos(q)"]

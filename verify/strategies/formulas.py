@@ -31,7 +31,6 @@ _Shapes = dict[str, tuple[int, bool | None]]
 _QUADRATIC: _Shapes = {"elliptic": (1, True), "hyperbolic": (1, False), "parabolic": (1, False)}
 _SHAPES: _Shapes = {"confining": (2, True), "open": (2, False), "free": (2, None)}
 _OPEN_FIRST: _Shapes = {"open": (2, False)} | _SHAPES  # p**2/2 + cos(q) is the simplest
-USUAL = Limits()
 _CHOICES = 16  # as many as the simplest formula of any plan takes
 
 
@@ -63,8 +62,8 @@ class Formula:
 
 
 def formulas(
-    kinds: Sequence[str] = KINDS,
-    limits: Limits = USUAL,
+    kinds: Sequence[str],
+    limits: Limits,
     *,
     separable: bool | None = None,
     bounded: bool | None = None,
@@ -89,14 +88,16 @@ def _plans(
         if bounded is None or bounded == is_bounded
         for _ in range(often)
     ]
-    fitting = [plan for plan in found if _least_degree(plan) <= limits.degree]
-    if not fitting:
-        least = min(map(_least_degree, found))
-        raise InputError("degree", limits.degree, f"must be {least} or more for such an H")
-    if not any(_least_terms(plan) <= limits.terms for plan in fitting):
-        least = min(map(_least_terms, fitting))
-        raise InputError("terms", limits.terms, f"must be {least} or more for such an H")
-    return [plan for plan in fitting if _least_terms(plan) <= limits.terms]
+    for name, most, least in (
+        ("degree", limits.degree, _least_degree),
+        ("terms", limits.terms, _least_terms),
+    ):
+        fitting = [plan for plan in found if least(plan) <= most]
+        if not fitting:
+            problem = f"must be {min(map(least, found))} or more for such an H"
+            raise InputError(name, most, problem)
+        found = fitting
+    return found
 
 
 def _shapes(kind: str) -> _Shapes:

@@ -10,7 +10,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.strategies.arguments import MOST_DEGREES, whole, yes_no, yes_no_either
 from verify.strategies.formulas import KINDS as KINDS
 from verify.strategies.formulas import Formula
-from verify.strategies.formulas_in_degrees import Wanted, formulas_in_degrees
+from verify.strategies.systems import System
 from verify.strategies.terms import Limits
 
 _MOST_TERMS, _MOST_SIZE = 50, 10**9
@@ -83,11 +83,10 @@ def hamiltonians(
     yes_no("time_dependent", time_dependent)
     if time_dependent and bounded is False:
         raise InputError("bounded", bounded, "is not known of an H in time; allowed: True, None")
-    several = whole("degrees", degrees, 1, MOST_DEGREES) > 1
-    if yes_no_either("coupled", coupled) and not several:
+    whole("degrees", degrees, 1, MOST_DEGREES)
+    if yes_no_either("coupled", coupled) and degrees == 1:
         raise InputError("coupled", coupled, "wants two degrees of freedom or more")
-    wanted = Wanted(
-        degrees, tuple(kinds), limits, separable, bounded, coupled, with_parameters, time_dependent
+    system = System(
+        degrees, limits, tuple(kinds), separable, bounded, coupled, with_parameters, time_dependent
     )
-    drawn = formulas_in_degrees(wanted) if several else wanted.part(kinds, separable, first=True)
-    return drawn.map(Formula.hamiltonian)
+    return system.formulas().map(Formula.hamiltonian)

@@ -70,11 +70,15 @@ def initial_values(
     >>> str(found.q), str(found.p)
     ('2', '0')
     """
-    bound = rational(most, "most")
-    if bound <= 0:
-        raise InputError("most", most, "must be greater than 0")
-    numbers = _coordinates(bound, yes_no("extreme", extreme))
-    if whole("degrees", degrees, 1, MOST_DEGREES) == 1:
+    numbers = _coordinates(most, yes_no("extreme", extreme))
+    return starts(numbers, whole("degrees", degrees, 1, MOST_DEGREES))
+
+
+def starts(
+    numbers: st.SearchStrategy[Fraction], degrees: int
+) -> st.SearchStrategy[InitialValue] | st.SearchStrategy[InitialState]:
+    """Initial values whose coordinates are such numbers."""
+    if degrees == 1:
         return st.builds(InitialValue, q=numbers, p=numbers)
     of_each = st.tuples(*[numbers] * degrees)
     return st.builds(InitialState, q=of_each, p=of_each)
@@ -85,13 +89,13 @@ def initial_times(*, most: Exact = 2) -> st.SearchStrategy[Fraction]:
 
     Raises InputError for most ≤ 0.
     """
-    bound = rational(most, "most")
-    if bound <= 0:
-        raise InputError("most", most, "must be greater than 0")
-    return _coordinates(bound, extreme=False)
+    return _coordinates(most, extreme=False)
 
 
-def _coordinates(most: Fraction, extreme: bool) -> st.SearchStrategy[Fraction]:
+def _coordinates(asked: Exact, extreme: bool) -> st.SearchStrategy[Fraction]:
+    most = rational(asked, "most")
+    if most <= 0:
+        raise InputError("most", asked, "must be greater than 0")
     ordinary = [_multiples(most, d) for d in _DENOMINATORS if most * d >= 1]
     ordinary = ordinary or [_multiples(most, math.ceil(10 / most))]
     if not extreme:

@@ -1,9 +1,8 @@
 """Whole scenes: an H, a scheme that takes it, and a run of a few steps."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from functools import partial
 from typing import Any, NamedTuple
 
 from hypothesis import reject
@@ -18,10 +17,9 @@ from verify.schemes.methods.taylor.lie import eta_of
 from verify.schemes.scheme import Scheme
 from verify.strategies import numbers
 from verify.strategies.arguments import MOST_DEGREES, whole, yes_no
-from verify.strategies.drives import driven
-from verify.strategies.formulas import KINDS, USUAL, Formula, formulas
-from verify.strategies.formulas_in_degrees import Wanted, formulas_in_degrees
+from verify.strategies.formulas import Formula
 from verify.strategies.schemes import named, takers
+from verify.strategies.systems import System
 from verify.strategies.terms import Limits
 
 _SHORT = Limits(degree=4, terms=2)  # of each of several degrees of freedom
@@ -79,11 +77,11 @@ def scenes(
     runs = _Runs(st.builds(_grid, counts, sizes, values), times)
     if hamiltonians is not None:
         return _of_hamiltonians(hamiltonians, schemes, runs)
-    formula = partial(_formulas, time_dependent=time_dependent, degrees=degrees)
+    system = System(degrees, Limits() if degrees == 1 else _SHORT, time_dependent=time_dependent)
     if schemes is not None:
-        return _of_schemes(schemes, formula, runs)
+        return _of_schemes(schemes, system, runs)
     found = named() if degrees == 1 else [x for x in named() if eta_of(x.name) not in _LONG_MAPS]
-    return _of_formulas(formula, runs, found)
+    return _of_system(system, runs, found)
 
 
 class _Runs(NamedTuple):
@@ -102,15 +100,10 @@ def _grid(steps: int, step_size: Fraction, initial_value: InitialValue | Initial
     return Grid(steps=steps, step_sizes=(step_size,), initial_values=(initial_value,))
 
 
-_Formulas = Callable[..., st.SearchStrategy[Formula]]
-
-
-def _of_formulas(
-    formula_of: _Formulas, runs: _Runs, found: Sequence[Scheme]
-) -> st.SearchStrategy[Scene]:
+def _of_system(system: System, runs: _Runs, found: Sequence[Scheme]) -> st.SearchStrategy[Scene]:
     of_any = st.sampled_from([scheme for scheme in found if not scheme.needs_separable])
     of_separable = st.sampled_from(found)
-    any_formula = formula_of()
+    any_formula = _formulas(system)
 
     @st.composite
     def drawn(draw: st.DrawFn) -> Scene:
@@ -122,9 +115,9 @@ def _of_formulas(
 
 
 def _of_schemes(
-    schemes: st.SearchStrategy[Scheme], formula_of: _Formulas, runs: _Runs
+    schemes: st.SearchStrategy[Scheme], system: System, runs: _Runs
 ) -> st.SearchStrategy[Scene]:
-    any_formula, separable = formula_of(), formula_of(separable=True)
+    any_formula, separable = (_formulas(replace(system, separable=x)) for x in (None, True))
 
     @st.composite
     def drawn(draw: st.DrawFn) -> Scene:
@@ -158,18 +151,10 @@ def _of_hamiltonians(
     return drawn()
 
 
-def _formulas(
-    separable: bool | None = None, time_dependent: bool = False, degrees: int = 1
-) -> st.SearchStrategy[Formula]:
-    if degrees > 1:
-        wanted = Wanted(degrees, KINDS, _SHORT, separable=separable, time_dependent=time_dependent)
-        bare, with_names = (
-            formulas_in_degrees(replace(wanted, with_parameters=x)) for x in (False, True)
-        )
-        return st.one_of(bare, bare, with_names)
-    plain, named = (formulas(separable=separable, with_parameters=named) for named in (False, True))
-    still = st.one_of(plain, plain, named)
-    return driven(still, KINDS, USUAL) if time_dependent else still
+def _formulas(system: System) -> st.SearchStrategy[Formula]:
+    """One in three with parameters."""
+    bare, with_names = (replace(system, with_parameters=x).formulas() for x in (False, True))
+    return st.one_of(bare, bare, with_names)
 
 
 def _scene(formula: Formula, scheme: Scheme, run: Mapping[str, Any]) -> Scene:

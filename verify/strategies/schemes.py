@@ -71,12 +71,11 @@ def named(names: Iterable[str] | None = None) -> list[Scheme]:
 
 def takers(found: Iterable[Scheme], hamiltonian: Hamiltonian) -> list[Scheme]:
     """Those of the schemes that take this H."""
-    separable = is_separable(hamiltonian)
-    return [scheme for scheme in found if takes(scheme, hamiltonian, separable)]
+    separable = _is_separable(hamiltonian)
+    return [scheme for scheme in found if _takes(scheme, hamiltonian, separable)]
 
 
-def takes(scheme: Scheme, hamiltonian: Hamiltonian, separable: bool) -> bool:
-    """Whether the scheme takes this H, which is `separable` or not."""
+def _takes(scheme: Scheme, hamiltonian: Hamiltonian, separable: bool) -> bool:
     if scheme.every_h is not None:
         return separable or not scheme.needs_separable
     try:  # a scheme of the user's own: nothing else is known of it
@@ -91,7 +90,7 @@ def separable_for(names: Iterable[str]) -> bool | None:
     return True if any(catalogue.get(name).needs_separable for name in names) else None
 
 
-def is_separable(hamiltonian: Hamiltonian) -> bool:
+def _is_separable(hamiltonian: Hamiltonian) -> bool:
     """Whether H = T(p) + V(q); terms of one variable each need no algebra."""
     half = hamiltonian.degrees
     momenta, places = (

@@ -4,6 +4,7 @@ Everything is made from bounded integers and a few choices, and nothing is drawn
 so a draw takes few bytes, and shrinks by what its integers shrink to.
 """
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -15,6 +16,7 @@ from hypothesis import strategies as st
 T = TypeVar("T")
 _MOST_INNER = 3  # the greatest k in sin(k*q)
 _HALF = Fraction(1, 2)
+_BRACES = re.compile(r"\{(.)\}")
 
 
 # hypothesis makes a strategy of a range anew each time; there are few ranges.
@@ -94,6 +96,17 @@ class Drawer:
     def inner(self) -> int:
         """The k of sin(k*q)."""
         return self.whole(1, _MOST_INNER)
+
+    def filled(self, text: str) -> str:
+        """The text with numbers drawn for what stands in braces: for {3} nothing or a factor up to
+        3, for {/} nothing or a divisor."""
+        return _BRACES.sub(lambda braces: self._number(braces[1]), text)
+
+    def _number(self, most: str) -> str:
+        number = self.whole(1, self.limits.size if most == "/" else int(most))
+        if number == 1:
+            return ""
+        return f"/{number}" if most == "/" else f"{number}*"
 
     def even(self) -> int:
         """An even power up to `degree`."""

@@ -12,8 +12,8 @@ from verify.algebra.formula import symbol
 from verify.flows.degrees.solution import uncoupled
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.scenes.values import InitialState
+from verify.strategies.couplings import couplings, numbered
 from verify.strategies.formulas import KINDS
-from verify.strategies.formulas_in_degrees import forms, numbered
 
 every_n = pytest.mark.parametrize("degrees", [2, 3])
 
@@ -109,11 +109,11 @@ def test_a_bad_argument_is_refused_when_it_is_given(asked: dict[str, object], pr
 
 
 def test_a_coupling_has_two_degrees_and_the_asked_properties() -> None:
-    every = [form for kind in KINDS for form in forms(kind, 6, separable=False, bounded=None)]
-    assert len({form.draw for form in every}) == 15
-    assert all(form.separable for form in forms("rational", 6, separable=True, bounded=None))
-    assert all(form.confined for form in forms("exponential", 6, separable=False, bounded=True))
-    assert not list(forms("polynomial", 1, separable=True, bounded=None))
+    every = [x for kind in KINDS for x in couplings(kind, 6, separable=False, bounded=None)]
+    assert len(set(every)) == 15
+    assert all(x.separable for x in couplings("rational", 6, separable=True, bounded=None))
+    assert all(x.confined for x in couplings("exponential", 6, separable=False, bounded=True))
+    assert not list(couplings("polynomial", 1, separable=True, bounded=None))
 
 
 def test_degrees_are_numbered_in_names_alone() -> None:

@@ -16,7 +16,6 @@ import sympy
 
 from verify.algebra.formula import symbol
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.any_sample import AnySample
 from verify.exploration.oracles.ball_steps import (
     BITS,
     BallState,
@@ -29,6 +28,7 @@ from verify.exploration.oracles.ball_steps import (
 )
 from verify.exploration.oracles.symplectic_matrices import Exact, exact
 from verify.exploration.property import Violation, only_if
+from verify.exploration.sample import Sample
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.conditions.every_hamiltonian import RungeKutta, TaylorSeries
 
@@ -51,12 +51,12 @@ class Change:
         return self.matrix.inv()
 
 
-def knows_no_coordinates(sample: AnySample) -> bool:
+def knows_no_coordinates(sample: Sample) -> bool:
     """Whether the scheme treats all coordinates alike, so that each linear map may be asked for."""
     return isinstance(sample.scheme.every_h, TaylorSeries | RungeKutta)
 
 
-def transformed_hamiltonian(sample: AnySample, change: Change) -> Hamiltonian:
+def transformed_hamiltonian(sample: Sample, change: Change) -> Hamiltonian:
     """K(z, t) = factor · H(M⁻¹ z, (t − shift)/pace)."""
     names = sample.hamiltonian.coordinates
     symbols = [symbol(name) for name in names]
@@ -70,12 +70,11 @@ def transformed_hamiltonian(sample: AnySample, change: Change) -> Hamiltonian:
     return Hamiltonian(sympy.Rational(change.factor) * expression)
 
 
-def must_be_same_steps(sample: AnySample, change: Change) -> None:
+def must_be_same_steps(sample: Sample, change: Change) -> None:
     """Violation where the run of K from M z is not the image of that of H, or S not that of S;
     Silent where one is not known. In the plane of one step, whose maps may be long."""
-    planar = sample.hamiltonian.planar
-    only_if(sample.brief and (planar or sample.scheme.explicit))
-    steps = 1 if planar else min(sample.steps, _MOST_STEPS)
+    only_if(sample.brief)
+    steps = 1 if sample.planar else min(sample.steps, _MOST_STEPS)
     ours = [state.sharp() for state in ball_steps(sample.step_map, sample.start, steps)]
     other = replace(
         sample,
@@ -86,7 +85,7 @@ def must_be_same_steps(sample: AnySample, change: Change) -> None:
     ).at(moved(change, sample.point))
     # A part of H may have vanished with a coordinate: K is of fewer degrees then.
     only_if(other.hamiltonian.coordinates == sample.hamiltonian.coordinates)
-    only_if(planar or other.brief)
+    only_if(other.planar or other.brief)
     theirs = [state.sharp() for state in ball_steps(other.step_map, other.start, steps)]
     with working_precision(BITS):
         for mine, found in zip(ours[1:], theirs[1:], strict=True):

@@ -5,14 +5,13 @@ matrix; by q ← A q, p ← A⁻ᵀ p; or exchange a pair, p ← q, q ← −p.
 """
 
 import random
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 import flint
 
 Exact = flint.fmpq_mat
 _NUMBERS = tuple(Fraction(n, d) for n, d in ((1, 2), (-1, 1), (2, 1), (-2, 3), (1, 3), (3, 2)))
-_Elementary = Callable[[random.Random, int], Exact]
 
 
 def exact(x: Fraction) -> flint.fmpq:
@@ -32,8 +31,11 @@ def diagonal(values: Sequence[Fraction]) -> Exact:
 
 
 def symplectic(seed: int, degrees: int) -> Exact:
-    """A product of two elementary matrices that the seed chooses, of different kinds."""
+    """A product of two elementary matrices that the seed chooses, of different kinds; in the plane
+    of two shears, which mix p and q."""
     chance = random.Random(seed)  # noqa: S311 - no secret
+    if degrees == 1:
+        return _shear_of_p(chance, degrees) * _shear_of_q(chance, degrees)
     first, second = chance.sample([_shear_of_p, _shear_of_q, _of_places, _scaled, _pair], 2)
     return first(chance, degrees) * second(chance, degrees)
 
@@ -41,53 +43,54 @@ def symplectic(seed: int, degrees: int) -> Exact:
 def of_places(seed: int, degrees: int) -> Exact:
     """One that moves q by q and p by p: q ← A q, p ← A⁻ᵀ p."""
     chance = random.Random(seed)  # noqa: S311 - no secret
+    if degrees == 1:
+        return _scaled(chance, degrees)
     return _of_places(chance, degrees) * _scaled(chance, degrees)
 
 
 def cycled(degrees: int) -> Exact:
     """Each degree of freedom put in the place of the next, the last in that of the first."""
-    found = Exact(2 * degrees, 2 * degrees)
-    for k in range(degrees):
-        for half in (0, degrees):
-            found[half + (k + 1) % degrees, half + k] = flint.fmpq(1)
-    return found
+    before = [(k - 1) % degrees for k in range(degrees)]
+    return _permuted([*before, *(degrees + k for k in before)])
 
 
 def exchanged(degrees: int) -> Exact:
     """p and q exchanged, for which MᵀΩM = −Ω."""
-    found = Exact(2 * degrees, 2 * degrees)
-    for k in range(degrees):
-        found[k, degrees + k] = found[degrees + k, k] = flint.fmpq(1)
-    return found
+    return _permuted([*range(degrees, 2 * degrees), *range(degrees)])
 
 
-def _places(chance: random.Random, degrees: int) -> tuple[int, int]:
-    i, j = chance.sample(range(degrees), 2)
-    return i, j
+def _permuted(places: Sequence[int]) -> Exact:
+    """The matrix that takes each coordinate from one of these places."""
+    return Exact([[int(a == place) for a in range(len(places))] for place in places])
 
 
-def _shear(chance: random.Random, degrees: int, row: int, column: int) -> Exact:
-    """The halves that begin at `row` sheared by those that begin at `column`."""
-    i, j = _places(chance, degrees)
-    found, by = identity(2 * degrees), exact(chance.choice(_NUMBERS))
-    found[row + i, column + j] = found[row + j, column + i] = by
-    return found
+def _changed(degrees: int, entries: Mapping[tuple[int, int], Fraction | int]) -> Exact:
+    """The matrix 1 with these entries in place of its own."""
+    matrix = identity(2 * degrees)
+    for place, x in entries.items():
+        matrix[place] = exact(Fraction(x))
+    return matrix
 
 
-def _shear_of_p(chance: random.Random, degrees: int) -> Exact:
-    return _shear(chance, degrees, 0, degrees)
+def _pair_and_number(chance: random.Random, degrees: int) -> tuple[int, int, Fraction]:
+    """Two degrees of freedom, the same one in the plane, and a number."""
+    i, j = chance.sample(range(degrees), 2) if degrees > 1 else (0, 0)
+    return i, j, chance.choice(_NUMBERS)
 
 
-def _shear_of_q(chance: random.Random, degrees: int) -> Exact:
-    return _shear(chance, degrees, degrees, 0)
+def _shear_of_p(chance: random.Random, n: int) -> Exact:
+    i, j, x = _pair_and_number(chance, n)
+    return _changed(n, {(i, n + j): x, (j, n + i): x})
 
 
-def _of_places(chance: random.Random, degrees: int) -> Exact:
-    i, j = _places(chance, degrees)
-    found, by = identity(2 * degrees), exact(chance.choice(_NUMBERS))
-    found[degrees + i, degrees + j] = by
-    found[j, i] = -by
-    return found
+def _shear_of_q(chance: random.Random, n: int) -> Exact:
+    i, j, x = _pair_and_number(chance, n)
+    return _changed(n, {(n + i, j): x, (n + j, i): x})
+
+
+def _of_places(chance: random.Random, n: int) -> Exact:
+    i, j, x = _pair_and_number(chance, n)
+    return _changed(n, {(n + i, n + j): x, (j, i): -x})
 
 
 def _scaled(chance: random.Random, degrees: int) -> Exact:
@@ -95,9 +98,7 @@ def _scaled(chance: random.Random, degrees: int) -> Exact:
     return diagonal([*(1 / x for x in factors), *factors])
 
 
-def _pair(chance: random.Random, degrees: int) -> Exact:
+def _pair(chance: random.Random, n: int) -> Exact:
     """p_k ← q_k, q_k ← −p_k of one degree of freedom."""
-    found, k = identity(2 * degrees), chance.randrange(degrees)
-    found[k, k] = found[degrees + k, degrees + k] = flint.fmpq(0)
-    found[k, degrees + k], found[degrees + k, k] = flint.fmpq(1), flint.fmpq(-1)
-    return found
+    k = chance.randrange(n)
+    return _changed(n, {(k, k): 0, (n + k, n + k): 0, (k, n + k): 1, (n + k, k): -1})

@@ -1,10 +1,8 @@
 """What holds of every scene: the properties that `verify explore` looks at, one file each.
 
-A file's first line of text is the property's sentence. `holds(sample)` looks at one sample of the
-plane, and raises what is to be said of it (see `verify.exploration.property`);
-`holds_in_degrees(sample)` does so in n degrees of freedom. A file that has one of the two speaks of
-no other samples; one that looks at both alike has `holds_in_any_degrees(sample)` in their place.
-Adding a property is adding one file.
+A file's first line of text is the property's sentence. `holds(sample)` looks at one sample, of the
+plane or in n degrees of freedom, and raises what is to be said of it (see
+`verify.exploration.property`). Adding a property is adding one file.
 """
 
 import ast
@@ -35,6 +33,4 @@ def get(name: str) -> Property:
     module = _FILES.module(name)
     text = ast.get_docstring(ast.parse(getsource(module)))  # python -OO keeps no __doc__
     sentence = (text or "").splitlines()[0]
-    alike = getattr(module, "holds_in_any_degrees", None)
-    plane, several = (getattr(module, x, alike) for x in ("holds", "holds_in_degrees"))
-    return Property(name, sentence, plane, in_degrees=several)
+    return Property(name, sentence, module.holds)

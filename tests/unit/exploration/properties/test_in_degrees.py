@@ -8,11 +8,10 @@ from typing import Any
 import pytest
 
 from tests.helpers.planted.steps import with_term
-from tests.unit.exploration.properties.test_properties import OF_TIME_ALONE, PLANTED
+from tests.unit.exploration.properties.test_properties import OF_DEGREES_ALONE
 from verify.exploration import properties
-from verify.exploration.any_sample import AnySample
 from verify.exploration.property import Violation
-from verify.exploration.sample_in_degrees import SampleInDegrees, sample_of
+from verify.exploration.sample import Sample
 from verify.flows.extrapolation import Flow
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import kernel_for
@@ -22,29 +21,27 @@ from verify.schemes import get
 from verify.schemes.maps.step_map import StepMap
 
 Patch = pytest.MonkeyPatch
-Plant = Callable[[SampleInDegrees, Patch], Any]
+Plant = Callable[[Sample, Patch], Any]
 HENON_HEILES = "p1**2/2 + p2**2/2 + q1**2/2 + q2**2/2 + q1**2*q2 - q2**3/3"
 DRIVEN = f"{HENON_HEILES} + q1*cos(3*t)/5"
 THREE = "p1**2/2 + p2**2 + p3**2/2 + q1**4/4 - cos(q2) + q3**2 + q1*q3"
 MIXED = "p1**2/2 + p2**2/2 + q1**2/2 + q2**4/4 + p1*q2/3"
 
 
-def example_of(scheme: str, hamiltonian: str = HENON_HEILES) -> SampleInDegrees:
+def example_of(scheme: str, hamiltonian: str = HENON_HEILES) -> Sample:
     degrees = Hamiltonian.parse(hamiltonian).degrees
     start = {"q": ["0.3", "-0.2", "0.5"][:degrees], "p": ["0.1", "1/3", "-0.4"][:degrees]}
     grid = {"steps": 3, "step_sizes": ["0.05"], "initial_values": [start]}
     data = {"hamiltonian": hamiltonian, "schemes": [scheme], "grid": grid}
     if Hamiltonian.parse(hamiltonian).time_dependent:
         data["t0"] = "0.7"
-    found = sample_of(scene_from(data, "scene"))
-    assert isinstance(found, SampleInDegrees)
-    return found
+    return Sample.of(scene_from(data, "scene"))
 
 
 @pytest.fixture(autouse=True)
 def _every_turn(monkeypatch: Patch) -> None:
-    monkeypatch.setattr(SampleInDegrees, "turn", 0)
-    monkeypatch.setattr(AnySample, "is_turn", lambda self, one_in, after=0: True)
+    monkeypatch.setattr(Sample, "turn", 0)
+    monkeypatch.setattr(Sample, "is_turn", lambda self, one_in, after=0: True)
 
 
 def wrong_map(true: StepMap, power: int = 3) -> StepMap:
@@ -52,11 +49,11 @@ def wrong_map(true: StepMap, power: int = 3) -> StepMap:
     return with_term(true, true.degrees, power, lambda _: true.field.slopes[1] / 100)
 
 
-def another_map(sample: SampleInDegrees, patch: Patch) -> None:
+def another_map(sample: Sample, patch: Patch) -> None:
     patch.setitem(sample.__dict__, "step_map", wrong_map(sample.step_map))
 
 
-def another_scheme(sample: SampleInDegrees, patch: Patch) -> SampleInDegrees:
+def another_scheme(sample: Sample, patch: Patch) -> Sample:
     """The maps that the property makes of the scheme are others, but in the plane."""
     true = sample.scheme.step_map
 
@@ -67,35 +64,35 @@ def another_scheme(sample: SampleInDegrees, patch: Patch) -> SampleInDegrees:
     return replace(sample, scheme=replace(sample.scheme, build=build))
 
 
-def one_more_order(sample: SampleInDegrees, patch: Patch) -> None:
+def one_more_order(sample: Sample, patch: Patch) -> None:
     order = sample.proof.convergence_order or 0
     patch.setitem(sample.__dict__, "proof", replace(sample.proof, convergence_order=order + 1))
 
 
-def one_order_less(sample: SampleInDegrees, patch: Patch) -> None:
+def one_order_less(sample: Sample, patch: Patch) -> None:
     first = replace(sample.proof.first, power=(sample.proof.order or 0) - 1)
     patch.setitem(sample.__dict__, "proof", replace(sample.proof, first=first))
 
 
-def sums_for_products(_: SampleInDegrees, patch: Patch) -> None:
+def sums_for_products(_: Sample, patch: Patch) -> None:
     patch.setattr(Statements, "product", lambda self: self.sum_up("lam", "dj"))
 
 
-def boasting(sample: SampleInDegrees, _: Patch) -> SampleInDegrees:
+def boasting(sample: Sample, _: Patch) -> Sample:
     return replace(sample, scheme=replace(sample.scheme, order=sample.scheme.order + 1))
 
 
-def believes_all(_: SampleInDegrees, patch: Patch) -> None:
+def believes_all(_: Sample, patch: Patch) -> None:
     module = import_module("verify.exploration.properties.orders.certificates")
     patch.setattr(module, "check", lambda data: None)
 
 
-def blind(sample: SampleInDegrees, patch: Patch) -> None:
+def blind(sample: Sample, patch: Patch) -> None:
     module = import_module("verify.exploration.properties.orders.planted_errors")
     patch.setattr(module, "prove", lambda *_, **__: sample.proof)
 
 
-def half_a_flow(_: SampleInDegrees, patch: Patch) -> None:
+def half_a_flow(_: Sample, patch: Patch) -> None:
     """Forwards, by half the time."""
     true = Flow.follow
     patch.setattr(
@@ -105,13 +102,13 @@ def half_a_flow(_: SampleInDegrees, patch: Patch) -> None:
     )
 
 
-def a_lost_step(_: SampleInDegrees, patch: Patch) -> None:
+def a_lost_step(_: Sample, patch: Patch) -> None:
     module = import_module("verify.exploration.properties.numbers.results_read_back")
     true = module.scene_text
     patch.setattr(module, "scene_text", lambda scene: true(scene).replace("steps = 3", "steps = 2"))
 
 
-def a_second_drive(sample: SampleInDegrees, patch: Patch) -> None:
+def a_second_drive(sample: Sample, patch: Patch) -> None:
     """Of another H, which is not periodic."""
     other = Hamiltonian.parse(f"{DRIVEN} + q2*t/100")
     patch.setitem(sample.__dict__, "step_map", sample.scheme.step_map(other))
@@ -141,11 +138,18 @@ PLANTED_IN_DEGREES: dict[str, tuple[str, str, Plant]] = {
 }
 
 
+OF_THE_PLANE_ALONE = (
+    "growth-laws",
+    "orbit-averages",
+    "order-by-jets",
+    "printed-parts",
+    "separated-parts-add-up",
+)
+
+
 def test_every_property_in_degrees_has_a_planted_error() -> None:
-    speaking = {x for x in properties.names() if properties.get(x).in_degrees}
-    assert set(PLANTED_IN_DEGREES) == speaking
-    alone = {x for x in properties.names() if not properties.get(x).check}
-    assert alone == set(properties.names()) - set(PLANTED) - set(OF_TIME_ALONE)
+    assert set(PLANTED_IN_DEGREES) == set(properties.names()) - set(OF_THE_PLANE_ALONE)
+    assert set(OF_DEGREES_ALONE) <= set(PLANTED_IN_DEGREES)
 
 
 @pytest.mark.parametrize("name", sorted(PLANTED_IN_DEGREES))
@@ -172,11 +176,13 @@ def test_steps_that_solve_equations_are_held_by_runs(scheme: str) -> None:
 
 def test_a_property_of_the_plane_speaks_of_no_degrees_and_the_other_way_round() -> None:
     several = example_of("lie2")
-    assert not properties.get("separated-parts-add-up").holds(several)
+    for name in OF_THE_PLANE_ALONE:
+        assert not properties.get(name).holds(several), name
     plane = {"hamiltonian": "p**2/2 + q**4", "schemes": ["lie2"],
              "grid": {"steps": 2, "step_sizes": ["0.1"],
                       "initial_values": [{"q": 1, "p": 0}]}}  # fmt: skip
-    assert not properties.get("uncoupled-systems").holds(sample_of(scene_from(plane, "scene")))
+    for name in OF_DEGREES_ALONE:
+        assert not properties.get(name).holds(Sample.of(scene_from(plane, "scene"))), name
 
 
 def test_a_scheme_is_that_of_the_sample() -> None:

@@ -157,5 +157,5 @@ def test_of_which_h_a_period_is_known(hamiltonian: str, speaks: bool) -> None:
 
 def test_no_order_is_too_high_at_a_time_at_which_more_vanishes() -> None:
     """Scene 314 of seed 1, shrunk: at t = 0 from p = 0 lie3's error is O(h⁵), and O(h⁴) beside."""
-    sample = replace(example_of("lie3", "exp(p) + q*t"), p=Fraction(0), q=Fraction(0))
+    sample = example_of("lie3", "exp(p) + q*t").at((Fraction(0), Fraction(0)))
     assert properties.get("convergence-order").holds(sample)

@@ -15,7 +15,7 @@ _DIGITS = 6
 
 
 def holds(sample: Sample) -> None:
-    only_if(sample.is_turn(_IN) and sample.short)
+    only_if(sample.planar and sample.is_turn(_IN) and sample.short)
     found = separate(sample.hamiltonian, sample.scheme.name, **sample.run_arguments, digits=_DIGITS)
     only_if(found.status == "finished")
     for evaluation in (found.plain, found.closed_form):

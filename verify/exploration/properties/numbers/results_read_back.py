@@ -3,7 +3,6 @@
 from verify.algebra.enclosure import enclose
 from verify.algebra.expressions.formula_text import to_text
 from verify.arithmetic.arb import shown
-from verify.exploration.any_sample import AnySample
 from verify.exploration.oracles.ball_steps import BITS
 from verify.exploration.property import Violation
 from verify.exploration.sample import Sample
@@ -19,13 +18,12 @@ _SCENES, _MAPS = 2, 3  # one in so many is read back; where no scene is, H is
 _LONGEST = 15  # terms of a map
 
 
-def holds_in_any_degrees(sample: AnySample) -> None:
-    """The map's formulas are those of the plane."""
+def holds(sample: Sample) -> None:
     if sample.is_turn(_SCENES):
         _must_be_same_scene(sample.scene)
     else:
         _must_be_same(sample)
-    if isinstance(sample, Sample) and sample.is_turn(_MAPS):
+    if sample.is_turn(_MAPS) and sample.brief:
         _must_be_same_map(sample)
 
 
@@ -34,7 +32,7 @@ def _must_be_same_scene(scene: Scene) -> None:
         raise Violation("the scene's TOML reads back as another scene")
 
 
-def _must_be_same(sample: AnySample) -> None:
+def _must_be_same(sample: Sample) -> None:
     given, values = sample.hamiltonian, []
     read = Hamiltonian.parse(given.formula, dict(given.values))
     for hamiltonian in (given, read):
@@ -50,7 +48,7 @@ def _must_be_same_map(sample: Sample) -> None:
     parts = parts_of(sample.step_map)
     if parts is None or parts[-1].length > _LONGEST:
         return
-    closed, names = parts[-1], ("p_next", "q_next")
+    closed, names = parts[-1], [f"{name}_next" for name in sample.point]
     texts = [to_text(closed.ring.expression(x)) for x in closed.elements]
     formulas = dict(zip(names, texts, strict=True))
     read = map_by_formulas(sample.hamiltonian, formulas).flat

@@ -6,7 +6,7 @@ the Λ that balls enclose, with the input part it is that at inputs rounded to f
 clock part that at the times of float64's own clock.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 
@@ -17,7 +17,6 @@ from verify.exploration.oracles.ball_steps import BITS, ball_steps, stepped
 from verify.exploration.property import Silent, Violation, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.lockstep import alone
-from verify.schemes.maps.step_map import StepMap
 from verify.studies.separation.chain import Chain
 from verify.studies.separation.links import separated_chains
 from verify.studies.separation.stepper.run import Stopped
@@ -28,7 +27,7 @@ _DIGITS = 8
 
 
 def holds(sample: Sample) -> None:
-    only_if(sample.is_turn(_IN) and sample.short)
+    only_if(sample.planar and sample.is_turn(_IN) and sample.short)
     with silent_at(Stopped):
         chains = alone(separated_chains(*sample.kernel_inputs, _DIGITS))
     wanted = _lambda_by_balls(sample)
@@ -55,28 +54,28 @@ def _must_add_up(chain: Chain) -> None:
 def _lambda_by_balls(sample: Sample) -> list[Ball | None]:
     """Λ by balls, of the sample's numbers, of the nearest float64s, and of these with float64's own
     clock, where H depends on time."""
-    start = sample.start
-    exact = _area_error(sample, sample.step_map, start)
-    rounded = {name: _nearest(x) for name, x in start.items()}
-    given = {name: _nearest(x) for name, x in sample.hamiltonian.values}
-    if given == dict(sample.hamiltonian.values):
-        of_it = sample.step_map
-    else:
-        of_it = sample.scheme.step_map(sample.hamiltonian.with_values(given))
-    same = rounded == start and of_it is sample.step_map
-    found = [exact, exact if same else _area_error(sample, of_it, rounded)]
-    return [*found, _by_own_clock(sample, of_it, rounded)] if sample.timed else found
+    exact, values = sample.hamiltonian, dict(sample.hamiltonian.values)
+    nearest = {name: _nearest(x) for name, x in values.items()}
+    rounded = replace(
+        sample,
+        hamiltonian=exact if nearest == values else exact.with_values(nearest),
+        step_size=_nearest(sample.step_size),
+        t0=_nearest(sample.t0),
+        place=tuple(map(_nearest, sample.place)),
+    )
+    errors = [_area_error(sample), _area_error(rounded)]
+    return [*errors, _by_own_clock(rounded)] if sample.timed else errors
 
 
-def _by_own_clock(sample: Sample, step_map: StepMap, start: Mapping[str, Fraction]) -> Ball | None:
+def _by_own_clock(sample: Sample) -> Ball | None:
     """Λ where each step is made at the time of t ← t + h in float64."""
-    t, h = float(start["t"]), float(start["h"])
+    t, h = float(sample.t0), float(sample.step_size)
     try:
-        state = ball_steps(step_map, start, 0)[0]
+        state = ball_steps(sample.step_map, sample.start, 0)[0]
         with working_precision(BITS):
             for _ in range(sample.steps):
                 at = replace(state, point={**state.point, "t": rational_ball(Fraction(t))})
-                state, t = stepped(step_map, at, rational_ball(start["h"])), t + h
+                state, t = stepped(sample.step_map, at, rational_ball(sample.step_size)), t + h
             return state.sharp().product - 1
     except Silent:
         return None
@@ -92,10 +91,10 @@ def _nearest(x: Fraction) -> Fraction:
     return Fraction(float(x))
 
 
-def _area_error(sample: Sample, step_map: StepMap, start: Mapping[str, Fraction]) -> Ball | None:
+def _area_error(sample: Sample) -> Ball | None:
     """Λ of the sample's steps; None where balls do not know it."""
     try:
-        last = ball_steps(step_map, start, sample.steps)[-1].sharp()
+        last = ball_steps(sample.step_map, sample.start, sample.steps)[-1].sharp()
     except Silent:
         return None
     with working_precision(BITS):

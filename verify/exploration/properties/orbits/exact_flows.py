@@ -12,7 +12,6 @@ from verify.algebra.enclosure import enclose
 from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.arb import Ball, rational_ball, shown
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.any_sample import AnySample
 from verify.exploration.property import Silent, Violation, known, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.flows.extrapolation import Flow, NoFlowError
@@ -28,10 +27,9 @@ Point = Mapping[str, Fraction]
 Element = tuple[Ring, Poly]
 
 
-def holds_in_any_degrees(sample: AnySample) -> None:
+def holds(sample: Sample) -> None:
     """The potential is one of the plane."""
-    planar = isinstance(sample, Sample)
-    only_if(sample.is_turn(_IN) and (sample.ordinary if planar else sample.short))
+    only_if(sample.is_turn(_IN) and (sample.ordinary if sample.planar else sample.short))
     flow = sample.flow(_DIGITS)
     start = sample.start
     after = _flow_to(flow, start, _TIME)
@@ -41,12 +39,12 @@ def holds_in_any_degrees(sample: AnySample) -> None:
         if abs(x - y) > _KNOWN * (1 + abs(x)):
             raise Violation(f"{name} comes back as {float(y)!r}, from {float(x)!r}")
     _energy_must_be_kept(sample, after)
-    if isinstance(sample, Sample) and sample.is_turn(_OF_POTENTIALS):
+    if sample.planar and sample.is_turn(_OF_POTENTIALS):
         with suppress(Silent):  # the flow has been looked at
             _potential_must_move(sample)
 
 
-def _energy_must_be_kept(sample: AnySample, after: Point) -> None:
+def _energy_must_be_kept(sample: Sample, after: Point) -> None:
     field = sample.field
     ring, energy = field.ring, field.energy
     if sample.timed:
@@ -66,7 +64,7 @@ def _potential_must_move(sample: Sample) -> None:
     _must_grow(sample, "G", known(found.element), "L", known(sample.proof.first.element))
 
 
-def _must_grow(sample: AnySample, name: str, x: Element, rate: str, wanted_rate: Element) -> None:
+def _must_grow(sample: Sample, name: str, x: Element, rate: str, wanted_rate: Element) -> None:
     """Violation where an element does not grow, over an instant, by another one a time."""
     start = sample.start
     end = _flow_to(sample.flow(2 * _DIGITS), start, _INSTANT)

@@ -20,13 +20,14 @@ _SPARE = Fraction(1, 10**9)  # of the values averaged, whose estimated bound is 
 
 
 def holds(sample: Sample) -> None:
-    only_if(sample.is_turn(_IN) and sample.polynomial and sample.ordinary and not sample.timed)
+    only_if(sample.planar and sample.is_turn(_IN) and not sample.timed)
+    only_if(sample.polynomial and sample.ordinary)
     field = sample.field
     ring = field.ring
     mixed = field.derive(ring.variable("p") * ring.variable("q"))
-    start = sample.p, sample.q
+    p, q = sample.place
     with silent_at(NoFlowError):  # the orbit is open
-        found = average(sample.hamiltonian, (ring, field.energy + mixed), start, _DIGITS)
+        found = average(sample.hamiltonian, (ring, field.energy + mixed), (p, q), _DIGITS)
     at_start = known(enclose(ring, field.energy, sample.start, 200))
     wanted = middle_and_radius(at_start)[0]
     size = 1 + abs(wanted) + Fraction(max(map(abs, found.values), default=0.0))

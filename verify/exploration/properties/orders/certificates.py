@@ -1,6 +1,7 @@
 """The certificate of a proof is accepted by its checker, and refused with one number changed.
 
-The number is one of the leading coefficient, or of the first power of h in p' or q'. One sample in
+The number is one of the leading coefficient, or of the first power of h in a coordinate's new
+value. One sample in
 a few is looked at, as the checker works with plain dictionaries.
 """
 
@@ -11,25 +12,25 @@ from typing import Any
 from verify.errors import InputError
 from verify.exploration.property import Violation, only_if, silent_at
 from verify.exploration.sample import Sample
-from verify.exploration.sample_in_degrees import SampleInDegrees
 from verify.proof.certificates.checker import check
 from verify.proof.certificates.one import of_one
 from verify.proof.plane.potential import potential_of
 
 _IN = 10  # one in so many samples
-_IN_DEGREES = 6
-_LONGEST_IN_DEGREES = 20_000  # characters
-_LONGEST = 400  # terms in a certificate that is checked here
+_LONGEST = 20_000  # characters of a certificate that is checked here
 
 
 def holds(sample: Sample) -> None:
     only_if(sample.is_turn(_IN) and sample.ordinary and not sample.step_map.implicit)
     proof = sample.proof
     with silent_at(InputError):  # such a map, or such functions, have no certificate
-        data = of_one(proof, potential_of(proof, sample.scheme))
-    entries = (entry for name in ("p_next", "q_next", "leading") for entry in data[name])
-    only_if(sum(map(len, entries)) <= _LONGEST)
-    _must_be_checked(data, data["leading"], {name: data[name] for name in ("p_next", "q_next")})
+        data = of_one(proof, potential_of(proof, sample.scheme) if sample.planar else None)
+    only_if(len(json.dumps(data)) <= _LONGEST)
+    if sample.planar:
+        _must_be_checked(data, data["leading"], {n: data[n] for n in ("p_next", "q_next")})
+    else:
+        leading = data["leading"][0][2] if data["leading"] else []
+        _must_be_checked(data, leading, data["next"])
 
 
 def _must_be_checked(
@@ -61,13 +62,3 @@ def _refused(data: dict[str, Any]) -> str:
     except ValueError as error:
         return str(error)
     return ""
-
-
-def holds_in_degrees(sample: SampleInDegrees) -> None:
-    """The numbers are one of S, and one of h¹ in a coordinate's new value."""
-    only_if(sample.is_turn(_IN_DEGREES) and sample.ordinary and not sample.step_map.implicit)
-    with silent_at(InputError):  # such a map, or such functions, have no certificate
-        data = of_one(sample.proof)
-    only_if(len(json.dumps(data)) <= _LONGEST_IN_DEGREES)
-    leading = data["leading"][0][2] if data["leading"] else []
-    _must_be_checked(data, leading, data["next"])

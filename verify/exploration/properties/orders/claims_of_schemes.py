@@ -3,13 +3,13 @@
 Its ΔJ then has at least one order more than the scheme, as the exact flow has det J = 1.
 """
 
-from verify.exploration.any_sample import AnySample
 from verify.exploration.property import Violation, only_if
+from verify.exploration.sample import Sample
 from verify.verdict import Verdict
 
 
-def holds_in_any_degrees(sample: AnySample) -> None:
-    """In n degrees of freedom S takes the place of ΔJ."""
+def holds(sample: Sample) -> None:
+    """Of S, which in the plane is ΔJ."""
     only_if(sample.ordinary)
     proof, scheme = sample.proof, sample.scheme
     if proof.verdict is Verdict.REFUTED:
@@ -17,10 +17,8 @@ def holds_in_any_degrees(sample: AnySample) -> None:
     only_if(proof.verdict is not Verdict.UNDECIDED)
     if proof.convergence_order is not None and proof.convergence_order < scheme.order:
         raise Violation(f"{scheme.name} is proved, and has order {proof.convergence_order}")
-    defect = "ΔJ" if proof.planar else "S"
     if proof.order is not None and proof.order <= scheme.order:
-        raise Violation(f"{scheme.name} has order {scheme.order}, and its {defect} {proof.order}")
-    if not proof.planar:
-        volume = proof.volume_order
-        if volume is not None and proof.order is not None and volume < proof.order:
-            raise Violation(f"S has order {proof.order}, and det J − 1 {volume}")
+        raise Violation(f"{scheme.name} has order {scheme.order}, and its S {proof.order}")
+    volume = proof.volume_order
+    if volume is not None and proof.order is not None and volume < proof.order:
+        raise Violation(f"S has order {proof.order}, and det J − 1 {volume}")

@@ -10,7 +10,6 @@ from fractions import Fraction
 
 from verify.arithmetic.arb import Ball, around, rational_ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.any_sample import AnySample
 from verify.exploration.oracles.ball_steps import ball_steps
 from verify.exploration.property import Violation, known, only_if, silent_at
 from verify.exploration.sample import Sample
@@ -20,21 +19,14 @@ _STEP = Fraction(1, 2**96)
 _BITS_A_POWER, _SPARE, _LOST = 96, 200, 60
 _DIGITS_A_BIT = Fraction(30103, 100000)
 _WITHIN = Fraction(1, 10)  # of a whole order
-_IN_PLANE = {"p": Fraction(3, 70), "q": Fraction(1, 55), "t": Fraction(2, 65)}
-_IN_DEGREES = 3  # one in so many samples
 _ASIDE = Fraction(3, 70)
 Point = Mapping[str, Fraction]
 
 
-def holds_in_any_degrees(sample: AnySample) -> None:
-    planar = isinstance(sample, Sample)
-    only_if(planar or sample.is_turn(_IN_DEGREES))
+def holds(sample: Sample) -> None:
     only_if(sample.ordinary and not sample.step_map.implicit)
     order = known(sample.proof.convergence_order)
-    asides = (
-        _IN_PLANE if planar else {name: _ASIDE / (k + 2) for k, name in enumerate(sample.start)}
-    )
-    beside = {name: x + asides.get(name, 0) for name, x in sample.start.items()}
+    beside = {name: x + _ASIDE / k for k, (name, x) in enumerate(sample.start.items(), start=2)}
     for point in (sample.start, beside):
         found = _orders(sample, point, order)
         _must_reach(found, order + 1)
@@ -57,7 +49,7 @@ def _passes(found: Mapping[str, Ball | None], order: int) -> bool:
     return all(ball is None or ball > most for ball in found.values())
 
 
-def _orders(sample: AnySample, point: Point, order: int) -> dict[str, Ball | None]:
+def _orders(sample: Sample, point: Point, order: int) -> dict[str, Ball | None]:
     """By which power of h the errors shrink, None for one that may be 0."""
     whole, half = (_error(sample, {**point, "h": h}, order) for h in (_STEP, _STEP / 2))
     with working_precision(64):
@@ -71,7 +63,7 @@ def _power(large: Ball, small: Ball) -> Ball:
     return abs(large / small).log() / rational_ball(Fraction(2)).log()
 
 
-def _error(sample: AnySample, start: Point, order: int) -> dict[str, Ball]:
+def _error(sample: Sample, start: Point, order: int) -> dict[str, Ball]:
     """Step minus flow in each coordinate, as balls; Silent where one of them is not known."""
     bits = _BITS_A_POWER * (order + 3) + _SPARE
     after = ball_steps(sample.step_map, start, 1, bits)[-1]

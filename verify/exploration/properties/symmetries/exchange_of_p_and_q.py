@@ -5,15 +5,15 @@ Asked of schemes that treat p and q alike.
 
 from fractions import Fraction
 
-from verify.exploration.any_sample import AnySample
 from verify.exploration.oracles.equivariance import Change, knows_no_coordinates, must_be_same_steps
 from verify.exploration.oracles.symplectic_matrices import exchanged
 from verify.exploration.property import only_if
+from verify.exploration.sample import Sample
 
 _IN = 2  # one in so many samples
 
 
-def holds_in_any_degrees(sample: AnySample) -> None:
+def holds(sample: Sample) -> None:
     """All of p with all of q."""
     only_if(sample.is_turn(_IN) and knows_no_coordinates(sample))
     every = exchanged(sample.hamiltonian.degrees)

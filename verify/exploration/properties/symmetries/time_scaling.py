@@ -6,16 +6,16 @@ c·H is at t/c.
 
 from fractions import Fraction
 
-from verify.exploration.any_sample import AnySample
 from verify.exploration.oracles.equivariance import Change, must_be_same_steps
 from verify.exploration.oracles.symplectic_matrices import identity
 from verify.exploration.property import only_if
+from verify.exploration.sample import Sample
 
 _IN = 2  # one in so many samples
 _FACTOR = Fraction(-2, 3)
 
 
-def holds_in_any_degrees(sample: AnySample) -> None:
+def holds(sample: Sample) -> None:
     only_if(sample.is_turn(_IN))
     same = identity(2 * sample.hamiltonian.degrees)
     must_be_same_steps(sample, Change(same, factor=_FACTOR, pace=1 / _FACTOR))

@@ -12,16 +12,16 @@ import flint
 from verify.algebra.enclosure import enclose_all, enclose_over
 from verify.arithmetic.arb import Ball, rational_ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.any_sample import AnySample
 from verify.exploration.oracles.ball_steps import BITS, ball_steps, sharp, unlike
 from verify.exploration.property import Silent, Violation, known, only_if
+from verify.exploration.sample import Sample
 from verify.schemes.conditions.every_hamiltonian import RungeKutta
 from verify.schemes.conditions.splitting_conditions import Splitting
 
 Point = tuple[Ball, ...]  # the coordinates, and t
 
 
-def holds_in_any_degrees(sample: AnySample) -> None:
+def holds(sample: Sample) -> None:
     """With (f, 1) as the slope, and the two clocks of a splitting."""
     only_if(sample.timed and sample.brief)
     with working_precision(BITS):
@@ -34,7 +34,7 @@ def holds_in_any_degrees(sample: AnySample) -> None:
             raise Violation(f"{name}' is {told}, with t as a coordinate")
 
 
-def _step(sample: AnySample) -> Point:
+def _step(sample: Sample) -> Point:
     every_h = sample.scheme.every_h
     start = tuple(rational_ball(sample.start[name]) for name in (*sample.point, "t"))
     if isinstance(every_h, RungeKutta):
@@ -44,7 +44,7 @@ def _step(sample: AnySample) -> Point:
     raise Silent
 
 
-def _by_stages(sample: AnySample, every_h: RungeKutta, start: Point) -> Point:
+def _by_stages(sample: Sample, every_h: RungeKutta, start: Point) -> Point:
     h = rational_ball(sample.step_size)
 
     def moved(weights: Sequence[Fraction], slopes: Sequence[Point]) -> Point:
@@ -57,7 +57,7 @@ def _by_stages(sample: AnySample, every_h: RungeKutta, start: Point) -> Point:
     return every_h.step(lambda z: (*_slopes(sample, z), flint.arb(1)), moved)
 
 
-def _by_flows(sample: AnySample, every_h: Splitting, start: Point) -> Point:
+def _by_flows(sample: Sample, every_h: Splitting, start: Point) -> Point:
     n = sample.hamiltonian.degrees
     z, read = list(start[:-1]), {"K": start[-1], "D": start[-1]}  # the clock that each flow reads
     ring, parts = every_h.numbers
@@ -70,7 +70,7 @@ def _by_flows(sample: AnySample, every_h: Splitting, start: Point) -> Point:
     return tuple(z)
 
 
-def _slopes(sample: AnySample, z: Point) -> Sequence[Ball]:
+def _slopes(sample: Sample, z: Point) -> Sequence[Ball]:
     """f; Silent where it is not known."""
     ring, slopes = sample.slopes
     box = dict(zip((*sample.point, "t"), z, strict=True))

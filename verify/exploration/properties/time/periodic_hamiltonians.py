@@ -14,7 +14,6 @@ from verify.algebra.generator import Generator
 from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.any_sample import AnySample
 from verify.exploration.oracles.ball_steps import (
     BITS,
     BallState,
@@ -25,10 +24,11 @@ from verify.exploration.oracles.ball_steps import (
     unlike,
 )
 from verify.exploration.property import Violation, known, only_if
+from verify.exploration.sample import Sample
 from verify.functions.function import CIRCLE
 
 
-def holds_in_any_degrees(sample: AnySample) -> None:
+def holds(sample: Sample) -> None:
     """The same of the Jacobian."""
     only_if(sample.timed and sample.brief)
     frequency = known(_frequency(*sample.slopes))
@@ -52,17 +52,11 @@ def _must_be_alike(one: BallState, other: BallState) -> None:
 
 def _frequency(ring: Ring, slopes: Sequence[Poly]) -> Fraction | None:
     """ω, where t is in sin and cos of ω t + φ alone; None elsewhere."""
-    found = set[Fraction]()
     if any(x.degrees()[ring.places["t"]] > 0 for x in slopes):
         return None
-    for g in ring.generators_in(*slopes):
-        if g.argument is None or not ring.depends(g.argument, "t"):
-            continue
-        rate = _rate(ring, g)
-        if rate is None:
-            return None
-        found.add(rate)
-    return found.pop() if len(found) == 1 else None
+    functions = [g for g in ring.generators_in(*slopes) if g.argument is not None]
+    rates = {_rate(ring, g) for g in functions if ring.depends(g.inner, "t")}
+    return rates.pop() if len(rates) == 1 else None
 
 
 def _rate(ring: Ring, g: Generator) -> Fraction | None:

@@ -1,0 +1,52 @@
+"""The matrices of equivariance are canonical, in the plane as in n degrees of freedom."""
+
+from collections.abc import Callable
+
+import pytest
+
+from verify.exploration.oracles.symplectic_matrices import (
+    Exact,
+    cycled,
+    exchanged,
+    of_places,
+    symplectic,
+)
+
+every_n = pytest.mark.parametrize("n", [1, 2, 3])
+
+
+def omega(n: int) -> Exact:
+    return Exact([[(b == a + n) - (a == b + n) for b in range(2 * n)] for a in range(2 * n)])
+
+
+def form_of(matrix: Exact) -> Exact:
+    """MᵀΩM."""
+    return matrix.transpose() * omega(matrix.nrows() // 2) * matrix
+
+
+@every_n
+@pytest.mark.parametrize("make", [symplectic, of_places])
+def test_what_a_seed_chooses_is_symplectic(make: Callable[[int, int], Exact], n: int) -> None:
+    chosen = [make(seed, n) for seed in range(40)]
+    assert all(form_of(matrix) == omega(n) for matrix in chosen)
+    assert len({str(matrix) for matrix in chosen}) > 5
+    one = Exact([[int(a == b) for b in range(2 * n)] for a in range(2 * n)])
+    assert one not in chosen
+
+
+@every_n
+def test_places_are_moved_by_places_alone(n: int) -> None:
+    for seed in range(40):
+        matrix = of_places(seed, n)
+        assert not any(matrix[a, n + b] or matrix[n + a, b] for a in range(n) for b in range(n))
+
+
+def test_two_shears_mix_p_and_q_in_the_plane() -> None:
+    assert all(symplectic(seed, 1)[a, 1 - a] != 0 for seed in range(40) for a in range(2))
+
+
+@every_n
+def test_degrees_are_put_in_order_and_p_and_q_exchanged(n: int) -> None:
+    assert form_of(cycled(n)) == omega(n)
+    assert form_of(exchanged(n)) == omega(n) * -1
+    assert cycled(3)[1, 0] == cycled(3)[0, 2] == cycled(3)[4, 3] == 1
