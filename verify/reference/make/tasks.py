@@ -54,15 +54,21 @@ class OrbitTask(AtSteps):
         """Orbits of one scheme's map, whatever the step size and the initial value."""
         return f"{self.kind} {self.scheme} {self.hamiltonian}"
 
-    def compute(self, keeper: Keeper) -> Frozen:
-        return alone(self.compute_in_turn(keeper))[self.key]
+    @property
+    def orbit(self) -> Orbit:
+        """The orbit of which these are points."""
+        exact, t0 = self.exact_hamiltonian(), self.t0 or Fraction()
+        return Orbit(exact, self.scheme, self.step_size, self.q, self.p, t0=t0)
+
+    def compute(self, keeper: Keeper) -> OrbitResult:
+        from verify.reference.make.orbit_points import orbit_points
+
+        return OrbitResult(points=alone(orbit_points(self.orbit, self.steps, self.digits)))
 
     def compute_in_turn(self, keeper: Keeper) -> Course[dict[str, Frozen]]:
         from verify.reference.make.orbit_points import orbit_points
 
-        exact, t0 = self.exact_hamiltonian(), self.t0 or Fraction()
-        orbit = Orbit(exact, self.scheme, self.step_size, self.q, self.p, t0=t0)
-        points = yield from orbit_points(orbit, self.steps, self.digits)
+        points = yield from orbit_points(self.orbit, self.steps, self.digits)
         return {self.key: OrbitResult(points=points)}
 
 

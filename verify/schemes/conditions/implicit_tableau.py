@@ -5,15 +5,16 @@ exact. What is asked of them is decided in the ring of `verify.algebra.embedding
 algebra, and what is not zero there is enclosed by Arb; no coefficient is ever rounded for it.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
 
-import sympy
-
 from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
+from verify.late import sympy
 from verify.schemes.conditions.condition import Condition
 from verify.schemes.conditions.residue import condition_of
 from verify.schemes.conditions.tree_weights import RingWeights, Tableau
@@ -41,7 +42,7 @@ class ImplicitTableau:
     @classmethod
     def of(
         cls, rows: Sequence[Sequence[sympy.Expr | int]], weights: Sequence[sympy.Expr | int]
-    ) -> "ImplicitTableau":
+    ) -> ImplicitTableau:
         """From numbers as sympy takes them."""
         exact = [[sympy.sympify(x) for x in row] for row in (*rows, weights)]
         return cls(tuple(map(tuple, exact[:-1])), tuple(exact[-1]))
@@ -52,7 +53,7 @@ class ImplicitTableau:
         return len(self.weights)
 
     @cached_property
-    def numbers(self) -> "Numbers":
+    def numbers(self) -> Numbers:
         """The coefficients in one ring."""
         return Numbers.of(self)
 
@@ -89,7 +90,7 @@ class Numbers:
     b: tuple[Poly, ...]
 
     @classmethod
-    def of(cls, tableau: ImplicitTableau) -> "Numbers":
+    def of(cls, tableau: ImplicitTableau) -> Numbers:
         """Those of a tableau, embedded together."""
         count = tableau.stages
         ring, found = embed([*tableau.weights, *(x for row in tableau.rows for x in row)], ())

@@ -51,8 +51,8 @@ def test_what_is_no_such_quotient_has_none(formula: str) -> None:
 def test_a_gauss_step_of_a_quadratic_h_has_the_coefficients_that_derivatives_give(n: int) -> None:
     step_map = schemes.get("gauss4").step_map(Hamiltonian.parse("2*p**2 - p*q + 3*q**2"))
     step = step_map.flat
-    by_series = Expansion(step.ring, step.p_next)
+    by_series = Expansion(step.ring, step.elements[0])
     ring, x = by_series.coefficient(n)
     assert ring is step.ring
-    by_derivatives = sympy.diff(ring.expression(step.p_next), H_STEP, n) / sympy.factorial(n)
+    by_derivatives = sympy.diff(ring.expression(step.elements[0]), H_STEP, n) / sympy.factorial(n)
     assert sympy.simplify(by_derivatives.subs(H_STEP, 0) - ring.expression(x)) == 0

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from verify.algebra.symbols import H_STEP, P, Q
+from verify.algebra.formula import symbol
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.late import sympy
@@ -83,17 +83,18 @@ def _linear(hamiltonian: Hamiltonian, tableau: ImplicitTableau) -> StepMap | Non
     denominator's product by its own at −μ, which is even, ρ(hM) = (α + β h M)/γ, where α, β and γ
     are polynomials in μ² = −h² D.
     """
+    p, q, h = map(symbol, "pqh")
     field, _ = canonical_field(hamiltonian)
     ring, (u, v) = field.ring, field.slopes
     matrix = [x for slope in field.slopes for x in field.gradient(slope)]
     if any(ring.vanishes(ring.diff(x, n)) is not True for x in matrix for n in field.names):
         return None
     u, v, u_p, u_q, v_p, v_q = map(ring.expression, (u, v, *matrix))
-    square = -(H_STEP**2) * (u_p * v_q - u_q * v_p)
+    square = -(h**2) * (u_p * v_q - u_q * v_p)
     alpha, beta, gamma = (x.subs(_square(), square) for x in _of_matrix(tableau))
     more_u, more_v = u_p * u + u_q * v, v_p * u + v_q * v
-    p_next = P + H_STEP * (alpha * u + beta * H_STEP * more_u) / gamma
-    q_next = Q + H_STEP * (alpha * v + beta * H_STEP * more_v) / gamma
+    p_next = p + h * (alpha * u + beta * h * more_u) / gamma
+    q_next = q + h * (alpha * v + beta * h * more_v) / gamma
     return map_by_expressions(hamiltonian, (p_next, q_next))
 
 

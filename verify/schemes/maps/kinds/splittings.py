@@ -23,7 +23,7 @@ KIND = Splitting
 
 def build(coefficients: Splitting, hamiltonian: Hamiltonian, name: str) -> StepMap:
     """The map of H = T(p) + V(q), or T(p, t) + V(q, t); InputError for another H."""
-    parts = coefficients.parts
+    parts = coefficients.given
     field, sizes, times = _with_numbers(hamiltonian, coefficients)
     if not field.separable:
         shown = str(hamiltonian.expression)
@@ -38,7 +38,7 @@ def _with_numbers(
     hamiltonian: Hamiltonian, coefficients: Splitting
 ) -> tuple[CanonicalField, Sequence[Poly], Sequence[Poly]]:
     """The field of H, and the sizes and times of the parts in its ring."""
-    parts = coefficients.parts
+    parts = coefficients.given
     timed = hamiltonian.time_dependent
     rational = [size for _, size in parts if isinstance(size, Fraction)]
     if len(rational) == len(parts) and not timed:
@@ -53,7 +53,7 @@ def _with_numbers(
 
 def conditions(coefficients: Splitting, degrees: int) -> tuple[Condition, ...]:
     """That kicks and drifts move by a gradient, whose Jacobian is symmetric, for all T and V."""
-    return _of_kinds(tuple(dict.fromkeys(kind for kind, _ in coefficients.parts)))
+    return _of_kinds(tuple(dict.fromkeys(kind for kind, _ in coefficients.given)))
 
 
 @lru_cache(maxsize=4)

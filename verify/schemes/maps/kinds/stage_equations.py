@@ -9,7 +9,7 @@ Numerical Integration, VI.3.) In the plane less suffices; see `StageEquations.co
 from fractions import Fraction
 from functools import lru_cache
 
-from verify.algebra.symbols import H_STEP, P, Q
+from verify.algebra.formula import symbol
 from verify.effort import limited
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -52,9 +52,10 @@ def _linear_in_p(hamiltonian: Hamiltonian, field: CanonicalField) -> StepMap | N
     if ring.vanishes(ring.diff(mixed, "p")) is not True:
         return None
     h_p, h_q, h_pq = map(ring.expression, (speed, -force, -mixed))
-    p_next = P - H_STEP * h_q / (1 + H_STEP * h_pq)
+    p, q, h = map(symbol, "pqh")
+    p_next = p - h * h_q / (1 + h * h_pq)
     with limited("hamiltonian", str(hamiltonian.expression), "to compose its stages"):
-        q_next = Q + H_STEP * h_p.subs(P, p_next)
+        q_next = q + h * h_p.subs(p, p_next)
     return map_by_expressions(hamiltonian, (p_next, q_next))
 
 
