@@ -92,8 +92,8 @@ def ours(name: str, eta: int) -> tuple[list[Fraction], list[list[Fraction]]]:
         assert radius < Fraction(1, 2**200)
         return middle
 
-    rows = [[value(y) for y in made.field.gradient(x)] for x in made.closed]
-    return [value(x) for x in made.closed], rows
+    rows = [[value(y) for y in made.field.gradient(x)] for x in made.closed.elements]
+    return [value(x) for x in made.closed.elements], rows
 
 
 def defect(rows: list[list[Fraction]]) -> dict[tuple[int, int], Fraction]:
@@ -125,10 +125,10 @@ def test_and_so_is_the_symplectic_defect_which_has_the_order_that_is_proved(
     largest = max(abs(x) for x in other.values())
     assert largest > 1000 * allowed, "it is seen above heyoka's rounding"
     scale = STEP_SIZE**proof.order
-    at = {**dict(zip(proof.leading.names, POINT, strict=False)), "t": TIME}  # type: ignore[union-attr]
+    at = {**dict(zip(proof.first.form.names, POINT, strict=False)), "t": TIME}  # type: ignore[union-attr]
     for (a, b), x in other.items():
-        leading = proof.leading.at(a, b)  # type: ignore[union-attr]
-        ball = enclose(proof.leading.ring, leading, at, 100)  # type: ignore[union-attr, arg-type]
+        leading = proof.first.form.at(a, b)  # type: ignore[union-attr]
+        ball = enclose(proof.first.form.ring, leading, at, 100)  # type: ignore[union-attr, arg-type]
         expected = middle_and_radius(ball)[0]
         assert abs(x / scale - expected) < Fraction(1, 4) * (largest / scale)
 
