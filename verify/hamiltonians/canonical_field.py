@@ -111,6 +111,13 @@ class CanonicalField(Flow):
         forces = [-diff(self.energy, name) for name in self.names[n:]]
         return (*forces, *(diff(self.energy, name) for name in self.names[:n]))
 
+    def flow_changes(self, eta: int) -> list[Poly]:
+        """Σ hⁿ/n! Xⁿz, n = 1 … η: the change of z by the exact flow's Taylor polynomial."""
+        h, total = self.ring.variable("h"), [self.ring.zero] * len(self.names)
+        for n in range(1, eta + 1):
+            total = [x + h**n * y for x, y in zip(total, self.term(n), strict=True)]
+        return total
+
     def shears(self, size: Poly | Fraction, places: Sequence[int]) -> list[Poly]:
         """h size f in these places."""
         exact = self.ring.constant(size) if isinstance(size, Fraction) else size

@@ -28,15 +28,13 @@ EXTREMES, TANGENT = "extremes", "tangent"
 
 def needs_of(asked: Set[str]) -> set[Need]:
     """What of a step is needed for the observables among what is asked."""
-    needs: set[Need] = {each.needs for name, each in kinds.by_name().items() if name in asked}
+    needs: set[Need] = {each.needs for each in kinds.among(asked)}
     return needs | ({"delta_j"} if EXTREMES in asked else set())
 
 
 def is_scaled(asked: Set[str]) -> bool:
     """Whether anything that is asked is carried 2^s times."""
-    return EXTREMES in asked or any(
-        each.shift for name, each in kinds.by_name().items() if name in asked
-    )
+    return EXTREMES in asked or any(each.shift for each in kinds.among(asked))
 
 
 class Statements:
@@ -61,8 +59,8 @@ class Statements:
         """All of them, in their order."""
         asked = self.observables
         lines = [f"dj = {self.value['dj']}"] if "delta_j" in needs_of(asked) else []
-        for name, each in kinds.by_name().items():
-            lines += each.lines(self) if name in asked else []
+        for each in kinds.among(asked):
+            lines += each.lines(self)
         if EXTREMES in asked:
             lines += self.product()
             for name, kind in (("dj", "wide"), ("lam", "sum")):

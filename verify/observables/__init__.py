@@ -4,6 +4,7 @@ A file of `kinds/` defines `OBSERVABLE`, all that is asked of that observable an
 kernel, of a proof, of a certificate, in scenes and on pages.
 """
 
+from collections.abc import Container
 from functools import cache
 
 from verify.discovery import Catalogue
@@ -17,3 +18,8 @@ def by_name() -> dict[str, Observable]:
     """All observables by their names, in the order in which they are shown."""
     every = [_FILES.module(name).OBSERVABLE for name in _FILES.names]
     return {each.name: each for each in sorted(every, key=lambda each: each.order)}
+
+
+def among(asked: Container[str]) -> list[Observable]:
+    """Those whose names are asked for, in the same order."""
+    return [each for name, each in by_name().items() if name in asked]

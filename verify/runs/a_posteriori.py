@@ -131,13 +131,11 @@ class _Certificate:
         if orbit is None:
             return None
         self.error, self.summed = orbit
-        bounds_of = {name: each.bound for name, each in observables.by_name().items()}
         found = dict.fromkeys(self.names, self.error)
-        for name in sorted(self.run.observables & bounds_of.keys()):
-            of = bounds_of[name]
-            bound = of(self) if of else None
+        for each in observables.among(self.run.observables):
+            bound = each.bound(self) if each.bound else None
             if bound is not None:
-                found[name] = bound.abs_upper()
+                found[each.name] = bound.abs_upper()
         return {name: bounds(x)[1] for name, x in found.items() if in_reach(x)}
 
     def _derivatives(self) -> Derivatives | None:

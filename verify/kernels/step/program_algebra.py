@@ -69,19 +69,12 @@ class ProgramAlgebra(StepAlgebra[Value]):
         return len(self.field.names)
 
     def along_flow(self, eta: int) -> list[Value]:
-        n, evaluator, moves = self.size // 2, self.evaluator(), self.sums_along_flow(eta)
+        n, evaluator, moves = self.size // 2, self.evaluator(), self.field.flow_changes(eta)
         pairs = [
             increments(evaluator, self.field.ring, pair, self.named["h"])
             for pair in zip(moves[:n], moves[n:], strict=True)
         ]
         return [self.value(pair[part]) for part in (0, 1) for pair in pairs]
-
-    def sums_along_flow(self, eta: int) -> list[Poly]:
-        """Σ hⁿ/n! Xⁿz, n = 1 … η, as elements of the ring."""
-        ring, terms = self.field.ring, [self.field.term(k) for k in range(1, eta + 1)]
-        h = ring.variable("h")
-        each = (enumerate(own, start=1) for own in zip(*terms, strict=True))
-        return [sum((h**k * x for k, x in own), ring.zero) for own in each]
 
     def slopes(self, changes: Sequence[Value], clock: Number, places: Sequence[int]) -> list[Value]:
         at = self.at(changes, clock)
@@ -201,7 +194,7 @@ class TangentAlgebra(StepAlgebra[Dual]):
 
     def along_flow(self, eta: int) -> list[Dual]:
         values, evaluator = self.plain.along_flow(eta), self.plain.evaluator()
-        rows = (self.field.gradient(x) for x in self.plain.sums_along_flow(eta))
+        rows = (self.field.gradient(x) for x in self.field.flow_changes(eta))
         nothing = [self.nothing] * self.size
         return [
             self._dual(value.index, self._chained([evaluator.evaluate(x) for x in row], nothing))

@@ -95,8 +95,7 @@ class RingAlgebra(_Writing, StepAlgebra[Poly]):
         return self.ring.zero
 
     def along_flow(self, eta: int) -> list[Poly]:
-        terms = [[self.h**n * x for x in self.field.term(n)] for n in range(1, eta + 1)]
-        return [sum(own, self.ring.zero) for own in zip(*terms, strict=True)]
+        return self.field.flow_changes(eta)
 
     def slopes(self, changes: Sequence[Poly], clock: Number, places: Sequence[int]) -> list[Poly]:
         point = dict(zip(self.field.names, changes, strict=True))
@@ -151,13 +150,7 @@ class FormulaAlgebra(_Writing, StepAlgebra[Written]):
         return Written(sympy.S.Zero, 0)
 
     def along_flow(self, eta: int) -> list[Written]:
-        terms = [self.field.term(n) for n in range(1, eta + 1)]
-        h = self.ring.variable("h")
-        each = [
-            sum((h**n * x for n, x in enumerate(own, start=1)), self.ring.zero)
-            for own in zip(*terms, strict=True)
-        ]
-        return [self._put(x, {}) for x in each]
+        return [self._put(x, {}) for x in self.field.flow_changes(eta)]
 
     def slopes(
         self, changes: Sequence[Written], clock: Number, places: Sequence[int]

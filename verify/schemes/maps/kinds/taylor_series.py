@@ -12,9 +12,8 @@ KIND = TaylorSeries
 def build(coefficients: TaylorSeries, hamiltonian: Hamiltonian, name: str = "") -> StepMap:
     """The map for any H."""
     field, _ = canonical_field(hamiltonian)
-    eta, h = coefficients.eta, field.ring.variable("h")
-    powers = [tuple(h**n * x for x in field.term(n)) for n in range(eta + 1)]
-    formulas = tuple(sum(own, field.ring.zero) for own in zip(*powers, strict=True))
+    changes = field.flow_changes(coefficients.eta)
+    formulas = tuple(x + y for x, y in zip(field.start, changes, strict=True))
     return StepMap(hamiltonian, field, formulas=formulas)
 
 
