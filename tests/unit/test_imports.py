@@ -28,7 +28,7 @@ ROOF = ("verify", "__main__", "from_type", "testing")
 ROOMS = ("commands", "calls", "pages", "reference", "exploration", "strategies", "audits",
          "claims", "papers", "studies", "integrators", "runs", "flows", "kernels", "execution",
          "scenes", "proof", "schemes", "hamiltonians", "algebra", "arithmetic",
-         "functions", "observables")  # fmt: skip
+         "functions", "observables", "structures")  # fmt: skip
 GROUND = ("code_cache", "content", "discovery", "drawable", "effort", "errors", "files", "formats",
           "frames", "late", "lockstep", "notebook", "prose", "verdict")  # fmt: skip
 

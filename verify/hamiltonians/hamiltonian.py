@@ -26,6 +26,7 @@ from verify.errors import InputError
 from verify.hamiltonians.coordinates import PLANE, check_coordinates, coordinates_of
 from verify.late import sympy
 from verify.notebook import aligned_latex, cut, short_latex
+from verify.structures import AREA, SYMPLECTIC, Structure
 
 
 # A report asks for the same few Hamiltonians thousands of times: once for every task.
@@ -116,6 +117,11 @@ class Hamiltonian:
     def planar(self) -> bool:
         """Whether its coordinates are p and q."""
         return self.coordinates == PLANE
+
+    @property
+    def structure(self) -> Structure:
+        """What a canonical step of it keeps."""
+        return AREA if self.planar else SYMPLECTIC
 
     def check_planar(self) -> None:
         """InputError where its coordinates are not p and q, for what is of the plane."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.prose import Prose, read_prose
 from verify.schemes.scheme import Scheme
+from verify.structures import Structure
 from verify.verdict import Verdict
 
 
@@ -41,34 +42,19 @@ class Claimed:
         return cls(name, scheme.order, scheme.area_preserving)
 
 
-@dataclass(frozen=True)
-class Words:
-    """What the defect is called, what is said where it vanishes, what it is not then, and what a
-    scheme claims that says so."""
-
-    defect: str
-    vanishes: str
-    zero: str
-    claim: str
-
-
-IN_PLANE = Words("ΔJ", "ΔJ is the zero function: det J ≡ 1", "function", "det J ≡ 1")
-IN_DEGREES = Words("S", "S is the zero form: the map is symplectic", "form", "to be symplectic")
-
-
 def held_to(
     claimed: Claimed,
     convergence: Convergence,
     defect: tuple[int | None, bool | None],
     most: int,
-    words: Words,
+    structure: Structure,
 ) -> tuple[Verdict, Prose]:
     """The verdict, and the reason for it.
 
     `defect`: the power of h in its first coefficient that is not shown to vanish, up to h^`most`,
     and whether it is zero.
     """
-    verdict, said = _missed(claimed, convergence) or _of_defect(claimed, *defect, most, words)
+    verdict, said = _missed(claimed, convergence) or _of_defect(claimed, *defect, most, structure)
     return verdict, read_prose(said)
 
 
@@ -89,19 +75,21 @@ def _missed(claimed: Claimed, convergence: Convergence) -> tuple[Verdict, str] |
 
 
 def _of_defect(
-    claimed: Claimed, power: int | None, zero: bool | None, most: int, words: Words
+    claimed: Claimed, power: int | None, zero: bool | None, most: int, structure: Structure
 ) -> tuple[Verdict, str]:
-    name = words.defect
+    name = structure.defect
     if zero:
-        return Verdict.PROVED, words.vanishes
+        return Verdict.PROVED, structure.vanishes
     if zero is None:
         what = f"of `h^{power}`" if power is not None else f"beyond `h^{most}`"
         said = f"the coefficient {what} in {name} is neither shown to vanish nor not to"
         return Verdict.UNDECIDED, said
-    not_zero = f"{name} is not the zero {words.zero}, and its coefficients up to `h^{most}` vanish"
+    not_zero = (
+        f"{name} is not the zero {structure.zero}, and its coefficients up to `h^{most}` vanish"
+    )
     if claimed.symplectic:
         found = not_zero if power is None else f"{name} has order {power}"
-        return Verdict.REFUTED, f"{claimed.name} claims {words.claim}; {found}"
+        return Verdict.REFUTED, f"{claimed.name} claims {structure.claim}; {found}"
     if power is None:
         return Verdict.PROVED, not_zero
     return Verdict.PROVED, (

@@ -19,7 +19,6 @@ from verify.algebra.series.jets import JetRing
 from verify.algebra.series.power_series import Series
 from verify.hamiltonians.jet_flow import JetFlow
 from verify.proof.by_conditions import first_wrong
-from verify.proof.claimed import IN_DEGREES, IN_PLANE, Words
 from verify.proof.every_proof import EveryProof
 from verify.proof.telescoping import potential_of_lie, telescopes
 from verify.prose import Formula, Prose, joined, prose, read_prose
@@ -65,13 +64,9 @@ def prove_by_series(blank: EveryProof, scheme: Scheme, every_h: BySeries) -> Eve
         return _held_to(scheme, _symplectic(found, own))
     if order is not None:
         return _held_to(scheme, _leading(found, series, every_h, order))
-    said = f"the coefficients of {_words(blank).defect} up to `h^{most}` vanish"
+    said = f"the coefficients of {blank.structure.defect} up to `h^{most}` vanish"
     undecided = read_prose(f"{said}; whether all do is not decided")
     return _held_to(scheme, replace(found, reason=undecided))
-
-
-def _words(proof: EveryProof) -> Words:
-    return IN_PLANE if proof.planar else IN_DEGREES
 
 
 def _held_to(scheme: Scheme, found: EveryProof) -> EveryProof:
@@ -80,8 +75,8 @@ def _held_to(scheme: Scheme, found: EveryProof) -> EveryProof:
     if agreed is not None and agreed < scheme.order:
         return replace(found, verdict=Verdict.REFUTED, reason=missed(scheme, agreed))
     if scheme.area_preserving and found.symplectic is False:
-        words = _words(found)
-        said = f"{scheme.name} claims {words.claim}; {words.defect} has order {found.order}"
+        what = found.structure
+        said = f"{scheme.name} claims {what.claim}; {what.defect} has order {found.order}"
         return replace(found, verdict=Verdict.REFUTED, reason=prose(said))
     return found
 
@@ -109,7 +104,7 @@ def _preserving(proof: EveryProof, scheme: Scheme, every_h: BySeries) -> tuple[C
 
 def _symplectic(found: EveryProof, own: tuple[Condition, ...]) -> EveryProof:
     """Of stages that are solved for: S ≡ 0 by what their coefficients fulfil."""
-    reason = prose(f"{_words(found).vanishes}, stage by stage")
+    reason = prose(f"{found.structure.vanishes}, stage by stage")
     found = replace(found, verdict=Verdict.PROVED, reason=reason, area_preserving=True)
     if not found.planar:
         return replace(found, telescopes=True, potential="0", conditions=own)
@@ -126,7 +121,7 @@ def _leading(
     found: EveryProof, series: DefectSeries[JetFlow], every_h: BySeries, order: int
 ) -> EveryProof:
     """With the coefficient of h^order, the first in S that is not the zero form."""
-    form, defect = series.form(order), _words(found).defect
+    form, defect = series.form(order), found.structure.defect
     volume = form.divergence
     below = f"the entries of S up to `h^{order - 1}` are zero polynomials"
     if found.planar:

@@ -10,6 +10,7 @@ from verify.schemes.conditions.condition import Condition, NearbyOrder
 from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 from verify.schemes.maps.step_map import solvable
 from verify.schemes.steps.two_form import TwoForm
+from verify.structures import Structure, structure_in
 from verify.verdict import Verdict
 
 NONE = Prose()
@@ -68,6 +69,11 @@ class EveryProof:
     def planar(self) -> bool:
         """Whether it is of one degree of freedom."""
         return self.degrees == 1
+
+    @property
+    def structure(self) -> Structure:
+        """What a canonical step of it keeps."""
+        return structure_in(self.degrees)
 
     @property
     def symplectic(self) -> bool | None:

@@ -14,7 +14,7 @@ from verify.algebra.ring import Decision, Poly
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.late import sympy
 from verify.proof.by_conditions import nearby_order, told_nearby
-from verify.proof.claimed import IN_DEGREES, IN_PLANE, Claimed, Convergence, held_to
+from verify.proof.claimed import Claimed, Convergence, held_to
 from verify.proof.expansion import MOST_ORDERS, VANISHES, AnySeries, Leading, series_of
 from verify.proof.parameters import almost_all, not_zero_for
 from verify.proof.printed_formulas import nearby_defect, nearby_of_formulas, told_defect
@@ -47,14 +47,13 @@ def prove(step_map: StepMap, scheme: Scheme | None = None, claimed: Claimed | No
     leading, domain = leading_of(step_map, first, most), step_map.domain
     inside = leading.within(domain)
     defect = inside.power, inside.decision.zero
-    words = IN_PLANE if planar else IN_DEGREES
-    verdict, reason = held_to(claimed, convergence, defect, most, words)
+    verdict, reason = held_to(claimed, convergence, defect, most, step_map.structure)
     if inside.decision.zero is None and leading.decision.zero is not None:
         reason = prose("no point is found where all is defined: ", domain.prose)
     if planar:
         reason = _with_conditions(reason, verdict, inside, step_map)
     without = nearby_defect_of(scheme, step_map.hamiltonian, inside.power)
-    verdict, reason = with_nearby((verdict, reason), near, without, words.defect)
+    verdict, reason = with_nearby((verdict, reason), near, without, step_map.structure.defect)
     telescopes, potential = _telescoping(step_map, first, inside)
     return Proof(
         verdict=verdict,

@@ -12,6 +12,7 @@ from verify.proof.expansion import Leading
 from verify.prose import Prose
 from verify.schemes.conditions.condition import Condition, NearbyOrder
 from verify.schemes.maps.step_map import StepMap
+from verify.structures import Structure
 from verify.verdict import Verdict
 
 
@@ -50,6 +51,11 @@ class Proof:
     def planar(self) -> bool:
         """Whether it is of p and q."""
         return self.step_map.planar
+
+    @property
+    def structure(self) -> Structure:
+        """What a canonical step of it keeps."""
+        return self.step_map.structure
 
     @property
     def degrees(self) -> int:

@@ -33,6 +33,7 @@ from verify.schemes.maps.written_out import (
     terms_in,
 )
 from verify.schemes.steps.step_algebra import State, Step, series_of
+from verify.structures import Structure
 
 # Of the largest composition that is written in closed form: terms in its parts, its own, those of
 # S, and how often coordinates occur in it.
@@ -95,6 +96,11 @@ class StepMap:
     def planar(self) -> bool:
         """Whether it is one of p and q."""
         return self.field.planar
+
+    @property
+    def structure(self) -> Structure:
+        """What a canonical step of it keeps."""
+        return self.hamiltonian.structure
 
     @property
     def ring(self) -> Ring:
