@@ -7,7 +7,7 @@ in `verify.hamiltonians.canonical_field`.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
 from typing import Any
@@ -19,6 +19,7 @@ from verify.algebra.expressions.monomials import names_in, reads_back
 from verify.algebra.formula import MAX_DEPTH, MAX_LENGTH, parameter_name, parse, read, symbol
 from verify.algebra.requirement import of_expression
 from verify.algebra.ring import Poly, Ring
+from verify.algebra.ring_record import recorded
 from verify.algebra.substitution import substitute
 from verify.arithmetic.exact import Exact, rational, text
 from verify.drawable import drawn_by
@@ -57,8 +58,18 @@ def _with_values(made: Hamiltonian, values: tuple[tuple[str, Fraction], ...]) ->
     return result
 
 
+class _ReadAgain:
+    """The expression of an H that was kept, read when it is first asked for."""
+
+    def __get__(self, kept: Hamiltonian | None, _: type) -> sympy.Expr:
+        if kept is None:
+            raise AttributeError  # the field has no default
+        expression = vars(kept)["expression"] = parse(kept.formula, source="hamiltonian")
+        return expression
+
+
 @drawn_by("hamiltonians")
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Hamiltonian:
     """H(p, q) or H(p, q, t) as an exact expression, with the values of those parameters that have
     one.
@@ -68,9 +79,42 @@ class Hamiltonian:
     is more than the expression does: √q·√q is q.
     """
 
-    expression: sympy.Expr
+    expression: sympy.Expr = _ReadAgain()
     values: tuple[tuple[str, Fraction], ...] = ()
     written: Domain = EVERYWHERE
+    _record: Mapping[str, Any] | None = field(default=None, init=False, repr=False)
+
+    @classmethod
+    def recorded(cls, record: Mapping[str, Any]) -> Hamiltonian:
+        """As it was kept (see `verify.hamiltonians.kept`); its expression is read again only by who
+        asks for it."""
+        made = cls.__new__(cls)
+        vars(made).update(
+            formula=record["formula"],
+            values=tuple((name, Fraction(value)) for name, value in record["values"]),
+            parameters=tuple(record["parameters"]),
+            coordinates=PLANE,
+            time_dependent=record["time_dependent"],
+            written=EVERYWHERE,
+            domain=EVERYWHERE,
+            _record=record,
+        )
+        return made
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Hamiltonian):
+            return NotImplemented
+        if (self.values, self.written) != (other.values, other.written):
+            return False
+        if self._record and other._record:
+            return self.formula == other.formula
+        return bool(self.expression == other.expression)
+
+    def __hash__(self) -> int:
+        return hash((self.parameters, self.coordinates, self.values))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Hamiltonian, (self.expression, self.values, self.written)
 
     @classmethod
     def parse(
@@ -225,6 +269,10 @@ class Hamiltonian:
 
     @cached_property
     def _with_symbols(self) -> Hamiltonian:
+        if self._record and not self.values:
+            return self
+        if self._record and self._record["generic"]:
+            return Hamiltonian.recorded(self._record["generic"])
         zeros = {symbol(n): sympy.S.Zero for n, v in self.values if v == 0}
         return Hamiltonian(self.expression.subs(zeros))
 
@@ -236,6 +284,8 @@ class Hamiltonian:
 
         Raises InputError where one has more than `most_terms` terms, or is not defined.
         """
+        if self._record and not others and most_terms == MAX_TERMS:
+            return *recorded(self._record["ring"]), []
         time = ("t",) if self.time_dependent else ()
         variables = (*self.coordinates, "h", *time, *self.symbols)
         symbols = {x.name for other in others for x in other.free_symbols}

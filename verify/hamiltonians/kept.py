@@ -13,28 +13,28 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
-from fractions import Fraction
-from functools import cache, cached_property
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 from verify import code_cache
-from verify.algebra.domain import EVERYWHERE
-from verify.algebra.embedding import MAX_TERMS
 from verify.algebra.formula import parse
-from verify.algebra.ring import Poly, Ring
-from verify.algebra.ring_record import record_of, recorded
-from verify.arithmetic.exact import Exact, text
+from verify.algebra.ring_record import record_of
+from verify.arithmetic.exact import text
 from verify.content import digest_of
 from verify.errors import InputError
-from verify.hamiltonians.coordinates import PLANE
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.late import sympy
 
 _FORMAT = "hamiltonian 1"
 _MOST_BYTES, _MOST_TERMS = 2**20, 2000
-_CODE = ("algebra/**/*.py", "functions/**/*.py", "hamiltonians/**/*.py", "arithmetic/exact.py")
+_CODE = (
+    "algebra/**/*.py",
+    "functions/**/*.py",
+    "hamiltonians/**/*.py",
+    "structures/**/*.py",
+    "arithmetic/exact.py",
+)
 _LIBRARIES = ("sympy", "python-flint")
 
 
@@ -49,7 +49,7 @@ def kept_or_read(
     key = code_cache.key_of(_FORMAT, _readers(), source, given)
     known = code_cache.load(key)
     if known is not None:
-        return KeptHamiltonian(json.loads(known))
+        return Hamiltonian.recorded(json.loads(known))
     found = read(values)
     record = _record_of(found)
     if record is not None:
@@ -57,64 +57,6 @@ def kept_or_read(
         if len(written) <= _MOST_BYTES:
             code_cache.keep(key, written)
     return found
-
-
-class KeptHamiltonian(Hamiltonian):
-    """A Hamiltonian by its record. It equals others of the same text and values that were kept, and
-    none that was read: to compare the two would be to read it."""
-
-    _record: Mapping[str, Any]
-
-    def __init__(self, record: Mapping[str, Any]) -> None:
-        vars(self).update(
-            formula=record["formula"],
-            values=tuple((name, Fraction(value)) for name, value in record["values"]),
-            parameters=tuple(record["parameters"]),
-            coordinates=PLANE,
-            time_dependent=record["time_dependent"],
-            written=EVERYWHERE,
-            domain=EVERYWHERE,
-            _record=record,
-        )
-
-    @cached_property
-    def expression(self) -> sympy.Expr:
-        """The formula's, which is read now."""
-        return parse(self.formula, source="hamiltonian")
-
-    def with_values(self, parameters: Mapping[str, Exact | None]) -> Hamiltonian:
-        """The same H with other values, which is read for that."""
-        return self._read.with_values(parameters)
-
-    def embedded(
-        self, *others: sympy.Expr, most_terms: int = MAX_TERMS
-    ) -> tuple[Ring, Poly, list[Poly]]:
-        """As of one that was read."""
-        if others or most_terms != MAX_TERMS:
-            return super().embedded(*others, most_terms=most_terms)
-        return *recorded(self._record["ring"]), []
-
-    @cached_property
-    def _with_symbols(self) -> Hamiltonian:
-        if not self.values:
-            return self
-        generic = self._record["generic"]
-        return KeptHamiltonian(generic) if generic else self._read.with_symbols()
-
-    @property
-    def _read(self) -> Hamiltonian:
-        return Hamiltonian(self.expression, self.values)
-
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, KeptHamiltonian):
-            return NotImplemented
-        return (self.formula, self.values) == (other.formula, other.values)
-
-    def __hash__(self) -> int:
-        return hash((self.formula, self.values))
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return Hamiltonian, (self.expression, self.values)
 
 
 def _record_of(hamiltonian: Hamiltonian) -> dict[str, Any] | None:
