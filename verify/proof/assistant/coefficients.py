@@ -114,7 +114,7 @@ class _Numbers:
         )
         names = list(self.written.values())
         self.values: dict[str, Any] = {
-            "n": entries.degrees or 1,
+            "n": entries.layout.degrees,
             "timed": entries.times is not None,
             "numbers": list(map(self._number, self.numbers)),
             "names": names,

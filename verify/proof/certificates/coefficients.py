@@ -11,6 +11,7 @@ from itertools import combinations_with_replacement
 
 from verify.proof.certificates.numbers import Number, Residues, read_numbers
 from verify.proof.certificates.readers import (
+    Layout,
     Left,
     Poly,
     array_of,
@@ -30,13 +31,13 @@ class Stages:
     """Rows (kick, drift, share of p', share of q') of a scheme for every H.
 
     `times`: one of each row, in parts of h from the step's start; None where H has no time.
-    `degrees` of freedom: None in the plane. Coefficients are reduced by the `numbers`.
+    Coefficients are reduced by the `numbers`.
     """
 
     separable: bool
     rows: tuple[tuple[Poly, Poly, Poly, Poly], ...]
     times: tuple[Poly, ...] | None
-    degrees: int | None
+    layout: Layout
     numbers: tuple[Number, ...]
 
 
@@ -48,7 +49,7 @@ class Tableau:
     rows: tuple[tuple[Poly, ...], ...]
     weights: tuple[Poly, ...]
     times: tuple[Poly, ...] | None
-    degrees: int | None
+    layout: Layout
     numbers: tuple[Number, ...]
 
 
@@ -79,7 +80,7 @@ class _Reader:
             found.append((kick, drift, at_p, at_q))
             times += time
         own = tuple(times) if self.left.timed else None
-        return Stages(self.separable, tuple(found), own, self.left.degrees, self.numbers)
+        return Stages(self.separable, tuple(found), own, self.left.layout, self.numbers)
 
     def tableau(self) -> Tableau:
         entries = dict(object_of(self.left.take("tableau"), "tableau"))
@@ -90,7 +91,7 @@ class _Reader:
         found = tuple(self.row(row, len(rows)) for row in rows)
         weights = self.row(entries["b"], len(rows))
         times = self.row(entries["c"], len(rows)) if self.left.timed else None
-        return Tableau(self.separable, found, weights, times, self.left.degrees, self.numbers)
+        return Tableau(self.separable, found, weights, times, self.left.layout, self.numbers)
 
     def row(self, data: object, length: int) -> tuple[Poly, ...]:
         given = array_of(data, self.kind)
