@@ -18,8 +18,9 @@ What is found is held against the field in the ring; what is not found is not de
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import product
+from typing import Any
 
 from verify.algebra.domain import Domain
 from verify.algebra.embedding import embed
@@ -27,9 +28,9 @@ from verify.algebra.generator import terms_of
 from verify.algebra.linear_combination import combination
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.jets import Index, Jets
-from verify.algebra.series.power_series import partials
+from verify.algebra.series.power_series import CoefficientRing, partials
 from verify.errors import InputError
-from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
+from verify.hamiltonians.canonical_field import CanonicalField, Flow, canonical_field
 from verify.proof.expansion import MOST_ORDERS, Expansion, Leading
 from verify.proof.order import leading_of, nearby_of_scheme
 from verify.proof.plane.modified.equation import ModifiedEquation, Term, judged
@@ -185,6 +186,7 @@ def _among_all(field: CanonicalField, vector: Vector, _: int) -> Poly | None:
 
 
 MOST_ORDER = 10
+Energy = tuple[str, tuple[Ring, Poly] | None]  # G as a formula, and in its ring
 
 
 def modified_of(step_map: StepMap, scheme: Scheme | None, order: int) -> ModifiedEquation:
@@ -200,15 +202,18 @@ def modified_of(step_map: StepMap, scheme: Scheme | None, order: int) -> Modifie
             shown = str(step_map.hamiltonian.expression)
             problem = f"the map is not (p, q) at h = 0: {name}' is {ring.text(first)} there"
             raise InputError("map", shown, problem)
-    vectors = modified_field(ring, p_next, q_next, source.timed)
-    terms = [_term(source, j, vector, step_map.domain) for j, vector in enumerate(vectors)]
-    found = ModifiedEquation(
+
+    def energy_of(vector: Vector, factors: int) -> Energy | None:
+        found = hamiltonian_of(source, vector, factors) if any(vector) else ring.zero
+        return None if found is None else (ring.text(found), (ring, found))
+
+    found = by_field(
+        source,
+        (p_next, q_next),
+        leading_of(step_map),
+        energy_of,
         scheme=scheme.name if scheme else "the map",
         hamiltonian=step_map.hamiltonian.formula,
-        order=order,
-        terms=tuple(terms),
-        consistent=_same(ring, vectors[0], (source.slopes[0], source.slopes[1])),
-        area=_area(step_map, terms),
         where=step_map.domain,
     )
     near = nearby_of_scheme(scheme, step_map.hamiltonian) if scheme else None
@@ -234,49 +239,78 @@ def _series(step_map: StepMap, most: int) -> tuple[CanonicalField, Sequence[Poly
     return source, own[: most + 1], own[most + 1 :]
 
 
-def _term(source: CanonicalField, power: int, vector: Vector, domain: Domain) -> Term:
+# -- of one H, and of every one -------------------------------------------------------------------
+
+
+def by_field(
+    flow: Flow,
+    after: tuple[Sequence[Poly], Sequence[Poly]],
+    leading: Leading,
+    energy_of: Callable[[Vector, int], Energy | None],
+    *,
+    scheme: str,
+    hamiltonian: str,
+    where: Domain,
+) -> ModifiedEquation:
+    """By the coefficients of p' and q'. `leading`: of ΔJ; `energy_of`: G of a field with divergence
+    0, in which so many derivatives of H are multiplied in each term."""
+    vectors = modified_field(flow.ring, *after, flow.timed)
+    terms = [_term(flow.ring, j, vector, where, energy_of) for j, vector in enumerate(vectors)]
+    return ModifiedEquation(
+        scheme=scheme,
+        hamiltonian=hamiltonian,
+        order=len(terms) - 1,
+        terms=tuple(terms),
+        consistent=_same(flow.ring, vectors[0], flow.slopes),
+        area=_area(leading, terms),
+        where=where,
+    )
+
+
+def _term(
+    ring: Any,
+    power: int,
+    vector: Vector,
+    where: Domain,
+    energy_of: Callable[[Vector, int], Energy | None],
+) -> Term:
     """That of h^power in the field: its divergence decided, its energy looked for."""
-    ring = source.ring
+    nothing = ring.zero, ring.zero
+    vanishes = _same(ring, vector, nothing)
+    vector = nothing if vanishes else vector
     turned = divergence(ring, vector)
-    energy: Poly | None = ring.zero
-    vanishes = _same(ring, vector, (ring.zero, ring.zero))
-    if vanishes:
-        vector = ring.zero, ring.zero
-        decision = ring.decide(ring.zero)
-    else:
-        decision = ring.decide(turned)
-        energy = hamiltonian_of(source, vector, power + 1) if decision.zero else None
+    decision = ring.decide(turned)
+    text, energy = (decision.zero and energy_of(vector, power + 1)) or (None, None)
     element = None if decision.zero else (ring, turned)
-    leading = Leading(None if decision.zero else power, decision, element).within(domain)
+    leading = Leading(None if decision.zero else power, decision, element).within(where)
     return Term(
         power=power,
         p=ring.text(vector[0]),
         q=ring.text(vector[1]),
-        hamiltonian=None if energy is None else ring.text(energy),
+        hamiltonian=text,
         vanishes=vanishes,
         is_hamiltonian=leading.decision.zero,
         divergence=leading.text,
         witness=leading.decision.witness,
         enclosure=leading.decision.enclosure,
         domain=leading.domain,
-        energy=None if energy is None else (ring, energy),
+        energy=energy,
         found=(ring, turned),
     )
 
 
-def _same(ring: Ring, vector: Vector, other: Vector) -> bool | None:
+def _same(ring: CoefficientRing, vector: Vector, other: Sequence[Poly]) -> bool | None:
     """Whether two fields are the same; None where that is not decided."""
     found = {ring.vanishes(x - y) for x, y in zip(vector, other, strict=True)}
     return False if False in found else None if None in found else True
 
 
-def _area(step_map: StepMap, terms: Sequence[Term]) -> bool | None:
+def _area(leading: Leading, terms: Sequence[Term]) -> bool | None:
     """Whether the first divergence is the leading coefficient of ΔJ; None where neither is known.
 
     Of a field whose terms are all Hamiltonian: whether ΔJ vanishes as far as they tell.
     """
     first = next((x for x in terms if x.is_hamiltonian is not True), None)
-    leading = leading_of(step_map)
     if leading.decision.zero is None or (first is not None and first.is_hamiltonian is None):
         return None
     if first is None:
