@@ -160,16 +160,12 @@ def _solve_for_potential(
     factors, by_p, by_q = (n - 1 for n in grade)
     highest = max(i + j for (i, j), n in zip(jets.indices, x.degrees()[2:], strict=True) if n > 0)
     indices = [(i, j) for i, j in jets.indices if i + j < highest]
-    candidates = [_monomial(jets, m) for m in multisets(indices, factors, by_p, by_q)]
+    candidates = list(map(jets.product, multisets(indices, factors, by_p, by_q)))
     found, rank = combination(list(map(JetFlow.over(jets).derive, candidates)), x)
     if found is None:
         return None, rank, len(candidates)
     terms = (c * candidates[k] for k, c in found.items())
     return sum(terms, jets.zero), rank, len(candidates)
-
-
-def _monomial(jets: Jets, factors: Sequence[tuple[int, int]]) -> Poly:
-    return math.prod((jets.h(i, j) for i, j in factors), start=jets.one)
 
 
 def multisets(

@@ -46,7 +46,7 @@ class Polynomials:
         self.places = {name: room + k for k, name in enumerate(names)}
         self.zero, self.one = self.context.constant(0), self.context.constant(1)
         self.free = room  # generators from this place on are in use
-        self._relations: dict[int, tuple[int, Poly]] = {}
+        self.relations: list[tuple[int, int, Poly]] = []  # generator, its power, polynomial = 0
 
     def made(self) -> int:
         """The place of a new generator; OverflowError where there is no room."""
@@ -55,16 +55,18 @@ class Polynomials:
         self.free -= 1
         return self.free
 
-    def relate(self, place: int, power: int, relation: Poly) -> None:
+    def relate(self, generator: Poly, power: int, relation: Poly) -> None:
         """relation = 0, with that power of its newest generator; instead of an older relation."""
-        self._relations[place] = power, relation
+        place = self.gens.index(generator)
+        others = (each for each in self.relations if each[0] != place)
+        self.relations = sorted([*others, (place, power, relation)], key=lambda each: -each[0])
 
     def reduce(self, x: Poly) -> Poly:
-        """The normal form of x modulo the relations."""
-        degrees = x.degrees()
-        for place in sorted(self._relations):  # the newest first
-            power, relation = self._relations[place]
-            if degrees[place] >= power:
-                x = divmod(x, relation)[1]
-                degrees = x.degrees()
+        """The normal form of x modulo the relations, newest generator first."""
+        if self.relations:
+            degrees = x.degrees()
+            for place, power, relation in reversed(self.relations):
+                if degrees[place] >= power:
+                    x = divmod(x, relation)[1]
+                    degrees = x.degrees()
         return x

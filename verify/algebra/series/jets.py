@@ -14,7 +14,7 @@ variables for the same reason.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 
 import flint
@@ -153,5 +153,11 @@ class Jets(JetsInDegrees):
         return ((n - k - j, j, k) for k in range(n) for j in range(n - k + 1))
 
     def h(self, i: int, j: int, k: int = 0) -> Poly:
-        """∂_pⁱ ∂_q^j H, or ∂_pⁱ ∂_q^j ∂_t^k H where H depends on time."""
-        return self.of((i, j, k)[: len(self.variables)])
+        """∂_pⁱ ∂_q^j ∂_t^k H, which is 0 for k > 0 where H does not depend on time."""
+        if self.timed:
+            return self.of((i, j, k))
+        return self.zero if k else self.of((i, j))
+
+    def product(self, indices: Iterable[Index]) -> Poly:
+        """The product of these derivatives."""
+        return math.prod(map(self.of, indices), start=self.one)

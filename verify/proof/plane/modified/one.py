@@ -28,7 +28,7 @@ from verify.algebra.generator import terms_of
 from verify.algebra.linear_combination import combination
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.jets import Index, Jets
-from verify.algebra.series.power_series import CoefficientRing, partials
+from verify.algebra.series.power_series import CoefficientRing, Derivatives
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import CanonicalField, Flow, canonical_field
 from verify.proof.expansion import MOST_ORDERS, Expansion, Leading
@@ -61,26 +61,16 @@ def hamiltonian_in_jets(jets: Jets, vector: Vector, factors: int) -> Poly | None
     H_11 … are free, so that the highest derivative in G is of one order less than in the field.
     """
     degrees = [n for x in vector for n in _orders(jets, x)]
-    products = list(_products(jets, factors, max(degrees, default=1) - 1))
+    indices = [index for index in jets.indices if sum(index) < max(degrees, default=1)]
+    chosen = multisets(indices, factors, factors - 1, factors - 1)
     # p itself occurs in no term, and keeps the two parts of a field apart.
-    columns = [_joined(jets.p, field_of(jets, m)) for m in products]
-    found, _ = combination(columns, _joined(jets.p, vector))
-    if found is None:
-        return None
-    return sum((c * products[k] for k, c in found.items()), jets.zero)
+    return _combined(jets, list(map(jets.product, chosen)), vector, jets.p)
 
 
 def _orders(jets: Jets, x: Poly) -> Iterator[int]:
     """i + j of the derivatives H_ij that occur in x."""
     degrees = x.degrees()[2:]
     yield from (i + j for (i, j), n in zip(jets.indices, degrees, strict=True) if n > 0)
-
-
-def _products(jets: Jets, factors: int, highest: int) -> Iterator[Poly]:
-    """Those of so many derivatives, with one less by p and by q each."""
-    indices = [index for index in jets.indices if sum(index) <= highest]
-    for chosen in multisets(indices, factors, factors - 1, factors - 1):
-        yield math.prod((jets.h(i, j) for i, j in chosen), start=jets.one)
 
 
 def _joined(mark: Poly, vector: Vector) -> Poly:
@@ -122,11 +112,12 @@ def _among_products(field: CanonicalField, vector: Vector, factors: int) -> Poly
     in_time = [energy]
     for _ in range(factors - 1 if field.timed else 0):
         in_time.append(ring.diff(in_time[-1], "t"))
-    partial = [partials(ring, x) for x in in_time]
+    partial = [Derivatives(ring, x).partial for x in in_time]
     products = [_product(ring, [partial[k](i, j) for i, j, k in chosen]) for chosen in names]
     numbers = _numbers_in(ring, vector)
     candidates = [ring.multiply(c, m) for c in numbers for m in products if not m.is_zero()]
-    return _combined(ring, candidates, vector)
+    # h is in no coefficient of a series in h.
+    return _combined(ring, candidates, vector, ring.variable("h"))
 
 
 def _products_in_time(
@@ -151,8 +142,10 @@ def _product(ring: Ring, parts: Sequence[Poly]) -> Poly:
     return total
 
 
-def _combined(ring: Ring, candidates: Sequence[Poly], vector: Vector) -> Poly | None:
-    mark = ring.variable("h")  # which is in no coefficient of a series in h
+def _combined(
+    ring: CoefficientRing, candidates: Sequence[Poly], vector: Vector, mark: Poly
+) -> Poly | None:
+    """The sum of multiples of the candidates whose field that is; `mark` keeps its parts apart."""
     columns = [_joined(mark, field_of(ring, m)) for m in candidates]
     found, _ = combination(columns, _joined(mark, vector))
     if found is None:
