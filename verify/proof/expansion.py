@@ -165,13 +165,6 @@ class Expansion:
         length = self.length + 1 + self.pole
         return QuotientSeries(self.ring, length).of(self._derivatives[0])
 
-    def leading(self) -> Leading:
-        """The first coefficient that is not the zero function, as far as `length` goes."""
-        found = first_nonzero(self.coefficient, self.length)
-        if found is None and not self.polynomial:
-            return Leading(self.length, Decision(None))
-        return found or VANISHES
-
 
 def _without_pole(ring: Ring, x: Poly) -> tuple[int, Poly]:
     """m and hᵐ x, which has no 1/h in it."""
@@ -180,16 +173,6 @@ def _without_pole(ring: Ring, x: Poly) -> tuple[int, Poly]:
     parts = {0: x} if pole is None else ring.split(x, gens.index(pole))
     most = max(parts, default=0)
     return most, ring.reduce(sum((c * h ** (most - n) for n, c in parts.items()), ring.zero))
-
-
-def first_nonzero(coefficient: Callable[[int], tuple[Ring, Poly]], length: int) -> Leading | None:
-    """The first of the coefficients that is not shown to vanish; None where all are."""
-    for n in range(length):
-        ring, x = coefficient(n)
-        decision = ring.decide(x)
-        if decision.zero is not True:
-            return Leading(n, decision, (ring, x))
-    return None
 
 
 # -- of a map --------------------------------------------------------------------------------------

@@ -27,5 +27,5 @@ def marks(proved: Proved) -> Iterator[Prose]:
     """One for each that applies: the names of the theorems, and what they say of this scheme."""
     for each in all_of_them():
         if each.about in proved.about and each.applies(proved):
-            names = joined(", ", (Formula(str(x)) for x in each.theorems(proved)))
-            yield prose("Rocq, ", names, ": ", read_prose(each.says(proved)))
+            names = joined(", ", map(Formula, each.names(proved)))
+            yield prose("Rocq, ", names, ": ", read_prose(each.sentence(proved)))
