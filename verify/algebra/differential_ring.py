@@ -115,11 +115,7 @@ class DifferentialRing(Polynomials):
 
         The caller sees to it that no generator in x depends on that variable.
         """
-        return self.split(x, self.places[name])
-
-    def split(self, x: Poly, at: int) -> dict[int, Poly]:
-        """x as a polynomial in the generator of that index; `powers` for a variable."""
-        return split(x, at)
+        return split(x, self.places[name])
 
     # -- generators ---------------------------------------------------------------------------
 

@@ -13,6 +13,7 @@ from itertools import islice
 from verify.algebra.differential_ring import DifferentialRing
 from verify.algebra.enclosure import Ball, Enclosures, enclose, points
 from verify.algebra.generator import Poly
+from verify.algebra.identities.polynomials import split
 
 _FIRST_POINTS = 4
 _PRECISIONS = (64, 256, 1024)  # bits tried when looking for a witness
@@ -72,7 +73,7 @@ def _witness(value: Value, at: Iterable[dict[str, Fraction]], precision: int) ->
 def clear_inverses(ring: DifferentialRing, x: Poly) -> Poly:
     """x times the powers of denominators that remove every inverse, in normal form."""
     for g in reversed([g for g in ring.generators if g.kind == "inverse"]):
-        parts = ring.split(x, g.index)
+        parts = split(x, g.index)
         highest = max(parts, default=0)
         if highest:
             total = ring.zero

@@ -11,6 +11,7 @@ from typing import TypeAlias
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.embedding import embed
 from verify.algebra.formula import symbol
+from verify.algebra.identities.polynomials import split
 from verify.algebra.limits import checked
 from verify.algebra.ring import Decision, Poly, Ring
 from verify.algebra.ring_text import as_expression_at_0
@@ -170,7 +171,7 @@ def _without_pole(ring: Ring, x: Poly) -> tuple[int, Poly]:
     """m and hᵐ x, which has no 1/h in it."""
     h, gens = ring.variable("h"), ring.context.gens()
     pole = ring.find("inverse", h)
-    parts = {0: x} if pole is None else ring.split(x, gens.index(pole))
+    parts = {0: x} if pole is None else split(x, gens.index(pole))
     most = max(parts, default=0)
     return most, ring.reduce(sum((c * h ** (most - n) for n, c in parts.items()), ring.zero))
 

@@ -1,11 +1,34 @@
 """Polynomials over the rationals, modulo relations that each give a power of one generator."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
 
 import flint
 
 Poly = flint.fmpq_mpoly
+Monomial = tuple[int, ...]  # the powers of all generators
+
+
+@dataclass(frozen=True)
+class Generator:
+    """One ring generator: `kind` of function, and its argument.
+
+    `kind`: variable, which has a `name`, pi, a function of `verify.functions.in_rings`, root (of
+    `degree`), or inverse.
+    """
+
+    index: int
+    kind: str
+    argument: Poly | None = None
+    degree: int = 1
+    name: str = ""
+
+    @property
+    def inner(self) -> Poly:
+        """The argument; of a function, a root, an inverse: not of a variable or π."""
+        assert self.argument is not None  # noqa: S101 - the caller looks at the kind
+        return self.argument
 
 
 def terms_of(x: Poly) -> Iterator[tuple[tuple[int, ...], flint.fmpq]]:
@@ -32,6 +55,16 @@ def split(x: Poly, at: int) -> dict[int, Poly]:
         if not part.is_zero():
             found[power] = part / math.factorial(power)
         x = x.derivative(at)
+    return found
+
+
+def by_monomials(x: Poly, places: Collection[int]) -> dict[Monomial, dict[Monomial, flint.fmpq]]:
+    """The coefficient, by its terms, of each power product of the generators in these places."""
+    found: dict[Monomial, dict[Monomial, flint.fmpq]] = {}
+    for monomial, c in terms_of(x):
+        inside = tuple(n if place in places else 0 for place, n in enumerate(monomial))
+        rest = tuple(0 if place in places else n for place, n in enumerate(monomial))
+        found.setdefault(inside, {})[rest] = c
     return found
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator
 
 from verify.proof.assistant.formulas import Spelling, deep, list_of, rational, whole
-from verify.proof.assistant.names import Names
+from verify.proof.assistant.names import Names, polynomials_of
 from verify.proof.assistant.nonzero import energy_that_shows
 from verify.proof.assistant.text import Export
 from verify.proof.certificates.entries import Expansion, derived_by
@@ -86,7 +86,7 @@ class _Names(Names):
     def __init__(self, entries: Expansion) -> None:
         super().__init__(entries)
         self.n = entries.layout.degrees
-        used = {name for x in self._polys() for names in x for name in names}
+        used = {name for x in polynomials_of(entries) for names in x for name in names}
         derived = {self._index(name) for name in used if name not in self.coordinates}
         # The formulas are derived once more, and the slopes of H twice.
         derived |= {(k,) for k in range(2 * self.n)}
@@ -108,12 +108,6 @@ class _Names(Names):
             slopes = " (".join(f"by_coordinate {k}" for k in index)
             bound.append(f"let {self._name(index)} := {slopes} H{')' * (len(index) - 1)} in")
         return "\n  ".join([*bound, text])
-
-    def _polys(self) -> Iterator[Poly]:
-        for series in self.entries.after:
-            yield from series
-        yield from self.entries.leading.values()
-        yield from (self.entries.potential or {}).values()
 
     def _index(self, name: str) -> tuple[int, ...]:
         """By which coordinates H is derived, in order."""

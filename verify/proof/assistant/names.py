@@ -1,7 +1,7 @@
 """The names that a certificate's polynomials are made of, and what every export of a map has."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 from verify.proof.assistant.factors import known_power
@@ -57,3 +57,13 @@ class Names(ABC):
             "leading": form_list(entries.leading, self.coordinates, self.deep),
             "potential": form_list(entries.potential or {}, self.coordinates, self.deep),
         }
+
+
+def polynomials_of(entries: Expansion) -> Iterator[Poly]:
+    """H, where it is one, the map, L and G."""
+    if entries.hamiltonian is not None:
+        yield entries.hamiltonian
+    for series in entries.after:
+        yield from series
+    yield from entries.leading.values()
+    yield from (entries.potential or {}).values()
