@@ -134,9 +134,7 @@ class _Numbers:
         factors = Reducer(names, list(enumerate(relations))).all_factors(gaps)
         return {
             "relations": self.deep.list(relations),
-            "factors": list_of(
-                list_of(f"({k}%nat, {self.deep.scoped(x)})" for k, x in each) for each in factors
-            ),
+            "factors": list_of(map(self.deep.factors, factors)),
         }
 
     def _number(self, number: Number) -> dict[str, Any]:

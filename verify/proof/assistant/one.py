@@ -82,7 +82,7 @@ def of_one(entries: Expansion, hamiltonian: Poly) -> Export:
                 "energy": spelled.scoped(hamiltonian),
                 "slopes": spelled.list(slopes),
                 **names.deep_values(),
-                "factors": list_of(map(names.factor_list, factors_of(entries))),
+                "factors": list_of(map(spelled.factors, factors_of(entries))),
             },
         },
     )
@@ -153,7 +153,3 @@ class _Names(Names):
             "numbers": list_of(rational(values[name]) for name in names),
             "by": list_of(self.coordinates[x] for x in found.by),
         }
-
-    def factor_list(self, factors: Iterable[tuple[int, Poly]]) -> str:
-        """The factors of a gap, each with the number of its relation."""
-        return list_of(f"({k}%nat, {self.deep.scoped(x)})" for k, x in factors)

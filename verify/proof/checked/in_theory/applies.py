@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from verify.proof.assistant.stated import Shipped
 from verify.proof.checked.proved import About, Proved
 from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 
@@ -25,11 +24,11 @@ class Applies:
     symplectic: bool = False
     so: str = ""
 
-    def names(self, proved: Proved) -> list[str]:
-        """Of the theorems. Raises ValueError where the theory states one of them not."""
+    def names(self, proved: Proved) -> tuple[str, ...]:
+        """Of the theorems, for what is proved."""
         names = (self.in_plane if proved.planar else ()) or self.theorems
         more = ("Theorems.symplectic_is_area_preserving",) * (self.symplectic and proved.planar)
-        return [str(Shipped(*name.split("."))) for name in (*names, *more)]
+        return (*names, *more)
 
     def sentence(self, proved: Proved) -> str:
         """What they say."""
