@@ -116,16 +116,14 @@ def check_coefficients(entries: Stages | Tableau) -> None:
     """ValueError names what does not hold."""
     residues = Residues(entries.numbers)
     if isinstance(entries, Tableau):
-        for name, gap in _gaps(entries, residues):
+        for name, gap in gaps_of_tableau(entries, residues):
             need(not gap, f"tableau: {name} is not zero")
         return
-    for row in entries.rows:
-        holds = _preserves(*row, separable=entries.separable, residues=residues)
-        need(holds, "det A is not det B")
+    need(not any(gaps_of_stages(entries, residues)), "det A is not det B")
 
 
-def _preserves(k: Poly, d: Poly, s: Poly, u: Poly, *, separable: bool, residues: Residues) -> bool:
-    """Whether det J = 1 of a stage for every H; with `degrees`, whether S = 0.
+def gaps_of_stages(entries: Stages, residues: Residues) -> Iterator[Poly]:
+    """k d (1 − s − u) and k − d of each; that they are 0 suffices for det J = 1, and for S = 0.
 
     A J = B by implicit differentiation: both are I + h E D with det A = 1 + h b (k s − d u) +
     h² k d s u (a c − b²), a, b, c = H_pp, H_pq, H_qq there, and det B the same of s − 1 and u − 1.
@@ -135,12 +133,13 @@ def _preserves(k: Poly, d: Poly, s: Poly, u: Poly, *, separable: bool, residues:
     P, Q the point and δ = d(z' − z), dP∧dK_P + dQ∧dK_Q = −d(dK) = 0 leaves
     dp'∧dq' − dp∧dq = (1 − s − u) δp∧δq.
     """
-    rest = residues.sum((1, ONE), (-1, s), (-1, u))
-    alike = separable or not residues.sum((1, k), (-1, d))
-    return alike and not residues.product(residues.product(k, d), rest)
+    for k, d, s, u in entries.rows:
+        rest = residues.sum((1, ONE), (-1, s), (-1, u))
+        yield residues.product(residues.product(k, d), rest)
+        yield {} if entries.separable else residues.sum((1, k), (-1, d))
 
 
-def _gaps(entries: Tableau, residues: Residues) -> Iterator[tuple[str, Poly]]:
+def gaps_of_tableau(entries: Tableau, residues: Residues) -> Iterator[tuple[str, Poly]]:
     """M_ij = b_i a_ij + b_j a_ji − b_i b_j; that all are 0 suffices for S = 0.
 
     With F = −H_q and G = H_p at each stage's point (P, Q) and time, P_i = p + h Σ a_ij F_j and
