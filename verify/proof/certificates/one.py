@@ -19,7 +19,6 @@ from verify.proof.expansion import ClosedSeries, series_of
 from verify.proof.plane.potential import Potential
 from verify.proof.proof import Proof
 from verify.proof.telescoping import potential_of_lie
-from verify.schemes.maps.step_map import StepMap
 from verify.verdict import Verdict
 
 
@@ -76,28 +75,17 @@ def _in_degrees(proof: Proof) -> tuple[CanonicalField, Statement]:
     if most is None:
         shown = step.hamiltonian.formula
         raise InputError("map", shown, "is not written out as a polynomial in h")
-    leading = None if order is None else proof.first.form
-    field, rows, entries = _in_one_field(step, most, entries_of(leading))
+    form = None if order is None else proof.first.form
+    series, entries = series_of(step, most), entries_of(form)
+    if isinstance(series, ClosedSeries):
+        # Where h stands in a function each coefficient has a ring of its own, and so has S.
+        others = [form.ring.expression(x) for x in entries.values()] if form else []
+        field, rows, elements = series.in_one_field(step.hamiltonian, most, *others)
+        entries = dict(zip(entries, elements, strict=True))
+    else:
+        field, columns = series.flow, [series.coefficient(n) for n in range(most + 1)]
+        rows = [list(row) for row in zip(*columns, strict=True)]
     eta = step.flow_up_to
     has_potential = proof.telescopes and eta > 0 and eta % 2 == 0  # of odd η S ≡ 0 does, without
     potential = entries_of(potential_of_lie(field, eta)) if has_potential else None
     return field, Statement(layout_of(field.names), rows, order, agreed, entries, potential)
-
-
-def _in_one_field(
-    step: StepMap, most: int, entries: Form
-) -> tuple[CanonicalField, list[list[Poly]], Form]:
-    """The coefficients of h⁰ … h^most in each coordinate, and a form's entries, in one ring."""
-    series = series_of(step, most)
-    if not isinstance(series, ClosedSeries):
-        columns = [series.coefficient(n) for n in range(most + 1)]
-        return series.flow, [list(row) for row in zip(*columns, strict=True)], entries
-    # Where h stands in a function each coefficient has a ring of its own.
-    parts = [series.coefficient(k, n) for k in range(2 * step.degrees) for n in range(most + 1)]
-    ring, _ = parts[0]
-    exact = [ring.expression(x) for ring, x in parts]
-    exact += [ring.expression(x) for x in entries.values()]
-    field, elements = canonical_field(step.hamiltonian, *exact)
-    size = len(parts)
-    rows = [elements[at : at + most + 1] for at in range(0, size, most + 1)]
-    return field, rows, dict(zip(entries, elements[size:], strict=True))

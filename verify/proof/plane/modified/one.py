@@ -30,8 +30,8 @@ from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.jets import Index, Jets
 from verify.algebra.series.power_series import CoefficientRing, Derivatives
 from verify.errors import InputError
-from verify.hamiltonians.canonical_field import CanonicalField, Flow, canonical_field
-from verify.proof.expansion import MOST_ORDERS, Expansion, Leading
+from verify.hamiltonians.canonical_field import CanonicalField, Flow
+from verify.proof.expansion import MOST_ORDERS, ClosedSeries, Leading
 from verify.proof.order import leading_of, nearby_of_scheme
 from verify.proof.plane.modified.equation import ModifiedEquation, Term, judged
 from verify.proof.plane.modified.field import Vector, divergence, field_of, modified_field
@@ -219,17 +219,11 @@ def _series(step_map: StepMap, most: int) -> tuple[CanonicalField, Sequence[Poly
     if series is not None:
         source, (p, q) = series
         return source, p.coefficients, q.coefficients
-    step = step_map.flat
-    expansions = [Expansion(step.ring, x) for x in step.elements]
-    if most > MOST_ORDERS and not all(x.polynomial for x in expansions):
+    closed = ClosedSeries(step_map.flat)
+    if most > MOST_ORDERS and not closed.polynomial:
         raise InputError("order", most - 1, f"must be {MOST_ORDERS - 1} at most for this map")
-    parts = [x.coefficient(n) for x in expansions for n in range(most + 1)]
-    if all(ring is step.ring for ring, _ in parts):
-        own = [x for _, x in parts]
-        return step.field, own[: most + 1], own[most + 1 :]
-    # Where h stands in a function each coefficient has a ring of its own; one holds them all.
-    source, own = canonical_field(step_map.hamiltonian, *(ring.expression(x) for ring, x in parts))
-    return source, own[: most + 1], own[most + 1 :]
+    source, (p_next, q_next), _ = closed.in_one_field(step_map.hamiltonian, most)
+    return source, p_next, q_next
 
 
 # -- of one H, and of every one -------------------------------------------------------------------
