@@ -11,7 +11,7 @@ from fractions import Fraction
 import flint
 
 from verify.algebra.generator import Generator, Poly
-from verify.algebra.identities.polynomials import occurring, split
+from verify.algebra.identities.polynomials import Polynomials, occurring, split
 from verify.late import sympy
 
 _SPARE = 6  # generators that later calls to `inverse` may still add
@@ -21,26 +21,19 @@ class RingFullError(Exception):
     """More generators are needed than the ring was made for."""
 
 
-class DifferentialRing:
+class DifferentialRing(Polynomials):
     """Polynomials in the given variables, with room for `room` generators.
 
     `verify.algebra.ring.Ring` is the one that is used: it decides, divides and writes too.
     """
 
     def __init__(self, variables: Sequence[str], room: int, spare: int = _SPARE) -> None:
-        self.variables = tuple(variables)
-        self.room = room + spare
-        names = [f"_{k}" for k in range(self.room)]  # no parameter's name begins so
-        # Lexicographic with the newest generator first: relations then reduce to older ones.
-        self.context = flint.fmpq_mpoly_ctx.get([*names, *self.variables], flint.Ordering.lex)
-        self._gens = self.context.gens()
-        self.zero, self.one = self.context.constant(0), self.context.constant(1)
+        super().__init__(variables, room + spare)
+        self.variables, self.room = tuple(variables), room + spare
         self.generators: list[Generator] = [
             Generator(self.room + k, "variable", name=name) for k, name in enumerate(self.variables)
         ]
         self._by_index = {g.index: g for g in self.generators}
-        self.places = {name: self.room + k for k, name in enumerate(self.variables)}
-        self.relations: list[tuple[int, int, Poly]] = []  # generator, its power, polynomial = 0
         self._gradients: dict[int, dict[str, Poly]] = {}
         self._inside: dict[int, list[int]] = {}
         self.expressions: dict[int, sympy.Expr] = {}  # of generators
@@ -53,17 +46,7 @@ class DifferentialRing:
 
     def variable(self, name: str) -> Poly:
         """A variable as an element; KeyError where the ring has none of that name."""
-        return self._gens[self.places[name]]
-
-    def reduce(self, x: Poly) -> Poly:
-        """The normal form of x modulo the relations, newest generator first."""
-        if self.relations:
-            degrees = x.degrees()
-            for index, power, relation in reversed(self.relations):
-                if degrees[index] >= power:
-                    x = divmod(x, relation)[1]
-                    degrees = x.degrees()
-        return x
+        return self.gens[self.places[name]]
 
     def multiply(self, x: Poly, y: Poly) -> Poly:
         """x y in normal form."""
@@ -132,35 +115,26 @@ class DifferentialRing:
 
         The caller sees to it that no generator in x depends on that variable.
         """
-        return self.split(x, self.places[name])
-
-    def split(self, x: Poly, at: int) -> dict[int, Poly]:
-        """x as a polynomial in the generator of that index; `powers` for a variable."""
-        return split(x, at)
+        return split(x, self.places[name])
 
     # -- generators ---------------------------------------------------------------------------
 
     def add(self, kind: str, argument: Poly | None = None, degree: int = 1) -> Poly:
         """A new generator; its relation and gradient are added by `relate` and `set_gradient`."""
-        count = len(self.generators) - len(self.variables)
-        if count >= self.room:
+        if not self.free:
             raise RingFullError(f"more than {self.room} functions and denominators are needed")
-        index = self.room - 1 - count
+        index = self.made()
         generator = Generator(index, kind, argument, degree)
         self.generators.append(generator)
         self._by_index[index] = generator
-        return self._gens[index]
+        return self.gens[index]
 
     def find(self, kind: str, argument: Poly | None, degree: int = 1) -> Poly | None:
         """The generator of that kind for that argument, where there is one."""
         for g in self.generators:
             if g.kind == kind and g.degree == degree and g.argument == argument:
-                return self._gens[g.index]
+                return self.gens[g.index]
         return None
-
-    def relate(self, generator: Poly, power: int, relation: Poly) -> None:
-        """relation = 0, used where `generator` occurs with at least that power."""
-        self.relations.append((self._gens.index(generator), power, relation))
 
     def set_gradient(self, generator: Poly, outer: Poly, inner: Poly) -> None:
         """d generator = outer · d inner."""
@@ -172,7 +146,7 @@ class DifferentialRing:
 
     def set_partials(self, generator: Poly, gradient: dict[str, Poly]) -> None:
         """The partial derivatives of the generator that are not 0, by the variables' names."""
-        self._gradients[self._gens.index(generator)] = gradient
+        self._gradients[self.gens.index(generator)] = gradient
 
     def gradient(self, index: int) -> dict[str, Poly]:
         """The partial derivatives of a generator that has a gradient, by the variables' names."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 from itertools import groupby
 
 from verify.algebra.embedding import embed
@@ -13,6 +13,7 @@ from verify.algebra.enclosure import Ball, enclose, points
 from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.requirement import Relation, Requirement
 from verify.algebra.ring import Decision, Poly, Ring
+from verify.algebra.zero_test import witness
 from verify.effort import limited, unless_long
 from verify.errors import InputError
 from verify.late import sympy
@@ -124,13 +125,10 @@ class Domain:
         if decision.zero is None or not self.requirements:
             return decision
         own = [g.name for g in ring.generators_in(x) if g.kind == "variable"]
-        for point in self._points(list(dict.fromkeys((*own, *sorted(self.names))))):
-            if decision.zero:
-                return decision
-            value = enclose(ring, x, point, _PRECISION)
-            if value is not None and not value.contains(0):
-                return Decision(False, point, value.str(12))
-        return Decision(None)
+        points = self._points(list(dict.fromkeys((*own, *sorted(self.names)))))
+        if decision.zero:
+            return Decision(None) if next(points, None) is None else decision
+        return witness(partial(enclose, ring, x), points, _PRECISION) or Decision(None)
 
     def _points(self, names: Sequence[str]) -> Iterator[dict[str, Fraction]]:
         """Points of the domain: small ones, and such as lie about the ends of its conditions."""

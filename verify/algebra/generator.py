@@ -1,38 +1,17 @@
-"""One generator of a ring: which function it is, of what, and how it is written."""
+"""How a generator of a ring is written: its function of an argument."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import flint
 
 from verify.algebra.formula import function, symbol
+from verify.algebra.identities.polynomials import Generator as Generator
 from verify.algebra.identities.polynomials import Poly as Poly
 from verify.algebra.identities.polynomials import terms_of as terms_of
 from verify.functions import in_rings
 from verify.late import sympy
-
-
-@dataclass(frozen=True)
-class Generator:
-    """One ring generator: `kind` of function, and its argument.
-
-    `kind`: variable, which has a `name`, pi, a function of `verify.functions.in_rings`, root (of
-    `degree`), or inverse.
-    """
-
-    index: int
-    kind: str
-    argument: Poly | None = None
-    degree: int = 1
-    name: str = ""
-
-    @property
-    def inner(self) -> Poly:
-        """The argument; of a function, a root, an inverse: not of a variable or π."""
-        assert self.argument is not None  # noqa: S101 - the caller looks at the kind
-        return self.argument
 
 
 def generator_expression(g: Generator, argument: sympy.Expr) -> sympy.Expr:

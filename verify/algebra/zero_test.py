@@ -8,11 +8,13 @@ denominator is hidden in it, `verify.algebra.hidden_zero` looks further.
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import partial
 from itertools import islice
 
 from verify.algebra.differential_ring import DifferentialRing
 from verify.algebra.enclosure import Ball, Enclosures, enclose, points
 from verify.algebra.generator import Poly
+from verify.algebra.identities.polynomials import split
 
 _FIRST_POINTS = 4
 _PRECISIONS = (64, 256, 1024)  # bits tried when looking for a witness
@@ -38,20 +40,20 @@ def decided(ring: DifferentialRing, x: Poly) -> Decision:
     names = [g.name for g in used if g.kind == "variable"]
     # A point usually tells at once; clearing denominators can be long work.
     value = _values(ring, x)
-    found = _witness(value, islice(points(names), _FIRST_POINTS), _PRECISIONS[0])
+    found = witness(value, islice(points(names), _FIRST_POINTS), _PRECISIONS[0])
     if found is None and (clear_inverses(ring, x).is_zero() or _is_hidden(ring, x)):
         return Decision(True)
     terms = len(x) + sum(len(g.argument) for g in used if g.argument is not None)
     most = max(_FIRST_POINTS, _MOST_ENCLOSED // terms)
     for precision in _PRECISIONS:
-        found = found or _witness(value, islice(points(names), most), precision)
+        found = found or witness(value, islice(points(names), most), precision)
     return found or Decision(None)
 
 
 def _values(ring: DifferentialRing, x: Poly) -> Value:
     """Encloses x at a point; exactly, where it is a polynomial in the variables."""
     if ring.in_variables(x):
-        return lambda point, precision: enclose(ring, x, point, precision)
+        return partial(enclose, ring, x)
     enclosures = Enclosures(ring, [x])
 
     def value(point: Mapping[str, Fraction], precision: int) -> Ball | None:
@@ -61,7 +63,8 @@ def _values(ring: DifferentialRing, x: Poly) -> Value:
     return value
 
 
-def _witness(value: Value, at: Iterable[dict[str, Fraction]], precision: int) -> Decision | None:
+def witness(value: Value, at: Iterable[dict[str, Fraction]], precision: int) -> Decision | None:
+    """The first of the points at which the value is seen not to be 0."""
     for point in at:
         ball = value(point, precision)
         if ball is not None and not ball.contains(0):
@@ -72,7 +75,7 @@ def _witness(value: Value, at: Iterable[dict[str, Fraction]], precision: int) ->
 def clear_inverses(ring: DifferentialRing, x: Poly) -> Poly:
     """x times the powers of denominators that remove every inverse, in normal form."""
     for g in reversed([g for g in ring.generators if g.kind == "inverse"]):
-        parts = ring.split(x, g.index)
+        parts = split(x, g.index)
         highest = max(parts, default=0)
         if highest:
             total = ring.zero

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from functools import cached_property, lru_cache
 
 from verify.algebra.ring import Poly
-from verify.algebra.series.jets import Jets, JetsInDegrees, TimedJets
+from verify.algebra.series.jets import Jets, JetsInDegrees
 from verify.hamiltonians.canonical_field import Flow
 from verify.hamiltonians.coordinates import numbered
 
@@ -20,7 +20,7 @@ class JetFlow(Flow):
     def of_degrees(cls, degrees: int, order: int, *, separable: bool, timed: bool) -> "JetFlow":
         """In so many degrees of freedom, with derivatives of H up to this order."""
         if degrees == 1:
-            return cls.over(TimedJets(order) if timed else Jets(order, separable=separable))
+            return cls.over(Jets(order, separable=separable and not timed, timed=timed))
         names = numbered(degrees)
         return cls.over(JetsInDegrees(names, order, separable=separable, timed=timed))
 

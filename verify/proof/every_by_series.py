@@ -15,7 +15,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from verify.algebra.generator import Poly
-from verify.algebra.series.jets import JetRing
+from verify.algebra.series.jets import Jets
 from verify.algebra.series.power_series import Series
 from verify.hamiltonians.jet_flow import JetFlow
 from verify.proof.by_conditions import first_wrong
@@ -156,7 +156,7 @@ def _telescoping(found: EveryProof, flow: JetFlow, every_h: BySeries, form: TwoF
     if found.telescopes:
         return found
     ring = flow.ring
-    if isinstance(ring, JetRing):  # of the plane
+    if isinstance(ring, Jets):  # of the plane
         known = telescopes(ring, form.at(0, 1))
         found = replace(found, telescopes=known.holds, why=known.reason)
         if known.potential is None:

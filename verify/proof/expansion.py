@@ -11,14 +11,16 @@ from typing import TypeAlias
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.embedding import embed
 from verify.algebra.formula import symbol
+from verify.algebra.identities.polynomials import split
 from verify.algebra.limits import checked
 from verify.algebra.ring import Decision, Poly, Ring
 from verify.algebra.ring_text import as_expression_at_0
 from verify.algebra.series.power_series import Series
 from verify.algebra.series.quotient_series import QuotientSeries
 from verify.errors import InputError, LimitError
-from verify.hamiltonians.canonical_field import CanonicalField
+from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.coordinates import PLANE
+from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.late import sympy
 from verify.proof.parameters import not_zero_for
 from verify.schemes.maps.closed_form import ClosedForm, h_inside
@@ -165,31 +167,14 @@ class Expansion:
         length = self.length + 1 + self.pole
         return QuotientSeries(self.ring, length).of(self._derivatives[0])
 
-    def leading(self) -> Leading:
-        """The first coefficient that is not the zero function, as far as `length` goes."""
-        found = first_nonzero(self.coefficient, self.length)
-        if found is None and not self.polynomial:
-            return Leading(self.length, Decision(None))
-        return found or VANISHES
-
 
 def _without_pole(ring: Ring, x: Poly) -> tuple[int, Poly]:
     """m and hᵐ x, which has no 1/h in it."""
     h, gens = ring.variable("h"), ring.context.gens()
     pole = ring.find("inverse", h)
-    parts = {0: x} if pole is None else ring.split(x, gens.index(pole))
+    parts = {0: x} if pole is None else split(x, gens.index(pole))
     most = max(parts, default=0)
     return most, ring.reduce(sum((c * h ** (most - n) for n, c in parts.items()), ring.zero))
-
-
-def first_nonzero(coefficient: Callable[[int], tuple[Ring, Poly]], length: int) -> Leading | None:
-    """The first of the coefficients that is not shown to vanish; None where all are."""
-    for n in range(length):
-        ring, x = coefficient(n)
-        decision = ring.decide(x)
-        if decision.zero is not True:
-            return Leading(n, decision, (ring, x))
-    return None
 
 
 # -- of a map --------------------------------------------------------------------------------------
@@ -204,8 +189,20 @@ class ClosedSeries:
     def __init__(self, closed: ClosedForm) -> None:
         self.closed, self.flow = closed, closed.field
         self._parts = [Expansion(closed.ring, x) for x in closed.elements]
-        self._entries: dict[Place, Expansion] | None = None
-        self._volume: Expansion | None = None
+
+    @cached_property
+    def _entries(self) -> dict[Place, Expansion]:
+        entries = self.closed.defect.entries
+        return {at: Expansion(self.closed.ring, x) for at, x in entries.items()}
+
+    @cached_property
+    def _volume(self) -> Expansion:
+        return Expansion(self.closed.ring, self.closed.delta_j)
+
+    @property
+    def polynomial(self) -> bool:
+        """Whether each coordinate's new value is a polynomial in h."""
+        return all(x.polynomial for x in self._parts)
 
     def agrees(
         self, n: int, nearly: Callable[[Poly, Poly], bool] | None = None
@@ -234,25 +231,29 @@ class ClosedSeries:
         ring, (gap,) = embed([ring.expression(x) - own.expression(term)], own.variables)
         return ring, gap
 
-    def coefficient(self, place: int, n: int) -> tuple[Ring, Poly]:
-        """That of hⁿ in a coordinate's new value, with its ring."""
-        return self._parts[place].coefficient(n)
+    def in_one_field(
+        self, hamiltonian: Hamiltonian, most: int, *others: sympy.Expr
+    ) -> tuple[CanonicalField, list[list[Poly]], list[Poly]]:
+        """The coefficients of h⁰ … h^most in each coordinate's new value, and other expressions,
+        as elements of one ring."""
+        parts = [x.coefficient(n) for x in self._parts for n in range(most + 1)]
+        field, elements = self.flow, [x for _, x in parts]
+        if others or not all(ring is field.ring for ring, _ in parts):
+            own = (ring.expression(x) for ring, x in parts)
+            field, elements = canonical_field(hamiltonian, *own, *others)
+        size = len(parts)
+        rows = [elements[at : at + most + 1] for at in range(0, size, most + 1)]
+        return field, rows, elements[size:]
 
     def form(self, m: int) -> TwoForm:
         """The coefficient of hᵐ in S."""
-        own, names = self.closed.ring, self.flow.names
-        if self._entries is None:
-            entries = self.closed.defect.entries
-            self._entries = {at: Expansion(own, x) for at, x in entries.items()}
         parts = [x.coefficient(m) for x in self._entries.values()]
-        ring, elements = _in_one_ring(parts, own)
+        ring, elements = _in_one_ring(parts, self.closed.ring)
         made = dict(zip(self._entries, elements, strict=True))
-        return TwoForm.of(ring, names, lambda a, b: made.get((a, b), ring.zero))
+        return TwoForm.of(ring, self.flow.names, lambda a, b: made.get((a, b), ring.zero))
 
     def volume(self, n: int) -> tuple[Ring, Poly]:
         """The coefficient of hⁿ in det J − 1."""
-        if self._volume is None:
-            self._volume = Expansion(self.closed.ring, self.closed.delta_j)
         return self._volume.coefficient(n)
 
 

@@ -11,12 +11,10 @@ from functools import reduce
 from itertools import islice, product
 from typing import TypeAlias
 
-import flint
-
 from verify.algebra.domain import Domain
 from verify.algebra.embedding import embed
 from verify.algebra.formula import symbol
-from verify.algebra.generator import terms_of
+from verify.algebra.identities.polynomials import by_monomials
 from verify.algebra.requirement import Requirement
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.zero_test import clear_inverses
@@ -41,7 +39,7 @@ def not_zero_for(ring: Ring, x: Poly, what: str) -> Domain:
         return Domain()
     x = clear_inverses(ring, x)  # a denominator is not 0 where x is defined
     inner = _depending(ring, x)
-    parts = _coefficients(ring, x, inner)
+    parts = list(map(ring.context.from_dict, by_monomials(x, inner).values()))
     common = reduce(lambda a, b: a.gcd(b), parts)
     factors = [factor for factor, _ in common.factor()[1]]
     needed = [Requirement(ring.expression(f), "!=") for f in factors]
@@ -77,17 +75,6 @@ def _depending(ring: Ring, x: Poly) -> list[int]:
         if depends and degrees[g.index] > 0:
             found.append(g.index)
     return found
-
-
-def _coefficients(ring: Ring, x: Poly, inner: Sequence[int]) -> list[Poly]:
-    """Those of x over the monomials in what depends on p and q."""
-    parts: dict[tuple[int, ...], dict[tuple[int, ...], flint.fmpq]] = {}
-    for powers, c in terms_of(x):
-        rest = list(powers)
-        for index in inner:
-            rest[index] = 0
-        parts.setdefault(tuple(powers[i] for i in inner), {})[tuple(rest)] = c
-    return [ring.context.from_dict(terms) for terms in parts.values()]
 
 
 # -- of a polynomial in p and q -------------------------------------------------------------------

@@ -19,7 +19,7 @@ from typing import TypeAlias
 import sympy
 
 from verify.algebra.enclosure import enclose_over, points
-from verify.algebra.generator import terms_of
+from verify.algebra.identities.polynomials import by_monomials
 from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.arb import Ball, around, middle_and_radius, rational_ball
 from verify.arithmetic.exact import decimal, rational
@@ -53,7 +53,7 @@ Formulas: TypeAlias = tuple[tuple[str, str], ...]  # p_next, q_next and what the
 def nearby_of_formulas(formulas: Formulas, hamiltonian: Hamiltonian) -> NearbyOrder | None:
     """The highest order that the map has with exact numbers near those printed in its formulas;
     None where they print none, or none near them is seen to make it a scheme."""
-    return _looked_for(formulas, hamiltonian, _PrintedMap.differences)
+    return _looked_for(formulas, hamiltonian, lambda series, n: series.differences(n))
 
 
 @lru_cache(maxsize=16)
@@ -62,7 +62,13 @@ def nearby_defect(
 ) -> NearbyOrder | None:
     """The same of S = JᵀΩJ − Ω: up to which power of h, `most` at most, it has no term with such
     numbers."""
-    return _looked_for(formulas, hamiltonian, _PrintedMap.defects, most)
+    return _looked_for(formulas, hamiltonian, _defects, most)
+
+
+def _defects(series: AnySeries, n: int) -> Elements:
+    """Of hⁿ in S."""
+    form = series.form(n)
+    return form.ring, list(form.entries.values())
 
 
 def moved_by_units(formulas: Formulas, hamiltonian: Hamiltonian) -> list[Formulas]:
@@ -86,7 +92,7 @@ def told_defect(near: NearbyOrder, form: str) -> Prose:
 def _looked_for(
     formulas: Formulas,
     hamiltonian: Hamiltonian,
-    elements: "Callable[[_PrintedMap, int], Elements]",
+    elements: Callable[[AnySeries, int], Elements],
     most: int = MOST_ORDER,
 ) -> NearbyOrder | None:
     try:
@@ -95,8 +101,8 @@ def _looked_for(
             if not read.readings or len(read.numbers) > _MOST_NUMBERS:
                 return None
             named = map_by_formulas(hamiltonian, read.named, tuple(read.numbers))
-            printed = _PrintedMap(series_of(named, 2), tuple(read.numbers), read.readings)
-            return printed.order(partial(elements, printed), most)
+            printed = _PrintedMap(tuple(read.numbers), read.readings)
+            return printed.order(partial(elements, series_of(named, 2)), most)
     except InputError:  # no polynomial in its decimals, or too long
         return None
 
@@ -142,10 +148,9 @@ def _exact_or_printed(text: str, parameters: set[sympy.Rational]) -> str:
 
 @dataclass(frozen=True)
 class _PrintedMap:
-    """`series` over a ring in which the printed numbers are variables, called `names`; `readings`:
+    """A map over a ring in which the printed numbers are variables, called `names`; `readings`:
     the ways in which they may be read, that taken first before others."""
 
-    series: AnySeries
     names: tuple[str, ...]
     readings: tuple[PrintedNumbers, ...]
 
@@ -160,15 +165,6 @@ class _PrintedMap:
         verdict, said, _ = of_printed(found, order)
         beyond = self._excluded(order + 1, numbers, elements) if order < most else None
         return NearbyOrder(order, verdict, said, beyond, ())
-
-    def differences(self, n: int) -> Elements:
-        """Of hⁿ in z', from the exact flow."""
-        return self.series.differences(n)
-
-    def defects(self, n: int) -> Elements:
-        """Of hⁿ in S."""
-        form = self.series.form(n)
-        return form.ring, list(form.entries.values())
 
     def _excluded(
         self, n: int, numbers: PrintedNumbers, elements: Callable[[int], Elements]
@@ -229,12 +225,14 @@ def _by_monomials(ring: Ring, x: Poly, names: Sequence[str]) -> list[Polynomial]
     for name, place in zip(names, places, strict=True):
         if place is not None and ring.diff(x, name) != ring.reduce(x.derivative(place)):
             raise LimitError("scheme", name, "stands within a function")
-    found: dict[tuple[int, ...], list[tuple[Fraction, tuple[int, ...]]]] = {}
-    for monomial, number in terms_of(x):
-        powers = tuple(0 if place is None else monomial[place] for place in places)
-        others = tuple(0 if k in places else e for k, e in enumerate(monomial))
-        found.setdefault(others, []).append((Fraction(int(number.p), int(number.q)), powers))
-    return [tuple(terms) for terms in found.values()]
+    others = {place for place in range(len(x.degrees())) if place not in places}
+    return [
+        tuple(
+            (Fraction(int(c.p), int(c.q)), tuple(0 if k is None else own[k] for k in places))
+            for own, c in part.items()
+        )
+        for part in by_monomials(x, others).values()
+    ]
 
 
 def _residues(

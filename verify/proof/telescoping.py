@@ -30,10 +30,11 @@ from verify.algebra.embedding import embed
 from verify.algebra.formula import symbol
 from verify.algebra.generator import terms_of
 from verify.algebra.linear_combination import combination
-from verify.algebra.series.jets import Index, JetRing, Poly, shown
+from verify.algebra.series.jets import Index, Jets, Poly
 from verify.algebra.substitution import substitute
 from verify.errors import InputError
 from verify.hamiltonians.canonical_field import CanonicalField, Flow
+from verify.hamiltonians.jet_flow import JetFlow
 from verify.prose import Formula, Prose, prose, read_prose
 from verify.schemes.steps.two_form import TwoForm, lie_derivative, wedge
 
@@ -96,7 +97,7 @@ class Telescoping:
     potential: Poly | None = None
 
 
-def telescopes(jets: JetRing, leading: Poly) -> Telescoping:
+def telescopes(jets: Jets, leading: Poly) -> Telescoping:
     """Whether the polynomial L in the jets is X·G with a polynomial G in the jets.
 
     False is shown by a linear functional that vanishes on all X·G and not on L: to take the value
@@ -114,7 +115,7 @@ def telescopes(jets: JetRing, leading: Poly) -> Telescoping:
             False,
             prose(
                 read_prose("X·G vanishes where `H_p` = `H_q` = 0, for any smooth G; there L is "),
-                Formula(shown(at_rest)),
+                Formula(jets.text(at_rest)),
             ),
         )
     graded: dict[tuple[int, int, int], dict[tuple[int, ...], flint.fmpq]] = {}
@@ -136,7 +137,7 @@ def telescopes(jets: JetRing, leading: Poly) -> Telescoping:
     return Telescoping(True, prose("X·G = L, solved for G by linear algebra"), total)
 
 
-def _grade(jets: JetRing, monomial: Sequence[int]) -> tuple[int, int, int]:
+def _grade(jets: Jets, monomial: Sequence[int]) -> tuple[int, int, int]:
     """(factors H_ij, derivatives by p, by q), each of which X raises by one."""
     powers = [int(n) for n in monomial[2:]]
     return (
@@ -147,7 +148,7 @@ def _grade(jets: JetRing, monomial: Sequence[int]) -> tuple[int, int, int]:
 
 
 def _solve_for_potential(
-    jets: JetRing, grade: tuple[int, int, int], x: Poly
+    jets: Jets, grade: tuple[int, int, int], x: Poly
 ) -> tuple[Poly | None, int, int]:
     """(G with X·G = x, the rank of X on such G, their number of monomials).
 
@@ -159,16 +160,12 @@ def _solve_for_potential(
     factors, by_p, by_q = (n - 1 for n in grade)
     highest = max(i + j for (i, j), n in zip(jets.indices, x.degrees()[2:], strict=True) if n > 0)
     indices = [(i, j) for i, j in jets.indices if i + j < highest]
-    candidates = [_monomial(jets, m) for m in multisets(indices, factors, by_p, by_q)]
-    found, rank = combination([jets.derive(m) for m in candidates], x)
+    candidates = list(map(jets.product, multisets(indices, factors, by_p, by_q)))
+    found, rank = combination(list(map(JetFlow.over(jets).derive, candidates)), x)
     if found is None:
         return None, rank, len(candidates)
     terms = (c * candidates[k] for k, c in found.items())
     return sum(terms, jets.zero), rank, len(candidates)
-
-
-def _monomial(jets: JetRing, factors: Sequence[tuple[int, int]]) -> Poly:
-    return math.prod((jets.h(i, j) for i, j in factors), start=jets.one)
 
 
 def multisets(

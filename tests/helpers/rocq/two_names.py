@@ -8,18 +8,6 @@ from verify.proof.certificates.entries import read
 from verify.proof.certificates.readers import Poly
 
 
-class _Gaps(Identities):
-    """What the small checker asks to be 0, by the names that it has for cofactors of it."""
-
-    def zero(self, x: Poly, what: str) -> None:
-        self.gaps[what] = x
-
-    def collected(self) -> dict[str, Poly]:
-        self.gaps: dict[str, Poly] = {}
-        self.check()
-        return self.gaps
-
-
 def with_square(data: dict[str, Any], name: str, new: str, argument: Any) -> dict[str, Any]:
     """The certificate with `new` = 1/argument for the square of `name`, and its cofactors."""
     changed = {key: _replaced(value, name, new) for key, value in data.items()}
@@ -45,14 +33,14 @@ def _replaced(entry: Any, name: str, new: str) -> Any:
 def _cofactors(data: dict[str, Any]) -> dict[str, Any]:
     entries = read({**data, "cofactors": {}})
     assert not isinstance(entries, tuple)
-    gaps = _Gaps(entries)  # type: ignore[arg-type]
-    found, made = gaps.collected(), [f.name for f in gaps.given.functions]
-    names = [*reversed(made), *gaps.given.coordinates, "t", *gaps.given.parameters]
-    relations = [(made.index(n), gaps.relations[n]) for n in reversed(made) if n in gaps.relations]
-    reducer = Reducer(names, relations)
+    asked = Identities(entries)  # type: ignore[arg-type]
+    made, relations = [f.name for f in asked.given.functions], asked.relations
+    names = [*reversed(made), *asked.given.coordinates, "t", *asked.given.parameters]
+    numbered = [(made.index(n), relations[n]) for n in reversed(made) if n in relations]
+    reducer = Reducer(names, numbered)
     return {
         what: {made[k]: _written(factor) for k, factor in reducer.factors(gap)}
-        for what, gap in found.items()
+        for what, gap in asked.gaps()
         if gap
     }
 

@@ -29,7 +29,7 @@ from verify.algebra.formula import parse
 from verify.algebra.ring import Decision
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.expansion import MOST_ORDERS, Expansion, Leading, first_nonzero
+from verify.proof.expansion import MOST_ORDERS, Expansion, Leading
 from verify.proof.order import prove
 from verify.proof.plane.potential import potential_of
 from verify.proof.proof import Proof
@@ -111,20 +111,18 @@ def test_what_begins_beyond_the_orders_looked_at_is_not_said_to_vanish(power: in
 
 @few
 @given(st.lists(polynomials("pq", 2, 1) | st.just("0"), min_size=1, max_size=5))
-def test_the_first_coefficient_left_is_the_first_that_is_not_0(given_: list[str]) -> None:
-    ring, found = embed([parse(x) for x in given_], ("p", "q"))
-    first = next((n for n, x in enumerate(found) if x != 0), None)
-    left = first_nonzero(lambda n: (ring, found[n]), len(found))
-    assert (left.power if left else None) == first
+def test_the_coefficients_of_a_polynomial_are_those_that_are_given(given_: list[str]) -> None:
     whole = sum((parse(x) * H**n for n, x in enumerate(given_)), sympy.S.Zero)
     ring, (x,) = embed([whole], ("p", "q", "h"))
     expansion = Expansion(ring, x)
-    assert expansion.length == 1 + max((n for n, c in enumerate(found) if c != 0), default=0)
-    leading = expansion.leading()
-    assert (leading.power, leading.decision.zero) == (first, first is None)
-    true = parse(given_[first]) if first is not None else 0
-    assert sympy.expand(leading.coefficient - true) == 0
-    assert sympy.expand(parse(leading.text) - true) == 0
+    last = max((n for n, c in enumerate(given_) if parse(c) != 0), default=0)
+    assert expansion.length == 1 + last
+    for n, text in enumerate(given_):
+        own, found = expansion.coefficient(n)
+        leading = Leading(n, own.decide(found), (own, found))
+        assert leading.decision.zero is (parse(text) == 0)
+        assert sympy.expand(leading.coefficient - parse(text)) == 0
+        assert sympy.expand(parse(leading.text) - parse(text)) == 0
 
 
 # -- potentials -----------------------------------------------------------------------------------

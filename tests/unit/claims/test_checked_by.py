@@ -9,7 +9,7 @@ from verify.claims.checked import of_every, of_hamiltonian
 from verify.claims.file import load_claims
 from verify.execution.execute import Store
 from verify.proof.certificates import checker
-from verify.proof.checked import small_checker
+from verify.proof.certificates import established as certificates
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
@@ -131,10 +131,10 @@ def test_a_claim_whose_certificate_is_refused_has_no_mark_of_the_small_checker(
         raise ValueError("det 1 is not zero")
 
     keys = {"kind": "order", "order": 3, "every": "hamiltonian", "scheme": "lie2"}
-    monkeypatch.setattr(small_checker, "check", refuse)
+    monkeypatch.setattr(certificates, "check", refuse)
     of_every.cache_clear()
     refused = judged(tmp_path, **keys)
-    monkeypatch.setattr(small_checker, "check", checker.check)
+    monkeypatch.setattr(certificates, "check", checker.check)
     of_every.cache_clear()
     accepted = judged(tmp_path, **keys)
     assert refused.verdict is accepted.verdict is Verdict.PROVED

@@ -9,12 +9,13 @@ from fractions import Fraction
 import pytest
 import sympy
 
-from tests.helpers.lie_derivatives import lie_derivatives
+from tests.helpers.lie_derivatives import along_flow, lie_derivatives
 from tests.helpers.sampled.formulas import P, Q, plain
 from verify import schemes
 from verify.algebra.series.jets import Jets
 from verify.algebra.series.power_series import Derivatives, Series, at_moved
 from verify.errors import InputError
+from verify.exploration.properties.orders.order_by_jets import delta_j
 from verify.hamiltonians.jet_flow import JetFlow
 from verify.proof import every
 from verify.proof.every import prove_every
@@ -60,11 +61,12 @@ def at(jets: Jets, x: object, hamiltonian: sympy.Expr) -> sympy.Expr:
     """A polynomial in the jets for one H, by sympy's derivatives."""
     put = {"p": P, "q": Q}
     put |= {
-        jets.names[k + 2]: sympy.diff(hamiltonian, P, i, Q, j)
+        jets.context.names()[k + 2]: sympy.diff(hamiltonian, P, i, Q, j)
         for k, (i, j) in enumerate(jets.indices)
     }
     terms = (
-        sympy.Rational(str(c)) * sympy.prod(put[jets.names[k]] ** int(n) for k, n in enumerate(m))
+        sympy.Rational(str(c))
+        * sympy.prod(put[jets.context.names()[k]] ** int(n) for k, n in enumerate(m))
         for m, c in x.to_dict().items()
     )
     return sympy.expand(sum(terms, sympy.S.Zero))
@@ -145,7 +147,7 @@ def test_the_leading_coefficient_is_that_of_one_hamiltonian(eta: int) -> None:
     det = p_next.diff(P) * q_next.diff(Q) - p_next.diff(Q) * q_next.diff(P)
     expected = sympy.expand(det).coeff(h, eta + 1)
     jets = Jets(eta + 3)
-    leading = list(jets.delta_j(*TaylorSeries(eta).taylor(jets, eta + 1)))[-1]
+    leading = list(delta_j(jets, *TaylorSeries(eta).taylor(jets, eta + 1)))[-1]
     assert at(jets, leading, CUBIC) == expected
 
 
@@ -169,29 +171,29 @@ def test_claims_that_are_wrong_by_one_or_by_a_sign_are_refuted(prove_made) -> No
 @pytest.mark.parametrize("eta", range(1, 8))
 def test_linear_algebra_finds_what_the_formula_says(eta: int) -> None:
     jets = Jets(eta + 2)
-    leading = list(jets.delta_j(*TaylorSeries(eta).taylor(jets, eta + 1)))[-1]
+    leading = list(delta_j(jets, *TaylorSeries(eta).taylor(jets, eta + 1)))[-1]
     found = telescopes(jets, leading)
     assert found.holds is (eta % 2 == 0)
     if found.holds:
         by_formula = potential_of_lie(JetFlow.over(jets), eta).divergence
-        assert jets.derive(found.potential) == leading == jets.derive(by_formula)
+        assert along_flow(jets, found.potential) == leading == along_flow(jets, by_formula)
 
 
 def test_one_coefficient_more_no_longer_telescopes() -> None:
     jets = Jets(5)
-    leading = list(jets.delta_j(*TaylorSeries(2).taylor(jets, 3)))[-1]
+    leading = list(delta_j(jets, *TaylorSeries(2).taylor(jets, 3)))[-1]
     changed = leading + jets.h(1, 0) * jets.h(2, 0) * jets.h(0, 3)
     found = telescopes(jets, changed)
     assert not found.holds
     assert "dimension" in found.reason
-    assert jets.derive(potential_of_lie(JetFlow.over(jets), 2).divergence) != changed
+    assert along_flow(jets, potential_of_lie(JetFlow.over(jets), 2).divergence) != changed
 
 
 def test_a_hidden_derivative_is_found() -> None:
     jets = Jets(6)
     hidden = jets.h(2, 0) * jets.h(1, 2) ** 2 - 3 * jets.h(0, 3) * jets.h(2, 1) * jets.h(2, 0)
     hidden += jets.h(1, 0) ** 2 * jets.h(0, 2)
-    assert telescopes(jets, jets.derive(hidden)).holds
+    assert telescopes(jets, along_flow(jets, hidden)).holds
 
 
 def test_odd_schemes_have_no_potential_formula() -> None:
@@ -209,7 +211,7 @@ def test_symplectic_schemes_preserve_area_for_every_hamiltonian(prove_made, gene
         Verdict.PROVED, None, True, order,
     )  # fmt: skip
     jets = Jets(order + 4, separable=generic.separable)
-    assert all(x == 0 for x in jets.delta_j(*generic.taylor(jets, order + 2)))
+    assert all(x == 0 for x in delta_j(jets, *generic.taylor(jets, order + 2)))
     assert prove_made(generic, order + 1, area_preserving=True).verdict is Verdict.REFUTED
 
 

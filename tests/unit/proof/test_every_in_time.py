@@ -8,7 +8,7 @@ import sympy
 from tests.helpers.lie_derivatives import lie_derivatives
 from verify import schemes
 from verify.algebra.generator import terms_of
-from verify.algebra.series.jets import JetRing, Jets, Poly, TimedJets
+from verify.algebra.series.jets import Jets, Poly
 from verify.claims.findings import Findings
 from verify.claims.kinds import models
 from verify.errors import InputError
@@ -28,21 +28,23 @@ def test_lie_for_every_h_in_time(eta: int) -> None:
     assert found.quantifier == "every smooth H(p, q, t)"
 
 
-def terms(jets: JetRing, x: Poly) -> dict[frozenset[tuple[str, int]], str]:
+def terms(jets: Jets, x: Poly) -> dict[frozenset[tuple[str, int]], str]:
     """Coefficients by the powers of names."""
     return {
-        frozenset((name, int(n)) for name, n in zip(jets.names, powers, strict=True) if n): str(c)
+        frozenset(
+            (name, int(n)) for name, n in zip(jets.context.names(), powers, strict=True) if n
+        ): str(c)
         for powers, c in terms_of(x)
     }
 
 
 @pytest.mark.parametrize("eta", range(1, 6))
 def test_where_h_does_not_depend_on_time_it_is_the_proof_for_every_h(eta: int) -> None:
-    def divergence(jets: Jets | TimedJets) -> Poly:
+    def divergence(jets: Jets) -> Poly:
         p, q = (lie_derivatives(jets, name, eta + 1)[-1] for name in ("p", "q"))
         return jets.diff(p, "p") + jets.diff(q, "q")
 
-    timed, plain = TimedJets(eta + 2), Jets(eta + 2)
+    timed, plain = Jets(eta + 2, timed=True), Jets(eta + 2)
     found, true = terms(timed, divergence(timed)), terms(plain, divergence(plain))
     still = {k: c for k, c in found.items() if not any(n.endswith("t") for n, _ in k)}
     assert still == true
@@ -51,7 +53,7 @@ def test_where_h_does_not_depend_on_time_it_is_the_proof_for_every_h(eta: int) -
 
 def test_d_without_the_derivative_by_time_is_another_one(monkeypatch: pytest.MonkeyPatch) -> None:
     """The planted error: the flow's terms with X in place of D are of order 1."""
-    jets = TimedJets(4)
+    jets = Jets(4, timed=True)
     right = lie_derivatives(jets, "p", 2)
     monkeypatch.setattr(
         JetFlow,
@@ -61,7 +63,7 @@ def test_d_without_the_derivative_by_time_is_another_one(monkeypatch: pytest.Mon
             for slope, name in zip(self.slopes, self.names, strict=True)
         ),
     )
-    wrong = lie_derivatives(TimedJets(4), "p", 2)
+    wrong = lie_derivatives(Jets(4, timed=True), "p", 2)
     assert right[1] == wrong[1]
     assert right[2] - wrong[2] == -jets.h(0, 1, 1)
 

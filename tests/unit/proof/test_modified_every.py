@@ -8,13 +8,13 @@ from hypothesis import strategies as st
 from tests.examples import drawn
 from tests.helpers.sampled.formulas import P, Q
 from verify import schemes
-from verify.algebra.series.jets import Jets, shown
+from verify.algebra.series.jets import Jets
 from verify.algebra.symbols import H_STEP
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof.plane.modified import every as modified_every
+from verify.proof.plane.modified import one as modified_one
 from verify.proof.plane.modified.every import Logarithm, modified_for_every, terms_of_splitting
-from verify.proof.plane.modified.field import field_of
+from verify.proof.plane.modified.field import field_of, modified_field
 from verify.proof.plane.modified.one import modified_of
 from verify.schemes.conditions.splitting_conditions import Splitting
 from verify.verdict import Verdict
@@ -56,7 +56,7 @@ def test_the_logarithm_of_the_exponentials_gives_the_same_terms(chosen) -> None:
     jets, logarithm = Jets(7, separable=True), Logarithm(own, 5)
     assert own.stages is not None
     series = own.stages.taylor(jets, 5)
-    vectors = modified_every.modified_field(jets, *series)
+    vectors = modified_field(jets, *series)
     for n in range(2, 6):
         numbers = {m: x.leading_coefficient() for m, x in logarithm.energy(jets, n).items()}
         energy = jets.context.from_dict(numbers)
@@ -100,14 +100,14 @@ def test_the_first_divergence_is_the_leading_coefficient_of_delta_j(
 
 
 def test_a_planted_term_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    own = modified_every.modified_field
+    own = modified_one.modified_field
 
     def planted(jets, *series):
         terms = own(jets, *series)
         terms[2] = terms[2][0] + jets.h(0, 1) * jets.h(2, 0) ** 2 * jets.h(0, 2), terms[2][1]
         return terms
 
-    monkeypatch.setattr(modified_every, "modified_field", planted)
+    monkeypatch.setattr(modified_one, "modified_field", planted)
     for name in ("stormer-verlet", "lie2"):
         result = modified_for_every(name, 2)
         assert (result.area, result.verdict) == (False, Verdict.UNDECIDED)
@@ -128,5 +128,5 @@ def test_a_scheme_of_one_h_is_refused() -> None:
 def test_the_text_is_a_formula() -> None:
     text = modified_for_every("symplectic-euler", 1).text
     assert text == "H + h*(-1/2*H_p*H_q)"
-    assert shown(Jets(1).h(1, 0)) == "H_p"
+    assert Jets(1).text(Jets(1).h(1, 0)) == "H_p"
     assert H_STEP in sympy.sympify(text, {"h": H_STEP}).free_symbols

@@ -27,6 +27,7 @@ from verify import schemes
 from verify.algebra.embedding import embed
 from verify.algebra.series.jets import Jets
 from verify.errors import InputError
+from verify.exploration.properties.orders.order_by_jets import delta_j
 from verify.proof.by_conditions import prove_by_conditions
 from verify.proof.every import prove_every
 from verify.schemes.conditions.free_lie_words import lyndon
@@ -172,7 +173,7 @@ def test_the_series_over_the_jets_has_the_same_order(name: str) -> None:
     for n in range(scheme.order + 2):
         agree = [s[n] * factorial(n) == x[n] for s, x in zip(series, flow, strict=True)]
         assert all(agree) is (n <= scheme.order)
-    assert all(x == 0 for x in jets.delta_j(*series))
+    assert all(x == 0 for x in delta_j(jets, *series))
 
 
 def test_the_rational_splittings_are_found() -> None:

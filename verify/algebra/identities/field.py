@@ -140,7 +140,7 @@ class Field:
 
     def relate(self, unit: "Quotient", power: int, relation: Poly) -> None:
         """relation = 0, with that power of the unit, and older units; instead of an older one."""
-        self.ring.relate(self.place(unit), power, relation)
+        self.ring.relate(self.ring.gens[self.place(unit)], power, relation)
 
     def place(self, unit: "Quotient") -> int:
         """The place of a unit."""

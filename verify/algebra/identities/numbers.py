@@ -13,7 +13,7 @@ import flint
 import gmpy2
 
 from verify.algebra.identities.field import Algebraic, Field, Point, UndecidedError
-from verify.algebra.identities.polynomials import Poly, occurring, terms_of
+from verify.algebra.identities.polynomials import Poly, by_monomials, occurring, terms_of
 from verify.arithmetic.flint_precision import working_precision
 
 MAX_DEGREE = 2000
@@ -79,14 +79,9 @@ def root_of(field: Field, x: Poly, degree: int) -> tuple[int, Algebraic]:
 
 def vanishes(field: Field, x: Poly) -> bool:
     """Whether the coefficients of x, by its powers of the functions in it, are all the number 0."""
-    numbers = {place for place in occurring(x) if field.units[place].number is not None}
-    coefficients: dict[tuple[int, ...], Poly] = {}
-    for monomial, c in terms_of(x):
-        functions = tuple(0 if k in numbers else n for k, n in enumerate(monomial))
-        own = tuple(n if k in numbers else 0 for k, n in enumerate(monomial))
-        part = field.ring.context.from_dict({own: c})
-        coefficients[functions] = coefficients.get(functions, field.ring.zero) + part
-    return all(number_sign(field, part) == 0 for part in coefficients.values())
+    functions = {place for place in occurring(x) if field.units[place].number is None}
+    parts = map(field.ring.context.from_dict, by_monomials(x, functions).values())
+    return all(number_sign(field, part) == 0 for part in parts)
 
 
 def rational_root(c: flint.fmpq, degree: int) -> flint.fmpq | None:

@@ -1,11 +1,34 @@
 """Polynomials over the rationals, modulo relations that each give a power of one generator."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
 
 import flint
 
 Poly = flint.fmpq_mpoly
+Monomial = tuple[int, ...]  # the powers of all generators
+
+
+@dataclass(frozen=True)
+class Generator:
+    """One ring generator: `kind` of function, and its argument.
+
+    `kind`: variable, which has a `name`, pi, a function of `verify.functions.in_rings`, root (of
+    `degree`), or inverse.
+    """
+
+    index: int
+    kind: str
+    argument: Poly | None = None
+    degree: int = 1
+    name: str = ""
+
+    @property
+    def inner(self) -> Poly:
+        """The argument; of a function, a root, an inverse: not of a variable or π."""
+        assert self.argument is not None  # noqa: S101 - the caller looks at the kind
+        return self.argument
 
 
 def terms_of(x: Poly) -> Iterator[tuple[tuple[int, ...], flint.fmpq]]:
@@ -35,6 +58,16 @@ def split(x: Poly, at: int) -> dict[int, Poly]:
     return found
 
 
+def by_monomials(x: Poly, places: Collection[int]) -> dict[Monomial, dict[Monomial, flint.fmpq]]:
+    """The coefficient, by its terms, of each power product of the generators in these places."""
+    found: dict[Monomial, dict[Monomial, flint.fmpq]] = {}
+    for monomial, c in terms_of(x):
+        inside = tuple(n if place in places else 0 for place, n in enumerate(monomial))
+        rest = tuple(0 if place in places else n for place, n in enumerate(monomial))
+        found.setdefault(inside, {})[rest] = c
+    return found
+
+
 class Polynomials:
     """Those in the given names and in up to `room` generators, which are made one by one."""
 
@@ -46,7 +79,7 @@ class Polynomials:
         self.places = {name: room + k for k, name in enumerate(names)}
         self.zero, self.one = self.context.constant(0), self.context.constant(1)
         self.free = room  # generators from this place on are in use
-        self._relations: dict[int, tuple[int, Poly]] = {}
+        self.relations: list[tuple[int, int, Poly]] = []  # generator, its power, polynomial = 0
 
     def made(self) -> int:
         """The place of a new generator; OverflowError where there is no room."""
@@ -55,16 +88,18 @@ class Polynomials:
         self.free -= 1
         return self.free
 
-    def relate(self, place: int, power: int, relation: Poly) -> None:
+    def relate(self, generator: Poly, power: int, relation: Poly) -> None:
         """relation = 0, with that power of its newest generator; instead of an older relation."""
-        self._relations[place] = power, relation
+        place = self.gens.index(generator)
+        others = (each for each in self.relations if each[0] != place)
+        self.relations = sorted([*others, (place, power, relation)], key=lambda each: -each[0])
 
     def reduce(self, x: Poly) -> Poly:
-        """The normal form of x modulo the relations."""
-        degrees = x.degrees()
-        for place in sorted(self._relations):  # the newest first
-            power, relation = self._relations[place]
-            if degrees[place] >= power:
-                x = divmod(x, relation)[1]
-                degrees = x.degrees()
+        """The normal form of x modulo the relations, newest generator first."""
+        if self.relations:
+            degrees = x.degrees()
+            for place, power, relation in reversed(self.relations):
+                if degrees[place] >= power:
+                    x = divmod(x, relation)[1]
+                    degrees = x.degrees()
         return x

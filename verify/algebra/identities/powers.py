@@ -116,17 +116,19 @@ class Powers:
             found += [(int(prime), sign * int(n)) for prime, n in parts if prime > 1]
         return found
 
+    def bases(self, u: Quotient) -> list[tuple[Poly, int]]:
+        """|u| as a product of powers of such numbers and of irreducible polynomials."""
+        (c, factors), constant = self.factors(u), self.field.ring.context.constant
+        return [*((constant(prime), n) for prime, n in self.prime_factors(c)), *factors]
+
     # -- powers -------------------------------------------------------------------------------
 
     def power(self, u: Quotient, r: Fraction) -> Quotient:
         """|u|^r."""
         if abs(r) > MAX_POWER:
             raise UndecidedError("too high a power")
-        c, factors = self.factors(u)
         total = self.field.one
-        for prime, n in self.prime_factors(c):
-            total = total * self._of_base(self.field.ring.context.constant(prime), n * r)
-        for f, n in factors:
+        for f, n in self.bases(u):
             total = total * self._of_base(f, n * r)
         return total
 
@@ -174,11 +176,8 @@ class Powers:
 
     def logarithm(self, u: Quotient) -> Quotient:
         """log |u|."""
-        c, factors = self.factors(u)
         total = self.field.zero
-        for prime, n in self.prime_factors(c):
-            total += self._log_of(self.field.ring.context.constant(prime)).times(n)
-        for f, n in factors:
+        for f, n in self.bases(u):
             total += self._log_of(f).times(n)
         return total
 

@@ -11,7 +11,7 @@ from typing import Any, Protocol
 
 import flint
 
-from verify.algebra.identities.polynomials import Poly, terms_of
+from verify.algebra.identities.polynomials import Poly, split, terms_of
 
 _DEEPEST = 3
 _MOST_TERMS = 60
@@ -117,23 +117,16 @@ def _by_roots(x: Poly, place: int, degree: int, known: Known) -> int | None:
 def _by_even_powers(x: Poly, place: int, known: Known, strict: bool, levels: int) -> int | None:
     """Of a sum of even powers of one generator, of any powers where it is positive."""
     signs = set()
-    for power in range(x.degrees()[place] + 1):
-        part = _coefficient(x, place, power)
-        if not part.is_zero():
-            if power % 2 and not known.positive(place):
-                return None
-            signs.add(_definite(part, known, strict and power == 0, levels))
+    for power, part in split(x, place).items():
+        if power % 2 and not known.positive(place):
+            return None
+        signs.add(_definite(part, known, strict and power == 0, levels))
     return signs.pop() if len(signs) == 1 else None
 
 
-def _coefficient(x: Poly, place: int, power: int) -> Poly:
-    for n in range(power):
-        x = x.derivative(place) / (n + 1)
-    return x.subs({place: 0})
-
-
 def _by_square(x: Poly, place: int, known: Known, strict: bool, levels: int) -> int | None:
-    c, b, a = (_coefficient(x, place, power) for power in range(3))
+    parts = split(x, place)
+    c, b, a = (parts.get(power, x * 0) for power in range(3))
     sign = _definite(a, known, True, levels)
     if sign is None or _definite(4 * a * c - b * b, known, strict, levels) != 1:
         return None

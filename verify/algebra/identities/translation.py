@@ -2,11 +2,10 @@
 
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import Protocol
 
 from verify.algebra.identities.angles import Angles
 from verify.algebra.identities.field import Field, Quotient, UndecidedError
-from verify.algebra.identities.polynomials import Poly, terms_of
+from verify.algebra.identities.polynomials import Generator, Poly, terms_of
 from verify.algebra.identities.powers import Finer, FinerError, Powers
 from verify.functions import in_rings
 
@@ -15,32 +14,13 @@ _MOST_TERMS = 20_000
 _ATTEMPTS = 12
 
 
-class Function(Protocol):
-    """A generator of a ring: see `verify.algebra.generator.Generator`."""
-
-    @property
-    def index(self) -> int: ...
-
-    @property
-    def kind(self) -> str: ...
-
-    @property
-    def name(self) -> str: ...
-
-    @property
-    def inner(self) -> Poly: ...
-
-    @property
-    def degree(self) -> int: ...
-
-
 class Translation:
     """One element of a ring, and the generators that it depends on, as quotients of a field.
 
     Raises UndecidedError where it is too large.
     """
 
-    def __init__(self, used: Sequence[Function], x: Poly, finer: Finer, *, tangents: bool) -> None:
+    def __init__(self, used: Sequence[Generator], x: Poly, finer: Finer, *, tangents: bool) -> None:
         self.used = used
         if len(self.used) > _MOST_GENERATORS or len(x) > _MOST_TERMS:
             raise UndecidedError("too large")
@@ -87,7 +67,7 @@ class Translation:
             self._known[key] = x if n == 1 else self.field.multiplied(self._powers_of(x, n - 1), x)
         return self._known[key]
 
-    def _image(self, g: Function) -> Quotient:
+    def _image(self, g: Generator) -> Quotient:
         if g.kind == "variable":
             return self.field.polynomial(self.field.ring.gens[self.field.ring.places[g.name]])
         if g.kind == "pi":
@@ -121,7 +101,7 @@ class Translation:
         return self.powers.logarithm(u)
 
 
-def translated(used: Sequence[Function], x: Poly, *, tangents: bool) -> Translation:
+def translated(used: Sequence[Generator], x: Poly, *, tangents: bool) -> Translation:
     """The translation, with every unit divided as finely as it needs to be.
 
     `used`: all generators that x depends on, the oldest first.

@@ -14,7 +14,7 @@ variables for the same reason.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 
 import flint
@@ -132,13 +132,25 @@ def _partitions(total: int, parts: int) -> Iterator[Index]:
             yield (first, *rest)
 
 
-class JetRing(JetsInDegrees):
-    """The ring of p, q and derivatives of H in the plane; `timed`: H depends on t."""
+class Jets(JetsInDegrees):
+    """Those of H(p, q): p, q and H_ij for 1 ≤ i + j ≤ `order`; OverflowError for a derivative
+    beyond. `timed`: of H(p, q, t), with t and H_ijk = ∂_pⁱ∂_q^j∂_t^k H, i + j ≥ 1.
+
+    >>> jets = Jets(2)
+    >>> jets.text(jets.diff(jets.h(1, 0) ** 2, "q"))
+    '2*H_p*H_pq'
+    """
 
     def __init__(self, order: int, *, separable: bool = False, timed: bool = False) -> None:
+        self.timed = timed
         super().__init__(("p", "q"), order, separable=separable, timed=timed)
-        self.timed, self.names = timed, self.context.names()
         self.p, self.q = self.gens[:2]
+
+    def _of_order(self, n: int) -> Iterator[Index]:
+        """Those by t alone occur in no derivative along the flow."""
+        if not self.timed:
+            return super()._of_order(n)
+        return ((n - k - j, j, k) for k in range(n) for j in range(n - k + 1))
 
     def h(self, i: int, j: int, k: int = 0) -> Poly:
         """∂_pⁱ ∂_q^j ∂_t^k H, which is 0 for k > 0 where H does not depend on time."""
@@ -146,44 +158,6 @@ class JetRing(JetsInDegrees):
             return self.of((i, j, k))
         return self.zero if k else self.of((i, j))
 
-    def derive(self, x: Poly) -> Poly:
-        """The derivative along the flow: X x, or D x where H depends on time."""
-        along = self.h(1, 0) * self.diff(x, "q") - self.h(0, 1) * self.diff(x, "p")
-        return along + self.diff(x, "t") if self.timed else along
-
-    def delta_j(self, p_next: Sequence[Poly], q_next: Sequence[Poly]) -> Iterator[Poly]:
-        """The coefficients of h¹, h², … in det ∂(p', q')/∂(p, q), as far as the series reach."""
-        gradients = [[(self.diff(x, "p"), self.diff(x, "q")) for x in s] for s in (p_next, q_next)]
-        for n in range(1, len(p_next)):
-            pairs = [(gradients[0][k], gradients[1][n - k]) for k in range(n + 1)]
-            yield sum((a * d - b * c for (a, b), (c, d) in pairs), self.zero)
-
-
-class Jets(JetRing):
-    """Those of H(p, q): the ring of p, q and H_ij for 1 ≤ i + j ≤ `order`; OverflowError for a
-    derivative beyond."""
-
-    def __init__(self, order: int, *, separable: bool = False) -> None:
-        super().__init__(order, separable=separable)
-
-
-class TimedJets(JetRing):
-    """Those of H(p, q, t): the ring of p, q, t and H_ijk = ∂_pⁱ∂_q^j∂_t^k H, i + j ≥ 1, i + j + k ≤
-    `order`; KeyError for another one."""
-
-    def __init__(self, order: int) -> None:
-        super().__init__(order, timed=True)
-
-    def _of_order(self, n: int) -> Iterator[Index]:
-        """Those by t alone occur in no derivative along the flow."""
-        return ((n - k - j, j, k) for k in range(n) for j in range(n - k + 1))
-
-
-def shown(x: Poly) -> str:
-    """A polynomial in the jets as a formula, 0 for zero.
-
-    >>> jets = Jets(2)
-    >>> shown(jets.derive(jets.h(1, 0)))
-    '-H_q*H_pp + H_p*H_pq'
-    """
-    return str(x).replace("^", "**")
+    def product(self, indices: Iterable[Index]) -> Poly:
+        """The product of these derivatives."""
+        return math.prod(map(self.of, indices), start=self.one)

@@ -10,7 +10,7 @@ What power series and forms are made over: a ring of functions with derivatives.
 which zero is the zero polynomial.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Protocol
@@ -57,9 +57,6 @@ class CoefficientRing(Protocol):
 
     def text(self, x: Poly) -> str:
         """x as a formula."""
-
-
-Partial = Callable[[int, int], Poly]  # (i, j) ↦ ∂ⁱ⁺ʲ f / ∂pⁱ ∂qʲ
 
 
 @dataclass(frozen=True)
@@ -137,19 +134,6 @@ class Series:
         return Series(self.ring, tuple(self.ring.diff(c, name) for c in self.coefficients))
 
 
-def partials(ring: CoefficientRing, x: Poly) -> Partial:
-    """The partial derivatives of a ring element, each made once."""
-    known = {(0, 0): x}
-
-    def partial(i: int, j: int) -> Poly:
-        if (i, j) not in known:
-            name, below = ("q", partial(i, j - 1)) if j else ("p", partial(i - 1, 0))
-            known[i, j] = ring.diff(below, name)
-        return known[i, j]
-
-    return partial
-
-
 class Derivatives:
     """A ring element, with its derivatives, each made once."""
 
@@ -162,6 +146,13 @@ class Derivatives:
         if name not in self._known:
             self._known[name] = Derivatives(self.ring, self.ring.diff(self.element, name))
         return self._known[name]
+
+    def partial(self, i: int, j: int) -> Poly:
+        """∂ⁱ⁺ʲ/∂pⁱ∂qʲ of it, of a function of p and q."""
+        found = self
+        for name in "p" * i + "q" * j:
+            found = found.by(name)
+        return found.element
 
 
 def at_moved(x: Derivatives, moves: Sequence[tuple[str, Series]], most: int) -> Series:

@@ -5,6 +5,7 @@ series r₀ + r₁ h + … of 1/D is r₀ = 1/d₀, r_n = −(d₁ r_{n−1} + �
 quotient is made, which would have more terms with each order.
 """
 
+from verify.algebra.identities.polynomials import split
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.power_series import Series
 
@@ -27,7 +28,7 @@ class QuotientSeries:
         if own is None:
             return None
         total, factor, power = self._series([]), self._series([self.ring.one]), 0
-        for n, coefficient in sorted(self.ring.split(x, inner).items()):
+        for n, coefficient in sorted(split(x, inner).items()):
             while power < n:
                 factor, power = factor * own, power + 1
             part = self.of(coefficient)

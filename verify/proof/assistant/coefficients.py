@@ -2,15 +2,20 @@
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
-from itertools import product
+from itertools import combinations_with_replacement, product
 from typing import Any
 
 from verify.proof.assistant.factors import Reducer
 from verify.proof.assistant.formulas import Spelling, deep, list_of, rational, real, safe, signed
 from verify.proof.assistant.text import Export, template_words
-from verify.proof.certificates.coefficients import ONE, Stages, Tableau
-from verify.proof.certificates.numbers import Number
-from verify.proof.certificates.readers import Poly, collected
+from verify.proof.certificates.coefficients import (
+    Stages,
+    Tableau,
+    gaps_of_stages,
+    gaps_of_tableau,
+)
+from verify.proof.certificates.numbers import Number, Residues
+from verify.proof.certificates.readers import Poly
 
 _NUMBERS = "AlgebraicNumbers"
 _SHEARS = ["Differential", "Symplectic", "Hamiltonians", "SymplecticMethods", "AlgebraicNumbers"]
@@ -28,7 +33,7 @@ def of_stages(entries: Stages) -> Export:
     zero: Poly = {}
     times = entries.times or [zero] * len(entries.rows)
     rows = [(*row, time) for row, time in zip(entries.rows, times, strict=True)]
-    gaps = [gap for row in entries.rows for gap in _stage_gaps(row, entries.separable)]
+    gaps = list(gaps_of_stages(entries, Residues(())))
     return Export(
         needs=_STAGES,
         template="stages",
@@ -45,10 +50,9 @@ def of_stages(entries: Stages) -> Export:
 def of_tableau(entries: Tableau) -> Export:
     """The theorems of such a certificate, and their proofs."""
     names, a, b = _Numbers(entries, "tableau"), entries.rows, entries.weights
-    gaps = [
-        _sum((1, _product(b[i], a[i][j])), (1, _product(b[j], a[j][i])), (-1, _product(b[i], b[j])))
-        for i, j in product(range(len(b)), repeat=2)
-    ]
+    pairs = combinations_with_replacement(range(len(b)), 2)
+    gaps = dict(zip(pairs, (x for _, x in gaps_of_tableau(entries, Residues(()))), strict=True))
+    every = [gaps[min(pair), max(pair)] for pair in product(range(len(b)), repeat=2)]
     return Export(
         needs=_TABLEAU,
         template="tableau",
@@ -57,7 +61,7 @@ def of_tableau(entries: Tableau) -> Export:
             "m": len(b),
             "rows": [[names.shallow.poly(x) for x in row] for row in a],
             "weights": [names.shallow.poly(x) for x in b],
-            "deep": names.checked(gaps)
+            "deep": names.checked(every)
             | {"rows": list_of(map(names.deep.list, a)), "weights": names.deep.list(b)},
         },
     )
@@ -84,21 +88,6 @@ def _shears(entries: Stages, names: "_Numbers") -> Iterator[str | None]:
             yield None
 
 
-def _stage_gaps(row: Sequence[Poly], separable: bool) -> list[Poly]:
-    kick, drift, at_p, at_q = row
-    rest = _sum((1, ONE), (-1, at_p), (-1, at_q))
-    alike = {} if separable else _sum((1, kick), (-1, drift))
-    return [_product(_product(kick, drift), rest), alike]
-
-
-def _product(x: Poly, y: Poly) -> Poly:
-    return collected((m + n, c * d) for m, c in x.items() for n, d in y.items())
-
-
-def _sum(*parts: tuple[int, Poly]) -> Poly:
-    return collected((m, sign * c) for sign, x in parts for m, c in x.items())
-
-
 class _Numbers:
     """The algebraic numbers of a certificate: how they are written, and what is known of them."""
 
@@ -114,7 +103,7 @@ class _Numbers:
         )
         names = list(self.written.values())
         self.values: dict[str, Any] = {
-            "n": entries.degrees or 1,
+            "n": entries.layout.degrees,
             "timed": entries.times is not None,
             "numbers": list(map(self._number, self.numbers)),
             "names": names,
@@ -134,9 +123,7 @@ class _Numbers:
         factors = Reducer(names, list(enumerate(relations))).all_factors(gaps)
         return {
             "relations": self.deep.list(relations),
-            "factors": list_of(
-                list_of(f"({k}%nat, {self.deep.scoped(x)})" for k, x in each) for each in factors
-            ),
+            "factors": list_of(map(self.deep.factors, factors)),
         }
 
     def _number(self, number: Number) -> dict[str, Any]:

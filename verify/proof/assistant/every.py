@@ -2,11 +2,11 @@
 
 from collections.abc import Iterable, Iterator
 
-from verify.proof.assistant.factors import known_power
-from verify.proof.assistant.formulas import Spelling, deep, form_list, list_of, rational, whole
+from verify.proof.assistant.formulas import Spelling, deep, list_of, rational, whole
+from verify.proof.assistant.names import Names, polynomials_of
 from verify.proof.assistant.nonzero import energy_that_shows
 from verify.proof.assistant.text import Export
-from verify.proof.certificates.entries import Expansion, Form, derived_by
+from verify.proof.certificates.entries import Expansion, derived_by
 from verify.proof.certificates.readers import Poly
 
 _NEEDS = [
@@ -41,19 +41,15 @@ _SHALLOW = Spelling(
 
 def of_every(entries: Expansion) -> Export:
     """The theorems of such a certificate, and their proofs."""
-    names, n, order = _Names(entries), len(entries.coordinates) // 2, entries.order
-    spelled = names.deep
-    potential = entries.potential
-    shown = energy_that_shows(entries)
-    known, length = known_power(entries), max(map(len, entries.after))
+    names, order, potential = _Names(entries), entries.order, entries.potential
+    shown, length = energy_that_shows(entries), entries.length
     return Export(
         needs=_NEEDS if shown is None else (*_NEEDS, "EveryNonzero"),
         template="every",
         of_rings=True,
         shows_nonzero=order is None or shown is not None,
         values={
-            "n": n,
-            "planar": entries.planar,
+            **names.values(),
             "which": _WHICH[entries.separable, entries.timed],
             "timed": whole(entries.timed),
             "separable": whole(entries.separable),
@@ -67,36 +63,30 @@ def of_every(entries: Expansion) -> Export:
                 }
                 for name, series in zip(entries.coordinates, entries.after, strict=True)
             ],
-            "agreement": entries.convergence_order,
-            "known": known,
             "length": length,
             "left": max(0, 2 * length - order - 2) if order else None,
-            "order": order,
             "shown": shown
             and {
                 "entry": tuple(names.coordinates[x] for x in shown.entry),
-                "energy": spelled.scoped(shown.energy),
+                "energy": names.deep.scoped(shown.energy),
                 "point": list_of(rational(shown.point[x]) for x in names.coordinates),
             },
             "leading": names.form(entries.leading),
             "potential": None if potential is None else names.form(potential),
-            "deep": {
-                "series": _series(spelled, entries),
-                "leading": form_list(entries.leading, names.coordinates, spelled),
-                "potential": form_list(potential or {}, names.coordinates, spelled),
-            },
+            "deep": names.deep_values(),
         },
     )
 
 
-class _Names:
-    """Coordinates and derivatives of H: their numbers, and how they are written."""
+class _Names(Names):
+    """Coordinates and derivatives of H."""
+
+    shallow, zero = _SHALLOW, "(rational 0)"
 
     def __init__(self, entries: Expansion) -> None:
-        self.entries = entries
-        self.n = len(entries.coordinates) // 2
-        self.coordinates = {name: k for k, name in enumerate((*entries.coordinates, "t"))}
-        used = {name for x in self._polys() for names in x for name in names}
+        super().__init__(entries)
+        self.n = entries.layout.degrees
+        used = {name for x in polynomials_of(entries) for names in x for name in names}
         derived = {self._index(name) for name in used if name not in self.coordinates}
         # The formulas are derived once more, and the slopes of H twice.
         derived |= {(k,) for k in range(2 * self.n)}
@@ -108,7 +98,6 @@ class _Names:
         self.deep = deep(numbers)
 
     def bound(self, polys: Iterable[Poly], text: str) -> str:
-        """The text, in which the names that these have are bound to what they stand for."""
         used = {name for x in polys for names in x for name in names}
         plain = [name for name in self.coordinates if name in used]
         derived = sorted((self._index(x) for x in used - {*plain}), key=lambda x: (len(x), x))
@@ -119,19 +108,6 @@ class _Names:
             slopes = " (".join(f"by_coordinate {k}" for k in index)
             bound.append(f"let {self._name(index)} := {slopes} H{')' * (len(index) - 1)} in")
         return "\n  ".join([*bound, text])
-
-    def form(self, x: Form) -> str:
-        """A 2-form as it is written: in the plane its one entry, else a list of them."""
-        if self.entries.planar:
-            return self.bound(x.values(), _SHALLOW.scoped(next(iter(x.values()), {})))
-        listed = form_list(x, self.coordinates, _SHALLOW)
-        return f"entry (rational 0) ({self.bound(x.values(), listed)})"
-
-    def _polys(self) -> Iterator[Poly]:
-        for series in self.entries.after:
-            yield from series
-        yield from self.entries.leading.values()
-        yield from (self.entries.potential or {}).values()
 
     def _index(self, name: str) -> tuple[int, ...]:
         """By which coordinates H is derived, in order."""
@@ -149,8 +125,3 @@ class _Names:
                 mixed = min(more) < self.n and any(self.n <= k < 2 * self.n for k in more)
                 if not (self.entries.separable and mixed):
                     yield more
-
-
-def _series(spelled: Spelling, entries: Expansion) -> str:
-    lists = ";\n   ".join(map(spelled.list, entries.after))
-    return f"[{lists}]"

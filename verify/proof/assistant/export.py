@@ -4,7 +4,7 @@ A certificate for one H without the functions that nothing in it is made of.
 """
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -13,6 +13,7 @@ from verify.formats import read_json
 from verify.proof.assistant.coefficients import of_stages, of_tableau
 from verify.proof.assistant.every import of_every
 from verify.proof.assistant.formulas import KEYWORDS
+from verify.proof.assistant.names import polynomials_of
 from verify.proof.assistant.one import of_one
 from verify.proof.assistant.text import Export, body_of, theorems_of, written
 from verify.proof.certificates.checker import check
@@ -20,7 +21,7 @@ from verify.proof.certificates.coefficients import Stages, Tableau
 from verify.proof.certificates.entries import Expansion, Function
 from verify.proof.certificates.established import Established, established
 from verify.proof.certificates.file import FORMAT
-from verify.proof.certificates.readers import Poly, need
+from verify.proof.certificates.readers import need
 
 _MOST, _DEEPEST = 100, 20  # the time of coqc grows with the square of both
 _PARTNERS = {"sin": "cos", "cos": "sin"}
@@ -32,7 +33,7 @@ def with_used_functions(entries: Expansion) -> Expansion:
     What it says holds without the others, too, and where these are not defined. Raises ValueError
     where they are too many, or nested too deeply, for `coqc` to take it within minutes.
     """
-    needed = {name for x in _polys(entries) for names in x for name in names}
+    needed = {name for x in polynomials_of(entries) for names in x for name in names}
     kept: list[Function] = []
     for made in reversed(entries.functions):  # outer functions first
         if made.name in needed or _is_partner(made, kept):
@@ -63,15 +64,6 @@ def _depth(functions: Iterable[Function]) -> int:
 def _is_partner(made: Function, kept: list[Function]) -> bool:
     """Whether it is the cos of a sin, or the sin of a cos, that is needed."""
     return any(f.argument == made.argument and _PARTNERS.get(f.kind) == made.kind for f in kept)
-
-
-def _polys(entries: Expansion) -> Iterator[Poly]:
-    if entries.hamiltonian is not None:
-        yield entries.hamiltonian
-    for series in entries.after:
-        yield from series
-    yield from entries.leading.values()
-    yield from (entries.potential or {}).values()
 
 
 _FILE = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\.v")

@@ -13,9 +13,10 @@ from fractions import Fraction
 from itertools import combinations
 from typing import NamedTuple
 
-from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
+from flint import Ordering, fmpq_mpoly, fmpq_mpoly_ctx
 
 from verify.errors import NOT_GIVEN, InputError
+from verify.proof.certificates.by_coefficients import polynomial
 from verify.proof.certificates.checker import Identities
 from verify.proof.certificates.entries import Expansion
 from verify.proof.certificates.readers import Poly
@@ -108,7 +109,7 @@ def known_power(entries: Expansion) -> int:
     """The last power of h of which the theory's check says anything."""
     if entries.last is not None:
         return entries.last
-    return max(2 * max(map(len, entries.after)), entries.convergence_order)
+    return max(2 * entries.length, entries.convergence_order)
 
 
 def factors_of(entries: Expansion) -> list[Factors]:
@@ -119,33 +120,23 @@ def factors_of(entries: Expansion) -> list[Factors]:
     made = [function.name for function in entries.functions]
     # Outer functions first: they bring inner ones, which do not bring outer ones.
     names = [*reversed(made), *entries.coordinates, "t", *entries.parameters]
-    found = Identities(entries).relations
+    identities = Identities(entries)
+    found = identities.relations
     relations = [(made.index(name), found[name]) for name in reversed(made) if name in found]
-    return Reducer(names, relations).all_factors(_Gaps(entries).collected())
+    return Reducer(names, relations).all_factors(_gaps(identities))
 
 
-class _Gaps(Identities):
-    """The checker's identities: what has to be 0 is collected in place of being looked at."""
-
-    def __init__(self, entries: Expansion) -> None:
-        super().__init__(entries)
-        self.gaps: list[Poly] = []
-
-    def zero(self, x: Poly, what: str) -> None:
-        self.gaps.append(x)
-
-    def collected(self) -> Iterator[Poly]:
-        given = self.given
-        for by, series in zip(given.coordinates, given.after, strict=True):
-            own = [*series, *({} for _ in range(given.convergence_order + 1))]
-            yield self.add(own[0], {(by,): Fraction(1)}, -1)
-            for k in range(given.convergence_order):
-                scaled = {names: (k + 1) * c for names, c in own[k + 1].items()}
-                yield self.add(scaled, self.along_flow(own[k]), -1)
-        self.check_defect(known_power(given))
-        if given.potential is not None:
-            self.check_potential(given.potential)
-        yield from self.gaps
+def _gaps(identities: Identities) -> Iterator[Poly]:
+    """What has to be 0 in the theory's words, where Xⁿz/n! is made of the coefficient before it."""
+    given, add = identities.given, identities.add
+    for by, series in zip(given.coordinates, given.after, strict=True):
+        own = [*series, *({} for _ in range(given.convergence_order + 1))]
+        yield add(own[0], {(by,): Fraction(1)}, -1)
+        for k in range(given.convergence_order):
+            scaled = {names: (k + 1) * c for names, c in own[k + 1].items()}
+            yield add(scaled, identities.along_flow(own[k]), -1)
+    for _, gap in (*identities.gaps_of_defect(known_power(given)), *identities.gaps_of_potential()):
+        yield gap
 
 
 class Reducer:
@@ -155,7 +146,7 @@ class Reducer:
     """
 
     def __init__(self, names: Sequence[str], relations: Sequence[tuple[int, Poly]]) -> None:
-        self.names = names
+        self.names, self.places = names, {name: k for k, name in enumerate(names)}
         # The ring's own names: what a certificate calls a function is no name there.
         plain = [f"x{k}" for k in range(len(names))]
         self.ring = fmpq_mpoly_ctx.get(plain, Ordering.lex)
@@ -167,11 +158,7 @@ class Reducer:
 
     def element(self, x: Poly) -> fmpq_mpoly:
         """The polynomial in the ring."""
-        terms = {
-            tuple(names.count(name) for name in self.names): fmpq(c.numerator, c.denominator)
-            for names, c in x.items()
-        }
-        return self.ring.from_dict(terms)
+        return polynomial(self.ring, self.places, x)
 
     def poly(self, x: fmpq_mpoly) -> Poly:
         """The element as a polynomial in the names."""

@@ -94,6 +94,10 @@ class Spelling:
         """A list of polynomials, one a line."""
         return "[" + ";\n    ".join(self.scoped(x) for x in series) + "]"
 
+    def factors(self, factors: Iterable[tuple[int, Poly]]) -> str:
+        """Those of a gap, each with the number of its relation."""
+        return list_of(f"({k}%nat, {self.scoped(x)})" for k, x in factors)
+
 
 def is_name(x: Poly) -> bool:
     """Whether the polynomial is one name alone."""

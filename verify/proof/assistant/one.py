@@ -2,21 +2,21 @@
 
 from collections.abc import Iterable
 
-from verify.proof.assistant.factors import factors_of, known_power
+from verify.proof.assistant.factors import factors_of
 from verify.proof.assistant.formulas import (
     Spelling,
     deep,
-    form_list,
     list_of,
     rational,
     real,
     safe,
     signed,
 )
+from verify.proof.assistant.names import Names
 from verify.proof.assistant.nonzero import Shown, point_that_shows
 from verify.proof.assistant.text import Export, template_words
 from verify.proof.certificates.checker import Identities
-from verify.proof.certificates.entries import Expansion, Form, Function
+from verify.proof.certificates.entries import Expansion, Function
 from verify.proof.certificates.readers import Poly
 
 _NEEDS = [
@@ -49,7 +49,6 @@ def of_one(entries: Expansion, hamiltonian: Poly) -> Export:
     names, order, potential = _Names(entries), entries.order, entries.potential
     algebra = Identities(entries)
     slopes = [algebra.slopes[by] for by in entries.coordinates]
-    known = known_power(entries)
     spelled, shallow = names.deep, names.shallow
     shown = point_that_shows(entries) if order is not None else None
     needs = (*_NEEDS, *(_EXACT if order is None else _OF_ORDER))
@@ -58,16 +57,12 @@ def of_one(entries: Expansion, hamiltonian: Poly) -> Export:
         template="one",
         shows_nonzero=order is None or shown is not None,
         values={
-            "n": len(entries.coordinates) // 2,
-            "planar": entries.planar,
+            **names.values(),
             "timed": entries.timed,
-            "coordinates": [*entries.coordinates, *("t",) * entries.timed],
+            "coordinates": names.moving,
             "parameters": [names.written[name] for name in entries.parameters],
-            "agreement": entries.convergence_order,
-            "known": known,
-            "degree": max(map(len, entries.after)) - 1,
+            "degree": entries.length - 1,
             "shown": names.shown(shown),
-            "order": order,
             "potential": potential,
             "domain": names.domain(),
             "maps": [
@@ -75,10 +70,10 @@ def of_one(entries: Expansion, hamiltonian: Poly) -> Export:
                 for name, series in zip(entries.coordinates, entries.after, strict=True)
             ],
             "shallow": {
-                "energy": names.bound(shallow.poly(hamiltonian)),
+                "energy": names.bound((), shallow.poly(hamiltonian)),
                 "slopes": [shallow.poly(x) for x in slopes],
-                "slope_list": names.bound(shallow.list(slopes)),
-                "series": names.bound(_series(shallow, entries)),
+                "slope_list": names.bound((), shallow.list(slopes)),
+                "series": names.bound((), names.series(shallow)),
                 "leading": names.form(entries.leading),
                 "potential": names.form(potential or {}),
             },
@@ -86,26 +81,22 @@ def of_one(entries: Expansion, hamiltonian: Poly) -> Export:
                 "functions": list_of(map(names.made, entries.functions)),
                 "energy": spelled.scoped(hamiltonian),
                 "slopes": spelled.list(slopes),
-                "series": _series(spelled, entries),
-                "leading": form_list(entries.leading, names.coordinates, spelled),
-                "potential": form_list(potential or {}, names.coordinates, spelled),
-                "factors": list_of(map(names.factor_list, factors_of(entries))),
+                **names.deep_values(),
+                "factors": list_of(map(spelled.factors, factors_of(entries))),
             },
         },
     )
 
 
-def _series(spelling: Spelling, entries: Expansion) -> str:
-    lists = ";\n   ".join(map(spelling.list, entries.after))
-    return f"[{lists}]"
+class _Names(Names):
+    """Coordinates, parameters and functions; `point`: what a function is taken at."""
 
-
-class _Names:
-    """Coordinates, parameters and functions: their numbers, and how they are written."""
+    zero = "0"
 
     def __init__(self, entries: Expansion) -> None:
-        self.entries = entries
-        self.coordinates = {name: k for k, name in enumerate((*entries.coordinates, "t"))}
+        super().__init__(entries)
+        self.moving = [*entries.coordinates, *("t",) * entries.timed]
+        self.point = self.moving if entries.layout.single else ["z"]
         known = (*self.coordinates, *entries.parameters, *(f.name for f in entries.functions))
         self.numbers = {name: k for k, name in enumerate(known, start=1)}
         self.deep = deep(self.numbers)
@@ -140,24 +131,12 @@ class _Names:
     def domain(self) -> str:
         """That no denominator is 0."""
         conditions = [f"{self.shallow.argument(x)} <> 0" for x in self._below()]
-        return self.bound(" /\\ ".join(conditions) or "True")
+        return self.bound((), " /\\ ".join(conditions) or "True")
 
-    def bound(self, text: str) -> str:
-        """The text, in which the coordinates are those of z where there are several degrees."""
-        if self.entries.planar:
-            return text
-        lets = [
-            f"let {name} := z {k}%nat in"
-            for name, k in self.coordinates.items()
-            if name != "t" or self.entries.timed
-        ]
+    def bound(self, _: Iterable[Poly], text: str) -> str:
+        named = (x for x in self.moving if x not in self.point)
+        lets = [f"let {name} := z {self.coordinates[name]}%nat in" for name in named]
         return "\n  ".join([*lets, text])
-
-    def form(self, x: Form) -> str:
-        """A 2-form as it is written: in the plane its one entry, else a list of them."""
-        if self.entries.planar:
-            return self.shallow.poly(next(iter(x.values()), {}))
-        return f"entry 0 ({self.bound(form_list(x, self.coordinates, self.shallow))})"
 
     def shown(self, found: Shown | None) -> dict[str, object] | None:
         """What the theorem that L is not 0 is written with."""
@@ -166,16 +145,11 @@ class _Names:
         values, names = found.values, list(self.numbers)
         given = [values[name] for name in self.entries.parameters]
         at = [f"({signed(x)})" for x in given]
-        moving = [*self.entries.coordinates, *("t",) * self.entries.timed]
         return {
-            "at": " ".join([*at, *(moving if self.entries.planar else ["z"])]),
+            "at": " ".join([*at, *self.point]),
             "entry": [f"{self.coordinates[x]}%nat" for x in found.entry],
             "point": list_of(rational(values[name]) for name in self.coordinates),
             "given": list_of(map(rational, given)),
             "numbers": list_of(rational(values[name]) for name in names),
             "by": list_of(self.coordinates[x] for x in found.by),
         }
-
-    def factor_list(self, factors: Iterable[tuple[int, Poly]]) -> str:
-        """The factors of a gap, each with the number of its relation."""
-        return list_of(f"({k}%nat, {self.deep.scoped(x)})" for k, x in factors)

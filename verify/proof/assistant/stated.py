@@ -1,10 +1,12 @@
 """A theorem of the shipped theory, named by who says that something follows from it."""
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 
 from verify.proof.assistant.shipped import files, text_of
+from verify.prose import Formula, Prose, joined, prose
 
 _STATED = re.compile(r"^\s*(?:Theorem|Lemma|Corollary)\s+(\w+)", re.MULTILINE)
 
@@ -25,6 +27,12 @@ class Shipped:
 
     def __str__(self) -> str:
         return f"{self.file}.{self.name}"
+
+
+def by_rocq(names: Iterable[str]) -> Prose:
+    """That theorems of these names, as FILE.NAME, say it. ValueError where one is not stated."""
+    theorems = (Formula(str(Shipped(*name.split(".")))) for name in names)
+    return prose("Rocq, ", joined(", ", theorems))
 
 
 @cache

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any
 
+import flint
 import sympy
 
 from verify.algebra.embedding import embed
@@ -20,6 +21,7 @@ from verify.arithmetic.arb import Ball, bounds, in_reach
 from verify.errors import InputError
 from verify.proof.certificates.minimal_polynomial import MinimalPolynomials
 from verify.proof.certificates.numbers import MOST_DEGREE, Number, check_root
+from verify.proof.certificates.readers import Monomial
 from verify.schemes.conditions.every_hamiltonian import StageEquations
 from verify.schemes.conditions.splitting_conditions import Splitting
 from verify.schemes.conditions.timed.for_scheme import conditions_for
@@ -98,6 +100,19 @@ def terms(x: Poly, names: Mapping[int, str]) -> list[list[str]]:
         [str(c), *(names[k] for k, n in enumerate(monomial) for _ in range(int(n)))]
         for monomial, c in terms_of(x)
     ]
+
+
+def polynomial(
+    context: flint.fmpq_mpoly_ctx, places: Mapping[str, int], x: Mapping[Monomial, Fraction]
+) -> Poly:
+    """The checker's polynomial in a ring; `places`: those of the variables by their names."""
+    found = {}
+    for names, c in x.items():
+        powers = [0] * context.nvars()
+        for name in names:
+            powers[places[name]] += 1
+        found[tuple(powers)] = flint.fmpq(c.numerator, c.denominator)
+    return context.from_dict(found)
 
 
 # -- numbers --------------------------------------------------------------------------------------

@@ -50,15 +50,15 @@ q. That each number is one, and one alone, `verify.proof.certificates.numbers` s
 in them that is a sum of multiples of their own polynomials has the value 0.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from fractions import Fraction
 from itertools import combinations
 from math import factorial
 
 from verify.proof.certificates.balls import Ball, function, plus, times
 from verify.proof.certificates.coefficients import ONE, Stages, Tableau, check_coefficients
-from verify.proof.certificates.entries import Expansion, Form, derived_by, read
-from verify.proof.certificates.readers import Monomial, Poly, collected, need
+from verify.proof.certificates.entries import Expansion, derived_by, read
+from verify.proof.certificates.readers import Monomial, Poly, bits_of, collected, need
 
 Term = tuple[Monomial, Fraction]
 _MOST_WORK = 1_000_000  # terms that are made, more for long ones: some seconds
@@ -74,24 +74,21 @@ def check(data: object) -> Stages | Tableau | Expansion:
     return entries
 
 
-def see_witness(data: object) -> None:
-    """ValueError unless the witness shows what it has to, whatever else the certificate says."""
-    entries = read(data)
-    if isinstance(entries, Expansion):
-        Identities(entries).check_witness()
-
-
 def single(name: str) -> Poly:
     """The polynomial that is one name."""
     return {(name,): Fraction(1)}
 
 
-class _Algebra:
-    """The derivatives of every name by the coordinates and t: the free derivatives of H, or
-    functions of arguments."""
+class Identities:
+    """What the theorem says, identity by identity.
+
+    The derivatives of every name by the coordinates and t are the free derivatives of H, or those
+    of functions of arguments.
+    """
 
     def __init__(self, entries: Expansion) -> None:
-        self.given = entries
+        self.given, self.cofactors = entries, dict(entries.cofactors)
+        self.values: dict[str, Ball] = {n: (x, Fraction(0)) for n, x in entries.witness.items()}
         self.work = 0
         self.variables = (*entries.coordinates, *("t",) * entries.timed)
         n = len(entries.coordinates) // 2
@@ -159,50 +156,44 @@ class _Algebra:
 
     def counted(self, term: Term) -> Term:
         names, c = term
-        self.work += (
-            1 + (8 * len(names) + c.numerator.bit_length() + c.denominator.bit_length()) // 64
-        )
+        self.work += 1 + (8 * len(names) + bits_of(c)) // 64
         need(self.work <= _MOST_WORK, "is too large to be checked here")
         return term
 
-
-class Identities(_Algebra):
-    """What the theorem says, identity by identity."""
-
-    def __init__(self, entries: Expansion) -> None:
-        super().__init__(entries)
-        self.cofactors = dict(entries.cofactors)
-        self.values: dict[str, Ball] = {n: (x, Fraction(0)) for n, x in entries.witness.items()}
+    # -- what has to hold -----------------------------------------------------------------------
 
     def check(self) -> None:
         """ValueError names the first of them that does not hold."""
         given = self.given
-        need(
-            (given.order is None) == (not given.leading),
-            "order, leading: one says that det J is 1, and one that it is not",
-        )
-        length = max(map(len, given.after))
-        last = given.last
-        said = "p_next, q_next" if given.planar else "next"
-        need(last is None or length <= last + 1, f"{said}: are longer than is said of them")
-        self.check_flow()
-        self.check_defect(given.order or 2 * length)
-        if given.potential is not None:
-            self.check_potential(given.potential)
+        said = "order, leading: one says that det J is 1, and one that it is not"
+        need((given.order is None) == (not given.leading), said)
+        fits = given.last is None or given.length <= given.last + 1
+        need(fits, f"{given.layout.maps}: are longer than is said of them")
+        for what, gap in self.gaps():
+            for name, cofactor in self.cofactors.pop(what, {}).items():
+                need(name in self.relations, f"cofactors of {what}: {name!a} has no relation")
+                gap = self.add(gap, self.mul(cofactor, self.relations[name]), -1)
+            need(not gap, f"{what} is not zero")
         unused = min(self.cofactors, default="")
         need(not self.cofactors, f"cofactors: nothing asks for {unused!a}")
         self.check_witness()
 
-    def check_flow(self) -> None:
+    def gaps(self) -> Iterator[tuple[str, Poly]]:
+        """All that has to be 0, each by its name."""
+        yield from self.gaps_of_flow()
+        yield from self.gaps_of_defect(self.given.order or 2 * self.given.length)
+        yield from self.gaps_of_potential()
+
+    def gaps_of_flow(self) -> Iterator[tuple[str, Poly]]:
         for by, series in zip(self.given.coordinates, self.given.after, strict=True):
             flow = single(by)
             for n in range(self.given.convergence_order + 1):
                 if n:
                     flow = self.along_flow(flow)
-                gap = self.add(_at(series, n), flow, Fraction(-1, factorial(n)))
-                self.zero(gap, f"{by} {n}")
+                own = series[n] if n < len(series) else {}
+                yield f"{by} {n}", self.add(own, flow, Fraction(-1, factorial(n)))
 
-    def check_defect(self, last: int) -> None:
+    def gaps_of_defect(self, last: int) -> Iterator[tuple[str, Poly]]:
         """Up to h^last; that of h⁰ is 0, as the map there is the identity."""
         given, after = self.given, dict(zip(self.given.coordinates, self.given.after, strict=True))
         slopes = {
@@ -219,11 +210,13 @@ class Identities(_Algebra):
                     for (x, y), sign in zip(both, (1, -1), strict=True):
                         for k in range(max(0, n - len(y) + 1), min(n + 1, len(x))):
                             gap = self.add(gap, self.mul(x[k], y[n - k]), sign)
-                self.zero(gap, f"det {n}" if given.planar else f"S {n} {a} {b}")
+                yield given.layout.defect.format(n, a, b), gap
 
-    def check_potential(self, potential: Form) -> None:
+    def gaps_of_potential(self) -> Iterator[tuple[str, Poly]]:
         """That its Lie derivative is L: X G_ab + Σ_c (f_c,a G_cb + G_ac f_c,b), f = (−H_q, H_p)."""
-        given = self.given
+        given, potential = self.given, self.given.potential
+        if potential is None:
+            return
 
         def at(a: str, b: str) -> Poly:
             turned = (a, b) not in potential and (b, a) in potential
@@ -233,10 +226,13 @@ class Identities(_Algebra):
         field |= {q: self.slopes[p] for p, q in self.pairs}
         for a, b in combinations(given.coordinates, 2):
             gap = self.add(self.along_flow(at(a, b)), given.leading.get((a, b), {}), -1)
-            for c, slope in () if given.planar else field.items():  # there they cancel
-                gap = self.add(gap, self.mul(self.diff(slope, a), at(c, b)))
-                gap = self.add(gap, self.mul(at(a, c), self.diff(slope, b)))
-            self.zero(gap, "potential" if given.planar else f"potential {a} {b}")
+            # f_a,a + f_b,b is 0 of a pair, and so of all that there is in the plane.
+            both = self.add(self.diff(field[a], a), self.diff(field[b], b))
+            gap = self.add(gap, self.mul(both, at(a, b)))
+            for c in (x for x in given.coordinates if x not in (a, b)):
+                gap = self.add(gap, self.mul(self.diff(field[c], a), at(c, b)))
+                gap = self.add(gap, self.mul(at(a, c), self.diff(field[c], b)))
+            yield given.layout.potential.format(a, b), gap
 
     def check_witness(self) -> None:
         """That there is a point where all functions have a value, and L another than 0."""
@@ -251,12 +247,6 @@ class Identities(_Algebra):
             balls = (self.value(x) for x in self.given.leading.values())
             seen = any(abs(middle) > radius for middle, radius in balls)
             need(seen, "the leading coefficient may be 0 at the witness")
-
-    def zero(self, x: Poly, what: str) -> None:
-        for name, cofactor in self.cofactors.pop(what, {}).items():
-            need(name in self.relations, f"cofactors of {what}: {name!a} has no relation")
-            x = self.add(x, self.mul(cofactor, self.relations[name]), -1)
-        need(not x, f"{what} is not zero")
 
     def value(self, x: Poly) -> Ball:
         """At the witness."""
@@ -273,7 +263,3 @@ class Identities(_Algebra):
             made = next(f for f in self.given.functions if f.name == name)
             self.values[name] = function(made.kind, self.value(made.argument))
         return self.values[name]
-
-
-def _at(series: tuple[Poly, ...], n: int) -> Poly:
-    return series[n] if n < len(series) else {}

@@ -11,6 +11,7 @@ from itertools import combinations_with_replacement
 
 from verify.proof.certificates.numbers import Number, Residues, read_numbers
 from verify.proof.certificates.readers import (
+    Layout,
     Left,
     Poly,
     array_of,
@@ -30,13 +31,13 @@ class Stages:
     """Rows (kick, drift, share of p', share of q') of a scheme for every H.
 
     `times`: one of each row, in parts of h from the step's start; None where H has no time.
-    `degrees` of freedom: None in the plane. Coefficients are reduced by the `numbers`.
+    Coefficients are reduced by the `numbers`.
     """
 
     separable: bool
     rows: tuple[tuple[Poly, Poly, Poly, Poly], ...]
     times: tuple[Poly, ...] | None
-    degrees: int | None
+    layout: Layout
     numbers: tuple[Number, ...]
 
 
@@ -48,7 +49,7 @@ class Tableau:
     rows: tuple[tuple[Poly, ...], ...]
     weights: tuple[Poly, ...]
     times: tuple[Poly, ...] | None
-    degrees: int | None
+    layout: Layout
     numbers: tuple[Number, ...]
 
 
@@ -79,7 +80,7 @@ class _Reader:
             found.append((kick, drift, at_p, at_q))
             times += time
         own = tuple(times) if self.left.timed else None
-        return Stages(self.separable, tuple(found), own, self.left.degrees, self.numbers)
+        return Stages(self.separable, tuple(found), own, self.left.layout, self.numbers)
 
     def tableau(self) -> Tableau:
         entries = dict(object_of(self.left.take("tableau"), "tableau"))
@@ -90,7 +91,7 @@ class _Reader:
         found = tuple(self.row(row, len(rows)) for row in rows)
         weights = self.row(entries["b"], len(rows))
         times = self.row(entries["c"], len(rows)) if self.left.timed else None
-        return Tableau(self.separable, found, weights, times, self.left.degrees, self.numbers)
+        return Tableau(self.separable, found, weights, times, self.left.layout, self.numbers)
 
     def row(self, data: object, length: int) -> tuple[Poly, ...]:
         given = array_of(data, self.kind)
@@ -115,16 +116,14 @@ def check_coefficients(entries: Stages | Tableau) -> None:
     """ValueError names what does not hold."""
     residues = Residues(entries.numbers)
     if isinstance(entries, Tableau):
-        for name, gap in _gaps(entries, residues):
+        for name, gap in gaps_of_tableau(entries, residues):
             need(not gap, f"tableau: {name} is not zero")
         return
-    for row in entries.rows:
-        holds = _preserves(*row, separable=entries.separable, residues=residues)
-        need(holds, "det A is not det B")
+    need(not any(gaps_of_stages(entries, residues)), "det A is not det B")
 
 
-def _preserves(k: Poly, d: Poly, s: Poly, u: Poly, *, separable: bool, residues: Residues) -> bool:
-    """Whether det J = 1 of a stage for every H; with `degrees`, whether S = 0.
+def gaps_of_stages(entries: Stages, residues: Residues) -> Iterator[Poly]:
+    """k d (1 − s − u) and k − d of each; that they are 0 suffices for det J = 1, and for S = 0.
 
     A J = B by implicit differentiation: both are I + h E D with det A = 1 + h b (k s − d u) +
     h² k d s u (a c − b²), a, b, c = H_pp, H_pq, H_qq there, and det B the same of s − 1 and u − 1.
@@ -134,12 +133,13 @@ def _preserves(k: Poly, d: Poly, s: Poly, u: Poly, *, separable: bool, residues:
     P, Q the point and δ = d(z' − z), dP∧dK_P + dQ∧dK_Q = −d(dK) = 0 leaves
     dp'∧dq' − dp∧dq = (1 − s − u) δp∧δq.
     """
-    rest = residues.sum((1, ONE), (-1, s), (-1, u))
-    alike = separable or not residues.sum((1, k), (-1, d))
-    return alike and not residues.product(residues.product(k, d), rest)
+    for k, d, s, u in entries.rows:
+        rest = residues.sum((1, ONE), (-1, s), (-1, u))
+        yield residues.product(residues.product(k, d), rest)
+        yield {} if entries.separable else residues.sum((1, k), (-1, d))
 
 
-def _gaps(entries: Tableau, residues: Residues) -> Iterator[tuple[str, Poly]]:
+def gaps_of_tableau(entries: Tableau, residues: Residues) -> Iterator[tuple[str, Poly]]:
     """M_ij = b_i a_ij + b_j a_ji − b_i b_j; that all are 0 suffices for S = 0.
 
     With F = −H_q and G = H_p at each stage's point (P, Q) and time, P_i = p + h Σ a_ij F_j and

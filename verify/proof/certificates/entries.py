@@ -17,7 +17,9 @@ from verify.proof.certificates.coefficients import Stages, Tableau, read_coeffic
 from verify.proof.certificates.readers import (
     MOST_FACTORS,
     MOST_ORDERS,
+    PLANE,
     RESERVED,
+    Layout,
     Left,
     Poly,
     array_of,
@@ -31,9 +33,8 @@ from verify.proof.certificates.readers import (
 
 Form = dict[tuple[str, str], Poly]  # entries that are not 0
 
-PLANE = ("p", "q")
 _PARAMETER = re.compile(r"(?!H_|[pq][0-9]+$)[A-Za-z][A-Za-z0-9_]{0,63}")
-_KINDS = ("sin", "cos", "exp", "inverse")
+KINDS = ("sin", "cos", "exp", "inverse")
 _DERIVATIVE = re.compile("H_((?:[pq][0-9]{0,2}|t)+)")
 _ONE = re.compile("[pq][0-9]*|t")
 
@@ -55,7 +56,7 @@ class Expansion:
     None: every H; `timed`: H depends on t.
     """
 
-    coordinates: tuple[str, ...]
+    layout: Layout
     hamiltonian: Poly | None
     separable: bool
     timed: bool
@@ -75,9 +76,14 @@ class Expansion:
         return None if self.order is None else max(self.order, self.convergence_order)
 
     @property
-    def planar(self) -> bool:
-        """Whether it is of p and q."""
-        return self.coordinates == PLANE
+    def length(self) -> int:
+        """How many coefficients of the map there are."""
+        return max(map(len, self.after))
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """p and q, or p1 … pn, q1 … qn."""
+        return self.layout.coordinates
 
 
 def read(data: object) -> Stages | Tableau | Expansion:
@@ -96,9 +102,7 @@ class _Entries(Left):
         super().__init__(data)
         self.names: set[str] = set()
         self.every = self.separable = False
-        numbers = range(1, (self.degrees or 0) + 1)
-        several = tuple(f"{letter}{k}" for letter in PLANE for k in numbers)
-        self.coordinates = several or PLANE
+        self.coordinates = self.layout.coordinates
 
     def expansion(self) -> Expansion:
         hamiltonian = self.take("hamiltonian")
@@ -108,7 +112,7 @@ class _Entries(Left):
         self.names = {*self.coordinates, *(["t"] if self.timed else []), *parameters}
         functions = () if self.every else self.functions()
         return Expansion(
-            coordinates=self.coordinates,
+            layout=self.layout,
             hamiltonian=None if self.every else self.poly(hamiltonian, "hamiltonian"),
             separable=self.separable,
             timed=self.timed,
@@ -118,7 +122,7 @@ class _Entries(Left):
             convergence_order=self.whole("convergence_order", 0),
             order=self.order(),
             leading=self.form("leading"),
-            potential=self.potential(),
+            potential=self.form("potential") if "potential" in self.left else None,
             witness={} if self.every else self.witness(),
             cofactors={} if self.every else self.cofactors(),
         )
@@ -129,15 +133,9 @@ class _Entries(Left):
             return None
         return self.whole("order", 1)
 
-    def potential(self) -> Form | None:
-        return self.form("potential") if "potential" in self.left else None
-
     def form(self, name: str) -> Form:
-        if self.degrees is None:
-            only = self.poly(self.take(name), name)
-            return {PLANE: only} if only else {}
-        found: Form = {}
-        for each in array_of(self.take(name), name):
+        given, found = self.take(name), Form()
+        for each in [[*PLANE, given]] if self.layout.single else array_of(given, name):
             three = array_of(each, name)
             need(len(three) == 3, f"{name}: each entry is two coordinates and a polynomial")
             a, b = text_of(three[0], name), text_of(three[1], name)
@@ -149,10 +147,8 @@ class _Entries(Left):
         return {place: x for place, x in found.items() if x}
 
     def after(self) -> tuple[tuple[Poly, ...], ...]:
-        if self.degrees is None:
-            return self.series(self.take("p_next"), "p_next"), self.series(
-                self.take("q_next"), "q_next"
-            )
+        if self.layout.single:
+            return tuple(self.series(self.take(name), name) for name in ("p_next", "q_next"))
         given = object_of(self.take("next"), "next")
         said = f"next: has a list for each of {', '.join(self.coordinates)}"
         need(set(given) == set(self.coordinates), said)
@@ -173,7 +169,7 @@ class _Entries(Left):
             name, kind = text_of(three[0], "functions"), text_of(three[1], "functions")
             new = re.fullmatch("#[0-9]{1,6}", name) and name not in self.names
             need(new, f"functions: {short(name)} is no new name such as #1")
-            need(kind in _KINDS, f"functions: {short(kind)} is none of {', '.join(_KINDS)}")
+            need(kind in KINDS, f"functions: {short(kind)} is none of {', '.join(KINDS)}")
             found.append(Function(name, kind, self.poly(three[2], name)))
             self.names.add(name)
         return tuple(found)
@@ -186,7 +182,7 @@ class _Entries(Left):
     def witness(self) -> dict[str, Fraction]:
         given = object_of(self.take("witness"), "witness")
         variables = {name for name in self.names if not name.startswith("#")}
-        both = ", ".join(PLANE) if self.degrees is None else "the coordinates"
+        both = ", ".join(PLANE) if self.layout.single else "the coordinates"
         said = f"witness: gives values to {both} and the parameters: {', '.join(sorted(variables))}"
         need(not given or set(given) == variables, said)
         return {name: number_of(x, "witness") for name, x in given.items()}

@@ -8,20 +8,31 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
+from verify.proof.certificates.checker import check
 from verify.proof.certificates.coefficients import ONE, Stages, Tableau
 from verify.proof.certificates.entries import Expansion, Form, Function
 from verify.proof.certificates.numbers import Number
-from verify.proof.certificates.readers import Monomial, Poly, need
+from verify.proof.certificates.readers import PLANE, Monomial, Poly, need
 
 _LONGEST = 1_000_000  # characters of a formula with its functions written out
 _ALMOST = "L does not vanish identically in p and q"
-_SYMPLECTIC = "S = JᵀΩJ − Ω"
 _SOLVABLE = "the stages have a solution that depends smoothly on (p, q)"
 _WHICH = {  # H, by (separable, timed)
     (False, False): "every smooth H",
     (True, False): "every smooth H = T(p) + V(q)",
     (False, True): "every smooth H(p, q, t)",
     (True, True): "every smooth H = T(p, t) + V(q, t)",
+}
+_DEFECT = "S = JᵀΩJ − Ω"
+_WORDS = {  # by whether a 2-form is its one entry: that the defect is 0, what it is else
+    True: ("det J = 1", "det J − 1"),
+    False: (f"{_DEFECT} = 0", _DEFECT),
+}
+_TELESCOPES = {  # by that, and whether H depends on t
+    (True, False): ", and L = X·G",
+    (True, True): ", and L = D·G, D = ∂/∂t + X",
+    (False, False): ", and L is the Lie derivative of G",
+    (False, True): ", and L is the Lie derivative of G by D = ∂/∂t + X",
 }
 
 
@@ -50,6 +61,16 @@ class Established:
     degrees: int = 1
     symplectic: bool | None = None
     numbers: tuple[str, ...] = ()
+
+
+def accepted(data: object) -> Established | str:
+    """What a certificate establishes, or why the checker refuses it."""
+    try:
+        return established(check(data))
+    except ValueError as reason:
+        return str(reason)
+    except RecursionError:
+        return "its functions are nested too deeply"
 
 
 def established(entries: Stages | Tableau | Expansion, *, nonzero: bool = True) -> Established:
@@ -98,12 +119,10 @@ def _symplectic(
     end: str,
     implicit: bool,
 ) -> Established:
-    which, what = _WHICH[entries.separable, entries.times is not None], "det J = 1"
-    if entries.degrees is not None:
-        which, what = f"{which} in {entries.degrees} degrees of freedom", f"{_SYMPLECTIC} = 0"
+    which = _which(entries, entries.times is not None)
     p_next, q_next = map("; ".join, formulas)
     return Established(
-        statement=f"{what} for {which} and {scheme}",
+        statement=f"{_WORDS[entries.layout.single][0]} for {which} and {scheme}",
         scheme=end,
         hamiltonian=which,
         p_next=p_next,
@@ -114,10 +133,16 @@ def _symplectic(
         potential=None,
         convergence_order=None,
         domain=(_SOLVABLE,) * implicit,
-        degrees=entries.degrees or 1,
+        degrees=entries.layout.degrees,
         symplectic=True,
         numbers=tuple(map(_number, entries.numbers)),
     )
+
+
+def _which(entries: Stages | Tableau | Expansion, timed: bool) -> str:
+    layout = entries.layout
+    degrees = "" if layout.single else f" in {layout.degrees} degrees of freedom"
+    return f"{_WHICH[entries.separable, timed]}{degrees}"
 
 
 def _number(number: Number) -> str:
@@ -145,32 +170,31 @@ def _between(start: str, end: str, share: Poly) -> str:
 
 
 def _of_expansion(entries: Expansion, nonzero: bool) -> Established:
-    written = _Writer(entries.functions, planar=entries.planar)
-    which, degrees = _WHICH[entries.separable, entries.timed], len(entries.coordinates) // 2
-    what, less = ("det J", "det J − 1") if entries.planar else (_SYMPLECTIC, _SYMPLECTIC)
-    if not entries.planar:
-        which = f"{which} in {degrees} degrees of freedom"
-    of_one = entries.hamiltonian is not None
-    agreed, order = entries.convergence_order, entries.order
-    area = f"{what} = {1 if entries.planar else 0}"
+    written, single = _Writer(entries.functions), entries.layout.single
+    which, order, degrees = _which(entries, entries.timed), entries.order, entries.layout.degrees
+    of_one, agreed = entries.hamiltonian is not None, entries.convergence_order
+    area, defect = _WORDS[single]
     if order is not None:
-        area = f"{less} = L h^{order} + O(h^{order + 1})"
+        area = f"{defect} = L h^{order} + O(h^{order + 1})"
         if nonzero:
             area += f", L not zero{'' if of_one else ' for some H'}"
-    flow = f"which agrees with the flow up to h^{agreed}{_telescopes(entries)}"
-    formulas = [written.series(x, entries.last) for x in entries.after]
-    p_next: str | tuple[str, ...] = formulas[0] if entries.planar else tuple(formulas[:degrees])
-    q_next: str | tuple[str, ...] = formulas[1] if entries.planar else tuple(formulas[degrees:])
+    by = "" if entries.potential is None else _TELESCOPES[single, entries.timed]
+    flow = f"which agrees with the flow up to h^{agreed}{by}"
+    formulas = tuple(written.series(x, entries.last) for x in entries.after)
+
+    def form(x: Form) -> str:
+        return written.poly(x.get(PLANE, {})) if single else written.form(x)
+
     return Established(
         statement=f"{area}, for {'this H' if of_one else which} and this map, {flow}",
         scheme=_taylor_series(entries),
         hamiltonian=which if entries.hamiltonian is None else written.poly(entries.hamiltonian),
-        p_next=p_next,
-        q_next=q_next,
-        area_preserving=order is None if entries.planar or order is None else None,
+        p_next=formulas[0] if single else formulas[:degrees],
+        q_next=formulas[1] if single else formulas[degrees:],
+        area_preserving=order is None if single or order is None else None,
         order=order,
-        leading=None if order is None else written.form(entries.leading),
-        potential=None if entries.potential is None else written.form(entries.potential),
+        leading=None if order is None else form(entries.leading),
+        potential=None if entries.potential is None else form(entries.potential),
         convergence_order=agreed,
         domain=(
             *(f"{written.poly(f.argument)} != 0" for f in entries.functions if f.kind == "inverse"),
@@ -180,16 +204,6 @@ def _of_expansion(entries: Expansion, nonzero: bool) -> Established:
         degrees=degrees,
         symplectic=order is None,
     )
-
-
-def _telescopes(entries: Expansion) -> str:
-    """What is said of L by the potential."""
-    if entries.potential is None:
-        return ""
-    by = "D = ∂/∂t + X" if entries.timed else "X"
-    if entries.planar:
-        return f", and L = {'D' if entries.timed else 'X'}·G{', ' + by if entries.timed else ''}"
-    return f", and L is the Lie derivative of G{' by ' + by if entries.timed else ''}"
 
 
 def _taylor_series(entries: Expansion) -> str | None:
@@ -205,8 +219,7 @@ def _taylor_series(entries: Expansion) -> str | None:
 class _Writer:
     """Polynomials in names as formulas; a function stands written out in the place of its name."""
 
-    def __init__(self, functions: Sequence[Function] = (), *, planar: bool = True) -> None:
-        self.planar = planar
+    def __init__(self, functions: Sequence[Function] = ()) -> None:
         self.functions: dict[str, str] = {}
         self.below: dict[str, str] = {}  # what 1/u divides by
         for made in functions:
@@ -226,9 +239,7 @@ class _Writer:
         return text.removeprefix("+ ") if text[0] != "-" else f"-{text[2:]}"
 
     def form(self, x: Form) -> str:
-        """A 2-form, entry by entry; in the plane that of dp∧dq alone."""
-        if self.planar:
-            return self.poly(next(iter(x.values()), {}))
+        """A 2-form, entry by entry."""
         return " + ".join(f"({self.poly(c)})*d{a}∧d{b}" for (a, b), c in x.items()) or "0"
 
     def _term(self, names: Monomial, c: Fraction) -> str:

@@ -36,9 +36,10 @@ has to be zero is called `p1 0`, `S 3 p1 q2`, `potential p1 q2`.
 """
 
 from verify.errors import InputError
+from verify.hamiltonians.coordinates import coordinates_in
 from verify.proof.certificates.by_coefficients import by_coefficients
 from verify.proof.certificates.file import FORMAT, Certificate
-from verify.proof.certificates.statement import Statement, entries_of
+from verify.proof.certificates.statement import Statement, degrees_of, entries_of, layout_of
 from verify.proof.every_by_series import series_in_jets
 from verify.proof.every_proof import EveryProof
 from verify.schemes import get
@@ -54,9 +55,10 @@ def of_every(proof: EveryProof) -> Certificate:
     every_h = scheme.every_h
     if proof.verdict is not Verdict.PROVED or every_h is None or agreed is None:
         raise InputError("scheme", proof.scheme, f"{proof.verdict}: there is nothing to certify")
+    layout = layout_of(coordinates_in(proof.degrees))
     data: Certificate = {
         "format": FORMAT,
-        **({} if proof.planar else {"degrees": proof.degrees}),
+        **degrees_of(layout),
         "hamiltonian": "every",
         "separable": proof.separable,
         **({"time_dependent": True} if proof.timed else {}),
@@ -69,7 +71,7 @@ def of_every(proof: EveryProof) -> Certificate:
     series, potential = series_in_jets(proof, every_h, proof.order), proof.potential_form
     flow, powers = series.flow, range(proof.order + 1)
     statement = Statement(
-        flow.names,
+        layout,
         list(zip(*map(series.coefficient, powers), strict=True)),
         proof.order,
         agreed,

@@ -1,14 +1,12 @@
 """The irreducible polynomial with whole coefficients of a number that is made by roots.
 
 A generator of a ring without variables is the root, or the inverse, of a number u that older
-generators make. Let u be x(g_1, …, g_k), x a polynomial and P_j that of g_j. Then u is an
-eigenvalue of the multiplication by x in Q[x_1, …, x_k]/(P_1, …, P_k), so that its characteristic
-polynomial vanishes at u: as the companion matrices of the P_j do, of each in its own factor of the
-tensor product. With f(u) = 0, f(wⁿ) is 0 for the n-th root w, and the reversed f for 1/u. Of the
-irreducible factors the one is taken of which no enclosure at the number excludes 0.
+generators make. Let u be x(g_1, …, g_k), x a polynomial and P_j that of g_j. The resultant of
+X − x(x_1, …, x_k) and P_1(x_1), of that and P_2(x_2), and so on, vanishes at X = u. With f(u) = 0,
+f(wⁿ) is 0 for the n-th root w, and the reversed f for 1/u. Of the irreducible factors the one is
+taken of which no enclosure at the number excludes 0.
 """
 
-from collections.abc import Sequence
 from math import prod
 
 import flint
@@ -55,17 +53,17 @@ class MinimalPolynomials:
             return flint.fmpz_poly([-int(c.p), int(c.q)])
         places = occurring(x)
         self._check(prod(self.of(place).degree() for place in places))
-        own = dict(zip(places, _commuting([self.of(place) for place in places]), strict=True))
-        size = next(iter(own.values())).nrows()
-        one = flint.fmpq_mat(size, size, [int(i == j) for i in range(size) for j in range(size)])
-        total = one * 0
-        for monomial, c in terms_of(x):
-            term = one * c
-            for place in places:
-                for _ in range(int(monomial[place])):
-                    term = term * own[place]
-            total += term
-        return self._factor(total.charpoly().numer(), x)
+        # X − x, from which one generator after the other is taken by its own polynomial.
+        names = ["x", *(f"_{place}" for place in places)]
+        context = flint.fmpq_mpoly_ctx.get(names, flint.Ordering.lex)
+        left = context.gens()[0] - context.from_dict(
+            {(0, *(monomial[place] for place in places)): c for monomial, c in terms_of(x)}
+        )
+        for k, place in enumerate(places, start=1):
+            powers = {_power(n, k, len(names)): c for n, c in enumerate(self.of(place).coeffs())}
+            left = left.resultant(context.from_dict(powers), names[k])
+        coefficients = [left[_power(n, 0, len(names))] for n in range(left.degrees()[0] + 1)]
+        return self._factor(flint.fmpq_poly(coefficients).numer(), x)
 
     def _check(self, degree: int) -> None:
         if degree > self.most:
@@ -90,32 +88,6 @@ def _at(polynomial: flint.fmpz_poly, x: flint.arb) -> flint.arb:
     return total
 
 
-def _commuting(polynomials: Sequence[flint.fmpz_poly]) -> list[flint.fmpq_mat]:
-    """The companion matrix of each, in its own factor of the tensor product."""
-    found = []
-    before, size = 1, prod(p.degree() for p in polynomials)
-    for p in polynomials:
-        own, after = _companion(p), size // (before * p.degree())
-        entries = [
-            own[i // after % p.degree()][j // after % p.degree()]
-            if i % after == j % after and i // (after * p.degree()) == j // (after * p.degree())
-            else flint.fmpq(0)
-            for i in range(size)
-            for j in range(size)
-        ]
-        found.append(flint.fmpq_mat(size, size, entries))
-        before *= p.degree()
-    return found
-
-
-def _companion(p: flint.fmpz_poly) -> list[list[flint.fmpq]]:
-    """The multiplication by x modulo p."""
-    *tail, first = (int(c) for c in p.coeffs())
-    n = len(tail)
-    return [
-        [
-            flint.fmpq(-tail[i], first) if j == n - 1 else flint.fmpq(int(i == j + 1))
-            for j in range(n)
-        ]
-        for i in range(n)
-    ]
+def _power(n: int, place: int, length: int) -> tuple[int, ...]:
+    """The exponents of the n-th power of the variable of that place."""
+    return tuple(n if k == place else 0 for k in range(length))

@@ -2,11 +2,13 @@
 
 import re
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from fractions import Fraction
 
 Monomial = tuple[str, ...]  # names in order, a name once for each power
 Poly = dict[Monomial, Fraction]
 
+PLANE = ("p", "q")
 MOST_ORDERS = 128
 MOST_DEGREES = 16
 MOST_FACTORS = 256  # in a term
@@ -21,17 +23,42 @@ def need(holds: object, what: str) -> None:
         raise ValueError(what)
 
 
+@dataclass(frozen=True)
+class Layout:
+    """How a certificate has p and q, or with `degrees` p1 … pn, q1 … qn.
+
+    `single`: a 2-form is its one entry, and else a list. `maps`: the entries of the map; `defect`,
+    `potential`: what each has to be 0 is called.
+    """
+
+    degrees: int
+    coordinates: tuple[str, ...]
+    single: bool
+    maps: str
+    defect: str
+    potential: str
+
+
+def layout_in(degrees: int | None) -> Layout:
+    """That of so many degrees of freedom; None: of p and q."""
+    if degrees is None:
+        return Layout(1, PLANE, True, "p_next, q_next", "det {}", "potential")
+    names = tuple(f"{letter}{k}" for letter in PLANE for k in range(1, degrees + 1))
+    return Layout(degrees, names, False, "next", "S {} {} {}", "potential {} {}")
+
+
 class Left:
     """The entries that have not been read yet, and what every certificate may have.
 
-    `timed`: H depends on t; `degrees` of freedom: None in the plane.
+    `timed`: H depends on t; `layout`: that of the plane, or of so many degrees of freedom.
     """
 
     def __init__(self, data: object) -> None:
         self.left = dict(object_of(data, "the certificate"))
         self.left.pop("format", None)  # which who opens the file looks at
         self.timed = "time_dependent" in self.left and self.flag("time_dependent")
-        self.degrees = self.whole("degrees", 1, MOST_DEGREES) if "degrees" in self.left else None
+        several = "degrees" in self.left
+        self.layout = layout_in(self.whole("degrees", 1, MOST_DEGREES) if several else None)
 
     def take(self, name: str) -> object:
         """The entry, which is then read."""

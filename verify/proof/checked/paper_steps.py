@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 from functools import cache
 
-from verify.proof.assistant.stated import Shipped
+from verify.proof.assistant.stated import by_rocq
 from verify.proof.every_proof import EveryProof
 from verify.proof.lie_argument import STEPS
-from verify.prose import Formula, Prose, joined, prose, read_prose
+from verify.prose import Prose, read_prose
 
 
 @dataclass(frozen=True)
@@ -24,10 +24,6 @@ def steps_of(proof: EveryProof) -> tuple[PaperStep, ...]:
 
 @cache
 def _lie_steps() -> tuple[PaperStep, ...]:
-    return tuple(PaperStep(read_prose(text), _marks(names)) for text, names in STEPS)
-
-
-def _marks(names: tuple[str, ...]) -> tuple[Prose, ...]:
-    """The theorems of these names. Raises ValueError where the theory states one of them not."""
-    theorems = [Formula(str(Shipped(*name.split(".")))) for name in names]
-    return (prose("Rocq, ", joined(", ", theorems)),) if theorems else ()
+    return tuple(
+        PaperStep(read_prose(text), (by_rocq(names),) if names else ()) for text, names in STEPS
+    )

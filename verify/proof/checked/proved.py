@@ -39,7 +39,6 @@ class Proved:
     every: bool
     timed: bool
     degrees: int
-    telescopes: bool | None = None
     certificates: tuple[Callable[[], Certificate], ...] = ()
 
     @property
@@ -53,7 +52,7 @@ def of_every_hamiltonian(proof: EveryProof, scheme: Scheme, about: frozenset[Abo
     short = len(proof.leading) <= _LONGEST
     return Proved(
         scheme, _asked(about, proof.degrees), proof.symplectic, every=True, timed=proof.timed,
-        degrees=proof.degrees, telescopes=proof.telescopes,
+        degrees=proof.degrees,
         certificates=(lambda: of_every(proof),) if short else (),
     )  # fmt: skip
 
@@ -80,7 +79,6 @@ def of_one_hamiltonian(
     short = proof.symplectic or len(proof.leading_text) <= _LONGEST
     return Proved(
         scheme, _asked(about, degrees), proof.symplectic, every=False, timed=timed, degrees=degrees,
-        telescopes=None if proof.planar else proof.telescopes,
         certificates=(own, *(every,) * bool(fallback)) if short else (),
     )  # fmt: skip
 

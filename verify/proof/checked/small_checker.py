@@ -5,9 +5,7 @@ from collections.abc import Iterator
 
 from verify.effort import limited
 from verify.errors import InputError
-from verify.proof.certificates.checker import check
-from verify.proof.certificates.established import Established, established
-from verify.proof.certificates.file import Certificate
+from verify.proof.certificates.established import Established, accepted
 from verify.proof.checked.proved import Proved
 from verify.prose import Formula, Prose, prose, read_prose
 
@@ -27,17 +25,9 @@ def marks(proved: Proved) -> Iterator[Prose]:
                 found = accepted(made())
         except InputError:  # of this proof there is none
             continue
-        if found is not None:
+        if isinstance(found, Established):
             yield prose("small checker: ", read_prose(_statement(found)), _leading(found))
         return
-
-
-def accepted(data: Certificate) -> Established | None:
-    """What it establishes; None where the checker refuses it."""
-    try:
-        return established(check(data))
-    except (ValueError, RecursionError):
-        return None
 
 
 def _statement(found: Established) -> str:

@@ -14,7 +14,7 @@ from itertools import islice
 import flint
 
 from verify.algebra.enclosure import enclose, enclosed, points
-from verify.algebra.series.power_series import partials
+from verify.algebra.series.power_series import Derivatives
 from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians.canonical_field import CanonicalField
 from verify.schemes.conditions.coloured_trees import symmetry
@@ -64,14 +64,14 @@ class _AtPoint:
     def __init__(self, field: CanonicalField, point: Mapping[str, Fraction]) -> None:
         self.field, self.point, self.defined = field, point, True
         self.zero = flint.arb(0)
-        self._of_p, self._of_q = (partials(field.ring, x) for x in field.gradient(field.energy))
+        self._of_p, self._of_q = (Derivatives(field.ring, x) for x in field.gradient(field.energy))
         self._known: dict[tuple[int, int], flint.arb] = {}
 
     def h(self, i: int, j: int, k: int = 0) -> flint.arb:
         if k:
             return self.zero
         if (i, j) not in self._known:
-            x = self._of_p(i - 1, j) if i else self._of_q(0, j - 1)
+            x = self._of_p.partial(i - 1, j) if i else self._of_q.partial(0, j - 1)
             value = enclose(self.field.ring, x, self.point, _PRECISION)
             self.defined = self.defined and value is not None
             self._known[i, j] = flint.arb.nan() if value is None else value

@@ -122,6 +122,12 @@ class DefectSeries(Generic[F]):
         return result.coefficients
 
 
+def of_flow(flow: F, after: Sequence[Sequence[Poly]]) -> DefectSeries[F]:
+    """Of a map by the coefficients of h⁰, h¹, … in each coordinate's new value."""
+    state = tuple(Series(flow.ring, tuple(x)) for x in after)
+    return DefectSeries(lambda _: (flow, state), state[0].most)
+
+
 def _of_inverse(ring: CoefficientRing, forms: Sequence[TwoForm], a: int, b: int, n: int) -> Series:
     """The entry of Ω⁻¹S."""
     row, sign = (a + n, -1) if a < n else (a - n, 1)

@@ -16,11 +16,12 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
-from tests.helpers.lie_derivatives import lie_derivatives
+from tests.helpers.lie_derivatives import along_flow, lie_derivatives
 from tests.helpers.sampled.formulas import P, Q, plain, polynomials, rationals
 from verify.algebra.linear_combination import combination
-from verify.algebra.series.jets import Jets, shown
+from verify.algebra.series.jets import Jets
 from verify.algebra.series.power_series import Derivatives, Series, at_moved
+from verify.exploration.properties.orders.order_by_jets import delta_j
 from verify.hamiltonians.jet_flow import JetFlow
 from verify.proof.every import prove_every
 from verify.proof.telescoping import potential_of_lie, telescopes
@@ -64,7 +65,8 @@ LOWER = {separable: Jets(ORDER, separable=separable) for separable in (False, Tr
 def raised(x: Poly, separable: bool) -> Poly:
     """The same polynomial in the ring that has derivatives of one order more."""
     return x.compose(
-        *JETS[separable].context.gens()[: len(LOWER[separable].names)], ctx=JETS[separable].context
+        *JETS[separable].context.gens()[: len(LOWER[separable].context.names())],
+        ctx=JETS[separable].context,
     )
 
 
@@ -91,7 +93,7 @@ def test_derivatives_of_jets_are_those_of_every_h(
     a, b = (put_in(jets, z, h) for z in (x, y))
     assert same(put_in(jets, jets.diff(x, "p"), h), a.diff(P))
     assert same(put_in(jets, jets.diff(x, "q"), h), a.diff(Q))
-    assert same(put_in(jets, jets.derive(x), h), h.diff(P) * a.diff(Q) - h.diff(Q) * a.diff(P))
+    assert same(put_in(jets, along_flow(jets, x), h), h.diff(P) * a.diff(Q) - h.diff(Q) * a.diff(P))
     bracket = a.diff(P) * b.diff(Q) - a.diff(Q) * b.diff(P)
     flow = JetFlow.over(jets)
     area = wedge(flow.gradient(x), flow.gradient(y), 0, 1)
@@ -106,7 +108,7 @@ def test_the_series_of_delta_j_is_that_of_the_determinant(
     separable, x, y, h = one
     jets = JETS[separable]
     series = ([jets.p, x, y, x][: most + 1], [jets.q, y, x, y][: most + 1])
-    found = list(jets.delta_j(*series))
+    found = list(delta_j(jets, *series))
     p, q = (sum(put_in(jets, z, h) * T**n for n, z in enumerate(s)) for s in series)
     det = sympy.Poly(sympy.expand(p.diff(P) * q.diff(Q) - p.diff(Q) * q.diff(P)), T)
     assert len(found) == most
@@ -158,12 +160,12 @@ def test_the_jets_are_all_derivatives_up_to_their_order(order: int, separable: b
     assert len(jets.indices) == len(kept)
     for i, j in wanted:
         name = "H_" + "p" * i + "q" * j if (i, j) in kept else "0"
-        assert shown(jets.h(i, j)) == name
-        assert shown(jets.h(i, j) ** 2) == (f"{name}**2" if name != "0" else "0")
+        assert jets.text(jets.h(i, j)) == name
+        assert jets.text(jets.h(i, j) ** 2) == (f"{name}**2" if name != "0" else "0")
     for i, j in ((order + 1, 0), (0, order + 1)):
         with pytest.raises(OverflowError):
             jets.h(i, j)
-    assert [shown(x) for x in (jets.p, jets.q, jets.zero, jets.one)] == ["p", "q", "0", "1"]
+    assert [jets.text(x) for x in (jets.p, jets.q, jets.zero, jets.one)] == ["p", "q", "0", "1"]
     assert lie_derivatives(jets, "p", 1) == [jets.p, -jets.h(0, 1)]
     assert lie_derivatives(jets, "q", 1) == [jets.q, jets.h(1, 0)]
 
@@ -176,9 +178,9 @@ def test_the_jets_are_all_derivatives_up_to_their_order(order: int, separable: b
 def test_whatever_is_x_g_telescopes_to_g(separable: bool, data: st.DataObject) -> None:
     jets = JETS[separable]
     g = raised(data.draw(in_jets(LOWER[separable], start=False)), separable)
-    found = telescopes(jets, jets.derive(g))
+    found = telescopes(jets, along_flow(jets, g))
     assert found.holds
-    assert jets.derive(found.potential) == jets.derive(g)
+    assert along_flow(jets, found.potential) == along_flow(jets, g)
 
 
 def products(jets: Jets, factors: int, by_p: int, by_q: int, below: int) -> list[Poly]:
@@ -212,15 +214,15 @@ def test_one_product_of_derivatives_telescopes_where_the_ranks_say_so(
     found = telescopes(jets, x)
     if not any(sum(ij) == 1 for ij in chosen):
         assert not found.holds
-        assert f"there L is {shown(x)}" in found.reason
+        assert f"there L is {jets.text(x)}" in found.reason
         return
     by_p, by_q = sum(i for i, _ in chosen), sum(j for _, j in chosen)
     candidates = products(jets, len(chosen) - 1, by_p - 1, by_q - 1, max(map(sum, chosen)))
-    columns = [jets.derive(g) for g in candidates]
+    columns = [along_flow(jets, g) for g in candidates]
     own = rank(columns)
     assert found.holds == (rank([*columns, x]) == own)
     if found.holds:
-        assert jets.derive(found.potential) == x
+        assert along_flow(jets, found.potential) == x
     else:
         assert f"the {len(candidates)} monomials" in found.reason
         assert f"dimension {own}; with L it has dimension {own + 1}" in found.reason
@@ -229,20 +231,20 @@ def test_one_product_of_derivatives_telescopes_where_the_ranks_say_so(
 @pytest.mark.parametrize("eta", [1, 2, 3, 4])
 def test_the_truncated_flow_telescopes_for_even_eta_alone(eta: int) -> None:
     jets = Jets(eta + 2)
-    end = [jets.derive(lie_derivatives(jets, name, eta)[-1]) for name in "pq"]
+    end = [along_flow(jets, lie_derivatives(jets, name, eta)[-1]) for name in "pq"]
     leading = -(jets.diff(end[0], "p") + jets.diff(end[1], "q")) / math.factorial(eta + 1)
     found = prove_every(f"lie{eta}")
     assert found.telescopes is (eta % 2 == 0)
-    assert found.leading == shown(leading)
+    assert found.leading == jets.text(leading)
     if found.telescopes:
         potential = potential_of_lie(JetFlow.over(jets), eta).divergence
-        assert found.potential == shown(potential)
-        assert jets.derive(potential) == leading
+        assert found.potential == jets.text(potential)
+        assert along_flow(jets, potential) == leading
         assert f"G = −1/{eta + 1}!" in found.why
         assert f"X^({eta}−k)" in found.why
         twice = telescopes(jets, leading * 2)  # another L, and another G
         assert twice.holds
-        assert jets.derive(twice.potential) == leading * 2
+        assert along_flow(jets, twice.potential) == leading * 2
     else:
         with pytest.raises(ValueError, match="odd"):
             potential_of_lie(JetFlow.over(jets), eta)

@@ -76,6 +76,16 @@ def test_a_symplectic_map_that_is_written_out_has_one_of_its_own() -> None:
     assert said.statement.startswith("S = JᵀΩJ − Ω = 0, for this H")
 
 
+def test_a_map_with_h_in_its_functions_has_one() -> None:
+    """Each of its coefficients is made in a ring of its own, and S in another."""
+    formula = "(p1**2 + p2**2)/2 - cos(q1) - cos(q2)"
+    bent = ("p1_next = p1 - sin(h)*sin(q1); q1_next = q1 + h*p1; p2_next = p2 - h*sin(q2); "
+            "q2_next = q2 + sin(h)*p2")  # fmt: skip
+    said = accepted(of_one(formula, bent))
+    assert (said.order, said.convergence_order) == (2, 1)
+    assert said.leading == "(cos(q1))*dp1∧dq1 + (cos(q2))*dp2∧dq2"
+
+
 def test_what_preserves_volume_alone_is_no_symplectic_map() -> None:
     """p1 is stretched and p2 shrunk by factors of the product 1: S has entries, det J is 1."""
     data = of_one(CUBIC, EULER)

@@ -5,14 +5,14 @@ itself. The two share no code but the polynomials' own. Of an H that depends on 
 many, `lieη` alone is looked at.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import cache, lru_cache
 
 import flint
 
 from verify.algebra.enclosure import enclose
 from verify.algebra.generator import terms_of
-from verify.algebra.series.jets import Jets, Poly, TimedJets
+from verify.algebra.series.jets import Jets, Poly, Series
 from verify.arithmetic.arb import Ball
 from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.oracles.ball_steps import BITS, sharp, unlike
@@ -55,13 +55,22 @@ def _has_series_in_jets(sample: Sample) -> bool:
 
 
 @lru_cache(maxsize=64)
-def _of_every(scheme: Scheme, most: int, timed: bool) -> tuple[Jets | TimedJets, tuple[Poly, ...]]:
+def _of_every(scheme: Scheme, most: int, timed: bool) -> tuple[Jets, tuple[Poly, ...]]:
     """The coefficients of h¹ … h^most in ΔJ of the scheme for every H."""
     generic = scheme.every_h
     assert isinstance(generic, BySeries)  # noqa: S101 - the caller looks
     size = most + 2
-    jets = TimedJets(size) if timed else Jets(size, separable=generic.separable)
-    return jets, tuple(jets.delta_j(*generic.taylor(jets, most)))
+    jets = Jets(size, separable=generic.separable and not timed, timed=timed)
+    p_next, q_next = generic.taylor(jets, most)
+    return jets, tuple(delta_j(jets, p_next, q_next))
+
+
+def delta_j(jets: Jets, p_next: Series, q_next: Series) -> Iterator[Poly]:
+    """The coefficients of h¹, h², … in det ∂(p', q')/∂(p, q), as far as the series reach."""
+    gradients = [[(jets.diff(x, "p"), jets.diff(x, "q")) for x in s] for s in (p_next, q_next)]
+    for n in range(1, len(p_next)):
+        pairs = [(gradients[0][k], gradients[1][n - k]) for k in range(n + 1)]
+        yield sum((a * d - b * c for (a, b), (c, d) in pairs), jets.zero)
 
 
 def _leading(sample: Sample) -> Ball:
@@ -71,7 +80,7 @@ def _leading(sample: Sample) -> Ball:
     return known(enclose(*element, sample.start, BITS))
 
 
-def _derivatives(sample: Sample, jets: Jets | TimedJets) -> list[Ball]:
+def _derivatives(sample: Sample, jets: Jets) -> list[Ball]:
     """H_ij, or H_ijk, at the initial value; Silent where one of them is not defined there."""
     field = sample.field
     ring, start = field.ring, sample.start

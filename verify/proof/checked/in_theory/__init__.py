@@ -9,9 +9,10 @@ from functools import cache
 from typing import get_args
 
 from verify.discovery import Catalogue
+from verify.proof.assistant.stated import by_rocq
 from verify.proof.checked.in_theory.applies import Applies
 from verify.proof.checked.proved import About, Proved
-from verify.prose import Formula, Prose, joined, prose, read_prose
+from verify.prose import Prose, prose, read_prose
 
 _FILES = Catalogue(f"{__name__}.statements", [f"{path}/statements" for path in __path__])
 
@@ -27,5 +28,5 @@ def marks(proved: Proved) -> Iterator[Prose]:
     """One for each that applies: the names of the theorems, and what they say of this scheme."""
     for each in all_of_them():
         if each.about in proved.about and each.applies(proved):
-            names = joined(", ", (Formula(str(x)) for x in each.theorems(proved)))
-            yield prose("Rocq, ", names, ": ", read_prose(each.says(proved)))
+            by = by_rocq(each.names(proved))
+            yield prose(by, ": ", read_prose(each.sentence(proved)))

@@ -25,13 +25,15 @@ from itertools import product
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.algebra.generator import terms_of
 from verify.algebra.ring import Poly, Ring
-from verify.algebra.series.jets import Jets, Series, shown
+from verify.algebra.series.jets import Jets, Series
 from verify.algebra.series.jets import Poly as JetPoly
 from verify.errors import InputError
+from verify.hamiltonians.jet_flow import JetFlow
 from verify.proof.by_conditions import nearby_order
+from verify.proof.expansion import VANISHES, Leading
 from verify.proof.plane.modified.equation import ModifiedEquation, Term, judged
-from verify.proof.plane.modified.field import Vector, divergence, field_of, modified_field
-from verify.proof.plane.modified.one import hamiltonian_in_jets
+from verify.proof.plane.modified.field import Vector, field_of
+from verify.proof.plane.modified.one import Energy, by_field, hamiltonian_in_jets
 from verify.schemes import get
 from verify.schemes.conditions.coloured_trees import symmetry
 from verify.schemes.conditions.condition import ByConditions
@@ -41,6 +43,7 @@ from verify.schemes.conditions.free_lie_words import of_logarithm, words
 from verify.schemes.conditions.splitting_conditions import LETTERS, Splitting
 from verify.schemes.conditions.tree_conditions import TreeConditions, trees
 from verify.schemes.maps.step_map import solvable
+from verify.schemes.steps.defect import of_flow
 
 _KICK, _DRIFT = LETTERS["kick"], LETTERS["drift"]
 Sum = dict[tuple[int, ...], Poly]  # numbers by monomials of the jets
@@ -132,7 +135,7 @@ def _times(ring: Ring, number: Poly, name: str) -> str:
 
 def _text(ring: Ring, jets: Jets, total: Sum) -> str:
     parts = [
-        _times(ring, number, shown(jets.context.from_dict({monomial: 1})))
+        _times(ring, number, jets.text(jets.context.from_dict({monomial: 1})))
         for monomial, number in total.items()
     ]
     return " + ".join(parts) or "0"
@@ -154,28 +157,40 @@ def modified_for_every(name: str, order: int, separable: bool = False) -> Modifi
         problem = "is given for one H; its terms for every H are not known"
         raise InputError("scheme", name, problem)
     separable = separable or every_h.separable
-    series = _series_of(every_h)
+    series, told = _series_of(every_h), _SEPARABLE if separable else _EVERY
+    where = EVERYWHERE if scheme.explicit else Domain.of((), solvable(planar=True))
     if isinstance(every_h, Splitting) and series is None:
-        terms = terms_of_splitting(every_h, order)
+        terms = tuple(terms_of_splitting(every_h, order))
         area = all(c.holds is True for c in every_h.area_conditions())
         consistent = terms[0].hamiltonian == "H"
+        found = ModifiedEquation(scheme.name, told, order, terms, consistent, area, where)
     else:
         jets = Jets(order + 3, separable=separable)
-        p_next, q_next = _taylor(name, every_h, series, jets, order + 1)
-        vectors = modified_field(jets, p_next, q_next)
-        terms = [_term(jets, j, vector) for j, vector in enumerate(vectors)]
-        consistent = vectors[0] == (-jets.h(0, 1), jets.h(1, 0))
-        area = _area(jets, p_next, q_next, vectors)
-    found = ModifiedEquation(
-        scheme=scheme.name,
-        hamiltonian=_SEPARABLE if separable else _EVERY,
-        order=order,
-        terms=tuple(terms),
-        consistent=consistent,
-        area=area,
-        where=EVERYWHERE if scheme.explicit else Domain.of((), solvable(planar=True)),
-    )
+        flow, after = JetFlow.over(jets), _taylor(name, every_h, series, jets, order + 1)
+
+        def energy_of(vector: Vector, factors: int) -> Energy | None:
+            if vector == flow.slopes:
+                return "H", None
+            found = hamiltonian_in_jets(jets, vector, factors)
+            return None if found is None else (jets.text(found), None)
+
+        found = by_field(
+            flow,
+            after,
+            _leading(flow, after),
+            energy_of,
+            scheme=scheme.name,
+            hamiltonian=told,
+            where=where,
+        )
     return judged(found, scheme, nearby_order(every_h, scheme.order))
+
+
+def _leading(flow: JetFlow, after: tuple[Series, Series]) -> Leading:
+    """The first coefficient of ΔJ that is not 0, as far as the series reach."""
+    series, most = of_flow(flow, after), len(after[0]) - 1
+    forms = ((m, series.form(m)) for m in range(1, most + 1))
+    return next((Leading.of_form(m, x, x.ring) for m, x in forms if x.entries), VANISHES)
 
 
 def _series_of(every_h: BySeries | ByConditions) -> BySeries | None:
@@ -187,9 +202,10 @@ def _series_of(every_h: BySeries | ByConditions) -> BySeries | None:
 
 def _taylor(
     name: str, every_h: BySeries | ByConditions, series: BySeries | None, jets: Jets, most: int
-) -> tuple[Series, ...]:
+) -> tuple[Series, Series]:
     if series is not None:
-        return series.taylor(jets, most)
+        p_next, q_next = series.taylor(jets, most)
+        return p_next, q_next
     if isinstance(every_h, TreeConditions):
         return _by_trees(name, every_h, jets, most)
     raise InputError("scheme", name, "has no series for every H; give one H")
@@ -210,29 +226,3 @@ def _by_trees(name: str, every_h: TreeConditions, jets: Jets, most: int) -> tupl
         for own, x in zip(result, total, strict=True):
             own.append(x)
     return result
-
-
-def _term(jets: Jets, power: int, vector: Vector) -> Term:
-    turned = divergence(jets, vector)
-    energy = "H" if vector == (-jets.h(0, 1), jets.h(1, 0)) else None
-    if energy is None and turned.is_zero():
-        found = hamiltonian_in_jets(jets, vector, power + 1)
-        energy = None if found is None else shown(found)
-    return Term(
-        power=power,
-        p=shown(vector[0]),
-        q=shown(vector[1]),
-        hamiltonian=energy,
-        vanishes=all(x.is_zero() for x in vector),
-        is_hamiltonian=turned.is_zero(),
-        divergence=shown(turned),
-    )
-
-
-def _area(jets: Jets, p_next: Series, q_next: Series, vectors: Sequence[Vector]) -> bool:
-    """Whether the first divergence that is not 0 is the leading coefficient of det J − 1."""
-    for vector, coefficient in zip(vectors, jets.delta_j(p_next, q_next), strict=True):
-        turned = divergence(jets, vector)
-        if not (turned.is_zero() and coefficient.is_zero()):
-            return bool(turned == coefficient)
-    return True

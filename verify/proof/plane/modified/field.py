@@ -16,29 +16,15 @@ D_F = F·∇ + h ∂/∂t, by which y_n has ∂/∂t of [y_(n−1)]_(k−1) as w
 """
 
 from collections.abc import Sequence
-from typing import Protocol
 
-import flint
+from verify.algebra.generator import Poly
+from verify.algebra.series.power_series import CoefficientRing
 
-Poly = flint.fmpq_mpoly
 Vector = tuple[Poly, Poly]  # the parts of p' and of q'
 
 
-class Differential(Protocol):
-    """Functions of p and q: `verify.algebra.ring.Ring` and `verify.algebra.series.jets.Jets`."""
-
-    @property
-    def zero(self) -> Poly: ...
-
-    def diff(self, x: Poly, name: str) -> Poly:
-        """∂x/∂p or ∂x/∂q, or ∂x/∂t where there is t."""
-
-    def reduce(self, x: Poly) -> Poly:
-        """The normal form."""
-
-
 def modified_field(
-    ring: Differential, p_next: Sequence[Poly], q_next: Sequence[Poly], timed: bool = False
+    ring: CoefficientRing, p_next: Sequence[Poly], q_next: Sequence[Poly], timed: bool = False
 ) -> list[Vector]:
     """[f_1, f_2, …] of the map with these coefficients of h⁰, h¹, … in p' and q'.
 
@@ -75,11 +61,11 @@ def modified_field(
     return found
 
 
-def divergence(ring: Differential, vector: Vector) -> Poly:
+def divergence(ring: CoefficientRing, vector: Vector) -> Poly:
     """∂/∂p of its part in p' plus ∂/∂q of that in q'."""
     return ring.reduce(ring.diff(vector[0], "p") + ring.diff(vector[1], "q"))
 
 
-def field_of(ring: Differential, energy: Poly) -> Vector:
+def field_of(ring: CoefficientRing, energy: Poly) -> Vector:
     """(−∂G/∂q, ∂G/∂p), the Hamiltonian vector field of G."""
     return -ring.diff(energy, "q"), ring.diff(energy, "p")

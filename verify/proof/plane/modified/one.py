@@ -18,8 +18,9 @@ What is found is held against the field in the ring; what is not found is not de
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import product
+from typing import Any
 
 from verify.algebra.domain import Domain
 from verify.algebra.embedding import embed
@@ -27,10 +28,10 @@ from verify.algebra.generator import terms_of
 from verify.algebra.linear_combination import combination
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.jets import Index, Jets
-from verify.algebra.series.power_series import partials
+from verify.algebra.series.power_series import CoefficientRing, Derivatives
 from verify.errors import InputError
-from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
-from verify.proof.expansion import MOST_ORDERS, Expansion, Leading
+from verify.hamiltonians.canonical_field import CanonicalField, Flow
+from verify.proof.expansion import MOST_ORDERS, ClosedSeries, Leading
 from verify.proof.order import leading_of, nearby_of_scheme
 from verify.proof.plane.modified.equation import ModifiedEquation, Term, judged
 from verify.proof.plane.modified.field import Vector, divergence, field_of, modified_field
@@ -60,26 +61,16 @@ def hamiltonian_in_jets(jets: Jets, vector: Vector, factors: int) -> Poly | None
     H_11 … are free, so that the highest derivative in G is of one order less than in the field.
     """
     degrees = [n for x in vector for n in _orders(jets, x)]
-    products = list(_products(jets, factors, max(degrees, default=1) - 1))
+    indices = [index for index in jets.indices if sum(index) < max(degrees, default=1)]
+    chosen = multisets(indices, factors, factors - 1, factors - 1)
     # p itself occurs in no term, and keeps the two parts of a field apart.
-    columns = [_joined(jets.p, field_of(jets, m)) for m in products]
-    found, _ = combination(columns, _joined(jets.p, vector))
-    if found is None:
-        return None
-    return sum((c * products[k] for k, c in found.items()), jets.zero)
+    return _combined(jets, list(map(jets.product, chosen)), vector, jets.p)
 
 
 def _orders(jets: Jets, x: Poly) -> Iterator[int]:
     """i + j of the derivatives H_ij that occur in x."""
     degrees = x.degrees()[2:]
     yield from (i + j for (i, j), n in zip(jets.indices, degrees, strict=True) if n > 0)
-
-
-def _products(jets: Jets, factors: int, highest: int) -> Iterator[Poly]:
-    """Those of so many derivatives, with one less by p and by q each."""
-    indices = [index for index in jets.indices if sum(index) <= highest]
-    for chosen in multisets(indices, factors, factors - 1, factors - 1):
-        yield math.prod((jets.h(i, j) for i, j in chosen), start=jets.one)
 
 
 def _joined(mark: Poly, vector: Vector) -> Poly:
@@ -121,11 +112,12 @@ def _among_products(field: CanonicalField, vector: Vector, factors: int) -> Poly
     in_time = [energy]
     for _ in range(factors - 1 if field.timed else 0):
         in_time.append(ring.diff(in_time[-1], "t"))
-    partial = [partials(ring, x) for x in in_time]
+    partial = [Derivatives(ring, x).partial for x in in_time]
     products = [_product(ring, [partial[k](i, j) for i, j, k in chosen]) for chosen in names]
     numbers = _numbers_in(ring, vector)
     candidates = [ring.multiply(c, m) for c in numbers for m in products if not m.is_zero()]
-    return _combined(ring, candidates, vector)
+    # h is in no coefficient of a series in h.
+    return _combined(ring, candidates, vector, ring.variable("h"))
 
 
 def _products_in_time(
@@ -150,8 +142,10 @@ def _product(ring: Ring, parts: Sequence[Poly]) -> Poly:
     return total
 
 
-def _combined(ring: Ring, candidates: Sequence[Poly], vector: Vector) -> Poly | None:
-    mark = ring.variable("h")  # which is in no coefficient of a series in h
+def _combined(
+    ring: CoefficientRing, candidates: Sequence[Poly], vector: Vector, mark: Poly
+) -> Poly | None:
+    """The sum of multiples of the candidates whose field that is; `mark` keeps its parts apart."""
     columns = [_joined(mark, field_of(ring, m)) for m in candidates]
     found, _ = combination(columns, _joined(mark, vector))
     if found is None:
@@ -185,6 +179,7 @@ def _among_all(field: CanonicalField, vector: Vector, _: int) -> Poly | None:
 
 
 MOST_ORDER = 10
+Energy = tuple[str, tuple[Ring, Poly] | None]  # G as a formula, and in its ring
 
 
 def modified_of(step_map: StepMap, scheme: Scheme | None, order: int) -> ModifiedEquation:
@@ -200,15 +195,18 @@ def modified_of(step_map: StepMap, scheme: Scheme | None, order: int) -> Modifie
             shown = str(step_map.hamiltonian.expression)
             problem = f"the map is not (p, q) at h = 0: {name}' is {ring.text(first)} there"
             raise InputError("map", shown, problem)
-    vectors = modified_field(ring, p_next, q_next, source.timed)
-    terms = [_term(source, j, vector, step_map.domain) for j, vector in enumerate(vectors)]
-    found = ModifiedEquation(
+
+    def energy_of(vector: Vector, factors: int) -> Energy | None:
+        found = hamiltonian_of(source, vector, factors) if any(vector) else ring.zero
+        return None if found is None else (ring.text(found), (ring, found))
+
+    found = by_field(
+        source,
+        (p_next, q_next),
+        leading_of(step_map),
+        energy_of,
         scheme=scheme.name if scheme else "the map",
         hamiltonian=step_map.hamiltonian.formula,
-        order=order,
-        terms=tuple(terms),
-        consistent=_same(ring, vectors[0], (source.slopes[0], source.slopes[1])),
-        area=_area(step_map, terms),
         where=step_map.domain,
     )
     near = nearby_of_scheme(scheme, step_map.hamiltonian) if scheme else None
@@ -221,62 +219,85 @@ def _series(step_map: StepMap, most: int) -> tuple[CanonicalField, Sequence[Poly
     if series is not None:
         source, (p, q) = series
         return source, p.coefficients, q.coefficients
-    step = step_map.flat
-    expansions = [Expansion(step.ring, x) for x in step.elements]
-    if most > MOST_ORDERS and not all(x.polynomial for x in expansions):
+    closed = ClosedSeries(step_map.flat)
+    if most > MOST_ORDERS and not closed.polynomial:
         raise InputError("order", most - 1, f"must be {MOST_ORDERS - 1} at most for this map")
-    parts = [x.coefficient(n) for x in expansions for n in range(most + 1)]
-    if all(ring is step.ring for ring, _ in parts):
-        own = [x for _, x in parts]
-        return step.field, own[: most + 1], own[most + 1 :]
-    # Where h stands in a function each coefficient has a ring of its own; one holds them all.
-    source, own = canonical_field(step_map.hamiltonian, *(ring.expression(x) for ring, x in parts))
-    return source, own[: most + 1], own[most + 1 :]
+    source, (p_next, q_next), _ = closed.in_one_field(step_map.hamiltonian, most)
+    return source, p_next, q_next
 
 
-def _term(source: CanonicalField, power: int, vector: Vector, domain: Domain) -> Term:
+# -- of one H, and of every one -------------------------------------------------------------------
+
+
+def by_field(
+    flow: Flow,
+    after: tuple[Sequence[Poly], Sequence[Poly]],
+    leading: Leading,
+    energy_of: Callable[[Vector, int], Energy | None],
+    *,
+    scheme: str,
+    hamiltonian: str,
+    where: Domain,
+) -> ModifiedEquation:
+    """By the coefficients of p' and q'. `leading`: of ΔJ; `energy_of`: G of a field with divergence
+    0, in which so many derivatives of H are multiplied in each term."""
+    vectors = modified_field(flow.ring, *after, flow.timed)
+    terms = [_term(flow.ring, j, vector, where, energy_of) for j, vector in enumerate(vectors)]
+    return ModifiedEquation(
+        scheme=scheme,
+        hamiltonian=hamiltonian,
+        order=len(terms) - 1,
+        terms=tuple(terms),
+        consistent=_same(flow.ring, vectors[0], flow.slopes),
+        area=_area(leading, terms),
+        where=where,
+    )
+
+
+def _term(
+    ring: Any,
+    power: int,
+    vector: Vector,
+    where: Domain,
+    energy_of: Callable[[Vector, int], Energy | None],
+) -> Term:
     """That of h^power in the field: its divergence decided, its energy looked for."""
-    ring = source.ring
+    nothing = ring.zero, ring.zero
+    vanishes = _same(ring, vector, nothing)
+    vector = nothing if vanishes else vector
     turned = divergence(ring, vector)
-    energy: Poly | None = ring.zero
-    vanishes = _same(ring, vector, (ring.zero, ring.zero))
-    if vanishes:
-        vector = ring.zero, ring.zero
-        decision = ring.decide(ring.zero)
-    else:
-        decision = ring.decide(turned)
-        energy = hamiltonian_of(source, vector, power + 1) if decision.zero else None
+    decision = ring.decide(turned)
+    text, energy = (decision.zero and energy_of(vector, power + 1)) or (None, None)
     element = None if decision.zero else (ring, turned)
-    leading = Leading(None if decision.zero else power, decision, element).within(domain)
+    leading = Leading(None if decision.zero else power, decision, element).within(where)
     return Term(
         power=power,
         p=ring.text(vector[0]),
         q=ring.text(vector[1]),
-        hamiltonian=None if energy is None else ring.text(energy),
+        hamiltonian=text,
         vanishes=vanishes,
         is_hamiltonian=leading.decision.zero,
         divergence=leading.text,
         witness=leading.decision.witness,
         enclosure=leading.decision.enclosure,
         domain=leading.domain,
-        energy=None if energy is None else (ring, energy),
+        energy=energy,
         found=(ring, turned),
     )
 
 
-def _same(ring: Ring, vector: Vector, other: Vector) -> bool | None:
+def _same(ring: CoefficientRing, vector: Vector, other: Sequence[Poly]) -> bool | None:
     """Whether two fields are the same; None where that is not decided."""
     found = {ring.vanishes(x - y) for x, y in zip(vector, other, strict=True)}
     return False if False in found else None if None in found else True
 
 
-def _area(step_map: StepMap, terms: Sequence[Term]) -> bool | None:
+def _area(leading: Leading, terms: Sequence[Term]) -> bool | None:
     """Whether the first divergence is the leading coefficient of ΔJ; None where neither is known.
 
     Of a field whose terms are all Hamiltonian: whether ΔJ vanishes as far as they tell.
     """
     first = next((x for x in terms if x.is_hamiltonian is not True), None)
-    leading = leading_of(step_map)
     if leading.decision.zero is None or (first is not None and first.is_hamiltonian is None):
         return None
     if first is None:

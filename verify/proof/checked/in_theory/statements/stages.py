@@ -1,19 +1,7 @@
 """That a stage whose weights fulfil the condition is symplectic, and so are stages in turn."""
 
-from verify.proof.assistant.stated import Shipped
 from verify.proof.checked.in_theory.applies import Applies
-from verify.proof.checked.proved import Proved
 from verify.schemes.conditions.every_hamiltonian import Stage, StageEquations
-
-
-def _theorems(proved: Proved) -> tuple[Shipped, ...]:
-    found = (
-        Shipped("SymplecticMethods", "stage_of_hamiltonian"),
-        Shipped("Symplectic", "steps_symplectic"),
-    )
-    return (
-        (*found, Shipped("Theorems", "symplectic_is_area_preserving")) if proved.planar else found
-    )
 
 
 def fulfilled(every_h: object) -> bool:
@@ -29,17 +17,13 @@ def _fulfils(stage: Stage, *, separable: bool) -> bool:
     return weight == 0 and (separable or stage.kick == stage.drift)
 
 
-def _says(proved: Proved) -> str:
-    det = ", so that det J = 1" if proved.planar else ""
-    return (
-        "stages of such weights in turn are symplectic wherever they have a differentiable "
-        f"solution{det}"
-    )
-
-
 APPLIES = Applies(
     about="defect",
     applies=lambda proved: fulfilled(proved.scheme.every_h),
-    theorems=_theorems,
-    says=_says,
+    theorems=("SymplecticMethods.stage_of_hamiltonian", "Symplectic.steps_symplectic"),
+    says=lambda _: (
+        "stages of such weights in turn are symplectic wherever they have a differentiable solution"
+    ),
+    symplectic=True,
+    so=", so that det J = 1",
 )

@@ -1,15 +1,8 @@
 """That a Runge–Kutta method with b_i a_ij + b_j a_ji = b_i b_j is symplectic."""
 
-from verify.proof.assistant.stated import Shipped
 from verify.proof.checked.in_theory.applies import Applies
 from verify.proof.checked.proved import Proved
 from verify.schemes.conditions.tree_conditions import TreeConditions
-
-
-def _theorems(proved: Proved) -> tuple[Shipped, ...]:
-    method = Shipped("Theorems", "runge_kutta_is_symplectic")
-    area = Shipped("Theorems", "symplectic_is_area_preserving")
-    return (method, area) if proved.planar else (method,)
 
 
 def fulfilled(every_h: object) -> bool:
@@ -31,6 +24,7 @@ def _says(proved: Proved) -> str:
 APPLIES = Applies(
     about="defect",
     applies=lambda proved: fulfilled(proved.scheme.every_h),
-    theorems=_theorems,
+    theorems=("Theorems.runge_kutta_is_symplectic",),
     says=_says,
+    symplectic=True,
 )

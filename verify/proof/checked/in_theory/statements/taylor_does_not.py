@@ -1,6 +1,5 @@
 """That the leading coefficient of lieη does not telescope for odd η: the oscillator shows it."""
 
-from verify.proof.assistant.stated import Shipped
 from verify.proof.checked.in_theory.applies import Applies, eta_of
 
 APPLIES = Applies(
@@ -8,6 +7,6 @@ APPLIES = Applies(
     applies=lambda proved: (
         proved.every and proved.planar and not proved.timed and (eta_of(proved) or 0) % 2 == 1
     ),
-    theorems=lambda _: (Shipped("Theorems", "lie_does_not_telescope_for_odd"),),
+    theorems=("Theorems.lie_does_not_telescope_for_odd",),
     says=lambda _: "for H = (p² + q²)/2 the leading coefficient is X·G for no smooth G",
 )
