@@ -9,7 +9,7 @@ Where no closed form is known, the points follow a numerical flow together
 (`verify.flows.points_together`).
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache, partial
@@ -23,7 +23,7 @@ from verify.errors import InputError
 from verify.flows import closed_form
 from verify.flows.extrapolation import NoFlowError
 from verify.flows.points_together import METHOD, Point, Together, naming
-from verify.flows.solution import exact_solution
+from verify.flows.solution import solution_from
 from verify.hamiltonians import known_flows
 from verify.hamiltonians.coordinates import PLANE
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -43,25 +43,28 @@ _FINE = 1e-18  # of an orbit's scale: a ball's radius, far below float64's round
 
 @dataclass(frozen=True)
 class Points:
-    """φ_t of all points: p and q have a row for each time and a column for each point, float64.
+    """φ_t of all points: `points` has an array for each coordinate, by its name, with a row for
+    each time and a column for each point, float64.
 
     `bound` ≥ |error| of each of them: certified where a closed form is known, and mostly the
     rounding to float64; else an estimate. `method` says how; `alone` are the points that were left
     out of a numerical flow, and found one by one.
     """
 
-    p: Array
-    q: Array
+    points: Mapping[str, Array]
     bound: float
     method: str
     alone: tuple[int, ...] = ()
 
 
 def exact_points(
-    hamiltonian: Hamiltonian, p: Array, q: Array, times: Sequence[Fraction], t0: Fraction = _ZERO
+    hamiltonian: Hamiltonian,
+    points: Mapping[str, Array],
+    times: Sequence[Fraction],
+    t0: Fraction = _ZERO,
 ) -> Points:
-    """φ_t of the points (p, q), two arrays of float64 of one length, for each time t, from t0 on
-    where H depends on time.
+    """φ_t of the points, an array of float64 for each coordinate, by its name, all of one length,
+    for each time t, from t0 on where H depends on time.
 
     Raises InputError for a parameter without a value and for points that are not such arrays, and
     NoFlowError, naming the point, where one blows up before the last of the times or cannot be
@@ -71,25 +74,29 @@ def exact_points(
 
     if hamiltonian.symbols:
         raise InputError("parameter", hamiltonian.symbols[0], "needs a value")
-    p, q = (np.asarray(x, dtype=np.float64) for x in (p, q))
-    if p.ndim != 1 or p.shape != q.shape:
-        raise InputError("points", f"{p.shape}, {q.shape}", "must be two arrays of one length")
-    if not (np.isfinite(p).all() and np.isfinite(q).all()):
+    names = hamiltonian.coordinates
+    z = [np.asarray(points[name], dtype=np.float64) for name in names]
+    if z[0].ndim != 1 or len({x.shape for x in z}) > 1:
+        shapes = ", ".join(str(x.shape) for x in z)
+        raise InputError("points", shapes, "must be arrays of one length")
+    if not np.isfinite(z).all():
         raise InputError("points", "nan", "must be finite")
-    if len(p) and _motions(hamiltonian)(float(p[0]), float(q[0])) is not None:
-        return _in_closed_form(hamiltonian, p, q, tuple(times))
+    plane = hamiltonian.planar  # of which alone closed forms are looked at
+    if plane and len(z[0]) and _motions(hamiltonian)(*(float(x[0]) for x in z)) is not None:
+        return _in_closed_form(hamiltonian, z, tuple(times))
 
     def solved(start: Point, time: Fraction, digits: int) -> tuple[Point, Fraction]:
-        solution = exact_solution(hamiltonian, **start, time=time, digits=digits, t0=t0)
+        solution = solution_from(hamiltonian, start, time, digits, t0)
         return solution.point, solution.bound
 
-    together = Together(hamiltonian, np.array([p, q]), tuple(times), t0, solved, extreme=True)
-    (p, q), bound, alone = together.followed()
-    return Points(p, q, bound, METHOD if len(p) else "no points", alone)
+    together = Together(hamiltonian, np.array(z), tuple(times), t0, solved, extreme=plane)
+    ends, bound, alone = together.followed()
+    method = METHOD if len(ends[0]) else "no points"
+    return Points(dict(zip(names, ends, strict=True)), bound, method, alone)
 
 
 def _in_closed_form(
-    hamiltonian: Hamiltonian, p: Array, q: Array, times: tuple[Fraction, ...]
+    hamiltonian: Hamiltonian, z: Sequence[Array], times: tuple[Fraction, ...]
 ) -> Points:
     """Each point by its own motion. Raises NoFlowError."""
     import numpy as np
@@ -97,7 +104,7 @@ def _in_closed_form(
     follow_one, farthest = _along_flow(hamiltonian, times), max(times, key=abs, default=_ZERO)
     told = []
     with working_precision(_BITS):
-        for i, start in enumerate(zip(p.tolist(), q.tolist(), strict=True)):
+        for i, start in enumerate(zip(*(x.tolist() for x in z), strict=True)):
             try:
                 told.append(follow_one(*start))
             except (NoFlowError, OverflowError) as error:
@@ -105,10 +112,10 @@ def _in_closed_form(
     methods = [method for method, _ in told]
     shape = len(told), len(times), 3
     states = np.array([states for _, states in told], dtype=np.float64).reshape(shape)
-    p, q, errors = np.ascontiguousarray(states.T)
+    *ends, errors = np.ascontiguousarray(states.T)
     bound = float(errors.max(initial=0.0))
     method = f"{max(dict.fromkeys(methods), key=methods.count)}, in balls"
-    return Points(p, q, bound, method)
+    return Points(dict(zip(PLANE, ends, strict=True)), bound, method)
 
 
 @lru_cache(maxsize=_FLOWS)

@@ -1,5 +1,6 @@
 """∮ p·dq in n degrees of freedom: exact values, Stokes' theorem, symplectic maps; wrong ones."""
 
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -10,9 +11,9 @@ from click.testing import CliRunner
 import verify
 from verify.commands.main import cli
 from verify.flows import points_together as module_of_points
-from verify.flows.degrees.points import points_in_degrees
-from verify.flows.degrees.solution import solution_in_degrees
 from verify.flows.extrapolation import NoFlowError
+from verify.flows.points import exact_points
+from verify.flows.solution import solution_from
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.systems import get
 from verify.scenes.region_sections import PlacedShape
@@ -166,14 +167,14 @@ def test_a_curve_that_is_carried_wrongly_is_noticed(monkeypatch: pytest.MonkeyPa
 
 def test_an_area_that_is_kept_is_not_by_a_wrong_flow(monkeypatch: pytest.MonkeyPatch) -> None:
     """The control of the exact flow's 0: what is not symplectic is measured as such."""
-    right = points_in_degrees
+    right = exact_points
 
     def planted(*given: Any) -> Any:
         found = right(*given)
         moved = {**found.points, "p2": found.points["p2"] * (1 + 1e-6)}
-        return type(found)(moved, found.bound)
+        return replace(found, points=moved)
 
-    monkeypatch.setattr(point_carriers, "points_in_degrees", planted)
+    monkeypatch.setattr(point_carriers, "exact_points", planted)
     image = carried(EXACT_FLOW)
     assert abs(number(image.area_change)) > number(image.probe_error)
 
@@ -211,13 +212,13 @@ def cloud(count: int = 5) -> dict[str, Any]:
 
 def test_the_exact_flow_of_many_points_is_that_of_each() -> None:
     given, time = cloud(), Fraction(7, 2)
-    found = points_in_degrees(HENON_HEILES, given, time)
+    found = exact_points(HENON_HEILES, given, [time])
     assert found.bound < 1e-13
     for i in range(5):
         start = {name: Fraction(float(x[i])) for name, x in given.items()}
-        true = solution_in_degrees(HENON_HEILES, start, time, 25)
+        true = solution_from(HENON_HEILES, start, time, 25)
         for name, x in true.point.items():
-            assert abs(Fraction(float(found.points[name][i])) - x) <= Fraction(found.bound)
+            assert abs(Fraction(float(found.points[name][0][i])) - x) <= Fraction(found.bound)
 
 
 def test_a_numerical_flow_at_another_time_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -228,10 +229,10 @@ def test_a_numerical_flow_at_another_time_is_seen(monkeypatch: pytest.MonkeyPatc
 
     monkeypatch.setattr(module_of_points, "follow", planted)
     with pytest.raises(NoFlowError, match=r"is wrong by .* was estimated"):
-        points_in_degrees(HENON_HEILES, cloud(), Fraction(3))
+        exact_points(HENON_HEILES, cloud(), [Fraction(3)])
 
 
 def test_a_point_that_blows_up_is_named() -> None:
     given = {**cloud(1), "q2": np.array([5.0])}
     with pytest.raises(NoFlowError, match="point 0"):
-        points_in_degrees(HENON_HEILES, given, Fraction(50))
+        exact_points(HENON_HEILES, given, [Fraction(50)])
