@@ -24,7 +24,7 @@ from verify.arithmetic.exact import known_digits
 from verify.effort import limited
 from verify.errors import NOT_GIVEN, InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.start import check_start
+from verify.hamiltonians.start import check_start, shown_of
 from verify.schemes import get
 from verify.studies.stability.linear import LinearStability, NearbyLimit
 from verify.studies.stability.nearby_linear import linear_stability
@@ -159,7 +159,8 @@ def hessian_at(hamiltonian: Hamiltonian, point: Mapping[str, Fraction]) -> flint
         name = hamiltonian.symbols[0]
         raise InputError("parameter", name, f"has no value; give one, as {name}=1")
     names = [symbol(name) for name in hamiltonian.coordinates]
-    _check_smooth(hamiltonian, point)
+    q, p = (shown_of(hamiltonian, point, letter) for letter in "qp")
+    check_start(hamiltonian, q, p)
     at = {z: sympy.Rational(*point[z.name].as_integer_ratio()) for z in names}
     found = flint.fmpq_mat(len(names), len(names))
     for i, z in enumerate(names):
@@ -175,14 +176,6 @@ def hessian_at(hamiltonian: Hamiltonian, point: Mapping[str, Fraction]) -> flint
                     )
                 found[i, j] = flint.fmpq(int(second.p), int(second.q))
     return found
-
-
-def _check_smooth(hamiltonian: Hamiltonian, point: Mapping[str, Fraction]) -> None:
-    if hamiltonian.planar:
-        check_start(hamiltonian, point["q"], point["p"])
-    else:
-        n, values = hamiltonian.degrees, [point[name] for name in hamiltonian.coordinates]
-        check_start(hamiltonian, values[n:], values[:n])
 
 
 def _check_equilibrium(

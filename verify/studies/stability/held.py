@@ -1,64 +1,17 @@
-"""The exact motion from one start, and whether runs keep to it: the same questions in the plane and
-in n degrees of freedom.
-
-The greatest frequency along an exact motion: that of the linearised flow where it is stiffest.
-
-In the plane ω² is the greatest det Hess H on the orbit; in n degrees of freedom ω is the greatest
-imaginary part of an eigenvalue of the field's Jacobian, in float64, at the places at which the
-motion was looked at.
-"""
+"""The exact motion from one start, and whether runs keep to it."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
 
-from verify.arithmetic.systems import mpfr
-from verify.flows.functions import functions_at
-from verify.flows.orbit import ExactOrbit, exact_orbit
-from verify.hamiltonians.canonical_field import canonical_field
+from verify.flows.orbit_search import ExactOrbit
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.start import shown_of
 from verify.runs.run import run as run_of
-from verify.studies.stability.exact_motion import ExactMotion, exact_motion
+from verify.studies.stability.exact_motion import exact_motion
 from verify.studies.stability.run_motion import RunMotion
 from verify.studies.stability.trail import Run, State
-from verify.studies.stability.verdict_in_degrees import MotionInDegrees, judge_in_degrees
 from verify.studies.stability.verdict_on_run import Judgement, judge
-
-_DIGITS = 20
-_NOISE = 1e-6  # of the matrix's size: a double eigenvalue 0 is found so far from it, and more
-
-
-def frequency(orbit: ExactOrbit) -> Fraction:
-    """The greatest ω on the orbit, to some 20 digits; 0 where nothing oscillates."""
-    if orbit.stiffness <= 0:
-        return Fraction(0)
-    arithmetic = mpfr.make(_DIGITS)
-    with arithmetic.context():
-        omega = arithmetic.functions["sqrt"](arithmetic.number(orbit.stiffness))
-    return arithmetic.exact(omega)
-
-
-def frequency_in_degrees(hamiltonian: Hamiltonian, motion: ExactMotion) -> Fraction:
-    """The same in n degrees of freedom, to some three digits; 0 where nothing oscillates."""
-    import numpy as np
-
-    field, _ = canonical_field(hamiltonian)
-    size, ring = len(field.names), field.ring
-    names = (*field.names, "t") if field.timed else field.names
-    entries = [(ring, ring.diff(slope, name)) for slope in field.slopes for name in field.names]
-    arithmetic = mpfr.make(_DIGITS)
-    at = functions_at(arithmetic, entries, names)
-    greatest = 0.0
-    for time, state in zip(motion.times, motion.states, strict=True):
-        given = (*state, time) if field.timed else state
-        with arithmetic.context():
-            found = at(*map(arithmetic.number, given))
-        jacobian = np.array([float(arithmetic.exact(x)) for x in found]).reshape(size, size)
-        turning = float(np.abs(np.linalg.eigvals(jacobian).imag).max())
-        if turning > _NOISE * float(np.abs(jacobian).max()):
-            greatest = max(greatest, turning)
-    return Fraction(greatest)
 
 
 @dataclass(frozen=True)
@@ -77,22 +30,12 @@ class Within:
         return self.symplectic_defect is None or self._keeps_the_form(run, self.symplectic_defect)
 
     def _keeps_the_form(self, run: Run, most: Fraction) -> bool:
-        of, start, planar = run.hamiltonian, run.start, run.hamiltonian.planar
-        p, q = ([start[x] for x in of.coordinates if x[0] == letter] for letter in "pq")
-        name = "lambda" if planar else "symplectic_defect"
+        of, start, name = run.hamiltonian, run.start, run.hamiltonian.structure.of_run
         done = run_of(
-            of, run.scheme, q=q[0] if planar else q, p=p[0] if planar else p,
+            of, run.scheme, q=shown_of(of, start, "q"), p=shown_of(of, start, "p"),
             step_size=run.step_size, steps=run.steps, t0=start["t"], observables=(name,),
         )  # fmt: skip
         return name in done.values and abs(done.values[name]) <= most
-
-
-AnyMotion = RunMotion | MotionInDegrees
-
-
-def verdict(motion: AnyMotion) -> Judgement:
-    """That on one run."""
-    return judge(motion) if isinstance(motion, RunMotion) else judge_in_degrees(motion)
 
 
 @dataclass(frozen=True)
@@ -108,27 +51,13 @@ class Held:
     t0: Fraction
 
     @property
-    def exact(self) -> ExactOrbit | ExactMotion:
-        if self.hamiltonian.planar:
-            return exact_orbit(self.hamiltonian, *self.state, self.time, self.t0)
+    def exact(self) -> ExactOrbit:
         return exact_motion(self.hamiltonian, self.state, self.time, self.t0)
 
-    @cached_property
-    def frequency(self) -> Fraction:
-        """The greatest ω; 0 where nothing oscillates."""
-        exact = self.exact
-        if isinstance(exact, ExactMotion):
-            return frequency_in_degrees(self.hamiltonian, exact)
-        return frequency(exact)
-
-    def _motion(self, scheme: str, h: Fraction, steps: int) -> AnyMotion:
-        run = Run(self.hamiltonian, scheme, h, self.state, steps, self.t0)
-        if self.hamiltonian.planar:
-            return RunMotion(run)
-        exact = self.exact
-        if isinstance(exact, ExactMotion) and exact.kind in ("bounded", "driven"):
-            return MotionInDegrees(run, exact)
-        return MotionInDegrees(run)
+    def _motion(self, scheme: str, h: Fraction, steps: int) -> RunMotion:
+        run, exact = Run(self.hamiltonian, scheme, h, self.state, steps, self.t0), self.exact
+        serves = exact.has_neighbours and exact.kind in ("bounded", "driven")
+        return RunMotion(run, exact if serves else None)
 
     def keeps(self, scheme: str, h: Fraction, steps: int, within: Within) -> bool:
         """Whether the float64 run keeps within the bounds."""
@@ -138,7 +67,7 @@ class Held:
 
     def judged(self, scheme: str, h: Fraction, steps: int) -> Judgement:
         """The verdict on the run."""
-        return verdict(self._motion(scheme, h, steps))
+        return judge(self._motion(scheme, h, steps))
 
 
 def held(

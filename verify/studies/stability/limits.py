@@ -2,8 +2,8 @@
 
 Linear theory says of a step size h that h ω has to lie in the scheme's interval (see
 `verify.studies.stability.linear`), ω being the greatest frequency on the exact orbit, where that is
-stiffest (`verify.studies.stability.held`). What bounded motion is, is told in
-`verify.studies.stability.run_motion` and `verify.studies.stability.verdict_in_degrees`.
+stiffest. What bounded motion is, is told in
+`verify.studies.stability.run_motion` and `verify.studies.stability.verdict_on_run`.
 """
 
 from collections.abc import Callable, Sequence
@@ -18,7 +18,6 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import Given, point_of, shown_of
 from verify.prose import Prose, prose
 from verify.scenes.results.stability import LargestStepResult, MapCell, StabilityMapResult
-from verify.studies.stability.exact_motion import ExactMotion
 from verify.studies.stability.held import Within, held
 from verify.studies.stability.nearby_linear import linear_stability
 
@@ -71,7 +70,8 @@ def largest_step(
     """
     point, within = point_of(hamiltonian, q, p), Within(energy_error, symplectic_defect)
     of = held(hamiltonian, point, time, t0 or Fraction(0))
-    orbit, omega = of.exact, of.frequency
+    orbit = of.exact
+    omega = orbit.frequency
     linear = _linear_step(scheme, omega)
     good = bad = None
 
@@ -81,7 +81,7 @@ def largest_step(
 
     if orbit.kind == "escapes":
         detail = prose("the exact solution ", orbit.summary)
-    elif isinstance(orbit, ExactMotion) and orbit.kind == "unknown":
+    elif orbit.kind == "not followed":
         detail = prose("the exact solution, to be held against, is not known: ", orbit.summary)
     else:
         middle = linear or (1 / omega if omega else time / 100)
@@ -158,7 +158,7 @@ def stability_map(
         of = held(own, point, max(step_sizes) * steps, begin)
         row = (of.judged(scheme, h, steps) for h in step_sizes)
         cells.append(tuple(MapCell(kind=found.kind, step=found.step) for found in row))
-        linear.append(shortened(_linear_step(scheme, of.frequency)))
+        linear.append(shortened(_linear_step(scheme, of.exact.frequency)))
     return StabilityMapResult(
         **hamiltonian.texts,
         scheme=scheme,

@@ -92,8 +92,7 @@ class Orbits:
 
     def defects(self, which: np.ndarray) -> np.ndarray:
         """max |W| of these orbits after all steps, in the plane |Λ|."""
-        planar = self.hamiltonian.planar
-        made = self.map_from(0, self.steps, "lambda" if planar else "symplectic_defect")
+        made = self.map_from(0, self.steps, self.hamiltonian.structure.of_run)
         rows = [k for k, n in enumerate(made.kernel.state_names) if n == "lam" or n[:2] == "w_"]
         entries = made.followed(self.starts[:, which])[rows]
         greatest: np.ndarray = np.abs(entries).max(axis=0)
