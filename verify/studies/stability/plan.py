@@ -6,9 +6,8 @@ from typing import Any, TypeVar
 from verify.arithmetic.exact import short
 from verify.execution.plan import Plan
 from verify.execution.study import called
-from verify.scenes.orbit_map_section import OrbitMap
 from verify.scenes.scene import Scene
-from verify.scenes.stability_sections import LargestStepOver, StabilityMap
+from verify.scenes.stability_sections import LargestStepOver, OrbitMap, StabilityMap
 from verify.studies.stability.task import (
     LargestStepTask,
     OrbitMapTask,

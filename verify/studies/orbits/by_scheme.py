@@ -17,7 +17,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import kernel_for
 from verify.kernels.stepping import KernelRun
 from verify.lockstep import alone
-from verify.studies.poincare.surface import Passes, State, Surface
+from verify.studies.orbits.passes import Passes, State, Surface
 
 _BLOCK = 1000  # steps between looks at them
 _MOST_TRIES = 200  # of θ: regula falsi with Illinois's halving takes some twelve

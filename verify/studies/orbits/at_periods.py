@@ -18,7 +18,8 @@ from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.digits_on_demand import choose
-from verify.scenes.results.stroboscopic import SchemeSections, StroboscopicOrbit
+from verify.scenes.results.orbits import SchemeSections, StroboscopicOrbit
+from verify.studies.orbits.passes import together
 
 _MORE = 20  # digits
 _SAME = Fraction(1, 10**6)  # of 1 + the farthest that the orbit is from 0: one point
@@ -94,15 +95,7 @@ def _orbit(exact: _Orbit, finer: _Orbit, floats: _Orbit) -> StroboscopicOrbit:
         q=text(start["q"]),
         p=text(start["p"]),
         points=tuple((decimal(z["q"], _SHOWN), decimal(z["p"], _SHOWN)) for z in exact.trail),
-        known=_together(exact.trail, finer.trail, _SAME * size),
-        in_float64=_together(finer.trail, floats.trail, _SEEN * size),
+        known=together(exact.trail, finer.trail, _SAME * size)[0] - 1,
+        in_float64=together(finer.trail, floats.trail, _SEEN * size)[0] - 1,
         left=exact.left,
     )
-
-
-def _together(one: Sequence[State], other: Sequence[State], within: Fraction) -> int:
-    """The last period up to which two trails are nowhere farther apart."""
-    for k, (x, y) in enumerate(zip(one, other, strict=False)):
-        if any(abs(x[name] - y[name]) > within for name in ("p", "q")):
-            return k - 1
-    return min(len(one), len(other)) - 1
