@@ -12,7 +12,6 @@ from verify.arithmetic.float_context import WIDE
 from verify.errors import InputError
 from verify.flows import extrapolation_of_many as flow_of_many
 from verify.flows import points as module
-from verify.flows import points_together
 from verify.flows.extrapolation import Flow, NoFlowError
 from verify.flows.points import Points, exact_points
 from verify.flows.solution import exact_solution
@@ -277,7 +276,7 @@ def test_a_numerical_flow_at_another_time_is_seen(monkeypatch: pytest.MonkeyPatc
     def planted(h: Any, points: Any, times: Any, columns: int, t0: Any) -> Any:
         return right(h, points, [t * (1 + Fraction(1, 10**11)) for t in times], columns, t0)
 
-    monkeypatch.setattr(points_together, "follow", planted)
+    monkeypatch.setattr(module, "follow", planted)
     with pytest.raises(NoFlowError, match=r"is wrong by .* was estimated"):
         carried(Hamiltonian.parse(SEXTIC), *cloud(0.3, 1.0), (Fraction(3),))
 

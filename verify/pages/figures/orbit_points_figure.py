@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from verify.pages.figures.panels import name_states, panels_beside
 from verify.pages.figures.svg import INK, SERIES
-from verify.scenes.results.orbits import (
+from verify.scenes.results.orbit_sections import (
     MapSections,
     PoincareResult,
     SchemeSections,

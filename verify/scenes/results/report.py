@@ -14,7 +14,7 @@ from verify.scenes.paper_figures import PaperFigure
 from verify.scenes.results.claim import ClaimResult, CriterionResult
 from verify.scenes.results.exploration import Gallery
 from verify.scenes.results.growth import GrowthLawResult
-from verify.scenes.results.orbits import PoincareResult, StroboscopicResult
+from verify.scenes.results.orbit_sections import PoincareResult, StroboscopicResult
 from verify.scenes.results.proof import EveryResult, ProofResult
 from verify.scenes.results.regions import FlowResult
 from verify.scenes.results.run import RunResult

@@ -8,7 +8,7 @@ from verify.execution.plan import Plan
 from verify.execution.study import Results, Section, Study, called, known_results
 from verify.hamiltonians.periods import is_angle
 from verify.scenes.orbit_sections import Poincare, Stroboscopic
-from verify.scenes.results.orbits import (
+from verify.scenes.results.orbit_sections import (
     MapSections,
     PoincareResult,
     SchemeSections,

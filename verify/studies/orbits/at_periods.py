@@ -18,7 +18,7 @@ from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.digits_on_demand import choose
-from verify.scenes.results.orbits import SchemeSections, StroboscopicOrbit
+from verify.scenes.results.orbit_sections import SchemeSections, StroboscopicOrbit
 from verify.studies.orbits.passes import together
 
 _MORE = 20  # digits

@@ -12,9 +12,9 @@ from fractions import Fraction
 
 from verify.arithmetic.exact import decimal, fraction, text, upper
 from verify.arithmetic.systems import mpfr
-from verify.flows.energies import energies_at
+from verify.flows.functions import energies_at
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.scenes.results.orbits import MapSections, PoincareOrbit
+from verify.scenes.results.orbit_sections import MapSections, PoincareOrbit
 from verify.scenes.results.regions import EXACT_FLOW
 from verify.studies.orbits import by_exact_flow, by_scheme
 from verify.studies.orbits.passes import Passes, Surface, together

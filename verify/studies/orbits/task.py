@@ -6,7 +6,7 @@ from verify.arithmetic import step_cost
 from verify.execution.keeping import Keeper
 from verify.execution.task import HamiltonianTask, SchemeTask
 from verify.hamiltonians.start import point_of
-from verify.scenes.results.orbits import MapSections, SchemeSections
+from verify.scenes.results.orbit_sections import MapSections, SchemeSections
 from verify.scenes.values import InitialValue, Number, Start, StepSize
 
 _TIMES = 2  # each orbit is followed with many digits

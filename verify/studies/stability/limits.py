@@ -7,6 +7,7 @@ stiffest. What bounded motion is, is told in
 """
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 
@@ -14,12 +15,17 @@ import sympy
 
 from verify.arithmetic.exact import decimal, text
 from verify.errors import InputError
+from verify.flows.orbit_search import ExactOrbit
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.start import Given, point_of, shown_of
+from verify.hamiltonians.start import Given, point_of, shown_of, start_texts
 from verify.prose import Prose, prose
+from verify.runs.run import run as run_of
 from verify.scenes.results.stability import LargestStepResult, MapCell, StabilityMapResult
-from verify.studies.stability.held import Within, held
+from verify.studies.stability.exact_motion import exact_motion
 from verify.studies.stability.nearby_linear import linear_stability
+from verify.studies.stability.run_motion import RunMotion
+from verify.studies.stability.trail import Run, State
+from verify.studies.stability.verdict_on_run import Judgement, judge
 
 _FINER = Fraction(1001, 1000)  # how near the largest step is found
 _LADDER = Fraction(119, 100)  # about 2^(1/4), between the step sizes that are looked at first
@@ -50,6 +56,62 @@ def shortened(x: Fraction | None, digits: int = 4) -> str | None:
     return None if x is None else decimal(x, digits)
 
 
+@dataclass(frozen=True)
+class _Within:
+    """What a run must not exceed, beside the exact motion's bounds: |H − H(z₀)| in parts of the
+    orbit's energy scale, and the greatest |entry| of W, which in the plane is |Λ|."""
+
+    energy_error: Fraction | None = None
+    symplectic_defect: Fraction | None = None
+
+    def holds(self, run: Run, energy_error: Fraction | None) -> bool:
+        """Of a run whose energy error is so great at most."""
+        most = self.energy_error
+        if most is not None and (energy_error is None or energy_error > most):
+            return False
+        return self.symplectic_defect is None or self._keeps_the_form(run, self.symplectic_defect)
+
+    def _keeps_the_form(self, run: Run, most: Fraction) -> bool:
+        of, start, name = run.hamiltonian, run.start, run.hamiltonian.structure.of_run
+        done = run_of(
+            of, run.scheme, q=shown_of(of, start, "q"), p=shown_of(of, start, "p"),
+            step_size=run.step_size, steps=run.steps, t0=start["t"], observables=(name,),
+        )  # fmt: skip
+        return name in done.values and abs(done.values[name]) <= most
+
+
+@dataclass(frozen=True)
+class _Held:
+    """The exact motion from one state for some time, and what is asked of runs from there.
+
+    In n degrees of freedom a bounded motion is followed once, over the whole time, for all runs.
+    """
+
+    hamiltonian: Hamiltonian
+    state: State
+    time: Fraction
+    t0: Fraction
+
+    @property
+    def exact(self) -> ExactOrbit:
+        return exact_motion(self.hamiltonian, self.state, self.time, self.t0)
+
+    def _motion(self, scheme: str, h: Fraction, steps: int) -> RunMotion:
+        run, exact = Run(self.hamiltonian, scheme, h, self.state, steps, self.t0), self.exact
+        serves = exact.has_neighbours and exact.kind in ("bounded", "driven")
+        return RunMotion(run, exact if serves else None)
+
+    def keeps(self, scheme: str, h: Fraction, steps: int, within: _Within) -> bool:
+        """Whether the float64 run keeps within the bounds."""
+        motion = self._motion(scheme, h, steps)
+        trail = motion.float64
+        return motion.stays(trail) and within.holds(motion.run, motion.worst(trail))
+
+    def judged(self, scheme: str, h: Fraction, steps: int) -> Judgement:
+        """The verdict on the run."""
+        return judge(self._motion(scheme, h, steps))
+
+
 def largest_step(
     hamiltonian: Hamiltonian,
     scheme: str,
@@ -68,8 +130,8 @@ def largest_step(
     From small steps upwards until the first that is not bounded; beyond it there may be other
     steps with bounded motion, by resonance, which are not looked for.
     """
-    point, within = point_of(hamiltonian, q, p), Within(energy_error, symplectic_defect)
-    of = held(hamiltonian, point, time, t0 or Fraction(0))
+    point, within = point_of(hamiltonian, q, p), _Within(energy_error, symplectic_defect)
+    of = _Held(hamiltonian, tuple(point.values()), time, t0 or Fraction(0))
     orbit = of.exact
     omega = orbit.frequency
     linear = _linear_step(scheme, omega)
@@ -95,9 +157,7 @@ def largest_step(
         **hamiltonian.texts,
         scheme=scheme,
         time=text(time),
-        q=shown_of(hamiltonian, point, "q"),
-        p=shown_of(hamiltonian, point, "p"),
-        t0=None if t0 is None else text(t0),
+        **start_texts(hamiltonian, point, t0),
         bounded=shortened(good),
         unbounded=shortened(bad),
         linear=shortened(linear),
@@ -155,7 +215,7 @@ def stability_map(
     point = point_of(hamiltonian, q, p)
     for value in values:
         own = hamiltonian.with_values({**dict(hamiltonian.values), parameter: value})
-        of = held(own, point, max(step_sizes) * steps, begin)
+        of = _Held(own, tuple(point.values()), max(step_sizes) * steps, begin)
         row = (of.judged(scheme, h, steps) for h in step_sizes)
         cells.append(tuple(MapCell(kind=found.kind, step=found.step) for found in row))
         linear.append(shortened(_linear_step(scheme, of.exact.frequency)))
@@ -166,9 +226,7 @@ def stability_map(
         values=tuple(map(text, values)),
         step_sizes=tuple(map(text, step_sizes)),
         steps=steps,
-        q=shown_of(hamiltonian, point, "q"),
-        p=shown_of(hamiltonian, point, "p"),
-        t0=None if t0 is None else text(t0),
+        **start_texts(hamiltonian, point, t0),
         cells=tuple(cells),
         linear=tuple(linear),
     )

@@ -17,9 +17,9 @@ import numpy as np
 from verify import arithmetic as number_systems
 from verify.arithmetic.exact import decimal, fraction, text
 from verify.arithmetic.systems import float64
-from verify.flows.energies import energies_at
+from verify.flows.functions import energies_at
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.start import Given, point_of, shown_of
+from verify.hamiltonians.start import Given, point_of, start_texts
 from verify.kernels.many_points import PointMap
 from verify.kernels.step.computation import step_map_of
 from verify.scenes.observables import carries_defect
@@ -140,9 +140,7 @@ def orbit_map(
         axes=axes,
         across=tuple(map(text, across)),
         upwards=tuple(map(text, upwards)),
-        q=shown_of(hamiltonian, point, "q"),
-        p=shown_of(hamiltonian, point, "p"),
-        t0=None if t0 is None else text(t0),
+        **start_texts(hamiltonian, point, t0),
         step_size=text(step_size),
         steps=steps,
         beyond=text(beyond),

@@ -4,7 +4,7 @@ from fractions import Fraction
 from typing import Any
 
 from verify.arithmetic.exact import plain, text
-from verify.hamiltonians.start import shown_of
+from verify.hamiltonians.start import start_texts
 from verify.prose import Number, Prose, prose
 from verify.scenes.results.stability import StabilityResult
 from verify.studies.stability.exact_motion import ExactMotion
@@ -25,9 +25,7 @@ def run_result(run: Run) -> StabilityResult:
         scheme=run.scheme,
         step_size=text(run.step_size),
         steps=run.steps,
-        q=shown_of(exact, point, "q"),
-        p=shown_of(exact, point, "p"),
-        t0=text(run.t0) if exact.time_dependent else None,
+        **start_texts(exact, point, run.t0 if exact.time_dependent else None),
         kind=judged.kind,
         step=judged.step,
         rate=shortened(judged.rate, 3),

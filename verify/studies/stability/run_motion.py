@@ -14,7 +14,7 @@ from typing import Any
 from verify import arithmetic as number_systems
 from verify.arithmetic.exact import fraction, quotient
 from verify.arithmetic.number_system import Arithmetic
-from verify.flows.energies import energies_at
+from verify.flows.functions import energies_at
 from verify.flows.orbit_search import ExactOrbit
 from verify.studies.stability.exact_motion import Sensitivity, distance, exact_motion, moved
 from verify.studies.stability.trail import Point, Run, Trail, follow, follow_precisely

@@ -14,7 +14,7 @@ from verify.execution.executors import THIS_PROCESS
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.systems import get
 from verify.pages.sections.scene.poincare import SECTION
-from verify.scenes.results.orbits import MapSections, PoincareResult
+from verify.scenes.results.orbit_sections import MapSections, PoincareResult
 from verify.scenes.results.regions import EXACT_FLOW
 from verify.scenes.results.report import SceneResult
 from verify.scenes.scene import load_scene

@@ -12,7 +12,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.periods import check_period, is_angle
 from verify.pages.sections.scene.stroboscopic import SECTION
 from verify.runs.run import run
-from verify.scenes.results.orbits import StroboscopicResult
+from verify.scenes.results.orbit_sections import StroboscopicResult
 from verify.scenes.results.report import SceneResult
 from verify.scenes.scene import load_scene
 from verify.studies.kinds.orbits import STUDY

@@ -10,7 +10,7 @@ from click.testing import CliRunner
 
 import verify
 from verify.commands.main import cli
-from verify.flows import points_together as module_of_points
+from verify.flows import points as module_of_points
 from verify.flows.extrapolation import NoFlowError
 from verify.flows.points import exact_points
 from verify.flows.solution import solution_from
