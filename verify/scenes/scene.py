@@ -204,6 +204,11 @@ class Scene(Frozen):
                  if name not in _IDENTITY}  # fmt: skip
         return self.model_copy(update=empty | sections)
 
+    @property
+    def begin(self) -> Fraction | None:
+        """t0 where H depends on time; else None."""
+        return self.t0 if self.exact_hamiltonian().time_dependent else None
+
     def hamiltonian_fields(self) -> dict[str, Any]:
         """H as a task has it: its formula, and its parameter values exactly."""
         exact = self.exact_hamiltonian()

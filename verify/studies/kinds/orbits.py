@@ -20,11 +20,10 @@ from verify.studies.orbits.task import PoincareTask, StroboscopicTask
 
 
 def _at_periods(scene: Scene, asked: Stroboscopic) -> Iterator[StroboscopicTask]:
-    timed = scene.exact_hamiltonian().time_dependent
     for scheme in asked.schemes or scene.schemes:
         yield StroboscopicTask(
             **scene.hamiltonian_fields(), scheme=scheme,
-            initial_values=asked.initial_values, t0=scene.t0 if timed else None,
+            initial_values=asked.initial_values, t0=scene.begin,
             step_size=asked.step_size, steps=asked.steps, periods=asked.periods,
             digits=asked.digits,
         )  # fmt: skip
@@ -53,7 +52,7 @@ def _need(plan: Plan, scene: Scene) -> None:
 
 
 def _periods(scene: Scene, results: Results) -> Iterator[StroboscopicResult]:
-    exact = scene.exact_hamiltonian()
+    begin = None if scene.begin is None else text(scene.begin)
     for asked in scene.stroboscopic:
         sections = known_results(SchemeSections, _at_periods(scene, asked), results)
         if sections:
@@ -61,8 +60,8 @@ def _periods(scene: Scene, results: Results) -> Iterator[StroboscopicResult]:
                 period=text(asked.period),
                 step_size=text(asked.step_size),
                 periods=asked.periods,
-                t0=text(scene.t0) if exact.time_dependent else None,
-                q_is_angle=is_angle(exact),
+                t0=begin,
+                q_is_angle=is_angle(scene.exact_hamiltonian()),
                 sections=tuple(sections),
                 source=asked.source,
             )

@@ -9,7 +9,7 @@ begins and ends within one step, by an orbit that touches the surface, is not se
 import contextlib
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import Any
 
 from verify.arithmetic.systems import mpfr
@@ -44,17 +44,12 @@ def passes(
     z = [own.number(start[name]) for name in surface.names]
     value, found, done = own.number(surface.value), [], 0
     with own.context(), contextlib.suppress(OutOfRangeError):
-        for before, after in pairwise(_with_first(z, by.walk(z, steps))):
+        for before, after in pairwise(chain([z], by.walk(z, steps))):
             done += 1
             if surface.height(before, value) < 0 <= surface.height(after, value):
                 at = by.on_surface(before, surface, value)
                 found.append({n: own.exact(x) for n, x in zip(surface.names, at, strict=True)})
     return Passes(found, left=done < steps)
-
-
-def _with_first(z: State, others: Iterator[State]) -> Iterator[State]:
-    yield z
-    yield from others
 
 
 class _Steps:

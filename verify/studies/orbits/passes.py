@@ -31,7 +31,7 @@ class Surface:
 
 @dataclass(frozen=True)
 class Passes:
-    """The states at which an orbit passes, in their order; `left`: it did not reach its end."""
+    """States at which an orbit is looked at, in their order; `left`: it did not reach its end."""
 
     states: Sequence[Mapping[str, Fraction]]
     left: bool = False

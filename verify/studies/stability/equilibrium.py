@@ -136,19 +136,11 @@ def linear_at_equilibrium(
         raise InputError("step_sizes", NOT_GIVEN, problem)
     interval, frequencies = linear_stability(scheme) if splits else None, _frequencies(matrix)
     found = LinearAtEquilibrium(scheme, hamiltonian, point, tuple(frequencies), interval)
-    decided: dict[Fraction, bool | None] = {}
-    for h in step_sizes:
-        step = None if found.allows(h) else _step(scheme, hamiltonian, hessian, h)
-        decided[h] = True if found.allows(h) else None if step is None else stays_bounded(step)
+    decided: dict[Fraction, bool | None] = dict.fromkeys(step_sizes, True)
+    for h in (h for h in step_sizes if not found.allows(h)):
+        step = step_matrix(scheme, _quadratic(hamiltonian, hessian), matrix, h)
+        decided[h] = None if step is None else stays_bounded(step)
     return replace(found, decided=decided)
-
-
-def _step(
-    scheme: str, hamiltonian: Hamiltonian, hessian: flint.fmpq_mat, h: Fraction
-) -> flint.fmpq_mat | None:
-    """The matrix of a step of size h."""
-    made = _quadratic(hamiltonian, hessian)
-    return step_matrix(scheme, made, _field_matrix(hessian), h)
 
 
 def hessian_at(hamiltonian: Hamiltonian, point: Mapping[str, Fraction]) -> flint.fmpq_mat:

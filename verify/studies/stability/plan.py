@@ -35,15 +35,9 @@ def need_stability(plan: Plan, scene: Scene) -> None:
         plan.need(task, f"{called(scene)}: {what}")
 
 
-def _given(scene: Scene) -> dict[str, Any]:
-    """H, and when its runs start where it depends on time."""
-    timed = scene.exact_hamiltonian().time_dependent
-    return scene.hamiltonian_fields() | ({"t0": scene.t0} if timed else {})
-
-
 def stability_tasks(scene: Scene) -> Iterator[tuple[str, StabilityTask]]:
     """Each run with its name: scene, section, scheme, step size and which initial value."""
-    given = _given(scene) if scene.stability else {}
+    given = scene.hamiltonian_fields() | {"t0": scene.begin} if scene.stability else {}
     for section in scene.stability:
         for scheme in section.schemes or scene.schemes:
             for k, at in enumerate(section.initial_values, start=1):
@@ -60,7 +54,7 @@ def stability_tasks(scene: Scene) -> Iterator[tuple[str, StabilityTask]]:
 
 def _of_schemes(scene: Scene, sections: Sequence[Asked]) -> Iterator[tuple[Asked, dict[str, Any]]]:
     """Each section with each of its schemes, and what its task begins with."""
-    given = _given(scene) if sections else {}
+    given = scene.hamiltonian_fields() | {"t0": scene.begin} if sections else {}
     for section in sections:
         start = {"q": section.initial_value.q, "p": section.initial_value.p}
         for scheme in section.schemes or scene.schemes:
