@@ -14,7 +14,7 @@ from verify.flows import extrapolation_of_many as flow_of_many
 from verify.flows import points as module
 from verify.flows.extrapolation import Flow, NoFlowError
 from verify.flows.points import Points, exact_points
-from verify.flows.solution import exact_solution
+from verify.flows.solution import exact_solution, solution_from
 from verify.hamiltonians import known_flows, systems
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -29,6 +29,7 @@ PENDULUM = "p**2/2 - cos(q)"
 SOFT = "p**2/2 + q**2/2 - q**4/4"
 HARD = "p**2/2 + q**2/2 + q**4/4"
 SEXTIC = "p**2/2 + q**6/6"
+HENON_HEILES = systems.get("henon-heiles").hamiltonian({})
 
 
 def cloud(p: float, q: float, count: int = 12, radius: float = 1 / 32) -> tuple[Any, Any]:
@@ -54,6 +55,11 @@ def largest_error(h: Hamiltonian, p: Any, q: Any, times: Any, found: Points) -> 
     return float(worst)
 
 
+def cloud_in_degrees(count: int = 5) -> dict[str, Any]:
+    rng = np.random.default_rng(3)
+    return {name: rng.uniform(-0.2, 0.2, count) for name in HENON_HEILES.coordinates}
+
+
 def size(*arrays: Any) -> float:
     return max(float(np.abs(x).max()) for x in arrays)
 
@@ -74,6 +80,17 @@ def test_a_cloud_about_each_example_is_carried_within_the_bound(name: str, regim
     assert found.bound <= most * max(size(p, q, found.points["p"], found.points["q"]), 1 / 32)
     assert found.points["p"].shape == found.points["q"].shape == (len(TIMES), len(p))
     assert np.array_equal(found.points["p"][2], p)
+
+
+def test_in_n_degrees_of_freedom_many_points_are_where_each_is() -> None:
+    given, time = cloud_in_degrees(), Fraction(7, 2)
+    found = exact_points(HENON_HEILES, given, [time])
+    assert found.bound < 1e-13
+    for i in range(5):
+        start = {name: Fraction(float(x[i])) for name, x in given.items()}
+        true = solution_from(HENON_HEILES, start, time, 25)
+        for name, x in true.point.items():
+            assert abs(Fraction(float(found.points[name][0][i])) - x) <= Fraction(found.bound)
 
 
 LONG_LIVED = [
@@ -169,6 +186,9 @@ def test_a_numerical_flow_that_ends_names_the_point() -> None:
     h = Hamiltonian.parse("p**2/2 - q**6/6")
     with pytest.raises(NoFlowError, match=r"^point 1: .* at about t = "):
         carried(h, np.array([0.0, 1.0]), np.array([0.1, 1.0]), (Fraction(5),))
+    escaping = {**cloud_in_degrees(1), "q2": np.array([5.0])}
+    with pytest.raises(NoFlowError, match="point 0"):
+        exact_points(HENON_HEILES, escaping, [Fraction(50)])
 
 
 def test_what_leaves_float64_is_said_to() -> None:
@@ -270,7 +290,17 @@ def by_numerical_flow(h: Hamiltonian, p: Any, q: Any, time: Fraction, found: Poi
     return max(errors) <= found.bound + Fraction(1, 10**20)
 
 
-def test_a_numerical_flow_at_another_time_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    ("h", "points"),
+    [
+        (Hamiltonian.parse(SEXTIC), dict(zip("pq", cloud(0.3, 1.0), strict=True))),
+        (HENON_HEILES, cloud_in_degrees()),
+    ],
+    ids=["plane", "degrees"],
+)
+def test_a_numerical_flow_at_another_time_is_seen(
+    h: Hamiltonian, points: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
     right = flow_of_many.follow
 
     def planted(h: Any, points: Any, times: Any, columns: int, t0: Any) -> Any:
@@ -278,7 +308,7 @@ def test_a_numerical_flow_at_another_time_is_seen(monkeypatch: pytest.MonkeyPatc
 
     monkeypatch.setattr(module, "follow", planted)
     with pytest.raises(NoFlowError, match=r"is wrong by .* was estimated"):
-        carried(Hamiltonian.parse(SEXTIC), *cloud(0.3, 1.0), (Fraction(3),))
+        exact_points(h, points, (Fraction(3),))
 
 
 def test_a_rational_is_rounded_once_to_the_long_double() -> None:

@@ -4,16 +4,12 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
-import numpy as np
 import pytest
 from click.testing import CliRunner
 
 import verify
 from verify.commands.main import cli
-from verify.flows import points as module_of_points
-from verify.flows.extrapolation import NoFlowError
 from verify.flows.points import exact_points
-from verify.flows.solution import solution_from
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.systems import get
 from verify.scenes.region_sections import PlacedShape
@@ -200,39 +196,3 @@ def test_the_command_takes_them_too() -> None:
     assert "circle at (q1, p1) = (0, 0.4), scale 0.1, p2 = 0, q2 = 0.1" in result.output
     assert "∮ p·dq changes by" in result.output
     assert "NOT THE SAME" not in result.output
-
-
-# -- the exact flow of many points ------------------------------------------------------------
-
-
-def cloud(count: int = 5) -> dict[str, Any]:
-    rng = np.random.default_rng(3)
-    return {name: rng.uniform(-0.2, 0.2, count) for name in HENON_HEILES.coordinates}
-
-
-def test_the_exact_flow_of_many_points_is_that_of_each() -> None:
-    given, time = cloud(), Fraction(7, 2)
-    found = exact_points(HENON_HEILES, given, [time])
-    assert found.bound < 1e-13
-    for i in range(5):
-        start = {name: Fraction(float(x[i])) for name, x in given.items()}
-        true = solution_from(HENON_HEILES, start, time, 25)
-        for name, x in true.point.items():
-            assert abs(Fraction(float(found.points[name][0][i])) - x) <= Fraction(found.bound)
-
-
-def test_a_numerical_flow_at_another_time_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    right = module_of_points.follow
-
-    def planted(h: Any, z: Any, times: Any, columns: int, t0: Any) -> Any:
-        return right(h, z, [t * (1 + Fraction(1, 10**11)) for t in times], columns, t0)
-
-    monkeypatch.setattr(module_of_points, "follow", planted)
-    with pytest.raises(NoFlowError, match=r"is wrong by .* was estimated"):
-        exact_points(HENON_HEILES, cloud(), [Fraction(3)])
-
-
-def test_a_point_that_blows_up_is_named() -> None:
-    given = {**cloud(1), "q2": np.array([5.0])}
-    with pytest.raises(NoFlowError, match="point 0"):
-        exact_points(HENON_HEILES, given, [Fraction(50)])
