@@ -57,40 +57,20 @@ def shortened(x: Fraction | None, digits: int = 4) -> str | None:
 
 
 @dataclass(frozen=True)
-class _Within:
-    """What a run must not exceed, beside the exact motion's bounds: |H − H(z₀)| in parts of the
-    orbit's energy scale, and the greatest |entry| of W, which in the plane is |Λ|."""
-
-    energy_error: Fraction | None = None
-    symplectic_defect: Fraction | None = None
-
-    def holds(self, run: Run, energy_error: Fraction | None) -> bool:
-        """Of a run whose energy error is so great at most."""
-        most = self.energy_error
-        if most is not None and (energy_error is None or energy_error > most):
-            return False
-        return self.symplectic_defect is None or self._keeps_the_form(run, self.symplectic_defect)
-
-    def _keeps_the_form(self, run: Run, most: Fraction) -> bool:
-        of, start, name = run.hamiltonian, run.start, run.hamiltonian.structure.of_run
-        done = run_of(
-            of, run.scheme, q=shown_of(of, start, "q"), p=shown_of(of, start, "p"),
-            step_size=run.step_size, steps=run.steps, t0=start["t"], observables=(name,),
-        )  # fmt: skip
-        return name in done.values and abs(done.values[name]) <= most
-
-
-@dataclass(frozen=True)
 class _Held:
     """The exact motion from one state for some time, and what is asked of runs from there.
 
     In n degrees of freedom a bounded motion is followed once, over the whole time, for all runs.
+    What a run must not exceed beside the motion's bounds: |H − H(z₀)| in parts of the orbit's
+    energy scale, and the greatest |entry| of W, which in the plane is |Λ|.
     """
 
     hamiltonian: Hamiltonian
     state: State
     time: Fraction
     t0: Fraction
+    energy_error: Fraction | None = None
+    symplectic_defect: Fraction | None = None
 
     @property
     def exact(self) -> ExactOrbit:
@@ -101,15 +81,28 @@ class _Held:
         serves = exact.has_neighbours and exact.kind in ("bounded", "driven")
         return RunMotion(run, exact if serves else None)
 
-    def keeps(self, scheme: str, h: Fraction, steps: int, within: _Within) -> bool:
-        """Whether the float64 run keeps within the bounds."""
-        motion = self._motion(scheme, h, steps)
-        trail = motion.float64
-        return motion.stays(trail) and within.holds(motion.run, motion.worst(trail))
+    def keeps(self, scheme: str, h: Fraction, steps: int) -> bool:
+        """Whether the float64 run keeps within the bounds, and within what is asked beside them."""
+        motion, most = self._motion(scheme, h, steps), self.energy_error
+        if not motion.stays(motion.float64):
+            return False
+        worst = motion.worst(motion.float64)
+        if most is not None and (worst is None or worst > most):
+            return False
+        return self.symplectic_defect is None or _keeps_form(motion.run, self.symplectic_defect)
 
     def judged(self, scheme: str, h: Fraction, steps: int) -> Judgement:
         """The verdict on the run."""
         return judge(self._motion(scheme, h, steps))
+
+
+def _keeps_form(run: Run, most: Fraction) -> bool:
+    of, start, name = run.hamiltonian, run.start, run.hamiltonian.structure.of_run
+    done = run_of(
+        of, run.scheme, q=shown_of(of, start, "q"), p=shown_of(of, start, "p"),
+        step_size=run.step_size, steps=run.steps, t0=start["t"], observables=(name,),
+    )  # fmt: skip
+    return name in done.values and abs(done.values[name]) <= most
 
 
 def largest_step(
@@ -130,8 +123,9 @@ def largest_step(
     From small steps upwards until the first that is not bounded; beyond it there may be other
     steps with bounded motion, by resonance, which are not looked for.
     """
-    point, within = point_of(hamiltonian, q, p), _Within(energy_error, symplectic_defect)
-    of = _Held(hamiltonian, tuple(point.values()), time, t0 or Fraction(0))
+    point, begin = point_of(hamiltonian, q, p), t0 or Fraction(0)
+    state = tuple(point.values())
+    of = _Held(hamiltonian, state, time, begin, energy_error, symplectic_defect)
     orbit = of.exact
     omega = orbit.frequency
     linear = _linear_step(scheme, omega)
@@ -139,7 +133,7 @@ def largest_step(
 
     def stays(h: Fraction) -> bool:
         steps = time // h
-        return steps >= 1 and of.keeps(scheme, h, steps, within)
+        return steps >= 1 and of.keeps(scheme, h, steps)
 
     if orbit.kind == "escapes":
         detail = prose("the exact solution ", orbit.summary)
