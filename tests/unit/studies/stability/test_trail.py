@@ -98,7 +98,7 @@ def test_two_runs_part_where_a_plain_comparison_says() -> None:
     one, other = follow(case, coarse), follow(case, fine)
 
     def apart(x: Point, y: Point) -> bool:
-        return abs(x.p - y.p) > Fraction(1, 10)
+        return abs(x.state[0] - y.state[0]) > Fraction(1, 10)
 
     found = first_apart(one, other, apart)
     assert found is not None
@@ -110,7 +110,7 @@ def test_two_runs_part_where_a_plain_comparison_says() -> None:
 def test_two_runs_that_stay_together_part_nowhere() -> None:
     fine = mpfr.at_bits(80)
     trail = follow(GROWING, fine)
-    assert first_apart(trail, trail, lambda x, y: abs(x.p - y.p) > 0) is None
+    assert first_apart(trail, trail, lambda x, y: abs(x.state[0] - y.state[0]) > 0) is None
 
 
 def test_without_a_compiler_only_so_many_steps_are_done_and_it_says_so(
