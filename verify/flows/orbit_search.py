@@ -245,12 +245,9 @@ class OrbitSearch:
 
     def _ends(self) -> tuple[State, State]:
         """The middle of the points seen, and how far they reach from it."""
-        middle, reach = [], []
-        for x in list(zip(*self.points, strict=True))[:2]:
-            low, high = min(x), max(x)
-            middle.append((low + high) / 2)
-            reach.append((high - low) / 2)
-        return (middle[0], middle[1]), (reach[0], reach[1])
+        ends = [(min(x), max(x)) for x in list(zip(*self.points, strict=True))[:2]]
+        middle = tuple((low + high) / 2 for low, high in ends)
+        return middle, tuple((high - low) / 2 for low, high in ends)
 
     def found(
         self,
@@ -265,17 +262,17 @@ class OrbitSearch:
             fastest = [max((abs(r[k]) for r in self.rates), default=zero) for k in (0, 1)]
             stiffest = max((r[2] for r in self.rates), default=zero)
         # An orbit that has hardly moved in that time is measured by where it is.
-        reach = [
+        reach = tuple(
             exact(r) if exact(r) > abs(x) / _STILL else abs(x)
             for r, x in zip(reached, self.start, strict=True)
-        ]
+        )
         # H_p = q' and H_q = −p': H changes by about so much across the orbit.
         scale = (exact(fastest[1]) * reach[0] + exact(fastest[0]) * reach[1]) / 2
         return ExactOrbit(
             kind=kind,
             summary=read_prose(summary),
-            centre=(exact(centre[0]), exact(centre[1])),
-            reach=(reach[0], reach[1]),
+            centre=tuple(map(exact, centre)),
+            reach=reach,
             turns=self.turns(reached, shift),
             scale=scale,
             stiffness=exact(stiffest),
@@ -283,16 +280,13 @@ class OrbitSearch:
             more_digits=self.more_digits,
         )
 
-    def turns(self, reached: State, shift: Sequence[Number]) -> tuple[bool, bool]:
+    def turns(self, reached: State, shift: Sequence[Number]) -> tuple[bool, ...]:
         """In which coordinates it goes round: that of its own shift; in time, where it has gone
         further than a period of H."""
-        p, q = (
-            any(2 * reached[k] > abs(s[k]) > 0 for s in self.shifts)
-            if self.timed
-            else bool(shift[k])
-            for k in (0, 1)
-        )
-        return p, q
+        if not self.timed:
+            return tuple(map(bool, shift))
+        farthest = enumerate(reached)
+        return tuple(any(2 * x > abs(s[k]) > 0 for s in self.shifts) for k, x in farthest)
 
 
 def initial_value_digits(start: tuple[Fraction, Fraction]) -> int:
