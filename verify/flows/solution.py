@@ -136,7 +136,8 @@ def solution_from(
     solutions = []
     for part, names in uncoupled(hamiltonian):
         own = {name: point[old] for name, old in zip(part.coordinates, names, strict=True)}
-        solved = _in_closed_form(part, own, time, digits, t0)
+        known = _of_plane if part.planar else _ellipse
+        solved = known(part, own, time, digits, t0)
         solutions.append(solved or numerical_solution(part, own, time, digits, t0))
         found |= dict(zip(names, solutions[-1].point.values(), strict=True))
     return Solution(
@@ -147,51 +148,43 @@ def solution_from(
     )
 
 
-def _in_closed_form(
-    hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int, t0: Fraction
-) -> Solution | None:
-    """Where one is known; None where none is."""
-    of_kind = _of_plane if hamiltonian.planar else _ellipse
-    found = of_kind(hamiltonian, tuple(point.values()), time, digits, t0)
-    if found is None:
-        return None
-    (after, bound), method = found
+def _in_closed_form(point: Point, evaluation: closed_form.Evaluation, method: str) -> Solution:
+    after, bound = evaluation
     return Solution(dict(zip(point, after, strict=True)), bound, method)
 
 
-_Found = tuple[closed_form.Evaluation, str]  # and the method
-
-
 def _of_plane(
-    hamiltonian: Hamiltonian, start: closed_form.Numbers, time: Fraction, digits: int, t0: Fraction
-) -> _Found | None:
-    p, q = start
+    hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int, t0: Fraction
+) -> Solution | None:
+    """In closed form, where one is known."""
+    p, q = start = tuple(point.values())
     if hamiltonian.time_dependent:
         state = known_flows.state_in_time(hamiltonian, (p, q, t0), time)
-        return None if state is None else (closed_form.enclosed(state, start, digits), _FORCED)
+        if state is None:
+            return None
+        return _in_closed_form(point, closed_form.enclosed(state, start, digits), _FORCED)
     known = known_flows.closed_form(hamiltonian, p, q)
     rest = known.rest if known else at_rest(hamiltonian, canonical_field(hamiltonian)[0], (p, q))
     if rest:
-        return (start, Fraction(0)), ITSELF
+        return Solution(point, Fraction(0), ITSELF)
     if known is None:
         return None
-    return closed_form.evaluate(known, start, time, digits), known.method
+    return _in_closed_form(point, closed_form.evaluate(known, start, time, digits), known.method)
 
 
 def _ellipse(
-    hamiltonian: Hamiltonian, start: closed_form.Numbers, time: Fraction, digits: int, t0: Fraction
-) -> _Found | None:
-    """Where H is Kepler's and the orbit is bound."""
+    hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int, t0: Fraction
+) -> Solution | None:
+    """In closed form, where H is Kepler's and the orbit is bound."""
     mu = unless_long(lambda: _strength(hamiltonian), None, MOST)
     if mu is None:
         return None
-    p1, p2, q1, q2 = start
+    p1, p2, q1, q2 = start = tuple(point.values())
     q, p = (q1, q2), (p1, p2)
     if not kepler_motion.is_ellipse(mu, q, p):
         return None
-    return closed_form.enclosed(
-        lambda: kepler_motion.after(mu, q, p, time), start, digits
-    ), _ELLIPSE
+    after = closed_form.enclosed(lambda: kepler_motion.after(mu, q, p, time), start, digits)
+    return _in_closed_form(point, after, _ELLIPSE)
 
 
 @lru_cache(maxsize=64)
