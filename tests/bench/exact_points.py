@@ -38,7 +38,7 @@ def main() -> None:
         together = []
         for _ in range(REPEATS):
             began = time.perf_counter()
-            found = exact_points(h, p, q, times)
+            found = exact_points(h, {"p": p, "q": q}, times)
             together.append(time.perf_counter() - began)
         began = time.perf_counter()
         for x, y in zip(p[:part], q[:part], strict=True):

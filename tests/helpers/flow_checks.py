@@ -46,8 +46,8 @@ class Case:
         return plain(self.system.formula).subs(put)
 
     def at(self, time: Fraction, digits: int = 80) -> tuple[Fraction, Fraction]:
-        found = evaluate(self.motion, (self.p, self.q), time, digits)
-        return found.p, found.q
+        (p, q), _ = evaluate(self.motion, (self.p, self.q), time, digits)
+        return p, q
 
     def state(self, time: Fraction) -> tuple[Any, Any]:
         """The middles of the balls at a time, one the motion has, as mpf."""

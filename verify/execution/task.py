@@ -105,15 +105,8 @@ class SchemeTask(HamiltonianTask):
     scheme: str
 
 
-class InitialValueTask(SchemeTask):
-    """A task on one scheme from one initial value."""
-
-    q: Number
-    p: Number
-
-
 class StartTask(SchemeTask):
-    """The same in any number of degrees of freedom."""
+    """A task on one scheme from one initial value, in any number of degrees of freedom."""
 
     q: Coordinates
     p: Coordinates

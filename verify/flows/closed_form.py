@@ -5,7 +5,6 @@ lost: near a separatrix, after a long time, close to a blow-up. Then the precisi
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import TypeVar
 
@@ -16,7 +15,7 @@ from verify.arithmetic.exact import plain
 from verify.arithmetic.flint_precision import working_precision
 from verify.arithmetic.number_system import bits_for
 from verify.flows.extrapolation import NoFlowError
-from verify.hamiltonians.motion import Motion, State, exactly
+from verify.hamiltonians.motion import Motion, exactly
 
 MOST_DIGITS = 10_000
 _MOST_PRECISION = 2 * bits_for(MOST_DIGITS)
@@ -25,32 +24,24 @@ _FINER = 8  # bits of a value beyond its digits
 _MOST_BITS = 1 << 20  # of exponents: a state beyond it is of no use to anyone
 _TOLD = 12  # digits of a time at which a solution ends
 
-Start = tuple[Fraction, Fraction]  # p, q
+Numbers = Sequence[Fraction]  # p, q; p1 … pn, q1 … qn
+Evaluation = tuple[Numbers, Fraction]  # with a bound of the error of each, which is certified
 T = TypeVar("T")
 
 
-@dataclass(frozen=True)
-class Evaluation:
-    """(p, q) with a bound of the error of each, which is certified."""
-
-    p: Fraction
-    q: Fraction
-    bound: Fraction
-
-
-def evaluate(motion: Motion, start: Start, time: Fraction, digits: int) -> Evaluation:
-    """φ_time(start), its bound at most 10^−digits times the largest of |p|, |q| at both ends.
+def evaluate(motion: Motion, start: Numbers, time: Fraction, digits: int) -> Evaluation:
+    """φ_time(start), its bound at most 10^−digits times the largest coordinate at both ends.
 
     Raises NoFlowError where the solution blows up before, and where the digits are not reached.
     """
     if motion.rest or time == 0:
-        return Evaluation(*start, Fraction(0))
+        return start, Fraction(0)
     ends_after(motion, time)
     at = exactly(time)
     return enclosed(lambda: motion.state(arb(at)), start, digits)
 
 
-def enclosed(state: Callable[[], State], start: Start, digits: int) -> Evaluation:
+def enclosed(state: Callable[[], Sequence[arb]], start: Numbers, digits: int) -> Evaluation:
     """What the balls of `state` hold, with a bound as `evaluate` has it; NoFlowError as there."""
     least = exactly(max(map(abs, start)))
     return until(lambda: _on_grid(state(), arb(least), digits), digits)
@@ -121,25 +112,8 @@ def ends_after(motion: Motion, time: Fraction) -> None:
         raise NoFlowError(f"the exact solution blows up at t = {'−' if time < 0 else ''}`{told}`")
 
 
-def many_on_grid(
-    state: Sequence[arb], start: Sequence[Fraction], digits: int
-) -> tuple[list[Fraction], Fraction] | None:
-    """So many numbers on a grid of the digits asked for, relative to the largest of them and of the
-    start, with a bound of their errors; None where their balls are wider."""
-    least = arb(exactly(max(map(abs, start))))
-    return _grid(state, least, digits)
-
-
-def _on_grid(state: State, least: arb, digits: int) -> Evaluation | None:
+def _on_grid(state: Sequence[arb], least: arb, digits: int) -> Evaluation | None:
     """The state on a grid of the digits asked for, where its balls are no wider."""
-    found = _grid(state, least, digits)
-    if found is None:
-        return None
-    (p, q), bound = found
-    return Evaluation(p, q, bound)
-
-
-def _grid(state: Sequence[arb], least: arb, digits: int) -> tuple[list[Fraction], Fraction] | None:
     if not all(x.is_finite() for x in state):
         return None
     scale = least

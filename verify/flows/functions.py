@@ -7,10 +7,14 @@ variable, which takes a tenth to a third off a step of several coordinates.
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any
 
 from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.number_system import Arithmetic
+from verify.arithmetic.systems import mpfr
+from verify.hamiltonians.canonical_field import energy_of
+from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.step.lowering import Lowering
 from verify.kernels.step.program import Evaluator, Program
 
@@ -25,19 +29,34 @@ def functions_at(
     return Written.of(arithmetic, elements, names).at()
 
 
-def defined_values(mpfr: Arithmetic, at: Function, columns: Sequence[Sequence[Any]]) -> list[Any]:
+def defined_values(own: Arithmetic, at: Function, columns: Sequence[Sequence[Any]]) -> list[Any]:
     """A function's one value at points, given by each coordinate's numbers: Fractions, or what
     gmpy2 adds to its own. None where it has none there, or one too large."""
-    zero = mpfr.number(Fraction(0))
+    zero = own.number(Fraction(0))
     try:
-        with mpfr.context():
+        with own.context():
             found = [x for (x,) in map(at, *([x + zero for x in column] for column in columns))]
     except (ArithmeticError, ValueError):  # at one of them: at which, each says by itself
         points = list(zip(*columns, strict=True))
         if len(points) == 1:
             return [None]
-        return [x for z in points for x in defined_values(mpfr, at, [[x] for x in z])]
-    return [x if mpfr.finite(x) else None for x in found]
+        return [x for z in points for x in defined_values(own, at, [[x] for x in z])]
+    return [x if own.finite(x) else None for x in found]
+
+
+def energies_at(
+    hamiltonian: Hamiltonian, digits: int, columns: Sequence[Sequence[Any]]
+) -> list[Any]:
+    """H to so many digits at points, given by each coordinate's numbers, as `defined_values` has
+    them: numbers of MPFR, or None where it is not defined or too large."""
+    return defined_values(*_energy(hamiltonian, digits), columns)
+
+
+@lru_cache(maxsize=64)
+def _energy(hamiltonian: Hamiltonian, digits: int) -> tuple[Arithmetic, Function]:
+    """What H is evaluated in, and H as a function of the coordinates; runs of one H share it."""
+    arithmetic = mpfr.make(digits)
+    return arithmetic, functions_at(arithmetic, [energy_of(hamiltonian)], hamiltonian.coordinates)
 
 
 @dataclass(frozen=True)

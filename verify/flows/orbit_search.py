@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Literal
+from typing import ClassVar, Literal
 
+from verify.arithmetic.systems import mpfr
 from verify.flows.closed_orbit import shifts
 from verify.flows.extrapolation import Flow, NoFlowError, Number, State
 from verify.flows.functions import functions_at
@@ -23,8 +24,13 @@ _HALVINGS = 1100  # from any step size of float64's range to any other
 _FASTER = 10**9  # a step that has to be so many times shorter than before: the orbit blows up
 _STILL = 10**12
 _OUTWARDS = 30  # steps in a row of an orbit that is leaving, at least
+_OMEGA_DIGITS = 20
 
-Kind = Literal["closed", "rotates", "at rest", "open", "driven", "escapes", "unknown"]
+Coordinates = tuple[Fraction, ...]  # p, q; p1 … pn, q1 … qn
+Kind = Literal[
+    "closed", "rotates", "at rest", "open", "driven", "bounded", "escapes", "unknown",
+    "not followed",
+]  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -36,17 +42,33 @@ class ExactOrbit:
     its end (unknown); `summary` says more.
     `centre` and `reach` of p and q; `turns`: the coordinates that H is periodic in and the orbit
     runs through, in which there is no bound. `scale`: of the energy. `stiffness`: the greatest ω² =
-    det Hess H on the orbit; `period`: that of a closed one, about.
+    det Hess H on the orbit; `period`: that of a closed one, about. `more_digits`: those that z₀ is
+    given with, beyond those of ordinary numbers.
+
+    `has_neighbours`: whether it is followed beside neighbours, which tell how fast they part, in
+    place of whether it closes.
     """
 
     kind: Kind
     summary: Prose
-    centre: tuple[Fraction, Fraction]
-    reach: tuple[Fraction, Fraction]
-    turns: tuple[bool, bool]
+    centre: Coordinates
+    reach: Coordinates
+    turns: tuple[bool, ...]
     scale: Fraction
-    stiffness: Fraction
+    stiffness: Fraction = Fraction(0)
     period: Fraction | None = None
+    more_digits: int = 0
+    has_neighbours: ClassVar[bool] = False
+
+    @property
+    def frequency(self) -> Fraction:
+        """The greatest ω on the orbit, to some 20 digits; 0 where nothing oscillates."""
+        if self.stiffness <= 0:
+            return Fraction(0)
+        arithmetic = mpfr.make(_OMEGA_DIGITS)
+        with arithmetic.context():
+            omega = arithmetic.functions["sqrt"](arithmetic.number(self.stiffness))
+        return arithmetic.exact(omega)
 
 
 class OrbitSearch:
@@ -62,7 +84,8 @@ class OrbitSearch:
         ring = field.ring
         h_pp, h_pq = diff(speed, "p"), diff(speed, "q")
         stiffness = ring.reduce(-h_pp * diff(force, "q") - h_pq * h_pq)
-        self.flow = Flow(field, _DIGITS + initial_value_digits(start))
+        self.more_digits = initial_value_digits(start)
+        self.flow = Flow(field, _DIGITS + self.more_digits)
         self.arithmetic = self.flow.arithmetic
         elements = [(ring, x) for x in (force, speed, stiffness, field.energy)]
         self.at = functions_at(self.arithmetic, elements, self.flow.names)
@@ -222,12 +245,9 @@ class OrbitSearch:
 
     def _ends(self) -> tuple[State, State]:
         """The middle of the points seen, and how far they reach from it."""
-        middle, reach = [], []
-        for x in list(zip(*self.points, strict=True))[:2]:
-            low, high = min(x), max(x)
-            middle.append((low + high) / 2)
-            reach.append((high - low) / 2)
-        return (middle[0], middle[1]), (reach[0], reach[1])
+        ends = [(min(x), max(x)) for x in list(zip(*self.points, strict=True))[:2]]
+        middle = tuple((low + high) / 2 for low, high in ends)
+        return middle, tuple((high - low) / 2 for low, high in ends)
 
     def found(
         self,
@@ -242,33 +262,31 @@ class OrbitSearch:
             fastest = [max((abs(r[k]) for r in self.rates), default=zero) for k in (0, 1)]
             stiffest = max((r[2] for r in self.rates), default=zero)
         # An orbit that has hardly moved in that time is measured by where it is.
-        reach = [
+        reach = tuple(
             exact(r) if exact(r) > abs(x) / _STILL else abs(x)
             for r, x in zip(reached, self.start, strict=True)
-        ]
+        )
         # H_p = q' and H_q = −p': H changes by about so much across the orbit.
         scale = (exact(fastest[1]) * reach[0] + exact(fastest[0]) * reach[1]) / 2
         return ExactOrbit(
             kind=kind,
             summary=read_prose(summary),
-            centre=(exact(centre[0]), exact(centre[1])),
-            reach=(reach[0], reach[1]),
+            centre=tuple(map(exact, centre)),
+            reach=reach,
             turns=self.turns(reached, shift),
             scale=scale,
             stiffness=exact(stiffest),
             period=period,
+            more_digits=self.more_digits,
         )
 
-    def turns(self, reached: State, shift: Sequence[Number]) -> tuple[bool, bool]:
+    def turns(self, reached: State, shift: Sequence[Number]) -> tuple[bool, ...]:
         """In which coordinates it goes round: that of its own shift; in time, where it has gone
         further than a period of H."""
-        p, q = (
-            any(2 * reached[k] > abs(s[k]) > 0 for s in self.shifts)
-            if self.timed
-            else bool(shift[k])
-            for k in (0, 1)
-        )
-        return p, q
+        if not self.timed:
+            return tuple(map(bool, shift))
+        farthest = enumerate(reached)
+        return tuple(any(2 * x > abs(s[k]) > 0 for s in self.shifts) for k, x in farthest)
 
 
 def initial_value_digits(start: tuple[Fraction, Fraction]) -> int:

@@ -5,11 +5,13 @@ is mostly the rounding to float64. The numerical flow would not do: 2,000 points
 t = 100 take it 10 s, with errors to 5·10⁻¹⁴, and the balls 0.2 s; points of the twist 20 s, with
 errors to 10⁻¹¹, and the balls 0.1 s.
 
-Where no closed form is known, the points follow a numerical flow together
-(`verify.flows.points_together`).
+Where no closed form is known, the points follow a numerical flow together. They do so twice, by
+extrapolations of two orders (`verify.flows.extrapolation_of_many`). Where the two are apart by more
+than `TRUSTED` a point is solved by itself, with more digits; else by how much they are apart
+estimates its error. So is a sample solved, that all are held against.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache, partial
@@ -22,12 +24,13 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
 from verify.flows import closed_form
 from verify.flows.extrapolation import NoFlowError
-from verify.flows.points_together import METHOD, Point, Together, naming
-from verify.flows.solution import exact_solution
+from verify.flows.extrapolation_of_many import follow
+from verify.flows.solution import solution_from
 from verify.hamiltonians import known_flows
 from verify.hamiltonians.coordinates import PLANE
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.motion import Motion, exactly
+from verify.prose import read_prose
 
 Array = Any  # numpy.ndarray, which is imported where it is used
 _ZERO = Fraction(0)
@@ -39,29 +42,38 @@ _Rounded = tuple[float, float, float]
 _Told = tuple[str, tuple[_Rounded, ...]]
 _BITS = closed_form.first_precision(16)
 _FINE = 1e-18  # of an orbit's scale: a ball's radius, far below float64's rounding
+COLUMNS = 8, 7  # of the two extrapolations
+UNIT = 2.0**-53  # the rounding of a result, relative to it
+TRUSTED = 1e-8  # the most, of an orbit's scale, that the two may be apart
+SAMPLE, DIGITS = 3, 20  # points that are held against a solution with so many digits
+METHOD = "numerical flow: Gragg's method, extrapolated, in long double"
+_SAFETY = 4  # an error is at most so many times what it is estimated to be by another evaluation
 
 
 @dataclass(frozen=True)
 class Points:
-    """φ_t of all points: p and q have a row for each time and a column for each point, float64.
+    """φ_t of all points: `points` has an array for each coordinate, by its name, with a row for
+    each time and a column for each point, float64.
 
     `bound` ≥ |error| of each of them: certified where a closed form is known, and mostly the
     rounding to float64; else an estimate. `method` says how; `alone` are the points that were left
     out of a numerical flow, and found one by one.
     """
 
-    p: Array
-    q: Array
+    points: Mapping[str, Array]
     bound: float
     method: str
     alone: tuple[int, ...] = ()
 
 
 def exact_points(
-    hamiltonian: Hamiltonian, p: Array, q: Array, times: Sequence[Fraction], t0: Fraction = _ZERO
+    hamiltonian: Hamiltonian,
+    points: Mapping[str, Array],
+    times: Sequence[Fraction],
+    t0: Fraction = _ZERO,
 ) -> Points:
-    """φ_t of the points (p, q), two arrays of float64 of one length, for each time t, from t0 on
-    where H depends on time.
+    """φ_t of the points, an array of float64 for each coordinate, by its name, all of one length,
+    for each time t, from t0 on where H depends on time.
 
     Raises InputError for a parameter without a value and for points that are not such arrays, and
     NoFlowError, naming the point, where one blows up before the last of the times or cannot be
@@ -71,25 +83,24 @@ def exact_points(
 
     if hamiltonian.symbols:
         raise InputError("parameter", hamiltonian.symbols[0], "needs a value")
-    p, q = (np.asarray(x, dtype=np.float64) for x in (p, q))
-    if p.ndim != 1 or p.shape != q.shape:
-        raise InputError("points", f"{p.shape}, {q.shape}", "must be two arrays of one length")
-    if not (np.isfinite(p).all() and np.isfinite(q).all()):
+    names = hamiltonian.coordinates
+    z = [np.asarray(points[name], dtype=np.float64) for name in names]
+    if z[0].ndim != 1 or len({x.shape for x in z}) > 1:
+        shapes = ", ".join(str(x.shape) for x in z)
+        raise InputError("points", shapes, "must be arrays of one length")
+    if not np.isfinite(z).all():
         raise InputError("points", "nan", "must be finite")
-    if len(p) and _motions(hamiltonian)(float(p[0]), float(q[0])) is not None:
-        return _in_closed_form(hamiltonian, p, q, tuple(times))
-
-    def solved(start: Point, time: Fraction, digits: int) -> tuple[Point, Fraction]:
-        solution = exact_solution(hamiltonian, **start, time=time, digits=digits, t0=t0)
-        return solution.point, solution.bound
-
-    together = Together(hamiltonian, np.array([p, q]), tuple(times), t0, solved, extreme=True)
-    (p, q), bound, alone = together.followed()
-    return Points(p, q, bound, METHOD if len(p) else "no points", alone)
+    plane = hamiltonian.planar  # of which alone closed forms are looked at
+    if plane and len(z[0]) and _motions(hamiltonian)(*(float(x[0]) for x in z)) is not None:
+        return _in_closed_form(hamiltonian, z, tuple(times))
+    together = _Together(hamiltonian, np.array(z), tuple(times), t0, extreme=plane)
+    ends, bound, alone = together.followed()
+    method = METHOD if len(ends[0]) else "no points"
+    return Points(dict(zip(names, ends, strict=True)), bound, method, alone)
 
 
 def _in_closed_form(
-    hamiltonian: Hamiltonian, p: Array, q: Array, times: tuple[Fraction, ...]
+    hamiltonian: Hamiltonian, z: Sequence[Array], times: tuple[Fraction, ...]
 ) -> Points:
     """Each point by its own motion. Raises NoFlowError."""
     import numpy as np
@@ -97,7 +108,7 @@ def _in_closed_form(
     follow_one, farthest = _along_flow(hamiltonian, times), max(times, key=abs, default=_ZERO)
     told = []
     with working_precision(_BITS):
-        for i, start in enumerate(zip(p.tolist(), q.tolist(), strict=True)):
+        for i, start in enumerate(zip(*(x.tolist() for x in z), strict=True)):
             try:
                 told.append(follow_one(*start))
             except (NoFlowError, OverflowError) as error:
@@ -105,10 +116,10 @@ def _in_closed_form(
     methods = [method for method, _ in told]
     shape = len(told), len(times), 3
     states = np.array([states for _, states in told], dtype=np.float64).reshape(shape)
-    p, q, errors = np.ascontiguousarray(states.T)
+    *ends, errors = np.ascontiguousarray(states.T)
     bound = float(errors.max(initial=0.0))
     method = f"{max(dict.fromkeys(methods), key=methods.count)}, in balls"
-    return Points(p, q, bound, method)
+    return Points(dict(zip(PLANE, ends, strict=True)), bound, method)
 
 
 @lru_cache(maxsize=_FLOWS)
@@ -163,3 +174,93 @@ def _in_float64(motion: Motion, least: float, at: fmpq) -> _Rounded | None:
         raise OverflowError
     error = max(float((exact_p - p).abs_upper()), float((exact_q - q).abs_upper()))
     return p, q, error * _UPWARDS
+
+
+@dataclass(frozen=True)
+class _Together:
+    """φ_t of `starts`, an array (coordinate, point), for each of `times`, from t0 on where H
+    depends on time. `extreme`: whether the sample has the point of the greatest p.
+    """
+
+    hamiltonian: Hamiltonian
+    starts: Array
+    times: Sequence[Fraction]
+    t0: Fraction
+    extreme: bool
+
+    def followed(self) -> tuple[Array, float, tuple[int, ...]]:
+        """Where they come to, an array (coordinate, time, point); a bound of the error of each
+        number, an estimate; and which points were solved by themselves.
+
+        Raises NoFlowError, naming the point, where one cannot be followed so far, and where the
+        sample's errors are larger than they are estimated.
+        """
+        import numpy as np
+
+        h, times = self.hamiltonian, self.times
+        fine, rough = (follow(h, self.starts, times, columns, self.t0) for columns in COLUMNS)
+        apart = np.abs(fine - rough).max(axis=0)  # (time, point)
+        trusted = apart <= TRUSTED * self._scale(fine)  # nan is not
+        alone = tuple(map(int, np.flatnonzero(~trusted.all(axis=0))))
+        for i in alone:
+            for k, time in enumerate(times):
+                fine[:, k, i], apart[k, i] = self.exact(i, time)
+        estimated = float((apart + UNIT * self._scale(fine)).max(initial=0.0))
+        if not times:
+            return fine, _SAFETY * estimated, alone
+        # Digits of a numerical flow take long: it is held at the longest time.
+        k = max(range(len(times)), key=lambda k: abs(times[k]))
+        return fine, self._checked(fine[:, k], times[k], alone, _SAFETY * estimated), alone
+
+    def _scale(self, ends: Array) -> Array:
+        """The largest coordinate at both ends, in size, for each time and point."""
+        import numpy as np
+
+        return np.maximum(np.abs(self.starts).max(axis=0), np.abs(ends).max(axis=0))
+
+    def exact(self, i: int, time: Fraction) -> tuple[list[float], float]:
+        """Where point i comes to by itself, and a bound of the error. Raises NoFlowError."""
+        names = self.hamiltonian.coordinates
+        start = {name: Fraction(x) for name, x in zip(names, self.starts[:, i], strict=True)}
+        try:
+            found = solution_from(self.hamiltonian, start, time, DIGITS, self.t0)
+            return [float(found.point[name]) for name in names], float(found.bound)
+        except (NoFlowError, OverflowError) as error:
+            raise naming(error, i, start, time) from None
+
+    def _checked(
+        self, ends: Array, time: Fraction, alone: Sequence[int], estimated: float
+    ) -> float:
+        """A bound of the errors, by what the sample's are."""
+        worst = 0.0
+        for i in self._sample(alone):
+            true, bound = self.exact(i, time)
+            error = max(abs(float(x) - y) for x, y in zip(ends[:, i], true, strict=True))
+            worst = max(worst, error + bound)
+            if error > _SAFETY * estimated:
+                raise NoFlowError(
+                    f"point {i} is wrong by `{error:.2g}` at t = `{float(time):.6g}`, where "
+                    f"`{estimated:.2g}` was estimated"
+                )
+        return max(estimated, _SAFETY * worst)
+
+    def _sample(self, alone: Sequence[int]) -> list[int]:
+        """Points found together, evenly between."""
+        import numpy as np
+
+        together = np.setdiff1d(np.arange(self.starts.shape[1]), alone)
+        if len(together) <= SAMPLE:
+            return [int(i) for i in together]
+        evenly = np.linspace(0, len(together) - 1, SAMPLE - self.extreme).round().astype(int)
+        first = [self.starts[0, together].argmax()] * self.extreme
+        return sorted({int(together[i]) for i in (*first, *evenly)})
+
+
+def naming(
+    error: NoFlowError | OverflowError, i: int, start: Mapping[str, Any], time: Fraction
+) -> NoFlowError:
+    """The error, with the point that it is of; an overflow is one beyond float64."""
+    said = error.said if isinstance(error, NoFlowError) else "it is beyond float64"
+    names = sorted(start, key=lambda name: name[0] != "q")
+    where = ", ".join(f"{name} = `{float(start[name]):.6g}`" for name in names)
+    return NoFlowError(read_prose(f"point {i}, {where}, to t = `{float(time):.6g}`: ") + said)

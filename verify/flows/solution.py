@@ -1,29 +1,38 @@
 """The exact solution of p' = −H_q, q' = H_p at one time, with its error bound.
 
-In closed form where one is known (the named systems, whoever wrote them down, and p²/2 + V(q) with
-a polynomial V of degree up to 4), else by the numerical flow, with more digits until two agree.
+H is taken apart into what is not coupled. A part in one degree of freedom has a closed form where
+one is known (the named systems, whoever wrote them down, and p²/2 + V(q) with a polynomial V of
+degree up to 4), and so has Kepler's problem where the orbit is an ellipse. All else is followed by
+the numerical flow, with more digits until two of them agree; poles in t are found before.
+
 The numerical flow is Gragg's method extrapolated, which at the orders that many digits need is
 faster than the Lie series: to t = 100 with 30 and 60 digits 0.2 and 0.7 s against 1.1 and 5.0 s on
 the Duffing oscillator, 0.2 and 1.1 s against 0.4 and 2.2 s on the pendulum, 0.9 and 3.5 s against
 10 and 56 s on Lennard-Jones (tests/bench/exact_flows.py; the Lie series as power series in t, of
 order 43 and 76, with steps as long as its last terms allow).
-
-The numerical flow with more and more digits, until two agree; poles in t are found before.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 
+import sympy
+
+from verify.algebra.formula import symbol
 from verify.arithmetic.exact import plain
+from verify.effort import MOST, unless_long
 from verify.errors import InputError
 from verify.flows import closed_form
-from verify.flows.closed_orbit import at_rest, closed_orbit
+from verify.flows.closed_orbit import at_rest
 from verify.flows.extrapolation import Flow, NoFlowError
-from verify.hamiltonians import known_flows
+from verify.hamiltonians import kepler_motion, known_flows
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.hamiltonians.start import Given, point_of
+from verify.hamiltonians.systems import get
 from verify.hamiltonians.times_on_the_way import first_fault
+from verify.hamiltonians.uncoupled import uncoupled
 
 METHOD = "numerical flow: Gragg's method, extrapolated"
 _GUARD = 6  # digits beyond those asked for with which the first flow is followed
@@ -64,12 +73,11 @@ def confirmed(
 
 
 _TOLD = 12  # digits of a time at which a solution ends
-_ROUGH, _POINTS = 12, 8  # digits and points with which a closed orbit is looked for
 NOT_KNOWN = "not known"
 
 _FORCED = "closed form of the forced oscillator"  # the one that is known in time
+_ELLIPSE = "closed form of Kepler's ellipse"
 _FROM_START = Fraction(0)
-State = tuple[Fraction, Fraction]  # p, q
 Point = Mapping[str, Fraction]
 ITSELF = "the initial value itself"
 
@@ -101,40 +109,102 @@ class Solution:
 def exact_solution(
     hamiltonian: Hamiltonian,
     *,
-    p: Fraction,
-    q: Fraction,
+    p: Given,
+    q: Given,
     time: Fraction,
     digits: int,
     t0: Fraction = _FROM_START,
 ) -> Solution:
-    """φ_time(p, q), whose bound is at most 10^−digits times the orbit's scale.
+    """φ_time(p, q), numbers in the plane and lists in n degrees of freedom: see `solution_from`."""
+    return solution_from(hamiltonian, point_of(hamiltonian, q, p), time, digits, t0)
+
+
+def solution_from(
+    hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int, t0: Fraction = _FROM_START
+) -> Solution:
+    """φ_time(point), whose bound is at most 10^−digits times the orbit's scale.
 
     Where H depends on time the orbit begins at t0, and `time` is how long it lasts.
-    The orbit's scale is the largest of |p| and |q| at its two ends. Time may be negative. Raises
-    InputError for a parameter without a value and for an H of p1 … pn, q1 … qn, which
-    `solution_in_degrees` takes, and NoFlowError, saying why, where no solution reaches that time or
-    where it could not be followed so far.
+    The orbit's scale is the largest coordinate, in size, at its two ends. Time may be negative.
+    Raises InputError for a parameter without a value, and NoFlowError, saying why, where no
+    solution reaches that time or where it could not be followed so far.
     """
     _check(hamiltonian, digits)
-    itself = Solution({"p": p, "q": q}, Fraction(0), ITSELF)
     if time == 0:
-        return itself
+        return Solution(point, Fraction(0), ITSELF)
+    found: dict[str, Fraction] = {}
+    solutions = []
+    for part, names in uncoupled(hamiltonian):
+        own = {name: point[old] for name, old in zip(part.coordinates, names, strict=True)}
+        known = _of_plane if part.planar else _ellipse
+        solved = known(part, own, time, digits, t0)
+        solutions.append(solved or numerical_solution(part, own, time, digits, t0))
+        found |= dict(zip(names, solutions[-1].point.values(), strict=True))
+    return Solution(
+        {name: found[name] for name in hamiltonian.coordinates},
+        max(solved.bound for solved in solutions),
+        "; ".join(dict.fromkeys(solved.method for solved in solutions)),
+        all(solved.enclosed for solved in solutions),
+    )
+
+
+def _in_closed_form(point: Point, evaluation: closed_form.Evaluation, method: str) -> Solution:
+    after, bound = evaluation
+    return Solution(dict(zip(point, after, strict=True)), bound, method)
+
+
+def _of_plane(
+    hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int, t0: Fraction
+) -> Solution | None:
+    """In closed form, where one is known."""
+    p, q = start = tuple(point.values())
     if hamiltonian.time_dependent:
         state = known_flows.state_in_time(hamiltonian, (p, q, t0), time)
-        if state is not None:
-            return _in_closed_form(closed_form.enclosed(state, (p, q), digits), _FORCED)
-        return numerical_solution(hamiltonian, itself.point, time, digits, t0)
+        if state is None:
+            return None
+        return _in_closed_form(point, closed_form.enclosed(state, start, digits), _FORCED)
     known = known_flows.closed_form(hamiltonian, p, q)
     rest = known.rest if known else at_rest(hamiltonian, canonical_field(hamiltonian)[0], (p, q))
     if rest:
-        return itself
-    if known is not None:
-        return _in_closed_form(closed_form.evaluate(known, (p, q), time, digits), known.method)
-    return numerical_solution(hamiltonian, itself.point, time, digits)
+        return Solution(point, Fraction(0), ITSELF)
+    if known is None:
+        return None
+    return _in_closed_form(point, closed_form.evaluate(known, start, time, digits), known.method)
 
 
-def _in_closed_form(end: closed_form.Evaluation, method: str) -> Solution:
-    return Solution({"p": end.p, "q": end.q}, end.bound, method)
+def _ellipse(
+    hamiltonian: Hamiltonian, point: Point, time: Fraction, digits: int, t0: Fraction
+) -> Solution | None:
+    """In closed form, where H is Kepler's and the orbit is bound."""
+    mu = unless_long(lambda: _strength(hamiltonian), None, MOST)
+    if mu is None:
+        return None
+    p1, p2, q1, q2 = start = tuple(point.values())
+    q, p = (q1, q2), (p1, p2)
+    if not kepler_motion.is_ellipse(mu, q, p):
+        return None
+    after = closed_form.enclosed(lambda: kepler_motion.after(mu, q, p, time), start, digits)
+    return _in_closed_form(point, after, _ELLIPSE)
+
+
+@lru_cache(maxsize=64)
+def _strength(hamiltonian: Hamiltonian) -> Fraction | None:
+    """μ, where H is Kepler's but for a constant."""
+    kepler = get("kepler").hamiltonian({}).expression
+    if len(hamiltonian.coordinates) != 4 or hamiltonian.time_dependent:
+        return None
+    if hamiltonian.exact.is_polynomial():  # seen at once, where simplifying takes seconds
+        return None
+    mu = symbol("mu")
+    # At q = (1, 0) and p = 0 it is −μ, and at q = (2, 0) half of that.
+    at = [dict.fromkeys(map(symbol, ("p1", "p2", "q2")), 0) | {symbol("q1"): k} for k in (1, 2)]
+    first, second = (hamiltonian.exact.subs(x) for x in at)
+    value = sympy.nsimplify(2 * (second - first)) if (second - first).is_number else None
+    if value is None or not value.is_Rational:
+        return None
+    gap = sympy.simplify(hamiltonian.exact - kepler.subs(mu, value))
+    same = gap.is_number and not gap.free_symbols
+    return Fraction(int(value.p), int(value.q)) if same else None
 
 
 def numerical_solution(
@@ -148,23 +218,17 @@ def numerical_solution(
     return Solution(dict(zip(point, after, strict=True)), bound, METHOD, enclosed=False)
 
 
-def leaves(hamiltonian: Hamiltonian, *, p: Fraction, q: Fraction, time: Fraction) -> str | None:
-    """How the exact solution leaves every bound, as a short statement; None if it does not.
-
-    It does where it blows up until that time ≥ 0, or goes to infinity as t grows (a pendulum that
-    goes round does, by its angle). A statement that begins with `NOT_KNOWN` says that neither was
-    found out. For what is known in closed form the answer is by exact algebra; else None is by an
-    orbit that was seen to close. Raises InputError and NoFlowError as `exact_solution` does where
-    H is not defined at the initial value.
-    """
-    told = leaves_by_algebra(hamiltonian, p=p, q=q, time=time)
-    return _reason_to_leave(hamiltonian, (p, q)) if told == NOT_KNOWN else told
-
-
 def leaves_by_algebra(
     hamiltonian: Hamiltonian, *, p: Fraction, q: Fraction, time: Fraction
 ) -> str | None:
-    """As `leaves`, without following the orbit: `NOT_KNOWN` where algebra alone does not tell."""
+    """How the exact solution leaves every bound, as a short statement; None if it does not.
+
+    It does where it blows up until that time ≥ 0, or goes to infinity as t grows (a pendulum that
+    goes round does, by its angle): by exact algebra, `NOT_KNOWN` where that alone does not tell.
+    Raises InputError and NoFlowError as `exact_solution` does where H is not defined at the initial
+    value.
+    """
+    hamiltonian.check_planar()
     _check(hamiltonian, _TOLD)
     if time < 0:
         raise InputError("time", str(time), "must not be negative")
@@ -185,18 +249,7 @@ def leaves_by_algebra(
 
 
 def _check(hamiltonian: Hamiltonian, digits: int) -> None:
-    hamiltonian.check_planar()
     if hamiltonian.symbols:
         raise InputError("parameter", hamiltonian.symbols[0], "needs a value")
     if not 1 <= digits <= closed_form.MOST_DIGITS:
         raise InputError("digits", digits, f"must be 1 … {closed_form.MOST_DIGITS}")
-
-
-def _reason_to_leave(hamiltonian: Hamiltonian, start: State) -> str | None:
-    try:
-        orbit = closed_orbit(hamiltonian, start, _ROUGH, _POINTS)
-    except NoFlowError as error:
-        return f"{NOT_KNOWN}: {error}"
-    if orbit.kind == "rotation":
-        return "it goes to infinity as t grows: it goes round"
-    return None

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from typing import Any
 
 from verify.arithmetic.exact import Exact, rational, text
 from verify.errors import InputError
@@ -43,6 +44,17 @@ def shown_of(
     """q or p of a point as it is shown: a number, or a list in n degrees of freedom."""
     own = tuple(text(x) for name, x in point.items() if name[0] == letter)
     return own[0] if hamiltonian.planar else own
+
+
+def start_texts(
+    hamiltonian: Hamiltonian, point: Mapping[str, Fraction], t0: Fraction | None
+) -> dict[str, Any]:
+    """Where a run starts, as results have it: q, p and t0, which is None where H has no time."""
+    return {
+        "q": shown_of(hamiltonian, point, "q"),
+        "p": shown_of(hamiltonian, point, "p"),
+        "t0": None if t0 is None else text(t0),
+    }
 
 
 def check_start(hamiltonian: Hamiltonian, q: Given, p: Given, t0: Exact = 0) -> None:

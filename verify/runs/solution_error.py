@@ -5,9 +5,8 @@ from fractions import Fraction
 from math import isqrt
 
 from verify.errors import InputError
-from verify.flows.degrees.solution import solution_in_degrees
 from verify.flows.extrapolation import NoFlowError
-from verify.flows.solution import Solution
+from verify.flows.solution import Solution, solution_from
 from verify.runs.orbit import orbit_of
 from verify.runs.start import Start
 from verify.scenes.results.bounded_value import Value
@@ -44,14 +43,12 @@ def solution_errors(result: RunResult, points: int = 200) -> tuple[tuple[Fractio
 
 def _solution(begun: Start, times: list[Fraction], digits: int) -> Iterator[_Point]:
     """The solution and the bound of each coordinate at the times."""
-    whole = solution_in_degrees(
-        begun.hamiltonian, begun.point, times[-1] - begun.t0, digits, begun.t0
-    )
+    whole = solution_from(begun.hamiltonian, begun.point, times[-1] - begun.t0, digits, begun.t0)
     if not whole.enclosed:
         yield from _followed(begun, times, digits, whole)
         return
     for t in times:
-        found = solution_in_degrees(begun.hamiltonian, begun.point, t - begun.t0, digits, begun.t0)
+        found = solution_from(begun.hamiltonian, begun.point, t - begun.t0, digits, begun.t0)
         yield tuple(found.point.values()), found.bound
 
 
@@ -65,7 +62,7 @@ def _followed(
     made: list[_Point] = []
     point, before, total = begun.point, begun.t0, Fraction(0)
     for t in times:
-        found = solution_in_degrees(begun.hamiltonian, point, t - before, digits, before)
+        found = solution_from(begun.hamiltonian, point, t - before, digits, before)
         point, before, total = found.point, t, total + found.bound
         made.append((tuple(point.values()), total))
     missed = max(abs(whole.point[name] - point[name]) for name in point) + whole.bound

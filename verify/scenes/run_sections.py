@@ -1,4 +1,26 @@
-"""Sections of a scene that ask for runs of its schemes: a grid of them, separations, series."""
+"""Sections of a scene that ask for runs of its schemes: a grid of them, separations, series; error
+against run time, and data to test against.
+
+[work_precision]                       # error against run time
+time = 20                              # N is T/h, rounded down
+step_sizes = [0.1, 0.05, 0.025]
+initial_value = { q = 1.5, p = 0 }
+schemes = ["lie2", "stormer-verlet"]   # the scene's, where it is left out
+repeats = 5                            # timings of each point
+number_systems = ["fixed", "mpfr"]     # certified digits against run time, of one scheme
+digits = [33, 53]
+number_systems_scheme = "lie2"         # the first of the schemes, where it is left out
+number_systems_step_size = 0.05        # the middle one, where it is left out
+peers = false                          # true: they must be installed; else drawn where they are
+
+[[reference]]                          # numbers to test against; see `verify reference make`
+step_sizes = [0.001, 0.01]
+initial_values = [{ q = 1.5, p = 0 }]
+steps = [0, 1, 10, 100, 1000]          # after which the state, ΔJ, MSE and Λ are given; ascending
+digits = 30                            # of every number, correctly rounded
+schemes = ["lie2", "stormer-verlet"]   # the scene's, where it is left out
+flow = true                            # the exact flow at the times N h, too
+"""
 
 from fractions import Fraction
 from functools import cached_property
@@ -7,12 +29,15 @@ from typing import Annotated, Self
 from pydantic import Field, model_validator
 
 from verify import observables
-from verify.errors import InputError, unknown
+from verify import schemes as scheme_catalogue
+from verify.errors import NOT_GIVEN, InputError, unknown
 from verify.scenes.frozen import Section
 from verify.scenes.values import (
+    AUTO,
     ArithmeticName,
     Digits,
     InitialValue,
+    SchemeName,
     Start,
     Steps,
     StepSize,
@@ -153,3 +178,85 @@ class Series(Section):
     @property
     def count(self) -> int:
         return steps_of(self.time, self.steps, self.step_size)
+
+
+MOST_STEPS = 10**8  # of a run that is repeated
+
+
+class WorkPrecision(Section):
+    """See the module's text for the keys."""
+
+    time: Time
+    """The length T of each run, N = T/h rounded down; the error is that at t = N·h."""
+    step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=2, max_length=100)]
+    """The step sizes h, each once."""
+    initial_value: Start
+    """Where the runs start."""
+    schemes: Annotated[tuple[SchemeName, ...], Field(max_length=100)] = ()
+    """The schemes that are compared; the scene's, where it is left out."""
+    repeats: Annotated[int, Field(ge=1, le=1000, strict=True)] = 5
+    """Timings of each point, of which the median is told."""
+    number_systems: tuple[ArithmeticName, ...] = ()
+    """Certified digits against run time in these; then `digits` too."""
+    digits: Annotated[tuple[Digits, ...], Field(max_length=100)] = ()
+    """Digits that these number systems are asked for."""
+    number_systems_scheme: SchemeName | None = None
+    """Their scheme; the first of the schemes, where it is left out."""
+    number_systems_step_size: StepSize | None = None
+    """Their step size; the middle one, where it is left out."""
+    peers: bool | None = None
+    """Whether others' solvers stand beside; where it is left out, those installed do."""
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        for name in ("step_sizes", "schemes", "number_systems", "digits"):
+            distinct(name, getattr(self, name))
+        own = self.number_systems_step_size
+        for h in (*self.step_sizes, *(() if own is None else (own,))):
+            self.steps_for(h)
+        if bool(self.number_systems) != bool(self.digits):
+            raise InputError("number_systems, digits", NOT_GIVEN, "give both or neither")
+        if AUTO in self.number_systems:
+            raise InputError("number_systems", AUTO, "name the number systems themselves")
+        if self.number_systems_scheme is not None:
+            scheme_catalogue.get(self.number_systems_scheme)
+        return self
+
+    def steps_for(self, h: Fraction) -> int:
+        """N = T/h, rounded down; the error is that at t = N·h."""
+        return steps_of(self.time, None, h, MOST_STEPS)
+
+
+MOST_ROWS = 100_000  # of a section: they are held in memory, and checked one by one
+_MOST_STEPS = 10**8
+_MOST_DIGITS = 1000
+Chosen = Annotated[int, Field(ge=0, le=_MOST_STEPS, strict=True)]
+
+
+class Reference(Section):
+    """See the module's text for the keys."""
+
+    step_sizes: Annotated[tuple[StepSize, ...], Field(min_length=1, max_length=1000)]
+    """The step sizes h, each once."""
+    initial_values: Annotated[tuple[Start, ...], Field(min_length=1, max_length=1000)]
+    """Where the runs start, each once; in n degrees of freedom with lists."""
+    steps: Annotated[tuple[Chosen, ...], Field(min_length=1, max_length=1000)]
+    """After how many steps the state, ΔJ, MSE and Λ are given; ascending. In n degrees of freedom
+    the state, H, S, W and Λ."""
+    digits: Annotated[int, Field(ge=1, le=_MOST_DIGITS, strict=True)] = 30
+    """Significant digits of every number, correctly rounded."""
+    schemes: Annotated[tuple[SchemeName, ...], Field(max_length=100)] = ()
+    """The schemes; the scene's, where it is left out."""
+    flow: Annotated[bool, Field(strict=True)] = True
+    """Whether the exact flow at the times N·h is given, too."""
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        for name in ("step_sizes", "initial_values", "schemes"):
+            distinct(name, getattr(self, name))
+        if list(self.steps) != sorted(set(self.steps)):
+            raise InputError("steps", list(self.steps), "must ascend")
+        rows = len(self.step_sizes) * len(self.initial_values) * len(self.steps)
+        if rows * max(1, len(self.schemes)) > MOST_ROWS:
+            raise InputError("reference", rows, f"makes more than {MOST_ROWS} rows")
+        return self

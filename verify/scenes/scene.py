@@ -27,7 +27,7 @@
     initial_value = { q = 1.5, p = 0 }
     source = "Figure 2"                    # what it repeats, for its caption; may be left out
 
-    [work_precision]                       # error against run time; see verify.scenes.sections
+    [work_precision]                       # error against run time; see verify.scenes.run_sections
     time = 20
     step_sizes = [0.1, 0.05, 0.025]
     initial_value = { q = 1.5, p = 0 }
@@ -50,7 +50,7 @@
     time = 500
     initial_values = [{ q = [0, 0.1], p = [0.4, 0] }]
 
-    [[reference]]                          # numbers to test against; see verify.scenes.sections
+    [[reference]]                          # numbers to test against; see verify.scenes.run_sections
     step_sizes = [0.01]
     initial_values = [{ q = 1.5, p = 0 }]
     steps = [0, 1, 10, 100]
@@ -74,13 +74,10 @@ from verify.hamiltonians.start import point_of
 from verify.scenes.frozen import Frozen, Section
 from verify.scenes.mistakes.values import one_line
 from verify.scenes.observables import check_observables
-from verify.scenes.orbit_map_section import OrbitMap
-from verify.scenes.poincare_section import Poincare
+from verify.scenes.orbit_sections import Poincare, Stroboscopic
 from verify.scenes.region_sections import Flow
-from verify.scenes.run_sections import Grid, SeparationOver, Series
-from verify.scenes.sections import Reference, WorkPrecision
-from verify.scenes.stability_sections import LargestStepOver, Stability, StabilityMap
-from verify.scenes.stroboscopic_section import Stroboscopic
+from verify.scenes.run_sections import Grid, Reference, SeparationOver, Series, WorkPrecision
+from verify.scenes.stability_sections import LargestStepOver, OrbitMap, Stability, StabilityMap
 from verify.scenes.toml_file import check_depth, read_toml, toml_data
 from verify.scenes.values import Number, SchemeName, SystemName
 
@@ -206,6 +203,11 @@ class Scene(Frozen):
         empty = {name: field.default for name, field in Scene.model_fields.items()
                  if name not in _IDENTITY}  # fmt: skip
         return self.model_copy(update=empty | sections)
+
+    @property
+    def begin(self) -> Fraction | None:
+        """t0 where H depends on time; else None."""
+        return self.t0 if self.exact_hamiltonian().time_dependent else None
 
     def hamiltonian_fields(self) -> dict[str, Any]:
         """H as a task has it: its formula, and its parameter values exactly."""

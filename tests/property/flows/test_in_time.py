@@ -7,7 +7,7 @@ import pytest
 
 from verify.errors import InputError
 from verify.flows.extrapolation import NoFlowError
-from verify.flows.solution import Solution, exact_solution, leaves
+from verify.flows.solution import Solution, exact_solution, leaves_by_algebra
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.run import run
 from verify.runs.solution_error import solution_errors
@@ -75,7 +75,7 @@ def test_where_h_opens_it_is_said_and_no_value_given() -> None:
 
 def test_whether_it_stays_bounded_is_not_told_of_such_an_h() -> None:
     with pytest.raises(InputError, match="depends on t"):
-        leaves(Hamiltonian.parse(PENDULUM), **START, time=Fraction(1))
+        leaves_by_algebra(Hamiltonian.parse(PENDULUM), **START, time=Fraction(1))
 
 
 def test_solution_errors_of_a_run_shrink_with_its_order() -> None:

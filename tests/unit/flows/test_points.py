@@ -12,10 +12,9 @@ from verify.arithmetic.float_context import WIDE
 from verify.errors import InputError
 from verify.flows import extrapolation_of_many as flow_of_many
 from verify.flows import points as module
-from verify.flows import points_together
 from verify.flows.extrapolation import Flow, NoFlowError
 from verify.flows.points import Points, exact_points
-from verify.flows.solution import exact_solution
+from verify.flows.solution import exact_solution, solution_from
 from verify.hamiltonians import known_flows, systems
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
@@ -30,6 +29,7 @@ PENDULUM = "p**2/2 - cos(q)"
 SOFT = "p**2/2 + q**2/2 - q**4/4"
 HARD = "p**2/2 + q**2/2 + q**4/4"
 SEXTIC = "p**2/2 + q**6/6"
+HENON_HEILES = systems.get("henon-heiles").hamiltonian({})
 
 
 def cloud(p: float, q: float, count: int = 12, radius: float = 1 / 32) -> tuple[Any, Any]:
@@ -40,15 +40,24 @@ def cloud(p: float, q: float, count: int = 12, radius: float = 1 / 32) -> tuple[
     return p + apart[0], q + apart[1]
 
 
+def carried(h: Hamiltonian, p: Any, q: Any, times: Any) -> Points:
+    return exact_points(h, {"p": p, "q": q}, times)
+
+
 def largest_error(h: Hamiltonian, p: Any, q: Any, times: Any, found: Points) -> float:
     """The least that the largest error can be, by `exact_solution` with 25 digits."""
     worst = Fraction(0)
     for k, time in enumerate(times):
         for i, (x, y) in enumerate(zip(p, q, strict=True)):
             true = exact_solution(h, p=Fraction(x), q=Fraction(y), time=time, digits=25)
-            worst = max(worst, abs(Fraction(found.p[k, i]) - true.p) - true.bound)
-            worst = max(worst, abs(Fraction(found.q[k, i]) - true.q) - true.bound)
+            worst = max(worst, abs(Fraction(found.points["p"][k, i]) - true.p) - true.bound)
+            worst = max(worst, abs(Fraction(found.points["q"][k, i]) - true.q) - true.bound)
     return float(worst)
+
+
+def cloud_in_degrees(count: int = 5) -> dict[str, Any]:
+    rng = np.random.default_rng(3)
+    return {name: rng.uniform(-0.2, 0.2, count) for name in HENON_HEILES.coordinates}
 
 
 def size(*arrays: Any) -> float:
@@ -64,13 +73,24 @@ def test_a_cloud_about_each_example_is_carried_within_the_bound(name: str, regim
     values, p0, q0 = ALL[name].regime(regime)
     h = ALL[name].hamiltonian(values)
     p, q = cloud(float(p0), float(q0), 6 if ALL[name].flow else 3)
-    found = exact_points(h, p, q, TIMES)
+    found = carried(h, p, q, TIMES)
     error = largest_error(h, p, q, TIMES, found)
     assert error <= found.bound
     most = 1.2e-16 if ALL[name].flow else 4e-14
-    assert found.bound <= most * max(size(p, q, found.p, found.q), 1 / 32)
-    assert found.p.shape == found.q.shape == (len(TIMES), len(p))
-    assert np.array_equal(found.p[2], p)
+    assert found.bound <= most * max(size(p, q, found.points["p"], found.points["q"]), 1 / 32)
+    assert found.points["p"].shape == found.points["q"].shape == (len(TIMES), len(p))
+    assert np.array_equal(found.points["p"][2], p)
+
+
+def test_in_n_degrees_of_freedom_many_points_are_where_each_is() -> None:
+    given, time = cloud_in_degrees(), Fraction(7, 2)
+    found = exact_points(HENON_HEILES, given, [time])
+    assert found.bound < 1e-13
+    for i in range(5):
+        start = {name: Fraction(float(x[i])) for name, x in given.items()}
+        true = solution_from(HENON_HEILES, start, time, 25)
+        for name, x in true.point.items():
+            assert abs(Fraction(float(found.points[name][0][i])) - x) <= Fraction(found.bound)
 
 
 LONG_LIVED = [
@@ -91,10 +111,10 @@ def test_long_times_cost_no_digits_away_from_separatrices(name: str, regime: str
     closed = ALL[name].flow is not None
     times = LONG if closed else (Fraction(60),)
     p, q = cloud(float(p0), float(q0), 2)
-    found = exact_points(h, p, q, times)
+    found = carried(h, p, q, times)
     assert not found.alone
     assert largest_error(h, p, q, times, found) <= found.bound
-    assert found.bound <= 1e-12 * size(p, q, found.p, found.q)
+    assert found.bound <= 1e-12 * size(p, q, found.points["p"], found.points["q"])
 
 
 # -- mixed batches --------------------------------------------------------------------------------
@@ -107,14 +127,14 @@ def test_a_batch_may_go_every_way_at_once(formula: str) -> None:
     p = np.array([0.0, 1e-9, 0.0, 2.0, 2 + 1e-13, 2 - 1e-13, 2.5, -3.0, 0.3, 0.0, -0.0, 1e-200])
     q = np.array([0.0, 0.0, 1e-12, 0.0, 0.0, 0.0, 0.5, 1.0, 1.5, 1.0, 3.0, 0.0])
     times = (Fraction(5, 2), Fraction(-20))
-    found = exact_points(h, p, q, times)
+    found = carried(h, p, q, times)
     assert largest_error(h, p, q, times, found) <= found.bound <= 1e-9
 
 
 def test_near_rest_the_error_is_small_against_the_orbit() -> None:
     h = Hamiltonian.parse(HARD)
     p, q = cloud(0.0, 0.0, 10, 1e-6)
-    found = exact_points(h, p, q, LONG)
+    found = carried(h, p, q, LONG)
     assert largest_error(h, p, q, LONG, found) <= found.bound <= 1e-12 * 1e-6
 
 
@@ -124,8 +144,8 @@ def test_points_that_float64_cannot_tell_are_told() -> None:
     edge = 2 * np.cos(0.5)
     p = np.array([1.0, np.nextafter(edge, 3), np.nextafter(edge, 1), edge / 2])
     times = (Fraction(60),)
-    found = exact_points(h, p, np.ones(4), times)
-    assert found.q[0, 1] > 6 > 3.2 > found.q[0, 2]
+    found = carried(h, p, np.ones(4), times)
+    assert found.points["q"][0, 1] > 6 > 3.2 > found.points["q"][0, 2]
     assert largest_error(h, p, np.ones(4), times, found) <= found.bound <= 1e-14
 
 
@@ -137,11 +157,11 @@ def test_a_point_that_blows_up_is_named(formula: str) -> None:
     h = Hamiltonian.parse(formula)
     p, q = np.array([0.0, 0.3, 0.0, 0.2]), np.array([0.1, 0.3, 1.5, -0.2])
     with pytest.raises(NoFlowError, match=r"^point 2, q = 1\.5, .* blows up at t = "):
-        exact_points(h, p, q, (Fraction(1), Fraction(30)))
+        carried(h, p, q, (Fraction(1), Fraction(30)))
     with pytest.raises(NoFlowError, match=r"^point 2, q = 1\.5, .* blows up at t = −"):
-        exact_points(h, p, q, (Fraction(-30),))
+        carried(h, p, q, (Fraction(-30),))
     early = (Fraction(1), Fraction(-1))
-    found = exact_points(h, p, q, early)
+    found = carried(h, p, q, early)
     assert largest_error(h, p, q, early, found) <= found.bound <= 1e-13
 
 
@@ -157,39 +177,45 @@ def test_the_same_points_blow_up_as_by_exact_algebra(formula: str) -> None:
             exact_solution(h, p=Fraction(x), q=Fraction(y), time=time, digits=15)
         except NoFlowError:
             with pytest.raises(NoFlowError, match=r"^point 0, .* blows up at t = "):
-                exact_points(h, np.array([x]), np.array([y]), (time,))
+                carried(h, np.array([x]), np.array([y]), (time,))
         else:
-            exact_points(h, np.array([x]), np.array([y]), (time,))
+            carried(h, np.array([x]), np.array([y]), (time,))
 
 
 def test_a_numerical_flow_that_ends_names_the_point() -> None:
     h = Hamiltonian.parse("p**2/2 - q**6/6")
     with pytest.raises(NoFlowError, match=r"^point 1: .* at about t = "):
-        exact_points(h, np.array([0.0, 1.0]), np.array([0.1, 1.0]), (Fraction(5),))
+        carried(h, np.array([0.0, 1.0]), np.array([0.1, 1.0]), (Fraction(5),))
+    escaping = {**cloud_in_degrees(1), "q2": np.array([5.0])}
+    with pytest.raises(NoFlowError, match="point 0"):
+        exact_points(HENON_HEILES, escaping, [Fraction(50)])
 
 
 def test_what_leaves_float64_is_said_to() -> None:
     h = Hamiltonian.parse("p**2/2 - q**2/2")
     with pytest.raises(NoFlowError, match=r"^point 0, .* beyond float64"):
-        exact_points(h, np.array([1.0]), np.array([1.0]), (Fraction(1000),))
+        carried(h, np.array([1.0]), np.array([1.0]), (Fraction(1000),))
 
 
 def test_bad_input_is_refused() -> None:
     one, two = np.zeros(1), np.zeros(2)
     with pytest.raises(InputError, match=r"^parameter=delta"):
-        exact_points(ALL["duffing"].hamiltonian(), one, one, TIMES)
+        carried(ALL["duffing"].hamiltonian(), one, one, TIMES)
     with pytest.raises(InputError, match=r"^points="):
-        exact_points(Hamiltonian.parse(PENDULUM), one, two, TIMES)
+        carried(Hamiltonian.parse(PENDULUM), one, two, TIMES)
     with pytest.raises(InputError, match=r"^points="):
-        exact_points(Hamiltonian.parse(PENDULUM), one, one * np.nan, TIMES)
+        carried(Hamiltonian.parse(PENDULUM), one, one * np.nan, TIMES)
 
 
 def test_no_points_and_no_times_are_no_error() -> None:
+    def shape(formula: str, p: Any, q: Any, times: Any) -> Any:
+        return carried(Hamiltonian.parse(formula), p, q, times).points["p"].shape
+
     none = np.zeros(0)
-    assert exact_points(Hamiltonian.parse(PENDULUM), none, none, TIMES).p.shape == (3, 0)
-    assert exact_points(Hamiltonian.parse(SEXTIC), none, none, TIMES).p.shape == (3, 0)
-    assert exact_points(Hamiltonian.parse(PENDULUM), none + 1, none, ()).p.shape == (0, 0)
-    assert exact_points(Hamiltonian.parse(PENDULUM), np.ones(2), np.ones(2), ()).p.shape == (0, 2)
+    assert shape(PENDULUM, none, none, TIMES) == (3, 0)
+    assert shape(SEXTIC, none, none, TIMES) == (3, 0)
+    assert shape(PENDULUM, none + 1, none, ()) == (0, 0)
+    assert shape(PENDULUM, np.ones(2), np.ones(2), ()) == (0, 2)
 
 
 # -- planted errors -------------------------------------------------------------------------------
@@ -222,7 +248,7 @@ def test_a_closed_form_that_is_slightly_wrong_is_beyond_the_bound(
     """The control of all that is held against `largest_error`, by the numerical flow."""
     right = known_flows.motions
     h, (p, q), times = Hamiltonian.parse(formula), cloud(0.3, 1.0, 3), (Fraction(10),)
-    assert by_numerical_flow(h, p, q, times[0], exact_points(h, p, q, times))
+    assert by_numerical_flow(h, p, q, times[0], carried(h, p, q, times))
 
     def planted(hamiltonian: Hamiltonian) -> Any:
         def motion(*start: Fraction) -> Any:
@@ -233,12 +259,12 @@ def test_a_closed_form_that_is_slightly_wrong_is_beyond_the_bound(
 
     monkeypatch.setattr(known_flows, "motions", planted)
     forget()
-    assert not by_numerical_flow(h, p, q, times[0], exact_points(h, p, q, times))
+    assert not by_numerical_flow(h, p, q, times[0], carried(h, p, q, times))
 
 
 def test_a_motion_is_made_once_for_all_times(monkeypatch: pytest.MonkeyPatch) -> None:
     h, (p, q), right = Hamiltonian.parse(HARD), cloud(0.3, 1.0, 5), known_flows.motions
-    alone = exact_points(h, p, q, LONG)
+    alone = carried(h, p, q, LONG)
     forget()
     made = []
 
@@ -247,16 +273,16 @@ def test_a_motion_is_made_once_for_all_times(monkeypatch: pytest.MonkeyPatch) ->
 
     monkeypatch.setattr(known_flows, "motions", counted)
     for k, time in enumerate(LONG):
-        found = exact_points(h, p, q, [time])
-        assert np.array_equal(found.p[0], alone.p[k])
-        assert np.array_equal(found.q[0], alone.q[k])
+        found = carried(h, p, q, [time])
+        assert np.array_equal(found.points["p"][0], alone.points["p"][k])
+        assert np.array_equal(found.points["q"][0], alone.points["q"][k])
     assert made == [(Fraction(x), Fraction(y)) for x, y in zip(p, q, strict=True)]
 
 
 def by_numerical_flow(h: Hamiltonian, p: Any, q: Any, time: Fraction, found: Points) -> bool:
     """Whether all points are within their bound of what the numerical flow finds."""
     flow = Flow(canonical_field(h)[0], 25)
-    ours, errors = (found.p, found.q), []
+    ours, errors = (found.points["p"], found.points["q"]), []
     for i in range(len(p)):
         z = flow.follow((flow.number(Fraction(p[i])), flow.number(Fraction(q[i]))), time)
         true = [flow.arithmetic.exact(x) for x in z]
@@ -264,15 +290,25 @@ def by_numerical_flow(h: Hamiltonian, p: Any, q: Any, time: Fraction, found: Poi
     return max(errors) <= found.bound + Fraction(1, 10**20)
 
 
-def test_a_numerical_flow_at_another_time_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    ("h", "points"),
+    [
+        (Hamiltonian.parse(SEXTIC), dict(zip("pq", cloud(0.3, 1.0), strict=True))),
+        (HENON_HEILES, cloud_in_degrees()),
+    ],
+    ids=["plane", "degrees"],
+)
+def test_a_numerical_flow_at_another_time_is_seen(
+    h: Hamiltonian, points: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
     right = flow_of_many.follow
 
     def planted(h: Any, points: Any, times: Any, columns: int, t0: Any) -> Any:
         return right(h, points, [t * (1 + Fraction(1, 10**11)) for t in times], columns, t0)
 
-    monkeypatch.setattr(points_together, "follow", planted)
+    monkeypatch.setattr(module, "follow", planted)
     with pytest.raises(NoFlowError, match=r"is wrong by .* was estimated"):
-        exact_points(Hamiltonian.parse(SEXTIC), *cloud(0.3, 1.0), (Fraction(3),))
+        exact_points(h, points, (Fraction(3),))
 
 
 def test_a_rational_is_rounded_once_to_the_long_double() -> None:

@@ -5,12 +5,12 @@ from fractions import Fraction
 import pytest
 
 from verify.errors import InputError
-from verify.flows.degrees.solution import solution_in_degrees, uncoupled
 from verify.flows.extrapolation import NoFlowError
-from verify.flows.solution import Solution, exact_solution, numerical_solution
+from verify.flows.solution import Solution, exact_solution, numerical_solution, solution_from
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import point_of
+from verify.hamiltonians.uncoupled import uncoupled
 
 KEPLER = systems.get("kepler").hamiltonian({"mu": 1})
 HENON = systems.get("henon-heiles").hamiltonian({})
@@ -28,7 +28,7 @@ ELLIPSES: dict[str, Start] = {
 
 def after(hamiltonian: Hamiltonian, start: Start, time: str, digits: int = DIGITS) -> Solution:
     q, p = start
-    return solution_in_degrees(hamiltonian, point_of(hamiltonian, q, p), Fraction(time), digits)
+    return exact_solution(hamiltonian, q=q, p=p, time=Fraction(time), digits=digits)
 
 
 def apart(one: Solution, other: Solution) -> Fraction:
@@ -104,7 +104,7 @@ def test_parts_that_are_not_coupled_are_the_planes() -> None:
     parts = uncoupled(whole)
     assert [names for _, names in parts] == [("p1", "q1"), ("p2", "q2"), ("p3", "p4", "q3", "q4")]
     start = point_of(whole, ["1", "1/2", "1", "0"], ["0", "1/3", "0", "1"])
-    found = solution_in_degrees(whole, start, Fraction(3), DIGITS)
+    found = solution_from(whole, start, Fraction(3), DIGITS)
     for k, formula in ((1, "p**2/2 - cos(q)"), (2, "p**2/2 + q**4/4")):
         own = exact_solution(
             Hamiltonian.parse(formula), p=start[f"p{k}"], q=start[f"q{k}"], time=Fraction(3),
@@ -122,7 +122,7 @@ def test_where_all_parts_have_closed_forms_the_whole_has() -> None:
 def test_the_numerical_flow_keeps_its_energy_and_comes_back() -> None:
     start: Start = (["0.3", "-0.1"], ["0.1", "0.2"])
     found = after(HENON, start, "5", 30)
-    back = solution_in_degrees(HENON, found.point, Fraction(-5), 30)
+    back = solution_from(HENON, found.point, Fraction(-5), 30)
     begun = point_of(HENON, *start)
     assert max(abs(back.point[name] - begun[name]) for name in begun) < Fraction(1, 10**27)
     ring = dict(found.point.items())
@@ -137,7 +137,7 @@ def test_the_numerical_flow_keeps_its_energy_and_comes_back() -> None:
 def test_in_time_it_is_the_planes_beside_what_rests() -> None:
     driven = Hamiltonian.parse("p1**2/2 + q1**2*cos(t)/2 + p2*q2*p1**2")
     start = point_of(driven, ["1", "0"], ["1/3", "0"])
-    found = solution_in_degrees(driven, start, Fraction(2), DIGITS, Fraction(1, 3))
+    found = solution_from(driven, start, Fraction(2), DIGITS, Fraction(1, 3))
     plane = exact_solution(
         Hamiltonian.parse("p**2/2 + q**2*cos(t)/2"), p=Fraction(1, 3), q=Fraction(1),
         time=Fraction(2), digits=DIGITS, t0=Fraction(1, 3),

@@ -47,7 +47,7 @@ def test_what_is_lost_on_the_way_is_in_the_bound(
     run: RunResult, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A solution that says more than it knows is found out by the one of a single piece."""
-    true, lost = solution_error.solution_in_degrees, Fraction(1, 10**4)
+    true, lost = solution_error.solution_from, Fraction(1, 10**4)
 
     def careless(h: Hamiltonian, at: Point, time: Fraction, *rest: Any) -> Solution:
         found = true(h, at, time, *rest)
@@ -55,7 +55,7 @@ def test_what_is_lost_on_the_way_is_in_the_bound(
         return found if time == 1 else replace(found, point=moved)
 
     monkeypatch.setattr(known_flows, "closed_form", lambda *_: None)
-    monkeypatch.setattr(solution_error, "solution_in_degrees", careless)
+    monkeypatch.setattr(solution_error, "solution_from", careless)
     assert all(Fraction(x.bound) > lost for _, x in solution_errors(run, 4))
 
 

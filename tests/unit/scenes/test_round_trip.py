@@ -16,12 +16,11 @@ from verify.scenes.causes import Cause
 from verify.scenes.frozen import Frozen, OfScheme, WithProse
 from verify.scenes.results import bounded_value as value
 from verify.scenes.results import claim, growth, proof, separation, separation_in_degrees
-from verify.scenes.results import poincare as poincare_results
+from verify.scenes.results import orbit_sections as orbit_results
 from verify.scenes.results import regions as flow_results
 from verify.scenes.results import report as scene_results
 from verify.scenes.results import run as run_results
 from verify.scenes.results import stability as stability_results
-from verify.scenes.results import stroboscopic as stroboscopic_results
 from verify.scenes.results import work_precision as work_precision_results
 from verify.scenes.results.exploration import GalleryScene
 from verify.scenes.results.proof import Formulas
@@ -33,7 +32,7 @@ from verify.scenes.scene import Scene, load_scene
 RESULTS = (
     claim,
     growth,
-    poincare_results,
+    orbit_results,
     proof,
     separation,
     separation_in_degrees,
@@ -41,7 +40,6 @@ RESULTS = (
     run_results,
     scene_results,
     stability_results,
-    stroboscopic_results,
     work_precision_results,
     flow_results,
 )

@@ -9,8 +9,8 @@ from tests.helpers.sampled.drawing import fuzzed, shrunk
 from verify import Hamiltonian, InputError
 from verify import strategies as s
 from verify.algebra.formula import symbol
-from verify.flows.degrees.solution import uncoupled
 from verify.hamiltonians.canonical_field import canonical_field
+from verify.hamiltonians.uncoupled import uncoupled
 from verify.scenes.values import InitialState
 from verify.strategies.couplings import couplings, numbered
 from verify.strategies.formulas import KINDS

@@ -9,8 +9,12 @@ from matplotlib.figure import Figure
 
 from verify.pages.figures.panels import name_states, panels_beside
 from verify.pages.figures.svg import INK, SERIES
-from verify.scenes.results.poincare import MapSections, PoincareResult
-from verify.scenes.results.stroboscopic import SchemeSections, StroboscopicResult
+from verify.scenes.results.orbit_sections import (
+    MapSections,
+    PoincareResult,
+    SchemeSections,
+    StroboscopicResult,
+)
 
 _HEIGHT, _IN_A_ROW = 330, 3
 _MOST_DRAWN = 6000  # points of a figure

@@ -7,8 +7,7 @@ from verify.pages.figures.captioned_plot import Plot
 from verify.pages.sections.rows import Row
 from verify.pages.sections.section import Picture, Place
 from verify.pages.text.typography import whole
-from verify.scenes.results.poincare import PoincareOrbit
-from verify.scenes.results.stroboscopic import StroboscopicOrbit
+from verify.scenes.results.orbit_sections import PoincareOrbit, StroboscopicOrbit
 
 Orbits = Sequence[PoincareOrbit] | Sequence[StroboscopicOrbit]
 

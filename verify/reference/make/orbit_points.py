@@ -18,9 +18,8 @@ from verify.arithmetic.arb import around, in_reach, middle_and_radius, rational_
 from verify.arithmetic.exact import text
 from verify.arithmetic.flint_precision import working_precision
 from verify.errors import InputError
-from verify.flows.degrees.solution import solution_in_degrees
 from verify.flows.extrapolation import NoFlowError
-from verify.flows.solution import Solution, leaves_by_algebra
+from verify.flows.solution import Solution, leaves_by_algebra, solution_from
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import point_of
@@ -182,7 +181,7 @@ def _solution_at(
             if time == 0:  # the initial value itself, also where H is not defined
                 at = Solution(start, Fraction(0), "the initial value itself")
             else:
-                at = solution_in_degrees(hamiltonian, start, time, digits + guard, t0)
+                at = solution_from(hamiltonian, start, time, digits + guard, t0)
             known = {name: (x, at.bound) for name, x in at.point.items()}
             values = _all_rounded(known, start, digits, guard)
             if all(values.values()):

@@ -7,8 +7,8 @@ from typing import Any
 from verify.execution.plan import Plan
 from verify.reference.make.columns import orbit_columns
 from verify.reference.make.tasks import OrbitTask, SolutionTask
+from verify.scenes.run_sections import Reference
 from verify.scenes.scene import Scene
-from verify.scenes.sections import Reference
 from verify.studies.kinds.proofs import proof_task
 from verify.studies.proofs.one import ProofTask
 

@@ -14,7 +14,7 @@ from verify.scenes.paper_figures import PaperFigure
 from verify.scenes.results.claim import ClaimResult, CriterionResult
 from verify.scenes.results.exploration import Gallery
 from verify.scenes.results.growth import GrowthLawResult
-from verify.scenes.results.poincare import PoincareResult
+from verify.scenes.results.orbit_sections import PoincareResult, StroboscopicResult
 from verify.scenes.results.proof import EveryResult, ProofResult
 from verify.scenes.results.regions import FlowResult
 from verify.scenes.results.run import RunResult
@@ -27,7 +27,6 @@ from verify.scenes.results.stability import (
     StabilityResult,
 )
 from verify.scenes.results.statement import StatementResult
-from verify.scenes.results.stroboscopic import StroboscopicResult
 from verify.scenes.results.work_precision import WorkPrecisionResult
 from verify.verdict import Verdict
 

@@ -3,13 +3,13 @@
 from typing import Literal
 
 from verify.execution.keeping import Keeper
-from verify.execution.task import InitialValueTask
+from verify.execution.task import StartTask
 from verify.scenes.results.growth import AverageResult
 
 _COST = 25_000_000  # of its law and time average, about
 
 
-class GrowthTask(InitialValueTask):
+class GrowthTask(StartTask):
     """The growth law of Λ on one orbit, with the time average in it."""
 
     result = AverageResult

@@ -4,8 +4,7 @@ from typing import Any
 
 from verify.execution.study import Results, Section, Study, toml_section
 from verify.scenes.scene import Scene
-from verify.studies.stability.findings import findings_of
-from verify.studies.stability.plan import need_stability
+from verify.studies.stability.plan import findings_of, need_stability
 
 
 def _found(scene: Scene, results: Results) -> dict[str, Any]:

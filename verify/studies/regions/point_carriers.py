@@ -22,7 +22,6 @@ from verify.arithmetic.exact import of_mpf
 from verify.arithmetic.float_context import FLOAT
 from verify.arithmetic.number_system import bits_for
 from verify.arithmetic.systems import float64
-from verify.flows.degrees.points import points_in_degrees
 from verify.flows.points import exact_points
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.many_points import PointMap
@@ -122,19 +121,11 @@ class ExactFlowCarrier(_Floats):
         self.method = ""
 
     def images(self, *points: Any) -> Points:
-        if self._hamiltonian.planar:
-            q, p = points
-            plane = exact_points(self._hamiltonian, p, q, [self._time], self._t0)
-            self._note(plane.bound, plane.method)
-            return plane.q[0], plane.p[0]
         given = dict(zip(self.place.names, points, strict=True))
-        found = points_in_degrees(self._hamiltonian, given, self._time, self._t0)
-        self._note(found.bound, found.method)
-        return tuple(found.points[name] for name in self.place.names)
-
-    def _note(self, bound: float, method: str) -> None:
-        self.radius = max(self.radius or Fraction(0), Fraction(bound))
-        self.method = method
+        found = exact_points(self._hamiltonian, given, [self._time], self._t0)
+        self.radius = max(self.radius or Fraction(0), Fraction(found.bound))
+        self.method = found.method
+        return tuple(found.points[name][0] for name in self.place.names)
 
     def finer(self, *points: Any) -> Points:
         raise NotImplementedError("the exact flow's error is known")

@@ -12,12 +12,9 @@ from math import ceil, sqrt
 from statistics import fmean, pstdev
 
 from verify.arithmetic.exact import quotient
-from verify.flows.orbit import ExactOrbit
-from verify.studies.stability.exact_motion import ExactMotion
-from verify.studies.stability.run_motion import Motion, RunMotion
+from verify.studies.stability.run_motion import RunMotion
 from verify.studies.stability.trail import MOST_INTERPRETED, MOST_SECTIONS, Trail, follow_precisely
 
-AnyMotion = Motion[ExactOrbit] | Motion[ExactMotion]
 _STRETCHES = 8
 _LONGER = 4
 _PERIODS = 8  # of the exact orbit, that the longer run lasts at least
@@ -31,21 +28,16 @@ _SLOWER = 16.0  # times less, at most, in the longer run
 def drift_of(motion: RunMotion) -> Fraction | None:
     """The energy's change in a unit of time, in parts of its scale; None where none is seen.
 
-    Of a motion that has died away within the time, over all of it.
+    Of a motion in the plane that has died away within the time, over all of it.
     """
-    run, trail, period = motion.run, motion.precise, motion.orbit.period
-    if period is None or too_short(motion):
+    run, trail, orbit = motion.run, motion.precise, motion.orbit
+    if orbit.kind == "driven" or orbit.period is None or too_short(motion):
         return None
     errors = _errors(motion, trail)
-    if errors and errors[-1] and _died(motion, trail, period):
+    closes = not orbit.has_neighbours
+    if closes and errors and errors[-1] and _died(motion, trail, orbit.period):
         return Fraction(errors[-1] / float(run.time))
-    return lasting_rate(motion)
-
-
-def lasting_rate(motion: AnyMotion) -> Fraction | None:
-    """The rate of a drift that a run four times as long still has; None where none is seen."""
-    trail = motion.precise
-    first = _rate_of(_errors(motion, trail), trail)
+    first = _rate_of(errors, trail)
     if first is None:
         return None
     longer = motion.run.shortened(_LONGER * trail.steps)
@@ -58,7 +50,7 @@ def lasting_rate(motion: AnyMotion) -> Fraction | None:
     return Fraction(first)
 
 
-def too_short(motion: AnyMotion) -> bool:
+def too_short(motion: RunMotion) -> bool:
     """Whether the energy has not swung often enough to be told from a drift.
 
     Of an orbit that does not come back within the time there is only that one way.
@@ -88,7 +80,7 @@ def _rests(motion: RunMotion, trail: Trail) -> bool:
     return all(high - low < r / 100 for low, high, r in ends)
 
 
-def _errors(motion: AnyMotion, trail: Trail) -> list[float]:
+def _errors(motion: RunMotion, trail: Trail) -> list[float]:
     """(H − H(z₀)) / scale at the trail's points; empty where it is not known."""
     found = motion.energy_errors(trail)
     known = [float(x) for x in found if x is not None]

@@ -24,7 +24,7 @@ from verify.arithmetic.exact import known_digits
 from verify.effort import limited
 from verify.errors import NOT_GIVEN, InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.start import check_start
+from verify.hamiltonians.start import check_start, shown_of
 from verify.schemes import get
 from verify.studies.stability.linear import LinearStability, NearbyLimit
 from verify.studies.stability.nearby_linear import linear_stability
@@ -136,19 +136,11 @@ def linear_at_equilibrium(
         raise InputError("step_sizes", NOT_GIVEN, problem)
     interval, frequencies = linear_stability(scheme) if splits else None, _frequencies(matrix)
     found = LinearAtEquilibrium(scheme, hamiltonian, point, tuple(frequencies), interval)
-    decided: dict[Fraction, bool | None] = {}
-    for h in step_sizes:
-        step = None if found.allows(h) else _step(scheme, hamiltonian, hessian, h)
-        decided[h] = True if found.allows(h) else None if step is None else stays_bounded(step)
+    decided: dict[Fraction, bool | None] = dict.fromkeys(step_sizes, True)
+    for h in (h for h in step_sizes if not found.allows(h)):
+        step = step_matrix(scheme, _quadratic(hamiltonian, hessian), matrix, h)
+        decided[h] = None if step is None else stays_bounded(step)
     return replace(found, decided=decided)
-
-
-def _step(
-    scheme: str, hamiltonian: Hamiltonian, hessian: flint.fmpq_mat, h: Fraction
-) -> flint.fmpq_mat | None:
-    """The matrix of a step of size h."""
-    made = _quadratic(hamiltonian, hessian)
-    return step_matrix(scheme, made, _field_matrix(hessian), h)
 
 
 def hessian_at(hamiltonian: Hamiltonian, point: Mapping[str, Fraction]) -> flint.fmpq_mat:
@@ -159,7 +151,8 @@ def hessian_at(hamiltonian: Hamiltonian, point: Mapping[str, Fraction]) -> flint
         name = hamiltonian.symbols[0]
         raise InputError("parameter", name, f"has no value; give one, as {name}=1")
     names = [symbol(name) for name in hamiltonian.coordinates]
-    _check_smooth(hamiltonian, point)
+    q, p = (shown_of(hamiltonian, point, letter) for letter in "qp")
+    check_start(hamiltonian, q, p)
     at = {z: sympy.Rational(*point[z.name].as_integer_ratio()) for z in names}
     found = flint.fmpq_mat(len(names), len(names))
     for i, z in enumerate(names):
@@ -175,14 +168,6 @@ def hessian_at(hamiltonian: Hamiltonian, point: Mapping[str, Fraction]) -> flint
                     )
                 found[i, j] = flint.fmpq(int(second.p), int(second.q))
     return found
-
-
-def _check_smooth(hamiltonian: Hamiltonian, point: Mapping[str, Fraction]) -> None:
-    if hamiltonian.planar:
-        check_start(hamiltonian, point["q"], point["p"])
-    else:
-        n, values = hamiltonian.degrees, [point[name] for name in hamiltonian.coordinates]
-        check_start(hamiltonian, values[n:], values[:n])
 
 
 def _check_equilibrium(

@@ -1,19 +1,24 @@
-"""The exact motion that a run in n degrees of freedom is held to, and how fast its neighbours part.
+"""The exact motion that a run is held to: in the plane until it closes (`verify.flows.orbit`), in n
+degrees of freedom beside a neighbour, which tells how fast they part.
 
-The flow is followed with 24 digits from one time to the next, and so is a neighbour that starts
-10⁻¹² of the reach away: their distance, by the first one, is what the tangent map does to one
-direction, as long as it is small. Lengths are measured by the reach: that of the momenta for
+There the flow is followed with 24 digits from one time to the next, and so is a neighbour that
+starts 10⁻¹² of the reach away: their distance, by the first one, is what the tangent map does to
+one direction, as long as it is small. Lengths are measured by the reach: that of the momenta for
 momenta, of the coordinates for coordinates, each the greatest of its kind.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from math import log, pi
-from typing import Literal
+from typing import ClassVar
 
+from verify.arithmetic.systems import mpfr
 from verify.flows.extrapolation import Flow, NoFlowError
+from verify.flows.functions import functions_at
+from verify.flows.orbit import exact_orbit
+from verify.flows.orbit_search import ExactOrbit, Kind
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.prose import Prose, prose, read_prose
@@ -26,7 +31,8 @@ _MOST_STEPS = 4000  # from one time to the next
 _NEAR = Fraction(1, 10**12)  # of the reach
 _APART = 0.1  # of the reach, beyond which a distance no longer grows
 _FAR = 10**6  # an orbit that goes so many times farther than it was is leaving
-Kind = Literal["bounded", "driven", "escapes", "unknown"]
+_OMEGA_DIGITS = 20
+_NOISE = 1e-6  # of the matrix's size: a double eigenvalue 0 is found so far from it, and more
 
 
 @dataclass(frozen=True)
@@ -50,26 +56,45 @@ class Sensitivity:
         return cls(rate, own[-1], is_exponential(own, logs))
 
 
-@dataclass(frozen=True)
-class ExactMotion:
-    """`reach`: of each coordinate, the greatest of its kind; `scale`: of the energy; `period`:
-    about the time in which the quickest coordinate turns round; `states`: where it was looked at,
-    at these `times`."""
+@dataclass(frozen=True, kw_only=True)
+class ExactMotion(ExactOrbit):
+    """In n degrees of freedom. `reach`: of each coordinate, the greatest of its kind; `turns`: none
+    is taken for an angle here; `period`: about the time in which the quickest coordinate turns
+    round; `states`: where it was looked at, at these `times`."""
 
-    kind: Kind
-    summary: Prose
-    centre: State
-    reach: State
-    scale: Fraction
-    period: Fraction | None
+    has_neighbours: ClassVar[bool] = True
+    hamiltonian: Hamiltonian
     states: tuple[State, ...]
     times: tuple[Fraction, ...]
     sensitivity: Sensitivity | None = None
 
     @property
-    def turns(self) -> tuple[bool, ...]:
-        """Whether a coordinate is an angle that goes round; none is taken for one here."""
-        return (False,) * len(self.reach)
+    def is_sensitive(self) -> bool | None:
+        """Whether it parts from its neighbours exponentially; None where that is not known."""
+        return None if self.sensitivity is None else self.sensitivity.exponential
+
+    @cached_property
+    def frequency(self) -> Fraction:
+        """The greatest ω, to some three digits: the greatest imaginary part of an eigenvalue of the
+        field's Jacobian, in float64, at the states; 0 where nothing oscillates."""
+        import numpy as np
+
+        field, _ = canonical_field(self.hamiltonian)
+        size, ring = len(field.names), field.ring
+        names = (*field.names, "t") if field.timed else field.names
+        entries = [(ring, ring.diff(slope, name)) for slope in field.slopes for name in field.names]
+        arithmetic = mpfr.make(_OMEGA_DIGITS)
+        at = functions_at(arithmetic, entries, names)
+        greatest = 0.0
+        for time, state in zip(self.times, self.states, strict=True):
+            given = (*state, time) if field.timed else state
+            with arithmetic.context():
+                found = at(*map(arithmetic.number, given))
+            jacobian = np.array([float(arithmetic.exact(x)) for x in found]).reshape(size, size)
+            turning = float(np.abs(np.linalg.eigvals(jacobian).imag).max())
+            if turning > _NOISE * float(np.abs(jacobian).max()):
+                greatest = max(greatest, turning)
+        return Fraction(greatest)
 
 
 def moved(state: State, reach: State, part: Fraction) -> State:
@@ -85,16 +110,25 @@ def distance(one: State, other: State, reach: State) -> float:
     return max(float(abs(x - y) / r) for x, y, r in zip(one, other, reach, strict=True))
 
 
-@lru_cache(maxsize=64)
 def exact_motion(
     hamiltonian: Hamiltonian, state: State, time: Fraction, t0: Fraction = Fraction(0)
-) -> ExactMotion:
+) -> ExactOrbit:
     """The motion from a state for the length `time`."""
+    if hamiltonian.planar:
+        p, q = state
+        return exact_orbit(hamiltonian, p, q, time, t0)
+    return _beside_a_neighbour(hamiltonian, state, time, t0)
+
+
+@lru_cache(maxsize=64)
+def _beside_a_neighbour(
+    hamiltonian: Hamiltonian, state: State, time: Fraction, t0: Fraction
+) -> ExactMotion:
     search = _Search(hamiltonian, state, time, t0)
     try:
         points = search.followed(state)
     except NoFlowError as error:
-        return search.found("unknown", error.said, [state])
+        return search.found("not followed", error.said, [state])
     size = max(map(abs, state)) or max(map(abs, points[1]))
     if max(map(abs, points[-1])) > _FAR * size:
         at = float(t0 + time)
@@ -127,6 +161,7 @@ class _Search:
         self, hamiltonian: Hamiltonian, state: State, time: Fraction, t0: Fraction
     ) -> None:
         field, _ = canonical_field(hamiltonian)
+        self.hamiltonian = hamiltonian
         self.flow, self.t0, self.state = Flow(field, _DIGITS), t0, state
         self.part = time / _TIMES
         self.times = [float(k * self.part) for k in range(_TIMES + 1)]
@@ -161,15 +196,17 @@ class _Search:
         times = [r / v for r, v in zip(own, fastest, strict=True) if r and v]
         period = Fraction(2 * pi) * min(times) if times else None
         return ExactMotion(
-            kind,
-            summary,
-            centre,
-            reach,
-            sum(products, Fraction(0)) / 2 or Fraction(1),
-            period,
-            tuple(points),
-            tuple(self.t0 + k * self.part for k in range(len(points))),
-            sensitivity,
+            kind=kind,
+            summary=summary,
+            centre=centre,
+            reach=reach,
+            turns=(False,) * len(reach),
+            scale=sum(products, Fraction(0)) / 2 or Fraction(1),
+            period=period,
+            hamiltonian=self.hamiltonian,
+            states=tuple(points),
+            times=tuple(self.t0 + k * self.part for k in range(len(points))),
+            sensitivity=sensitivity,
         )
 
     def _fastest(self, points: Sequence[State]) -> list[Fraction]:

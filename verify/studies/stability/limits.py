@@ -2,11 +2,12 @@
 
 Linear theory says of a step size h that h ω has to lie in the scheme's interval (see
 `verify.studies.stability.linear`), ω being the greatest frequency on the exact orbit, where that is
-stiffest (`verify.studies.stability.held`). What bounded motion is, is told in
-`verify.studies.stability.run_motion` and `verify.studies.stability.verdict_in_degrees`.
+stiffest. What bounded motion is, is told in
+`verify.studies.stability.run_motion` and `verify.studies.stability.verdict_on_run`.
 """
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 
@@ -14,13 +15,17 @@ import sympy
 
 from verify.arithmetic.exact import decimal, text
 from verify.errors import InputError
+from verify.flows.orbit_search import ExactOrbit
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.start import Given, point_of, shown_of
+from verify.hamiltonians.start import Given, point_of, shown_of, start_texts
 from verify.prose import Prose, prose
+from verify.runs.run import run as run_of
 from verify.scenes.results.stability import LargestStepResult, MapCell, StabilityMapResult
-from verify.studies.stability.exact_motion import ExactMotion
-from verify.studies.stability.held import Within, held
+from verify.studies.stability.exact_motion import exact_motion
 from verify.studies.stability.nearby_linear import linear_stability
+from verify.studies.stability.run_motion import RunMotion
+from verify.studies.stability.trail import Run, State
+from verify.studies.stability.verdict_on_run import Judgement, judge
 
 _FINER = Fraction(1001, 1000)  # how near the largest step is found
 _LADDER = Fraction(119, 100)  # about 2^(1/4), between the step sizes that are looked at first
@@ -51,6 +56,55 @@ def shortened(x: Fraction | None, digits: int = 4) -> str | None:
     return None if x is None else decimal(x, digits)
 
 
+@dataclass(frozen=True)
+class _Held:
+    """The exact motion from one state for some time, and what is asked of runs from there.
+
+    In n degrees of freedom a bounded motion is followed once, over the whole time, for all runs.
+    What a run must not exceed beside the motion's bounds: |H − H(z₀)| in parts of the orbit's
+    energy scale, and the greatest |entry| of W, which in the plane is |Λ|.
+    """
+
+    hamiltonian: Hamiltonian
+    state: State
+    time: Fraction
+    t0: Fraction
+    energy_error: Fraction | None = None
+    symplectic_defect: Fraction | None = None
+
+    @property
+    def exact(self) -> ExactOrbit:
+        return exact_motion(self.hamiltonian, self.state, self.time, self.t0)
+
+    def _motion(self, scheme: str, h: Fraction, steps: int) -> RunMotion:
+        run, exact = Run(self.hamiltonian, scheme, h, self.state, steps, self.t0), self.exact
+        serves = exact.has_neighbours and exact.kind in ("bounded", "driven")
+        return RunMotion(run, exact if serves else None)
+
+    def keeps(self, scheme: str, h: Fraction, steps: int) -> bool:
+        """Whether the float64 run keeps within the bounds, and within what is asked beside them."""
+        motion, most = self._motion(scheme, h, steps), self.energy_error
+        if not motion.stays(motion.float64):
+            return False
+        worst = motion.worst(motion.float64)
+        if most is not None and (worst is None or worst > most):
+            return False
+        return self.symplectic_defect is None or _keeps_form(motion.run, self.symplectic_defect)
+
+    def judged(self, scheme: str, h: Fraction, steps: int) -> Judgement:
+        """The verdict on the run."""
+        return judge(self._motion(scheme, h, steps))
+
+
+def _keeps_form(run: Run, most: Fraction) -> bool:
+    of, start, name = run.hamiltonian, run.start, run.hamiltonian.structure.of_run
+    done = run_of(
+        of, run.scheme, q=shown_of(of, start, "q"), p=shown_of(of, start, "p"),
+        step_size=run.step_size, steps=run.steps, t0=start["t"], observables=(name,),
+    )  # fmt: skip
+    return name in done.values and abs(done.values[name]) <= most
+
+
 def largest_step(
     hamiltonian: Hamiltonian,
     scheme: str,
@@ -69,19 +123,21 @@ def largest_step(
     From small steps upwards until the first that is not bounded; beyond it there may be other
     steps with bounded motion, by resonance, which are not looked for.
     """
-    point, within = point_of(hamiltonian, q, p), Within(energy_error, symplectic_defect)
-    of = held(hamiltonian, point, time, t0 or Fraction(0))
-    orbit, omega = of.exact, of.frequency
+    point, begin = point_of(hamiltonian, q, p), t0 or Fraction(0)
+    state = tuple(point.values())
+    of = _Held(hamiltonian, state, time, begin, energy_error, symplectic_defect)
+    orbit = of.exact
+    omega = orbit.frequency
     linear = _linear_step(scheme, omega)
     good = bad = None
 
     def stays(h: Fraction) -> bool:
         steps = time // h
-        return steps >= 1 and of.keeps(scheme, h, steps, within)
+        return steps >= 1 and of.keeps(scheme, h, steps)
 
     if orbit.kind == "escapes":
         detail = prose("the exact solution ", orbit.summary)
-    elif isinstance(orbit, ExactMotion) and orbit.kind == "unknown":
+    elif orbit.kind == "not followed":
         detail = prose("the exact solution, to be held against, is not known: ", orbit.summary)
     else:
         middle = linear or (1 / omega if omega else time / 100)
@@ -95,9 +151,7 @@ def largest_step(
         **hamiltonian.texts,
         scheme=scheme,
         time=text(time),
-        q=shown_of(hamiltonian, point, "q"),
-        p=shown_of(hamiltonian, point, "p"),
-        t0=None if t0 is None else text(t0),
+        **start_texts(hamiltonian, point, t0),
         bounded=shortened(good),
         unbounded=shortened(bad),
         linear=shortened(linear),
@@ -155,10 +209,10 @@ def stability_map(
     point = point_of(hamiltonian, q, p)
     for value in values:
         own = hamiltonian.with_values({**dict(hamiltonian.values), parameter: value})
-        of = held(own, point, max(step_sizes) * steps, begin)
+        of = _Held(own, tuple(point.values()), max(step_sizes) * steps, begin)
         row = (of.judged(scheme, h, steps) for h in step_sizes)
         cells.append(tuple(MapCell(kind=found.kind, step=found.step) for found in row))
-        linear.append(shortened(_linear_step(scheme, of.frequency)))
+        linear.append(shortened(_linear_step(scheme, of.exact.frequency)))
     return StabilityMapResult(
         **hamiltonian.texts,
         scheme=scheme,
@@ -166,9 +220,7 @@ def stability_map(
         values=tuple(map(text, values)),
         step_sizes=tuple(map(text, step_sizes)),
         steps=steps,
-        q=shown_of(hamiltonian, point, "q"),
-        p=shown_of(hamiltonian, point, "p"),
-        t0=None if t0 is None else text(t0),
+        **start_texts(hamiltonian, point, t0),
         cells=tuple(cells),
         linear=tuple(linear),
     )

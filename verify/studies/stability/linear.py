@@ -25,7 +25,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
-from typing import Protocol
 
 import flint
 import sympy
@@ -49,7 +48,8 @@ Entries = tuple[Poly, Poly, Poly, Poly]  # ∂p'/∂p, ∂p'/∂q, ∂q'/∂p, �
 
 @dataclass(frozen=True)
 class RingPolynomial:
-    """A polynomial in h that is not 0, its coefficients algebraic numbers of the ring."""
+    """A polynomial in h that is not 0, its coefficients algebraic numbers of the ring;
+    `over_integers` has all of its roots."""
 
     ring: Ring
     element: Poly
@@ -218,20 +218,10 @@ def _of_closed_form(
     return LinearStability(name, interval, sympy.factor(det - 1))
 
 
-class _Condition(Protocol):
-    """A polynomial in y that is not 0, and must not be negative.
-
-    `over_integers` has all of its roots; `is_negative` is asked at other y alone.
-    """
-
-    @property
-    def over_integers(self) -> flint.fmpz_poly: ...
-
-    def is_negative(self, y: Fraction, /) -> bool: ...
-
-
 @dataclass(frozen=True)
 class _SympyPolynomial:
+    """As a `RingPolynomial`, of what sympy has in closed form."""
+
     f: sympy.Poly
 
     @property
@@ -252,9 +242,11 @@ def _polynomial(x: sympy.Expr) -> sympy.Poly:
 
 
 def _interval(
-    conditions: Sequence[_Condition], narrow: Fraction = Fraction(0)
+    conditions: Sequence[RingPolynomial] | Sequence[_SympyPolynomial],
+    narrow: Fraction = Fraction(0),
 ) -> tuple[sympy.Expr | PositiveRoot, tuple[Fraction, ...]]:
-    """The greatest Y such that all of them are ≥ 0 on (0, Y), and a y in each gap passed over."""
+    """The greatest Y such that all of them, of which none is 0, are ≥ 0 on (0, Y), and a y in each
+    gap passed over."""
     left: PositiveRoot | None = None
     above, gaps = Fraction(0), list[Fraction]()  # the end of what encloses `left`
     for root, (low, high) in positive_roots(f.over_integers for f in conditions):

@@ -17,9 +17,9 @@ import numpy as np
 from verify import arithmetic as number_systems
 from verify.arithmetic.exact import decimal, fraction, text
 from verify.arithmetic.systems import float64
-from verify.flows.energies import energies_at
+from verify.flows.functions import energies_at
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.start import Given, point_of, shown_of
+from verify.hamiltonians.start import Given, point_of, start_texts
 from verify.kernels.many_points import PointMap
 from verify.kernels.step.computation import step_map_of
 from verify.scenes.observables import carries_defect
@@ -92,8 +92,7 @@ class Orbits:
 
     def defects(self, which: np.ndarray) -> np.ndarray:
         """max |W| of these orbits after all steps, in the plane |Λ|."""
-        planar = self.hamiltonian.planar
-        made = self.map_from(0, self.steps, "lambda" if planar else "symplectic_defect")
+        made = self.map_from(0, self.steps, self.hamiltonian.structure.of_run)
         rows = [k for k, n in enumerate(made.kernel.state_names) if n == "lam" or n[:2] == "w_"]
         entries = made.followed(self.starts[:, which])[rows]
         greatest: np.ndarray = np.abs(entries).max(axis=0)
@@ -141,9 +140,7 @@ def orbit_map(
         axes=axes,
         across=tuple(map(text, across)),
         upwards=tuple(map(text, upwards)),
-        q=shown_of(hamiltonian, point, "q"),
-        p=shown_of(hamiltonian, point, "p"),
-        t0=None if t0 is None else text(t0),
+        **start_texts(hamiltonian, point, t0),
         step_size=text(step_size),
         steps=steps,
         beyond=text(beyond),

@@ -1,14 +1,22 @@
-"""A scene's sections on stability → the tasks that they need."""
+"""A scene's sections on stability → the tasks that they need, and what was found of them."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from verify.arithmetic.exact import short
 from verify.execution.plan import Plan
-from verify.execution.study import called
-from verify.scenes.orbit_map_section import OrbitMap
+from verify.execution.study import Results, called, known_results
+from verify.execution.task import Task
+from verify.scenes.frozen import PLAIN
+from verify.scenes.results.stability import (
+    LargestStepResult,
+    OrbitMapResult,
+    StabilityMapResult,
+    StabilityResult,
+)
 from verify.scenes.scene import Scene
-from verify.scenes.stability_sections import LargestStepOver, StabilityMap
+from verify.scenes.stability_sections import LargestStepOver, OrbitMap, StabilityMap
 from verify.studies.stability.task import (
     LargestStepTask,
     OrbitMapTask,
@@ -21,26 +29,15 @@ Asked = TypeVar("Asked", LargestStepOver, StabilityMap, OrbitMap)
 
 def need_stability(plan: Plan, scene: Scene) -> None:
     """Adds what the scene asks for of stability."""
-    name = called(scene)
     for run, judged in stability_tasks(scene):
         plan.need(judged, f"{run}: is it stable, and whose fault is it if not")
-    for largest in largest_step_tasks(scene):
-        plan.need(largest, f"{name}: the largest step with bounded motion")
-    for over in stability_map_tasks(scene):
-        plan.need(over, f"{name}: stability over step size and {over.parameter}")
-    for over_starts in orbit_map_tasks(scene):
-        plan.need(over_starts, f"{name}: orbits over {' and '.join(over_starts.axes)}")
-
-
-def _given(scene: Scene) -> dict[str, Any]:
-    """H, and when its runs start where it depends on time."""
-    timed = scene.exact_hamiltonian().time_dependent
-    return scene.hamiltonian_fields() | ({"t0": scene.t0} if timed else {})
+    for task, what in _tasks_over(scene):
+        plan.need(task, f"{called(scene)}: {what}")
 
 
 def stability_tasks(scene: Scene) -> Iterator[tuple[str, StabilityTask]]:
     """Each run with its name: scene, section, scheme, step size and which initial value."""
-    given = _given(scene) if scene.stability else {}
+    given = scene.hamiltonian_fields() | {"t0": scene.begin} if scene.stability else {}
     for section in scene.stability:
         for scheme in section.schemes or scene.schemes:
             for k, at in enumerate(section.initial_values, start=1):
@@ -57,33 +54,68 @@ def stability_tasks(scene: Scene) -> Iterator[tuple[str, StabilityTask]]:
 
 def _of_schemes(scene: Scene, sections: Sequence[Asked]) -> Iterator[tuple[Asked, dict[str, Any]]]:
     """Each section with each of its schemes, and what its task begins with."""
-    given = _given(scene) if sections else {}
+    given = scene.hamiltonian_fields() | {"t0": scene.begin} if sections else {}
     for section in sections:
         start = {"q": section.initial_value.q, "p": section.initial_value.p}
         for scheme in section.schemes or scene.schemes:
             yield section, {**given, "scheme": scheme, **start}
 
 
-def largest_step_tasks(scene: Scene) -> Iterator[LargestStepTask]:
-    for section, begun in _of_schemes(scene, scene.largest_step):
+def _tasks_over(scene: Scene) -> Iterator[tuple[Task, str]]:
+    """Those that look for largest steps, or over several runs, each with what it looks for."""
+    for largest, begun in _of_schemes(scene, scene.largest_step):
         yield LargestStepTask(
-            **begun, time=section.time, energy_error=section.energy_error,
-            symplectic_defect=section.symplectic_defect,
-        )  # fmt: skip
-
-
-def stability_map_tasks(scene: Scene) -> Iterator[StabilityMapTask]:
-    for section, begun in _of_schemes(scene, scene.stability_map):
+            **begun, time=largest.time, energy_error=largest.energy_error,
+            symplectic_defect=largest.symplectic_defect,
+        ), "the largest step with bounded motion"  # fmt: skip
+    for over, begun in _of_schemes(scene, scene.stability_map):
         yield StabilityMapTask(
-            **begun, parameter=section.parameter, values=section.values,
-            step_sizes=section.step_sizes, steps=section.steps,
-        )  # fmt: skip
-
-
-def orbit_map_tasks(scene: Scene) -> Iterator[OrbitMapTask]:
-    for section, begun in _of_schemes(scene, scene.orbit_map):
+            **begun, parameter=over.parameter, values=over.values, step_sizes=over.step_sizes,
+            steps=over.steps,
+        ), f"stability over step size and {over.parameter}"  # fmt: skip
+    for starts, begun in _of_schemes(scene, scene.orbit_map):
         yield OrbitMapTask(
-            **begun, axes=section.axes, across=section.across, upwards=section.upwards,
-            step_size=section.step_size, steps=section.count,
-            beyond=section.farthest(scene.exact_hamiltonian()),
-        )  # fmt: skip
+            **begun, axes=starts.axes, across=starts.across, upwards=starts.upwards,
+            step_size=starts.step_size, steps=starts.count,
+            beyond=starts.farthest(scene.exact_hamiltonian()),
+        ), f"orbits over {' and '.join(starts.axes)}"  # fmt: skip
+
+
+@dataclass(frozen=True)
+class StabilityFindings:
+    """All that was found for some scenes."""
+
+    runs: tuple[StabilityResult, ...]
+    largest_steps: tuple[LargestStepResult, ...]
+    maps: tuple[StabilityMapResult, ...]
+    orbit_maps: tuple[OrbitMapResult, ...] = ()
+
+    def as_json(self) -> dict[str, list[dict[str, Any]]]:
+        """As a report's JSON has them, under `cases`, `largest_steps`, `maps` and `orbit_maps`."""
+        return {
+            "cases": [
+                {"id": run.id, "verdict": run.verdict}
+                | run.model_dump(mode="json", exclude={"id"}, context=PLAIN)
+                for run in self.runs
+            ],
+            "largest_steps": [x.model_dump(mode="json", context=PLAIN) for x in self.largest_steps],
+            "maps": [x.model_dump(mode="json") for x in self.maps],
+            "orbit_maps": [x.model_dump(mode="json") for x in self.orbit_maps],
+        }
+
+
+def findings_of(scenes: Sequence[Scene], results: Results) -> StabilityFindings:
+    """Those of all scenes; what has no result is left out."""
+    named = ((name, task) for scene in scenes for name, task in stability_tasks(scene))
+    runs = (
+        run.model_copy(update={"id": name})
+        for name, task in named
+        for run in known_results(StabilityResult, [task], results)
+    )
+    over = [task for scene in scenes for task, _ in _tasks_over(scene)]
+    return StabilityFindings(
+        tuple(runs),
+        tuple(known_results(LargestStepResult, over, results)),
+        tuple(known_results(StabilityMapResult, over, results)),
+        tuple(known_results(OrbitMapResult, over, results)),
+    )

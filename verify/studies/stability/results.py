@@ -4,31 +4,28 @@ from fractions import Fraction
 from typing import Any
 
 from verify.arithmetic.exact import plain, text
-from verify.hamiltonians.start import shown_of
+from verify.hamiltonians.start import start_texts
 from verify.prose import Number, Prose, prose
 from verify.scenes.results.stability import StabilityResult
-from verify.studies.stability.held import frequency, verdict
+from verify.studies.stability.exact_motion import ExactMotion
 from verify.studies.stability.limits import linear_limit, shortened
 from verify.studies.stability.run_motion import RunMotion
 from verify.studies.stability.trail import Run
-from verify.studies.stability.verdict_in_degrees import MotionInDegrees
-from verify.studies.stability.verdict_on_run import Judgement
+from verify.studies.stability.verdict_on_run import Judgement, judge
 
 
 def run_result(run: Run) -> StabilityResult:
     """The verdict on one run."""
     exact = run.hamiltonian
     point = dict(zip(exact.coordinates, run.state, strict=True))
-    motion = RunMotion(run) if exact.planar else MotionInDegrees(run)
-    judged = verdict(motion)
+    motion = RunMotion(run)
+    judged = judge(motion)
     return StabilityResult(
         **exact.texts,
         scheme=run.scheme,
         step_size=text(run.step_size),
         steps=run.steps,
-        q=shown_of(exact, point, "q"),
-        p=shown_of(exact, point, "p"),
-        t0=text(run.t0) if exact.time_dependent else None,
+        **start_texts(exact, point, run.t0 if exact.time_dependent else None),
         kind=judged.kind,
         step=judged.step,
         rate=shortened(judged.rate, 3),
@@ -38,14 +35,14 @@ def run_result(run: Run) -> StabilityResult:
     )
 
 
-def _beside(motion: RunMotion | MotionInDegrees, judged: Judgement) -> dict[str, Any]:
+def _beside(motion: RunMotion, judged: Judgement) -> dict[str, Any]:
     """What linear theory says beside the verdict; in n degrees of freedom how fast neighbours
     part."""
-    if isinstance(motion, MotionInDegrees):
+    if isinstance(motion.orbit, ExactMotion):
         seen = motion.orbit.sensitivity
         rate = None if seen is None else f"{seen.exponent:.2g}"
         return {"lyapunov": rate, "detail": judged.detail}
-    limit, h_omega = linear_limit(motion.run.scheme), motion.run.step_size * frequency(motion.orbit)
+    limit, h_omega = linear_limit(motion.run.scheme), motion.run.step_size * motion.orbit.frequency
     return {
         "h_omega": shortened(h_omega, 3) if h_omega else None,
         "linear_limit": shortened(limit, 6),

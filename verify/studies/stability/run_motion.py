@@ -1,43 +1,43 @@
 """The motion in one run: in float64 and in high precision, and the bounds it is held to.
 
 Bounds: ten times the exact orbit's reach in each coordinate, and a hundred times its energy scale
-(see `verify.flows.orbit`), but for an H that depends on time, whose value the drive changes. Two
-runs are apart where they differ by a tenth of the reach.
+(see `verify.studies.stability.exact_motion`), but for an H that depends on time, whose value the
+drive changes. Two runs are apart where they differ by a tenth of the reach.
 """
 
 from collections.abc import Sequence
 from fractions import Fraction
 from functools import cached_property
 from operator import sub
-from typing import Any, Generic, TypeVar
+from typing import Any
 
 from verify import arithmetic as number_systems
 from verify.arithmetic.exact import fraction, quotient
 from verify.arithmetic.number_system import Arithmetic
-from verify.flows.energies import energies_at
-from verify.flows.orbit import ExactOrbit, exact_orbit
-from verify.flows.orbit_search import initial_value_digits
-from verify.studies.stability.exact_motion import ExactMotion
+from verify.flows.functions import energies_at
+from verify.flows.orbit_search import ExactOrbit
+from verify.studies.stability.exact_motion import Sensitivity, distance, exact_motion, moved
 from verify.studies.stability.trail import Point, Run, Trail, follow, follow_precisely
 
 _BEYOND = 10  # times the reach
 _ENERGY = 100  # times the energy scale
 _APART = Fraction(1, 10)  # of the reach
 _DIGITS = 40
-AnyOrbit = TypeVar("AnyOrbit", ExactOrbit, ExactMotion)
+_NEIGHBOUR = Fraction(1, 10**20)  # of the reach, one of the scheme's own orbit
 
 
 def float64() -> Arithmetic:
     return number_systems.get("float64", 17)
 
 
-class Motion(Generic[AnyOrbit]):
+class RunMotion:
     """What is seen of one run beside the exact orbit; each thing is made when it is looked at."""
 
-    def __init__(self, run: Run, orbit: AnyOrbit, digits: int = _DIGITS) -> None:
+    def __init__(self, run: Run, orbit: ExactOrbit | None = None) -> None:
+        """`orbit`: the exact one from there, over the run's time or longer, if it is known."""
         self.run = run
-        self.orbit: AnyOrbit = orbit
-        self.digits = digits
+        self.orbit = orbit or exact_motion(run.hamiltonian, run.state, run.time, run.t0)
+        self.digits = _DIGITS + self.orbit.more_digits
         self._known: dict[int, tuple[Trail, list[Any]]] = {}
 
     @cached_property
@@ -55,6 +55,16 @@ class Motion(Generic[AnyOrbit]):
         if asked == self.run.steps:
             return self.float64
         return follow(self.run.shortened(asked), float64())
+
+    @cached_property
+    def sensitivity(self) -> Sensitivity:
+        """That of the scheme's own map, in high precision."""
+        reach = self.orbit.reach
+        near = self.run.onwards(moved(self.run.state, reach, _NEIGHBOUR), 0, self.precise.steps)
+        other, h = follow_precisely(near, self.digits), float(self.run.step_size)
+        pairs = list(zip(self.precise.points, other.points, strict=False))
+        apart = [distance(a.state, b.state, reach) for a, b in pairs]
+        return Sensitivity.of([a.step * h for a, _ in pairs], apart)
 
     @cached_property
     def _first_energy(self) -> Any:
@@ -144,16 +154,6 @@ class Motion(Generic[AnyOrbit]):
         """Whether two runs of as many steps both end, and are together all the way."""
         columns = zip(one.columns, other.columns, self._near, strict=True)
         return one.finished and other.finished and all(_farthest(x, y) <= d for x, y, d in columns)
-
-
-class RunMotion(Motion[ExactOrbit]):
-    """That in the plane."""
-
-    def __init__(self, run: Run) -> None:
-        p, q = run.state
-        orbit = exact_orbit(run.hamiltonian, p, q, run.time, run.t0)
-        # More where the initial value is written with more.
-        super().__init__(run, orbit, _DIGITS + initial_value_digits((p, q)))
 
 
 def _farthest(one: Sequence[Any], other: Sequence[Any]) -> Any:

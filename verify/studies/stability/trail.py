@@ -65,14 +65,6 @@ class Point(NamedTuple):
     step: int
     state: tuple[Any, ...]
 
-    @property
-    def p(self) -> Any:
-        return self.state[0]
-
-    @property
-    def q(self) -> Any:
-        return self.state[1]
-
 
 @dataclass(frozen=True)
 class Trail:

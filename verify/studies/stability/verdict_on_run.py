@@ -14,17 +14,30 @@ is to blame:
 High precision is believed where twice as many digits say the same. What is bounded is `stable`, or
 `drifts` (see `verify.studies.stability.energy_drift`). What bounds are, and when runs are apart, is
 told in `verify.studies.stability.run_motion`.
+
+In n degrees of freedom the motion may be sensitive, chaotic or near an unstable orbit, where
+float64 parts from the scheme in high precision, and then no scheme is to blame, and no arithmetic:
+
+- the exact motion parts from its neighbours exponentially: `sensitive`;
+- it does not, and the scheme's own map does, in high precision: `unstable: scheme`;
+- neither does: `unstable: arithmetic`;
+- where the time does not tell: `undecided`.
+
+A run that leaves its bounds in high precision is `unstable: scheme`; of a sensitive motion only
+where it has lost its energy before: one that keeps it, and leaves, is `sensitive`.
 """
 
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import chain
 
+from verify.arithmetic.exact import fraction
 from verify.arithmetic.systems import mpfr
-from verify.prose import Number, Prose, prose
+from verify.prose import Number, Prose, prose, read_prose
 from verify.scenes.results.stability import Kind
 from verify.schemes import get
 from verify.studies.stability.energy_drift import drift_of, too_short
+from verify.studies.stability.exact_motion import ExactMotion
 from verify.studies.stability.rounded_start import describe_rounded_start
 from verify.studies.stability.run_motion import RunMotion, float64
 from verify.studies.stability.trail import Trail, first_apart, first_step, follow, follow_precisely
@@ -36,6 +49,7 @@ _FEWER_BITS = 45
 _RANGE_STEPS = 20_000  # that are looked at for what float64's range does to them
 _SMALL = Fraction(1, 10**75)  # the square of a square of what is smaller vanishes in float64
 _LOST = Fraction(1, 2**20)  # of its own size: a component of which the range has taken so much
+_KEPT = 1  # energy scales: what has not lost more has kept its energy
 
 
 @dataclass(frozen=True)
@@ -51,60 +65,90 @@ class Judgement:
 
 def judge(motion: RunMotion) -> Judgement:
     """The verdict on one run."""
-    if motion.orbit.kind == "escapes":
-        return Judgement("escapes", prose("the exact solution ", motion.orbit.summary))
-    precise = motion.precise
-    if not motion.stays(precise):
-        if motion.orbit.kind == "unknown":
-            unknown = "the exact solution, to be held against, is not known: "
-            return Judgement("undecided", prose(unknown, motion.orbit.summary))
-        return _scheme(motion)
-    if not motion.together(motion.as_far, precise):
-        return _not_the_scheme(motion)
-    if not motion.stays(motion.float64):
-        told = prose(
-            f"float64 leaves its bounds beyond the {precise.steps} steps of the run it is held to"
-        )
-        return Judgement("undecided", told)
-    lost = _vanished(motion)
-    if lost:
-        return Judgement("underflow", lost, energy_error=motion.worst(motion.float64))
-    return _bounded(motion)
+    orbit = motion.orbit
+    if orbit.kind == "escapes":
+        return Judgement("escapes", prose("the exact solution ", orbit.summary))
+    stays = orbit.kind != "not followed" and motion.stays(motion.precise)
+    if not stays and orbit.kind in ("unknown", "not followed"):
+        unknown = "the exact solution, to be held against, is not known: "
+        return Judgement("undecided", prose(unknown, orbit.summary))
+    if not stays:
+        return _leaves(motion)
+    together = motion.together(motion.as_far, motion.precise)
+    if isinstance(orbit, ExactMotion):
+        return _bounded(motion) if together else _by_neighbours(motion, orbit)
+    return _within_range(motion) if together else _by_digits(motion)
 
 
-def _scheme(motion: RunMotion) -> Judgement:
+def _leaves(motion: RunMotion) -> Judgement:
     digits = 2 * motion.digits
     again = follow_precisely(motion.run, digits)
     step = first_step(again, motion.beyond)
     if step is None:
         told = prose(f"{motion.digits} and {digits} digits differ in whether the orbit stays")
         return Judgement("undecided", told)
+    where = f"at step {step}, in {motion.digits} and in {digits} digits"
+    if not isinstance(motion.orbit, ExactMotion):
+        return Judgement("unstable: scheme", _end_words(motion, again, step, where), step=step)
+    told = prose(f"the scheme leaves the bounds {where}")
+    errors = motion.energy_errors(again)[: sum(x.step < step for x in again.points)]
+    worst = fraction(max((abs(x) for x in errors if x is not None), default=0))
+    if not motion.orbit.is_sensitive or worst > _KEPT:
+        return Judgement("unstable: scheme", told, step=step)
+    told += prose(", its energy kept; the exact solution ", motion.orbit.summary)
+    return Judgement("sensitive", told, step=step, energy_error=worst)
+
+
+def _end_words(motion: RunMotion, again: Trail, step: int, where: str) -> Prose:
+    """How the scheme ends, and float64."""
     solved = get(motion.run.scheme).step_map(motion.run.hamiltonian).implicit
     unsolved = solved and not again.finished and step == again.done + 1
     does = "finds no solution of its equations" if unsolved else "leaves the bounds"
-    told = prose(f"the scheme {does} at step {step}, in {motion.digits} and in {digits} digits")
+    told = prose(f"the scheme {does} {where}")
     if not motion.float64.finished:
         ends = "goes no further" if solved else "is out of its range"
         told += f"; float64 {ends} from step {motion.float64.done + 1} on"
-    return Judgement("unstable: scheme", told, step=step)
+    return told
 
 
-def _not_the_scheme(motion: RunMotion) -> Judgement:
+def _parting(motion: RunMotion, precise: Trail, where: str) -> tuple[Prose, int | None]:
+    """That float64 parts from the scheme in high precision, and the step."""
+    here = motion.as_far
+    step = first_apart(here, precise, motion.apart)
+    at = f"at step {step}" if step is not None else f"before step {here.done + 1}"
+    return prose(f"float64 parts {at} from the same scheme in {where} digits"), step
+
+
+def _by_neighbours(motion: RunMotion, exact: ExactMotion) -> Judgement:
+    """float64 is elsewhere than the scheme in high precision: so may exact neighbours be."""
+    told, step = _parting(motion, motion.precise, str(motion.digits))
+    kind: Kind = "unstable: arithmetic"
+    if exact.is_sensitive is None:
+        kind = "undecided"
+    elif exact.is_sensitive:
+        kind = "sensitive"
+    elif motion.sensitivity.exponential:
+        kind, rate = "unstable: scheme", f"{motion.sensitivity.exponent:.2g}"
+        told += read_prose(f"; so do neighbours of its own orbit (`{rate}` in a unit of time)")
+    told += prose("; the exact solution ", exact.summary)
+    return Judgement(kind, told, step=step, energy_error=motion.worst(motion.precise))
+
+
+def _by_digits(motion: RunMotion) -> Judgement:
     """The scheme in high precision stays; float64 does not, or is elsewhere."""
     here, confirmed = motion.as_far, _confirmed(motion)
     if confirmed is None:
         told = prose(f"up to {_MOST_DIGITS} digits no two precisions give the same orbit")
         return Judgement("undecided", told)
     digits, precise = confirmed
+    which = f"{digits // 2} and in {digits}"
     if not motion.stays(precise):  # fewer digits did, by rounding
         step = first_step(precise, motion.beyond)
-        told = prose(f"the scheme leaves the bounds, in {digits // 2} and in {digits} digits")
+        told = prose(f"the scheme leaves the bounds, in {which} digits")
         return Judgement("unstable: scheme", told, step=step)
     if _range_alone(motion):
         return _out_of_range(motion, here)
-    step = first_apart(here, precise, motion.apart)
-    at = f"at step {step}" if step is not None else f"before step {here.done + 1}"
-    told = prose(f"float64 parts {at} from the same scheme in {digits // 2} and in {digits} digits")
+    told, step = _parting(motion, precise, which)
     told += describe_rounded_start(motion.run)
     if motion.orbit.kind == "driven":
         told += _sensitive(motion, digits, precise)
@@ -185,16 +229,35 @@ def _vanished(motion: RunMotion) -> Prose:
     return Prose()
 
 
+def _within_range(motion: RunMotion) -> Judgement:
+    """float64 is where the scheme in high precision is, as far as that was followed."""
+    if not motion.stays(motion.float64):
+        held = f"the {motion.precise.steps} steps of the run it is held to"
+        return Judgement("undecided", prose(f"float64 leaves its bounds beyond {held}"))
+    lost = _vanished(motion)
+    if lost:
+        return Judgement("underflow", lost, energy_error=motion.worst(motion.float64))
+    return _bounded(motion)
+
+
 def _bounded(motion: RunMotion) -> Judgement:
-    precise = motion.precise
     rate = drift_of(motion)
-    told = prose(f"bounded over all {motion.run.steps} steps")
-    if precise.steps < motion.run.steps:
-        told += f", of which {precise.steps} were done in high precision too"
+    told = _bounded_words(motion, drifts=rate is not None)
     kind: Kind = "stable" if rate is None else "drifts"
-    if motion.orbit.kind == "driven":
+    return Judgement(kind, told, rate=rate, energy_error=motion.worst(motion.precise))
+
+
+def _bounded_words(motion: RunMotion, drifts: bool) -> Prose:
+    orbit, steps, precisely = motion.orbit, motion.run.steps, motion.precise.steps
+    told = prose(f"bounded over all {steps} steps")
+    if orbit.has_neighbours:
+        if precisely < steps:
+            told = prose(f"bounded over the {precisely} steps that were done in high precision")
+        return told + prose("; the exact solution ", orbit.summary)
+    if precisely < steps:
+        told += f", of which {precisely} were done in high precision too"
+    if orbit.kind == "driven":
         told += "; its energy changes with the drive, and is not looked at for a drift"
-    if rate is None and too_short(motion):
+    if not drifts and too_short(motion):
         told += "; it goes round too few times to tell a drift of its energy from a swing"
-    worst = motion.worst(precise)
-    return Judgement(kind, told, rate=rate, energy_error=worst)
+    return told

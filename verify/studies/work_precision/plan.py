@@ -3,8 +3,8 @@
 from importlib.util import find_spec
 
 from verify.errors import InputError
+from verify.scenes.run_sections import WorkPrecision
 from verify.scenes.scene import Scene
-from verify.scenes.sections import WorkPrecision
 from verify.studies.work_precision.task import WorkPrecisionTask
 
 _NOT_ASKED = "not asked for; `peers = true` in a scene asks, --peers in one line"

@@ -21,8 +21,7 @@ from verify.arithmetic.arb import in_reach, middle_and_radius
 from verify.arithmetic.exact import decimal, text
 from verify.arithmetic.number_system import Arithmetic
 from verify.arithmetic.systems import float64
-from verify.flows.degrees.solution import solution_in_degrees
-from verify.flows.solution import Point, Solution
+from verify.flows.solution import Point, Solution, solution_from
 from verify.hamiltonians.canonical_field import energy_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.chunked_loop import ChunkedLoop
@@ -57,7 +56,7 @@ State = tuple[Fraction, ...]  # p1 … pn, q1 … qn
 def reference(hamiltonian: Hamiltonian, point: Point, time: Fraction, t0: Fraction) -> Solution:
     """The exact solution that errors are held against; NoFlowError where it is not reached."""
     digits = _REFERENCE_DIGITS if hamiltonian.planar else _IN_DEGREES
-    return solution_in_degrees(hamiltonian, point, time, digits, t0)
+    return solution_from(hamiltonian, point, time, digits, t0)
 
 
 @dataclass(frozen=True)

@@ -1,18 +1,15 @@
 """∮ p·dq in n degrees of freedom: exact values, Stokes' theorem, symplectic maps; wrong ones."""
 
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
-import numpy as np
 import pytest
 from click.testing import CliRunner
 
 import verify
 from verify.commands.main import cli
-from verify.flows import points_together as module_of_points
-from verify.flows.degrees.points import points_in_degrees
-from verify.flows.degrees.solution import solution_in_degrees
-from verify.flows.extrapolation import NoFlowError
+from verify.flows.points import exact_points
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.systems import get
 from verify.scenes.region_sections import PlacedShape
@@ -166,14 +163,14 @@ def test_a_curve_that_is_carried_wrongly_is_noticed(monkeypatch: pytest.MonkeyPa
 
 def test_an_area_that_is_kept_is_not_by_a_wrong_flow(monkeypatch: pytest.MonkeyPatch) -> None:
     """The control of the exact flow's 0: what is not symplectic is measured as such."""
-    right = points_in_degrees
+    right = exact_points
 
     def planted(*given: Any) -> Any:
         found = right(*given)
         moved = {**found.points, "p2": found.points["p2"] * (1 + 1e-6)}
-        return type(found)(moved, found.bound)
+        return replace(found, points=moved)
 
-    monkeypatch.setattr(point_carriers, "points_in_degrees", planted)
+    monkeypatch.setattr(point_carriers, "exact_points", planted)
     image = carried(EXACT_FLOW)
     assert abs(number(image.area_change)) > number(image.probe_error)
 
@@ -199,39 +196,3 @@ def test_the_command_takes_them_too() -> None:
     assert "circle at (q1, p1) = (0, 0.4), scale 0.1, p2 = 0, q2 = 0.1" in result.output
     assert "∮ p·dq changes by" in result.output
     assert "NOT THE SAME" not in result.output
-
-
-# -- the exact flow of many points ------------------------------------------------------------
-
-
-def cloud(count: int = 5) -> dict[str, Any]:
-    rng = np.random.default_rng(3)
-    return {name: rng.uniform(-0.2, 0.2, count) for name in HENON_HEILES.coordinates}
-
-
-def test_the_exact_flow_of_many_points_is_that_of_each() -> None:
-    given, time = cloud(), Fraction(7, 2)
-    found = points_in_degrees(HENON_HEILES, given, time)
-    assert found.bound < 1e-13
-    for i in range(5):
-        start = {name: Fraction(float(x[i])) for name, x in given.items()}
-        true = solution_in_degrees(HENON_HEILES, start, time, 25)
-        for name, x in true.point.items():
-            assert abs(Fraction(float(found.points[name][i])) - x) <= Fraction(found.bound)
-
-
-def test_a_numerical_flow_at_another_time_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    right = module_of_points.follow
-
-    def planted(h: Any, z: Any, times: Any, columns: int, t0: Any) -> Any:
-        return right(h, z, [t * (1 + Fraction(1, 10**11)) for t in times], columns, t0)
-
-    monkeypatch.setattr(module_of_points, "follow", planted)
-    with pytest.raises(NoFlowError, match=r"is wrong by .* was estimated"):
-        points_in_degrees(HENON_HEILES, cloud(), Fraction(3))
-
-
-def test_a_point_that_blows_up_is_named() -> None:
-    given = {**cloud(1), "q2": np.array([5.0])}
-    with pytest.raises(NoFlowError, match="point 0"):
-        points_in_degrees(HENON_HEILES, given, Fraction(50))

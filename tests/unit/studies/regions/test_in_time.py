@@ -50,14 +50,14 @@ def test_another_start_of_the_clock_is_another_map() -> None:
 @pytest.mark.left_to_ci
 def test_the_exact_flow_of_many_points_is_that_of_each() -> None:
     times = [Fraction(-1), Fraction(0), Fraction(3, 2), Fraction(5)]
-    found = exact_points(DRIVEN, P, Q, times, T0)
+    found = exact_points(DRIVEN, {"p": P, "q": Q}, times, T0)
     for k, time in enumerate(times):
         for i, (p, q) in enumerate(zip(P, Q, strict=True)):
             true = exact_solution(DRIVEN, p=Fraction(p), q=Fraction(q), time=time, digits=25, t0=T0)
-            assert abs(Fraction(found.p[k, i]) - true.p) <= Fraction(found.bound) < 1e-11
-            assert abs(Fraction(found.q[k, i]) - true.q) <= Fraction(found.bound)
-    elsewhere = exact_points(DRIVEN, P, Q, times[2:])
-    assert np.abs(elsewhere.p - found.p[2:]).max() > 1e-3
+            assert abs(Fraction(found.points["p"][k, i]) - true.p) <= Fraction(found.bound) < 1e-11
+            assert abs(Fraction(found.points["q"][k, i]) - true.q) <= Fraction(found.bound)
+    elsewhere = exact_points(DRIVEN, {"p": P, "q": Q}, times[2:])
+    assert np.abs(elsewhere.points["p"] - found.points["p"][2:]).max() > 1e-3
 
 
 def image(scheme: str, steps: int = STEPS, h: Fraction = H, digits: int = 17) -> FlowImage:

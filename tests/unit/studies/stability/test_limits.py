@@ -6,7 +6,6 @@ import pytest
 
 from verify.flows.orbit import exact_orbit
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.studies.stability.held import frequency
 from verify.studies.stability.limits import largest_step, linear_limit, stability_map
 
 ONE, NONE = Fraction(1), Fraction(0)
@@ -66,7 +65,7 @@ def test_the_limit_of_a_scheme_that_linear_theory_does_not_know_is_none() -> Non
 
 def test_the_greatest_frequency_is_that_at_the_stiffest_point() -> None:
     orbit = exact_orbit(DUFFING, NONE, Fraction(5), Fraction(1))
-    assert abs(float(frequency(orbit)) - 76**0.5) < 1e-12  # 1 + 3 q² at q = 5
+    assert abs(float(orbit.frequency) - 76**0.5) < 1e-12  # 1 + 3 q² at q = 5
 
 
 def test_the_map_turns_at_the_line_of_linear_theory() -> None:

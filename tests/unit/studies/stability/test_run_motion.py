@@ -77,7 +77,7 @@ def test_one_point_beyond_a_bound_is_enough_and_one_on_it_is_not(
 
 
 def test_one_point_with_too_much_energy_is_enough(motion: RunMotion) -> None:
-    high = fraction(motion.precise.points[20].q) + 9 * motion.orbit.reach[1]
+    high = fraction(motion.precise.points[20].state[1]) + 9 * motion.orbit.reach[1]
     assert motion.stays(motion.precise)
     assert not motion.stays(changed(motion.precise, 20, 1, high))
     assert not motion.outside(Point(0, (Fraction(0), high)))

@@ -9,7 +9,7 @@ from verify.pages.sections.orbits_view import OrbitsView, first_known, left, pic
 from verify.pages.sections.rows import Row
 from verify.pages.sections.section import Section
 from verify.pages.text.typography import IS, listed, map_name, number, step, whole
-from verify.scenes.results.poincare import MapSections, PoincareOrbit, PoincareResult
+from verify.scenes.results.orbit_sections import MapSections, PoincareOrbit, PoincareResult
 from verify.scenes.results.report import SceneResult
 
 

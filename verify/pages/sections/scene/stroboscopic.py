@@ -9,8 +9,8 @@ from verify.pages.sections.orbits_view import OrbitsView, first_known, left, pic
 from verify.pages.sections.rows import Row
 from verify.pages.sections.section import Section
 from verify.pages.text.typography import IS, listed, number, step, whole
+from verify.scenes.results.orbit_sections import StroboscopicResult
 from verify.scenes.results.report import SceneResult
-from verify.scenes.results.stroboscopic import StroboscopicResult
 
 
 def _view(scene: SceneResult, anchor: str) -> tuple[OrbitsView, ...]:

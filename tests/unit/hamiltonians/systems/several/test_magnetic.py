@@ -11,7 +11,7 @@ import verify
 from tests.helpers.textbook_hamiltonians import Example, example, gradients_apart
 from verify.algebra.formula import symbol
 from verify.errors import InputError
-from verify.flows.degrees.solution import solution_in_degrees
+from verify.flows.solution import solution_from
 from verify.hamiltonians.start import point_of
 
 P1, P2, Q1, Q2, T = map(symbol, ("p1", "p2", "q1", "q2", "t"))
@@ -59,7 +59,7 @@ def test_the_force_is_lorentzs() -> None:
 
 def after(at: Example, time: Fraction) -> dict[str, float]:
     start = point_of(at.hamiltonian, at.q, at.p)
-    found = solution_in_degrees(at.hamiltonian, start, time, 20)
+    found = solution_from(at.hamiltonian, start, time, 20)
     return {name: float(value) for name, value in found.point.items()}
 
 
@@ -104,7 +104,5 @@ def test_the_drive_is_felt_in_a_run(scheme: str) -> None:
     found = verify.run(at.hamiltonian, scheme, digits=15, **asked)
     still = verify.run("henon-heiles", scheme, digits=15, **asked)
     assert abs(float(found.values["q1"]) - float(still.values["q1"])) > 5e-3
-    exact = solution_in_degrees(
-        at.hamiltonian, point_of(at.hamiltonian, at.q, at.p), Fraction(3), 15
-    )
+    exact = solution_from(at.hamiltonian, point_of(at.hamiltonian, at.q, at.p), Fraction(3), 15)
     assert all(abs(float(found.values[x]) - float(exact.point[x])) < 1e-4 for x in exact.point)

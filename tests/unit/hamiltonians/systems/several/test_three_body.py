@@ -9,7 +9,7 @@ import pytest
 
 import verify
 from tests.helpers.textbook_hamiltonians import Example, example, gradients_apart
-from verify.flows.degrees.solution import solution_in_degrees
+from verify.flows.solution import solution_from
 from verify.hamiltonians.start import point_of
 
 EIGHT = example("three-body", "figure-eight")
@@ -25,7 +25,7 @@ def textbook(q: Any, p: Any, _: Any) -> Any:
 
 def after(at: Example, time: Fraction) -> list[float]:
     """q, then p."""
-    found = solution_in_degrees(at.hamiltonian, point_of(at.hamiltonian, at.q, at.p), time, 12)
+    found = solution_from(at.hamiltonian, point_of(at.hamiltonian, at.q, at.p), time, 12)
     return [float(found.point[f"{letter}{k}"]) for letter in "qp" for k in range(1, 7)]
 
 

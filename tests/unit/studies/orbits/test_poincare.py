@@ -14,15 +14,15 @@ from verify.execution.executors import THIS_PROCESS
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.systems import get
 from verify.pages.sections.scene.poincare import SECTION
-from verify.scenes.results.poincare import MapSections, PoincareResult
+from verify.scenes.results.orbit_sections import MapSections, PoincareResult
 from verify.scenes.results.regions import EXACT_FLOW
 from verify.scenes.results.report import SceneResult
 from verify.scenes.scene import load_scene
-from verify.studies.kinds.poincare import STUDY
+from verify.studies.kinds.orbits import STUDY
+from verify.studies.orbits import by_exact_flow, by_scheme
+from verify.studies.orbits.at_surface import Asked, sections_of
+from verify.studies.orbits.passes import Surface, together
 from verify.studies.plan import plan_scenes
-from verify.studies.poincare import by_exact_flow, by_scheme
-from verify.studies.poincare.sections import Asked, _together, sections_of
-from verify.studies.poincare.surface import Passes, Surface
 
 OSCILLATORS = Hamiltonian.parse("(p1**2 + q1**2)/2 + p2**2/2 + q2**2")
 HENON_HEILES = get("henon-heiles").hamiltonian({})
@@ -132,8 +132,8 @@ def test_what_a_second_reckoning_does_not_confirm_is_not_called_known() -> None:
 def test_passes_are_known_as_far_as_both_reckonings_have_them(
     again: Sequence[Fraction], known: int, apart: Fraction
 ) -> None:
-    one, other = (Passes([{"q": Fraction(x)} for x in xs]) for xs in ((1, 2, 3), again))
-    assert _together(one, other, Fraction(1, 5)) == (known, apart)
+    one, other = ([{"q": Fraction(x)} for x in xs] for xs in ((1, 2, 3), again))
+    assert together(one, other, Fraction(1, 5)) == (known, apart)
 
 
 def test_a_pass_elsewhere_is_no_longer_the_same_point(monkeypatch: pytest.MonkeyPatch) -> None:

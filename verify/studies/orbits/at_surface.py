@@ -10,15 +10,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from verify.arithmetic.exact import decimal, text, upper
+from verify.arithmetic.exact import decimal, fraction, text, upper
 from verify.arithmetic.systems import mpfr
-from verify.flows.functions import functions_at
-from verify.hamiltonians.canonical_field import energy_of
+from verify.flows.functions import energies_at
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.scenes.results.poincare import MapSections, PoincareOrbit
+from verify.scenes.results.orbit_sections import MapSections, PoincareOrbit
 from verify.scenes.results.regions import EXACT_FLOW
-from verify.studies.poincare import by_exact_flow, by_scheme
-from verify.studies.poincare.surface import Passes, Surface
+from verify.studies.orbits import by_exact_flow, by_scheme
+from verify.studies.orbits.passes import Passes, Surface, together
 
 _MORE = 20  # digits
 _COLUMNS = 8, 7  # of the exact flow's two extrapolations
@@ -76,7 +75,7 @@ def _by_scheme(asked: Asked, name: str, start: Start) -> tuple[Passes, Passes]:
 
 def _orbit(asked: Asked, start: Start, found: Passes, again: Passes) -> PoincareOrbit:
     size = 1 + max((abs(z[n]) for z in found.states for n in asked.draw), default=Fraction(0))
-    known, error = _together(found, again, _SAME * size)
+    known, error = together(found.states, again.states, _SAME * size)
     return PoincareOrbit(
         q=tuple(text(x) for name, x in start.items() if name[0] == "q"),
         p=tuple(text(x) for name, x in start.items() if name[0] == "p"),
@@ -93,22 +92,8 @@ def _drawn(z: Start, draw: tuple[str, str]) -> tuple[str, str]:
     return x, y
 
 
-def _together(one: Passes, other: Passes, within: Fraction) -> tuple[int, Fraction]:
-    """How many of the first passes are nowhere farther apart, and how far these are at most."""
-    most = Fraction(0)
-    for k, (x, y) in enumerate(zip(one.states, other.states, strict=False)):
-        apart = max(abs(x[name] - y[name]) for name in x)
-        if apart > within:
-            return k, most
-        most = max(most, apart)
-    return min(len(one.states), len(other.states)), most
-
-
 def _energy(hamiltonian: Hamiltonian, start: Start) -> str:
     """H there, to so many digits."""
-    own = mpfr.make(_OF_ENERGY + _SPARE)
-    names = hamiltonian.coordinates
-    value = functions_at(own, [energy_of(hamiltonian)], names)
-    with own.context():
-        (found,) = value(*(own.number(start[name]) for name in names))
-    return decimal(own.exact(found), _OF_ENERGY)
+    at = [[start[name]] for name in hamiltonian.coordinates]
+    (found,) = energies_at(hamiltonian, _OF_ENERGY + _SPARE, at)
+    return decimal(fraction(found), _OF_ENERGY)

@@ -9,7 +9,7 @@ begins and ends within one step, by an orbit that touches the surface, is not se
 import contextlib
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import Any
 
 from verify.arithmetic.systems import mpfr
@@ -17,7 +17,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import kernel_for
 from verify.kernels.stepping import KernelRun
 from verify.lockstep import alone
-from verify.studies.poincare.surface import Passes, State, Surface
+from verify.studies.orbits.passes import Passes, State, Surface
 
 _BLOCK = 1000  # steps between looks at them
 _MOST_TRIES = 200  # of θ: regula falsi with Illinois's halving takes some twelve
@@ -44,17 +44,12 @@ def passes(
     z = [own.number(start[name]) for name in surface.names]
     value, found, done = own.number(surface.value), [], 0
     with own.context(), contextlib.suppress(OutOfRangeError):
-        for before, after in pairwise(_with_first(z, by.walk(z, steps))):
+        for before, after in pairwise(chain([z], by.walk(z, steps))):
             done += 1
             if surface.height(before, value) < 0 <= surface.height(after, value):
                 at = by.on_surface(before, surface, value)
                 found.append({n: own.exact(x) for n, x in zip(surface.names, at, strict=True)})
     return Passes(found, left=done < steps)
-
-
-def _with_first(z: State, others: Iterator[State]) -> Iterator[State]:
-    yield z
-    yield from others
 
 
 class _Steps:

@@ -12,10 +12,10 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.periods import check_period, is_angle
 from verify.pages.sections.scene.stroboscopic import SECTION
 from verify.runs.run import run
+from verify.scenes.results.orbit_sections import StroboscopicResult
 from verify.scenes.results.report import SceneResult
-from verify.scenes.results.stroboscopic import StroboscopicResult
 from verify.scenes.scene import load_scene
-from verify.studies.kinds.stroboscopic import STUDY
+from verify.studies.kinds.orbits import STUDY
 from verify.studies.plan import plan_scenes
 
 KICKED = "p**2/2 - (1 + 3*cos(2*pi*t)/2)*cos(q)"

@@ -8,7 +8,6 @@ the first two part, the points after it are no more the orbit's own.
 import contextlib
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 
 from verify import arithmetic as number_systems
@@ -18,23 +17,14 @@ from verify.arithmetic.systems import float64
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.digits_on_demand import choose
-from verify.scenes.results.stroboscopic import SchemeSections, StroboscopicOrbit
+from verify.scenes.results.orbit_sections import SchemeSections, StroboscopicOrbit
+from verify.studies.orbits.passes import Passes, together
 
 _MORE = 20  # digits
 _SAME = Fraction(1, 10**6)  # of 1 + the farthest that the orbit is from 0: one point
 _SEEN = Fraction(1, 10**3)  # of the same: one place in a picture
 _SHOWN = 7  # digits of a point
 _FLOAT_DIGITS = 17
-State = Mapping[str, Fraction]
-
-
-@dataclass(frozen=True)
-class _Orbit:
-    """What was run from one initial value."""
-
-    start: State
-    trail: Sequence[State]
-    left: bool
 
 
 def sections_of(
@@ -73,36 +63,29 @@ def sections_of(
     )
 
 
-def _followed(run: KernelRun, name: str, digits: int, steps: int) -> _Orbit:
+def _followed(run: KernelRun, name: str, digits: int, steps: int) -> Passes:
+    """The states at the start and after each period."""
     outcome: Outcome | None = None
     with contextlib.suppress(UnsupportedError):
         outcome = run.run(number_systems.get(name, digits))
     if outcome is None or (outcome.done < run.steps and name != float64.NAME):
         outcome = run.run(number_systems.get(_last(), digits))  # which has every range
     whole = outcome.done // steps
-    return _Orbit(run.start, (run.start, *outcome.trail[:whole]), outcome.done < run.steps)
+    return Passes((run.start, *outcome.trail[:whole]), left=outcome.done < run.steps)
 
 
 def _last() -> str:
     return number_systems.automatic()[-1].name
 
 
-def _orbit(exact: _Orbit, finer: _Orbit, floats: _Orbit) -> StroboscopicOrbit:
-    size = 1 + max(abs(z[name]) for z in exact.trail for name in ("p", "q"))
-    start = exact.start
+def _orbit(exact: Passes, finer: Passes, floats: Passes) -> StroboscopicOrbit:
+    size = 1 + max(abs(z[name]) for z in exact.states for name in ("p", "q"))
+    start = exact.states[0]
     return StroboscopicOrbit(
         q=text(start["q"]),
         p=text(start["p"]),
-        points=tuple((decimal(z["q"], _SHOWN), decimal(z["p"], _SHOWN)) for z in exact.trail),
-        known=_together(exact.trail, finer.trail, _SAME * size),
-        in_float64=_together(finer.trail, floats.trail, _SEEN * size),
+        points=tuple((decimal(z["q"], _SHOWN), decimal(z["p"], _SHOWN)) for z in exact.states),
+        known=together(exact.states, finer.states, _SAME * size)[0] - 1,
+        in_float64=together(finer.states, floats.states, _SEEN * size)[0] - 1,
         left=exact.left,
     )
-
-
-def _together(one: Sequence[State], other: Sequence[State], within: Fraction) -> int:
-    """The last period up to which two trails are nowhere farther apart."""
-    for k, (x, y) in enumerate(zip(one, other, strict=False)):
-        if any(abs(x[name] - y[name]) > within for name in ("p", "q")):
-            return k - 1
-    return min(len(one), len(other)) - 1

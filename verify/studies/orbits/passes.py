@@ -1,4 +1,5 @@
-"""The surface that orbits pass: where one coordinate has one value, and which way."""
+"""The surface that orbits pass: where one coordinate has one value, and which way; and how far two
+reckonings of an orbit are one."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -30,7 +31,20 @@ class Surface:
 
 @dataclass(frozen=True)
 class Passes:
-    """The states at which an orbit passes, in their order; `left`: it did not reach its end."""
+    """States at which an orbit is looked at, in their order; `left`: it did not reach its end."""
 
     states: Sequence[Mapping[str, Fraction]]
     left: bool = False
+
+
+def together(
+    one: Sequence[Mapping[str, Fraction]], other: Sequence[Mapping[str, Fraction]], within: Fraction
+) -> tuple[int, Fraction]:
+    """How many of the first states are nowhere farther apart, and how far these are at most."""
+    most = Fraction(0)
+    for k, (x, y) in enumerate(zip(one, other, strict=False)):
+        apart = max(abs(x[name] - y[name]) for name in x)
+        if apart > within:
+            return k, most
+        most = max(most, apart)
+    return min(len(one), len(other)), most

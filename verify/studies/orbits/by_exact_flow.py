@@ -13,7 +13,7 @@ from verify.arithmetic.float_context import WIDE
 from verify.flows.extrapolation import NoFlowError
 from verify.flows.extrapolation_of_many import CommonSteps, slopes_of
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.studies.poincare.surface import Passes, Surface
+from verify.studies.orbits.passes import Passes, Surface
 
 Array = Any  # numpy.ndarray, which is imported where it is used
 _PARTS = 32  # of a step, in which a change of side is looked for

@@ -1,1 +1,0 @@
-"""Orbits once in each period."""

@@ -1,1 +1,0 @@
-"""Orbits of schemes and of the exact flow where they pass a surface."""

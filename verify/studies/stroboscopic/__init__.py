@@ -1,1 +1,0 @@
-"""Orbits of a scheme at multiples of a period of H."""
