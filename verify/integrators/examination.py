@@ -44,7 +44,8 @@ def examine(trial: Trial, provable: bool) -> Finding:
             _must_be_pure(trace)
             if provable:
                 trace_must_agree(step, trace.roots, trial.places)
-                finding = _proved(trial, trace)
+                exact = trial.hamiltonian
+                finding = proved_step(trace, exact) if exact else proved_of_map(trace, step.names)
         if not provable:
             return _measured(trial, notes)
         finding = _decided(finding, trial, trace)
@@ -57,16 +58,10 @@ def examine(trial: Trial, provable: bool) -> Finding:
 
 def _must_be_pure(trace: Trace) -> None:
     """StepError where it reaches what is not known to stay the same from call to call."""
-    impure = trace.tape.impure
+    impure = trace.tape.outside.texts
     if impure:
         listed = joined(", ", map(prose, impure[:_LISTED]))
         raise StepError(prose("what it reaches may change from call to call: ", listed))
-
-
-def _proved(trial: Trial, trace: Trace) -> Finding:
-    if trial.hamiltonian is None:
-        return proved_of_map(trace, trial.step.names)
-    return proved_step(trace, trial.hamiltonian)
 
 
 def _decided(finding: Finding, trial: Trial, trace: Trace) -> Finding:

@@ -5,7 +5,7 @@ numbers, two arrays of any shape, two lists, or one thing that holds both, in ei
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from math import prod
 from typing import Any
@@ -84,12 +84,6 @@ class Layout:
     def stepped(self) -> bool:
         """Whether h goes in."""
         return "h" in self.roles
-
-    def exchanged(self) -> "Layout":
-        """The same with p and q in each other's place."""
-        other = {"p": "q", "q": "p"}
-        roles = tuple(other.get(name, name) for name in self.roles)
-        return replace(self, roles=roles, halves=(self.halves[1], self.halves[0]))
 
     def arguments(
         self, z: Sequence[Theirs], h: Theirs, t: Theirs

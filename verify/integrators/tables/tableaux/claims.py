@@ -223,7 +223,11 @@ def _claims(
         found = hints.kept(best_reading(table, judge_symmetric))
         yield from condition_claims("symmetric", "symmetric", "symmetric", found, Severity.OF_WORDS)
     if entry.stage_order is not None:
-        yield from _stage_orders(table, entry.stage_order, hints)
+        order, wrong = entry.stage_order, Severity.OF_WORDS
+        judged = best_reading(table, lambda x: judge(x.printed, stage_order_asked(x, order), 1))
+        said = f"stage order {order}"
+        found = hints.kept(judged)
+        yield from condition_claims("stage order", said, f"of {said}", found, wrong)
 
 
 def _judged(table: TableauTable, order: int) -> Judged:
@@ -260,11 +264,3 @@ def _in_time(
         return TableClaim(kind, statement, Verdict.REFUTED, said, severity=Severity.WRONG_ORDER)
     found = hints.kept(best_reading(table, lambda x: judge_in_time(x, order)))
     return next(order_claims(kind, statement, found, order, severity=Severity.WRONG_CLOCK))
-
-
-def _stage_orders(table: TableauTable, order: int, hints: Hints) -> Iterator[TableClaim]:
-    found = best_reading(table, lambda x: judge(x.printed, stage_order_asked(x, order), 1))
-    found = hints.kept(found)
-    yield from condition_claims(
-        "stage order", f"stage order {order}", f"of stage order {order}", found, Severity.OF_WORDS
-    )
