@@ -132,13 +132,8 @@ def _refuted_map(finding: Finding, seen: Finding, structure: Structure) -> Findi
         volume = structure.volume_kept
     if seen.symplectic is not False:
         return seen  # algebra says it is not 0; it is too small for doubles to show
-    kept = (
-        "; det J ≡ 1 all the same"
-        if volume and finding.area_preserving
-        else "; det J is 1 where it was measured, all the same"
-        if volume
-        else ""
-    )
+    where = "≡ 1" if finding.area_preserving else "is 1 where it was measured,"
+    kept = f"; det J {where} all the same" if volume else ""
     entry = seen.entry or finding.entry
     reason = prose(f"it is not symplectic: the entry {entry} of S is not 0{kept}")
     return replace(finding, reason=reason, area_preserving=volume, entry=entry,

@@ -18,6 +18,7 @@ from verify.integrators.trial import Trial
 from verify.integrators.user_code.number_type import DOUBLE
 from verify.integrators.user_code.user_map import UserMap
 from verify.prose import Number, Prose, joined, prose, read_prose
+from verify.structures import structure_in
 from verify.verdict import Verdict
 
 _STILL = 1e-3  # units that the flow goes, with which an error would hardly show
@@ -108,7 +109,7 @@ def _structure_said(
     step: UserMap, structure: Structure, kept: bool | None, request: Request
 ) -> str:
     """Whether S, or ΔJ in the plane, is 0 as far as can be seen, and what is seen of it."""
-    name = "ΔJ" if step.degrees == 1 else "S"
+    name = structure_in(step.degrees).defect
     largest, noise = structure.largest.defect, structure.noise
     if request.within is not None:
         allowed = f"`{float(request.within):.1e}` that is allowed"

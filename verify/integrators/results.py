@@ -8,6 +8,7 @@ from verify.integrators.probes.reading import Reading
 from verify.proof.plane.potential import Potential, potential_of
 from verify.proof.proof import Proof
 from verify.prose import Prose, prose, read_prose
+from verify.structures import structure_in
 from verify.verdict import Verdict
 
 MOST_CLAIMED = 12
@@ -137,7 +138,7 @@ def judged(claims: Claims, finding: Finding) -> list[Judged]:
 
 
 def _defect_told(finding: Finding) -> str:
-    name = "ΔJ" if finding.degrees == 1 else "S"
+    name = structure_in(finding.degrees).defect
     if finding.order is not None:
         return f"{name} has order {finding.order}"
     if finding.area_at_least is not None:

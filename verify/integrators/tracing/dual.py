@@ -70,13 +70,9 @@ class Duals(Kind):
 
     def state(self, *z: Fraction) -> list["Dual"]:
         """z, whose derivatives are the unit vectors."""
-        zero, one = gmpy2.mpfr(0), gmpy2.mpfr(1)
-        return [
-            Dual(
-                self, self.rational(x).value, tuple(one if j == k else zero for j in range(len(z)))
-            )
-            for k, x in enumerate(z)
-        ]
+        unit = [[gmpy2.mpfr(int(j == k)) for j in range(len(z))] for k in range(len(z))]
+        pairs = zip(z, unit, strict=True)
+        return [Dual(self, self.rational(x).value, tuple(row)) for x, row in pairs]
 
 
 def slope_of(name: str, x: Number, y: Number) -> Number:
