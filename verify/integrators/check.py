@@ -219,13 +219,11 @@ def _otherwise(finding: Finding, trial: Trial) -> list[str]:
 
 def _of_map(finding: Finding, trial: Trial) -> Finding:
     """A map is asked whether it is symplectic, by whoever gives it."""
-    if finding.symplectic is not False or finding.counterexample is not None:
+    if finding.symplectic is not False:
         return finding
-    claim, against = "that it is symplectic", finding.against
-    seen = (
-        counterexample(claim, trial) if against is None else of_reading(trial.step, against, claim)
-    )
-    return replace(finding, counterexample=seen)
+    claim, seen = "that it is symplectic", finding.against
+    example = of_reading(trial.step, seen, claim) if seen else counterexample(claim, trial)
+    return replace(finding, counterexample=example)
 
 
 def _but_for(faults: Sequence[Fault], finding: Finding) -> Finding:

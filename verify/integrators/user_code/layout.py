@@ -10,7 +10,7 @@ from fractions import Fraction
 from math import prod
 from typing import Any
 
-from verify.integrators.user_code.step import StepError, Theirs, single
+from verify.integrators.user_code.step import StepError, Theirs
 
 # What people call the arguments of a step.
 ROLES = {
@@ -180,7 +180,8 @@ def _numbers(result: Theirs, wanted: str, depth: int) -> list[Theirs]:
     if getattr(result, "shape", ()):
         result = list(result.ravel())
     if not isinstance(result, list | tuple):
-        return [single(result)]
+        of_numpy = hasattr(result, "dtype") and hasattr(result, "reshape")
+        return [result[()] if of_numpy else result]
     if depth == 0:
         raise StepError(f"it returns lists in lists in lists; {wanted}")
     return [x for part in result for x in _numbers(part, wanted, depth - 1)]

@@ -120,15 +120,6 @@ def within(seconds: float, problem: str) -> Iterator[None]:
             signal.setitimer(signal.ITIMER_REAL, max(outer - spent, _SOONEST), _AGAIN)
 
 
-def single(x: Theirs) -> Theirs:
-    shape = getattr(x, "shape", ())
-    if shape:
-        if any(n != 1 for n in shape):
-            raise StepError(f"it returns arrays of shape {tuple(shape)} for a single p, q")
-        return x.reshape(-1)[0]
-    return x[()] if hasattr(x, "dtype") and hasattr(x, "reshape") else x
-
-
 def lifted(first: Theirs, found: Sequence[Theirs]) -> list[Theirs]:
     """What was returned, all as numbers of the kind of `first`. Raises StepError."""
     zero = first * 0
