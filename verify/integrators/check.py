@@ -37,7 +37,7 @@ from verify.integrators.user_code.faults import Fault, changed_since, examined
 from verify.integrators.user_code.layout import Layout
 from verify.integrators.user_code.loading import Callee
 from verify.integrators.user_code.repeated import repeated
-from verify.integrators.user_code.step import StepError, last_line
+from verify.integrators.user_code.step import StepError, last_line, unless_it_fails
 from verify.integrators.user_code.user_map import UserMap
 from verify.prose import prose
 from verify.verdict import Verdict
@@ -206,11 +206,8 @@ def _otherwise(finding: Finding, trial: Trial) -> list[str]:
     if finding.verdict is not Verdict.REFUTED or not masses or step.masses or step.left <= 0:
         return []
     other = replace(trial, step=replace(step, masses=masses), claims=NOTHING)
-    try:
-        seen = finding_of(other, *other.measure(step.ways[0]))
-    except Exception:  # the user's code may raise anything
-        return []
-    if not seen.scheme:
+    seen = unless_it_fails(lambda: finding_of(other, *other.measure(step.ways[0])))
+    if seen is None or not seen.scheme:
         return []
     kept = " and symplectic" if seen.symplectic else ""
     shown = ", ".join(map(str, masses))

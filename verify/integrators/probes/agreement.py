@@ -5,6 +5,7 @@ import random
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 
 import gmpy2
 
@@ -15,6 +16,7 @@ from verify.integrators.tracing.dual import Dual, Duals, slope_of
 from verify.integrators.tracing.number import UntraceableError
 from verify.integrators.tracing.trace import Node, in_order, replayed, through
 from verify.integrators.user_code.number_type import DOUBLE
+from verify.integrators.user_code.step import unless_it_fails
 from verify.integrators.user_code.user_map import State, UserMap
 from verify.prose import read_prose
 
@@ -69,7 +71,7 @@ def _must_agree(
     compared = 0
     for place, h in _calls(places):
         rounded = place.rounded(DOUBLE.rounded)
-        mine = _floats(step, rounded, h)
+        mine = unless_it_fails(partial(step.at_place, rounded, h))  # other places may do
         bounded = None if mine is None else theirs(rounded, h, mine)
         if mine is not None and bounded is not None:
             compared += 1
@@ -97,13 +99,6 @@ def _around(place: Place) -> list[Place]:
         )
         for _ in range(_SCATTERED)
     ]
-
-
-def _floats(step: UserMap, place: Place, h: Fraction) -> State | None:
-    try:
-        return step.at_place(place, h)
-    except Exception:  # it fails there; other places may do
-        return None
 
 
 def _replayed(
