@@ -111,7 +111,7 @@ def test_a_folder_without_code_is_no_package_before_an_installed_one(tmp_path: P
 def test_a_module_that_fails_is_no_module_the_second_time(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from verify.integrators.user_code.user_modules import from_folder
+    from verify.integrators.user_code.loading import from_folder
 
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", [*sys.path])

@@ -75,7 +75,7 @@ BY_NAME = {
     "verify.integrators.tracing.purity": {"modules"},  # numpy and others, where they are imported
     "verify.audits.report": {"import_module"},  # a library that may be broken
     "verify.audits.methods.scripted": {"exec"},  # lines of ours, which are shown
-    "verify.integrators.user_code.user_modules": {
+    "verify.integrators.user_code.loading": {
         "import_module", "modules", "spec_from_file_location", "exec_module"},  # the user's code
     "verify.arithmetic.number_system": {"exec"},  # kernels
 }  # fmt: skip

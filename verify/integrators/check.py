@@ -11,7 +11,7 @@ that takes its state in no layout is no step: that is an error of the call, and 
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 
 from verify.errors import InputError
@@ -37,7 +37,7 @@ from verify.integrators.user_code.faults import Fault, changed_since, examined
 from verify.integrators.user_code.layout import Layout
 from verify.integrators.user_code.loading import Callee
 from verify.integrators.user_code.repeated import repeated
-from verify.integrators.user_code.step import StepError, last_line
+from verify.integrators.user_code.step import StepError, last_line, unless_it_fails
 from verify.integrators.user_code.user_map import UserMap
 from verify.prose import prose
 from verify.verdict import Verdict
@@ -47,51 +47,42 @@ _FITS = 0.2  # of the way that the flow goes
 _BETTER = 10  # times as near, another layout has to be
 
 
-@dataclass(frozen=True)
-class _Trial:
-    layout: Layout
-    misfit: float
-
-
 def settle_layout(callee: Callee, places: Sequence[Place], field: Field | None) -> list[str]:
     """Sets the layout, and returns notes on how the arguments are understood.
 
     Raises InputError where no call returns a state.
     """
     step, lost = callee.step, list[Exception]()
-    trials = list[_Trial]()
+    misfits = dict[Layout, float]()
     for layout in callee.layouts:
         step.layout = layout
         for place in places[:3]:
             try:
-                trials.append(_Trial(layout, _misfit(step, place, field)))
+                misfits[layout] = _misfit(step, place, field)
                 break
             except Exception as error:  # the user's code may raise anything
                 lost.append(error)
             if step.left <= 0:
                 break
-        if trials and field is None:
+        if misfits and field is None:
             break
-    if not trials:
+    if not misfits:
         step.layout = callee.layouts[0]
         raise no_state(step, lost[0], places[0])
-    best = min(trials, key=lambda x: x.misfit)
-    if best.misfit < _FITS and best.misfit * _BETTER < trials[0].misfit:
-        step.layout = best.layout
-    else:
-        best = trials[0]
-        step.layout = best.layout
-    return _understood(callee, step, best)
+    first, best = next(iter(misfits)), min(misfits, key=lambda layout: misfits[layout])
+    fits = misfits[best] < _FITS and misfits[best] * _BETTER < misfits[first]
+    step.layout = best if fits else first
+    return _understood(callee, step, misfits[step.layout])
 
 
-def _understood(callee: Callee, step: UserMap, best: _Trial) -> list[str]:
+def _understood(callee: Callee, step: UserMap, misfit: float) -> list[str]:
     usual = ("p", "q", "h"), ("p", "q", "t", "h"), ("p", "q"), ("z",)
     layout = step.layout
     if step.foreign or (layout.roles in usual and callee.named):
         return []
     names = ", ".join(callee.arguments)
-    why = "" if callee.named or best.misfit == 0 else ", the order that fits"
-    if not callee.named and best.misfit >= _FITS:
+    why = "" if callee.named or misfit == 0 else ", the order that fits"
+    if not callee.named and misfit >= _FITS:
         why = ", as no order of them fits"
     if layout.roles in usual and not why:
         return []
@@ -215,11 +206,8 @@ def _otherwise(finding: Finding, trial: Trial) -> list[str]:
     if finding.verdict is not Verdict.REFUTED or not masses or step.masses or step.left <= 0:
         return []
     other = replace(trial, step=replace(step, masses=masses), claims=NOTHING)
-    try:
-        seen = finding_of(other, *other.measure(step.ways[0]))
-    except Exception:  # the user's code may raise anything
-        return []
-    if not seen.scheme:
+    seen = unless_it_fails(lambda: finding_of(other, *other.measure(step.ways[0])))
+    if seen is None or not seen.scheme:
         return []
     kept = " and symplectic" if seen.symplectic else ""
     shown = ", ".join(map(str, masses))
@@ -228,13 +216,11 @@ def _otherwise(finding: Finding, trial: Trial) -> list[str]:
 
 def _of_map(finding: Finding, trial: Trial) -> Finding:
     """A map is asked whether it is symplectic, by whoever gives it."""
-    if finding.symplectic is not False or finding.counterexample is not None:
+    if finding.symplectic is not False:
         return finding
-    claim, against = "that it is symplectic", finding.against
-    seen = (
-        counterexample(claim, trial) if against is None else of_reading(trial.step, against, claim)
-    )
-    return replace(finding, counterexample=seen)
+    claim, seen = "that it is symplectic", finding.against
+    example = of_reading(trial.step, seen, claim) if seen else counterexample(claim, trial)
+    return replace(finding, counterexample=example)
 
 
 def _but_for(faults: Sequence[Fault], finding: Finding) -> Finding:

@@ -96,9 +96,9 @@ def of_reading(step: UserMap, reading: Reading, name: str) -> Counterexample:
     ):
         value = f"{reading.volume:.6e} ± {reading.volume_noise:.1e}"
         return Counterexample(z, h, "det J − 1", value, "0", t)
-    a, b = reading.shown
-    value = f"{reading.entries[a, b]:.6e} ± {reading.noise[a, b]:.1e}"
-    return Counterexample(z, h, f"the entry d{step.names[a]}∧d{step.names[b]} of S", value, "0", t)
+    at = reading.shown
+    value = f"{reading.entries[at]:.6e} ± {reading.noise[at]:.1e}"
+    return Counterexample(z, h, f"the entry {step.entry(at)} of S", value, "0", t)
 
 
 def _of_place(step: UserMap, seen: PlaceOrder, power: int) -> Counterexample | None:

@@ -44,7 +44,8 @@ def examine(trial: Trial, provable: bool) -> Finding:
             _must_be_pure(trace)
             if provable:
                 trace_must_agree(step, trace.roots, trial.places)
-                finding = _proved(trial, trace)
+                exact = trial.hamiltonian
+                finding = proved_step(trace, exact) if exact else proved_of_map(trace, step.names)
         if not provable:
             return _measured(trial, notes)
         finding = _decided(finding, trial, trace)
@@ -57,16 +58,10 @@ def examine(trial: Trial, provable: bool) -> Finding:
 
 def _must_be_pure(trace: Trace) -> None:
     """StepError where it reaches what is not known to stay the same from call to call."""
-    impure = trace.tape.impure
+    impure = trace.tape.outside.texts
     if impure:
         listed = joined(", ", map(prose, impure[:_LISTED]))
         raise StepError(prose("what it reaches may change from call to call: ", listed))
-
-
-def _proved(trial: Trial, trace: Trace) -> Finding:
-    if trial.hamiltonian is None:
-        return proved_of_map(trace, trial.step.names)
-    return proved_step(trace, trial.hamiltonian)
 
 
 def _decided(finding: Finding, trial: Trial, trace: Trace) -> Finding:
@@ -137,13 +132,8 @@ def _refuted_map(finding: Finding, seen: Finding, structure: Structure) -> Findi
         volume = structure.volume_kept
     if seen.symplectic is not False:
         return seen  # algebra says it is not 0; it is too small for doubles to show
-    kept = (
-        "; det J ≡ 1 all the same"
-        if volume and finding.area_preserving
-        else "; det J is 1 where it was measured, all the same"
-        if volume
-        else ""
-    )
+    where = "≡ 1" if finding.area_preserving else "is 1 where it was measured,"
+    kept = f"; det J {where} all the same" if volume else ""
     entry = seen.entry or finding.entry
     reason = prose(f"it is not symplectic: the entry {entry} of S is not 0{kept}")
     return replace(finding, reason=reason, area_preserving=volume, entry=entry,

@@ -18,6 +18,7 @@ from verify.integrators.trial import Trial
 from verify.integrators.user_code.number_type import DOUBLE
 from verify.integrators.user_code.user_map import UserMap
 from verify.prose import Number, Prose, joined, prose, read_prose
+from verify.structures import structure_in
 from verify.verdict import Verdict
 
 _STILL = 1e-3  # units that the flow goes, with which an error would hardly show
@@ -26,7 +27,7 @@ _PRECISE = 3  # decimals of a number that is shown
 
 @dataclass(frozen=True)
 class _Order:
-    """`order`: None where none is seen (`exact`) or none has settled. `decided`: whether it is no
+    """`order`: None where none is seen or none has settled. `decided`: whether it is no
     higher, and no lower than what is claimed."""
 
     order: int | None
@@ -34,7 +35,6 @@ class _Order:
     said: str
     domain: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
-    exact: bool = False
 
 
 def finding_of(trial: Trial, structure: Structure, distances: Distances | None) -> Finding:
@@ -54,7 +54,8 @@ def _of_map(step: UserMap, structure: Structure, kept: bool | None, said: str) -
     if kept is False:
         alone = step.degrees > 1 and structure.volume_kept  # in the plane S is det J − 1
         volume = "; det J is 1 all the same" if alone else ""
-        said = f"it is not symplectic: the entry {_entry(step, structure)} of S is not 0{volume}"
+        entry = step.entry(structure.largest.shown)
+        said = f"it is not symplectic: the entry {entry} of S is not 0{volume}"
     return _base(step, structure, verdict, said, kept)
 
 
@@ -94,7 +95,7 @@ def _base(
         largest=reading.defect,
         probe_error=structure.noise,
         against=reading,
-        entry=_entry(step, structure) if kept is False else "",
+        entry=step.entry(reading.shown) if kept is False else "",
         domain=(str(where_seen(step, places)),),
         notes=tuple(map(read_prose, _places_noted(step, structure))),
         places=places,
@@ -104,16 +105,11 @@ def _base(
 # -- the structure --------------------------------------------------------------------------------
 
 
-def _entry(step: UserMap, structure: Structure) -> str:
-    a, b = structure.largest.shown
-    return f"d{step.names[a]}∧d{step.names[b]}"
-
-
 def _structure_said(
     step: UserMap, structure: Structure, kept: bool | None, request: Request
 ) -> str:
     """Whether S, or ΔJ in the plane, is 0 as far as can be seen, and what is seen of it."""
-    name = "ΔJ" if step.degrees == 1 else "S"
+    name = structure_in(step.degrees).defect
     largest, noise = structure.largest.defect, structure.noise
     if request.within is not None:
         allowed = f"`{float(request.within):.1e}` that is allowed"
@@ -161,7 +157,7 @@ def _order(distances: Distances, sides: Sides, claims: Claims) -> _Order:
     if all(x.exact for x in places):
         if max(x.moved for x in places) < _STILL:
             return _Order(None, False, "its steps are too short for an error to show")
-        return _Order(None, True, "the map is the exact flow to its last digits", exact=True)
+        return _Order(None, True, "the map is the exact flow to its last digits")
     resolved = [x for x in places if x.power is not None]
     loose = [x for x in places if not x.exact and x.power is None]
     loose = [x for x in loose if not resolved or _counts(x, resolved)]

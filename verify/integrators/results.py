@@ -8,7 +8,7 @@ from verify.integrators.probes.reading import Reading
 from verify.proof.plane.potential import Potential, potential_of
 from verify.proof.proof import Proof
 from verify.prose import Prose, prose, read_prose
-from verify.schemes.scheme import Scheme
+from verify.structures import structure_in
 from verify.verdict import Verdict
 
 MOST_CLAIMED = 12
@@ -138,7 +138,7 @@ def judged(claims: Claims, finding: Finding) -> list[Judged]:
 
 
 def _defect_told(finding: Finding) -> str:
-    name = "ΔJ" if finding.degrees == 1 else "S"
+    name = structure_in(finding.degrees).defect
     if finding.order is not None:
         return f"{name} has order {finding.order}"
     if finding.area_at_least is not None:
@@ -173,19 +173,9 @@ def _area_order(claimed: int, finding: Finding, defect: str) -> tuple[str, bool 
 
 
 def potential_of_finding(finding: Finding) -> Potential:
-    """As of a scheme that is known by its proof alone."""
-    proof = finding.proof
-    if proof is None or not proof.planar:
-        if finding.area_preserving and finding.how == "proof":
-            return Potential(True, "ΔJ ≡ 0")
-        return Potential(None, "the leading coefficient is not proved")
-    alone = Scheme(
-        name="step",
-        order=1,
-        area_preserving=False,
-        explicit=False,
-        symmetric=False,
-        source="the user's function",
-        build=lambda _: proof.step_map,
-    )
-    return potential_of(proof, alone)
+    """Whether the leading coefficient of ΔJ telescopes, as far as it is proved; in the plane."""
+    if finding.proof is not None:
+        return potential_of(finding.proof)
+    if finding.area_preserving and finding.how == "proof":
+        return Potential(True, "ΔJ ≡ 0")
+    return Potential(None, "the leading coefficient is not proved")

@@ -154,27 +154,6 @@ def test_what_is_wrong_is_named(function: Function, verdict: str, fault: str, sa
     assert said in found.reason
 
 
-@pytest.mark.parametrize(
-    ("function", "said"),
-    [
-        (own_steps.not_a_number, "it returns what is not finite (nan, "),
-        (own_steps.raising, "raises ValueError: no luck at p ="),
-        (own_steps.nothing, "it returns None; wanted: p', q'"),
-        (own_steps.texts, "it returns text; wanted: p', q'"),
-        (own_steps.three, "it returns 3 numbers; wanted: p', q'"),
-        (own_steps.quitting, "it calls sys.exit, or os._exit"),
-        (own_steps.leaving, "it calls sys.exit, or os._exit"),
-    ],
-)
-def test_a_call_that_returns_no_state_is_an_error_and_refutes_nothing(
-    function: Function, said: str
-) -> None:
-    with pytest.raises(InputError) as error:
-        found_of(function, Claims(order=2))
-    assert said in str(error.value)
-    assert "\n" not in str(error.value)
-
-
 def test_a_state_that_shows_after_many_calls_is_found_at_the_end() -> None:
     calls = [0]
 
@@ -184,11 +163,6 @@ def test_a_state_that_shows_after_many_calls_is_found_at_the_end() -> None:
         return p + (1e-9 if calls[0] > 40 else 0), q
 
     assert found_of(step).faults == ("not a function",)
-
-
-def test_an_endless_call_is_ended() -> None:
-    with pytest.raises(InputError, match="does not end within"):
-        found_of(own_steps.endless, limit=0.3)
 
 
 def test_a_step_that_fails_where_h_is_not_defined_is_not_refuted() -> None:

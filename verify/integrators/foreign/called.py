@@ -15,19 +15,24 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TypeAlias
 
-from verify.errors import InputError, is_meant, nearest
+from verify.errors import InputError
 from verify.hamiltonians.coordinates import coordinates_in
 from verify.integrators.foreign import host
-from verify.integrators.foreign.lines import line_of, numbers_of, short_line
-from verify.integrators.foreign.memory import digits_of, read_digits
+from verify.integrators.foreign.lines import (
+    digits_of,
+    line_of,
+    numbers_of,
+    read_digits,
+    short_line,
+)
 from verify.integrators.foreign.process import Program
 from verify.integrators.user_code.layout import Layout
+from verify.integrators.user_code.loading import it_has
 from verify.integrators.user_code.number_type import DOUBLE_DOUBLE, FLOAT128, NumberType
 from verify.integrators.user_code.step import StepError, Theirs
 from verify.integrators.user_code.user_map import UserMap
 
 _DYNAMIC, _CODE = 11, (0, 2, 10)  # a section of dynamic symbols; kinds of symbols that are called
-_LISTED = 8
 
 
 def functions_of(library: str) -> list[str]:
@@ -61,10 +66,7 @@ def why_missing(symbol: str, names: list[str]) -> str:
     ):
         if written := next((name for name in names if re.fullmatch(pattern, name)), None):
             return f"it has {written}, which is how {language} writes {symbol}: {advice}"
-    near = nearest(symbol, names)
-    first = sorted(names, key=lambda name: name != near)[:_LISTED]
-    more = f", and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
-    return f"there is no {symbol} in it; {is_meant(near)}it has: {', '.join(first)}{more}"
+    return f"there is no {symbol} in it; {it_has(names, symbol)}"
 
 
 _ORDER = ("p", "q", "t", "h")

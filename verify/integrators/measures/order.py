@@ -162,11 +162,11 @@ def goal(flow: Flow, probe: Probe, place: Place, h: Fraction) -> list[Fraction]:
 
     Raises StepError.
     """
-    z = probe.begin(place)
-    t, size = probe.times(place, h)
-    state = flow.state({**dict(zip(probe.step.names, z, strict=True)), "t": t})
+    z = place.rounded(probe.rounded).z
+    begun = dict(zip(probe.step.names, z, strict=True))
+    state = flow.state({**begun, "t": probe.rounded(place.t)})
     try:
-        ended = flow.advance(state, flow.number(size))
+        ended = flow.advance(state, flow.number(probe.rounded(h)))
     except NoFlowError as error:
         raise StepError(error.said) from None
     return [flow.arithmetic.exact(x) for x in ended[: len(z)]]
@@ -176,7 +176,7 @@ def _at(
     step: UserMap, probe: Probe, flow: Flow, place: Place, parts: Sequence[Fraction]
 ) -> PlaceOrder:
     """All components at one place."""
-    size, begun = len(place.z), probe.begin(place)
+    size, begun = len(place.z), place.rounded(probe.rounded).z
     rows: list[list[Row]] = [[] for _ in range(size)]
     below: list[list[bool]] = [[] for _ in range(size)]
     counts, ways, quiet, unseen, lost = list[int](), list[float](), 0, float("inf"), ""

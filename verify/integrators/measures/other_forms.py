@@ -65,14 +65,13 @@ def _change(matrix: "np.ndarray") -> float:
     unit = np.eye(half)
     omega = np.block([[np.zeros((half, half)), unit], [-unit, np.zeros((half, half))]])
     defect = matrix.T @ omega @ matrix - omega
-    pairs = list(combinations(range(size), 2))
-    rows = np.zeros((len(pairs), size * size))
+    above = np.triu_indices(size, 1)
+    rows = np.zeros((len(above[0]), size * size))
     left = matrix.T @ omega  # (left δ)_ab − (left δ)_ba
-    for k, (a, b) in enumerate(pairs):
-        for i in range(size):
-            rows[k, i * size + b] += left[a, i]
-            rows[k, i * size + a] -= left[b, i]
-    wanted = -np.array([defect[a, b] for a, b in pairs])
+    for row, a, b in zip(rows, *above, strict=True):
+        row[b::size] += left[a]
+        row[a::size] -= left[b]
+    wanted = -defect[above]
     weights, least = np.ones(size * size), np.inf
     for _ in range(_TURNS):
         change = weights * np.linalg.lstsq(rows * weights, wanted, rcond=None)[0]

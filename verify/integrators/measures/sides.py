@@ -8,10 +8,12 @@ is solved for. What lies out of all proportion, as q > 1e300, is named and not v
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 
 from verify.integrators.places.place import SIDE, Place
 from verify.integrators.probes.duals import DualProbe
 from verify.integrators.tracing.dual import Comparison
+from verify.integrators.user_code.step import unless_it_fails
 
 Line = tuple[str, int, int]  # file, line, instruction
 _BEYOND = 1.25  # times the way to where the sides meet
@@ -138,9 +140,7 @@ def _solved(
             Fraction(x).limit_denominator(10**6) if abs(x) > 1e-3 else Fraction(x) for x in moved
         )
         place = replace(current.place, z=z, source=SIDE)
-        try:
-            probe.reading(place, current.h)
-        except Exception:  # the user's code may raise anything
+        if unless_it_fails(partial(probe.reading, place, current.h)) is None:
             return None
         here = [x for x in probe.comparisons if x.line == line]
         if not here:

@@ -13,13 +13,12 @@ ABOVE = 10  # times its noise an error must be
 
 @dataclass(frozen=True)
 class Run:
-    """A stretch of step sizes on which one power is seen: from `first` down to `last`, where the
-    error is `error`. `count`: of the slopes that agree."""
+    """A stretch of step sizes on which one power is seen: from `first` down to `last`. `count`: of
+    the slopes that agree."""
 
     power: int
     first: float
     last: float
-    error: float
     count: int
 
 
@@ -46,8 +45,7 @@ def slopes_of(rows: Sequence[Row], fewest: int = _FEWEST) -> Slopes:
         whole = None if slope is None or abs(slope - round(slope)) >= _WITHIN else round(slope)
         if whole != power:
             if power is not None and k - begin >= fewest:
-                h, error, _ = rows[k]
-                runs.append(Run(power, rows[begin][0], h, error, k - begin))
+                runs.append(Run(power, rows[begin][0], rows[k][0], k - begin))
             begin, power = k, whole
     clear = [k for k, slope in enumerate(pairs) if slope is not None]
     last = _end(runs, rows, pairs)

@@ -7,6 +7,7 @@ or what the user allows; nothing else.
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import partial
 from itertools import pairwise
 
 from verify.integrators.measures.order import SPACED, Probe
@@ -15,7 +16,7 @@ from verify.integrators.measures.slopes import Row, slopes_of
 from verify.integrators.places.place import USER, Place, spread
 from verify.integrators.probes.duals import DualProbe
 from verify.integrators.probes.reading import Reading
-from verify.integrators.user_code.step import StepError, why
+from verify.integrators.user_code.step import StepError, unless_it_fails, why
 from verify.integrators.user_code.user_map import UserMap
 
 REFUTES = 4.0  # times its noise that an entry is where it is not 0
@@ -178,12 +179,10 @@ def _followed(
             h = place.step / part
             if step.left <= 0:
                 break
-            try:
-                reading = probe.reading(place, h)
-            except Exception:  # noqa: S112 - as above
-                continue
-            rows.append((float(h), reading.defect, reading.blur))
-            counts.append(len(probe.comparisons))
+            reading = unless_it_fails(partial(probe.reading, place, h))
+            if reading is not None:
+                rows.append((float(h), reading.defect, reading.blur))
+                counts.append(len(probe.comparisons))
         all_rows.append(tuple(rows))
         all_counts.append(tuple(counts))
     return tuple(all_rows), tuple(all_counts)

@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from functools import partial
 
 from verify.arithmetic.exact import decimal
 from verify.errors import InputError
@@ -15,6 +16,7 @@ from verify.flows.extrapolation import NoFlowError
 from verify.integrators.places.place import PATTERN, USER, Place, simple, spread, states
 from verify.integrators.places.units import Field, rate, reaches, units_of
 from verify.integrators.probes.duals import DualProbe
+from verify.integrators.user_code.step import unless_it_fails
 from verify.integrators.user_code.user_map import UserMap
 
 _SHORT, _FAR = 64, 8.0  # part of a step that is tried, and units that it may go in all
@@ -146,9 +148,8 @@ def shortened(step: UserMap, places: list[Place]) -> list[Place]:
 
 def _strides(step: UserMap, place: Place) -> float:
     """How many units a step goes, as H would go one at most; 1 where that is not known."""
-    try:
-        end = step.at_place(place, place.step / _SHORT)
-    except Exception:  # the user's code may raise anything
+    end = unless_it_fails(partial(step.at_place, place, place.step / _SHORT))
+    if end is None:
         return 1.0
     pairs = zip(end, map(float, place.z), place.units, strict=True)
     far = max(abs(x - y) / float(u) for x, y, u in pairs)
@@ -187,11 +188,9 @@ def unit_of_map(step: UserMap) -> Fraction:
 
 def _jacobian(probe: DualProbe, names: Sequence[str], unit: Fraction) -> list[list[float]] | None:
     units = (unit,) * len(names)
-    try:
-        reading = probe.reading(Place(states(units)[0], Fraction(0), units, units), Fraction(0))
-    except Exception:  # it may not be defined there
-        return None
-    return [list(row) for row in reading.jacobian]
+    place = Place(states(units)[0], Fraction(0), units, units)
+    reading = unless_it_fails(partial(probe.reading, place, Fraction(0)))
+    return None if reading is None else [list(row) for row in reading.jacobian]
 
 
 def _changed(before: list[list[float]], after: list[list[float]]) -> bool:

@@ -16,7 +16,6 @@ from verify.prose import Number, Prose, prose
 
 if TYPE_CHECKING:
     import gmpy2
-    import sympy
 
 _DIGITS, _OF_FIELD, _SAME = 60, 40, Fraction(1, 10**30)
 _FAR = 1e-2  # from the flow, where a period is looked for
@@ -78,15 +77,8 @@ def _period(hamiltonian: Hamiltonian, place: int) -> Fraction:
         return Fraction(0)
     below = lcm(*(int(x.q) for x in ratios))
     slowest = rates[0] * sympy.Rational(gcd(*(int(x.p) * below // int(x.q) for x in ratios)), below)
-    whole = _fraction(2 * sympy.pi / slowest)
+    whole = Fraction(str((2 * sympy.pi / slowest).evalf(_DIGITS)))
     return next((x for x in (whole / 2, whole) if _repeats(hamiltonian, place, x)), Fraction(0))
-
-
-def _fraction(x: "sympy.Expr") -> Fraction:
-    import sympy
-
-    found = sympy.Rational(str(x.evalf(_DIGITS)))
-    return Fraction(int(found.p), int(found.q))
 
 
 def _repeats(hamiltonian: Hamiltonian, place: int, period: Fraction) -> bool:

@@ -5,14 +5,18 @@ import random
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 
 import gmpy2
 
+from verify.arithmetic.exact import fraction
 from verify.integrators.places.place import Place
 from verify.integrators.probes.duals import DualProbe
 from verify.integrators.tracing.dual import Dual, Duals, slope_of
 from verify.integrators.tracing.number import UntraceableError
 from verify.integrators.tracing.trace import Node, in_order, replayed, through
+from verify.integrators.user_code.number_type import DOUBLE
+from verify.integrators.user_code.step import unless_it_fails
 from verify.integrators.user_code.user_map import State, UserMap
 from verify.prose import read_prose
 
@@ -50,7 +54,7 @@ def trace_must_agree(step: UserMap, roots: Sequence[Node], places: Sequence[Plac
 
     def theirs(place: Place, h: Fraction, mine: State) -> Bounded | None:
         start = dict(zip(step.names, place.z, strict=True))
-        start |= {"h": Fraction(float(h)), "t": Fraction(float(place.t))}
+        start |= {"h": DOUBLE.rounded(h), "t": DOUBLE.rounded(place.t)}
         ended = _replayed(kind, nodes, roots, start)
         return None if ended is None else (ended, _allowed(nodes, roots, start, mine, place))
 
@@ -66,8 +70,8 @@ def _must_agree(
     None where it is not known."""
     compared = 0
     for place, h in _calls(places):
-        rounded = place.rounded(lambda x: Fraction(float(x)))
-        mine = _floats(step, rounded, h)
+        rounded = place.rounded(DOUBLE.rounded)
+        mine = unless_it_fails(partial(step.at_place, rounded, h))  # other places may do
         bounded = None if mine is None else theirs(rounded, h, mine)
         if mine is not None and bounded is not None:
             compared += 1
@@ -97,13 +101,6 @@ def _around(place: Place) -> list[Place]:
     ]
 
 
-def _floats(step: UserMap, place: Place, h: Fraction) -> State | None:
-    try:
-        return step.at_place(place, h)
-    except Exception:  # it fails there; other places may do
-        return None
-
-
 def _replayed(
     kind: Duals, nodes: Sequence[Node], roots: Sequence[Node], start: dict[str, Fraction]
 ) -> list[Fraction] | None:
@@ -111,7 +108,7 @@ def _replayed(
     try:
         made = through(nodes, replayed(kind, numbers))
         ended: list[Dual] = [made[root.number] for root in roots]
-        return [Fraction(*map(int, x.value.as_integer_ratio())) for x in ended]
+        return [fraction(x.value) for x in ended]
     except (ArithmeticError, ValueError):
         return None
 

@@ -9,10 +9,12 @@ from fractions import Fraction
 
 import gmpy2
 
+from verify.arithmetic.exact import fraction
 from verify.integrators.places.place import Place
 from verify.integrators.probes.reading import Matrix, Reading, reading_of
 from verify.integrators.tracing.dual import BITS, Comparison, Dual, Duals
 from verify.integrators.tracing.functions import copied
+from verify.integrators.user_code.number_type import DOUBLE
 from verify.integrators.user_code.step import StepError, Theirs, lifted, within
 from verify.integrators.user_code.user_map import UserMap
 
@@ -50,15 +52,11 @@ class DualProbe:
             one = (gmpy2.mpfr(1),)
             state = [Dual(self.kind, self.kind.rational(x).value, one) for x in place.z]
             ended = self._called(self.kind, state, place, h)
-            return [Fraction(*map(int, x.value.as_integer_ratio())) for x in ended]
+            return [fraction(x.value) for x in ended]
 
-    def begin(self, place: Place) -> list[Fraction]:
-        """Where it is called: z as it stands."""
-        return list(place.z)
-
-    def times(self, place: Place, h: Fraction) -> tuple[Fraction, Fraction]:
-        """t and h as it is called with them."""
-        return place.t, h
+    def rounded(self, x: Fraction) -> Fraction:
+        """A number as it is called with it: as it stands."""
+        return x
 
     def noise(self, place: Place, state: Sequence[Fraction]) -> list[float]:
         """Of z', our own."""
@@ -78,7 +76,7 @@ class DualProbe:
         self, errors: list[list[float]], fine: Matrix, place: Place, h: Fraction
     ) -> None:
         """What 53 bits make of each row, at a place that has no more, in units of the columns."""
-        rounded = place.rounded(lambda x: Fraction(float(x)))
+        rounded = place.rounded(DOUBLE.rounded)
         try:
             with within(_SECONDS, "rounded to doubles it does not end"):
                 coarse = self._jacobian(self.coarse, rounded, h)
@@ -99,7 +97,7 @@ class DualProbe:
             return [x.slopes or zeros for x in ended]
 
     def _called(self, kind: Duals, state: list[Dual], place: Place, h: Fraction) -> list[Dual]:
-        kind.clear()
+        kind.comparisons = []
         step, size, clock = self.step, kind.rational(h), kind.rational(place.t)
         result: list[Theirs] = step.call(
             self._functions[kind.bits], state, size, clock, kind.rational

@@ -33,18 +33,14 @@ class FloatProbe:
         self.step = step
         self._scatter: dict[tuple[Place, Fraction], list[float]] = {}
 
-    def begin(self, place: Place) -> list[Fraction]:
-        """Where it is called: z in numbers of its type."""
-        return [self.step.numbers.rounded(x) for x in place.z]
+    def rounded(self, x: Fraction) -> Fraction:
+        """A number as it is called with it: one of its type."""
+        return self.step.numbers.rounded(x)
 
     def end(self, place: Place, h: Fraction) -> list[Fraction]:
         """z' as the rationals that it is. Raises StepError, and what the user's code raises."""
-        (ended,) = self._ends([self.begin(place)], place, h)
+        (ended,) = self._ends([place.rounded(self.rounded).z], place, h)
         return ended
-
-    def times(self, place: Place, h: Fraction) -> tuple[Fraction, Fraction]:
-        """t and h as it is called with them."""
-        return self.step.numbers.rounded(place.t), self.step.numbers.rounded(h)
 
     def noise(self, place: Place, state: Sequence[Fraction]) -> list[float]:
         """Of z': what a rounding of each operation leaves, at least."""
@@ -60,12 +56,11 @@ class FloatProbe:
         return self._scatter[key]
 
     def _seen_scatter(self, place: Place, h: Fraction) -> list[float]:
-        z, epsilon = self.begin(place), self.step.numbers.epsilon
+        z, epsilon = place.rounded(self.rounded).z, self.step.numbers.epsilon
         # Over so little a smooth map bends below its numbers' rounding.
         tiny = Fraction(1, 2 ** (2 * self.step.numbers.bits // 5))
-        rounded = self.step.numbers.rounded
         moved = [
-            [rounded(x + k * tiny * u) for x, u in zip(z, place.reach, strict=True)]
+            [self.rounded(x + k * tiny * u) for x, u in zip(z, place.reach, strict=True)]
             for k in range(_MOVES)
         ]
         ends = self._ends(moved, place, h)
@@ -84,7 +79,7 @@ class FloatProbe:
 
     def reading(self, place: Place, h: Fraction) -> Reading:
         """S and det J − 1. Raises StepError, and what the user's code raises."""
-        z, scatter = self.begin(place), self.scatter(place, h)
+        z, scatter = place.rounded(self.rounded).z, self.scatter(place, h)
         columns, blurs = [], []
         with gmpy2.context(precision=BITS):
             for j in range(len(z)):
@@ -100,7 +95,7 @@ class FloatProbe:
         return reading_of(place, h, rows, errors, self.step.numbers.epsilon)
 
     def _column(
-        self, place: Place, h: Fraction, z: list[Fraction], j: int, scatter: list[float]
+        self, place: Place, h: Fraction, z: Sequence[Fraction], j: int, scatter: list[float]
     ) -> tuple[list["gmpy2.mpfr"], list[float]]:
         """∂z'/∂z_j, and the errors of its entries."""
         levels = max(_LEVELS, self.step.numbers.bits // 8)
@@ -111,7 +106,7 @@ class FloatProbe:
         for width in widths:
             pair = [list(z), list(z)]
             for state, sign in zip(pair, (1, -1), strict=True):
-                state[j] = self.step.numbers.rounded(z[j] + sign * width)
+                state[j] = self.rounded(z[j] + sign * width)
             states += pair
             steps.append(gmpy2.mpq(pair[0][j] - pair[1][j]))
         ends = self._ends(states, place, h)
@@ -130,7 +125,7 @@ class FloatProbe:
     def _ends(
         self, states: Sequence[Sequence[Fraction]], place: Place, h: Fraction
     ) -> list[list[Fraction]]:
-        ends = self.step.exactly(states, *reversed(self.times(place, h)))
+        ends = self.step.exactly(states, self.rounded(h), self.rounded(place.t))
         if self.step.periods:  # all on one side of where it wraps
             first = ends[0]
             ends = [list(map(unwrapped, end, first, self.step.periods)) for end in ends]

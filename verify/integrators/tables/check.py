@@ -75,7 +75,7 @@ def read_tables(path: Path) -> TableFile:
         name = table.get("name") if isinstance(table, dict) else None
         called = name if isinstance(name, str) and name else f"number {index + 1}"
         try:
-            entry = _entry(table).in_folder(path.parent)
+            entry = _model(table).model_validate(table).in_folder(path.parent)
             if called in found:
                 raise InputError("name", called, "stands twice; each table has its own")
         except ValidationError as error:
@@ -108,10 +108,6 @@ def _model(table: Any) -> type[TableEntry]:
         raise unknown("kind", kind, kinds.names())
     model: type[TableEntry] = kinds.get(kind).Entry
     return model
-
-
-def _entry(table: Mapping[str, Any]) -> TableEntry:
-    return _model(table).model_validate(table)
 
 
 def located(name: str, lines: Lines, index: int, table: str, error: InputError) -> InputError:

@@ -23,6 +23,17 @@ Row = tuple[Written, ...]
 Order = Annotated[int, Field(ge=1, le=20)]
 
 
+class Block(Frozen):
+    """One tableau. `tableau`: pasted text, in place of the others; `csv`: the name of a file."""
+
+    a: tuple[Row, ...] | None = None
+    b: Row | None = None
+    c: Row | None = None
+    embedded: Row | None = None
+    tableau: str | None = None
+    csv: str | None = None
+
+
 class TableEntry(Frozen):
     """One [[table]]: `numbers` by name, `source` who claims it, `read` where it was read."""
 

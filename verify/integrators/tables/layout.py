@@ -14,11 +14,11 @@ parted by `&`, tabs, commas, semicolons, or blanks.
 import csv
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from verify.errors import InputError
 from verify.files import read_text
+from verify.integrators.tables.entry import Block
 from verify.integrators.tables.signs import LONGEST, plain
 
 _RULE = re.compile(r"[\s|+:─━—_=-]*")
@@ -28,16 +28,7 @@ _BLANKS = re.compile(r"\s{2,}")
 Line = tuple[str | None, list[str]]  # what stands left of a bar, None without one; and the columns
 
 
-@dataclass(frozen=True)
-class Layout:
-    """`times`: None where no column of them is there. `weights`: b, and the embedded ones."""
-
-    rows: tuple[tuple[str, ...], ...]
-    times: tuple[str, ...] | None
-    weights: tuple[tuple[str, ...], ...]
-
-
-def pasted(text: str, name: str = "tableau") -> Layout:
+def pasted(text: str, name: str = "tableau") -> Block:
     """InputError where it is no tableau."""
     lines = []
     text = re.sub(r"\\\\\s*(\[[^]]*\])?", "\n", text).replace(r"\hline", "\n----\n")  # LaTeX's
@@ -92,7 +83,7 @@ def _parted(lines: Sequence[Line | None]) -> tuple[list[Line], list[Line]]:
     return told[:cut], told[cut:]
 
 
-def _made(stages: Sequence[Line], weights: Sequence[Line], name: str) -> Layout:
+def _made(stages: Sequence[Line], weights: Sequence[Line], name: str) -> Block:
     if not stages or not weights:
         problem = "has no weights; write them below a line of ---, or after an empty first column"
         raise InputError(name, f"{len(stages)} lines", problem)
@@ -111,9 +102,10 @@ def _made(stages: Sequence[Line], weights: Sequence[Line], name: str) -> Layout:
         if explicit or all(n == count + 1 for n in lengths):
             stages, timed = [(cells[0], cells[1:]) for _, cells in stages], True
     times = tuple(plain(left or "0") for left, _ in stages) if timed else None
-    return Layout(
-        tuple(tuple(cells) for _, cells in stages), times, tuple(tuple(x) for _, x in weights)
-    )
+    rows = tuple(tuple(cells) for _, cells in stages)
+    (_, b), *more = weights
+    embedded = next(((*x, *["0"] * (count - len(x))) for _, x in more), None)
+    return Block(a=rows, b=tuple(b), c=times, embedded=embedded)
 
 
 # -- files ----------------------------------------------------------------------------------------
@@ -133,7 +125,7 @@ def csv_rows(folder: Path, name: str) -> list[list[str]]:
     return [[cell.strip() for cell in row] for row in found if any(cell.strip() for cell in row)]
 
 
-def layout_of_csv(folder: Path, name: str) -> Layout:
+def block_of_csv(folder: Path, name: str) -> Block:
     """A tableau from a CSV file: times first, weights in rows whose first cell is empty."""
     rows = csv_rows(folder, name)
     if rows and not any(x.isdigit() for x in "".join(rows[0])):

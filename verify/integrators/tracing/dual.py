@@ -48,7 +48,7 @@ class Comparison:
 class Duals(Kind):
     """Makes dual numbers of so many bits. Use it inside `running`.
 
-    `comparisons`: those of numbers that move with the state, since the last `clear`.
+    `comparisons`: those of numbers that move with the state, since a probe began a new list.
     """
 
     def __init__(self, bits: int = BITS) -> None:
@@ -62,10 +62,6 @@ class Duals(Kind):
         with gmpy2.context(precision=self.bits, round=gmpy2.RoundToNearest):
             yield
 
-    def clear(self) -> None:
-        """Forgets the comparisons that were written down."""
-        self.comparisons = []
-
     def rational(self, value: Fraction) -> "Dual":
         return Dual(self, gmpy2.mpfr(gmpy2.mpq(value.numerator, value.denominator)), ())
 
@@ -74,13 +70,9 @@ class Duals(Kind):
 
     def state(self, *z: Fraction) -> list["Dual"]:
         """z, whose derivatives are the unit vectors."""
-        zero, one = gmpy2.mpfr(0), gmpy2.mpfr(1)
-        return [
-            Dual(
-                self, self.rational(x).value, tuple(one if j == k else zero for j in range(len(z)))
-            )
-            for k, x in enumerate(z)
-        ]
+        unit = [[gmpy2.mpfr(int(j == k)) for j in range(len(z))] for k in range(len(z))]
+        pairs = zip(z, unit, strict=True)
+        return [Dual(self, self.rational(x).value, tuple(row)) for x, row in pairs]
 
 
 def slope_of(name: str, x: Number, y: Number) -> Number:
@@ -148,30 +140,21 @@ class Dual(TracedNumber):
         return int(self.value > other.value) - int(self.value < other.value)
 
     def combined(self, name: str, other: "Dual") -> "Dual":
-        x, y, kind = self.value, other.value, self.kind
-        if not other.slopes:  # a constant moves nothing
-            return self._with_constant(name, y)
-        a, b = self.slopes or (gmpy2.mpfr(0),) * len(other.slopes), other.slopes
-        pairs = zip(a, b, strict=True)
-        match name:
-            case "add" | "subtract":
-                act = OPERATORS[name]
-                return Dual(kind, act(x, y), tuple([act(u, v) for u, v in pairs]))
-            case "multiply":
-                return Dual(kind, x * y, tuple([u * y + x * v for u, v in pairs]))
-        if y == 0:
-            raise ZeroDivisionError("division by zero")
-        z = x / y
-        return Dual(kind, z, tuple([(u - z * v) / y for u, v in pairs]))
-
-    def _with_constant(self, name: str, y: Number) -> "Dual":
-        x, a, kind = self.value, self.slopes, self.kind
-        if name in ("add", "subtract"):
-            return Dual(kind, OPERATORS[name](x, y), a)
+        x, y, a, b = self.value, other.value, self.slopes, other.slopes
         if name == "divide" and y == 0:
             raise ZeroDivisionError("division by zero")
         act = OPERATORS[name]
-        return Dual(kind, act(x, y), tuple([act(u, y) for u in a]))
+        z, is_sum = act(x, y), name in ("add", "subtract")
+        if not b:  # a constant moves nothing
+            return Dual(self.kind, z, a if is_sum else tuple([act(u, y) for u in a]))
+        pairs = zip(a or (gmpy2.mpfr(0),) * len(b), b, strict=True)
+        if is_sum:
+            slopes = [act(u, v) for u, v in pairs]
+        elif name == "multiply":
+            slopes = [u * y + x * v for u, v in pairs]
+        else:
+            slopes = [(u - z * v) / y for u, v in pairs]
+        return Dual(self.kind, z, tuple(slopes))
 
     def applied(self, name: str) -> "Dual":
         x = self.value

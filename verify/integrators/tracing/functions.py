@@ -3,7 +3,7 @@
 All that it reaches is copied as it is reached: functions, with closures and defaults, classes,
 objects, lists and arrays, and modules with what is looked up in them. Nothing of the user's is
 changed by a call of the copy. What is neither copied nor pure is called as it is, and named in
-`Kind.impure`, as is what a call leaves other than it was (`verify.integrators.tracing.purity`).
+`Kind.outside`, as is what a call leaves other than it was (`verify.integrators.tracing.purity`).
 """
 
 import abc

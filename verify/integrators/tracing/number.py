@@ -83,11 +83,6 @@ class Kind(ABC):
         self.refused: list[str] = []
         self.outside = Outside()
 
-    @property
-    def impure(self) -> list[str]:
-        """What makes it more than a function of its arguments, by now: nothing where it is one."""
-        return self.outside.texts
-
     @abstractmethod
     def rational(self, value: Fraction) -> "TracedNumber": ...
 

@@ -16,6 +16,7 @@ import gmpy2
 import sympy
 
 from verify.algebra.formula import symbol
+from verify.arithmetic.exact import fraction
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.integrators.tracing.dual import Dual, Duals
 from verify.integrators.tracing.linear_sums import Scalars
@@ -153,7 +154,7 @@ class Readings:
         slopes = [(made[root.number].slopes or (zero,))[0] / h.value for root in self.roots]
         whole = -at["H_qt"], at["H_pt"]
         parts = [
-            Fraction(*map(int, (slope / x).as_integer_ratio())) if x else Fraction(0)
+            fraction(slope / x) if x else Fraction(0)
             for slope, x in zip(slopes, whole, strict=True)
         ]
         parts = [x if abs(x) >= _NO_PART else Fraction(0) for x in parts]
@@ -179,7 +180,7 @@ def _numbers(hamiltonian: Hamiltonian) -> dict[str, "gmpy2.mpfr"]:
 def _rational(x: "gmpy2.mpfr") -> Fraction:
     if not gmpy2.is_finite(x):
         raise NoReadingsError
-    exact = Fraction(*map(int, x.as_integer_ratio()))
+    exact = fraction(x)
     near = exact.limit_denominator(_MOST_DENOMINATOR)
     if abs(near - exact) > _CLEAR:
         raise NoReadingsError

@@ -4,10 +4,11 @@ import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 
 from verify.integrators.places.place import Place
 from verify.integrators.user_code.second_process import outcome, outcomes_elsewhere
-from verify.integrators.user_code.step import StepError, last_line, limited
+from verify.integrators.user_code.step import StepError, last_line, limited, unless_it_fails
 from verify.integrators.user_code.user_map import State, UserMap
 from verify.prose import Number, Prose, joined, prose
 from verify.verdict import Verdict
@@ -41,10 +42,9 @@ def examined(step: UserMap, places: Sequence[Place]) -> tuple[list[Fault], Calls
     """What is wrong with it at the first of the places, and what it returned there."""
     first = Calls()
     for place in places[:_MOST]:
-        try:
-            first[place] = at(step, place)
-        except Exception:  # noqa: S112 - at others it may not fail
-            continue
+        state = unless_it_fails(partial(at, step, place))  # at others it may not fail
+        if state is not None:
+            first[place] = state
         if step.left <= 0:
             break
     faults = _as_a_map(step, first) or _elsewhere(step, first)
@@ -84,11 +84,8 @@ def at(step: UserMap, place: Place, part: int = _PARTS[0]) -> State:
 def changed_since(step: UserMap, first: Mapping[Place, State]) -> list[Fault]:
     """Whether it returns something else than it did, after many calls."""
     for place, before in first.items():
-        try:
-            after = at(step, place)
-        except Exception:  # noqa: S112 - a cache may hold numbers of ours
-            continue
-        if after != before:
+        after = unless_it_fails(partial(at, step, place))  # a cache may hold numbers of ours
+        if after is not None and after != before:
             return [not_a_function(step, place.z, before, after)]
     return []
 

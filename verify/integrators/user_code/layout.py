@@ -5,12 +5,12 @@ numbers, two arrays of any shape, two lists, or one thing that holds both, in ei
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from math import prod
 from typing import Any
 
-from verify.integrators.user_code.step import StepError, Theirs, single
+from verify.integrators.user_code.step import StepError, Theirs
 
 # What people call the arguments of a step.
 ROLES = {
@@ -84,12 +84,6 @@ class Layout:
     def stepped(self) -> bool:
         """Whether h goes in."""
         return "h" in self.roles
-
-    def exchanged(self) -> "Layout":
-        """The same with p and q in each other's place."""
-        other = {"p": "q", "q": "p"}
-        roles = tuple(other.get(name, name) for name in self.roles)
-        return replace(self, roles=roles, halves=(self.halves[1], self.halves[0]))
 
     def arguments(
         self, z: Sequence[Theirs], h: Theirs, t: Theirs
@@ -186,7 +180,8 @@ def _numbers(result: Theirs, wanted: str, depth: int) -> list[Theirs]:
     if getattr(result, "shape", ()):
         result = list(result.ravel())
     if not isinstance(result, list | tuple):
-        return [single(result)]
+        of_numpy = hasattr(result, "dtype") and hasattr(result, "reshape")
+        return [result[()] if of_numpy else result]
     if depth == 0:
         raise StepError(f"it returns lists in lists in lists; {wanted}")
     return [x for part in result for x in _numbers(part, wanted, depth - 1)]

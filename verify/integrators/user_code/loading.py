@@ -1,12 +1,20 @@
 """A user's own step or map: loaded, and its arguments understood, as far as their names tell.
 
 `verify check-integrator` and `verify.testing` run the user's code; nothing else in `verify` does.
+
+A module is imported so that no file beside it is taken for a library that we import. Much of what a
+command imports it imports late, numpy among it, and so do libraries. A user's folder is therefore
+searched behind all libraries; the module that was named alone is taken from it first.
 """
 
 import inspect
+import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from importlib import import_module
+from importlib.machinery import ModuleSpec, PathFinder
+from importlib.util import module_from_spec, spec_from_file_location
 from itertools import permutations
 from pathlib import Path
 from types import ModuleType
@@ -15,7 +23,6 @@ from verify.errors import InputError, is_meant, nearest
 from verify.integrators.user_code.layout import Layout, role_of, shapes
 from verify.integrators.user_code.step import TIME_LIMIT, Theirs, contained, last_line
 from verify.integrators.user_code.user_map import UserMap
-from verify.integrators.user_code.user_modules import from_file, from_folder
 
 _MOST_SECONDS = 86_400
 _LISTED = 8  # functions of a module, in an error
@@ -43,7 +50,9 @@ def load(target: str, called: str = "integrator") -> Callable[..., Theirs]:
         found: Theirs = module
         for part in name.split("."):
             if not hasattr(found, part):
-                raise InputError(called, target, f"{place} has no {name}; {_has(module, name)}")
+                known = sorted(x for x, one in vars(module).items() if inspect.isfunction(one))
+                has = it_has(known, name) if known else "it has no function"
+                raise InputError(called, target, f"{place} has no {name}; {has}")
             found = getattr(found, part)
     if not callable(found):
         raise InputError(called, target, f"{name} is no function but {type(found).__name__}")
@@ -51,15 +60,12 @@ def load(target: str, called: str = "integrator") -> Callable[..., Theirs]:
     return function
 
 
-def _has(module: ModuleType, wanted: str) -> str:
-    """Which functions it has, the nearest to what was wanted first."""
-    known = sorted(name for name, x in vars(module).items() if inspect.isfunction(x))
-    if not known:
-        return "it has no function"
-    near = nearest(wanted, known)
-    listed = sorted(known, key=lambda name: name != near)
-    more = f", and {len(listed) - _LISTED} more" if len(listed) > _LISTED else ""
-    return f"{is_meant(near)}it has: {', '.join(listed[:_LISTED])}{more}"
+def it_has(functions: Sequence[str], wanted: str) -> str:
+    """Which functions there are, the nearest to what was wanted first."""
+    near = nearest(wanted, functions)
+    first = sorted(functions, key=lambda name: name != near)[:_LISTED]
+    more = f", and {len(functions) - _LISTED} more" if len(functions) > _LISTED else ""
+    return f"{is_meant(near)}it has: {', '.join(first)}{more}"
 
 
 def _module(place: str, target: str, called: str) -> ModuleType:
@@ -80,6 +86,50 @@ def _module(place: str, target: str, called: str) -> ModuleType:
         hint = "; write the path of its file, as file.py:FUNCTION" if unknown else ""
         problem = f"does not import: {last_line(error)}{hint}"
         raise InputError(called, target, problem) from None
+
+
+# -- its module -----------------------------------------------------------------------------------
+
+
+def from_file(path: Path) -> ModuleType:
+    """The module that a .py file is, which is run anew."""
+    name = _free_name(path.stem, path.parent.resolve())
+    return _executed(spec_from_file_location(name, path))
+
+
+def from_folder(name: str) -> ModuleType:
+    """The module of that name in the current folder, else the one that is installed."""
+    top, dot, rest = name.partition(".")
+    here = Path.cwd()
+    there = PathFinder.find_spec(top, [str(here)])
+    free = _free_name(top, here)
+    if there is None or there.origin is None:  # a folder without code is behind libraries, too
+        return import_module(name)
+    if free != top and free not in sys.modules:
+        inside = there.submodule_search_locations
+        _executed(spec_from_file_location(free, there.origin, submodule_search_locations=inside))
+    return import_module(f"{free}{dot}{rest}")
+
+
+def _free_name(name: str, folder: Path) -> str:
+    """The name, or another one where that is a library's; the folder's other modules are found."""
+    before = [x for x in sys.path if Path(x).resolve() != folder]
+    taken = name in sys.stdlib_module_names or PathFinder.find_spec(name, before) is not None
+    if str(folder) not in sys.path:
+        sys.path.append(str(folder))
+    return f"{name}_{hash(folder) & 0xFFFFFFFF:x}" if taken else name
+
+
+def _executed(spec: ModuleSpec | None) -> ModuleType:
+    assert spec is not None and spec.loader is not None  # noqa: PT018, S101 - a file has one
+    module = module_from_spec(spec)
+    sys.modules[spec.name] = module  # as pickles and dataclasses in it expect
+    try:
+        spec.loader.exec_module(module)
+    except BaseException:
+        del sys.modules[spec.name]
+        raise
+    return module
 
 
 # -- its signature --------------------------------------------------------------------------------
@@ -128,9 +178,7 @@ def callee_from(
         orders, named = [order], True
     halves = [("p", "q")] if places else None
     layouts = [x for roles in orders for x in _layouts(roles, len(names) // 2, halves)]
-    layouts = [
-        Layout(x.roles, x.halves, x.shape, x.kind, places, signature.record) for x in layouts
-    ]
+    layouts = [replace(x, places=places, record=signature.record) for x in layouts]
     used = {name: x for name, x in values.items() if name in signature.takes}
     step = UserMap(function, layouts[0], names, used, limit=time_limit)
     several = len({(x.roles, x.halves) for x in layouts}) > 1

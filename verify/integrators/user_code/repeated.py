@@ -21,6 +21,7 @@ import types
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from operator import itemgetter
 from typing import Any
 
 from verify.integrators.places.place import Place
@@ -142,14 +143,7 @@ _ROUNDS = 4  # in which all is called again
 _PLACES = 5
 _PART, _MOST_SECONDS = 0.05, 2.0  # of the time that is left
 Outcome = State | Exception
-
-
-@dataclass(frozen=True)
-class _Jump:
-    """How far a component of z' is from where it should be, after a move, in units."""
-
-    size: float
-    move: float
+_Jump = tuple[float, float]  # how far a component of z' is from where it should be; after what move
 
 
 @dataclass(frozen=True)
@@ -250,15 +244,14 @@ def _coarse(
     for moves_p in (True, False):
         each = [_jump(x, known) for x in ladders if x.moves_p is moves_p]
         told = [jump for jump in each if jump is not None]
-        seen = [jump for jump in told if jump.size > 0]
+        seen = [(size, move) for size, move in told if size > 0]
         jumps += seen if 2 * len(seen) > len(told) else []
     if not jumps:
         return []
-    largest = max(jumps, key=lambda jump: jump.size)
-    step.coarseness = largest.size
+    step.coarseness, move = max(jumps, key=itemgetter(0))
     said = (
-        f"its numbers are coarse: p' or q' jumps by `{largest.size:.1e}` as p or q moves by "
-        f"`{largest.move:.1e}`, as where they are of single precision, are rounded, or are kept "
+        f"its numbers are coarse: p' or q' jumps by `{step.coarseness:.1e}` as p or q moves by "
+        f"`{move:.1e}`, as where they are of single precision, are rounded, or are kept "
         "from calls nearby; no order holds below that"
     )
     return [Fault("coarse", read_prose(said), Verdict.UNDECIDED)]
@@ -282,8 +275,6 @@ def _jump(ladder: _Ladder, known: dict[tuple[Place, State], Outcome]) -> _Jump |
     ]
     curvature = max(size / move**2 for move, size in bent if move >= _WIDE)
     jumps = [
-        _Jump(size, move)
-        for move, size in bent
-        if size > 2 * _COARSE + _BENDS * curvature * move**2
+        (size, move) for move, size in bent if size > 2 * _COARSE + _BENDS * curvature * move**2
     ]
-    return max(jumps, key=lambda jump: jump.size, default=_Jump(0.0, 0.0))
+    return max(jumps, key=itemgetter(0), default=(0.0, 0.0))

@@ -9,14 +9,15 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Iterator, Sequence
-from typing import Any, NoReturn, Protocol, TypeAlias
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, NoReturn, Protocol, TypeAlias, TypeVar
 
 from verify.errors import InputError
 from verify.integrators.tracing.number import TracedNumber, UntraceableError
 from verify.prose import Prose, prose
 
 Theirs: TypeAlias = Any  # what a user's code takes, holds or returns: it may be anything
+T = TypeVar("T")
 TIME_LIMIT = 60.0  # seconds for all of the user's code
 # Python drops what is raised within a finalizer or a callback of its garbage collector, and a bare
 # `except:` of the user's catches it: the alarm rings again after so many seconds.
@@ -120,13 +121,12 @@ def within(seconds: float, problem: str) -> Iterator[None]:
             signal.setitimer(signal.ITIMER_REAL, max(outer - spent, _SOONEST), _AGAIN)
 
 
-def single(x: Theirs) -> Theirs:
-    shape = getattr(x, "shape", ())
-    if shape:
-        if any(n != 1 for n in shape):
-            raise StepError(f"it returns arrays of shape {tuple(shape)} for a single p, q")
-        return x.reshape(-1)[0]
-    return x[()] if hasattr(x, "dtype") and hasattr(x, "reshape") else x
+def unless_it_fails(call: Callable[[], T]) -> T | None:
+    """What a call of the user's code makes; None where it raises, which may be anything."""
+    try:
+        return call()
+    except Exception:
+        return None
 
 
 def lifted(first: Theirs, found: Sequence[Theirs]) -> list[Theirs]:

@@ -135,6 +135,10 @@ class UserMap:
         """z' as floats of a step from there; as `at`."""
         return self.at([float(x) for x in place.z], float(h), float(place.t))
 
+    def entry(self, at: tuple[int, int]) -> str:
+        """The name of an entry of S, such as dp1∧dq1."""
+        return "∧".join(f"d{self.names[k]}" for k in at)
+
     def state(self, z: Sequence[float | Fraction]) -> str:
         """A state as text, for what is said of it."""
         return ", ".join(f"{name} = {float(x):g}" for name, x in zip(self.names, z, strict=True))

@@ -58,8 +58,8 @@ class Potential:
         return ring.text(x)
 
 
-def potential_of(proof: Proof, scheme: Scheme) -> Potential:
-    """Whether the leading coefficient that was proved telescopes."""
+def potential_of(proof: Proof, scheme: Scheme | None = None) -> Potential:
+    """Whether the leading coefficient that was proved telescopes; `scheme`: where it is known."""
     proof.step_map.hamiltonian.check_planar()
     if proof.area_preserving:
         return Potential(True, "ΔJ ≡ 0")
@@ -72,7 +72,7 @@ def potential_of(proof: Proof, scheme: Scheme) -> Potential:
         return Potential(
             False, f"X·G vanishes at the equilibrium {where}, for any smooth G; L does not"
         )
-    every_h = scheme.every_h
+    every_h = scheme and scheme.every_h
     if isinstance(every_h, TaylorSeries) and every_h.eta % 2 == 0:
         found: Poly | None = potential_of_lie(field, every_h.eta).divergence
         how = "by the formula for every H"

@@ -1,10 +1,10 @@
 """What is asked of a table: conditions on its entries, as polynomials that any numbers can take."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
-from typing import Protocol
+from typing import Any, Protocol
 
 import flint
 import sympy
@@ -70,6 +70,24 @@ class Asked:
     def up_to(self, order: int) -> list[int]:
         """The places of the conditions of that order, and of lower ones."""
         return [k for k, each in enumerate(self.equations) if each.order <= order]
+
+
+# Of entries, the ring's one and what a minus is, −1 or for a bound 1: left sides, and right sides.
+Pairs = Callable[[Sequence[Any], Any, int], Iterable[tuple[Any, Any]]]
+
+
+def of_pairs(
+    entries: tuple[sympy.Expr, ...], names: Iterable[str], pairs: Pairs,
+    labels: tuple[str, ...] = (), by_form: int = 0,
+) -> Asked:  # fmt: skip
+    """That the sides of each pair are equal, which has the name that stands in its place."""
+
+    def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
+        minus = 1 if bound else -1
+        return [x + y * minus for x, y in pairs(entries, one, minus)]
+
+    equations = tuple(Named(name, 1) for name in names)
+    return Asked(entries, equations, residues, by_form, labels=labels)
 
 
 def both(first: Asked, second: Asked) -> Asked:

@@ -6,7 +6,7 @@ time are all that is asked, but of a quadratic T that depends on time
 Where one is not, those of words with time tell (`verify.schemes.conditions.words.equations`).
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -18,7 +18,7 @@ from verify.schemes.conditions.splitting_conditions import LETTERS
 from verify.schemes.conditions.words.equations import TimedEquation, equations_of
 from verify.schemes.conditions.words.kinetic import Kinetic
 from verify.schemes.conditions.words.step_words import StepWords
-from verify.schemes.printed.asked import Asked, Named, both
+from verify.schemes.printed.asked import Asked, both, of_pairs
 from verify.schemes.printed.judged import Judged, judge
 from verify.schemes.printed.printed_numbers import PrintedNumbers
 from verify.schemes.printed.splitting_table import PrintedTable, judge_order
@@ -111,16 +111,12 @@ def judge_in_time(timed: TimedTable, order: int) -> Judged:
 def _right_asked(timed: TimedTable) -> Asked:
     names = (f"time of {timed.kinds[k]} {k + 1} = {_before(timed, k)}" for k in timed.judged)
 
-    def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
-        count, sign = len(timed.kinds), 1 if bound else -1
-        sizes, times = entries[:count], entries[count:]
-        return [
-            time + _sum_before(timed, sizes, k, one) * sign
-            for k, time in zip(timed.judged, times, strict=True)
-        ]
+    def pairs(entries: Sequence[E], one: E, minus: int) -> Iterator[tuple[E, E]]:
+        count = len(timed.kinds)
+        for k, time in zip(timed.judged, entries[count:], strict=True):
+            yield time, _sum_before(timed, entries[:count], k, one)
 
-    equations = tuple(Named(name, 1) for name in names)
-    return Asked(timed.entries, equations, residues, labels=timed.labels)
+    return of_pairs(timed.entries, names, pairs, timed.labels)
 
 
 def _before(timed: TimedTable, k: int) -> str:

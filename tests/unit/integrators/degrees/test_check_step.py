@@ -227,41 +227,12 @@ def test_claims(step: Step, claims: dict[str, Any], verdict: str, words: str) ->
     assert words in str(found.reason)
 
 
-@pytest.mark.parametrize(
-    ("step", "words"),
-    [
-        (
-            lambda p, q, h: p,
-            "it returns 2 numbers, in arrays of shape (2,); wanted: p', q', arrays",
-        ),
-        (lambda p, q, h: 1 / 0, "division by zero"),
-        (lambda p, q, h: 1 / 0, " at p1 = 0.2, p2 = 0.833333, q1 = 1.16667, q2 = 0.75, h = 0.0"),
-        (lambda p, q, h: None, "it returns None; wanted: p', q'"),
-        (lambda p, q, h: (p + np.nan, q), "it returns what is not finite (nan, nan, "),
-    ],
-)
-def test_a_call_that_returns_no_state_is_an_error_as_in_the_plane(step: Step, words: str) -> None:
-    with pytest.raises(InputError) as error:
-        checked(step)
-    assert words in str(error.value)
-
-
-def test_a_step_that_is_not_deterministic_is_undecided() -> None:
-    found = checked(lambda p, q, h: (p + np.random.default_rng().normal(), q), order=1)
-    assert (found.verdict, found.faults) == ("UNDECIDED", ("not a function",))
-
-
 def taking_lists(p, q, h):
     """It asks of q what lists alone answer."""
     if not q:
         return p, q
     p, q = verlet(np.array(p), np.array(q), h)
     return list(p), list(q)
-
-
-def endless(p, q, h):
-    while True:
-        pass
 
 
 @pytest.mark.parametrize(
@@ -275,11 +246,6 @@ def test_what_fails_for_no_fault_of_its_own_is_undecided(
 ) -> None:
     found = judged(step, Claims(order=2), 0.5, formula)
     assert (found.verdict, words in str(found.reason)) == ("UNDECIDED", True), found.reason
-
-
-def test_an_endless_step_is_an_error() -> None:
-    with pytest.raises(InputError, match="does not end"):
-        judged(endless, Claims(order=2), 0.5, HENON)
 
 
 def test_lists_and_places_where_h_is_defined_are_found() -> None:

@@ -273,36 +273,6 @@ def test_a_matrix_is_judged_as_it_stands_and_within_what_is_allowed() -> None:
 
 
 @pytest.mark.parametrize(
-    ("function", "words"),
-    [
-        (lambda p, q: p, "it returns 1 number; wanted: p', q'"),
-        (lambda p, q: None, "it returns None"),
-        (lambda p, q: (p, "q"), "it returns text"),
-        (lambda p, q: (p, math.nan), "not finite"),
-        (lambda p, q: 1 / 0, "division by zero"),
-        (lambda p, q: (p, 1j), "complex"),
-    ],
-)
-def test_what_is_no_map_is_an_error(function: Map, words: str) -> None:
-    with pytest.raises(InputError, match=words):
-        verify.check_map(function)
-
-
-def test_a_map_that_is_not_deterministic_is_undecided() -> None:
-    found = verify.check_map(lambda p, q: (p + np.random.default_rng().normal(), q))
-    assert (found.verdict, "not deterministic" in found.reason) == ("UNDECIDED", True)
-
-
-def test_a_map_that_does_not_end_is_ended() -> None:
-    def endless(p, q):
-        while True:
-            pass
-
-    with pytest.raises(InputError, match="does not end within"):
-        verify.check_map(endless, time_limit=0.2)
-
-
-@pytest.mark.parametrize(
     ("given", "words"),
     [
         ({"degrees": 0}, "must be 1 … 64"),

@@ -131,7 +131,7 @@ def test_a_trace_is_the_same_function(name: str) -> None:
     tape, kind = Tape(), Duals()
     node = copied(function, tape)(tape.symbol("x")).node
     tape.check()
-    assert tape.impure == []
+    assert tape.outside.texts == []
     assert not tape.rounded
     x = MP.mpf(Fraction(at).numerator) / Fraction(at).denominator
     with kind.running():

@@ -14,7 +14,7 @@ from verify.integrators.tracing.trace import Tape
 def impure(function: Callable[..., Any]) -> list[str]:
     tape = Tape()
     copied(function, tape)(tape.symbol("p"), tape.symbol("q"))
-    return tape.impure
+    return tape.outside.texts
 
 
 @pytest.mark.parametrize("name", impure_maps.BY_NAME)
@@ -58,7 +58,7 @@ def test_copies_are_of_one_world() -> None:
     tape = Tape()
     p, q = tape.symbol("p"), tape.symbol("q")
     assert copied(step, tape)(p, q)[0] is p
-    assert tape.impure == ["table is changed"]
+    assert tape.outside.texts == ["table is changed"]
     assert table == []
 
 

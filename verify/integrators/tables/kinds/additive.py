@@ -5,7 +5,8 @@ from typing import Annotated
 
 from pydantic import Field
 
-from verify.integrators.tables.tableaux.claims import Block, BlocksEntry, of_blocks
+from verify.integrators.tables.entry import Block
+from verify.integrators.tables.tableaux.claims import BlocksEntry, of_blocks
 from verify.integrators.tables.told import TableClaim
 from verify.schemes.conditions.coloured_trees import of_all
 

@@ -4,7 +4,8 @@ from collections.abc import Iterator
 
 from pydantic import StrictBool
 
-from verify.integrators.tables.tableaux.claims import Block, BlocksEntry, of_blocks
+from verify.integrators.tables.entry import Block
+from verify.integrators.tables.tableaux.claims import BlocksEntry, of_blocks
 from verify.integrators.tables.told import TableClaim
 from verify.schemes.conditions.coloured_trees import alternating, of_all
 

@@ -2,7 +2,8 @@
 
 from collections.abc import Iterator
 
-from verify.integrators.tables.tableaux.claims import Block, BlocksEntry, of_blocks
+from verify.integrators.tables.entry import Block
+from verify.integrators.tables.tableaux.claims import BlocksEntry, of_blocks
 from verify.integrators.tables.told import TableClaim
 from verify.schemes.conditions.coloured_trees import of_all
 

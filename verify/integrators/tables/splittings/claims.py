@@ -23,7 +23,7 @@ from verify.integrators.tables.told import (
     order_claims,
 )
 from verify.prose import prose
-from verify.schemes.printed.asked import Asked, Named
+from verify.schemes.printed.asked import Asked, Named, of_pairs
 from verify.schemes.printed.judged import Judged, judge
 from verify.schemes.printed.naming import MOST_ENTRIES, Naming
 from verify.schemes.printed.splitting_table import PrintedTable, judge_order
@@ -220,12 +220,8 @@ def _following(table: PrintedTable, order: int) -> Asked:
     whole = table.asked(order)
     places = [k for k, e in enumerate(whole.equations) if e.order == order + 1]
 
-    def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
-        found = whole.residues(entries, one, bound)
-        return [found[k] for k in places]
-
-    chosen = tuple(whole.equations[k] for k in places)
-    return Asked(whole.entries, chosen, residues)
+    assert whole.some is not None  # noqa: S101 - a splitting's conditions are made apart
+    return Asked(whole.entries, tuple(whole.equations[k] for k in places), whole.some(places))
 
 
 def _in_time(timed: TimedTable, order: int, refuted: bool, hints: Hints) -> Iterator[TableClaim]:
@@ -262,14 +258,13 @@ def _judge_symmetric(table: PrintedTable) -> Judged:
         if sympy.expand(sum(table.sizes[k] for k in groups[i]))
         != sympy.expand(sum(table.sizes[k] for k in groups[j]))
     ]
-    equations = tuple(Named(f"part {i + 1} = part {j + 1}", 1) for i, j in pairs)
+    names = (f"part {i + 1} = part {j + 1}" for i, j in pairs)
 
-    def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
-        sign = 1 if bound else -1
+    def sides(entries: Sequence[E], one: E, minus: int) -> Iterator[tuple[E, E]]:
         sums = [sum((entries[k] for k in group[1:]), entries[group[0]]) for group in groups]
-        return [sums[i] + sums[j] * sign for i, j in pairs]
+        return ((sums[i], sums[j]) for i, j in pairs)
 
-    asked = Asked(table.sizes, equations, residues, len(every) - len(pairs))
+    asked = of_pairs(table.sizes, names, sides, by_form=len(every) - len(pairs))
     return judge(table.printed, asked, 1)
 
 

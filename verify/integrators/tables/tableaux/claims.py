@@ -8,8 +8,8 @@ from pydantic import StrictBool
 
 from verify.errors import NOT_GIVEN, InputError
 from verify.integrators.tables.cost import Severity
-from verify.integrators.tables.entry import Order, Row, TableEntry
-from verify.integrators.tables.layout import layout_of_csv, pasted
+from verify.integrators.tables.entry import Block, Order, TableEntry
+from verify.integrators.tables.layout import block_of_csv, pasted
 from verify.integrators.tables.tableaux.order import (
     MANY,
     judge_in_time,
@@ -29,7 +29,6 @@ from verify.integrators.tables.told import (
     order_claims,
 )
 from verify.prose import prose
-from verify.scenes.frozen import Frozen
 from verify.schemes.conditions.coloured_trees import Grammar
 from verify.schemes.conditions.tree_weights import Tableau
 from verify.schemes.printed.asked import Asked
@@ -37,17 +36,6 @@ from verify.schemes.printed.judged import Judged, judge
 from verify.schemes.printed.naming import Naming
 from verify.schemes.printed.printed_numbers import PrintedNumbers
 from verify.verdict import Verdict
-
-
-class Block(Frozen):
-    """`tableau`: pasted text, in place of the others; `csv`: the name of a file."""
-
-    a: tuple[Row, ...] | None = None
-    b: Row | None = None
-    c: Row | None = None
-    embedded: Row | None = None
-    tableau: str | None = None
-    csv: str | None = None
 
 
 @dataclass(frozen=True)
@@ -96,18 +84,9 @@ def _laid_out(given: Block, name: str, folder: Path) -> Block:
         raise InputError(
             f"tableau{name}", NOT_GIVEN, "stands alone: leave out a, b, c and embedded"
         )
-    label = f"tableau{name}"
-    own = pasted(given.tableau, label) if given.tableau is not None else (
-        layout_of_csv(folder, given.csv or "")
-    )  # fmt: skip
-    weights, *more = own.weights
-    embedded = _padded(more[0], len(weights)) if more else None
-    rows = tuple(own.rows)
-    return Block(a=rows, b=weights, c=own.times, embedded=embedded)
-
-
-def _padded(weights: Sequence[str], stages: int) -> tuple[str, ...]:
-    return (*weights, *["0"] * (stages - len(weights)))
+    if given.tableau is not None:
+        return pasted(given.tableau, f"tableau{name}")
+    return block_of_csv(folder, given.csv or "")
 
 
 def embedded_of(own: Sequence[NamedBlock], order: int | None) -> tuple[Texts, ...] | None:
@@ -223,7 +202,11 @@ def _claims(
         found = hints.kept(best_reading(table, judge_symmetric))
         yield from condition_claims("symmetric", "symmetric", "symmetric", found, Severity.OF_WORDS)
     if entry.stage_order is not None:
-        yield from _stage_orders(table, entry.stage_order, hints)
+        order, wrong = entry.stage_order, Severity.OF_WORDS
+        judged = best_reading(table, lambda x: judge(x.printed, stage_order_asked(x, order), 1))
+        said = f"stage order {order}"
+        found = hints.kept(judged)
+        yield from condition_claims("stage order", said, f"of {said}", found, wrong)
 
 
 def _judged(table: TableauTable, order: int) -> Judged:
@@ -260,11 +243,3 @@ def _in_time(
         return TableClaim(kind, statement, Verdict.REFUTED, said, severity=Severity.WRONG_ORDER)
     found = hints.kept(best_reading(table, lambda x: judge_in_time(x, order)))
     return next(order_claims(kind, statement, found, order, severity=Severity.WRONG_CLOCK))
-
-
-def _stage_orders(table: TableauTable, order: int, hints: Hints) -> Iterator[TableClaim]:
-    found = best_reading(table, lambda x: judge(x.printed, stage_order_asked(x, order), 1))
-    found = hints.kept(found)
-    yield from condition_claims(
-        "stage order", f"stage order {order}", f"of stage order {order}", found, Severity.OF_WORDS
-    )

@@ -99,15 +99,7 @@ def _of_trees(
 def row_sums_asked(table: TableauTable, crossed: tuple[bool, ...] = ()) -> Asked:
     """c_i = Σ_j a_ij; of Nyström's kind c_i²/2 = Σ_j ā_ij. `crossed`: of which parts of two the
     other one's sums are meant."""
-    found = list(_sums(table, table.exprs, crossed))
-    equations = tuple(Named(name, 1) for name, *_ in found)
-
-    def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
-        sign = 1 if bound else -1
-        made = _sums(table, table.filled(entries), crossed)
-        return [zero_or(x, one) + zero_or(y, one) * sign for _, x, y in made]
-
-    return Asked(table.entries, equations, residues, labels=table.labels)
+    return table.asked(lambda blocks, one: _sums(table, blocks, one, crossed))
 
 
 def judge_row_sums(table: TableauTable) -> Judged:
@@ -122,8 +114,8 @@ def wrong_time(table: TableauTable) -> Misprint | None:
     """The one time that is no row sum, and the sum; None where none is, or several are. Of a and b
     that are right."""
     found, at_print = [], table.printed.at_print
-    for name, total, time in _sums(table, table.exprs):
-        sizes = [at_print(zero_or(x, sympy.S.One)) for x in (total, time)]
+    for name, *sides in _sums(table, table.exprs, sympy.S.One):
+        sizes = list(map(at_print, sides))
         if all(x.is_Rational for x in sizes) and abs(sizes[0] - sizes[1]) > _WRONG:
             label = name.partition(" = ")[2].replace("_", "", 1) if len(table.names) == 1 else name
             found.append(Misprint(label, str(sizes[1]), Fraction(int(sizes[0].p), int(sizes[0].q))))
@@ -131,19 +123,19 @@ def wrong_time(table: TableauTable) -> Misprint | None:
 
 
 def _sums(
-    table: TableauTable, blocks: Sequence[Block[E]], crossed: tuple[bool, ...] = ()
-) -> Iterator[tuple[str, E | None, E | None]]:
-    """Each row's sum, and what it is to be."""
+    table: TableauTable, blocks: Sequence[Block[E]], one: E, crossed: tuple[bool, ...] = ()
+) -> Iterator[tuple[str, E, E]]:
+    """Each row's name, its sum, and what that is to be."""
     for colour, (block, name) in enumerate(zip(blocks, table.names, strict=True)):
         if block.times is None or (table.nystrom and colour == 0):
             continue
         of = 1 - colour if crossed and crossed[colour] else colour
-        for i, (row, c) in enumerate(zip(blocks[of].matrix, block.times, strict=True)):
+        for i, (row, time) in enumerate(zip(blocks[of].matrix, block.times, strict=True)):
             present = [x for x in row if x is not None]
-            total = sum(present[1:], present[0]) if present else None
+            total = sum(present[1:], present[0]) if present else one * 0
+            c = zero_or(time, one)
             if table.nystrom:
-                half = None if c is None else c * c / 2
-                yield f"Σ a_{i + 1}j = c_{i + 1}^2/2", total, half
+                yield f"Σ a_{i + 1}j = c_{i + 1}^2/2", total, c * c / 2
             else:
                 yield f"Σ a{table.names[of]}_{i + 1}j = c{name}_{i + 1}", total, c
 
@@ -184,21 +176,12 @@ def stage_order_asked(table: TableauTable, order: int) -> Asked:
 
     (Hairer, Wanner, Solving Ordinary Differential Equations II, IV.15.)
     """
-    names = [name for name, _ in _stages(table, table.exprs, order, sympy.S.One)]
-
-    def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
-        sign = 1 if bound else -1
-        found = _stages(table, table.filled(entries), order, one)
-        return [x + y * sign for _, (x, y) in found]
-
-    return Asked(
-        table.entries, tuple(Named(name, 1) for name in names), residues, labels=table.labels
-    )
+    return table.asked(lambda blocks, one: _stages(table, blocks, order, one))
 
 
 def _stages(
     table: TableauTable, blocks: Sequence[Block[E]], order: int, one: E
-) -> Iterator[tuple[str, tuple[E, E]]]:
+) -> Iterator[tuple[str, E, E]]:
     """Each condition's name and its sides."""
     own = list(zip(blocks, table.names, strict=True))
     least = 2 if table.nystrom else 1
@@ -208,10 +191,10 @@ def _stages(
             before, share = tuple(powers[k - least]), k * (k - 1) if table.nystrom else k
             for i, row in enumerate(block.matrix):
                 label = f"stage {i + 1}{name}: A(c^{k - least}) = c^{k}/{share}"
-                yield label, (zero_or(dot(row, before), one), powers[k][i] / share)
+                yield label, zero_or(dot(row, before), one), powers[k][i] / share
             if not table.nystrom:
                 left = zero_or(dot(block.weights, before), one)
-                yield f"b{name}·c^{k - 1} = 1/{k}", (left, one / k)
+                yield f"b{name}·c^{k - 1} = 1/{k}", left, one / k
 
 
 def _powers(block: Block[E], most: int, one: E) -> list[list[E]]:

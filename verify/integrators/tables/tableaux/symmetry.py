@@ -13,11 +13,10 @@ Symmetric: a_(s+1−i, s+1−j) + a_ij = b_j suffices (the same, V.2). Needed is
 one of h is the identity: that is a Runge–Kutta method of 2 s stages, whose trees all have weight 0.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cache
-from itertools import product
-from typing import Any
+from itertools import combinations, combinations_with_replacement, product
 
 from verify.arithmetic.number import E
 from verify.integrators.tables.tableaux.order import zero_or
@@ -31,14 +30,12 @@ from verify.schemes.conditions.coloured_trees import (
     vertices,
 )
 from verify.schemes.conditions.tree_weights import Block, Tableau, TreeWeights, Vector
-from verify.schemes.printed.asked import Asked, Named
+from verify.schemes.printed.asked import Asked, of_pairs
 from verify.schemes.printed.judged import Judged, judge
 from verify.verdict import Verdict
 
 _VERTICES = 6  # of two trees together; and of a tree of the doubled method, beside tall ones
 _MOST = 200  # pairs, or trees, of those
-# Of blocks, the ring's one and what a minus is, −1 or for a bound 1: left sides, and right sides.
-Gaps = Callable[[Sequence[Block[Any]], Any, int], Iterator[tuple[Any, Any]]]
 
 
 def judge_symplectic(table: TableauTable, separable: bool = False) -> Judged:
@@ -71,62 +68,45 @@ def _dense(
     return full.matrix, full.weights, full.times or ()
 
 
-def _asked(
-    table: TableauTable, names: Sequence[str], gaps: Gaps, labels: tuple[str, ...] = ()
-) -> Asked:
-    def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
-        minus = 1 if bound else -1
-        return [x + y * minus for x, y in gaps(table.filled(entries), one, minus)]
-
-    return Asked(table.entries, tuple(Named(name, 1) for name in names), residues, labels=labels)
-
-
 # -- symplectic -----------------------------------------------------------------------------------
 
 
 def _symplectic(table: TableauTable, separable: bool) -> Asked:
-    stages, names = range(table.stages), table.names
-    partitioned = len(table.blocks) == 2 and "_p" in names
-    colours = range(len(names))
-    pairs = [(0, 1)] if partitioned else [(k, m) for k in colours for m in colours if k <= m]
+    stages, n = range(table.stages), table.names
+    partitioned = len(table.blocks) == 2 and "_p" in n
+    pairs = [(0, 1)] if partitioned else combinations_with_replacement(range(len(n)), 2)
     places = [
         (k, m, i, j) for k, m in pairs for i, j in product(stages, stages) if k != m or i <= j
     ]
-    told = [
-        f"b{names[k]}_{i + 1} a{names[m]}_{i + 1}{j + 1} + b{names[m]}_{j + 1} "
-        f"a{names[k]}_{j + 1}{i + 1} = b{names[k]}_{i + 1} b{names[m]}_{j + 1}"
-        for k, m, i, j in places
-    ]
-    same = partitioned and not separable
-    told += [f"b_p{i + 1} = b_q{i + 1}" for i in stages] if same else []
 
-    def gaps(blocks: Sequence[Block[E]], one: E, minus: int) -> Iterator[tuple[E, E]]:
+    def conditions(blocks: Sequence[Block[E]], one: E) -> Iterator[tuple[str, E, E]]:
         a, b, _ = zip(*(_dense(block, one) for block in blocks), strict=True)
         for k, m, i, j in places:
-            yield b[k][i] * a[m][i][j] + b[m][j] * a[k][j][i], b[k][i] * b[m][j]
-        if same:
-            yield from zip(b[0], b[1], strict=True)
+            left = (
+                f"b{n[k]}_{i + 1} a{n[m]}_{i + 1}{j + 1} + b{n[m]}_{j + 1} a{n[k]}_{j + 1}{i + 1}"
+            )
+            name = f"{left} = b{n[k]}_{i + 1} b{n[m]}_{j + 1}"
+            yield name, b[k][i] * a[m][i][j] + b[m][j] * a[k][j][i], b[k][i] * b[m][j]
+        for i in stages if partitioned and not separable else ():
+            yield f"b_p{i + 1} = b_q{i + 1}", b[0][i], b[1][i]
 
-    return _asked(table, told, gaps, table.labels)
+    return table.asked(conditions)
 
 
 def _suris(table: TableauTable) -> Asked:
     stages = range(table.stages)
-    places = [(i, j) for i in stages for j in stages if i < j]
-    told = [f"b_bar_{i + 1} = b_{i + 1} (1 - c_{i + 1})" for i in stages]
-    told += [
-        f"b_{i} (b_bar_{j} - a_{i}{j}) = b_{j} (b_bar_{i} - a_{j}{i})"
-        for i, j in ((i + 1, j + 1) for i, j in places)
-    ]
 
-    def gaps(blocks: Sequence[Block[E]], one: E, minus: int) -> Iterator[tuple[E, E]]:
+    def conditions(blocks: Sequence[Block[E]], one: E) -> Iterator[tuple[str, E, E]]:
         (_, b, _), (a, bar, c) = (_dense(block, one) for block in blocks)
-        for x, y, t in zip(bar, b, c, strict=True):
-            yield x + y * t, y
-        for i, j in places:  # with plus signs on either side
-            yield b[i] * bar[j] + b[j] * a[j][i], b[j] * bar[i] + b[i] * a[i][j]
+        for i in stages:
+            name = f"b_bar_{i + 1} = b_{i + 1} (1 - c_{i + 1})"
+            yield name, bar[i] + b[i] * c[i], b[i]
+        for i, j in combinations(stages, 2):  # with plus signs on either side
+            k, m = i + 1, j + 1
+            name = f"b_{k} (b_bar_{m} - a_{k}{m}) = b_{m} (b_bar_{k} - a_{m}{k})"
+            yield name, b[i] * bar[j] + b[j] * a[j][i], b[j] * bar[i] + b[i] * a[i][j]
 
-    return _asked(table, told, gaps, table.labels)
+    return table.asked(conditions)
 
 
 def _of_pairs(table: TableauTable, separable: bool) -> Asked:
@@ -138,8 +118,8 @@ def _of_pairs(table: TableauTable, separable: bool) -> Asked:
     ]  # fmt: skip
     told += [f"b_p·({product_text(t, table.names)}) = b_q·the same" for _, t in swapped]
 
-    def gaps(blocks: Sequence[Block[E]], one: E, minus: int) -> Iterator[tuple[E, E]]:
-        weights = TreeWeights(blocks, one, table.nystrom)
+    def sides(entries: Sequence[E], one: E, minus: int) -> Iterator[tuple[E, E]]:
+        weights = table.weights(entries, one)
         of = weights.weight
         for u, v in pairs:
             if not table.nystrom:
@@ -153,7 +133,7 @@ def _of_pairs(table: TableauTable, separable: bool) -> Asked:
         for _, branches in swapped:
             yield of((0, branches)), of((1, branches))
 
-    return _asked(table, told, gaps)
+    return of_pairs(table.entries, told, sides)
 
 
 @cache
@@ -189,44 +169,38 @@ def _pair_text(u: Tree, v: Tree, names: tuple[str, ...]) -> str:
 
 def _reversed(table: TableauTable) -> Asked:
     last, stages = table.stages - 1, range(table.stages)
-    told = [
-        f"a{name}_{last - i + 1}{last - j + 1} + a{name}_{i + 1}{j + 1} = b{name}_{j + 1}"
-        for name in (table.names[1:] if table.nystrom else table.names)
-        for i in stages
-        for j in stages
-    ]
-    if table.nystrom:
-        told = [x.replace(" = b", " of the step backwards, b") for x in told]
-        told += [f"c_{i + 1} + c_{last - i + 1} = 1" for i in stages]
-        told += [f"b_{i + 1} = b_{last - i + 1}" for i in stages]
-        told += [f"b_bar_{i + 1} + b_bar_{last - i + 1} = b_{i + 1}" for i in stages]
 
-    def gaps(blocks: Sequence[Block[E]], one: E, minus: int) -> Iterator[tuple[E, E]]:
+    def conditions(blocks: Sequence[Block[E]], one: E) -> Iterator[tuple[str, E, E]]:
         if table.nystrom:
             yield from _reversed_nystrom(blocks, one)
             return
-        for block in blocks:
+        for block, name in zip(blocks, table.names, strict=True):
             a, b, _ = _dense(block, one)
-            for i in stages:
-                for j in stages:
-                    yield a[i][j] + a[last - i][last - j], b[j]
+            for i, j in product(stages, stages):
+                called = f"{_reversed_entry(name, last, i, j)} = b{name}_{j + 1}"
+                yield called, a[i][j] + a[last - i][last - j], b[j]
 
-    return _asked(table, told, gaps, table.labels)
+    return table.asked(conditions)
 
 
-def _reversed_nystrom(blocks: Sequence[Block[E]], one: E) -> Iterator[tuple[E, E]]:
+def _reversed_entry(name: str, last: int, i: int, j: int) -> str:
+    return f"a{name}_{last - i + 1}{last - j + 1} + a{name}_{i + 1}{j + 1}"
+
+
+def _reversed_nystrom(blocks: Sequence[Block[E]], one: E) -> Iterator[tuple[str, E, E]]:
     """ā_(s+1−i, s+1−j) = b_j (1 − c_i) − b̄_j + ā_ij, and the weights of the step backwards."""
     (_, b, _), (a, bar, c) = (_dense(block, one) for block in blocks)
     last, stages = len(b) - 1, range(len(b))
+    for i, j in product(stages, stages):
+        name = f"{_reversed_entry('', last, i, j)} of the step backwards, b_{j + 1}"
+        yield name, a[last - i][last - j] + b[j] * c[i] + bar[j], b[j] + a[i][j]
     for i in stages:
-        for j in stages:
-            yield a[last - i][last - j] + b[j] * c[i] + bar[j], b[j] + a[i][j]
+        yield f"c_{i + 1} + c_{last - i + 1} = 1", c[i] + c[last - i], one
     for i in stages:
-        yield c[i] + c[last - i], one
+        yield f"b_{i + 1} = b_{last - i + 1}", b[i], b[last - i]
     for i in stages:
-        yield b[i], b[last - i]
-    for i in stages:
-        yield bar[i] + bar[last - i], b[i]
+        name = f"b_bar_{i + 1} + b_bar_{last - i + 1} = b_{i + 1}"
+        yield name, bar[i] + bar[last - i], b[i]
 
 
 def _doubled(table: TableauTable) -> Asked:
@@ -245,7 +219,8 @@ def _doubled(table: TableauTable) -> Asked:
         for root, branches in every
     ]
 
-    def gaps(blocks: Sequence[Block[E]], one: E, minus: int) -> Iterator[tuple[E, E]]:
+    def sides(entries: Sequence[E], one: E, minus: int) -> Iterator[tuple[E, E]]:
+        blocks = table.filled(entries)
         made = [_twice(block, minus) for block in blocks]
         if table.nystrom:
             made = _twice_nystrom(blocks, one, minus)
@@ -253,7 +228,7 @@ def _doubled(table: TableauTable) -> Asked:
         for tree in every:
             yield weights.weight(tree), zero
 
-    return _asked(table, told, gaps)
+    return of_pairs(table.entries, told, sides)
 
 
 def _tall(grammar: Grammar, root: int, most: int) -> Iterator[Tree]:

@@ -3,9 +3,10 @@
 Parts are those of a sum of vector fields, or p' and q' of a partitioned method.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import sympy
 
@@ -13,11 +14,14 @@ from verify.arithmetic.number import E
 from verify.errors import InputError
 from verify.schemes.conditions.coloured_trees import Grammar
 from verify.schemes.conditions.tree_weights import Block, Tableau, TreeWeights
+from verify.schemes.printed.asked import Asked, of_pairs
 from verify.schemes.printed.printed_numbers import PrintedNumbers
 
 MOST_STAGES = 40
 Texts = tuple[str, ...]
 Entries = tuple[sympy.Expr, ...]
+# Of blocks and the ring's one: the conditions' names, each with its left side and its right side.
+Conditions = Callable[[Sequence[Block[Any]], Any], Iterator[tuple[str, Any, Any]]]
 
 
 @dataclass(frozen=True)
@@ -100,6 +104,15 @@ class TableauTable:
     def weights(self, entries: Sequence[E], one: E) -> TreeWeights[E]:
         """What these entries put into trees."""
         return TreeWeights(self.filled(entries), one, self.nystrom)
+
+    def asked(self, conditions: Conditions) -> Asked:
+        """That the sides of each are equal."""
+
+        def pairs(entries: Sequence[E], one: E, minus: int) -> Iterator[tuple[E, E]]:
+            return ((x, y) for _, x, y in conditions(self.filled(entries), one))
+
+        names = (name for name, *_ in conditions(self.exprs, sympy.S.One))
+        return of_pairs(self.entries, names, pairs, self.labels)
 
     def read(self, numbers: PrintedNumbers) -> "TableauTable":
         """The same with its numbers read so."""
