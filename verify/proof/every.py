@@ -46,9 +46,9 @@ from verify.prose import Formula, Prose, prose, read_prose
 from verify.schemes import get
 from verify.schemes.conditions.condition import ByConditions
 from verify.schemes.conditions.every_hamiltonian import BySeries, TaylorSeries
+from verify.schemes.conditions.splitting_conditions import Splitting
 from verify.schemes.conditions.timed.for_scheme import conditions_for
 from verify.schemes.conditions.timed.mistakes import mistakes_of_splitting
-from verify.schemes.conditions.timed.splitting import TimedSplitting
 from verify.schemes.conditions.tree_conditions import TreeConditions, all_trees_hold
 from verify.schemes.conditions.words.kinetic import Kinetic
 from verify.schemes.maps import kind_of
@@ -113,7 +113,7 @@ def _in_plane(blank: EveryProof, scheme: Scheme, every_h: ByConditions, least: i
     """By its coefficients; where they leave det J open, by the series, if the scheme has one."""
     separable = blank.separable
     if separable and isinstance(every_h, TreeConditions):
-        every_h = replace(every_h, separable=True)
+        every_h = replace(every_h, kinetic=Kinetic.GENERAL)
     proof = prove_by_conditions(scheme, every_h, least)
     if separable and not every_h.separable:
         proof = replace(proof, separable=True)
@@ -159,7 +159,7 @@ def _in_time(blank: EveryProof, scheme: Scheme, timed: ByConditions, least: int)
     """By the coefficients and the times; where they leave det J open, by the series, if the scheme
     has one, and else by an H without t."""
     found = replace(prove_by_conditions(scheme, timed, least), timed=True)
-    if isinstance(timed, TimedSplitting):
+    if isinstance(timed, Splitting):
         named = mistakes_of_splitting(timed) if found.verdict is Verdict.REFUTED else []
         reason = prose(found.reason, f"; it is {'; '.join(named)}") if named else found.reason
         checked = (*found.checked, *_of_fewer(scheme, timed, found.convergence_order or 0))
@@ -184,7 +184,7 @@ def _in_time(blank: EveryProof, scheme: Scheme, timed: ByConditions, least: int)
     return replace(found, verdict=Verdict.PROVED, reason=reason, area_preserving=False)
 
 
-def _of_fewer(scheme: Scheme, timed: TimedSplitting, general: int) -> Iterator[Prose]:
+def _of_fewer(scheme: Scheme, timed: Splitting, general: int) -> Iterator[Prose]:
     """The order where fewer H are asked for, where it is a higher one."""
     for kinetic in Kinetic:
         order, _ = agreed_order(replace(timed, kinetic=kinetic), scheme.order)

@@ -7,8 +7,13 @@ from fractions import Fraction
 from itertools import cycle
 
 from verify.late import sympy
-from verify.schemes.conditions.parts_in_time import Times
-from verify.schemes.conditions.splitting_conditions import LETTERS, Nearby, Part, Splitting
+from verify.schemes.conditions.splitting_conditions import (
+    LETTERS,
+    Nearby,
+    Part,
+    Splitting,
+    Times,
+)
 from verify.schemes.scheme import Scheme
 
 

@@ -2,7 +2,7 @@
 
 Where each is the right one, the sum of the other kind's parts before it, the conditions without
 time are all that is asked, but of a quadratic T that depends on time
-(`verify.schemes.conditions.timed.splitting`).
+(`verify.schemes.conditions.splitting_conditions`).
 Where one is not, those of words with time tell (`verify.schemes.conditions.words.equations`).
 """
 
@@ -14,7 +14,7 @@ from typing import Any
 import sympy
 
 from verify.arithmetic.number import E
-from verify.schemes.conditions.splitting_conditions import LETTERS
+from verify.schemes.conditions.splitting_conditions import LETTERS, sums_before
 from verify.schemes.conditions.words.equations import TimedEquation, equations_of
 from verify.schemes.conditions.words.kinetic import Kinetic
 from verify.schemes.conditions.words.step_words import StepWords
@@ -113,11 +113,8 @@ def _right_asked(timed: TimedTable) -> Asked:
 
     def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
         count, sign = len(timed.kinds), 1 if bound else -1
-        sizes, times = entries[:count], entries[count:]
-        return [
-            time + _sum_before(timed, sizes, k, one) * sign
-            for k, time in zip(timed.judged, times, strict=True)
-        ]
+        right, times = _right(timed, entries[:count], one), entries[count:]
+        return [time + right[k] * sign for k, time in zip(timed.judged, times, strict=True)]
 
     equations = tuple(Named(name, 1) for name in names)
     return Asked(timed.entries, equations, residues, labels=timed.labels)
@@ -128,12 +125,8 @@ def _before(timed: TimedTable, k: int) -> str:
     return f"sum of the {other} before it"
 
 
-def _sum_before(timed: TimedTable, sizes: Sequence[E], k: int, one: E) -> E:
-    total = one * 0
-    for kind, size in zip(timed.kinds[:k], sizes[:k], strict=True):
-        if kind != timed.kinds[k]:
-            total = total + size
-    return total
+def _right(timed: TimedTable, sizes: Sequence[E], one: E) -> list[E]:
+    return sums_before(list(zip(timed.kinds, sizes, strict=True)), one * 0)
 
 
 # -- words with time ------------------------------------------------------------------------------
@@ -171,7 +164,7 @@ def _of_words(
 ) -> list[Any]:
     count = len(timed.kinds)
     sizes, told = entries[:count], dict(zip(timed.judged, entries[count:], strict=True))
-    times = [told.get(k, _sum_before(timed, sizes, k, one)) for k in range(count)]
+    times = [told.get(k, right) for k, right in enumerate(_right(timed, sizes, one))]
     letters = (LETTERS[kind] for kind in timed.kinds)
     words = StepWords(_Plain(one), list(zip(letters, sizes, times, strict=True)), bound)
     words.prepare({word for each in equations for word in each.needed})

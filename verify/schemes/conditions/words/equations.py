@@ -1,6 +1,6 @@
 """Conditions on a step's coefficients of words, as they can be asked over any numbers.
 
-See `verify.schemes.conditions.timed.splitting`, which decides them in a ring.
+See `verify.schemes.conditions.splitting_conditions`, which decides them in a ring.
 """
 
 from dataclasses import dataclass
@@ -44,17 +44,11 @@ class TimedEquation:
 
 
 @cache
-def equations_of(kinetic: Kinetic, n: int) -> tuple[TimedEquation, ...]:
-    """Those of weight n for every V and every T of the class."""
-    if kinetic.quadratic and n > _PLAIN:
+def equations_of(kinetic: Kinetic | None, n: int) -> tuple[TimedEquation, ...]:
+    """Those of weight n for every V and every T of the class; None: without time."""
+    if kinetic is not None and kinetic.quadratic and n > _PLAIN:
         return tuple(map(_of_generator, combinations(kinetic.timed, n)))
-    return equations_of_words(kinetic.timed, n)
-
-
-@cache
-def equations_of_words(kinds: str, n: int) -> tuple[TimedEquation, ...]:
-    """Those of weight n for every V and T; `kinds`: the letters whose time counts, "" for none."""
-    return tuple(map(_of_word, lyndon(kinds, n)))
+    return tuple(map(_of_word, lyndon(kinetic.timed if kinetic else "", n)))
 
 
 def _of_word(word: Word) -> TimedEquation:
