@@ -84,8 +84,8 @@ def prove_every(
     )
     _check_length(blank, scheme, every_h)
     # In time the plane's stages are asked for their clocks; without it their series says all.
-    coefficients = timed and blank.planar and not isinstance(every_h, TaylorSeries)
-    if isinstance(every_h, BySeries) and not coefficients:
+    asked = isinstance(every_h, ByConditions) or (timed and not isinstance(every_h, TaylorSeries))
+    if isinstance(every_h, BySeries) and not (blank.planar and asked):
         return prove_by_series(blank, scheme, every_h)
     found = _by_conditions(blank, scheme, _conditions(blank, every_h), least)
     return found if blank.planar else _in_degrees(blank, scheme, every_h, found)
