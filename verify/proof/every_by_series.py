@@ -23,7 +23,7 @@ from verify.proof.every_proof import EveryProof
 from verify.proof.telescoping import potential_of_lie, telescopes
 from verify.prose import Formula, Prose, joined, prose, read_prose
 from verify.schemes.conditions.condition import Condition
-from verify.schemes.conditions.every_hamiltonian import BySeries, StageEquations, TaylorSeries
+from verify.schemes.conditions.every_hamiltonian import BySeries, TaylorSeries
 from verify.schemes.maps import kind_of
 from verify.schemes.scheme import Scheme
 from verify.schemes.steps.defect import DefectSeries
@@ -50,7 +50,7 @@ def series_in_jets(proof: EveryProof, every_h: BySeries, most: int) -> DefectSer
 def prove_by_series(blank: EveryProof, scheme: Scheme, every_h: BySeries) -> EveryProof:
     """The proof for every H that `blank` is to be of; REFUTED where the scheme claims more."""
     most, last = scheme.order + 1, scheme.order + 1 + _MORE * blank.planar
-    own = _preserving(blank, scheme, every_h)
+    own = kind_of(every_h, scheme.name).conditions(every_h, blank.degrees)
     preserved = bool(own) and first_wrong(own) is None
     while True:
         series = series_in_jets(blank, every_h, most)
@@ -90,16 +90,6 @@ def missed(scheme: Scheme, agreed: int) -> Prose:
 
 
 # -- where S vanishes -----------------------------------------------------------------------------
-
-
-def _preserving(proof: EveryProof, scheme: Scheme, every_h: BySeries) -> tuple[Condition, ...]:
-    """Those that suffice for S ≡ 0, none where none are known. Stages of the plane need less."""
-    if not proof.planar:
-        conditions: tuple[Condition, ...] = kind_of(every_h, scheme.name).conditions(
-            every_h, proof.degrees
-        )
-        return conditions
-    return every_h.conditions() if isinstance(every_h, StageEquations) else ()
 
 
 def _symplectic(found: EveryProof, own: tuple[Condition, ...]) -> EveryProof:

@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
-from typing import Any, Protocol, TypeVar, runtime_checkable
+from typing import Any, ClassVar, Protocol, TypeVar, runtime_checkable
 
 import flint
 
@@ -59,6 +59,7 @@ class TaylorSeries(ByChanges):
 
     eta: int
     separable: bool = False
+    kind: ClassVar[str] = "taylor-series"  # the file of `verify.schemes.maps.kinds`
 
     @property
     def a_step(self) -> str:
@@ -81,6 +82,7 @@ class RungeKutta(ByChanges):
     rows: tuple[tuple[Fraction, ...], ...]
     weights: tuple[Fraction, ...]
     separable: bool = False
+    kind: ClassVar[str] = "explicit-runge-kutta"
 
     def __post_init__(self) -> None:
         if [len(row) for row in self.rows] != list(range(len(self.weights))):
@@ -152,6 +154,7 @@ class StageEquations(ByChanges):
 
     stages: tuple[Stage, ...]
     separable: bool = False
+    kind: ClassVar[str] = "stage-equations"
 
     @property
     def a_step(self) -> str:

@@ -117,6 +117,7 @@ class Splitting:
     nearby: Nearby | None = field(default=None, compare=False, repr=False)
     nearby_in_time: Nearby | None = field(default=None, compare=False, repr=False)
     separable: ClassVar[bool] = True
+    kind: ClassVar[str] = "splittings"  # the file of `verify.schemes.maps.kinds`
     most_order: ClassVar[int] = MOST_ORDER  # the highest of which there are conditions
 
     def __post_init__(self) -> None:

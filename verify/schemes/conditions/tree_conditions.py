@@ -30,6 +30,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import ClassVar
 
 from verify.algebra.ring import Poly
 from verify.algebra.series.jets import JetRing
@@ -59,6 +60,7 @@ class TreeConditions:
 
     tableau: ImplicitTableau
     kinetic: Kinetic | None = None
+    kind: ClassVar[str] = "implicit-runge-kutta"  # the file of `verify.schemes.maps.kinds`
 
     @property
     def separable(self) -> bool:

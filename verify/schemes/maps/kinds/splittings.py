@@ -19,8 +19,6 @@ from verify.schemes.conditions.splitting_conditions import Splitting
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.steps.step_algebra import Step, StepAlgebra
 
-KIND = Splitting
-
 
 def build(coefficients: Splitting, hamiltonian: Hamiltonian, name: str) -> StepMap:
     """The map of H = T(p) + V(q), or T(p, t) + V(q, t); InputError for another H."""
