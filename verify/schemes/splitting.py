@@ -38,7 +38,6 @@ def splitting(
         name=name,
         order=order,
         area_preserving=True,
-        explicit=True,
         symmetric=symmetric,
         source=source,
         every_h=Splitting(

@@ -206,21 +206,15 @@ class StageEquations(ByChanges):
         for stage in self.stages:
             at_p, at_q, kick, drift = map(_exact, (stage.at_p, stage.at_q, stage.kick, stage.drift))
             # dp' = dp − h kick (b dP + c dQ), dq' = dq + h drift (a dP + b dQ)
-            force, speed = (-h * kick * b, -h * kick * c), (h * drift * a, h * drift * b)
-            left = [
-                [1 - force[0] * at_p, -force[1] * at_q],
-                [-speed[0] * at_p, 1 - speed[1] * at_q],
-            ]
-            right = [
-                [1 + force[0] * (1 - at_p), force[1] * (1 - at_q)],
-                [speed[0] * (1 - at_p), 1 + speed[1] * (1 - at_q)],
-            ]
-            found.append((_det(left), _det(right)))
+            slopes = (-h * kick * b, -h * kick * c), (h * drift * a, h * drift * b)
+            found.append((_det(slopes, -at_p, -at_q), _det(slopes, 1 - at_p, 1 - at_q)))
         return found
 
 
-def _det(m: Sequence[Sequence[Poly]]) -> Poly:
-    return m[0][0] * m[1][1] - m[0][1] * m[1][0]
+def _det(slopes: Sequence[Sequence[Poly]], of_p: flint.fmpq, of_q: flint.fmpq) -> Poly:
+    """Of 1 + slopes, whose columns are taken times these."""
+    (a, b), (c, d) = ((x * of_p, y * of_q) for x, y in slopes)
+    return (1 + a) * (1 + d) - b * c
 
 
 def _exact(x: Fraction) -> flint.fmpq:
