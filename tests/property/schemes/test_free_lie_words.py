@@ -15,7 +15,6 @@ from verify.schemes.conditions.free_lie_words import (
     MOST_ORDER,
     conditions,
     lyndon,
-    majorant,
     of_logarithm,
     residue,
     step,
@@ -113,7 +112,7 @@ def test_no_residue_is_larger_than_its_majorant_at_the_sizes_of_the_parts(
     series = step(kind, parts_of(kind, given_), most, Fraction(1))
     large = step(kind, parts_of(kind, [*map(abs, given_)]), most, Fraction(1))
     for condition in conditions(kind, most):
-        bound = majorant(large, condition)
+        bound = residue(large, condition, bound=True)
         assert abs(residue(series, condition)) <= bound, condition.name
         alone = (abs(n) * of_logarithm(large, word, 1) for n, word in condition.terms)
         assert bound == 1 + sum(alone)

@@ -153,7 +153,7 @@ def _exponential(
 def of_logarithm(series: Mapping[str, E], word: str, sign: int = -1) -> E:
     """The word's coefficient in log S: Σ (−1)^(k+1)/k over its cuts into k pieces.
 
-    With `sign` 1 all signs are plus, as of a majorant.
+    With `sign` 1 all signs are plus, as of a bound.
     """
     size = len(word)
     reached: list[E | None] = [series[""], *[None] * size]
@@ -173,19 +173,13 @@ def of_logarithm(series: Mapping[str, E], word: str, sign: int = -1) -> E:
     return total
 
 
-def residue(series: Mapping[str, E], condition: LogCondition) -> E:
-    """Left side − right side of the condition."""
-    total = series[""] * -condition.value
+def residue(series: Mapping[str, E], condition: LogCondition, bound: bool = False) -> E:
+    """Left side − right side of the condition. With `bound` every sign is plus: of a step with all
+    sizes positive, a bound of all of them."""
+    sign = 1 if bound else -1
+    total = series[""] * (1 if bound else -condition.value)
     for n, word in condition.terms:
-        total = total + of_logarithm(series, word) * n
-    return total
-
-
-def majorant(series: Mapping[str, E], condition: LogCondition) -> E:
-    """The same with every sign plus: of a step with all sizes positive, a bound of them."""
-    total = series[""]
-    for n, word in condition.terms:
-        total = total + of_logarithm(series, word, 1) * abs(n)
+        total = total + of_logarithm(series, word, sign) * (abs(n) if bound else n)
     return total
 
 

@@ -24,7 +24,7 @@ from verify.algebra.ring import Poly, Ring
 from verify.late import sympy
 from verify.schemes.conditions.condition import Condition
 from verify.schemes.conditions.residue import condition_of
-from verify.schemes.conditions.tree_weights import RingWeights, Tableau
+from verify.schemes.conditions.tree_weights import Tableau, TreeWeights
 from verify.schemes.steps.step_algebra import Number, Step, StepAlgebra
 
 Clock: TypeAlias = "tuple[sympy.Expr | None, ...]"  # as parts of h; None where it is right
@@ -165,9 +165,9 @@ class Numbers:
         )
 
     @cached_property
-    def tree_weights(self) -> RingWeights:
+    def tree_weights(self) -> TreeWeights[Poly]:
         """What they put into the conditions of trees."""
-        return RingWeights(self.ring, self.blocks)
+        return TreeWeights(self.blocks, self.ring.one, reduce=self.ring.reduce)
 
     def condition(self, name: str, order: int, gap: Poly) -> Condition:
         """The condition that `gap`, left side − right side, is 0."""

@@ -16,7 +16,6 @@ from verify.schemes.conditions.free_lie_words import (
     MOST_ORDER,
     LogCondition,
     conditions,
-    majorant,
     residue,
     step,
 )
@@ -147,7 +146,7 @@ class PrintedTable:
 
             def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
                 series = step(self.kind, self.letters(entries), most, one)
-                return [(majorant if bound else residue)(series, c) for c in chosen]
+                return [residue(series, c, bound) for c in chosen]
 
             return residues
 

@@ -93,11 +93,12 @@ def test_right_clocks_keep_the_order_and_frozen_ones_leave_1(name: str) -> None:
 def test_with_right_clocks_each_tree_with_leaves_of_time_holds(name: str) -> None:
     """What the argument says, tree by tree."""
     scheme = get(name)
-    weights = conditions_for(scheme.every_h).tableau.numbers.tree_weights
+    numbers = conditions_for(scheme.every_h).tableau.numbers
+    weights = numbers.tree_weights
     for n in range(1, scheme.order + 1):
-        assert all(weights.ring.decide(weights.gap(t)).zero for t in all_trees(TIMED, n))
+        assert all(numbers.ring.decide(weights.gap(t)).zero for t in all_trees(TIMED, n))
     assert not all(
-        weights.ring.decide(weights.gap(t)).zero for t in all_trees(TIMED, scheme.order + 1)
+        numbers.ring.decide(weights.gap(t)).zero for t in all_trees(TIMED, scheme.order + 1)
     )
 
 
