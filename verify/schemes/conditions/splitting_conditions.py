@@ -67,7 +67,7 @@ from verify.prose import count
 from verify.schemes.conditions.condition import Condition, NearbyOrder
 from verify.schemes.conditions.every_hamiltonian import StageEquations
 from verify.schemes.conditions.residue import condition_of
-from verify.schemes.conditions.words.equations import equations_of
+from verify.schemes.conditions.words.equations import equations_of, residues_of
 from verify.schemes.conditions.words.kinetic import Kinetic
 from verify.schemes.conditions.words.step_words import StepWords, TimedPart
 
@@ -202,11 +202,10 @@ class Splitting:
 
     def _of_weight(self, n: int) -> tuple[Condition, ...]:
         if n not in self._known:
-            equations = equations_of(self._asked, n)
-            self.words.prepare({word for each in equations for word in each.needed})
+            equations, (ring, _) = equations_of(self._asked, n), self.numbers
             self._known[n] = tuple(
-                condition_of(self.numbers[0], each.name, n, each.residue(self.words), _DIGITS)
-                for each in equations
+                condition_of(ring, each.name, n, gap, _DIGITS)
+                for each, gap in zip(equations, residues_of(equations, self.words), strict=True)
             )
         return self._known[n]
 

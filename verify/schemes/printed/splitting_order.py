@@ -7,16 +7,13 @@ Where one is not, those of words with time tell (`verify.schemes.conditions.word
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from functools import partial
-from typing import Any
+from dataclasses import replace
 
 from verify.arithmetic.number import E
 from verify.errors import InputError
-from verify.schemes.conditions.splitting_conditions import LETTERS, sums_before
-from verify.schemes.conditions.words.equations import TimedEquation, equations_of
+from verify.schemes.conditions.splitting_conditions import sums_before
+from verify.schemes.conditions.words.equations import equations_of
 from verify.schemes.conditions.words.kinetic import Kinetic
-from verify.schemes.conditions.words.step_words import StepWords
 from verify.schemes.printed.asked import Asked, Named, both
 from verify.schemes.printed.judged import Judged, judge
 from verify.schemes.printed.splitting_table import PrintedTable
@@ -76,43 +73,13 @@ def _right(table: PrintedTable, sizes: Sequence[E], one: E) -> list[E]:
     return sums_before(list(zip(kinds, sizes, strict=True)), one * 0)
 
 
-# -- words with time ------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class _Plain:
-    """Numbers that need no reduction, in a ring's place."""
-
-    one: Any
-
-    @property
-    def zero(self) -> Any:
-        return self.one * 0
-
-    def reduce(self, x: Any) -> Any:
-        return x
-
-    def multiply(self, x: Any, y: Any) -> Any:
-        return x * y
-
-
 def _words_asked(table: PrintedTable, order: int) -> Asked:
     equations = tuple(x for n in range(1, order + 1) for x in equations_of(table.kinetic, n))
-    residues = partial(_of_words, table, equations)
+
+    def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
+        count = len(table.parts)
+        sizes, told = entries[:count], dict(zip(table.judged, entries[count:], strict=True))
+        times = [told.get(k, right) for k, right in enumerate(_right(table, sizes, one))]
+        return table.residues(equations, sizes, one, bound, times)
+
     return Asked(table.entries, equations, residues, labels=table.labels)
-
-
-def _of_words(
-    table: PrintedTable,
-    equations: Sequence[TimedEquation],
-    entries: Sequence[Any],
-    one: Any,
-    bound: bool = False,
-) -> list[Any]:
-    count = len(table.parts)
-    sizes, told = entries[:count], dict(zip(table.judged, entries[count:], strict=True))
-    times = [told.get(k, right) for k, right in enumerate(_right(table, sizes, one))]
-    letters = (LETTERS[kind] for kind, _ in table.parts)
-    words = StepWords(_Plain(one), list(zip(letters, sizes, times, strict=True)), bound)
-    words.prepare({word for each in equations for word in each.needed})
-    return [each.residue(words) for each in equations]

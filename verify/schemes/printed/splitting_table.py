@@ -3,7 +3,7 @@
 With it may stand its clocks: the times, in parts of h, at which its parts read H(p, q, t).
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -11,20 +11,14 @@ import sympy
 
 from verify.arithmetic.number import E
 from verify.errors import InputError
-from verify.schemes.conditions.free_lie_words import (
-    KINDS,
-    MOST_ORDER,
-    LogCondition,
-    conditions,
-    residue,
-    step,
-)
+from verify.schemes.conditions.free_lie_words import KINDS, MOST_ORDER, conditions
 from verify.schemes.conditions.splitting_conditions import LETTERS
+from verify.schemes.conditions.words.equations import WordEquation, residues_of
 from verify.schemes.conditions.words.kinetic import Kinetic
+from verify.schemes.conditions.words.step_words import PlainNumbers, StepWords
+from verify.schemes.conditions.words.words import STEPS
 from verify.schemes.printed.asked import Asked, Residues
-from verify.schemes.printed.printed_numbers import PrintedNumbers, power
-
-_ODD = (1, 3, 5, 7, 9)
+from verify.schemes.printed.printed_numbers import PrintedNumbers
 
 
 @dataclass(frozen=True)
@@ -109,19 +103,25 @@ class PrintedTable:
         """The same with its numbers read so."""
         return replace(self, printed=numbers)
 
-    def letters(self, sizes: Sequence[E]) -> list[Mapping[str, E]]:
-        """The parts for `verify.schemes.conditions.free_lie_words.step`, with these sizes."""
-        if self.kind == "composition":
-            return [{str(n): power(x, n) for n in _ODD} for x in sizes]
-        names = (name for name, _ in self.parts)
-        return [{LETTERS[name]: x} for name, x in zip(names, sizes, strict=True)]
+    def residues(
+        self,
+        equations: Sequence[WordEquation],
+        sizes: Sequence[E],
+        one: E,
+        bound: bool,
+        times: Sequence[E] | None = None,
+    ) -> list[E]:
+        """Of conditions on words, with these sizes; without `times` on words without time."""
+        kinds = (LETTERS.get(kind, STEPS) for kind, _ in self.parts)
+        parts = zip(kinds, sizes, times or sizes, strict=True)
+        return residues_of(equations, StepWords(PlainNumbers(one), list(parts), bound))
 
     def sums_to_one(self, name: str) -> bool:
         """Whether the sizes of these parts have the sum 1, whatever the numbers are."""
         own = (x for (kind, _), x in zip(self.parts, self.sizes, strict=True) if kind == name)
         return bool(sympy.expand(sum(own, sympy.S.Zero) - 1) == 0)
 
-    def conditions(self, order: int) -> tuple[LogCondition, ...]:
+    def conditions(self, order: int) -> tuple[WordEquation, ...]:
         """The conditions of orders 1 … `order` that do not hold by the form of the table alone."""
         by_form = {"Σ kicks = 1": "kick", "Σ drifts = 1": "drift", "Σ w = 1": "step"}
         rational = all(size.is_Rational for size in self.sizes)
@@ -142,11 +142,9 @@ class PrintedTable:
 
         def some(rows: Sequence[int]) -> Residues:
             chosen = [equations[k] for k in rows]
-            most = max((c.order for c in chosen), default=1)
 
             def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
-                series = step(self.kind, self.letters(entries), most, one)
-                return [residue(series, c, bound) for c in chosen]
+                return self.residues(chosen, entries, one, bound)
 
             return residues
 

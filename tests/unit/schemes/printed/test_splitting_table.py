@@ -9,8 +9,9 @@ import pytest
 from verify.audits.claims import claims_of
 from verify.audits.libraries import literature
 from verify.errors import InputError
-from verify.schemes.conditions.free_lie_words import KINDS, MOST_ORDER, conditions, residue, step
+from verify.schemes.conditions.free_lie_words import KINDS, MOST_ORDER, conditions
 from verify.schemes.conditions.splitting_conditions import Splitting
+from verify.schemes.conditions.words.step_words import PlainNumbers, StepWords
 from verify.schemes.printed.printed_numbers import PrintedNumbers, evaluated
 from verify.schemes.printed.splitting_order import judge_order
 from verify.schemes.printed.splitting_table import PrintedTable
@@ -228,8 +229,8 @@ def test_orders_are_those_of_the_words_of_the_step_itself(sizes: tuple[str, ...]
 
 
 def test_the_logarithm_of_one_exponential_is_its_exponent() -> None:
-    series = step("splitting", [{"K": Fraction(1)}], 4, Fraction(1))
-    values = {c.name: residue(series, c) for c in conditions("splitting", 4)}
+    one = StepWords(PlainNumbers(Fraction(1)), [("K", Fraction(1), Fraction(0))])
+    values = {c.name: c.residue(one) for c in conditions("splitting", 4)}
     assert values.pop("Σ drifts = 1") == -1
     assert set(values.values()) == {0}
 

@@ -9,7 +9,7 @@ with it everywhere, those of D as the powers of the m_n and those of K as the fu
 is linear algebra among the words of the same letters.
 """
 
-from collections import Counter, defaultdict
+from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -18,7 +18,7 @@ from math import lcm
 import flint
 
 from verify.algebra.series.jets import JetRing, Poly
-from verify.schemes.conditions.words.words import Letter, Word, joined, lyndon
+from verify.schemes.conditions.words.words import Letter, Word, bracket, lyndon
 
 Combination = tuple[tuple[int, Word], ...]
 _MOST = 8  # the weight of words
@@ -63,12 +63,7 @@ class _Bracket:
 
     def with_letter(self, letter: Letter) -> "_Bracket":
         """[letter, this one]."""
-        words = Counter[Word]()
-        for word, n in self.words.items():
-            words[joined((letter,), word)] += n
-            words[joined(word, (letter,))] -= n
-        left = {word: n for word, n in words.items() if n}
-        return _Bracket(left, _bracket(letter, self.hamiltonian))
+        return _Bracket(bracket(letter, self.words), _poisson(letter, self.hamiltonian))
 
 
 @cache
@@ -96,7 +91,7 @@ def _of_letter(letter: Letter) -> Poly:
     return _jets().p ** 2 / 2 if kind == "D" else _jets().h(0, 1, n)
 
 
-def _bracket(letter: Letter, x: Poly) -> Poly:
+def _poisson(letter: Letter, x: Poly) -> Poly:
     """{letter, x} with {a, b} = a_p b_q − a_q b_p."""
     kind, n = letter
     if kind == "K":
