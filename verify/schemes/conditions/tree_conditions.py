@@ -33,7 +33,7 @@ from functools import lru_cache
 from typing import ClassVar
 
 from verify.algebra.ring import Poly
-from verify.algebra.series.jets import JetRing
+from verify.algebra.series.jets import JetsInDegrees
 from verify.errors import InputError
 from verify.late import sympy
 from verify.prose import count
@@ -148,17 +148,19 @@ class _JetsOfClass:
     def __init__(self, order: int, kinetic: Kinetic | None, *, timed: bool) -> None:
         self.kinetic, self.quadratic = kinetic, kinetic is not None and kinetic.quadratic
         most = order + self.quadratic  # where the second derivative by p stands for the first
-        self.jets = JetRing(most, separable=kinetic is not None, timed=timed)
+        separable, self.timed = kinetic is not None, timed
+        self.jets = JetsInDegrees(("p", "q"), most, separable=separable, timed=timed)
         self.zero = self.jets.zero
 
     def h(self, i: int, j: int, k: int = 0) -> Poly:
         """H_ijk."""
         if i and k and self.kinetic is not None and "D" not in self.kinetic.timed:
             return self.zero
+        by_t = (k,) if self.timed else ()
         if i and self.quadratic:  # of p² m(t)/2 the derivative by p is p times the second one
-            second = self.jets.h(2, j, k)
-            return self.zero if i > 2 else second if i == 2 else self.jets.p * second
-        return self.jets.h(i, j, k)
+            second = self.jets.of((2, j, *by_t))
+            return self.zero if i > 2 else second if i == 2 else self.jets.variable("p") * second
+        return self.jets.of((i, j, *by_t))
 
 
 @lru_cache(maxsize=256)

@@ -17,7 +17,7 @@ from math import lcm
 
 import flint
 
-from verify.algebra.series.jets import JetRing, Poly
+from verify.algebra.series.jets import JetsInDegrees, Poly
 from verify.schemes.conditions.words.words import Letter, Word, bracket, lyndon
 
 Combination = tuple[tuple[int, Word], ...]
@@ -88,17 +88,17 @@ def _brackets(letters: Word) -> tuple[_Bracket, ...]:
 def _of_letter(letter: Letter) -> Poly:
     """Its Hamiltonian, in jets: those of ∂_q ∂_tⁿ V by q are as free as those of V_n."""
     kind, n = letter
-    return _jets().p ** 2 / 2 if kind == "D" else _jets().h(0, 1, n)
+    return _jets().variable("p") ** 2 / 2 if kind == "D" else _jets().of((0, 1, n))
 
 
 def _poisson(letter: Letter, x: Poly) -> Poly:
     """{letter, x} with {a, b} = a_p b_q − a_q b_p."""
     kind, n = letter
     if kind == "K":
-        return -_jets().h(0, 2, n) * x.derivative(0)
-    return _jets().p * _jets().diff(x, "q")
+        return -_jets().of((0, 2, n)) * x.derivative(0)
+    return _jets().variable("p") * _jets().diff(x, "q")
 
 
 @cache
-def _jets() -> JetRing:
-    return JetRing(_MOST, separable=True, timed=True)
+def _jets() -> JetsInDegrees:
+    return JetsInDegrees(("p", "q"), _MOST, separable=True, timed=True)
