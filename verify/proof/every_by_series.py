@@ -27,7 +27,7 @@ from verify.schemes.conditions.every_hamiltonian import BySeries, TaylorSeries
 from verify.schemes.maps import kind_of
 from verify.schemes.scheme import Scheme
 from verify.schemes.steps.defect import DefectSeries
-from verify.schemes.steps.two_form import MOST_TERMS, TwoForm, lie_derivative
+from verify.schemes.steps.two_form import TwoForm, lie_derivative
 from verify.verdict import Verdict
 
 _MORE = 3  # orders that are looked at beyond the first of S, in the plane; in n terms are too many
@@ -132,10 +132,7 @@ def _leading(
         checked=(read_prose(below),) if order > 1 else (),
     )
     found = _telescoping(found, series.flow, every_h, form)
-    if found.planar:
-        return replace(found, leading=found.volume_leading)
-    long = form.length > MOST_TERMS and found.formula
-    return replace(found, leading=found.formula if long else form.text)
+    return replace(found, leading=found.written(form, found.formula))
 
 
 def _telescoping(found: EveryProof, flow: JetFlow, every_h: BySeries, form: TwoForm) -> EveryProof:
@@ -152,7 +149,7 @@ def _telescoping(found: EveryProof, flow: JetFlow, every_h: BySeries, form: TwoF
         if known.potential is None:
             return found
         potential = TwoForm(ring, flow.names, {(0, 1): known.potential})
-        return replace(found, potential=ring.text(known.potential), potential_form=potential)
+        return replace(found, potential=found.written(potential), potential_form=potential)
     if not lie or form.divergence.subs(flow.at_rest).is_zero():
         return found
     why = prose("where f vanishes a Lie derivative has no divergence, and this has one")
@@ -202,11 +199,10 @@ def _of_lie(found: EveryProof, flow: JetFlow, eta: int, form: TwoForm) -> EveryP
     potential = potential_of_lie(flow, eta)
     if (lie_derivative(flow, potential) - form).entries:
         return found
-    written = potential.text if potential.length <= MOST_TERMS else str(told.potential)
     return replace(
         found,
         telescopes=True,
-        potential=flow.ring.text(potential.divergence) if found.planar else written,
+        potential=found.written(potential, str(told.potential)),
         potential_form=potential,
         why=told.potential,
         checked=(*found.checked, told.second),

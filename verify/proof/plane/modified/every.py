@@ -41,6 +41,7 @@ from verify.schemes.conditions.splitting_conditions import LETTERS, Splitting
 from verify.schemes.conditions.tree_conditions import TreeConditions, trees
 from verify.schemes.conditions.words.words import words
 from verify.schemes.maps.step_map import solvable
+from verify.structures import AREA
 
 _KICK, _DRIFT = LETTERS["kick"], LETTERS["drift"]
 Sum = dict[tuple[int, ...], Poly]  # numbers by monomials of the jets
@@ -172,7 +173,7 @@ def modified_for_every(name: str, order: int, separable: bool = False) -> Modifi
         terms=tuple(terms),
         consistent=consistent,
         area=area,
-        where=EVERYWHERE if scheme.explicit else Domain.of((), solvable(planar=True)),
+        where=EVERYWHERE if scheme.explicit else Domain.of((), solvable(AREA)),
     )
     return judged(found, scheme, nearby_order(every_h, scheme.order))
 
