@@ -15,24 +15,24 @@ from verify.arithmetic.number import E
 from verify.schemes.conditions.coloured_trees import TIME, Tree, density
 
 S = TypeVar("S")
-T = TypeVar("T")
+T_co = TypeVar("T_co", covariant=True)
 Vector: TypeAlias = tuple[E | None, ...]
 
 
 @dataclass(frozen=True)
-class Tableau(Generic[T]):
+class Tableau(Generic[T_co]):
     """Of one colour: a_ij, b_i, and the stages' times c_i, None where there are none."""
 
-    matrix: tuple[tuple[T, ...], ...]
-    weights: tuple[T, ...]
-    times: tuple[T, ...] | None = None
+    matrix: tuple[tuple[T_co, ...], ...]
+    weights: tuple[T_co, ...]
+    times: tuple[T_co, ...] | None = None
 
     @property
-    def entries(self) -> list[T]:
+    def entries(self) -> list[T_co]:
         """One after the other: rows, weights, and times that are there."""
         return [*(x for row in self.matrix for x in row), *self.weights, *(self.times or ())]
 
-    def mapped(self, made: Callable[[T, str], S]) -> "Tableau[S]":
+    def mapped(self, made: Callable[[T_co, str], S]) -> "Tableau[S]":
         """The same with what is made of each entry, of "a", "b" or "c", in that order."""
         rows = tuple(tuple(made(x, "a") for x in row) for row in self.matrix)
         weights = tuple(made(x, "b") for x in self.weights)

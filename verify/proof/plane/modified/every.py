@@ -65,7 +65,8 @@ class Logarithm:
 
     def of(self, word: str) -> Poly:
         """c_w."""
-        return self._words.logarithm(tuple((letter, 0) for letter in word))
+        found: Poly = self._words.logarithm(tuple((letter, 0) for letter in word))
+        return found
 
     def energy(self, jets: Jets, n: int) -> Sum:
         """H_n, the coefficient of h^(n−1) in H̃, n ≥ 2: numbers by monomials of the jets."""
