@@ -91,12 +91,6 @@ class RungeKutta(ByChanges):
             raise ValueError("the weights do not add up to 1")
 
     @property
-    def square(self) -> tuple[tuple[tuple[Fraction, ...], ...], tuple[Fraction, ...]]:
-        """The rows filled up by zeros, and the weights."""
-        count, zero = len(self.weights), Fraction(0)
-        return tuple((*row, *[zero] * (count - len(row))) for row in self.rows), self.weights
-
-    @property
     def evaluations(self) -> dict[str, int]:
         """Those of H_p and of H_q in a step."""
         return dict.fromkeys(("H_p", "H_q"), len(self.weights))

@@ -9,6 +9,7 @@ coefficients of which to ask: its order is that of the series, with D = ∂_t + 
 
 from collections.abc import Sequence
 from dataclasses import replace
+from fractions import Fraction
 
 import sympy
 
@@ -36,8 +37,9 @@ def conditions_for(
     if isinstance(every_h, TreeConditions):
         tableau = every_h.tableau
     elif isinstance(every_h, RungeKutta):
-        rows, weights = every_h.square
-        tableau = ImplicitTableau.of(_exact(rows), _exact([weights])[0])
+        count = len(every_h.weights)
+        rows = [[*row, *[0] * (count - len(row))] for row in every_h.rows]
+        tableau = ImplicitTableau.of(rows, every_h.weights)
     elif isinstance(every_h, StageEquations):
         tableau = _of_stages(every_h)
     else:
@@ -53,15 +55,11 @@ def _of_stages(equations: StageEquations) -> ImplicitTableau:
     return of_p if of_p == of_q else replace(of_p, of_q=of_q)
 
 
-def _one_after_the_other(stages: Sequence[tuple[object, object]]) -> ImplicitTableau:
+def _one_after_the_other(stages: Sequence[tuple[Fraction, Fraction]]) -> ImplicitTableau:
     """z_i = z_(i−1) + h b_i f(z_(i−1) + at_i (z_i − z_(i−1)))."""
-    ((*weights,), (*inner,)) = _exact(list(zip(*stages, strict=True)))
+    weights = [weight for weight, _ in stages]
     rows = [
-        [*weights[:i], at * weights[i], *[sympy.S.Zero] * (len(weights) - i - 1)]
-        for i, at in enumerate(inner)
+        [*weights[:i], at * weight, *[0] * (len(stages) - i - 1)]
+        for i, (weight, at) in enumerate(stages)
     ]
     return ImplicitTableau.of(rows, weights)
-
-
-def _exact(rows: Sequence[Sequence[object]]) -> list[list[sympy.Expr]]:
-    return [[sympy.Rational(str(x)) for x in row] for row in rows]
