@@ -190,15 +190,12 @@ def implicit_step(
             algebra: StepAlgebra[Any], own: Sequence[Sequence[Number]], unknowns: Sequence[Any]
         ) -> list[Any]:
             """h Σ w_j f(z + Z_j) of each row of weights, row after row."""
-            stages = [unknowns[size * i : size * (i + 1)] for i in range(len(clocks))]
             slopes = [
-                algebra.slopes(stage, clock, range(size))
-                for stage, clock in zip(stages, clocks, strict=True)
+                algebra.slopes(unknowns[size * i : size * (i + 1)], clock, range(size))
+                for i, clock in enumerate(clocks)
             ]
-            columns = [[slope[k] for slope in slopes] for k in range(size)]
-            return [
-                algebra.moved(algebra.nothing, row, column) for row in own for column in columns
-            ]
+            each = product(own, zip(*slopes, strict=True))
+            return [algebra.moved(algebra.nothing, row, column) for row, column in each]
 
         solved = outer.solved(size * len(clocks), lambda inner, z: combined(inner, rows, z))
         return combined(outer, [weights], solved)

@@ -7,13 +7,12 @@ mistake that is made in practice. Where all those that are read are the same, th
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import accumulate
 
 import flint
 
 from verify.algebra.enclosure import enclosed
 from verify.algebra.ring import Poly, Ring
-from verify.schemes.conditions.splitting_conditions import Splitting
+from verify.schemes.conditions.splitting_conditions import Splitting, sums_before
 
 _PRECISION = 192
 
@@ -53,11 +52,8 @@ def _of_parts(splitting: Splitting) -> Iterator[Reading]:
             sizes = [size for (kind, size, _), _ in both if kind == letter]
             times = [time for (kind, _, time), _ in both if kind == letter]
             clocks = [clock for (kind, *_), clock in both if kind == letter]
-            yield Reading(ring, what, where, times, clocks, _before(ring, sizes), sizes)
-
-
-def _before(ring: Ring, sizes: Sequence[Poly]) -> list[Poly]:
-    return [ring.reduce(x) for x in accumulate(sizes, initial=ring.zero)][:-1]
+            own = sums_before([(letter, size) for size in sizes], ring.zero, own=True)
+            yield Reading(ring, what, where, times, clocks, own, sizes)
 
 
 def name_of(reading: Reading, within: Fraction) -> str | None:
