@@ -62,7 +62,7 @@ def _of_splitting(splitting: Splitting) -> tuple[Condition, ...]:
     exponentials.
     """
     ring, parts = splitting.numbers
-    merged = _alternating(ring, parts)
+    merged = _alternating(ring, [(letter, size) for letter, size, _ in parts])
     found = []
     if merged and merged[0][0] != merged[-1][0]:
         name = f"the first and the last part are of one kind, not {merged[0][0]}, {merged[-1][0]}"

@@ -30,7 +30,8 @@ from verify.integrators.tables.told import TableClaim
 from verify.prose import Formula, Number, Prose, joined, prose, read_prose
 from verify.scenes.results.claim import ClaimResult
 from verify.schemes.printed.sentences import Judgement, of_digits, of_printed
-from verify.schemes.printed.splitting_table import PrintedTable, judge_order
+from verify.schemes.printed.splitting_order import judge_order
+from verify.schemes.printed.splitting_table import PrintedTable
 from verify.verdict import Verdict
 
 NONE = Prose()
@@ -114,7 +115,7 @@ def _(method: PrintedTable, integrator: ReleasedIntegrator) -> Iterator[_Claim]:
     said = of_printed(found, order)
     claim = TableClaim("order", f"order {order}", *said, Severity.WRONG_ORDER)
     yield claim, integrator.reproduction, _no_look
-    if found.verdict is not Verdict.REFUTED and method.units:
+    if found.verdict is not Verdict.REFUTED and method.printed.units:
         code = reproductions.of_digits(method, found.nearest, order)
         exact = "every digit is right, to one unit of the last"
         severity = severity_of(found, Severity.WRONG_ORDER) or Severity.OF_WORDS

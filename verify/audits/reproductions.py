@@ -102,13 +102,17 @@ def of_digits(table: PrintedTable, nearest: Mapping[str, Fraction] | None, order
     """By how much one step with the printed digits, and one with the nearest exact numbers where
     they are known, differ from the flow of one H, in exact fractions."""
     quadratic = table.kind == "nystrom"
-    names = ", ".join(table.units)
+    names = ", ".join(table.printed.units)
     printed = _listed(
-        [f'F("{table.printed.numbers[name].strip()}")' for name in table.units], "    "
+        [f'F("{table.printed.numbers[name].strip()}")' for name in table.printed.units], "    "
     )
-    exact = ",\n    ".join(f'F("{decimal(nearest[n], _DIGITS)}")' for n in table.units if nearest)
+    exact = ",\n    ".join(
+        f'F("{decimal(nearest[n], _DIGITS)}")' for n in table.printed.units if nearest
+    )
     rest = [
-        f"    {n} = {_exact(x)}" for n, x in table.printed.numbers.items() if n not in table.units
+        f"    {n} = {_exact(x)}"
+        for n, x in table.printed.numbers.items()
+        if n not in table.printed.units
     ]
     lines = [
         "from fractions import Fraction as F",

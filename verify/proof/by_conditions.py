@@ -7,7 +7,7 @@ hold, det J ≡ 1. They suffice; so where one does not, nothing follows for det 
 from collections.abc import Callable, Sequence
 
 from verify.proof.every_proof import EveryProof
-from verify.prose import Formula, Number, Prose, prose
+from verify.prose import Formula, Number, Prose, count, prose
 from verify.schemes.conditions.condition import ByConditions, Condition, NearbyOrder
 from verify.schemes.scheme import Scheme
 from verify.verdict import Verdict
@@ -85,8 +85,8 @@ def _no_further(wrong: Condition | None) -> tuple[Prose, ...]:
 
 
 def _count(every_h: ByConditions, order: int) -> str:
-    count = len(every_h.order_conditions(order)) if order else 0
-    return f"{count} condition{'' if count == 1 else 's'} on the coefficients"
+    found = every_h.order_conditions(order) if order else ()
+    return f"{count(len(found), 'condition')} on the coefficients"
 
 
 def _verdict(

@@ -19,8 +19,8 @@ Where H depends on t both arguments hold in the jets of H(p, q, t) for D = ∂_t
 the two-forms [a, b] of Dᵃp and D^b q are taken at one t, and D, which is X in the extended phase
 space, commutes with d and takes [a, b] to [a+1, b] + [a, b+1]. For odd η the leading coefficient is
 D·G for no G in the jets: an H without t is one of these H, for which D·G is X·G. Splittings and
-stages are proved by conditions on sizes, coefficients and times, `verify.schemes.conditions.timed`,
-which are necessary, too.
+stages are proved by conditions on sizes, coefficients and times, `verify.schemes.conditions`, which
+are necessary, too.
 
 In n degrees of freedom S = JᵀΩJ − Ω stands for ΔJ; see `verify.proof.every_by_series`. The order of
 a splitting and that of a Gauss method follow from conditions on their coefficients. They suffice in
@@ -42,13 +42,13 @@ from verify.proof.by_conditions import agreed_order, first_wrong, prove_by_condi
 from verify.proof.every_by_series import is_long, prove_by_series
 from verify.proof.every_proof import NONE, EveryProof
 from verify.proof.order import leading_of
-from verify.prose import Formula, Prose, prose, read_prose
+from verify.prose import Formula, Prose, prose
 from verify.schemes import get
 from verify.schemes.conditions.condition import ByConditions
 from verify.schemes.conditions.every_hamiltonian import BySeries, TaylorSeries
+from verify.schemes.conditions.splitting_conditions import Splitting
 from verify.schemes.conditions.timed.for_scheme import conditions_for
 from verify.schemes.conditions.timed.mistakes import mistakes_of_splitting
-from verify.schemes.conditions.timed.splitting import TimedSplitting
 from verify.schemes.conditions.tree_conditions import TreeConditions, all_trees_hold
 from verify.schemes.conditions.words.kinetic import Kinetic
 from verify.schemes.maps import kind_of
@@ -83,12 +83,12 @@ def prove_every(
         scheme.name, separable, Verdict.UNDECIDED, NONE, timed=timed, degrees=degrees
     )
     _check_length(blank, scheme, every_h)
-    if degrees == 1 and timed and not isinstance(every_h, TaylorSeries):
-        return _in_time(blank, scheme, conditions_for(every_h), least)
-    if isinstance(every_h, ByConditions) and (degrees == 1 or not isinstance(every_h, BySeries)):
-        by_conditions = _in_plane if degrees == 1 else _in_degrees
-        return by_conditions(blank, scheme, every_h, least)
-    return prove_by_series(blank, scheme, every_h)
+    # In time the plane's stages are asked for their clocks; without it their series says all.
+    asked = isinstance(every_h, ByConditions) or (timed and not isinstance(every_h, TaylorSeries))
+    if isinstance(every_h, BySeries) and not (blank.planar and asked):
+        return prove_by_series(blank, scheme, every_h)
+    found = _by_conditions(blank, scheme, _conditions(blank, every_h), least)
+    return found if blank.planar else _in_degrees(blank, scheme, every_h, found)
 
 
 def _check_length(blank: EveryProof, scheme: Scheme, every_h: BySeries | ByConditions) -> None:
@@ -109,29 +109,44 @@ def _check_length(blank: EveryProof, scheme: Scheme, every_h: BySeries | ByCondi
 # -- by conditions on coefficients ----------------------------------------------------------------
 
 
-def _in_plane(blank: EveryProof, scheme: Scheme, every_h: ByConditions, least: int) -> EveryProof:
-    """By its coefficients; where they leave det J open, by the series, if the scheme has one."""
-    separable = blank.separable
-    if separable and isinstance(every_h, TreeConditions):
-        every_h = replace(every_h, separable=True)
-    proof = prove_by_conditions(scheme, every_h, least)
-    if separable and not every_h.separable:
-        proof = replace(proof, separable=True)
-        if proof.verdict is Verdict.REFUTED:  # the H that it fails for may be no T(p) + V(q)
-            alone = "; of H = T(p) + V(q) alone nothing is said"
-            reason = prose("of every smooth H: ", proof.reason, alone)
-            return replace(proof, verdict=Verdict.UNDECIDED, reason=reason)
-    agreed = proof.convergence_order
-    if proof.verdict is Verdict.UNDECIDED and agreed is not None and agreed >= scheme.order:
-        found = counterexample(scheme, separable)
-        if found is not None:
-            hamiltonian, order = found
-            lost = f"not det J ≡ 1: ΔJ has order {order} for H = "
-            reason = prose(f"of order {scheme.order}, but {lost}", Formula(hamiltonian))
-            return replace(proof, verdict=Verdict.REFUTED, reason=reason, area_preserving=False)
-    if proof.verdict is not Verdict.UNDECIDED or not isinstance(every_h, BySeries):
-        return proof
-    return replace(prove_by_series(blank, scheme, every_h), conditions=proof.conditions)
+def _conditions(blank: EveryProof, every_h: BySeries | ByConditions) -> ByConditions:
+    """Those on coefficients, and on times where H depends on time."""
+    if blank.timed or not isinstance(every_h, ByConditions):
+        return conditions_for(every_h)
+    if blank.separable and isinstance(every_h, TreeConditions):
+        return replace(every_h, kinetic=Kinetic.GENERAL)
+    return every_h
+
+
+def _by_conditions(
+    blank: EveryProof, scheme: Scheme, conditions: ByConditions, least: int
+) -> EveryProof:
+    """By its coefficients; where they leave det J open, by the series, if the scheme has one, and
+    else by an H: in time, too, since one without t is one of these."""
+    found = prove_by_conditions(scheme, conditions, least)
+    found = replace(found, separable=blank.separable, timed=blank.timed)
+    agreed = found.convergence_order or 0
+    if blank.timed and isinstance(conditions, Splitting):
+        named = mistakes_of_splitting(conditions) if found.verdict is Verdict.REFUTED else []
+        reason = prose(found.reason, f"; it is {'; '.join(named)}") if named else found.reason
+        checked = (*found.checked, *_of_fewer(scheme, conditions, agreed))
+        return replace(found, reason=reason, checked=checked)
+    if found.verdict is Verdict.REFUTED and blank.separable and not conditions.separable:
+        alone = "; of H = T(p) + V(q) alone nothing is said"  # the H that it fails for may be none
+        reason = prose("of every smooth H: ", found.reason, alone)
+        return replace(found, verdict=Verdict.UNDECIDED, reason=reason)
+    if found.verdict is not Verdict.UNDECIDED:
+        return found
+    if isinstance(scheme.every_h, BySeries):
+        by_series = prove_by_series(blank, scheme, scheme.every_h)
+        return replace(by_series, conditions=found.conditions)
+    against = counterexample(scheme, blank.separable) if agreed >= scheme.order else None
+    if against is None:
+        return found
+    hamiltonian, order = against
+    lost = f"not det J ≡ 1: ΔJ has order {order} for H = "
+    reason = prose(f"of order {scheme.order}, but {lost}", Formula(hamiltonian))
+    return replace(found, verdict=Verdict.REFUTED, reason=reason, area_preserving=False)
 
 
 # Polynomials, so that all is decided; with cubic terms, as a quadratic H makes too much vanish.
@@ -152,39 +167,7 @@ def counterexample(scheme: Scheme, separable: bool) -> tuple[str, int] | None:
     return None
 
 
-# -- where H depends on time ----------------------------------------------------------------------
-
-
-def _in_time(blank: EveryProof, scheme: Scheme, timed: ByConditions, least: int) -> EveryProof:
-    """By the coefficients and the times; where they leave det J open, by the series, if the scheme
-    has one, and else by an H without t."""
-    found = replace(prove_by_conditions(scheme, timed, least), timed=True)
-    if isinstance(timed, TimedSplitting):
-        named = mistakes_of_splitting(timed) if found.verdict is Verdict.REFUTED else []
-        reason = prose(found.reason, f"; it is {'; '.join(named)}") if named else found.reason
-        checked = (*found.checked, *_of_fewer(scheme, timed, found.convergence_order or 0))
-        return replace(found, reason=reason, checked=checked)
-    agreed = found.convergence_order or 0
-    if agreed < scheme.order or found.verdict is not Verdict.UNDECIDED:
-        return found
-    if isinstance(scheme.every_h, BySeries):
-        by_series = prove_by_series(blank, scheme, scheme.every_h)
-        if by_series.verdict is Verdict.PROVED:
-            return replace(by_series, conditions=found.conditions)
-    without = prove_every(scheme.name)  # t, which are some of these H
-    if without.area_preserving is not False:
-        return found
-    order = agreed + 1  # at least: the flow, with which the map agrees, has det ≡ 1
-    exact = without.order == order
-    reason = read_prose(
-        f"order {scheme.order}: every condition on the coefficients holds exactly; ΔJ is "
-        f"O(`h^{order}`), and {'that coefficient is ' * exact}not 0 for an H without t"
-    )
-    found = replace(found, order=order, leading="") if exact else found
-    return replace(found, verdict=Verdict.PROVED, reason=reason, area_preserving=False)
-
-
-def _of_fewer(scheme: Scheme, timed: TimedSplitting, general: int) -> Iterator[Prose]:
+def _of_fewer(scheme: Scheme, timed: Splitting, general: int) -> Iterator[Prose]:
     """The order where fewer H are asked for, where it is a higher one."""
     for kinetic in Kinetic:
         order, _ = agreed_order(replace(timed, kinetic=kinetic), scheme.order)
@@ -195,9 +178,10 @@ def _of_fewer(scheme: Scheme, timed: TimedSplitting, general: int) -> Iterator[P
 # -- in n degrees of freedom ----------------------------------------------------------------------
 
 
-def _in_degrees(blank: EveryProof, scheme: Scheme, every_h: ByConditions, least: int) -> EveryProof:
+def _in_degrees(
+    blank: EveryProof, scheme: Scheme, every_h: object, planar: EveryProof
+) -> EveryProof:
     """What the plane's proof says of the order, and the conditions that suffice for S ≡ 0."""
-    planar = prove_every(scheme.name, blank.separable, least, timed=blank.timed)
     own = kind_of(every_h, scheme.name).conditions(every_h, blank.degrees)
     verdict, reason = planar.verdict, planar.reason
     symplectic = True if own and first_wrong(own) is None else None

@@ -23,11 +23,11 @@ from verify.proof.every_proof import EveryProof
 from verify.proof.telescoping import potential_of_lie, telescopes
 from verify.prose import Formula, Prose, joined, prose, read_prose
 from verify.schemes.conditions.condition import Condition
-from verify.schemes.conditions.every_hamiltonian import BySeries, StageEquations, TaylorSeries
+from verify.schemes.conditions.every_hamiltonian import BySeries, TaylorSeries
 from verify.schemes.maps import kind_of
 from verify.schemes.scheme import Scheme
 from verify.schemes.steps.defect import DefectSeries
-from verify.schemes.steps.two_form import MOST_TERMS, TwoForm, lie_derivative
+from verify.schemes.steps.two_form import TwoForm, lie_derivative
 from verify.verdict import Verdict
 
 _MORE = 3  # orders that are looked at beyond the first of S, in the plane; in n terms are too many
@@ -50,7 +50,7 @@ def series_in_jets(proof: EveryProof, every_h: BySeries, most: int) -> DefectSer
 def prove_by_series(blank: EveryProof, scheme: Scheme, every_h: BySeries) -> EveryProof:
     """The proof for every H that `blank` is to be of; REFUTED where the scheme claims more."""
     most, last = scheme.order + 1, scheme.order + 1 + _MORE * blank.planar
-    own = _preserving(blank, scheme, every_h)
+    own = kind_of(every_h, scheme.name).conditions(every_h, blank.degrees)
     preserved = bool(own) and first_wrong(own) is None
     while True:
         series = series_in_jets(blank, every_h, most)
@@ -90,16 +90,6 @@ def missed(scheme: Scheme, agreed: int) -> Prose:
 
 
 # -- where S vanishes -----------------------------------------------------------------------------
-
-
-def _preserving(proof: EveryProof, scheme: Scheme, every_h: BySeries) -> tuple[Condition, ...]:
-    """Those that suffice for S ≡ 0, none where none are known. Stages of the plane need less."""
-    if not proof.planar:
-        conditions: tuple[Condition, ...] = kind_of(every_h, scheme.name).conditions(
-            every_h, proof.degrees
-        )
-        return conditions
-    return every_h.conditions() if isinstance(every_h, StageEquations) else ()
 
 
 def _symplectic(found: EveryProof, own: tuple[Condition, ...]) -> EveryProof:
@@ -142,10 +132,7 @@ def _leading(
         checked=(read_prose(below),) if order > 1 else (),
     )
     found = _telescoping(found, series.flow, every_h, form)
-    if found.planar:
-        return replace(found, leading=found.volume_leading)
-    long = form.length > MOST_TERMS and found.formula
-    return replace(found, leading=found.formula if long else form.text)
+    return replace(found, leading=found.written(form, found.formula))
 
 
 def _telescoping(found: EveryProof, flow: JetFlow, every_h: BySeries, form: TwoForm) -> EveryProof:
@@ -162,7 +149,7 @@ def _telescoping(found: EveryProof, flow: JetFlow, every_h: BySeries, form: TwoF
         if known.potential is None:
             return found
         potential = TwoForm(ring, flow.names, {(0, 1): known.potential})
-        return replace(found, potential=ring.text(known.potential), potential_form=potential)
+        return replace(found, potential=found.written(potential), potential_form=potential)
     if not lie or form.divergence.subs(flow.at_rest).is_zero():
         return found
     why = prose("where f vanishes a Lie derivative has no divergence, and this has one")
@@ -212,11 +199,10 @@ def _of_lie(found: EveryProof, flow: JetFlow, eta: int, form: TwoForm) -> EveryP
     potential = potential_of_lie(flow, eta)
     if (lie_derivative(flow, potential) - form).entries:
         return found
-    written = potential.text if potential.length <= MOST_TERMS else str(told.potential)
     return replace(
         found,
         telescopes=True,
-        potential=flow.ring.text(potential.divergence) if found.planar else written,
+        potential=found.written(potential, str(told.potential)),
         potential_form=potential,
         why=told.potential,
         checked=(*found.checked, told.second),

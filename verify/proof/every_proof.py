@@ -9,7 +9,7 @@ from verify.schemes import get
 from verify.schemes.conditions.condition import Condition, NearbyOrder
 from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 from verify.schemes.maps.step_map import solvable
-from verify.schemes.steps.two_form import TwoForm
+from verify.schemes.steps.two_form import MOST_TERMS, TwoForm
 from verify.structures import Structure, structure_in
 from verify.verdict import Verdict
 
@@ -75,6 +75,12 @@ class EveryProof:
         """What a canonical step of it keeps."""
         return structure_in(self.degrees)
 
+    def written(self, form: TwoForm, formula: str = "") -> str:
+        """A 2-form, of which the plane has one entry; one of too many terms by its formula."""
+        if self.planar:
+            return str(form.ring.text(form.divergence))
+        return formula if formula and form.length > MOST_TERMS else form.text
+
     @property
     def symplectic(self) -> bool | None:
         """Whether S ≡ 0, which in the plane is that area is preserved."""
@@ -90,7 +96,7 @@ class EveryProof:
     def domain(self) -> Domain:
         """Where it holds, beside that H is smooth at every point and time at which it is read."""
         explicit = get(self.scheme).explicit
-        return EVERYWHERE if explicit else Domain.of((), solvable(planar=self.planar))
+        return EVERYWHERE if explicit else Domain.of((), solvable(self.structure))
 
     @property
     def quantifier(self) -> str:

@@ -29,10 +29,10 @@ class Scheme:
 
     name: str
     order: int
-    area_preserving: bool
-    explicit: bool
-    symmetric: bool
-    source: str
+    area_preserving: bool = False
+    explicit: bool = True
+    symmetric: bool = False
+    source: str = ""
     build: Callable[[Hamiltonian], StepMap] | None = None
     every_h: BySeries | ByConditions | None = None
     formulas: Mapping[str, str] = field(default_factory=dict, hash=False)

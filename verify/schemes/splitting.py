@@ -7,8 +7,13 @@ from fractions import Fraction
 from itertools import cycle
 
 from verify.late import sympy
-from verify.schemes.conditions.parts_in_time import Times
-from verify.schemes.conditions.splitting_conditions import LETTERS, Nearby, Part, Splitting
+from verify.schemes.conditions.splitting_conditions import (
+    LETTERS,
+    Nearby,
+    Part,
+    Splitting,
+    Times,
+)
 from verify.schemes.scheme import Scheme
 
 
@@ -33,7 +38,6 @@ def splitting(
         name=name,
         order=order,
         area_preserving=True,
-        explicit=True,
         symmetric=symmetric,
         source=source,
         every_h=Splitting(

@@ -4,6 +4,7 @@ from verify.structures.structure import Structure
 
 AREA = Structure(
     name="area",
+    state="(p, q)",
     defect="ΔJ",
     accumulated="Λ",
     size="|Λ|",

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Structure:
-    """`defect`: what one step misses it by; `accumulated`: what N steps do, and `size`: how large
-    that is.
+    """`state`: how a point is called; `defect`: what one step misses it by; `accumulated`: what N
+    steps do, and `size`: how large that is.
 
     `zero`: what the defect is where it vanishes; `vanishes` says so, `identity` in short, and
     `claim` is what a scheme claims that says so. `of_step`, `of_run`, `over_run`: the observables
@@ -14,6 +14,7 @@ class Structure:
     """
 
     name: str
+    state: str
     defect: str
     accumulated: str
     size: str

@@ -4,6 +4,7 @@ from verify.structures.structure import Structure
 
 SYMPLECTIC = Structure(
     name="symplectic",
+    state="z",
     defect="S",
     accumulated="W",
     size="max |W|",

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache
+from typing import ClassVar
 
 import sympy
 from hypothesis import given
@@ -72,6 +73,8 @@ def test_where_no_h_refutes_it_the_series_is_asked(
 
     @dataclass(frozen=True)
     class WithSeries(Made):
+        kind: ClassVar[str] = "taylor-series"
+
         def taylor(self, jets: Jets, most: int) -> tuple[Series, Series]:
             return TaylorSeries(eta).taylor(jets, most)
 
@@ -113,6 +116,7 @@ class SeriesAlone:
 
     stages: StageEquations
     separable: bool = True
+    kind: ClassVar[str] = "taylor-series"
 
     def taylor(self, jets: Jets, most: int) -> tuple[Series, Series]:
         return self.stages.taylor(jets, most)

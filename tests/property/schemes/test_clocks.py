@@ -14,9 +14,8 @@ import sympy
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.order import convergence_of
-from verify.schemes.conditions.parts_in_time import right_times
-from verify.schemes.conditions.splitting_conditions import Splitting
-from verify.schemes.conditions.timed.splitting import TimedSplitting
+from verify.schemes.conditions.splitting_conditions import Splitting, sums_before
+from verify.schemes.conditions.words.kinetic import Kinetic
 from verify.schemes.maps.kinds import splittings
 
 Polynomial = dict[tuple[int, int, int], Fraction]  # by the powers of p, q, t
@@ -119,8 +118,10 @@ def order_by_hand(parts: list[tuple[str, Fraction]], clock: list[Fraction]) -> i
 
 
 def order_by_conditions(parts: list[tuple[str, Fraction]], clock: list[Fraction]) -> int:
-    own = TimedSplitting(
-        tuple((kind, sympy.Rational(x)) for kind, x in parts), tuple(map(sympy.Rational, clock))
+    own = Splitting(
+        tuple((kind, sympy.Rational(x)) for kind, x in parts),
+        tuple(map(sympy.Rational, clock)),
+        Kinetic.GENERAL,
     )
     for order in range(1, MOST + 1):
         if not all(c.holds for c in own.order_conditions(order)):
@@ -165,8 +166,7 @@ def drawn(seed: int) -> tuple[list[tuple[str, Fraction]], list[Fraction]]:
         kind, size = parts[at]
         cut = Fraction(rng.randint(1, 3), 4)
         parts[at : at + 1] = [(kind, size * cut), (kind, size - size * cut)]
-    exact = right_times([(kind, sympy.Rational(x)) for kind, x in parts])
-    clock = [Fraction(int(x.p), int(x.q)) for x in exact]
+    clock = sums_before(parts, Fraction(0))
     if seed % 10 == 4:  # times that are wrong and make up for each other
         parts, clock = _neighbours(rng)
     elif seed % 2:
@@ -213,8 +213,7 @@ def test_kicks_side_by_side_commute() -> None:
     sizes = ["7/24", "2/3", "-1/12", "2/3", "1/6", "-2/3", "-1/24", "1"]
     kinds = ["kick", "drift", "kick", "kick", "kick", "drift", "kick", "drift"]
     parts = list(zip(kinds, map(Fraction, sizes), strict=True))
-    exact = right_times([(kind, sympy.Rational(x)) for kind, x in parts])
-    clock = [Fraction(int(x.p), int(x.q)) for x in exact]
+    clock = sums_before(parts, Fraction(0))
     for at, time in zip((0, 2, 3, 4, 6), ("0", "0", "1/2", "1", "0"), strict=True):
         clock[at] = Fraction(time)
     assert order_by_conditions(parts, clock) == order_by_hand(parts, clock) == 3

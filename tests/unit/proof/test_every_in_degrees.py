@@ -11,7 +11,7 @@ from verify.algebra.formula import parse, symbol
 from verify.algebra.series.jets import JetsInDegrees
 from verify.errors import InputError, LimitError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.proof import every_by_series as module
+from verify.proof import every_by_series, every_proof
 from verify.proof.every import prove_every
 from verify.proof.order import prove
 from verify.schemes import get
@@ -82,7 +82,7 @@ def test_a_leading_form_of_too_many_terms_is_told_by_its_formula_where_it_has_on
     form = prove_every(scheme, degrees=2).form
     assert form is not None
     for most in (form.length, form.length - 1):
-        monkeypatch.setattr(module, "MOST_TERMS", most)
+        monkeypatch.setattr(every_proof, "MOST_TERMS", most)
         found = prove_every(scheme, degrees=2)
         assert bool(found.formula) is has_formula
         long = has_formula and most < form.length
@@ -113,13 +113,13 @@ def test_telescoping_is_checked_identity_by_identity(scheme: str, degrees: int) 
 
 
 def test_a_wrong_potential_is_not_accepted(monkeypatch: pytest.MonkeyPatch) -> None:
-    right = module.potential_of_lie
+    right = every_by_series.potential_of_lie
 
     def wrong(flow: Any, eta: int) -> TwoForm:
         form = right(flow, eta)
         return TwoForm.of(form.ring, form.names, lambda a, b: form.at(a, b) * (2 - (a == 1)))
 
-    monkeypatch.setattr(module, "potential_of_lie", wrong)
+    monkeypatch.setattr(every_by_series, "potential_of_lie", wrong)
     assert prove_every("lie2", degrees=2).telescopes is None
 
 

@@ -30,12 +30,12 @@ from verify.errors import InputError
 from verify.exploration.properties.orders.order_by_jets import delta_j
 from verify.proof.by_conditions import prove_by_conditions
 from verify.proof.every import prove_every
-from verify.schemes.conditions.free_lie_words import lyndon
 from verify.schemes.conditions.splitting_conditions import (
     LETTERS,
     MOST_ORDER,
     Splitting,
 )
+from verify.schemes.conditions.words.words import lyndon, text
 from verify.schemes.methods.splitting import blanes_moan4
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import alternating, composed, palindrome
@@ -56,10 +56,10 @@ def residues(scheme: Scheme) -> list[float]:
 
 
 def test_lyndon_words_are_those_smaller_than_their_proper_ends() -> None:
-    found = [lyndon("splitting", n) for n in range(1, 9)]
+    found = [[text(word) for word in lyndon("", n)] for n in range(1, 9)]
     for n, own in enumerate(found, 1):
         words = map("".join, product("DK", repeat=n))
-        assert list(own) == sorted(w for w in words if all(w < w[k:] for k in range(1, n)))
+        assert own == sorted(w for w in words if all(w < w[k:] for k in range(1, n)))
     assert [len(own) for own in found] == [2, 1, 2, 3, 6, 9, 18, 30]
 
 
@@ -106,7 +106,7 @@ def test_where_the_lyndon_words_are_right_all_words_are(name: str) -> None:
 def rank_of_brackets(length: int) -> tuple[int, int]:
     """How many standard brackets of Lyndon words there are, and their rank over all T and V."""
     jets = Jets(length + 1, separable=True)
-    words = {w for n in range(1, length + 1) for w in lyndon("splitting", n)}
+    words = {text(w) for n in range(1, length + 1) for w in lyndon("", n)}
     known = {"D": sympy.S.Zero, "K": sympy.S.Zero}  # T(p) and V(q) occur by derivatives only
 
     def gradient(word: str):
@@ -198,9 +198,12 @@ PRINTED = {
 @pytest.mark.parametrize("name", PRINTED)
 def test_coefficients_are_those_printed(name: str) -> None:
     parts = parts_of(name)
-    for k, text in PRINTED[name].items():
-        places = len(text.partition(".")[2])
-        assert abs(parts[k][1] - sympy.Rational(text)).evalf(30) < 2 * 10.0**-places, (k, text)
+    for k, written in PRINTED[name].items():
+        places = len(written.partition(".")[2])
+        assert abs(parts[k][1] - sympy.Rational(written)).evalf(30) < 2 * 10.0**-places, (
+            k,
+            written,
+        )
 
 
 def test_the_printed_digits_of_blanes_and_moan_alone_have_order_4_to_15_digits_only() -> None:

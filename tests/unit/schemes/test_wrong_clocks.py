@@ -10,7 +10,6 @@ from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.every import prove_every
 from verify.proof.order import convergence_of
-from verify.schemes.conditions.parts_in_time import right_times
 from verify.schemes.conditions.splitting_conditions import Splitting
 
 HALF = sympy.Rational(1, 2)
@@ -29,7 +28,7 @@ def every_h(name: str) -> Splitting:
 )
 def test_the_times_of_verlet(clock: str, wanted: tuple[object, ...]) -> None:
     assert every_h(f"leapfrog, clock {clock}").times == wanted
-    assert right_times(every_h("stormer-verlet").parts) == (0, HALF, 1)
+    assert every_h("stormer-verlet").all_times == (0, HALF, 1)
 
 
 @pytest.mark.parametrize("clock", ["frozen", "at the end", "exchanged"])

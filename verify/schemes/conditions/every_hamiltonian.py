@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
-from typing import Any, Protocol, TypeVar, runtime_checkable
+from typing import Any, ClassVar, Protocol, TypeVar, runtime_checkable
 
 import flint
 
@@ -59,6 +59,7 @@ class TaylorSeries(ByChanges):
 
     eta: int
     separable: bool = False
+    kind: ClassVar[str] = "taylor-series"  # the file of `verify.schemes.maps.kinds`
 
     @property
     def a_step(self) -> str:
@@ -81,18 +82,13 @@ class RungeKutta(ByChanges):
     rows: tuple[tuple[Fraction, ...], ...]
     weights: tuple[Fraction, ...]
     separable: bool = False
+    kind: ClassVar[str] = "explicit-runge-kutta"
 
     def __post_init__(self) -> None:
         if [len(row) for row in self.rows] != list(range(len(self.weights))):
             raise ValueError("row i of an explicit tableau has i entries, one row for each weight")
         if sum(self.weights) != 1:
             raise ValueError("the weights do not add up to 1")
-
-    @property
-    def square(self) -> tuple[tuple[tuple[Fraction, ...], ...], tuple[Fraction, ...]]:
-        """The rows filled up by zeros, and the weights."""
-        count, zero = len(self.weights), Fraction(0)
-        return tuple((*row, *[zero] * (count - len(row))) for row in self.rows), self.weights
 
     @property
     def evaluations(self) -> dict[str, int]:
@@ -152,6 +148,7 @@ class StageEquations(ByChanges):
 
     stages: tuple[Stage, ...]
     separable: bool = False
+    kind: ClassVar[str] = "stage-equations"
 
     @property
     def a_step(self) -> str:
@@ -203,21 +200,15 @@ class StageEquations(ByChanges):
         for stage in self.stages:
             at_p, at_q, kick, drift = map(_exact, (stage.at_p, stage.at_q, stage.kick, stage.drift))
             # dp' = dp − h kick (b dP + c dQ), dq' = dq + h drift (a dP + b dQ)
-            force, speed = (-h * kick * b, -h * kick * c), (h * drift * a, h * drift * b)
-            left = [
-                [1 - force[0] * at_p, -force[1] * at_q],
-                [-speed[0] * at_p, 1 - speed[1] * at_q],
-            ]
-            right = [
-                [1 + force[0] * (1 - at_p), force[1] * (1 - at_q)],
-                [speed[0] * (1 - at_p), 1 + speed[1] * (1 - at_q)],
-            ]
-            found.append((_det(left), _det(right)))
+            slopes = (-h * kick * b, -h * kick * c), (h * drift * a, h * drift * b)
+            found.append((_det(slopes, -at_p, -at_q), _det(slopes, 1 - at_p, 1 - at_q)))
         return found
 
 
-def _det(m: Sequence[Sequence[Poly]]) -> Poly:
-    return m[0][0] * m[1][1] - m[0][1] * m[1][0]
+def _det(slopes: Sequence[Sequence[Poly]], of_p: flint.fmpq, of_q: flint.fmpq) -> Poly:
+    """Of 1 + slopes, whose columns are taken times these."""
+    (a, b), (c, d) = ((x * of_p, y * of_q) for x, y in slopes)
+    return (1 + a) * (1 + d) - b * c
 
 
 def _exact(x: Fraction) -> flint.fmpq:

@@ -1,40 +1,55 @@
-"""Implicit Runge–Kutta methods by their coefficients.
+"""Runge–Kutta methods by their coefficients, explicit or implicit.
 
-k_i = f(z + h Σ a_ij k_j), i = 1 … s, and z' = z + h Σ b_i k_i. Coefficients are algebraic numbers,
-exact. What is asked of them is decided in the ring of `verify.algebra.embedding.embed`, by exact
-algebra, and what is not zero there is enclosed by Arb; no coefficient is ever rounded for it.
+k_i = f(z + h Σ a_ij k_j, t + c_i h), i = 1 … s, and z' = z + h Σ b_i k_i. Of a partitioned method
+p' = −H_q and q' = H_p have matrices and weights of their own, and their stages in common.
+Coefficients are algebraic numbers, exact. What is asked of them is decided in the ring of
+`verify.algebra.embedding.embed`, by exact algebra, and what is not zero there is enclosed by Arb;
+no coefficient is ever rounded for it.
+
+The right clock is c = A 1. With t as one more coordinate, t' = 1, the system is autonomous, and t
+has at stage i the value t + h Σ a_ij: so the method is what it is without time, for every H. Of a
+partitioned method t may go with q or with p, and both c = A_q 1 and c = A_p 1 are right.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import Any
+from itertools import islice, product
+from typing import Any, TypeAlias
 
 from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
 from verify.late import sympy
 from verify.schemes.conditions.condition import Condition
 from verify.schemes.conditions.residue import condition_of
-from verify.schemes.conditions.tree_weights import RingWeights, Tableau
+from verify.schemes.conditions.tree_weights import Tableau, TreeWeights
 from verify.schemes.steps.step_algebra import Number, Step, StepAlgebra
 
+Clock: TypeAlias = "tuple[sympy.Expr | None, ...]"  # as parts of h; None where it is right
 SHOWN = 5  # digits of a residue
 
 
 @dataclass(frozen=True)
 class ImplicitTableau:
-    """`rows[i][j]`: a_ij; `weights`: b_i. ValueError where they do not fit together, or are no
-    constants."""
+    """`rows[i][j]`: a_ij; `weights`: b_i. `clock`: c_i, for an H that depends on time; None without
+    time. `of_q`: of a partitioned method the tableau of q', its times left out; this is that of p'.
+
+    ValueError where they do not fit together, or are no constants.
+    """
 
     rows: tuple[tuple[sympy.Expr, ...], ...]
     weights: tuple[sympy.Expr, ...]
+    clock: Clock | None = None
+    of_q: ImplicitTableau | None = None
 
     def __post_init__(self) -> None:
         count = len(self.weights)
         if count == 0 or [len(row) for row in self.rows] != [count] * count:
             raise ValueError("a tableau has as many rows, and entries in each, as weights")
+        if {part.stages for part in self.parts} | {len(self.clock or self.weights)} != {count}:
+            raise ValueError("the clock, and the part of q', have as many stages as there are")
         numbers = [x for row in (*self.rows, self.weights) for x in row]
         if any(sympy.sympify(x).free_symbols for x in numbers):
             raise ValueError("coefficients are numbers")
@@ -47,6 +62,16 @@ class ImplicitTableau:
         exact = [[sympy.sympify(x) for x in row] for row in (*rows, weights)]
         return cls(tuple(map(tuple, exact[:-1])), tuple(exact[-1]))
 
+    def at_times(self, clock: Sequence[sympy.Expr | int | None] | None = None) -> ImplicitTableau:
+        """The same with these times, as parts of h: None for a right one, as all are by default."""
+        given = (None,) * self.stages if clock is None else clock
+        return replace(self, clock=tuple(None if c is None else sympy.sympify(c) for c in given))
+
+    @property
+    def parts(self) -> tuple[ImplicitTableau, ...]:
+        """Itself; or those of p' and of q'."""
+        return (self,) if self.of_q is None else (self, self.of_q)
+
     @property
     def stages(self) -> int:
         """How many stages there are."""
@@ -58,10 +83,11 @@ class ImplicitTableau:
         return Numbers.of(self)
 
     def area_conditions(self) -> tuple[Condition, ...]:
-        """b_i a_ij + b_j a_ji − b_i b_j = 0 for i ≤ j.
+        """b_i a_ij + b_j a_ji − b_i b_j = 0 for i ≤ j; of two parts
+        b_p,i a_q,ij + b_q,j a_p,ji = b_p,i b_q,j and b_p = b_q.
 
-        They suffice for det J ≡ 1, for every H (Sanz-Serna 1988; Hairer, Lubich, Wanner, Geometric
-        Numerical Integration, theorem VI.4.3).
+        They suffice for det J ≡ 1, for every H, at the stages' times (Sanz-Serna 1988; Hairer,
+        Lubich, Wanner, Geometric Numerical Integration, theorems VI.4.3 and VI.4.6).
         """
         return _area_conditions(self)
 
@@ -69,42 +95,87 @@ class ImplicitTableau:
 @lru_cache(maxsize=64)
 def _area_conditions(tableau: ImplicitTableau) -> tuple[Condition, ...]:
     numbers = tableau.numbers
-    a, b = numbers.a, numbers.b
-    return tuple(
-        numbers.condition(
-            f"b_{i + 1} a_{i + 1}{j + 1} + b_{j + 1} a_{j + 1}{i + 1} = b_{i + 1} b_{j + 1}",
-            0,
-            b[i] * a[i][j] + b[j] * a[j][i] - b[i] * b[j],
-        )
-        for i in range(tableau.stages)
-        for j in range(i, tableau.stages)
-    )
+    return tuple(numbers.condition(name, 0, gap) for name, gap in _area_gaps(numbers))
+
+
+def _area_gaps(numbers: Numbers) -> Iterator[tuple[str, Poly]]:
+    of_p, of_q = numbers.blocks[0], numbers.blocks[-1]
+    (a, u), (b, v) = (of_p.matrix, of_p.weights), (of_q.matrix, of_q.weights)
+    two = len(numbers.blocks) == 2
+    p, q = ("_p", "_q") if two else ("_", "_")
+    for i, j in product(range(len(u)), repeat=2):
+        m, n = i + 1, j + 1
+        if two or i <= j:
+            name = f"b{p}{m} a{q}{m}{n} + b{q}{n} a{p}{n}{m} = b{p}{m} b{q}{n}"
+            yield name, u[i] * b[i][j] + v[j] * a[j][i] - u[i] * v[j]
+    for m, (x, y) in enumerate(zip(u, v, strict=True), start=1) if two else ():
+        yield f"b_p{m} = b_q{m}", x - y
 
 
 @dataclass(frozen=True)
 class Numbers:
-    """a_ij and b_i as elements of a ring without variables."""
+    """a_ij, b_i and c_i of each part as elements of a ring without variables."""
 
     ring: Ring
-    a: tuple[tuple[Poly, ...], ...]
-    b: tuple[Poly, ...]
+    blocks: tuple[Tableau[Poly], ...]
 
     @classmethod
     def of(cls, tableau: ImplicitTableau) -> Numbers:
         """Those of a tableau, embedded together."""
-        count = tableau.stages
-        ring, found = embed([*tableau.weights, *(x for row in tableau.rows for x in row)], ())
-        rows = [tuple(found[count * (i + 1) : count * (i + 2)]) for i in range(count)]
-        return cls(ring, tuple(rows), tuple(found[:count]))
+        count, told = tableau.stages, [c for c in tableau.clock or () if c is not None]
+        rows = [row for part in tableau.parts for row in (part.weights, *part.rows)]
+        ring, found = embed([*(x for row in rows for x in row), *told], ())
+        left = iter(found)
+
+        def row() -> tuple[Poly, ...]:
+            return tuple(islice(left, count))
+
+        parts = [(row(), tuple(row() for _ in range(count))) for _ in tableau.parts]
+        times = None
+        if tableau.clock is not None:  # time is a coordinate: of two parts, it goes with q
+            pairs = zip(_row_sums(ring, parts[-1][1]), tableau.clock, strict=True)
+            times = tuple(x if c is None else next(left) for x, c in pairs)
+        return cls(ring, tuple(Tableau(a, b, times) for b, a in parts))
+
+    @property
+    def a(self) -> tuple[tuple[Poly, ...], ...]:
+        """a_ij, of two parts that of p'."""
+        return self.blocks[0].matrix
+
+    @property
+    def b(self) -> tuple[Poly, ...]:
+        """b_i, of two parts that of p'."""
+        return self.blocks[0].weights
+
+    @property
+    def clock(self) -> tuple[Poly, ...]:
+        """c_i; none without time."""
+        return self.blocks[0].times or ()
 
     @cached_property
-    def tree_weights(self) -> RingWeights:
+    def right(self) -> bool:
+        """Whether c is a right clock, exactly, or there is none."""
+        decide = self.ring.decide
+        return any(
+            all(
+                decide(c - x).zero is True
+                for c, x in zip(self.clock, _row_sums(self.ring, block.matrix), strict=False)
+            )
+            for block in self.blocks
+        )
+
+    @cached_property
+    def tree_weights(self) -> TreeWeights[Poly]:
         """What they put into the conditions of trees."""
-        return RingWeights(self.ring, [Tableau(self.a, self.b)])
+        return TreeWeights(self.blocks, self.ring.one, reduce=self.ring.reduce)
 
     def condition(self, name: str, order: int, gap: Poly) -> Condition:
         """The condition that `gap`, left side − right side, is 0."""
         return condition_of(self.ring, name, order, gap, SHOWN)
+
+
+def _row_sums(ring: Ring, matrix: Sequence[Sequence[Poly]]) -> list[Poly]:
+    return [ring.reduce(sum(row, ring.zero)) for row in matrix]
 
 
 def implicit_step(
@@ -119,15 +190,12 @@ def implicit_step(
             algebra: StepAlgebra[Any], own: Sequence[Sequence[Number]], unknowns: Sequence[Any]
         ) -> list[Any]:
             """h Σ w_j f(z + Z_j) of each row of weights, row after row."""
-            stages = [unknowns[size * i : size * (i + 1)] for i in range(len(clocks))]
             slopes = [
-                algebra.slopes(stage, clock, range(size))
-                for stage, clock in zip(stages, clocks, strict=True)
+                algebra.slopes(unknowns[size * i : size * (i + 1)], clock, range(size))
+                for i, clock in enumerate(clocks)
             ]
-            columns = [[slope[k] for slope in slopes] for k in range(size)]
-            return [
-                algebra.moved(algebra.nothing, row, column) for row in own for column in columns
-            ]
+            each = product(own, zip(*slopes, strict=True))
+            return [algebra.moved(algebra.nothing, row, column) for row, column in each]
 
         solved = outer.solved(size * len(clocks), lambda inner, z: combined(inner, rows, z))
         return combined(outer, [weights], solved)

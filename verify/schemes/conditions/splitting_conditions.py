@@ -1,4 +1,4 @@
-"""Order and area of a splitting, by conditions on its coefficients, evaluated exactly.
+"""Order and area of a splitting, by conditions on its parts and their times, evaluated exactly.
 
 With K and D the Lie derivatives of kick and drift, the step is S = exp(k₁hK) exp(d₁hD) …, in the
 order in which it is made, and the exact flow is exp(h(K + D)). Both are power series in two letters
@@ -17,38 +17,85 @@ Lie polynomial, and vanishes exactly where its coefficients of the Lyndon words 
 Theorem 5.1). In the plane its K and D are Poisson brackets with V(q) and T(p). The brackets of n
 letters are independent over all V and T up to n = 8 (a test has their rank; of the 56 with nine
 letters there are 54), so that some H has another map.
+
+For H = T(p, t) + V(q, t) there are letters K_n and D_n (`verify.schemes.conditions.words.words`);
+without those of n > 0 the conditions are the ones above. By the same argument Lyndon words suffice,
+2, 2, 4, 7, 15, 28, 62, 126 of weights 1 … 8 where T depends on p alone, and 2, 3, 6, 12, 28, 61,
+148, 345 where it depends on t. They are needed: the Hamiltonians of brackets of letters, K_n
+standing for any V_n(q) and D_n for any T_n(p), are independent in the plane up to weight 8 (a test
+has their rank).
+
+For quadratic T brackets vanish or are equal from weight 4 on. There the conditions are those
+combinations of coefficients in the generator of the step
+(`verify.schemes.conditions.words.step_words`) that count
+(`verify.schemes.conditions.words.quadratic`): 2, 2, 4, 6, 12, 20, 39, 67 for p²/(2m), and 2, 3, 6,
+11, 23, 45, 93, 182 for p²/(2m(t)).
+
+The time at which each part of a splitting reads its force or its velocity.
+
+The right clock of a kick is advanced by the drifts, that of a drift by the kicks: a kick reads the
+force at t + h·(drifts before it), a drift the velocity at t + h·(kicks before it). For then the
+step is that of a splitting without time. With times x and y as further coordinates and X, Y their
+momenta, H = T(p, y) + X + V(q, x) + Y is a sum of A = V(q, x) + Y, whose flow is the kick and
+advances y, and of B = T(p, y) + X, whose flow is the drift and advances x. After the canonical
+change (y, Y) → (Y, −y) A is a function of coordinates and B one of momenta. The conditions for
+T(p) + V(q) hold in any number of degrees of freedom; so with right clocks every splitting keeps
+its order for every H = T(p, t) + V(q, t). Nyström methods, which have theirs for quadratic T alone,
+do not where T depends on t: that B is not quadratic in the momenta.
+
+Where the drifts do not add up to 1, the kicks' clock does not reach the step's end. That is no
+fault of the clock: the condition Σ drifts = 1 fails, of order 1.
 """
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from functools import cached_property, partial
+from functools import cached_property
 from typing import ClassVar, TypeAlias
 
 import flint
 
 from verify.algebra.embedding import embed
 from verify.algebra.ring import Poly, Ring
+from verify.arithmetic.number import E
 from verify.errors import InputError
 from verify.late import sympy
 from verify.prose import count
 from verify.schemes.conditions.condition import Condition, NearbyOrder
 from verify.schemes.conditions.every_hamiltonian import StageEquations
 from verify.schemes.conditions.residue import condition_of
-from verify.schemes.conditions.words.equations import TimedEquation, equations_of_words
-from verify.schemes.conditions.words.step_words import StepWords
+from verify.schemes.conditions.words.equations import equations_of, residues_of
+from verify.schemes.conditions.words.kinetic import Kinetic
+from verify.schemes.conditions.words.step_words import StepWords, TimedPart
 
 # "kick" or "drift", and what part of h it takes: what needs no root may be a Fraction, whose scheme
 # then needs no sympy.
 Part: TypeAlias = "tuple[str, sympy.Expr | Fraction]"
 Parts: TypeAlias = "tuple[tuple[str, sympy.Expr], ...]"
+Times: TypeAlias = "tuple[sympy.Expr | None, ...]"  # as parts of h; None for the right one
 Nearby: TypeAlias = Callable[[int], NearbyOrder | None]  # of the highest order to look at
 MOST_ORDER = 8  # beyond which fewer conditions would do in the plane
 LETTERS = {"kick": "K", "drift": "D"}
 _DIGITS = 12  # of a residue
+
+
+def sums_before(parts: Sequence[tuple[str, E]], zero: E, *, own: bool = False) -> list[E]:
+    """What the parts of the other kind, or of its own, add up to before each: those of the other
+    kind are the right times.
+
+    >>> sums_before([("kick", 1), ("drift", 2), ("kick", 1)], 0)
+    [0, 1, 2]
+    """
+    sums: dict[str, E] = {}
+    found = []
+    for kind, size in parts:
+        read = (x for other, x in sums.items() if (other == kind) is own)
+        found.append(sum(read, zero))
+        sums[kind] = sums.get(kind, zero) + size
+    return found
 
 
 @dataclass(frozen=True)
@@ -56,29 +103,46 @@ class Splitting:
     """Kicks p − a h V'(q) and drifts q + a h T'(p) of these parts of h, for H = T(p) + V(q).
 
     The sizes that are given are rational or algebraic numbers; those of `parts` are sympy's.
-    `times`: of an H that depends on time, when each
-    part is made, in parts of h from the step's start, where that is given. `nearby`: of sizes that
-    are printed decimals, the order that exact ones near them have; `nearby_in_time`: of sizes or
-    `times` that are. It is a `verify.schemes.conditions.condition.ByConditions`.
+    `times`: of an H that depends on time, when each part is made, in parts of h from the step's
+    start, None for the right one; all are right where none is given. `kinetic`: for every
+    H = T + V(q, t) with T of that class; None for every H without time. `nearby`: of what is
+    printed decimals in it, the order that exact ones near them have; `nearby_in_time`: that of
+    sizes or `times` that are. ValueError unless there are as many times as parts. It is a
+    `verify.schemes.conditions.condition.ByConditions`.
     """
 
     given: tuple[Part, ...]
-    separable: bool = True
-    times: tuple[sympy.Expr | None, ...] = ()
+    times: Times = ()
+    kinetic: Kinetic | None = None
     nearby: Nearby | None = field(default=None, compare=False, repr=False)
     nearby_in_time: Nearby | None = field(default=None, compare=False, repr=False)
+    separable: ClassVar[bool] = True
+    kind: ClassVar[str] = "splittings"  # the file of `verify.schemes.maps.kinds`
     most_order: ClassVar[int] = MOST_ORDER  # the highest of which there are conditions
+
+    def __post_init__(self) -> None:
+        if self.times and len(self.given) != len(self.times):
+            raise ValueError(f"{len(self.times)} times of {len(self.given)} parts")
+
+    def in_time(self, kinetic: Kinetic | None = None, times: Times = ()) -> Splitting:
+        """The same for every H = T + V(q, t), T of that class, at these times or its own."""
+        own = tuple(times) or self.times
+        right = all(time is None for time in own)
+        in_time = self.nearby_in_time if own == self.times else None
+        near = self.nearby if right else in_time
+        return replace(self, times=own, kinetic=kinetic or Kinetic.GENERAL, nearby=near)
 
     @cached_property
     def parts(self) -> Parts:
         """The parts, each with its size as an expression."""
-        return expressed(self.given)
+        return tuple((kind, sympy.sympify(size)) for kind, size in self.given)
 
-    def nearby_at(self, times: Sequence[sympy.Expr | None]) -> Nearby | None:
-        """That of the parts at these times, None for the right ones."""
-        if all(time is None for time in times):
-            return self.nearby
-        return self.nearby_in_time if tuple(times) == self.times else None
+    @property
+    def all_times(self) -> tuple[sympy.Expr, ...]:
+        """The time of each part: the one that is given, else the right one."""
+        right = sums_before(self.parts, sympy.S.Zero)
+        own = self.times or (None,) * len(right)
+        return tuple(x if t is None else t for x, t in zip(right, own, strict=True))
 
     @property
     def evaluations(self) -> dict[str, int]:
@@ -93,28 +157,76 @@ class Splitting:
         return f"{count(found['H_q'], 'kick')}, {count(found['H_p'], 'drift')}"
 
     @cached_property
-    def numbers(self) -> tuple[Ring, list[tuple[str, Poly]]]:
-        """The parts, letters with sizes in one ring."""
-        ring, sizes = embed([size for _, size in self.parts], ())
-        kinds = (LETTERS[kind] for kind, _ in self.parts)
-        return ring, list(zip(kinds, sizes, strict=True))
+    def numbers(self) -> tuple[Ring, list[TimedPart]]:
+        """The parts, letters with sizes and times in one ring; without time at the right ones."""
+        times = self.times if self.kinetic else ()
+        told = [time for time in times if time is not None]
+        ring, numbers = embed([*(size for _, size in self.parts), *told], ())
+        left = iter(numbers)
+        sized = [(LETTERS[kind], next(left)) for kind, _ in self.parts]
+        right = sums_before(sized, ring.zero)
+        own = times or (None,) * len(right)
+        clock = [x if t is None else next(left) for x, t in zip(right, own, strict=True)]
+        return ring, [(*part, time) for part, time in zip(sized, clock, strict=True)]
+
+    @cached_property
+    def right(self) -> list[Poly]:
+        """The right time of each part, in the ring of `numbers`."""
+        ring, parts = self.numbers
+        return sums_before([(letter, size) for letter, size, _ in parts], ring.zero)
+
+    @cached_property
+    def clocks_are_right(self) -> bool:
+        """Whether each part that reads a time has the right one, exactly; one of size 0 reads
+        none."""
+        ring, parts = self.numbers
+        return all(
+            (self.kinetic is not None and letter not in self.kinetic.timed)
+            or size.is_zero()
+            or ring.decide(time - clock).zero is True
+            for (letter, size, time), clock in zip(parts, self.right, strict=True)
+        )
+
+    @property
+    def clock(self) -> list[sympy.Expr]:
+        """The time of each part, in parts of h."""
+        ring, parts = self.numbers
+        return [ring.expression(time) for _, _, time in parts]
 
     def order_conditions(self, order: int) -> tuple[Condition, ...]:
-        """One for each Lyndon word of at most `order` letters; InputError beyond order 8."""
-        return self._conditions.up_to(order)
+        """One for each Lyndon word of weights 1 … `order`, or combination; InputError beyond
+        order 8."""
+        if order > MOST_ORDER:
+            raise InputError("order", order, f"of a splitting is proved up to {MOST_ORDER}")
+        return tuple(c for n in range(1, order + 1) for c in self._of_weight(n))
+
+    def _of_weight(self, n: int) -> tuple[Condition, ...]:
+        if n not in self._known:
+            equations, (ring, _) = equations_of(self._asked, n), self.numbers
+            self._known[n] = tuple(
+                condition_of(ring, each.name, n, gap, _DIGITS)
+                for each, gap in zip(equations, residues_of(equations, self.words), strict=True)
+            )
+        return self._known[n]
+
+    @cached_property
+    def _known(self) -> dict[int, tuple[Condition, ...]]:
+        return {}
+
+    @cached_property
+    def _asked(self) -> Kinetic | None:
+        """The class of which conditions are asked: with right clocks those without time do."""
+        any_t = self.kinetic is not None and not self.kinetic.quadratic
+        return None if any_t and self.clocks_are_right else self.kinetic
 
     @cached_property
     def words(self) -> StepWords:
         """The step's coefficients of words."""
-        ring, parts = self.numbers
-        return StepWords(ring, [(letter, size, ring.zero) for letter, size in parts])
-
-    @cached_property
-    def _conditions(self) -> WordConditions:
-        return WordConditions(self.numbers[0], self.words, partial(equations_of_words, ""))
+        return StepWords(*self.numbers)
 
     def area_conditions(self) -> tuple[Condition, ...]:
-        """That every kick and every drift has determinant 1, whatever its size, T and V."""
+        """That every kick and every drift, at a fixed time, has determinant 1, whatever its size, T
+        and V."""
         context = flint.fmpq_mpoly_ctx.get(("x",), flint.Ordering.lex)
         (x,), one, zero = context.gens(), context.constant(1), context.constant(0)
         # x = a h V'' or a h T'', any number
@@ -135,34 +247,3 @@ class Splitting:
         if all(size.is_Rational for _, size in self.parts):
             return StageEquations.of_shears(self.parts)
         return None
-
-
-def expressed(parts: Sequence[Part]) -> Parts:
-    """The same parts, their sizes as expressions."""
-    return tuple((kind, sympy.sympify(size)) for kind, size in parts)
-
-
-class WordConditions:
-    """Conditions on a step's coefficients of words, those of each weight made once."""
-
-    def __init__(
-        self, ring: Ring, words: StepWords, equations: Callable[[int], Sequence[TimedEquation]]
-    ) -> None:
-        self.ring, self.words, self.equations = ring, words, equations
-        self._known: dict[int, tuple[Condition, ...]] = {}
-
-    def up_to(self, order: int) -> tuple[Condition, ...]:
-        """Those of weights 1 … `order`; InputError beyond order 8."""
-        if order > MOST_ORDER:
-            raise InputError("order", order, f"of a splitting is proved up to {MOST_ORDER}")
-        return tuple(c for n in range(1, order + 1) for c in self._of_weight(n))
-
-    def _of_weight(self, n: int) -> tuple[Condition, ...]:
-        if n not in self._known:
-            equations = self.equations(n)
-            self.words.prepare({word for each in equations for word in each.needed})
-            self._known[n] = tuple(
-                condition_of(self.ring, each.name, n, each.residue(self.words), _DIGITS)
-                for each in equations
-            )
-        return self._known[n]

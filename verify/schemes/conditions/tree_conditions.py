@@ -1,4 +1,4 @@
-"""Order conditions of Runge–Kutta methods by rooted trees, from exact coefficients.
+"""Order conditions of Runge–Kutta methods by rooted trees, from exact coefficients and stage times.
 
 The method's map and the exact flow agree up to h^p for every smooth vector field exactly where
 Σ_i b_i Φ_i(t) = 1/γ(t) for every rooted tree t of at most p vertices (Butcher 1963; Hairer,
@@ -8,7 +8,7 @@ the trees that are left where the root is taken away,
     Φ_i(t) = Π_k Σ_j a_ij Φ_j(t_k),   γ(t) = |t| γ(t_1) … γ(t_m).
 
 That each of them is needed is shown there with vector fields of high dimension. Of Hamiltonian
-fields in the plane fewer are, from five vertices on: f'f' is −det Hess H there, so that f''(f,
+fields in the plane fewer are, from five vertices on: f'f is −det Hess H there, so that f''(f,
 f'f'f) is f'f'f''(f, f), and of the conditions of two trees only one combination counts. So where
 conditions of n vertices fail, the difference of the two maps' terms with hⁿ, Σ (b·Φ(t) − 1/γ(t))
 F(t)/σ(t), is looked at as a polynomial in the derivatives of H (`verify.algebra.series.jets`);
@@ -16,25 +16,35 @@ where it vanishes that is one condition, which holds, in place of those that fai
 
 A condition is written with the vectors c = A 1 and b, products of vectors by component: that of
 [τ, [τ]] is b·(c A(c)) = 1/8.
+
+For z' = f(z, t) some leaves are of time: that is Butcher's theorem for the system with t' = 1
+beside it (`verify.schemes.conditions.coloured_trees`). A leaf of time puts the stage's time c_i
+into Φ_i(t). Where c = A 1, it has the factor of any leaf, and the densities know no colours: each
+condition is one without time, and these are asked. Combinations that count in the plane alone do
+not carry over, as with time the field's derivative has a column f_t more: so the difference is
+looked at for H without time first, which are among all, and then for every one.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from __future__ import annotations
+
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import ClassVar
 
 from verify.algebra.ring import Poly
-from verify.algebra.series.jets import Jets
+from verify.algebra.series.jets import JetsInDegrees
 from verify.errors import InputError
+from verify.late import sympy
 from verify.prose import count
-from verify.schemes.conditions.coloured_trees import PLAIN, Tree, all_trees, equation_text
+from verify.schemes.conditions.coloured_trees import PLAIN, Tree, all_trees, equation_text, of_all
 from verify.schemes.conditions.condition import Condition
 from verify.schemes.conditions.elementary_differentials import Differentials, cancel
-from verify.schemes.conditions.implicit_tableau import SHOWN, ImplicitTableau
-from verify.schemes.conditions.residue import condition_of
-from verify.schemes.conditions.tree_weights import RingWeights
+from verify.schemes.conditions.implicit_tableau import ImplicitTableau
+from verify.schemes.conditions.words.kinetic import Kinetic
 
 MOST_ORDER = 10
+_MOST_TIMED = 8  # vertices: of which there are 1042 trees with leaves of time
 
 
 def trees(order: int) -> tuple[Tree, ...]:
@@ -44,12 +54,34 @@ def trees(order: int) -> tuple[Tree, ...]:
 
 @dataclass(frozen=True)
 class TreeConditions:
-    """A Runge–Kutta method for every H, by conditions on its coefficients; `separable`: for every
-    H = T(p) + V(q), of which fewer may count."""
+    """A Runge–Kutta method for every H, by conditions on its coefficients, and on its times where
+    the tableau has a clock; `kinetic`: for every H = T + V with T of that class, of which fewer may
+    count. It is a `verify.schemes.conditions.condition.ByConditions`."""
 
     tableau: ImplicitTableau
-    separable: bool = False
-    most_order: ClassVar[int] = MOST_ORDER  # the highest of which there are conditions
+    kinetic: Kinetic | None = None
+    kind: ClassVar[str] = "implicit-runge-kutta"  # the file of `verify.schemes.maps.kinds`
+
+    @property
+    def separable(self) -> bool:
+        """Whether it is for H = T + V alone."""
+        return self.kinetic is not None
+
+    @property
+    def timed(self) -> bool:
+        """Whether it is for H that depend on time."""
+        return self.tableau.clock is not None
+
+    @property
+    def most_order(self) -> int:
+        """The highest of which there are conditions."""
+        return MOST_ORDER if self.tableau.numbers.right else _MOST_TIMED
+
+    @property
+    def clock(self) -> list[sympy.Expr]:
+        """The time of each stage, in parts of h."""
+        numbers = self.tableau.numbers
+        return [numbers.ring.expression(time) for time in numbers.clock]
 
     @property
     def a_step(self) -> str:
@@ -60,14 +92,13 @@ class TreeConditions:
     def order_conditions(self, order: int) -> tuple[Condition, ...]:
         """Those that the trees of 1 … `order` vertices give; see the module's text.
 
-        InputError beyond order 10, of which there are 1205.
+        InputError beyond order 10, of which there are 1205, or 8 where a clock is not right.
         """
-        if order > MOST_ORDER:
-            raise InputError(
-                "order", order, f"of a Runge–Kutta method is proved up to {MOST_ORDER}"
-            )
-        orders = range(1, order + 1)
-        return tuple(c for n in orders for c in _of_order(self.tableau, n, self.separable))
+        if order > self.most_order:
+            these = " with these times" * self.timed
+            problem = f"of a Runge–Kutta method{these} is proved up to {self.most_order}"
+            raise InputError("order", order, problem)
+        return tuple(c for n in range(1, order + 1) for c in _of_order(self, n))
 
     def area_conditions(self) -> tuple[Condition, ...]:
         """See `ImplicitTableau.area_conditions`."""
@@ -75,41 +106,61 @@ class TreeConditions:
 
 
 @lru_cache(maxsize=256)
-def _of_order(tableau: ImplicitTableau, order: int, separable: bool) -> tuple[Condition, ...]:
-    weights = tableau.numbers.tree_weights
-
-    def cancels(wrong: Sequence[Tree]) -> bool | None:
-        gaps = {tree: weights.gap(tree) for tree in wrong}
-        return cancel(weights.ring, gaps, Differentials(Jets(order, separable=separable)))
-
-    return conditions_of_trees(weights, trees(order), order, cancels)
-
-
-def conditions_of_trees(
-    weights: RingWeights,
-    asked: Iterable[Tree],
-    order: int,
-    cancels: Callable[[Sequence[Tree]], bool | None],
-    names: tuple[str, ...] = ("",),
-) -> tuple[Condition, ...]:
+def _of_order(method: TreeConditions, order: int) -> tuple[Condition, ...]:
     """Each tree's condition; or, in place of those that fail, the one that their trees cancel for
-    every H.
-
-    `names`: see `verify.schemes.conditions.coloured_trees.equation_text`.
-    """
+    every H."""
+    numbers = method.tableau.numbers
+    weights, parts = numbers.tree_weights, len(numbers.blocks)
+    names = ("",) if parts == 1 else ("_p", "_q")
+    # With right clocks a leaf of time is as any other.
+    asked = all_trees(of_all(parts, method.timed and not numbers.right), order)
     found = {
-        tree: condition_of(
-            weights.ring, equation_text(tree, names), order, weights.gap(tree), SHOWN
-        )
+        tree: numbers.condition(equation_text(tree, names), order, weights.gap(tree))
         for tree in asked
     }
     wrong = [tree for tree, condition in found.items() if condition.holds is False]
-    cancelled = cancels(wrong) if wrong else False
+    cancelled = _cancel(method, order, timed=False) if wrong else False
+    if cancelled is not False and method.timed:
+        if order > _MOST_TIMED:
+            name = f"b·Φ(t) = 1/γ(t) over trees of {order}"
+            return (Condition(name, order, "unknown", None),)
+        cancelled = _cancel(method, order, timed=True)
     if cancelled is False:
         return tuple(found.values())
     left = tuple(c for tree, c in found.items() if tree not in wrong)
     name = f"Σ (b·Φ(t) − 1/γ(t)) F(t)/σ(t) = 0 over the {len(wrong)} other trees"
     return *left, Condition(name, order, "0", cancelled)
+
+
+def _cancel(method: TreeConditions, order: int, *, timed: bool) -> bool | None:
+    """Whether the trees of so many vertices do, for every H; `timed`: that depends on time."""
+    numbers = method.tableau.numbers
+    weights, parts = numbers.tree_weights, len(numbers.blocks)
+    gaps = {tree: weights.gap(tree) for tree in all_trees(of_all(parts, timed), order)}
+    jets = _JetsOfClass(order, method.kinetic, timed=timed)
+    return cancel(numbers.ring, gaps, Differentials(jets, parts))
+
+
+class _JetsOfClass:
+    """∂_pⁱ ∂_q^j ∂_t^k H in the plane, free but for those of H = T + V with T of a class; None: of
+    every H."""
+
+    def __init__(self, order: int, kinetic: Kinetic | None, *, timed: bool) -> None:
+        self.kinetic, self.quadratic = kinetic, kinetic is not None and kinetic.quadratic
+        most = order + self.quadratic  # where the second derivative by p stands for the first
+        separable, self.timed = kinetic is not None, timed
+        self.jets = JetsInDegrees(("p", "q"), most, separable=separable, timed=timed)
+        self.zero = self.jets.zero
+
+    def h(self, i: int, j: int, k: int = 0) -> Poly:
+        """H_ijk."""
+        if i and k and self.kinetic is not None and "D" not in self.kinetic.timed:
+            return self.zero
+        by_t = (k,) if self.timed else ()
+        if i and self.quadratic:  # of p² m(t)/2 the derivative by p is p times the second one
+            second = self.jets.of((2, j, *by_t))
+            return self.zero if i > 2 else second if i == 2 else self.jets.variable("p") * second
+        return self.jets.of((i, j, *by_t))
 
 
 @lru_cache(maxsize=256)

@@ -11,29 +11,28 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Generic, TypeAlias, TypeVar
 
-from verify.algebra.ring import Poly, Ring
 from verify.arithmetic.number import E
 from verify.schemes.conditions.coloured_trees import TIME, Tree, density
 
 S = TypeVar("S")
-T = TypeVar("T")
+T_co = TypeVar("T_co", covariant=True)
 Vector: TypeAlias = tuple[E | None, ...]
 
 
 @dataclass(frozen=True)
-class Tableau(Generic[T]):
+class Tableau(Generic[T_co]):
     """Of one colour: a_ij, b_i, and the stages' times c_i, None where there are none."""
 
-    matrix: tuple[tuple[T, ...], ...]
-    weights: tuple[T, ...]
-    times: tuple[T, ...] | None = None
+    matrix: tuple[tuple[T_co, ...], ...]
+    weights: tuple[T_co, ...]
+    times: tuple[T_co, ...] | None = None
 
     @property
-    def entries(self) -> list[T]:
+    def entries(self) -> list[T_co]:
         """One after the other: rows, weights, and times that are there."""
         return [*(x for row in self.matrix for x in row), *self.weights, *(self.times or ())]
 
-    def mapped(self, made: Callable[[T, str], S]) -> "Tableau[S]":
+    def mapped(self, made: Callable[[T_co, str], S]) -> "Tableau[S]":
         """The same with what is made of each entry, of "a", "b" or "c", in that order."""
         rows = tuple(tuple(made(x, "a") for x in row) for row in self.matrix)
         weights = tuple(made(x, "b") for x in self.weights)
@@ -46,10 +45,17 @@ Block: TypeAlias = Tableau[E | None]
 
 class TreeWeights(Generic[E]):
     """b·Φ(t) of trees, each vector made once; `nystrom`: colour 1 is of q' = p, with ā and b̄ as its
-    matrix and weights, and with c as its times."""
+    matrix and weights, and with c as its times. `reduce`: what sums and products are put through,
+    as those of a ring are."""
 
-    def __init__(self, blocks: Sequence[Block[E]], one: E, nystrom: bool = False) -> None:
-        self.blocks, self.one, self.nystrom = tuple(blocks), one, nystrom
+    def __init__(
+        self,
+        blocks: Sequence[Block[E]],
+        one: E,
+        nystrom: bool = False,
+        reduce: Callable[[E], E] | None = None,
+    ) -> None:
+        self.blocks, self.one, self.nystrom, self.reduce = tuple(blocks), one, nystrom, reduce
         self.stages = len(blocks[0].weights)
         self._vectors: dict[Tree, Vector[E]] = {}
         self._summed: dict[tuple[int, Tree], Vector[E]] = {}
@@ -111,30 +117,17 @@ class TreeWeights(Generic[E]):
 
     def dot(self, x: Vector[E], y: Vector[E]) -> E | None:
         """Σ x_i y_i; None where no product is there."""
-        return dot(x, y)
+        (found,) = self._reduced((dot(x, y),))
+        return found
 
     def times(self, x: Vector[E], y: Vector[E]) -> Vector[E]:
         """By component."""
-        return times(x, y)
+        return self._reduced(times(x, y))
 
-
-class RingWeights(TreeWeights[Poly]):
-    """Those of numbers in a ring, in which sums and products are reduced."""
-
-    def __init__(self, ring: Ring, blocks: Sequence[Block[Poly]]) -> None:
-        super().__init__(blocks, ring.one)
-        self.ring = ring
-
-    def dot(self, x: Vector[Poly], y: Vector[Poly]) -> Poly | None:
-        """Σ x_i y_i."""
-        return self._reduced(super().dot(x, y))
-
-    def times(self, x: Vector[Poly], y: Vector[Poly]) -> Vector[Poly]:
-        """By component."""
-        return tuple(map(self._reduced, super().times(x, y)))
-
-    def _reduced(self, x: Poly | None) -> Poly | None:
-        return None if x is None else self.ring.reduce(x)
+    def _reduced(self, vector: Vector[E]) -> Vector[E]:
+        if self.reduce is None:
+            return vector
+        return tuple(None if x is None else self.reduce(x) for x in vector)
 
 
 def dot(x: Vector[E], y: Vector[E]) -> E | None:

@@ -114,7 +114,7 @@ def program_of(
     return Program(
         name=name,
         scheme=scheme,
-        hamiltonian=_formula(step_map, renamed),
+        hamiltonian=str(step_map.hamiltonian.exact.xreplace(renamed)),
         coordinates=coordinates,
         variables=variables,
         parameters=tuple(str(x) for x in renamed.values()),
@@ -124,10 +124,6 @@ def program_of(
         delta_j=step_map.delta_j.xreplace(renamed) if step_map.has_closed_form else None,
         area_preserving=step_map.preserves_area,
     )
-
-
-def _formula(step_map: StepMap, renamed: dict[sympy.Symbol, sympy.Symbol]) -> str:
-    return str(step_map.hamiltonian.exact.xreplace(renamed))
 
 
 def _renamed(names: Sequence[str], taken: set[str]) -> dict[sympy.Symbol, sympy.Symbol]:

@@ -67,23 +67,22 @@ def parts_of(step_map: StepMap) -> tuple[ClosedForm, ...] | None:
         step_map.step(reading)
     except TooLongError:
         return None
-    made = _at_times if step_map.field.timed else _in_ring
-    return tuple(made(step_map, reading.noted))
-
-
-def _in_ring(step_map: StepMap, shears: Sequence[_Shear]) -> list[ClosedForm]:
-    field, parts = step_map.field, []
-    for shear in shears:
+    field, moves = _moves(step_map, reading.noted)
+    left, parts = iter(moves), []
+    for shear in reading.noted:
         moved = list(field.start)
-        for k, move in zip(shear.places, field.shears(shear.size, shear.places), strict=True):
-            moved[k] += move
+        for k in shear.places:
+            moved[k] += next(left)
         parts.append(ClosedForm(field, tuple(moved)))
-    return parts
+    return tuple(parts)
 
 
-def _at_times(step_map: StepMap, shears: Sequence[_Shear]) -> list[ClosedForm]:
-    """Each with H's derivative at its own time."""
+def _moves(step_map: StepMap, shears: Sequence[_Shear]) -> tuple[CanonicalField, Sequence[Poly]]:
+    """By how much each place moves, one shear after the other, with the field in their ring; in
+    time by H's derivative at the shear's own."""
     field, exact = step_map.field, step_map.hamiltonian
+    if not field.timed:
+        return field, [x for each in shears for x in field.shears(each.size, each.places)]
     written, t, h = field.ring.expression, symbol("t"), symbol("h")
     moves: list[sympy.Expr] = []
     slopes = [written(x) for x in field.slopes]
@@ -92,11 +91,4 @@ def _at_times(step_map: StepMap, shears: Sequence[_Shear]) -> list[ClosedForm]:
             later = t + h * written(shear.clock)
             share = h * written(shear.size)
             moves += [share * slopes[k].subs(t, later) for k in shear.places]
-    whole, elements = canonical_field(exact, *moves)
-    left, parts = iter(elements), []
-    for shear in shears:
-        moved = list(whole.start)
-        for k in shear.places:
-            moved[k] += next(left)
-        parts.append(ClosedForm(whole, tuple(moved)))
-    return parts
+    return canonical_field(exact, *moves)

@@ -44,10 +44,9 @@ _NOT_WRITTEN = "the implicit scheme's map is given by equations, and has no clos
 _UNWRITTEN = "not written in closed form"
 
 
-def solvable(*, planar: bool) -> str:
+def solvable(structure: Structure) -> str:
     """What is taken for granted of an implicit scheme, for one H and for every one."""
-    where = "(p, q)" if planar else "z"
-    return f"the stages have a solution that depends smoothly on {where}"
+    return f"the stages have a solution that depends smoothly on {structure.state}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +114,7 @@ class StepMap:
     @cached_property
     def domain(self) -> Domain:
         """Where the map is smooth: where H is, and is so at the stages, if there are any."""
-        words = [solvable(planar=self.planar)] if self.implicit else []
+        words = [solvable(self.structure)] if self.implicit else []
         if self.in_stages and self.hamiltonian.domain_moves:
             words.append(AT_STAGES)
         return Domain.of((), *words) & self.hamiltonian.domain & self.asked

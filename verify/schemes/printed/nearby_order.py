@@ -22,8 +22,8 @@ from verify.schemes.printed.judged import WITHIN, Judged
 from verify.schemes.printed.naming import Naming
 from verify.schemes.printed.printed_numbers import entries_at
 from verify.schemes.printed.sentences import of_printed
+from verify.schemes.printed.splitting_order import judge_order
 from verify.schemes.printed.splitting_table import PrintedTable
-from verify.schemes.printed.timed_table import TimedTable, judge_in_time
 
 T = TypeVar("T")
 WrittenPart: TypeAlias = tuple[str, str, str | None]  # "kick" or "drift", its size, and its time
@@ -39,11 +39,11 @@ def nearby_of(parts: Sequence[WrittenPart]) -> "PrintedParts | None":
         texts = enumerate(time for _, _, time in parts)
         times = tuple(None if x is None else naming.entry(x, f"time_{k + 1}") for k, x in texts)
         named = tuple((kind, size) for (kind, *_), size in zip(parts, sizes, strict=True))
-        plain = TimedTable(PrintedTable("splitting", named, naming.printed), times, both=True)
-        tables = [plain.read(numbers) for numbers in naming.printed.of_a_method()]
+        table = PrintedTable("splitting", named, naming.printed, times, both=True)
+        tables = [table.read(numbers) for numbers in naming.printed.of_a_method()]
         rounded = tuple(table for table in tables if table.printed.units)
         for table in rounded:
-            parts_at(table.table, table.printed.values)
+            parts_at(table, table.printed.values)
             times_at(table, table.printed.values)
     except InputError:  # numbers beyond all coefficients, or no polynomials in the decimals
         return None
@@ -54,7 +54,7 @@ def nearby_of(parts: Sequence[WrittenPart]) -> "PrintedParts | None":
 class PrintedParts:
     """`tables`: one for each way in which the numbers may be read, the first before others."""
 
-    tables: tuple[TimedTable, ...]
+    tables: tuple[PrintedTable, ...]
 
     def __call__(self, most: int) -> NearbyOrder | None:
         """The highest order up to `most` that exact numbers near these have."""
@@ -67,8 +67,8 @@ class PrintedParts:
         return {}
 
 
-def _highest(tables: Sequence[TimedTable], most: int) -> NearbyOrder | None:
-    best, failing = highest(tables, min(most, tables[0].table.most_order), judge_in_time)
+def _highest(tables: Sequence[PrintedTable], most: int) -> NearbyOrder | None:
+    best, failing = highest(tables, min(most, tables[0].most_order), judge_order)
     if best is None:
         return None
     order, table, found = best
@@ -76,7 +76,7 @@ def _highest(tables: Sequence[TimedTable], most: int) -> NearbyOrder | None:
     wrong = None if failing is None else _wrong(failing, order + 1)
     if found.nearest is None:
         return NearbyOrder(order, verdict, said, wrong, ())
-    parts, times = parts_at(table.table, found.nearest), times_at(table, found.nearest)
+    parts, times = parts_at(table, found.nearest), times_at(table, found.nearest)
     return NearbyOrder(order, verdict, said, wrong, parts, times)
 
 
@@ -113,16 +113,15 @@ def parts_at(
     table: PrintedTable, numbers: Mapping[str, Fraction]
 ) -> tuple[tuple[str, Fraction], ...]:
     """The parts with these numbers, to some 90 digits."""
-    sizes = _values(table.sizes, table.units, numbers)
+    sizes = _values(table.sizes, table.printed.units, numbers)
     return tuple((kind, size) for (kind, _), size in zip(table.parts, sizes, strict=True))
 
 
-def times_at(timed: TimedTable, numbers: Mapping[str, Fraction]) -> tuple[Fraction | None, ...]:
+def times_at(table: PrintedTable, numbers: Mapping[str, Fraction]) -> tuple[Fraction | None, ...]:
     """The times of the parts with these numbers, None for the right one."""
-    entries = timed.entries[len(timed.kinds) :]
-    values = _values(entries, timed.printed.units, numbers)
-    times = dict(zip(timed.judged, values, strict=True))
-    return tuple(times.get(k) for k in range(len(timed.kinds)))
+    values = _values(table.entries[len(table.sizes) :], table.printed.units, numbers)
+    times = dict(zip(table.judged, values, strict=True))
+    return tuple(times.get(k) for k in range(len(table.parts)))
 
 
 def _values(

@@ -1,42 +1,40 @@
-"""A table of splitting coefficients as it is printed: of kicks and drifts, or of a composition."""
+"""A table of splitting coefficients as it is printed: of kicks and drifts, or of a composition.
 
-from collections.abc import Mapping, Sequence
+With it may stand its clocks: the times, in parts of h, at which its parts read H(p, q, t).
+"""
+
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from functools import cached_property
 
 import sympy
 
 from verify.arithmetic.number import E
 from verify.errors import InputError
-from verify.schemes.conditions.free_lie_words import (
-    KINDS,
-    MOST_ORDER,
-    LogCondition,
-    conditions,
-    majorant,
-    residue,
-    step,
-)
+from verify.schemes.conditions.free_lie_words import KINDS, MOST_ORDER, conditions
 from verify.schemes.conditions.splitting_conditions import LETTERS
+from verify.schemes.conditions.words.equations import WordEquation, residues_of
+from verify.schemes.conditions.words.kinetic import Kinetic
+from verify.schemes.conditions.words.step_words import PlainNumbers, StepWords
+from verify.schemes.conditions.words.words import STEPS
 from verify.schemes.printed.asked import Asked, Residues
-from verify.schemes.printed.judged import Judged, judge
-from verify.schemes.printed.printed_numbers import PrintedNumbers, power
-
-_ODD = (1, 3, 5, 7, 9)
+from verify.schemes.printed.printed_numbers import PrintedNumbers
 
 
 @dataclass(frozen=True)
 class PrintedTable:
     """`kind`: see `verify.schemes.conditions.free_lie_words`. `parts`: ("kick" or "drift", size) in
     the order in which they are made, or ("step", size) of a composition; sizes are formulas in
-    `numbers`, which are decimals as printed, or exact formulas of numbers. InputError for what is
-    none.
+    `numbers`, which are decimals as printed, or exact formulas of numbers. `times`: a text for each
+    part, None where it reads no time; none without time. `both`: whether T depends on time, too, so
+    that drifts are judged. InputError for what is none.
     """
 
     kind: str
     parts: tuple[tuple[str, str], ...]
     printed: PrintedNumbers
+    times: tuple[str | None, ...] = ()
+    both: bool = False
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
@@ -45,7 +43,7 @@ class PrintedTable:
         wrong = [name for name, _ in self.parts if name not in known]
         if wrong or not self.parts:
             raise InputError("parts", wrong, f"are {' or '.join(known)}, one at least")
-        _ = self.sizes, self.units
+        _ = self.sizes, self.printed.units
 
     @cached_property
     def sizes(self) -> tuple[sympy.Expr, ...]:
@@ -53,19 +51,34 @@ class PrintedTable:
         return tuple(self.printed.entry(size) for _, size in self.parts)
 
     @property
-    def units(self) -> dict[str, Fraction]:
-        """One unit of the last digit of each number that is rounded."""
-        return self.printed.units
+    def kinetic(self) -> Kinetic:
+        """The class of T that is claimed."""
+        if self.kind == "nystrom":
+            return Kinetic.MASS if self.both else Kinetic.QUADRATIC
+        return Kinetic.GENERAL if self.both else Kinetic.AUTONOMOUS
+
+    @cached_property
+    def judged(self) -> tuple[int, ...]:
+        """The parts whose times count."""
+        return tuple(
+            k
+            for k, time in enumerate(self.times)
+            if time is not None
+            and LETTERS[self.parts[k][0]] in self.kinetic.timed
+            and self.sizes[k] != 0
+        )
+
+    @cached_property
+    def entries(self) -> tuple[sympy.Expr, ...]:
+        """The sizes, and the times of the judged parts."""
+        told = (self.printed.entry(self.times[k] or "0", "times") for k in self.judged)
+        return (*self.sizes, *told)
 
     @property
-    def values(self) -> dict[str, Fraction]:
-        """The rounded numbers exactly as they are printed."""
-        return self.printed.values
-
-    @property
-    def digits(self) -> int:
-        """Decimals after the point of the number that has fewest."""
-        return self.printed.digits
+    def labels(self) -> tuple[str, ...]:
+        """What they are called."""
+        names = [f"{kind} {k + 1}" for k, (kind, _) in enumerate(self.parts)]
+        return (*names, *(f"time of {names[k]}" for k in self.judged))
 
     @property
     def palindromic(self) -> bool:
@@ -90,19 +103,25 @@ class PrintedTable:
         """The same with its numbers read so."""
         return replace(self, printed=numbers)
 
-    def letters(self, sizes: Sequence[E]) -> list[Mapping[str, E]]:
-        """The parts for `verify.schemes.conditions.free_lie_words.step`, with these sizes."""
-        if self.kind == "composition":
-            return [{str(n): power(x, n) for n in _ODD} for x in sizes]
-        names = (name for name, _ in self.parts)
-        return [{LETTERS[name]: x} for name, x in zip(names, sizes, strict=True)]
+    def residues(
+        self,
+        equations: Sequence[WordEquation],
+        sizes: Sequence[E],
+        one: E,
+        bound: bool,
+        times: Sequence[E] | None = None,
+    ) -> list[E]:
+        """Of conditions on words, with these sizes; without `times` on words without time."""
+        kinds = (LETTERS.get(kind, STEPS) for kind, _ in self.parts)
+        parts = zip(kinds, sizes, times or sizes, strict=True)
+        return residues_of(equations, StepWords(PlainNumbers(one), list(parts), bound))
 
     def sums_to_one(self, name: str) -> bool:
         """Whether the sizes of these parts have the sum 1, whatever the numbers are."""
         own = (x for (kind, _), x in zip(self.parts, self.sizes, strict=True) if kind == name)
         return bool(sympy.expand(sum(own, sympy.S.Zero) - 1) == 0)
 
-    def conditions(self, order: int) -> tuple[LogCondition, ...]:
+    def conditions(self, order: int) -> tuple[WordEquation, ...]:
         """The conditions of orders 1 … `order` that do not hold by the form of the table alone."""
         by_form = {"Σ kicks = 1": "kick", "Σ drifts = 1": "drift", "Σ w = 1": "step"}
         rational = all(size.is_Rational for size in self.sizes)
@@ -117,30 +136,19 @@ class PrintedTable:
         )
 
     def asked(self, order: int) -> Asked:
-        """The conditions of order `order`, and some beyond, which tell where it ends."""
-        highest = min(order + (1 if self.units else 2), self.most_order)
+        """The conditions of that order without time, and some beyond, which tell where it ends."""
+        highest = min(order + (1 if self.printed.units else 2), self.most_order)
         equations = self.conditions(highest)
 
         def some(rows: Sequence[int]) -> Residues:
             chosen = [equations[k] for k in rows]
-            most = max((c.order for c in chosen), default=1)
 
             def residues(entries: Sequence[E], one: E, bound: bool = False) -> list[E]:
-                series = step(self.kind, self.letters(entries), most, one)
-                return [(majorant if bound else residue)(series, c) for c in chosen]
+                return self.residues(chosen, entries, one, bound)
 
             return residues
 
         own = [c for c in equations if c.order <= order]
         by_form = len(conditions(self.kind, order)) - len(own)
-        labels = tuple(f"{name} {k + 1}" for k, (name, _) in enumerate(self.parts))
-        every = some(range(len(equations)))
+        labels, every = self.labels[: len(self.sizes)], some(range(len(equations)))
         return Asked(self.sizes, equations, every, by_form, labels=labels, some=some)
-
-
-def judge_order(table: PrintedTable, order: int) -> Judged:
-    """Whether the table can have that order. InputError where it cannot be looked at so far."""
-    if not 1 <= order <= table.most_order:
-        problem = f"of a {table.kind} is looked at up to {table.most_order}"
-        raise InputError("order", order, problem)
-    return judge(table.printed, table.asked(order), order)

@@ -52,10 +52,10 @@ def linear_stability(name: str) -> LinearStability:
     sizes = getattr(scheme.every_h, "nearby", None)
     if not isinstance(sizes, PrintedParts) or found.interval in (sympy.oo, 0):
         return found
-    tables = [timed.table for timed in sizes.tables]
-    limits = (_limit(scheme, found, sizes, table) for table in tables)
-    first = tables[0]
-    limit = next(filter(None, limits), None) or _known(first, first.values, _LEFT, Fraction(0))
+    limits = (_limit(scheme, found, sizes, table) for table in sizes.tables)
+    first = sizes.tables[0]
+    whole = first.printed.values
+    limit = next(filter(None, limits), None) or _known(first, whole, _LEFT, Fraction(0))
     return found if limit is None else replace(found, interval=limit)
 
 
@@ -118,7 +118,7 @@ def _known(
     value, radius = _end(table, numbers, narrow), Fraction(1, 10 ** (_DIGITS - 2))
     if value is None:
         return None
-    for name, unit in table.units.items():
+    for name, unit in table.printed.units.items():
         other = _end(table, {**numbers, name: numbers[name] + unit}, narrow)
         if other is None:
             return None
@@ -140,8 +140,8 @@ def _closed(table: PrintedTable, order: int, gaps: Sequence[Fraction]) -> Neares
     texts = {name: decimal(y, 12) for name, y in zip(names, gaps, strict=True)}
     numbers = AnyNumbers(
         {**table.printed.numbers, **texts},
-        {**table.values, **dict(zip(names, gaps, strict=True))},
-        {**table.units, **free},
+        {**table.printed.values, **dict(zip(names, gaps, strict=True))},
+        {**table.printed.units, **free},
     )
     ordered, count = table.asked(max(order, 1)), len(table.sizes)
     own = ordered.up_to(order)

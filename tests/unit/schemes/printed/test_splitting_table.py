@@ -9,10 +9,12 @@ import pytest
 from verify.audits.claims import claims_of
 from verify.audits.libraries import literature
 from verify.errors import InputError
-from verify.schemes.conditions.free_lie_words import KINDS, MOST_ORDER, conditions, residue, step
+from verify.schemes.conditions.free_lie_words import KINDS, MOST_ORDER, conditions
 from verify.schemes.conditions.splitting_conditions import Splitting
+from verify.schemes.conditions.words.step_words import PlainNumbers, StepWords
 from verify.schemes.printed.printed_numbers import PrintedNumbers, evaluated
-from verify.schemes.printed.splitting_table import PrintedTable, judge_order
+from verify.schemes.printed.splitting_order import judge_order
+from verify.schemes.printed.splitting_table import PrintedTable
 from verify.verdict import Verdict
 
 TABLES = {integrator.name: integrator for integrator in literature.integrators()}
@@ -124,7 +126,7 @@ def test_a_zero_that_a_copy_appends_is_a_wrong_digit() -> None:
     """Of Calvo and Sanz-Serna's 18 decimals some print 14 and some 15, the last of these a 0."""
     own = table("Calvo–Sanz-Serna 4")
     assert judge_order(own, 4).digits is True
-    short = {name: f"{float(x):.14f}" for name, x in own.values.items()}
+    short = {name: f"{float(x):.14f}" for name, x in own.printed.values.items()}
     assert judge_order(own.read(PrintedNumbers(short)), 4).digits is True
     assert (
         judge_order(own.read(PrintedNumbers({n: f"{x}0" for n, x in short.items()})), 4).digits
@@ -151,8 +153,10 @@ def test_two_prints_of_one_method_lead_to_the_same_coefficients() -> None:
     assert other.digits is True
     assert found.nearest is not None
     for k in range(1, 8):  # the one numbers them from the middle, the other from the end
-        assert abs(found.nearest[f"w{k}"] - long.values[f"w{8 - k}"]) < Fraction(2, 10**20)
-        assert abs(short.values[f"w{k}"] - long.values[f"w{8 - k}"]) < Fraction(1, 10**11)
+        assert abs(found.nearest[f"w{k}"] - long.printed.values[f"w{8 - k}"]) < Fraction(2, 10**20)
+        assert abs(short.printed.values[f"w{k}"] - long.printed.values[f"w{8 - k}"]) < Fraction(
+            1, 10**11
+        )
 
 
 def test_a_table_for_quadratic_kinetic_energy_is_refuted_for_every_other() -> None:
@@ -225,8 +229,8 @@ def test_orders_are_those_of_the_words_of_the_step_itself(sizes: tuple[str, ...]
 
 
 def test_the_logarithm_of_one_exponential_is_its_exponent() -> None:
-    series = step("splitting", [{"K": Fraction(1)}], 4, Fraction(1))
-    values = {c.name: residue(series, c) for c in conditions("splitting", 4)}
+    one = StepWords(PlainNumbers(Fraction(1)), [("K", Fraction(1), Fraction(0))])
+    values = {c.name: c.residue(one) for c in conditions("splitting", 4)}
     assert values.pop("Σ drifts = 1") == -1
     assert set(values.values()) == {0}
 
@@ -236,7 +240,7 @@ def test_the_logarithm_of_one_exponential_is_its_exponent() -> None:
 
 def _slope(name: str) -> float:
     """By how much one step's error on the pendulum shrinks when h is halved, as a power of 2."""
-    numbers = {n: float(x) for n, x in table(name).values.items()}
+    numbers = {n: float(x) for n, x in table(name).printed.values.items()}
     sizes = [evaluated(size, numbers, float) for size in table(name).sizes]
     parts = list(zip([kind for kind, _ in table(name).parts], sizes, strict=True))
 

@@ -23,7 +23,7 @@ def moments(name: str, letter: str, power: int) -> sympy.Expr:
         kind = {"p": "kick", "q": "drift"}[letter]
         weights = [size if part == kind else sympy.S.Zero for part, size in every_h.parts]
     else:
-        weights = conditions.tableau.parts[0 if letter == "p" else -1].weights  # type: ignore[attr-defined]
+        weights = conditions.tableau.parts[0 if letter == "p" else -1].weights  # type: ignore[union-attr]
     pairs = zip(weights, conditions.clock, strict=True)
     t0, h = sympy.Rational(T0), sympy.Rational(H)
     return sum((b * (t0 + c * h) ** power for b, c in pairs), sympy.S.Zero)

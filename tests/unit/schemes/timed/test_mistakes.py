@@ -7,9 +7,8 @@ import sympy
 
 from verify.schemes import get
 from verify.schemes.conditions.implicit_tableau import ImplicitTableau
+from verify.schemes.conditions.splitting_conditions import Splitting
 from verify.schemes.conditions.timed.mistakes import Reading, mistakes_of_splitting, name_of
-from verify.schemes.conditions.timed.splitting import TimedSplitting
-from verify.schemes.conditions.timed.tableau import TimedTableau
 from verify.schemes.conditions.words.kinetic import Kinetic
 
 R, ZERO, ONE, HALF = sympy.Rational, sympy.S.Zero, sympy.S.One, sympy.S.Half
@@ -27,7 +26,7 @@ def clocks(wanted):
 
 
 def named(times, kinetic=Kinetic.AUTONOMOUS, within=Fraction(0)):
-    return mistakes_of_splitting(TimedSplitting(PARTS, times, kinetic), within)
+    return mistakes_of_splitting(Splitting(PARTS, times, kinetic), within)
 
 
 @pytest.mark.parametrize(
@@ -73,9 +72,9 @@ RK4 = ImplicitTableau.of(
 
 
 def named_stages(clock=None):
-    numbers = TimedTableau.of(RK4, clock).numbers
-    ring, ((*weights,),) = numbers.ring, numbers.weights
-    right = [ring.reduce(sum(row, ring.zero)) for row in numbers.matrices[0]]
+    numbers = RK4.at_times(clock).numbers
+    ring, weights = numbers.ring, numbers.b
+    right = [ring.reduce(sum(row, ring.zero)) for row in numbers.a]
     before = [sum(weights[:k], ring.zero) for k in range(4)]
     stages = Reading(ring, "force", "stage", numbers.clock, right, before, [ring.one] * 4)
     return name_of(stages, Fraction(0))

@@ -14,8 +14,7 @@ from verify.schemes.conditions.coloured_trees import all_trees, equation_text, o
 from verify.schemes.conditions.every_hamiltonian import Stage, StageEquations
 from verify.schemes.conditions.implicit_tableau import ImplicitTableau
 from verify.schemes.conditions.timed.for_scheme import conditions_for
-from verify.schemes.conditions.timed.runge_kutta import TimedTrees
-from verify.schemes.conditions.timed.tableau import TimedTableau
+from verify.schemes.conditions.tree_conditions import TreeConditions
 from verify.schemes.conditions.words.kinetic import Kinetic
 
 R, F = sympy.Rational, Fraction
@@ -62,9 +61,9 @@ def by_series(rows, weights, clock, kind: str, most: int) -> int:
 @pytest.mark.parametrize("seed", range(20))
 def test_the_order_is_that_of_the_steps_series(seed: int) -> None:
     rows, weights, clock = drawn(seed)
-    tableau, most = TimedTableau.of(ImplicitTableau.of(rows, weights), clock), 4
+    tableau, most = ImplicitTableau.of(rows, weights).at_times(clock), 4
     for kinetic in (None, Kinetic.MASS, Kinetic.QUADRATIC):
-        found, _ = agreed_order(TimedTrees(tableau, kinetic), most - 2)
+        found, _ = agreed_order(TreeConditions(tableau, kinetic), most - 2)
         assert found == by_series(rows, weights, clock, CLASSES[kinetic], most), kinetic
 
 
@@ -72,8 +71,8 @@ def test_samples_have_several_orders() -> None:
     found = set()
     for seed in range(20):
         rows, weights, clock = drawn(seed)
-        tableau = TimedTableau.of(ImplicitTableau.of(rows, weights), clock)
-        found.add(agreed_order(TimedTrees(tableau), 2)[0])
+        tableau = ImplicitTableau.of(rows, weights).at_times(clock)
+        found.add(agreed_order(TreeConditions(tableau), 2)[0])
     assert {1, 2, 3, 4} <= found
 
 
@@ -94,19 +93,20 @@ def test_right_clocks_keep_the_order_and_frozen_ones_leave_1(name: str) -> None:
 def test_with_right_clocks_each_tree_with_leaves_of_time_holds(name: str) -> None:
     """What the argument says, tree by tree."""
     scheme = get(name)
-    weights = conditions_for(scheme.every_h).tableau.numbers.tree_weights
+    numbers = conditions_for(scheme.every_h).tableau.numbers
+    weights = numbers.tree_weights
     for n in range(1, scheme.order + 1):
-        assert all(weights.ring.decide(weights.gap(t)).zero for t in all_trees(TIMED, n))
+        assert all(numbers.ring.decide(weights.gap(t)).zero for t in all_trees(TIMED, n))
     assert not all(
-        weights.ring.decide(weights.gap(t)).zero for t in all_trees(TIMED, scheme.order + 1)
+        numbers.ring.decide(weights.gap(t)).zero for t in all_trees(TIMED, scheme.order + 1)
     )
 
 
 def test_one_stage_of_the_wrong_time_is_refuted_with_its_residue() -> None:
     rows, weights = TABLEAUS["rk4"]
     clock = [0, R(1, 2), R(1, 2), 1 + R(1, 10**6)]
-    tableau = TimedTableau.of(ImplicitTableau.of(rows, weights), clock)
-    order, wrong = agreed_order(TimedTrees(tableau), 4)
+    tableau = ImplicitTableau.of(rows, weights).at_times(clock)
+    order, wrong = agreed_order(TreeConditions(tableau), 4)
     assert (order, wrong.name, wrong.residue) == (1, "b·t = 1/2", "1.6667e-07")
 
 
@@ -134,6 +134,6 @@ def test_conditions_are_written_with_t_for_the_stages_times() -> None:
 def test_bad_input_is_refused() -> None:
     tableau = ImplicitTableau.of([[R(1, 2)]], [1])
     with pytest.raises(ValueError, match="as many stages"):
-        TimedTableau.of(tableau, [0, 1])
+        tableau.at_times([0, 1])
     with pytest.raises(InputError, match="up to 8"):
-        TimedTrees(TimedTableau.of(tableau, [0])).order_conditions(9)
+        TreeConditions(tableau.at_times([0])).order_conditions(9)

@@ -15,7 +15,6 @@ from verify.schemes import get
 from verify.schemes.conditions.free_lie_words import conditions as plain_conditions
 from verify.schemes.conditions.splitting_conditions import Splitting
 from verify.schemes.conditions.timed.for_scheme import conditions_for
-from verify.schemes.conditions.timed.splitting import TimedSplitting
 from verify.schemes.conditions.words.kinetic import Kinetic
 from verify.schemes.conditions.words.quadratic import combinations
 from verify.schemes.conditions.words.words import joined, lyndon, text, words
@@ -33,7 +32,7 @@ def order_of(parts, kinetic: Kinetic, most: int) -> int:
     """By conditions, of (kind, size, time)."""
     sizes = tuple((kind, R(a.numerator, a.denominator)) for kind, a, _ in parts)
     clock = tuple(R(s.numerator, s.denominator) for *_, s in parts)
-    return agreed_order(TimedSplitting(sizes, clock, kinetic), most - 2)[0]
+    return agreed_order(Splitting(sizes, clock, kinetic), most - 2)[0]
 
 
 def order_by_series(parts, kinetic: Kinetic, most: int) -> int:
@@ -122,8 +121,7 @@ def test_with_right_clocks_every_splitting_keeps_its_order(name: str) -> None:
     for kinetic in Kinetic:
         found, _ = agreed_order(conditions_for(scheme.every_h, kinetic), scheme.order)
         assert found == scheme.order
-    written = TimedSplitting(scheme.every_h.parts, tuple(scheme.every_h.times) or
-                             (None,) * len(scheme.every_h.parts))  # fmt: skip
+    written = scheme.every_h.in_time()
     assert written.clocks_are_right
     assert written.order_conditions(scheme.order) == scheme.every_h.order_conditions(scheme.order)
 
@@ -132,7 +130,7 @@ def test_with_right_clocks_every_splitting_keeps_its_order(name: str) -> None:
 def test_the_full_conditions_hold_where_clocks_are_right(name: str, monkeypatch) -> None:
     """What the argument says, condition by condition: without the way that it allows."""
     scheme = get(name)
-    monkeypatch.setattr(TimedSplitting, "clocks_are_right", False)
+    monkeypatch.setattr(Splitting, "clocks_are_right", False)
     for kinetic in Kinetic:
         found = conditions_for(scheme.every_h, kinetic).order_conditions(scheme.order)
         assert all(c.holds for c in found)
@@ -142,7 +140,7 @@ def test_the_full_conditions_hold_where_clocks_are_right(name: str, monkeypatch)
 @pytest.mark.parametrize("name", SPLITTINGS)
 def test_a_frozen_clock_leaves_order_1(name: str) -> None:
     parts = tuple(parts_of(name))
-    frozen = TimedSplitting(parts, (sympy.S.Zero,) * len(parts), Kinetic.QUADRATIC)
+    frozen = Splitting(parts, (sympy.S.Zero,) * len(parts), Kinetic.QUADRATIC)
     order, wrong = agreed_order(frozen, 4)
     assert order == 1
     if get(name).order > 1:
@@ -157,7 +155,7 @@ def test_a_drifts_time_is_judged_only_where_t_depends_on_time() -> None:
     clock = [R(str(s)) for s in right_times(OTHER)]
     both = zip(parts, clock, strict=True)
     wrong = tuple(s + 3 if kind == "drift" else s for (kind, _), s in both)
-    orders = {k: agreed_order(TimedSplitting(parts, wrong, k), 2)[0] for k in Kinetic}
+    orders = {k: agreed_order(Splitting(parts, wrong, k), 2)[0] for k in Kinetic}
     assert orders == {
         Kinetic.GENERAL: 1, Kinetic.MASS: 1, Kinetic.AUTONOMOUS: 2, Kinetic.QUADRATIC: 2,
     }  # fmt: skip
@@ -173,7 +171,7 @@ def test_mclachlan_and_atela_lose_an_order_where_the_mass_depends_on_time() -> N
     parts = tuple((("kick", "drift")[k % 2], R(x)) for k, x in enumerate(NYSTROM))
     largest = {}
     for kinetic in Kinetic:
-        found = TimedSplitting(parts, (None,) * 8, kinetic).order_conditions(5)
+        found = Splitting(parts, (None,) * 8, kinetic).order_conditions(5)
         largest[kinetic] = [
             max(abs(float(c.residue)) for c in found if c.order == n) for n in range(1, 6)
         ]
@@ -278,8 +276,8 @@ def test_kicks_commute_so_that_no_word_of_kicks_alone_counts() -> None:
 
 def test_bad_input_is_refused() -> None:
     with pytest.raises(InputError, match=r"^order=9"):
-        TimedSplitting((("kick", R(1)),), (None,)).order_conditions(9)
+        Splitting((("kick", R(1)),), (None,), Kinetic.GENERAL).order_conditions(9)
     with pytest.raises(ValueError, match="2 times of 1 parts"):
-        TimedSplitting((("kick", R(1)),), (None, None))
+        Splitting((("kick", R(1)),), (None, None))
     with pytest.raises(InputError, match="not given by coefficients"):
         conditions_for(get("lie2").every_h)

@@ -26,8 +26,8 @@ from verify.prose import prose
 from verify.schemes.printed.asked import Asked, Named, of_pairs
 from verify.schemes.printed.judged import Judged, judge
 from verify.schemes.printed.naming import MOST_ENTRIES, Naming
-from verify.schemes.printed.splitting_table import PrintedTable, judge_order
-from verify.schemes.printed.timed_table import TimedTable, judge_clocks, judge_in_time
+from verify.schemes.printed.splitting_order import judge_clocks, judge_order
+from verify.schemes.printed.splitting_table import PrintedTable
 from verify.verdict import Verdict
 
 _EXCHANGED = {"kick": "drift", "drift": "kick"}
@@ -190,7 +190,7 @@ def of_table(
         order = order or order_claim.verdict
         yield order_claim
     if times is not None and entry.order is not None:
-        timed = TimedTable(table, times, depends == "T and V")
+        timed = replace(table, times=times, both=depends == "T and V")
         yield from _in_time(timed, entry.order, order is Verdict.REFUTED, hints)
     if entry.symplectic:
         said = _OF_KICKS if isinstance(entry, AlternatingEntry) else _OF_STEPS
@@ -224,12 +224,12 @@ def _following(table: PrintedTable, order: int) -> Asked:
     return Asked(whole.entries, tuple(whole.equations[k] for k in places), whole.some(places))
 
 
-def _in_time(timed: TimedTable, order: int, refuted: bool, hints: Hints) -> Iterator[TableClaim]:
+def _in_time(timed: PrintedTable, order: int, refuted: bool, hints: Hints) -> Iterator[TableClaim]:
     """`refuted`: whether the order is without time."""
     what = "T and V depend" if timed.both else "V depends"
     statement = f"order {order}, too, where {what} on time"
     right = hints.kept(best_reading(timed, judge_clocks))
-    found = hints.kept(best_reading(timed, lambda x: judge_in_time(x, order)))
+    found = hints.kept(best_reading(timed, lambda x: judge_order(x, order)))
     wrong_clock = right.verdict is Verdict.REFUTED or not refuted
     severity = Severity.WRONG_CLOCK if wrong_clock else Severity.WRONG_ORDER
     claim = next(order_claims("order in time", statement, found, order, severity=severity))

@@ -104,7 +104,7 @@ def row_sums_asked(table: TableauTable, crossed: tuple[bool, ...] = ()) -> Asked
 
 def judge_row_sums(table: TableauTable) -> Judged:
     """Whether the times are row sums: where there are two parts, of p' and of q', those of either
-    one, since time may go with each (`verify.schemes.conditions.timed.tableau`)."""
+    one, since time may go with each (`verify.schemes.conditions.implicit_tableau`)."""
     either = list(product((False, True), repeat=2)) if "_p" in table.names else [()]
     found = [judge(table.printed, row_sums_asked(table, crossed), 1) for crossed in either]
     return next((x for x in found if x.holds), found[0])

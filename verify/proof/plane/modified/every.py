@@ -39,11 +39,12 @@ from verify.schemes.conditions.coloured_trees import symmetry
 from verify.schemes.conditions.condition import ByConditions
 from verify.schemes.conditions.elementary_differentials import Differentials
 from verify.schemes.conditions.every_hamiltonian import BySeries
-from verify.schemes.conditions.free_lie_words import of_logarithm, words
 from verify.schemes.conditions.splitting_conditions import LETTERS, Splitting
 from verify.schemes.conditions.tree_conditions import TreeConditions, trees
+from verify.schemes.conditions.words.words import words
 from verify.schemes.maps.step_map import solvable
 from verify.schemes.steps.defect import of_flow
+from verify.structures import AREA
 
 _KICK, _DRIFT = LETTERS["kick"], LETTERS["drift"]
 Sum = dict[tuple[int, ...], Poly]  # numbers by monomials of the jets
@@ -62,13 +63,13 @@ class Logarithm:
 
     def __init__(self, splitting: Splitting, most: int) -> None:
         self.ring, _ = splitting.numbers
-        named = {word: tuple((letter, 0) for letter in word) for word in words("splitting", most)}
-        splitting.words.prepare(named.values())
-        self._step = {word: splitting.words.coefficient(x) for word, x in named.items()}
+        self._words = splitting.words
+        self._words.prepare(word for n in range(most + 1) for word in words("", n))
 
     def of(self, word: str) -> Poly:
         """c_w."""
-        return self.ring.reduce(of_logarithm(self._step, word))
+        found: Poly = self._words.logarithm(tuple((letter, 0) for letter in word))
+        return found
 
     def energy(self, jets: Jets, n: int) -> Sum:
         """H_n, the coefficient of h^(n−1) in H̃, n ≥ 2: numbers by monomials of the jets."""
@@ -158,7 +159,7 @@ def modified_for_every(name: str, order: int, separable: bool = False) -> Modifi
         raise InputError("scheme", name, problem)
     separable = separable or every_h.separable
     series, told = _series_of(every_h), _SEPARABLE if separable else _EVERY
-    where = EVERYWHERE if scheme.explicit else Domain.of((), solvable(planar=True))
+    where = EVERYWHERE if scheme.explicit else Domain.of((), solvable(AREA))
     if isinstance(every_h, Splitting) and series is None:
         terms = tuple(terms_of_splitting(every_h, order))
         area = all(c.holds is True for c in every_h.area_conditions())

@@ -8,73 +8,58 @@ coefficients of which to ask: its order is that of the series, with D = ∂_t + 
 """
 
 from collections.abc import Sequence
-from functools import singledispatch
-from typing import Protocol
+from dataclasses import replace
+from fractions import Fraction
 
 import sympy
 
 from verify.errors import InputError
-from verify.schemes.conditions.condition import ByConditions
 from verify.schemes.conditions.every_hamiltonian import RungeKutta, StageEquations
+from verify.schemes.conditions.implicit_tableau import ImplicitTableau
 from verify.schemes.conditions.splitting_conditions import Splitting
-from verify.schemes.conditions.timed.runge_kutta import TimedTrees
-from verify.schemes.conditions.timed.splitting import TimedSplitting
-from verify.schemes.conditions.timed.tableau import TimedTableau
 from verify.schemes.conditions.tree_conditions import TreeConditions
 from verify.schemes.conditions.words.kinetic import Kinetic
 
-Times = Sequence[sympy.Expr | None] | None
 
-
-class TimedConditions(ByConditions, Protocol):
-    """Those of a scheme whose parts or stages have times."""
-
-    @property
-    def clock(self) -> list[sympy.Expr]:
-        """The time of each, in parts of h."""
-        ...
-
-
-@singledispatch
 def conditions_for(
-    every_h: object, kinetic: Kinetic | None = None, times: Times = None
-) -> TimedConditions:
+    every_h: object,
+    kinetic: Kinetic | None = None,
+    times: Sequence[sympy.Expr | int | None] = (),
+) -> Splitting | TreeConditions:
     """Of `Scheme.every_h`, for every H = T + V(q, t) with T of the class.
 
     `kinetic` None: for every H(p, q, t) that the scheme takes. `times`: of each part, or of each
     stage, as parts of h; None for the right one, and without them those of the scheme itself.
     Raises InputError for what has no coefficients.
     """
-    raise InputError("scheme", type(every_h).__name__, "is not given by coefficients")
+    if isinstance(every_h, Splitting):
+        return every_h.in_time(kinetic, tuple(times))
+    if isinstance(every_h, TreeConditions):
+        tableau = every_h.tableau
+    elif isinstance(every_h, RungeKutta):
+        count = len(every_h.weights)
+        rows = [[*row, *[0] * (count - len(row))] for row in every_h.rows]
+        tableau = ImplicitTableau.of(rows, every_h.weights)
+    elif isinstance(every_h, StageEquations):
+        tableau = _of_stages(every_h)
+    else:
+        raise InputError("scheme", type(every_h).__name__, "is not given by coefficients")
+    of_all = Kinetic.GENERAL if every_h.separable else None
+    return TreeConditions(tableau.at_times(times or None), kinetic or of_all)
 
 
-@conditions_for.register
-def _(every_h: Splitting, kinetic: Kinetic | None = None, times: Times = None) -> TimedConditions:
-    own = times or every_h.times or (None,) * len(every_h.parts)
-    near = every_h.nearby_at(own)
-    return TimedSplitting(every_h.parts, tuple(own), kinetic or Kinetic.GENERAL, near)
+def _of_stages(equations: StageEquations) -> ImplicitTableau:
+    """Stages that are made one after the other; one part where p and q are alike in them."""
+    of_p = _one_after_the_other([(s.kick, s.at_p) for s in equations.stages])
+    of_q = _one_after_the_other([(s.drift, s.at_q) for s in equations.stages])
+    return of_p if of_p == of_q else replace(of_p, of_q=of_q)
 
 
-@conditions_for.register
-def _(
-    every_h: TreeConditions, kinetic: Kinetic | None = None, times: Times = None
-) -> TimedConditions:
-    return TimedTrees(TimedTableau.of(every_h.tableau, times), _class(every_h.separable, kinetic))
-
-
-@conditions_for.register
-def _(every_h: RungeKutta, kinetic: Kinetic | None = None, times: Times = None) -> TimedConditions:
-    tableau = TimedTableau.of_explicit(every_h, times)
-    return TimedTrees(tableau, _class(every_h.separable, kinetic))
-
-
-@conditions_for.register
-def _(
-    every_h: StageEquations, kinetic: Kinetic | None = None, times: Times = None
-) -> TimedConditions:
-    tableau = TimedTableau.of_stages(every_h, times)
-    return TimedTrees(tableau, _class(every_h.separable, kinetic))
-
-
-def _class(separable: bool, kinetic: Kinetic | None) -> Kinetic | None:
-    return kinetic or (Kinetic.GENERAL if separable else None)
+def _one_after_the_other(stages: Sequence[tuple[Fraction, Fraction]]) -> ImplicitTableau:
+    """z_i = z_(i−1) + h b_i f(z_(i−1) + at_i (z_i − z_(i−1)))."""
+    weights = [weight for weight, _ in stages]
+    rows = [
+        [*weights[:i], at * weight, *[0] * (len(stages) - i - 1)]
+        for i, (weight, at) in enumerate(stages)
+    ]
+    return ImplicitTableau.of(rows, weights)

@@ -7,13 +7,12 @@ mistake that is made in practice. Where all those that are read are the same, th
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import accumulate
 
 import flint
 
 from verify.algebra.enclosure import enclosed
 from verify.algebra.ring import Poly, Ring
-from verify.schemes.conditions.timed.splitting import TimedSplitting
+from verify.schemes.conditions.splitting_conditions import Splitting, sums_before
 
 _PRECISION = 192
 
@@ -35,7 +34,7 @@ class Reading:
     sizes: Sequence[Poly]
 
 
-def mistakes_of_splitting(splitting: TimedSplitting, within: Fraction = Fraction(0)) -> list[str]:
+def mistakes_of_splitting(splitting: Splitting, within: Fraction = Fraction(0)) -> list[str]:
     """Of the kicks and, where their time counts, of the drifts: what each does, in words.
 
     `within`: how far two times may differ, 0 for exactly; as for clocks that were measured. Empty
@@ -45,19 +44,16 @@ def mistakes_of_splitting(splitting: TimedSplitting, within: Fraction = Fraction
     return [name for name in found if name is not None]
 
 
-def _of_parts(splitting: TimedSplitting) -> Iterator[Reading]:
+def _of_parts(splitting: Splitting) -> Iterator[Reading]:
     ring, parts = splitting.numbers
     for letter, what, where in (("K", "force", "kick"), ("D", "velocity", "drift")):
-        if letter in splitting.kinetic.timed:
+        if splitting.kinetic and letter in splitting.kinetic.timed:
             both = list(zip(parts, splitting.right, strict=True))
             sizes = [size for (kind, size, _), _ in both if kind == letter]
             times = [time for (kind, _, time), _ in both if kind == letter]
             clocks = [clock for (kind, *_), clock in both if kind == letter]
-            yield Reading(ring, what, where, times, clocks, _before(ring, sizes), sizes)
-
-
-def _before(ring: Ring, sizes: Sequence[Poly]) -> list[Poly]:
-    return [ring.reduce(x) for x in accumulate(sizes, initial=ring.zero)][:-1]
+            own = sums_before([(letter, size) for size in sizes], ring.zero, own=True)
+            yield Reading(ring, what, where, times, clocks, own, sizes)
 
 
 def name_of(reading: Reading, within: Fraction) -> str | None:

@@ -1,12 +1,13 @@
 """Conditions on a step's coefficients of words, as they can be asked over any numbers.
 
-See `verify.schemes.conditions.timed.splitting`, which decides them in a ring.
+See `verify.schemes.conditions.splitting_conditions`, which decides them in a ring.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache
-from typing import Any
+from functools import cache, lru_cache
+from typing import Any, Literal
 
 from verify.schemes.conditions.words.kinetic import Kinetic
 from verify.schemes.conditions.words.quadratic import Combination, combinations
@@ -17,19 +18,19 @@ _PLAIN = 3  # the weight up to which a quadratic T asks for as much as any T
 
 
 @dataclass(frozen=True)
-class TimedEquation:
-    """Of one word's coefficient in the step, or of a combination of some in its generator."""
+class WordEquation:
+    """Of a combination of words' coefficients `of` the step, its generator or its logarithm."""
 
     name: str
     order: int
     terms: Combination
     value: Fraction
-    of_generator: bool
+    of: Literal["step", "generator", "logarithm"] = "step"
 
     @property
     def needed(self) -> frozenset[Word]:
         """The words whose coefficients are to be prepared."""
-        if not self.of_generator:
+        if self.of == "step":
             return frozenset(word for _, word in self.terms)
         return frozenset(x for _, word in self.terms for x in factors(word))
 
@@ -37,37 +38,43 @@ class TimedEquation:
         """Left side − right side; with every sign plus where the step's numbers are bounds."""
         one = words.ring.one * self.value.numerator / self.value.denominator
         total = one if words.bound else -one
+        made = {"generator": words.generator, "logarithm": words.logarithm}
+        coefficient = made.get(self.of, words.coefficient)
         for n, word in self.terms:
-            own = words.generator(word) if self.of_generator else words.coefficient(word)
-            total += own * (abs(n) if words.bound else n)
+            total += coefficient(word) * (abs(n) if words.bound else n)
         return total
 
 
+def residues_of(equations: Sequence[WordEquation], words: StepWords) -> list[Any]:
+    """All of them, their words made together."""
+    words.prepare(_needed(tuple(equations)))
+    return [each.residue(words) for each in equations]
+
+
+@lru_cache(maxsize=256)
+def _needed(equations: tuple[WordEquation, ...]) -> frozenset[Word]:
+    return frozenset(word for each in equations for word in each.needed)
+
+
 @cache
-def equations_of(kinetic: Kinetic, n: int) -> tuple[TimedEquation, ...]:
-    """Those of weight n for every V and every T of the class."""
-    if kinetic.quadratic and n > _PLAIN:
+def equations_of(kinetic: Kinetic | None, n: int) -> tuple[WordEquation, ...]:
+    """Those of weight n for every V and every T of the class; None: without time."""
+    if kinetic is not None and kinetic.quadratic and n > _PLAIN:
         return tuple(map(_of_generator, combinations(kinetic.timed, n)))
-    return equations_of_words(kinetic.timed, n)
+    return tuple(map(_of_word, lyndon(kinetic.timed if kinetic else "", n)))
 
 
-@cache
-def equations_of_words(kinds: str, n: int) -> tuple[TimedEquation, ...]:
-    """Those of weight n for every V and T; `kinds`: the letters whose time counts, "" for none."""
-    return tuple(map(_of_word, lyndon(kinds, n)))
-
-
-def _of_word(word: Word) -> TimedEquation:
+def _of_word(word: Word) -> WordEquation:
     flow = of_the_flow(word)
-    return TimedEquation(_equation(word, flow), weight(word), ((1, word),), flow, False)
+    return WordEquation(_equation(word, flow), weight(word), ((1, word),), flow)
 
 
-def _of_generator(row: Combination) -> TimedEquation:
+def _of_generator(row: Combination) -> WordEquation:
     # Of the exact flow the generator has each letter once, and no longer word.
     value = sum(n for n, word in row if len(word) == 1)
     name = " + ".join(text(w) if n == 1 else f"({n}) {text(w)}" for n, w in row)
     name = f"coefficient of {name} in the generator = {value}"
-    return TimedEquation(name, weight(row[0][1]), row, Fraction(value), True)
+    return WordEquation(name, weight(row[0][1]), row, Fraction(value), "generator")
 
 
 def _equation(word: Word, flow: Fraction) -> str:

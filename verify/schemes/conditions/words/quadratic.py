@@ -9,7 +9,7 @@ with it everywhere, those of D as the powers of the m_n and those of K as the fu
 is linear algebra among the words of the same letters.
 """
 
-from collections import Counter, defaultdict
+from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -17,11 +17,11 @@ from math import lcm
 
 import flint
 
-from verify.schemes.conditions.words.words import Letter, Word, joined, lyndon
+from verify.algebra.series.jets import JetsInDegrees, Poly
+from verify.schemes.conditions.words.words import Letter, Word, bracket, lyndon
 
 Combination = tuple[tuple[int, Word], ...]
-Hamiltonian = flint.fmpq_mpoly
-_MOST = 8  # functions V_n, and as many derivatives of each
+_MOST = 8  # the weight of words
 
 
 @cache
@@ -59,23 +59,18 @@ class _Bracket:
     """Of letters: its words, each with its coefficient, and its Hamiltonian."""
 
     words: Mapping[Word, int]
-    hamiltonian: Hamiltonian
+    hamiltonian: Poly
 
     def with_letter(self, letter: Letter) -> "_Bracket":
         """[letter, this one]."""
-        words = Counter[Word]()
-        for word, n in self.words.items():
-            words[joined((letter,), word)] += n
-            words[joined(word, (letter,))] -= n
-        left = {word: n for word, n in words.items() if n}
-        return _Bracket(left, _field().bracket(letter, self.hamiltonian))
+        return _Bracket(bracket(letter, self.words), _poisson(letter, self.hamiltonian))
 
 
 @cache
 def _brackets(letters: Word) -> tuple[_Bracket, ...]:
     """A basis of the brackets of these letters, each of them as often as it is there."""
     if len(letters) == 1:
-        return (_Bracket({letters: 1}, _field().of_letter(letters[0])),)
+        return (_Bracket({letters: 1}, _of_letter(letters[0])),)
     spanning = []
     for letter in dict.fromkeys(letters):
         others = list(letters)
@@ -90,38 +85,20 @@ def _brackets(letters: Word) -> tuple[_Bracket, ...]:
     return tuple(spanning[next(j for j in columns if reduced[i, j])] for i in range(rank))
 
 
-class _Field:
-    """Polynomials in p and in the derivatives V_n⁽ᵏ⁾ of functions of q."""
+def _of_letter(letter: Letter) -> Poly:
+    """Its Hamiltonian, in jets: those of ∂_q ∂_tⁿ V by q are as free as those of V_n."""
+    kind, n = letter
+    return _jets().variable("p") ** 2 / 2 if kind == "D" else _jets().of((0, 1, n))
 
-    def __init__(self) -> None:
-        indices = [(n, k) for n in range(_MOST) for k in range(_MOST + 1)]
-        names = ["p", *(f"V{n}_{k}" for n, k in indices)]
-        self.context = flint.fmpq_mpoly_ctx.get(names, flint.Ordering.degrevlex)
-        self.p, *self.functions = self.context.gens()
 
-    def of_letter(self, letter: Letter) -> Hamiltonian:
-        kind, n = letter
-        return self.p**2 / 2 if kind == "D" else self.v(n, 0)
-
-    def v(self, n: int, k: int) -> Hamiltonian:
-        return self.functions[n * (_MOST + 1) + k]
-
-    def bracket(self, letter: Letter, x: Hamiltonian) -> Hamiltonian:
-        """{letter, x} with {a, b} = a_p b_q − a_q b_p."""
-        kind, n = letter
-        if kind == "K":
-            return -self.v(n, 1) * x.derivative(0)
-        return self.p * self._along_q(x)
-
-    def _along_q(self, x: Hamiltonian) -> Hamiltonian:
-        total = self.context.constant(0)
-        for at, degree in enumerate(x.degrees()[1:]):
-            if degree > 0:
-                n, k = divmod(at, _MOST + 1)
-                total += x.derivative(at + 1) * self.v(n, k + 1)
-        return total
+def _poisson(letter: Letter, x: Poly) -> Poly:
+    """{letter, x} with {a, b} = a_p b_q − a_q b_p."""
+    kind, n = letter
+    if kind == "K":
+        return -_jets().of((0, 2, n)) * x.derivative(0)
+    return _jets().variable("p") * _jets().diff(x, "q")
 
 
 @cache
-def _field() -> _Field:
-    return _Field()
+def _jets() -> JetsInDegrees:
+    return JetsInDegrees(("p", "q"), _MOST, separable=True, timed=True)

@@ -7,16 +7,22 @@ the flow up to h^r where G has no other terms of weights up to r; and where some
 vanish, where the others' coefficients in G do. Of a word G has
 
     G(w) = weight(w) S(w) − Σ S(u) G(v), over w = u v with neither empty.
+
+A composition of symmetric steps of sizes a is Π exp(a Y_1 + a³ Y_3 + …): the same with s = a, and
+with letters that do not commute.
 """
 
-from collections import Counter
 from collections.abc import Iterable, Sequence
-from functools import cache
+from dataclasses import dataclass
+from functools import cache, lru_cache
 from typing import Any, Protocol
 
-from verify.schemes.conditions.words.words import Letter, Word, cuts, endings, weight
+from verify.schemes.conditions.words.words import Word, cuts, endings, weight
 
-TimedPart = tuple[str, Any, Any]  # "K" or "D", what part of h it takes, and at what part its time
+# The kinds of its letters, "K" or "D", what part of h it takes, and at what part its time; of steps
+# `STEPS`, and the size twice.
+TimedPart = tuple[str, Any, Any]
+Heads = tuple[tuple[int, int], ...]  # places of heads and of their tails
 
 
 class Numbers(Protocol):
@@ -28,6 +34,26 @@ class Numbers(Protocol):
     def one(self) -> Any: ...
     def reduce(self, x: Any) -> Any: ...
     def multiply(self, x: Any, y: Any) -> Any: ...
+
+
+@dataclass(frozen=True)
+class PlainNumbers:
+    """Numbers that need no reduction."""
+
+    one: Any
+
+    @property
+    def zero(self) -> Any:
+        """0."""
+        return self.one * 0
+
+    def reduce(self, x: Any) -> Any:
+        """x itself."""
+        return x
+
+    def multiply(self, x: Any, y: Any) -> Any:
+        """The product."""
+        return x * y
 
 
 class StepWords:
@@ -46,22 +72,23 @@ class StepWords:
 
     def prepare(self, words: Iterable[Word]) -> None:
         """All of their heads are found in one passage over the parts."""
-        ring, needed = self.ring, sorted(_with_heads(words), key=len, reverse=True)
-        if all(word in self._known for word in needed):
+        asked = frozenset(words)
+        if asked <= self._known.keys():
             return
-        reached = dict.fromkeys(needed, ring.zero)
-        reached[()] = ring.one
-        for kind, size, time in self.parts:
-            shares = _Shares(ring, size, time)
-            for word in needed:  # a head is shorter, and is not yet this part's
-                if word and word[-1][0] == kind:
-                    total = reached[word]
-                    for head, tail in endings(word):
-                        before = reached[head]
-                        if not _is_zero(before):
-                            total += shares.of(tail) * before
-                    reached[word] = ring.reduce(total)
-        self._known |= reached
+        ring, plan = self.ring, _planned(asked, frozenset(kinds for kinds, *_ in self.parts))
+        reached: list[Any] = [None if word else ring.one for word in plan.words]
+        for kinds, size, time in self.parts:
+            shares = _shares(ring, plan.tails[kinds], len(kinds) == 1, size, time)
+            for place, heads in plan.heads[kinds]:  # a head is shorter, and is not yet this part's
+                total = reached[place]
+                for head, tail in heads:
+                    before = reached[head]
+                    if before is not None:
+                        term = shares[tail] * before
+                        total = term if total is None else total + term
+                reached[place] = None if total is None else ring.reduce(total)
+        values = (ring.zero if x is None else x for x in reached)
+        self._known |= dict(zip(plan.words, values, strict=True))
 
     def generator(self, word: Word) -> Any:
         """The word's in G."""
@@ -73,21 +100,25 @@ class StepWords:
             self._generated[word] = self.ring.reduce(total)
         return self._generated[word]
 
-
-def _is_zero(x: Any) -> bool:
-    """Of a ball around 0 it is not known, and neither x == 0 nor x != 0 holds."""
-    return bool(x == 0)
-
-
-def _with_heads(words: Iterable[Word]) -> set[Word]:
-    found = {(), *words}
-    left = list(found)
-    while left:
-        word = left.pop()
-        more = {head for head, _ in endings(word)} - found if word else set()
-        found |= more
-        left += more
-    return found
+    def logarithm(self, word: Word) -> Any:
+        """The word's in log S, of letters without time: Σ (−1)^(k+1)/k over its cuts into k
+        pieces."""
+        size, sign = len(word), 1 if self.bound else -1
+        reached: list[Any] = [self.ring.one, *[None] * size]
+        total = self.ring.zero
+        for pieces in range(1, size + 1):
+            after: list[Any] = [None] * (size + 1)
+            for end in range(pieces, size + 1):
+                made = [
+                    before * self.coefficient(word[begin:end])
+                    for begin, before in enumerate(reached[:end])
+                    if before is not None
+                ]
+                after[end] = sum(made[1:], made[0]) if made else None
+            reached = after
+            if reached[size] is not None:
+                total = total + reached[size] * (self.ring.one * sign ** (pieces + 1) / pieces)
+        return self.ring.reduce(total)
 
 
 @cache
@@ -97,26 +128,65 @@ def factors(word: Word) -> frozenset[Word]:
     return frozenset(x for tail in tails for x in (tail, *(head for head, _ in cuts(tail))))
 
 
-class _Shares:
-    """The coefficients of exp(a Σ sⁿ X_n): Π aᵐ s^(n m)/m! of letters X_n, m times each."""
+# -- one passage over the parts -------------------------------------------------------------------
 
-    def __init__(self, ring: Numbers, size: Any, time: Any) -> None:
-        self.ring, self.size, self.time = ring, size, time
-        self._known: dict[tuple[Letter, ...], Any] = {}
 
-    def of(self, run: Word) -> Any:
-        if run not in self._known:
-            total = self.ring.one
-            for (_, n), many in Counter(run).items():
-                one = self.size if n == 0 else self.ring.multiply(self.size, self._power(n))
-                for k in range(1, many + 1):
-                    total = self.ring.multiply(total, one) / k
-            self._known[run] = total
-        return self._known[run]
+@dataclass(frozen=True)
+class _Plan:
+    """`words`: those asked for and their heads, the longest first; by the kinds of a part's letters
+    `tails`, each after its own head, and `heads`: the places of words that end in such letters,
+    with those of heads and of tails."""
 
-    def _power(self, n: int) -> Any:
-        """By products: of a ball with 0 in it powers may be undefined."""
-        total = self.time
-        for _ in range(n - 1):
-            total = self.ring.multiply(total, self.time)
-        return total
+    words: tuple[Word, ...]
+    tails: dict[str, tuple[Word, ...]]
+    heads: dict[str, tuple[tuple[int, Heads], ...]]
+
+
+@lru_cache(maxsize=256)
+def _planned(asked: frozenset[Word], kinds: frozenset[str]) -> _Plan:
+    needed, left = {(), *asked}, list(asked)
+    while left:
+        word = left.pop()
+        more = {head for own in kinds for head, _ in _ended(word, own)} - needed
+        needed |= more
+        left += more
+    words = tuple(sorted(needed, key=len, reverse=True))
+    places = {word: k for k, word in enumerate(words)}
+    tails, heads = {}, {}
+    for own in kinds:
+        ended = {word: _ended(word, own) for word in words}
+        found = {
+            tail[:n] for each in ended.values() for _, tail in each for n in range(1, len(tail) + 1)
+        }
+        tails[own] = tuple(sorted(found, key=len))
+        at = {tail: k for k, tail in enumerate(tails[own])}
+        heads[own] = tuple(
+            (places[word], tuple((places[head], at[tail]) for head, tail in each))
+            for word, each in ended.items()
+            if each
+        )
+    return _Plan(words, tails, heads)
+
+
+@cache
+def _ended(word: Word, kinds: str) -> tuple[tuple[Word, Word], ...]:
+    """(head, tail) for each tail, not empty, in letters of these kinds."""
+    if len(kinds) == 1:
+        return endings(word) if word and word[-1][0] == kinds else ()
+    return tuple((word[:k], word[k:]) for k in reversed(range(len(word))))
+
+
+def _shares(ring: Numbers, tails: Sequence[Word], commute: bool, size: Any, time: Any) -> list[Any]:
+    """The coefficients of exp(a Σ sⁿ X_n): Π a sⁿ, less what its orders count, m! of m letters; of
+    those that commute m! of each alone."""
+    powers = [size]
+    for _ in range(max((n for tail in tails for _, n in tail), default=0)):
+        powers.append(ring.multiply(powers[-1], time))
+    found: dict[Word, Any] = {}
+    for tail in tails:
+        share = powers[tail[-1][1]]
+        if len(tail) > 1:
+            orders = tail.count(tail[-1]) if commute else len(tail)
+            share = ring.multiply(found[tail[:-1]], share) / orders
+        found[tail] = share
+    return list(found.values())

@@ -10,15 +10,16 @@ Foata). It is written with falling indices, the last in the dictionary.
 Those of them that are smaller than each of their proper ends, the Lyndon words, lead the Lie
 polynomials of a basis (Lalonde, Bases de Lyndon des algèbres de Lie libres partiellement
 commutatives, Theor. Comput. Sci. 117 (1993)). So a Lie polynomial is known by its coefficients of
-them; a test has the ranks.
+them; a test has the ranks. Without letters of time they are words as all are.
 """
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from functools import cache
 
-Letter = tuple[str, int]  # "K" or "D", and the power of time
+STEPS = "13579"  # the kinds of letters of a composition of symmetric steps
+Letter = tuple[str, int]  # "K" or "D", or one of `STEPS`, and its weight less 1, the power of time
 Word = tuple[Letter, ...]
 
 
@@ -94,14 +95,21 @@ def _cuts(word: Word) -> Iterator[tuple[Word, Word]]:
             yield head, joined(tail, run)
 
 
+def letters(kinds: str, most: int) -> list[Letter]:
+    """Those of weights up to `most`: K_n and D_n, n > 0 of the kinds whose time counts, as "K"
+    where only V depends on t; or, of `STEPS`, Y_1, Y_3, …, each a kind by itself."""
+    if kinds == STEPS:
+        return [(kind, int(kind) - 1) for kind in kinds if int(kind) <= most]
+    return [(kind, n) for kind in "DK" for n in range(most) if n == 0 or kind in kinds]
+
+
 @cache
 def words(kinds: str, most: int) -> tuple[Word, ...]:
-    """All of that weight; `kinds`: those whose time counts, as "K" where only V depends on t."""
+    """All of that weight in these letters."""
     if most == 0:
         return ((),)
-    letters = [(kind, n) for kind in "DK" for n in range(most) if n == 0 or kind in kinds]
-    found = {joined(word, (x,)) for x in letters for word in words(kinds, most - 1 - x[1])}
-    return tuple(sorted(found))
+    found = {joined(w, (x,)) for x in letters(kinds, most) for w in words(kinds, most - 1 - x[1])}
+    return tuple(sorted(sorted(found), key=len) if kinds == STEPS else sorted(found))
 
 
 @cache
@@ -112,6 +120,15 @@ def lyndon(kinds: str, most: int) -> tuple[Word, ...]:
     ['DK', 'D1', 'K1']
     """
     return tuple(w for w in words(kinds, most) if all(w < w[k:] for k in range(1, len(w))))
+
+
+def bracket(letter: Letter, element: Mapping[Word, int]) -> dict[Word, int]:
+    """[letter, element], numbers by words."""
+    found = Counter[Word]()
+    for word, n in element.items():
+        found[joined((letter,), word)] += n
+        found[joined(word, (letter,))] -= n
+    return {word: n for word, n in found.items() if n}
 
 
 @cache

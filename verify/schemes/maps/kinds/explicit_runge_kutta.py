@@ -9,8 +9,6 @@ from verify.schemes.conditions.condition import Condition
 from verify.schemes.conditions.every_hamiltonian import RungeKutta
 from verify.schemes.maps.step_map import StepMap
 
-KIND = RungeKutta
-
 
 def build(
     coefficients: RungeKutta,

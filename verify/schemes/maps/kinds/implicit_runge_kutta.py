@@ -27,8 +27,6 @@ from verify.schemes.conditions.tree_order import order_of
 from verify.schemes.maps.by_formulas import map_by_expressions
 from verify.schemes.maps.step_map import StepMap
 
-KIND = TreeConditions
-
 
 def build(coefficients: TreeConditions, hamiltonian: Hamiltonian, name: str = "") -> StepMap:
     """The map for any H."""

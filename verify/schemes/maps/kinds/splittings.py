@@ -7,6 +7,7 @@ and S of a shear is that block less its transpose, which is 0.
 from collections.abc import Sequence
 from fractions import Fraction
 from functools import lru_cache
+from typing import Any
 
 from verify.algebra.ring import Poly
 from verify.algebra.series.jets import JetsInDegrees
@@ -14,11 +15,9 @@ from verify.errors import InputError
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.conditions.condition import Condition
-from verify.schemes.conditions.parts_in_time import all_times, shears_step
-from verify.schemes.conditions.splitting_conditions import Splitting, expressed
+from verify.schemes.conditions.splitting_conditions import Splitting
 from verify.schemes.maps.step_map import StepMap
-
-KIND = Splitting
+from verify.schemes.steps.step_algebra import Step, StepAlgebra
 
 
 def build(coefficients: Splitting, hamiltonian: Hamiltonian, name: str) -> StepMap:
@@ -28,7 +27,7 @@ def build(coefficients: Splitting, hamiltonian: Hamiltonian, name: str) -> StepM
     if not field.separable:
         shown = str(hamiltonian.expression)
         raise InputError("hamiltonian", shown, f"{name} is explicit only for H = T(p) + V(q)")
-    step = shears_step([kind for kind, _ in parts], sizes, times)
+    step = _shears([kind for kind, _ in parts], sizes, times)
     return StepMap(
         hamiltonian, field, step, conditions=conditions(coefficients, hamiltonian.degrees)
     )
@@ -45,10 +44,24 @@ def _with_numbers(
         field = canonical_field(hamiltonian)[0]
         sizes = [field.ring.constant(size) for size in rational]
         return field, sizes, [field.ring.zero] * len(parts)
-    times = all_times(expressed(parts), coefficients.times) if timed else ()
-    field, numbers = canonical_field(hamiltonian, *(x for _, x in expressed(parts)), *times)
+    times = coefficients.all_times if timed else ()
+    field, numbers = canonical_field(hamiltonian, *(x for _, x in coefficients.parts), *times)
     sizes = numbers[: len(parts)]
     return field, sizes, numbers[len(parts) :] or [field.ring.zero] * len(parts)
+
+
+def _shears(kinds: Sequence[str], sizes: Sequence[Poly], times: Sequence[Poly]) -> Step:
+    """How z' is made: the sizes and times of kicks and drifts in the ring of H's field."""
+
+    def changes(algebra: StepAlgebra[Any]) -> list[Any]:
+        n = algebra.size // 2
+        moves = {"kick": range(n), "drift": range(n, 2 * n)}
+        result = [algebra.nothing] * algebra.size
+        for kind, size, time in zip(kinds, sizes, times, strict=True):
+            result = algebra.sheared(result, size, time, moves[kind])
+        return result
+
+    return changes
 
 
 def conditions(coefficients: Splitting, degrees: int) -> tuple[Condition, ...]:

@@ -20,8 +20,6 @@ from verify.schemes.maps.by_formulas import map_by_expressions
 from verify.schemes.maps.kinds import splittings
 from verify.schemes.maps.step_map import StepMap
 
-KIND = StageEquations
-
 
 @lru_cache(maxsize=64)
 def build(coefficients: StageEquations, hamiltonian: Hamiltonian, name: str) -> StepMap:

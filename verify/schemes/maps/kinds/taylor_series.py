@@ -6,8 +6,6 @@ from verify.schemes.conditions.condition import Condition
 from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 from verify.schemes.maps.step_map import StepMap
 
-KIND = TaylorSeries
-
 
 def build(coefficients: TaylorSeries, hamiltonian: Hamiltonian, name: str = "") -> StepMap:
     """The map for any H."""

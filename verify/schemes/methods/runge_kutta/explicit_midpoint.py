@@ -3,11 +3,11 @@
 from fractions import Fraction
 
 from verify.schemes.conditions.every_hamiltonian import RungeKutta
-from verify.schemes.runge_kutta import explicit
+from verify.schemes.scheme import Scheme
 
-SCHEME = explicit(
+SCHEME = Scheme(
     "explicit-midpoint",
-    RungeKutta(rows=((), (Fraction(1, 2),)), weights=(Fraction(0), Fraction(1))),
     order=2,
     source="Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.1",
+    every_h=RungeKutta(rows=((), (Fraction(1, 2),)), weights=(Fraction(0), Fraction(1))),
 )

@@ -4,7 +4,7 @@ import sympy
 
 from verify.schemes.conditions.implicit_tableau import ImplicitTableau
 from verify.schemes.conditions.tree_conditions import TreeConditions
-from verify.schemes.runge_kutta import implicit
+from verify.schemes.scheme import Scheme
 
 _QUARTER, _HALF, _ROOT = sympy.Rational(1, 4), sympy.Rational(1, 2), sympy.sqrt(3)
 TABLEAU = ImplicitTableau.of(
@@ -12,10 +12,12 @@ TABLEAU = ImplicitTableau.of(
     weights=(_HALF, _HALF),
 )
 ALIASES = ("gauss-legendre4", "gauss-legendre-4")
-SCHEME = implicit(
+SCHEME = Scheme(
     "gauss4",
-    TABLEAU,
-    TreeConditions(TABLEAU),
     order=4,
+    area_preserving=True,
+    explicit=False,
+    symmetric=True,
+    every_h=TreeConditions(TABLEAU),
     source="Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.3 and VI.4",
 )

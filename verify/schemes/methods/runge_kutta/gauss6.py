@@ -4,7 +4,7 @@ import sympy
 
 from verify.schemes.conditions.implicit_tableau import ImplicitTableau
 from verify.schemes.conditions.tree_conditions import TreeConditions
-from verify.schemes.runge_kutta import implicit
+from verify.schemes.scheme import Scheme
 
 _OUTER, _INNER, _ROOT = sympy.Rational(5, 36), sympy.Rational(2, 9), sympy.sqrt(15)
 TABLEAU = ImplicitTableau.of(
@@ -16,10 +16,12 @@ TABLEAU = ImplicitTableau.of(
     weights=(2 * _OUTER, 2 * _INNER, 2 * _OUTER),
 )
 ALIASES = ("gauss-legendre6", "gauss-legendre-6")
-SCHEME = implicit(
+SCHEME = Scheme(
     "gauss6",
-    TABLEAU,
-    TreeConditions(TABLEAU),
     order=6,
+    area_preserving=True,
+    explicit=False,
+    symmetric=True,
+    every_h=TreeConditions(TABLEAU),
     source="Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.3 and VI.4",
 )

@@ -19,7 +19,6 @@ SCHEME = Scheme(
     order=1,
     area_preserving=True,
     explicit=False,
-    symmetric=False,
     source="Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2 and VI.3",
     every_h=StageEquations((Stage(kick=_ONE, drift=_ONE, at_p=_ONE),)),
 )

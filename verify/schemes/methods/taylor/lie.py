@@ -29,15 +29,7 @@ def make(name: str) -> Scheme | None:
 
 def lie_series(name: str, eta: int, *, source: str) -> Scheme:
     """The scheme of that name whose map is lieη's."""
-    return Scheme(
-        name=name,
-        order=eta,
-        area_preserving=False,
-        explicit=True,
-        symmetric=False,
-        source=source,
-        every_h=TaylorSeries(eta),
-    )
+    return Scheme(name, order=eta, source=source, every_h=TaylorSeries(eta))
 
 
 def eta_of(name: str) -> int | None:

@@ -31,12 +31,5 @@ def make(name: str) -> Scheme | None:
 
 
 def _scheme(formulas: Mapping[str, str]) -> Scheme:
-    return Scheme(
-        name="; ".join(f"{name} = {formula}" for name, formula in formulas.items()),
-        order=1,
-        area_preserving=False,
-        explicit=True,
-        symmetric=False,
-        source="the user's formulas",
-        formulas=formulas,
-    )
+    name = "; ".join(f"{name} = {formula}" for name, formula in formulas.items())
+    return Scheme(name, order=1, source="the user's formulas", formulas=formulas)

@@ -6,13 +6,14 @@ them: an order is theirs (`verify.schemes.printed.nearby_order`). `order` is wha
 at least; without it that is 1.
 
 For an H that depends on time a part may have its own, in parts of h from the step's start, as in
-`kick 1/2 at 0; drift 1; kick 1/2 at 1`; where it has none, it is that of `right_times`.
+`kick 1/2 at 0; drift 1; kick 1/2 at 1`; where it has none, it is the right one.
 """
+
+import sympy
 
 from verify.algebra.formula import parse
 from verify.errors import InputError
-from verify.schemes.conditions.parts_in_time import right_times
-from verify.schemes.conditions.splitting_conditions import LETTERS, MOST_ORDER, Part
+from verify.schemes.conditions.splitting_conditions import LETTERS, MOST_ORDER, Part, sums_before
 from verify.schemes.printed.nearby_order import nearby_of
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import splitting
@@ -38,7 +39,9 @@ def make(name: str) -> Scheme | None:
         None if time is None else parse(time, (), source=f"{kind} at") for kind, _, time in written
     )
     # A time that is exactly the right one stays so, whatever its size's digits stand for.
-    not_right = [x != right for x, right in zip(times, right_times(parts), strict=True)]
+    not_right = [
+        x != right for x, right in zip(times, sums_before(parts, sympy.S.Zero), strict=True)
+    ]
     at_times = [
         (kind, size, time if keep else None)
         for (kind, size, time), keep in zip(written, not_right, strict=True)

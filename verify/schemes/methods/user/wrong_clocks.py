@@ -25,8 +25,7 @@ from verify.algebra.symbols import H_STEP
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.conditions.every_hamiltonian import RungeKutta, TaylorSeries
-from verify.schemes.conditions.parts_in_time import sums_before
-from verify.schemes.conditions.splitting_conditions import Part, Splitting
+from verify.schemes.conditions.splitting_conditions import Part, Splitting, sums_before
 from verify.schemes.maps.by_formulas import map_by_expressions
 from verify.schemes.maps.kinds import explicit_runge_kutta
 from verify.schemes.maps.step_map import StepMap
@@ -67,7 +66,7 @@ def make(name: str) -> Scheme | None:
         order=base.order,
         symmetric=False,
         source=f"{base.source}; with a wrong clock",
-        times=_CLOCKS[how](parts),
+        times=tuple(_CLOCKS[how](parts)),
     )
 
 
@@ -87,8 +86,8 @@ def _with_standing_clock(
 
 
 _STANDING = {"frozen": 0, "at the end": 1}  # and when it stands, in parts of h
-_CLOCKS: Mapping[str, Callable[[Sequence[Part]], tuple[sympy.Expr, ...]]] = {
+_CLOCKS: Mapping[str, Callable[[Sequence[Part]], Sequence[sympy.Expr]]] = {
     "frozen": lambda parts: (sympy.S.Zero,) * len(parts),
     "at the end": lambda parts: (sympy.S.One,) * len(parts),
-    "exchanged": lambda parts: sums_before(parts, own=True),
+    "exchanged": lambda parts: sums_before(parts, sympy.S.Zero, own=True),
 }
