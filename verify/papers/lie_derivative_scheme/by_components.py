@@ -10,12 +10,11 @@ from verify.arithmetic.exact import decimal, text
 from verify.arithmetic.flint_precision import working_precision
 from verify.execution.keeping import NOTHING
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import Argument, Step, concluded, step
+from verify.papers.argument import Argument, Step, refutation, step
 from verify.papers.checks.check import BALLS, Check, same
 from verify.papers.lie_derivative_scheme.oscillator import PRECISION, errors, factor
 from verify.runs.task import RunTask
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.verdict import Verdict
 
 LEVELS = "-(q - p**3) + (q - p**3)**2/2"  # H is a function of u = q − p³, which it keeps
 _STEPS = (10, 100, 1000)
@@ -28,9 +27,7 @@ _LEVEL = Q - P**3
 
 def eq_10_components(formula: str = LEVELS) -> Argument:
     """Eq. 10 for p alone, e_k in place of e_n: its right side is 0 at k = 1, its left is not."""
-    return concluded(
-        "eq-10-components",
-        Verdict.REFUTED,
+    return refutation(
         "for H = −(q − p³) + (q − p³)²/2, η = 2, from (0, 0), `e^p_1` = 0 and every `C^p_k` = 0, "
         "so that Eq. 10 says `e^p_2` ≤ 0 whatever `L_p` is; but `e^p_2` = h⁴",
         [
@@ -49,9 +46,7 @@ def eq_10_components(formula: str = LEVELS) -> Argument:
 
 def eq_11(formula: str = LEVELS) -> Argument:
     """Eq. 11 for p alone: its right side is 0, and e^p is h²/2 at t = 1."""
-    return concluded(
-        "eq-11",
-        Verdict.REFUTED,
+    return refutation(
         "for H = −(q − p³) + (q − p³)²/2, η = 2, from (0, 0), the exact solution is p = t, q = t³, "
         "`e^p_1` = 0 and every `C^p_m` = 0, so that Eq. 11 says `e^p_k` = 0 whatever `L_p` and "
         "`C̃_p` are; but at t = 1 `e^p` ≥ h²(1 − h)/2",
@@ -146,9 +141,7 @@ def _at_1(formula: str, steps: int) -> Check:
 
 def eq_9_kept(etas: Sequence[int] = _ETAS) -> Argument:
     """Eq. 9 in a norm with z̃_k on the right: 0 at k = 1, where the left side is not."""
-    return concluded(
-        "eq-9-kept",
-        Verdict.REFUTED,
+    return refutation(
         "`z̃_1` and `z_1` are both one step from the initial value, so that the right side is 0 at "
         "k = 1 in every norm and for every L; for the oscillator the left side, |Φ(`z̄_1`) − "
         "Φ(`z_1`)|, is not",

@@ -19,7 +19,7 @@ from verify.algebra.symbols import H_STEP, P
 from verify.arithmetic.exact import text
 from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians import systems
-from verify.papers.argument import Argument, concluded, step
+from verify.papers.argument import Argument, proof, step
 from verify.papers.checks.check import BALLS, NUMBERS, Check, vanishes
 from verify.papers.checks.differential import Differential, Poly, flow_of_every_hamiltonian
 from verify.papers.exact_maps import Point, areas, map_from_formulas
@@ -27,7 +27,6 @@ from verify.papers.lie_derivative_scheme.oscillator import PRECISION
 from verify.proof.assistant.stated import Shipped
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.verdict import Verdict
 
 TIME = 20000
 STEP_SIZES = (Fraction(1, 100), Fraction(1, 1000), Fraction(1, 10**6), Fraction(1, 10**9))
@@ -63,9 +62,7 @@ def small_determinant(hamiltonian: bool = True) -> Check:
 def of_smooth_schemes(hamiltonian: bool = True) -> Argument:
     """Criteria 2, 3 and 4 hold for explicit Euler too, which blows every area up."""
     grown = enclosed_growth(STEP_SIZES[0])[1]
-    return concluded(
-        "criteria-of-consistent-schemes",
-        Verdict.PROVED,
+    return proof(
         "every smoothly consistent scheme has ΔJ = O(h²), hence MSE = O(h⁴) and Λ = O(h) on every "
         "[0, T]: all satisfy all three, explicit Euler too, whose Λ for the oscillator at h = "
         f"{text(STEP_SIZES[0])}, T = {TIME} is {grown}",
@@ -146,9 +143,7 @@ def alone(ripple: str = RIPPLE) -> Argument:
     found = [_rippled(ripple.format(n=m + 1, m=m), m) for m in ORDERS]
     local, whole, run = zip(*found, strict=True)
     limit, growth = _tends_to_e(STEPS)
-    return concluded(
-        "consistency-is-not-enough",
-        Verdict.PROVED,
+    return proof(
         "for H = q the scheme p' = p − h + h² sin(2πp/h)/(2π), q' = q is of order 1, and along its "
         "run from (0, 0) every `ΔJ_k` is h, so that Λ = `(1 + h)^N` − 1 → e − 1 on [0, 1]",
         [

@@ -12,14 +12,13 @@ from verify.algebra.symbols import H_STEP, P, Q
 from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import Argument, concluded, step
+from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import BALLS, Check, same
 from verify.papers.checks.sums import geometric
 from verify.papers.lie_derivative_scheme.oscillator import PRECISION, errors, final_error
 from verify.proof.assistant.stated import Shipped
 from verify.proof.order import convergence_of
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.verdict import Verdict
 
 SYSTEMS = ("duffing", "pendulum")
 ETAS = range(1, 5)
@@ -29,9 +28,7 @@ _LIPSCHITZ = 1  # of lie1 for the oscillator: ψ = f, and the norm of f' is 1
 
 def convergence(shift: int = 0) -> Argument:
     """The global error is O(h^η). `shift`: what is added to the claimed orders, 0 as printed."""
-    return concluded(
-        "convergence",
-        Verdict.PROVED,
+    return proof(
         "it holds for every H of class `C^(η+1)`, with one Lipschitz constant for (p, q) together "
         "in place of Eq. 9's two",
         [
@@ -140,9 +137,7 @@ def eq_10(fixed: bool = True) -> Argument:
         f"{shown}: {'grows like N' if grows else 'stays bounded'}",
         BALLS,
     )
-    return concluded(
-        "eq-10",
-        Verdict.REFUTED,
+    return refutation(
         "with `e_n` in place of `e_k` the error would be O(`h^(η+1)`) after any number of steps; "
         f"for the oscillator and η = 1 it is h/2 to leading order at T = 1 (C would have to be "
         f"{shown} for N = {_listed(STEPS)})",

@@ -9,13 +9,12 @@ from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.symbols import H_STEP, P, Q
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import Argument, concluded, step
+from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import Check, same
 from verify.papers.checks.matrices import of_the_field, where_it_rests
 from verify.papers.lie_derivative_scheme import families
 from verify.proof.order import convergence_of, prove
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.verdict import Verdict
 
 SYSTEMS = ("duffing", "pendulum")
 ETAS = range(1, 6)
@@ -27,9 +26,7 @@ SINGULAR = "q**2/p"  # det Hess H = 0 everywhere, and still ΔJ ≠ 0
 def examples(names: Sequence[str] = SYSTEMS) -> Argument:
     """For the paper's two systems det J ≠ 1: at the equilibrium, for every η and almost every h."""
     at_rest = [_at_rest(name, eta) for name in names for eta in ETAS]
-    return concluded(
-        "determinant-of-the-examples",
-        Verdict.PROVED,
+    return proof(
         "wherever H has an equilibrium with D = det Hess H ≠ 0, as both systems have at (0, 0), "
         "det J of lie2 is 1 + h⁴D²/4 there, and for every η it is 1 for finitely many h only",
         [
@@ -98,9 +95,7 @@ def _at_rest(name: str, eta: int) -> Check:
 def universal(formulas: Sequence[str] = PRESERVED) -> Argument:
     """As a statement on every H: refuted by H with det J ≡ 1 and a truncation error."""
     first, *others = map(preserved, formulas)
-    return concluded(
-        "determinant-of-every-h",
-        Verdict.REFUTED,
+    return refutation(
         "for H = p³/6 + q the local error of lie2 is h³/6 in q, and det J = 1 for all p, q, h; so "
         "it is for H = `(p² + q²)^(3/4)`, where lie2 spirals outwards; see the classification",
         [

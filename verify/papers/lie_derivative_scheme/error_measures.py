@@ -7,7 +7,7 @@ import sympy
 from verify.algebra.symbols import P, Q
 from verify.arithmetic.exact import decimal, text
 from verify.hamiltonians import systems
-from verify.papers.argument import Argument, Step, concluded, step
+from verify.papers.argument import Argument, Step, proof, refutation, step
 from verify.papers.checks.check import NUMBERS, Check, vanishes
 from verify.papers.checks.differential import flow_of_every_hamiltonian
 from verify.papers.checks.matrices import product_of_determinants
@@ -16,7 +16,6 @@ from verify.papers.lie_derivative_scheme.criteria_examples import FRICTION, TO_A
 from verify.proof.assistant.stated import Shipped
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.verdict import Verdict
 
 _H = Fraction(1, 10)
 _START = Point(Fraction(1, 2), Fraction(1))
@@ -30,9 +29,7 @@ def _duffing() -> StepMap:
 
 def exact_determinant(most: int = 5, eta: int = 5) -> Argument:
     """det of the exact flow is 1 for a generic H up to h^most; `eta` is of what stands for it."""
-    return concluded(
-        "eq-14",
-        Verdict.PROVED,
+    return proof(
         "the exact flow has det = 1 over every step, so det `J_k` − 1 is by how much one step’s "
         "determinant is off, a local error, and the relative change of a small region’s area",
         [
@@ -68,9 +65,7 @@ def _of_the_flow(most: int, eta: int) -> Check:
 def mean_square(true: int = 1, steps: int = 3) -> Argument:
     """MSE is the mean of (det J − 1)², and 1 is the true value; `true`: what is taken for it."""
     squares = mean_of_squares(true, steps)
-    return concluded(
-        "eq-15",
-        Verdict.PROVED,
+    return proof(
         "Eq. 15 is the mean of the squares of det `J_k` − 1, and 1 is the true value of the "
         "determinant",
         [
@@ -117,9 +112,7 @@ def sum_of_squares(steps: int = 2) -> Argument:
         f"`{decimal(total, 4)}` and `{decimal(found.mse, 4)}`",
         NUMBERS,
     )
-    return concluded(
-        "eq-15-sum",
-        Verdict.REFUTED,
+    return refutation(
         "Eq. 15 is the mean: the sum of the squares is N times as much",
         [
             step(
@@ -133,9 +126,7 @@ def sum_of_squares(steps: int = 2) -> Argument:
 
 def chain_rule(stray: Fraction = Fraction(0)) -> Argument:
     """1 + Λ is the determinant of the map of all N steps; `stray` is added to it."""
-    return concluded(
-        "criterion-4",
-        Verdict.PROVED,
+    return proof(
         "by the chain rule 1 + Λ is the determinant of the map of all N steps at the initial "
         "value, so that Λ → 0, uniformly on a region of initial values, says that areas within it "
         "change by o(1) over the whole of [t₀, `t_end`]",
@@ -189,9 +180,7 @@ def _composed(steps: int, stray: Fraction) -> Check:
 
 def smaller_is_better() -> Argument:
     """|Λ| is by which part areas change after all steps."""
-    return concluded(
-        "smaller-lambda",
-        Verdict.PROVED,
+    return proof(
         "after all N steps a small region’s area has changed by |Λ| of it, by the chain rule, so "
         "the smaller |Λ|, the less",
         [
@@ -220,9 +209,7 @@ def smaller_in_each_step(
         "exactly",
         NUMBERS,
     )
-    return concluded(
-        "smaller-lambda-each-step",
-        Verdict.REFUTED,
+    return refutation(
         "a Λ may be small because changes cancel: p' = −p (1 − √h q)/(1 + √h q), q' = −q has Λ = "
         "0 and changes areas more in every single step than p' = p − h(q + p), q' = q + hp, whose "
         "|Λ| tends to 1 − 1/e",

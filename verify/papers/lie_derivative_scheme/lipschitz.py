@@ -11,13 +11,12 @@ from verify.arithmetic.exact import decimal, text
 from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import Argument, concluded, step
+from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import BALLS, NUMBERS, Check, same, vanishes
 from verify.papers.checks.differential import flow_of_every_hamiltonian
 from verify.papers.exact_maps import Point, jacobian, next_point, squared
 from verify.papers.lie_derivative_scheme.oscillator import PRECISION, errors, factor
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.verdict import Verdict
 
 PAIR = (Point(p=Fraction(0), q=Fraction(0)), Point(p=Fraction(0), q=Fraction(1)))
 STEP_SIZES = (Fraction(1, 10), Fraction(1, 100), Fraction(1, 1000))
@@ -50,9 +49,7 @@ def eq_9(pair: tuple[Point, Point] = PAIR, mixed: str = MIXED) -> Argument:
         [both[0] - both[1] - 2 * H_STEP],
         ("h",),
     )
-    return concluded(
-        "eq-9",
-        Verdict.REFUTED,
+    return refutation(
         f"for the Duffing oscillator (δ = 1, h = 0.1) two points with equal p and q = "
         f"{text(pair[0].q)}, {text(pair[1].q)} have |p̃ − p| = {text(left)} after one step, where "
         "the right side is 0 for every `L_p`; it holds for lieη, any H and all small h only if "
@@ -151,9 +148,7 @@ def _largest(left: Sequence[flint.arb], right: Sequence[flint.arb], scale: float
 
 def of_the_plane(norm: float = 1.0) -> Argument:
     """Eq. 9 for both components in one norm; `norm` scales L, to see that the check notices."""
-    return concluded(
-        "eq-9-plane",
-        Verdict.PROVED,
+    return proof(
         "repaired, with `z̄_k` for `z̃_k` and both components together, it holds: |Φ(`z̄_k`) − "
         "Φ(`z_k`)| ≤ (1 + hL) |`z̄_k` − `z_k`|, with L the greatest norm of ψ', Φ = z + hψ, on a "
         "convex compact set around the solution: one L for all 0 < h ≤ h₀",
@@ -196,9 +191,7 @@ def _stretch(h: Fraction, norm: float) -> Check:
 
 def inference() -> Argument:
     """“Therefore convergent”, by Eq. 9–11 as they are printed."""
-    return concluded(
-        "convergence-inference",
-        Verdict.REFUTED,
+    return refutation(
         "the printed way leads through Eq. 9 with the p-difference alone on the right, for which "
         "no constant `L_p` will do along a run of the oscillator: an `L_p` above 1/h makes "
         "`e^(L_p T)` of Eq. 11 useless; with both components together the same steps prove it",

@@ -6,7 +6,7 @@ from fractions import Fraction
 from verify.arithmetic.exact import decimal, text
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import Argument, concluded, step
+from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import NUMBERS, Check, vanishes
 from verify.papers.checks.differential import Differential, Flow, flow_of_every_hamiltonian
 from verify.papers.exact_maps import Point, areas, jacobian, map_from_formulas, next_point
@@ -14,7 +14,6 @@ from verify.proof.assistant.stated import Shipped
 from verify.proof.order import prove
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.verdict import Verdict
 
 H = Fraction(1, 10)
 POINT = Point(p=Fraction(0), q=Fraction(1))
@@ -37,9 +36,7 @@ def eq_12(hamiltonian: Hamiltonian | None = None, point: Point = POINT) -> Argum
         linear,
         "holds exactly" if linear else "does not hold",
     )
-    return concluded(
-        "eq-12",
-        Verdict.REFUTED,
+    return refutation(
         f"for the Duffing oscillator (δ = 1, h = {text(H)}) at (p, q) = {point}, J z = {product} "
         f"but z' = {image}; it holds for all h only where H is quadratic",
         [
@@ -103,9 +100,7 @@ def eq_12_tangent(stray: Fraction = Fraction(0)) -> Argument:
         shown,
         NUMBERS,
     )
-    return concluded(
-        "eq-12-tangent",
-        Verdict.PROVED,
+    return proof(
         "`δz_{k+1}` = `J_k` `δz_k` for infinitesimal differences is what a Jacobian matrix is, for "
         "every scheme that is differentiable; Eq. 13–16 use no more",
         [
@@ -145,9 +140,7 @@ def near_identity(start: int = 0) -> Argument:
         at_0[0] - ring["p"],
         at_0[1] - ring["q"],
     )
-    return concluded(
-        "near-identity",
-        Verdict.PROVED,
+    return proof(
         "by Eq. 2 the step is z + h f(z) + O(h²), which tends to z as h → 0, and its Jacobian to "
         "the unit matrix, uniformly on compact sets",
         [
@@ -193,9 +186,7 @@ def near_identity_inference(p_next: str = "-q", q_next: str = "p") -> Argument:
         ", ".join(map(str, moved)),
         NUMBERS,
     )
-    return concluded(
-        "near-identity-inference",
-        Verdict.REFUTED,
+    return refutation(
         f"ΔJ → 0 alone does not give it: p' = `{p_next}`, q' = `{q_next}` has ΔJ ≡ 0 for all h and "
         "is not near the identity; the scheme is near-identity because Eq. 2 is z + O(h)",
         [

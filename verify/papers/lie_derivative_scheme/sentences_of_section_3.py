@@ -10,7 +10,7 @@ from verify.algebra.symbols import H_STEP, P, Q
 from verify.arithmetic.exact import decimal, text
 from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians import systems
-from verify.papers.argument import Argument, concluded, step
+from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import BALLS, NUMBERS, Check, same
 from verify.papers.exact_maps import Point, map_from_formulas, next_point, value
 from verify.papers.lie_derivative_scheme.convergence import STEPS, SYSTEMS
@@ -18,7 +18,6 @@ from verify.papers.lie_derivative_scheme.error_measures import mean_of_squares
 from verify.papers.lie_derivative_scheme.lipschitz import duffing
 from verify.papers.lie_derivative_scheme.oscillator import PRECISION
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.verdict import Verdict
 
 EULER = ("p - h*q", "q + h*p - h**2*q")  # symplectic Euler for H = (p² + q²)/2
 UNEVEN = ("-p*(1 + (q + 1/20)/10**11)", "-q")  # its ΔJ is 10⁻¹¹ (q + 1/20), whatever h is
@@ -27,9 +26,7 @@ _POINT_ONE = Fraction(1, 10)
 
 def of_the_determinants() -> Argument:
     """MSE(J) tells how far the determinants are from 1."""
-    return concluded(
-        "mse-quantifies",
-        Verdict.PROVED,
+    return proof(
         "√MSE is the root mean square of det `J_k` − 1 over [t₀, `t_end`], and no |det `J_k` − 1| "
         "exceeds √(N MSE)",
         [
@@ -47,9 +44,7 @@ def of_the_solution(formulas: Sequence[str] = EULER) -> Argument:
     found = map_from_formulas(*formulas)
     zero = same("symplectic Euler, H = (p² + q²)/2: ΔJ", [found.delta_j], ("p", "q", "h"))
     errors = [_error_at_1(formulas, n) for n in STEPS]
-    return concluded(
-        "mse-quantifies-solution",
-        Verdict.REFUTED,
+    return refutation(
         "symplectic Euler has det `J_k` = 1 and MSE = 0 whatever h is, while its solution is off "
         f"by {', '.join(each.shown for each in errors)} at t = 1 for the oscillator with h = "
         f"{', '.join(text(Fraction(1, n)) for n in STEPS)}",
@@ -88,9 +83,7 @@ def _error_at_1(formulas: Sequence[str], steps: int) -> Check:
 
 def in_general() -> Argument:
     """ΔJ of lie2 is not 0 at almost every state of either system."""
-    return concluded(
-        "errors-in-every-step",
-        Verdict.PROVED,
+    return proof(
         "for both systems ΔJ of lie2 is an analytic function of (p, q) that is not identically 0, "
         "for any h > 0: it is 0 on a set of measure 0 alone",
         [
@@ -121,9 +114,7 @@ def in_every_step(q: Fraction = Fraction(1), share: Fraction = Fraction(-4, 3)) 
         [sympy.expand(found.delta_j.subs(put, simultaneous=True))],
         ("h",),
     )
-    return concluded(
-        "errors-in-every-step-exactly",
-        Verdict.REFUTED,
+    return refutation(
         f"for the Duffing oscillator with δ = 1 the step from q = {text(q)}, p = −4h/3 has ΔJ = 0, "
         "as those have from every point of the curve 12pq = −h (1 + 3q²)²",
         [step("ΔJ = 3h³pq + `h⁴ (1 + 3q²)²/4` is 0 on this curve.", there)],
@@ -145,9 +136,7 @@ def from_one_step_size(formulas: Sequence[str] = UNEVEN, steps: int = 20_000_000
         grown = (1 + flint.arb(flint.fmpq(pair.numerator, pair.denominator))) ** (steps // 2) - 1
         near = bool(grown > 5e-6) and bool(grown < 2e-5)
         shown = grown.mid().str(3, radius=False)
-    return concluded(
-        "duffing-criteria-inference",
-        Verdict.REFUTED,
+    return refutation(
         "criteria 2 and 4 speak of h → 0, and a number at one h says nothing of that: a map that "
         "does not depend on h at all, with ΔJ = 10⁻¹¹ (1/20 ± 1), has these very numbers at h = "
         "0.001 and satisfies neither",

@@ -5,13 +5,12 @@ from itertools import pairwise
 
 from verify.arithmetic.exact import decimal, text
 from verify.hamiltonians import systems
-from verify.papers.argument import Argument, concluded, step
+from verify.papers.argument import Argument, refutation, step
 from verify.papers.checks.check import NUMBERS, Check, vanishes
 from verify.papers.checks.differential import flow_of_every_hamiltonian
 from verify.papers.exact_maps import Areas, Point, areas
 from verify.proof.assistant.stated import Shipped
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.verdict import Verdict
 
 START = Point(p=Fraction(1), q=Fraction(-1, 20))
 
@@ -35,9 +34,7 @@ def increasing(start: Point = START, h: Fraction = Fraction(1, 10), steps: int =
         "the coefficient of h³ in ΔJ of lie2 is X·G for a generic H, with G = det Hess H/2",
         leading - flow.derive(flow.hessian_determinant / 2),
     )
-    return concluded(
-        "total-error-increases",
-        Verdict.REFUTED,
+    return refutation(
         f"for the Duffing oscillator (δ = 1, lie2, h = {text(h)}) from (p, q) = {start}, |Λ| after "
         f"1, 2, … steps is {shown}, exact but for the rounding of what is shown; the leading "
         "part of Λ is a boundary term that does not grow",

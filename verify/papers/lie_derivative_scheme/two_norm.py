@@ -8,13 +8,12 @@ from verify.algebra.symbols import P, Q
 from verify.arithmetic.exact import decimal, text
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import Argument, concluded, step
+from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import NUMBERS, Check, same
 from verify.papers.checks.matrices import stretching
 from verify.papers.exact_maps import Point, jacobian, next_point, squared
 from verify.papers.lie_derivative_scheme.lipschitz import PAIR, duffing
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.verdict import Verdict
 
 _EDGE = Fraction(2, 3)  # of |δ|q²
 STRETCHED = Point(p=Fraction(0), q=Fraction(2))
@@ -34,9 +33,7 @@ def two_norm(point: Point = STRETCHED, h: Fraction = Fraction(1, 10)) -> Argumen
         text(stretch * (1 - h) ** 2),
         NUMBERS,
     )
-    return concluded(
-        "two-norm",
-        Verdict.REFUTED,
+    return refutation(
         f"a map with ‖J‖₂ > 1 + h‖J‖₂ has no Lipschitz constant 1 + h‖J‖₂, and the Duffing step is "
         f"one: at (p, q) = {point}, h = {text(h)}, (1 − h)² ‖J‖₂² ≥ {text(stretch * (1 - h) ** 2)}",
         [
@@ -120,9 +117,7 @@ def norm_of_the_step(scale: Fraction = Fraction(1)) -> Argument:
         f"`{decimal(moved, 4)}` ≤ `{decimal(scale * max(norms), 4)}`",
         NUMBERS,
     )
-    return concluded(
-        "two-norm-of-the-step",
-        Verdict.PROVED,
+    return proof(
         "the greatest ‖`J_k`‖₂ on a convex set is the least Lipschitz constant there of "
         "(`p_{k+1}`, `q_{k+1}`) as functions of (`p_k`, `q_k`), which is the factor 1 + hL of Eq. "
         "9",

@@ -10,7 +10,7 @@ from verify.algebra.symbols import H_STEP, P, Q
 from verify.arithmetic.exact import text
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import Argument, concluded, step
+from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import Check
 from verify.papers.exact_maps import map_from_formulas
 from verify.papers.lie_derivative_scheme import families
@@ -18,7 +18,6 @@ from verify.proof.assistant.stated import Shipped
 from verify.proof.order import prove
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.verdict import Verdict
 
 _H = Fraction(1, 10)
 TRIANGULAR = "p**3/6 + q"  # det J = 1, and the step has an inverse in closed form
@@ -68,9 +67,7 @@ def _by_regions(formula: str = TRIANGULAR) -> list[Check]:
 
 def definition(formula: str = TRIANGULAR) -> Argument:
     """Area is preserved where that of every region is, which det J tells."""
-    return concluded(
-        "area-definition",
-        Verdict.PROVED,
+    return proof(
         "a continuously differentiable map leaves the area of every region, on which it is "
         "one-to-one, as it is if and only if |det J| = 1; for lieη with small h det J > 0, so that "
         "det J − 1 measures it, as Eq. 14 does",
@@ -109,9 +106,7 @@ def unchanged_flow(factor: int = 2) -> Argument:
         shear.det() == 1 and moved != sympy.zeros(2, 2),
         f"`{moved[0, 0]}`, `{moved[0, 1]}`, `{moved[1, 0]}`, `{moved[1, 1]}`",
     )
-    return concluded(
-        "area-definition-flow",
-        Verdict.REFUTED,
+    return refutation(
         f"for H = (p² + q²)/2 the scaling z ↦ {factor}z leaves the flow unchanged and multiplies "
         f"areas by {factor**2}, while the shear (p, q) ↦ (p, q + p) changes the flow and no area",
         [
@@ -136,9 +131,7 @@ def unchanged_flow(factor: int = 2) -> Argument:
 
 def criterion_1(formula: str = TRIANGULAR) -> Argument:
     """det J = 1 gives equal areas, of regions on which the step is one-to-one."""
-    return concluded(
-        "criterion-1",
-        Verdict.PROVED,
+    return proof(
         "the area of Φ(U) is the integral of det J over U for every region U on which the step is "
         "one-to-one, and lieη is so on any bounded region once h is small enough; for a polynomial "
         "H for which lie2 has det J = 1, on the whole plane",
@@ -212,9 +205,7 @@ def any_map(formulas: Sequence[str] = FOLDED) -> Argument:
         before == 2 * after,
         f"`{before}` and `{after}`",
     )
-    return concluded(
-        "criterion-1-any-map",
-        Verdict.REFUTED,
+    return refutation(
         "(r, θ) ↦ (r/√2, 2θ) has det J = 1 away from the origin and covers its image twice: the "
         "annulus 1 ≤ r ≤ 2 of area 3π goes to that of area 3π/2; a determinant says nothing of how "
         "often a point is hit",

@@ -7,7 +7,7 @@ criterion 4 is Λ = o(1), as h → 0.
 from collections.abc import Sequence
 from fractions import Fraction
 
-from verify.papers.argument import Argument, concluded, step
+from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import NUMBERS, Check
 from verify.papers.checks.sums import compensated_changes, mean_of_fourth_powers
 from verify.papers.exact_maps import Areas
@@ -22,7 +22,6 @@ from verify.papers.lie_derivative_scheme.criteria_examples import (
     turns_to_and_fro,
 )
 from verify.proof.assistant.stated import Shipped
-from verify.verdict import Verdict
 
 SETTING = """Fix T, let h = T/N, and write `x_k` = `ΔJ_k`, k = 0 … N − 1, m = max |`x_k`|.
 Criterion 2 is m = o(h), criterion 3 is MSE = (1/N) Σ `x_k²` = o(h), criterion 4 is Λ = Π (1 +
@@ -55,9 +54,7 @@ def inequalities_hold(found: Areas) -> bool:
 
 def two_implies_three(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
     """Criterion 2 is sufficient for criterion 3."""
-    return concluded(
-        "criterion-2-implies-3",
-        Verdict.PROVED,
+    return proof(
         "MSE ≤ (max |`ΔJ_k`|)², so criterion 2 gives even MSE = o(h²); “higher-order "
         "infinitesimal” must be meant uniformly in k, else it fails",
         [
@@ -93,9 +90,7 @@ def two_implies_three(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
 
 def connection_with_2(friction: ExampleMap = FRICTION) -> Argument:
     """Criterion 4 follows from criterion 2, read uniformly in k."""
-    return concluded(
-        "criterion-4-and-2",
-        Verdict.REFUTED,
+    return refutation(
         "criterion 2 implies criterion 4, by |Λ| ≤ exp(T max|`ΔJ_k`|/h) − 1",
         [
             step(
@@ -120,9 +115,7 @@ def connection_with_3(
     alternating: Sequence[ExampleMap] = (TO_AND_FRO, TO_AND_FRO_ODD),
 ) -> Argument:
     """Neither of criteria 3 and 4 implies the other."""
-    return concluded(
-        "criterion-4-and-3",
-        Verdict.PROVED,
+    return proof(
         "criterion 3 does not imply criterion 4 (an oscillator with friction has MSE = O(h²) and "
         "Λ → `e^(−T)` − 1), nor does 4 imply 3 (p' = −p (1 − √h q)/(1 + √h q), q' = −q)",
         [
@@ -156,9 +149,7 @@ def against_2(
     small = Check(
         "0 < Λ < h for the compensated map", all(between), f"{len(between)} step sizes", NUMBERS
     )
-    return concluded(
-        "criterion-4-against-2",
-        Verdict.REFUTED,
+    return refutation(
         "criterion 2 implies criterion 4 and not the other way round, so 4 is the weaker one",
         [
             step(
@@ -199,9 +190,7 @@ def against_3(
     alternating: Sequence[ExampleMap] = (TO_AND_FRO, TO_AND_FRO_ODD),
 ) -> Argument:
     """Criterion 4 is not stronger than criterion 3, of any one-step map."""
-    return concluded(
-        "criterion-4-against-3",
-        Verdict.REFUTED,
+    return refutation(
         "criteria 3 and 4 imply each other in neither direction: p' = −p (1 − √h q)/(1 + √h q), q' "
         "= −q satisfies 4 and not 3",
         [

@@ -8,7 +8,7 @@ t ≤ T, at once.
 from collections.abc import Sequence
 from fractions import Fraction
 
-from verify.papers.argument import Argument, Step, concluded, step
+from verify.papers.argument import Argument, Step, proof, refutation, step
 from verify.papers.checks.check import NUMBERS, Check, vanishes
 from verify.papers.checks.sums import mean_of_fourth_powers, squares_of_times
 from verify.papers.lie_derivative_scheme.consistency import consistent_map
@@ -23,7 +23,6 @@ from verify.papers.lie_derivative_scheme.criteria_examples import (
     turns_to_and_fro,
 )
 from verify.proof.assistant.stated import Shipped
-from verify.verdict import Verdict
 
 _FIXED = (0, 1, 2)  # k
 
@@ -57,9 +56,7 @@ def _grows(example: ExampleMap) -> Check:
 
 def pointwise_two_not_three(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
     """Each ΔJ_k = O(h²), and MSE → 1/5."""
-    return concluded(
-        "criterion-2-implies-3-pointwise",
-        Verdict.REFUTED,
+    return refutation(
         "for p' = p(1 + q²), q' = q + h from (0, 0) each `ΔJ_k` = (kh)² = O(h²), but over [0, 1] "
         "MSE → 1/5; for a step that depends smoothly on (p, q, h), as lieη does, the two senses "
         "agree",
@@ -93,9 +90,7 @@ def pointwise_connection(
     at_first = Check(
         "to and fro: |`ΔJ_0`| ≥ √h", all(first), f"{len(first)} step sizes, exactly", NUMBERS
     )
-    return concluded(
-        "criterion-4-and-2-pointwise",
-        Verdict.PROVED,
+    return proof(
         "read for each fixed k, criterion 2 does not imply criterion 4 (p' = p(1 + q²), q' = q + "
         "h), nor 4 criterion 2; but neither map is lieη, for which the two senses agree and 2 "
         "implies 4",
@@ -130,9 +125,7 @@ def as_strong_as_2(hamiltonian: bool = False) -> Argument:
 
     `hamiltonian`: as for `_of_every_time`.
     """
-    return concluded(
-        "criterion-4-against-2-smooth",
-        Verdict.REFUTED,
+    return refutation(
         "for steps z + hg(z) + h²r(z, h) with smooth g and r, criterion 4 on [0, t] for every t ≤ "
         "T implies criterion 2, and criterion 2 implies it: 4 is as strong as 2, and no stronger",
         [
@@ -149,9 +142,7 @@ def as_strong_as_2(hamiltonian: bool = False) -> Argument:
 
 def stronger_than_3(hamiltonian: bool = False, friction: ExampleMap = FRICTION) -> Argument:
     """For steps z + hg + h²r: 4 on every [0, t] implies 3, and 3 does not imply 4."""
-    return concluded(
-        "criterion-4-against-3-smooth",
-        Verdict.PROVED,
+    return proof(
         "for steps z + hg(z) + h²r(z, h) with smooth g and r, criterion 4 on [0, t] for every t ≤ "
         "T implies criterion 3, which always holds then, and is not implied by it",
         [
