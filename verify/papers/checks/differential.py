@@ -44,6 +44,12 @@ class Differential:
         """The partial derivatives of the variable `name`: ∂name/∂key for each key."""
         self._gradients[name] = partials
 
+    def set_coordinates(self, first: str = "p", second: str = "q") -> None:
+        """These two variables are what partial derivatives are taken by."""
+        one = self.context.constant(1)
+        self.set_gradient(first, **{first: one, second: self.zero})
+        self.set_gradient(second, **{first: self.zero, second: one})
+
     def relate(self, *relations: Poly) -> None:
         """Each relation = 0."""
         self._relations += relations
@@ -79,6 +85,12 @@ class Differential:
             power = int(monomial[at])
             parts[power] = parts[power] + term if power in parts else term
         return parts
+
+
+def free_variables(names: str) -> list[Poly]:
+    """Variables, named with blanks between, none of which depends on another."""
+    ring = Differential(names.split())
+    return [ring[name] for name in ring.names]
 
 
 @dataclass(frozen=True)
@@ -138,7 +150,7 @@ def flow_of_every_hamiltonian(order: int, more: Sequence[str] = ()) -> Flow:
     """The flow of a generic H, whose partial derivatives up to `order` are variables."""
     pairs = [(i, n - i) for n in range(1, order + 1) for i in range(n, -1, -1)]
     ring = Differential(["h", *more, "p", "q", *(f"H{i}_{j}" for i, j in pairs)])
-    _set_coordinates(ring)
+    ring.set_coordinates()
     for i, j in pairs:
         if i + j < order:
             ring.set_gradient(f"H{i}_{j}", p=ring[f"H{i + 1}_{j}"], q=ring[f"H{i}_{j + 1}"])
@@ -147,18 +159,13 @@ def flow_of_every_hamiltonian(order: int, more: Sequence[str] = ()) -> Flow:
     return Flow(ring, ring["H1_0"], ring["H0_1"])
 
 
-def _set_coordinates(ring: Differential) -> None:
-    ring.set_gradient("p", p=ring.context.constant(1), q=ring.zero)
-    ring.set_gradient("q", p=ring.zero, q=ring.context.constant(1))
-
-
 def of_one_function(constants: Sequence[str], u: str, rest: str, order: int = 4) -> Flow:
     """The flow of H = F(u) + rest for a generic F: u and rest are polynomials in p, q, constants.
 
     The derivatives of F at u up to `order` are the variables F1, F2, …
     """
     ring = Differential(["h", *constants, "p", "q", *(f"F{k}" for k in range(1, order + 1))])
-    _set_coordinates(ring)
+    ring.set_coordinates()
     inner, outer = (_polynomial(ring, text) for text in (u, rest))
     u_p, u_q = ring.diff(inner, "p"), ring.diff(inner, "q")
     for k in range(1, order):

@@ -7,12 +7,11 @@ import sympy
 
 from verify.algebra.symbols import H_STEP, P, Q
 from verify.arithmetic.exact import decimal, text
-from verify.arithmetic.flint_precision import working_precision
 from verify.execution.keeping import NOTHING
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.papers.argument import Argument, Step, refutation, step
 from verify.papers.checks.check import BALLS, Check, same
-from verify.papers.lie_derivative_scheme.oscillator import PRECISION, errors, factor
+from verify.papers.lie_derivative_scheme.examples import enclosures, errors, factor
 from verify.runs.task import RunTask
 from verify.schemes.methods.taylor.lie import lie_map
 
@@ -165,7 +164,7 @@ def eq_9_kept(etas: Sequence[int] = _ETAS) -> Argument:
 
 def _after_two(eta: int, h: Fraction = Fraction(1, 10)) -> Check:
     """The left side of Eq. 9 at k = 1, for the oscillator from (q, p) = (1, 0)."""
-    with working_precision(PRECISION):
+    with enclosures():
         left = abs(factor(eta, h) * errors(eta, h, 1)[-1])
         shown, apart = left.mid().str(4, radius=False), bool(left > 0)
     return Check(

@@ -16,14 +16,13 @@ import flint
 import sympy
 
 from verify.algebra.symbols import H_STEP, P
+from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.exact import text
-from verify.arithmetic.flint_precision import working_precision
-from verify.hamiltonians import systems
 from verify.papers.argument import Argument, proof, step
 from verify.papers.checks.check import BALLS, NUMBERS, Check, vanishes
 from verify.papers.checks.differential import Differential, Poly, flow_of_every_hamiltonian
 from verify.papers.exact_maps import Point, areas, map_from_formulas
-from verify.papers.lie_derivative_scheme.oscillator import PRECISION
+from verify.papers.lie_derivative_scheme.examples import enclosures, oscillator
 from verify.proof.assistant.stated import Shipped
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.methods.taylor.lie import lie_map
@@ -110,15 +109,14 @@ def of_smooth_schemes(hamiltonian: bool = True) -> Argument:
 
 
 def _euler() -> Check:
-    one = systems.get("harmonic").hamiltonian().with_values({"omega": 1})
-    delta_j = lie_map(one, 1).delta_j
+    delta_j = lie_map(oscillator(), 1).delta_j
     return Check("ΔJ of lie1 for H = (p² + q²)/2 is h²", str(delta_j) == "h**2", f"`{delta_j}`")
 
 
 def enclosed_growth(h: Fraction) -> tuple[bool, str]:
     """Whether 1 + Λ ≤ e^(Th) for lie1 on the oscillator over [0, TIME], and Λ, both enclosed."""
-    with working_precision(PRECISION):
-        size = flint.arb(flint.fmpq(h.numerator, h.denominator))
+    with enclosures():
+        size = rational_ball(h)
         log = (1 + size * size).log() * TIME / size
         lam = log.exp() - 1
         # 1 + Λ = exp(T log(1 + h²)/h) ≤ exp(T h), which is what tends to 1.
@@ -232,10 +230,10 @@ def _run_of(found: StepMap, steps: int) -> bool:
 
 def _tends_to_e(steps: Sequence[int]) -> tuple[bool, str]:
     """Whether e − (1 + 1/N)^N lies between 0 and e/(2N + 1), and Λ."""
-    with working_precision(PRECISION):
+    with enclosures():
         e, found = flint.arb(1).exp(), []
         for n in steps:
-            power = flint.arb(flint.fmpq(n + 1, n)) ** n
+            power = rational_ball(Fraction(n + 1, n)) ** n
             found.append((bool(e / (2 * n + 1) > e - power > 0), (power - 1)))
         shown = ", ".join(f"`{x.str(6, radius=False)}`" for _, x in found)
     listed = ", ".join(map(str, steps))

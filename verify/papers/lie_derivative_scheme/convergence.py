@@ -5,22 +5,25 @@ from collections.abc import Sequence
 from fractions import Fraction
 from itertools import pairwise
 
-import flint
 import sympy
 
 from verify.algebra.symbols import H_STEP, P, Q
-from verify.arithmetic.flint_precision import working_precision
-from verify.hamiltonians import systems
-from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.arithmetic.arb import rational_ball
 from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import BALLS, Check, same
 from verify.papers.checks.sums import geometric
-from verify.papers.lie_derivative_scheme.oscillator import PRECISION, errors, final_error
+from verify.papers.lie_derivative_scheme.examples import (
+    SYSTEMS,
+    enclosures,
+    errors,
+    final_error,
+    oscillator,
+    with_symbols,
+)
 from verify.proof.assistant.stated import Shipped
 from verify.proof.order import convergence_of
 from verify.schemes.methods.taylor.lie import lie_map
 
-SYSTEMS = ("duffing", "pendulum")
 ETAS = range(1, 5)
 STEPS = (10, 100, 1000)
 _LIPSCHITZ = 1  # of lie1 for the oscillator: ψ = f, and the norm of f' is 1
@@ -85,8 +88,7 @@ def local_orders(shift: int) -> list[Check]:
 
 
 def _local_order(name: str, eta: int, claimed: int) -> Check:
-    hamiltonian = Hamiltonian(systems.get(name).hamiltonian().expression)
-    found = convergence_of(lie_map(hamiltonian, eta))
+    found = convergence_of(lie_map(with_symbols(name), eta))
     return Check(
         f"{name}, lie{eta}: the local error is of order `h^{claimed + 1}` exactly",
         found.decided and found.order == claimed,
@@ -99,8 +101,8 @@ def _within_the_bound(eta: int, order: int) -> Check:
     shown, holds = [], True
     for steps in STEPS:
         error = final_error(eta, steps)
-        with working_precision(PRECISION):
-            h = flint.arb(flint.fmpq(1, steps))
+        with enclosures():
+            h = rational_ball(Fraction(1, steps))
             lipschitz = (h.exp() - 1) / h
             bound = h**order / math.factorial(order + 1) * (lipschitz.exp() - 1) / lipschitz
             holds = holds and bool(error <= bound)
@@ -121,9 +123,9 @@ def _listed(numbers: Sequence[int]) -> str:
 def eq_10(fixed: bool = True) -> Argument:
     """Eq. 10 with e_n, n = η, in the middle of it; `fixed` False: with e_k, as it must read."""
     eta, ratios = 1, []
-    with working_precision(PRECISION):
+    with enclosures():
         for steps in STEPS:
-            h = flint.arb(flint.fmpq(1, steps))
+            h = rational_ball(Fraction(1, steps))
             end = final_error(eta, steps)
             before = abs(errors(eta, Fraction(1, steps), eta if fixed else steps - 1)[-1])
             ratios.append((end - (h * _LIPSCHITZ).exp() * before) / h ** (eta + 1))
@@ -168,7 +170,7 @@ def eq_10(fixed: bool = True) -> Argument:
 
 def _lengthened(eta: int = 1) -> Check:
     """p'² + q'² = (1 + h²)(p² + q²) for lie1 on the oscillator; not so for another `eta`."""
-    hamiltonian = systems.get("harmonic").hamiltonian().with_values({"omega": 1})
+    hamiltonian = oscillator()
     found, square = lie_map(hamiltonian, eta), P**2 + Q**2
     gap = found.p_next**2 + found.q_next**2 - (1 + H_STEP**2) * square
     h_p, h_q = (sympy.diff(hamiltonian.exact, z) for z in (P, Q))

@@ -6,25 +6,19 @@ import sympy
 
 from verify.algebra.symbols import P, Q
 from verify.arithmetic.exact import decimal, text
-from verify.hamiltonians import systems
 from verify.papers.argument import Argument, Step, proof, refutation, step
 from verify.papers.checks.check import NUMBERS, Check, vanishes
 from verify.papers.checks.differential import flow_of_every_hamiltonian
 from verify.papers.checks.matrices import product_of_determinants
 from verify.papers.exact_maps import Point, areas, jacobian, next_point, value
 from verify.papers.lie_derivative_scheme.criteria_examples import FRICTION, TO_AND_FRO, ExampleMap
+from verify.papers.lie_derivative_scheme.examples import duffing_step
 from verify.proof.assistant.stated import Shipped
-from verify.schemes.maps.step_map import StepMap
-from verify.schemes.methods.taylor.lie import lie_map
 
 _H = Fraction(1, 10)
 _START = Point(Fraction(1, 2), Fraction(1))
 _FLOW = Shipped("Taylor", "flow_has_no_defect")
 CHAIN = Shipped("Differential", "slopes_of_composition")
-
-
-def _duffing() -> StepMap:
-    return lie_map(systems.get("duffing").hamiltonian().with_values({"delta": 1}), 2)
 
 
 def exact_determinant(most: int = 5, eta: int = 5) -> Argument:
@@ -86,7 +80,7 @@ def mean_square(true: int = 1, steps: int = 3) -> Argument:
 
 def mean_of_squares(true: int = 1, steps: int = 3) -> Check:
     """MSE by its closed form against det J from its entries; `true`: what is taken for 1."""
-    scheme, point, dets = _duffing(), _START, []
+    scheme, point, dets = duffing_step(), _START, []
     for _ in range(steps):
         a, b, c, d = jacobian(scheme, point, _H)
         dets.append(a * d - b * c)
@@ -104,7 +98,7 @@ def mean_of_squares(true: int = 1, steps: int = 3) -> Check:
 
 def sum_of_squares(steps: int = 2) -> Argument:
     """The sum of the squares is N times Eq. 15, and another number for N > 1."""
-    found = areas(_duffing(), _START, _H, steps)
+    found = areas(duffing_step(), _START, _H, steps)
     total = sum((x * x for x in found.delta_j), Fraction(0))
     differ = Check(
         f"Duffing, δ = 1, lie2, h = {text(_H)}, (p, q) = {_START}, N = {steps}: Σ `ΔJ_k`² and MSE",
@@ -159,7 +153,7 @@ def of_all_steps(stray: Fraction = Fraction(0)) -> list[Step]:
 
 
 def _composed(steps: int, stray: Fraction) -> Check:
-    scheme, p_next, q_next = _duffing(), P, Q
+    scheme, p_next, q_next = duffing_step(), P, Q
     for _ in range(steps):
         put = {P: p_next, Q: q_next}
         p_next, q_next = (x.subs(put, simultaneous=True) for x in (scheme.p_next, scheme.q_next))

@@ -7,21 +7,20 @@ Eq. 10 and 11 in one norm of the plane; by components:
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 
-import flint
 import sympy
 
 from verify.algebra.symbols import P, Q
+from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.exact import text
-from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import BALLS, NUMBERS, Check, vanishes
-from verify.papers.checks.differential import Differential
+from verify.papers.checks.differential import free_variables
 from verify.papers.checks.sums import bound_of_eq_11, geometric
 from verify.papers.checks.triangle import difference, triangle
 from verify.papers.exact_maps import Point, next_point
 from verify.papers.lie_derivative_scheme.convergence import STEPS, local_orders
-from verify.papers.lie_derivative_scheme.oscillator import PRECISION
+from verify.papers.lie_derivative_scheme.examples import enclosures
 from verify.proof.assistant.stated import Shipped
 from verify.schemes.methods.taylor.lie import lie_map
 
@@ -142,8 +141,7 @@ def eq_7_meant(of: str = "ab") -> Argument:
 
 def eq_8(middle_sign: int = 1) -> Argument:
     """The triangle inequality; `middle_sign` −1 makes one of its sides wrong."""
-    ring = Differential(["exact", "step", "run"])
-    exact, stepped, run = (ring[name] for name in ring.names)
+    exact, stepped, run = free_variables("exact step run")
     split = vanishes(
         "(p̄ − p̃) + (p̃ − p) − (p̄ − p)",
         (exact - stepped) + (middle_sign * stepped - run) - (exact - run),
@@ -167,8 +165,8 @@ def eq_8(middle_sign: int = 1) -> Argument:
 
 def eq_10_meant(slope: int = 1) -> Argument:
     """Eq. 10 with e_k for e_n: from Eq. 8 and a Lipschitz constant; `slope` is that of 1 + x."""
-    with working_precision(PRECISION):
-        sizes = [flint.arb(flint.fmpq(int(10 * rate), 10 * n)) for rate in _RATES for n in STEPS]
+    with enclosures():
+        sizes = [rational_ball(rate / n) for rate in _RATES for n in STEPS]
         exponentials = [bool(1 + slope * x <= x.exp()) for x in sizes]
     example = Check(
         "1 + hL ≤ `e^(hL)`",

@@ -61,12 +61,10 @@ def separable() -> Check:
     """ΔJ of lie2 for H = T(p) + V(q), T and V generic; T1 stands for T', and so on."""
     names = [f"{f}{k}" for f in "TV" for k in range(1, 5)]
     ring = Differential(["h", "p", "q", *names])
-    one, zero = ring.context.constant(1), ring.zero
-    ring.set_gradient("p", p=one, q=zero)
-    ring.set_gradient("q", p=zero, q=one)
+    ring.set_coordinates()
     for k in range(1, 4):
-        ring.set_gradient(f"T{k}", p=ring[f"T{k + 1}"], q=zero)
-        ring.set_gradient(f"V{k}", p=zero, q=ring[f"V{k + 1}"])
+        ring.set_gradient(f"T{k}", p=ring[f"T{k + 1}"], q=ring.zero)
+        ring.set_gradient(f"V{k}", p=ring.zero, q=ring[f"V{k + 1}"])
     t1, t2, t3, v1, v2, v3 = (ring[f"{f}{k}"] for f in "TV" for k in (1, 2, 3))
     flow = Flow(ring, t1, v1)
     delta_j = flow.delta_j(*flow.lie(2))

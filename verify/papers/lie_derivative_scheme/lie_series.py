@@ -6,16 +6,15 @@ import sympy
 
 from verify.algebra.formula import symbol
 from verify.algebra.symbols import H_STEP, P, Q
-from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import Check, same, vanishes
 from verify.papers.checks.differential import Flow, Poly, flow_of_every_hamiltonian
+from verify.papers.lie_derivative_scheme.examples import SYSTEMS, with_symbols
 from verify.proof.assistant.stated import Shipped
 from verify.schemes.methods.taylor.lie import lie_map
 
 MOST = 5  # powers of X looked at for a generic H; the rest is by induction
-SYSTEMS = ("duffing", "pendulum")
 Recursion = Callable[[Flow, Poly], Poly]
 
 
@@ -44,7 +43,7 @@ def lie_exponential(recursion: Recursion = eq_4, eta: int = 4) -> Argument:
     powers = [powers_of(name, recursion) for name in ("p", "q")]
     for_systems = []
     for name in SYSTEMS:
-        hamiltonian = Hamiltonian(systems.get(name).hamiltonian().expression)
+        hamiltonian = with_symbols(name)
         for order in range(1, eta + 1):
             for_systems.append(_same(name, hamiltonian, order))
     return proof(
@@ -182,7 +181,7 @@ def _example() -> Check:
 
 def eq_3_meant(coordinate: str = "q") -> Argument:
     """Eq. 3 with q for p in its first line: L_{H_p}(q) = H_p, L_{−H_q}(p) = −H_q, by Eq. 5."""
-    found = [Hamiltonian(systems.get(name).hamiltonian().expression) for name in SYSTEMS]
+    found = [with_symbols(name) for name in SYSTEMS]
     return proof(
         "`L_{H_p}`(`q_k`) = `H_p` ∂q/∂q = `H_p` and `L_{−H_q}`(`p_k`) = −`H_q` ∂p/∂p = −`H_q` are "
         "Eq. 5 for y = q and y = p, and what Eq. 2 begins with",

@@ -8,15 +8,12 @@ import sympy
 
 from verify.algebra.symbols import H_STEP, P, Q
 from verify.arithmetic.exact import decimal, text
-from verify.arithmetic.flint_precision import working_precision
-from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import BALLS, NUMBERS, Check, same, vanishes
 from verify.papers.checks.differential import flow_of_every_hamiltonian
 from verify.papers.exact_maps import Point, jacobian, next_point, squared
-from verify.papers.lie_derivative_scheme.oscillator import PRECISION, errors, factor
-from verify.schemes.methods.taylor.lie import lie_map
+from verify.papers.lie_derivative_scheme.examples import duffing_step, enclosures, errors, factor
 
 PAIR = (Point(p=Fraction(0), q=Fraction(0)), Point(p=Fraction(0), q=Fraction(1)))
 STEP_SIZES = (Fraction(1, 10), Fraction(1, 100), Fraction(1, 1000))
@@ -24,16 +21,11 @@ LATEST = 4  # runs are looked at up to this time
 MIXED = "a*p*q + b*p + c*q"  # H_pp = H_qq = 0
 
 
-def duffing() -> Hamiltonian:
-    """The Duffing oscillator with δ = 1."""
-    return systems.get("duffing").hamiltonian().with_values({"delta": 1})
-
-
 def eq_9(pair: tuple[Point, Point] = PAIR, mixed: str = MIXED) -> Argument:
     """Eq. 9 by a pair of points with equal p, and along a run of the oscillator; `mixed`: an H for
     which both components decouple."""
     h = Fraction(1, 10)
-    found = lie_map(duffing(), 2)
+    found = duffing_step()
     ends = [next_point(found, point, h) for point in pair]
     left, right = abs(ends[1].p - ends[0].p), abs(pair[1].p - pair[0].p)
     apart = Check(
@@ -121,7 +113,7 @@ def _decoupled(mixed: str) -> Check:
 def along_a_run(h: Fraction) -> Check:
     """The greatest L_p that one step of the run asks for, for both readings of the right side."""
     steps = int(LATEST / h)
-    with working_precision(PRECISION):
+    with enclosures():
         error, scheme = errors(2, h, steps), factor(2, h)
         size = 1 / float(h)
         barred = _largest([(scheme * e).imag for e in error], [e.imag for e in error], size)
@@ -173,7 +165,7 @@ def of_the_plane(norm: float = 1.0) -> Argument:
 def _stretch(h: Fraction, norm: float) -> Check:
     """Duffing, δ = 1, lie2 on the square |p|, |q| ≤ 1, where every entry of ψ' is largest in size
     at a corner: ‖ψ'‖² is at most the sum of their squares."""
-    scheme, bound = lie_map(duffing(), 2), Fraction(norm) * 5
+    scheme, bound = duffing_step(), Fraction(norm) * 5
     corners = [Point(Fraction(a), Fraction(b)) for a in (-1, 1) for b in (-1, 1)]
     images = [next_point(scheme, z, h) for z in corners]
     pairs = [(i, j) for i in range(len(corners)) for j in range(i)]

@@ -4,12 +4,12 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from verify.arithmetic.exact import decimal, text
-from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import NUMBERS, Check, vanishes
 from verify.papers.checks.differential import Differential, Flow, flow_of_every_hamiltonian
 from verify.papers.exact_maps import Point, areas, jacobian, map_from_formulas, next_point
+from verify.papers.lie_derivative_scheme.examples import duffing, duffing_step
 from verify.proof.assistant.stated import Shipped
 from verify.proof.order import prove
 from verify.schemes.maps.step_map import StepMap
@@ -21,8 +21,7 @@ POINT = Point(p=Fraction(0), q=Fraction(1))
 
 def eq_12(hamiltonian: Hamiltonian | None = None, point: Point = POINT) -> Argument:
     """z_{k+1} = J_k z_k: refuted at one rational point, of the Duffing oscillator if not told."""
-    chosen = hamiltonian or systems.get("duffing").hamiltonian().with_values({"delta": 1})
-    found = lie_map(chosen, 2)
+    found = lie_map(hamiltonian or duffing(), 2)
     product, image = _product(found, point), next_point(found, point, H)
     linear = _is_linear(lie_map(Hamiltonian.parse("a*p**2/2 + b*p*q + c*q**2/2"), 2))
     at_a_point = Check(
@@ -87,7 +86,7 @@ def _is_linear(found: StepMap) -> bool:
 
 def eq_12_tangent(stray: Fraction = Fraction(0)) -> Argument:
     """δz_{k+1} = J_k δz_k: Φ(z + sv) − Φ(z) − s J v is O(s²); `stray` is added to J's entries."""
-    found = lie_map(systems.get("duffing").hamiltonian().with_values({"delta": 1}), 2)
+    found = duffing_step()
     along = [Point(Fraction(1), Fraction(0)), Point(Fraction(0), Fraction(1))]
     sizes = [Fraction(1, 10**n) for n in (1, 2, 3)]
     gaps = [[_gap(found, v, s, stray) / s**2 for s in sizes] for v in along]
@@ -233,8 +232,7 @@ def stays_linear(bent: int = 0) -> Check:
     names = ["p", "q", "a", "b", "c", "alpha", "beta"]
     ring = Differential(names)
     p, q, a, b, c, alpha, beta = (ring[name] for name in names)
-    ring.set_gradient("p", p=ring.context.constant(1), q=ring.zero)
-    ring.set_gradient("q", p=ring.zero, q=ring.context.constant(1))
+    ring.set_coordinates()
     flow = Flow(ring, a * p + b * q, b * p + c * q)
     along = flow.derive(alpha * p + beta * q + bent * p * p)
     linear = (a * beta - b * alpha) * p + (b * beta - c * alpha) * q

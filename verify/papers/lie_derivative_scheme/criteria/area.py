@@ -8,12 +8,12 @@ import sympy
 from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.symbols import H_STEP, P, Q
 from verify.arithmetic.exact import text
-from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import Check
 from verify.papers.exact_maps import map_from_formulas
 from verify.papers.lie_derivative_scheme import families
+from verify.papers.lie_derivative_scheme.examples import duffing_step
 from verify.proof.assistant.stated import Shipped
 from verify.proof.order import prove
 from verify.schemes.maps.step_map import StepMap
@@ -55,10 +55,9 @@ def _areas_agree(name: str, found: StepMap, preserved: bool) -> Check:
 
 
 def _by_regions(formula: str = TRIANGULAR) -> list[Check]:
-    duffing = systems.get("duffing").hamiltonian().with_values({"delta": 1})
     return [
         _areas_agree(f"lie2, H = `{formula}`", lie_map(Hamiltonian.parse(formula), 2), True),
-        _areas_agree("lie2, Duffing, δ = 1", lie_map(duffing, 2), False),
+        _areas_agree("lie2, Duffing, δ = 1", duffing_step(), False),
     ]
 
 

@@ -125,13 +125,13 @@ def connection_with_3(
                 "+ h² at every point, so ``MSE = h^2(1 − h)^2 = o(h)``, and ``Λ = (1 − h + "
                 "h^2)^(T/h) − 1 → e^(−T) − 1``: criterion 3 calls a map nearly area-preserving "
                 "that shrinks every area to a fraction `e^(−T)`.",
-                *_shrinking(friction),
+                *shrinking(friction),
             ),
             step(
                 "In the other direction criterion 4 does not imply 3: for p' = −p (1 − √h q)/(1 + "
                 "√h q), q' = −q from q = 1, det J is (1 − √h)/(1 + √h) and its reciprocal in turn, "
                 "so Λ is 0 or −2√h/(1 + √h), which tends to 0, while MSE > 4h for even N.",
-                *_to_and_fro(alternating),
+                *to_and_fro(alternating),
             ),
         ],
         given=SETTING,
@@ -176,7 +176,7 @@ def against_2(
             ),
             step(
                 "And it does so far from the identity: p' = −p (1 − √h q)/(1 + √h q), q' = −q.",
-                *_to_and_fro(alternating),
+                *to_and_fro(alternating),
             ),
         ],
         given=SETTING,
@@ -197,23 +197,25 @@ def against_3(
             step(
                 "4 does not imply 3: p' = −p (1 − √h q)/(1 + √h q), q' = −q from q = 1 has Λ → 0, "
                 "and MSE > 4h for even N.",
-                *_to_and_fro(alternating),
+                *to_and_fro(alternating),
             ),
             step(
                 "Criterion 3 does not imply 4 (friction: ΔJ = −h + h²), so 3 and 4 cannot be "
                 "ordered.",
-                *_shrinking(friction),
+                *shrinking(friction),
             ),
         ],
         given=SETTING,
     )
 
 
-def _shrinking(friction: ExampleMap) -> list[Check]:
+def shrinking(friction: ExampleMap) -> list[Check]:
+    """ΔJ, the limit of Λ, and the numbers of an oscillator with friction."""
     return [friction.changes(), shrinks_to(), friction.check()]
 
 
-def _to_and_fro(alternating: Sequence[ExampleMap]) -> list[Check]:
+def to_and_fro(alternating: Sequence[ExampleMap]) -> list[Check]:
+    """ΔJ of a map and of its next step, and its numbers for even and odd N."""
     each = [example.check() for example in alternating]
     return [alternating[0].changes(), turns_to_and_fro(), *each]
 

@@ -12,15 +12,17 @@ from verify.papers.argument import Argument, Step, proof, refutation, step
 from verify.papers.checks.check import NUMBERS, Check, vanishes
 from verify.papers.checks.sums import mean_of_fourth_powers, squares_of_times
 from verify.papers.lie_derivative_scheme.consistency import consistent_map
-from verify.papers.lie_derivative_scheme.criteria.connections import BY_MANY_STEPS
+from verify.papers.lie_derivative_scheme.criteria.connections import (
+    BY_MANY_STEPS,
+    shrinking,
+    to_and_fro,
+)
 from verify.papers.lie_derivative_scheme.criteria_examples import (
     FRICTION,
     NOT_UNIFORM,
     TO_AND_FRO,
     TO_AND_FRO_ODD,
     ExampleMap,
-    shrinks_to,
-    turns_to_and_fro,
 )
 from verify.proof.assistant.stated import Shipped
 
@@ -111,9 +113,7 @@ def pointwise_connection(
             step(
                 "4 and not 2: p' = −p (1 − √h q)/(1 + √h q), q' = −q from q = 1 has Λ → 0 and "
                 "``|ΔJ_0| = 2√h/(1 + √h) ≥ √h``.",
-                *(each.changes() for each in alternating[:1]),
-                turns_to_and_fro(),
-                *(example.check() for example in alternating),
+                *to_and_fro(alternating),
                 at_first,
             ),
         ],
@@ -153,9 +153,7 @@ def stronger_than_3(hamiltonian: bool = False, friction: ExampleMap = FRICTION) 
             ),
             step(
                 "Criterion 4 does not hold for the oscillator with friction, where div g = −1.",
-                friction.changes(),
-                shrinks_to(),
-                friction.check(),
+                *shrinking(friction),
             ),
         ],
         given="Let the orbit of z' = g(z) exist on [0, T].",
