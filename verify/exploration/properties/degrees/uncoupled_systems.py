@@ -27,16 +27,14 @@ from verify.exploration.sample import Sample
 from verify.hamiltonians.coordinates import PLANE
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
-_IN, _OF_EQUATIONS = 2, 4  # one in so many samples
 _MOST_STEPS = 3
 
 
 def holds(sample: Sample) -> None:
-    only_if(not sample.planar)
     parts = [_of_degree(sample, k) for k in range(sample.hamiltonian.degrees)]
     together = Hamiltonian(sympy.Add(*parts))
     only_if(together.coordinates == sample.hamiltonian.coordinates and sample.brief)
-    only_if(sample.is_turn(_IN if sample.scheme.explicit else _OF_EQUATIONS))
+    only_if(sample.is_turn(one_in=2 if sample.scheme.explicit else 4))
     whole = replace(sample, hamiltonian=together)
     planes = [_plane(sample, k, part) for k, part in enumerate(parts)]
     if not sample.scheme.explicit:

@@ -8,13 +8,11 @@ from verify.exploration.sample import Sample
 from verify.proof.symmetry import by_series
 from verify.verdict import Verdict
 
-_IN = 3  # one in so many samples of the plane is looked at by series, too
-
 
 def holds(sample: Sample) -> None:
     only_if(sample.scheme.symmetric and (sample.planar or sample.brief))
     # In n degrees of freedom such a series may take a minute.
-    if sample.planar and sample.is_turn(_IN) and sample.ordinary and not sample.step_map.implicit:
+    if sample.planar and sample.is_turn(one_in=3) and sample.in_closed_form:
         series = by_series(sample.step_map, sample.scheme.order + 1)
         if series.verdict is Verdict.REFUTED:
             raise Violation(f"by series it is not symmetric: {series.reason}")

@@ -23,7 +23,7 @@ Point = tuple[Ball, ...]  # the coordinates, and t
 
 def holds(sample: Sample) -> None:
     """With (f, 1) as the slope, and the two clocks of a splitting."""
-    only_if(sample.timed and sample.brief)
+    only_if(sample.brief)
     with working_precision(BITS):
         wanted = _step(sample)
     found = ball_steps(sample.step_map, sample.start, 1)[-1].sharp()

@@ -30,7 +30,7 @@ from verify.functions.function import CIRCLE
 
 def holds(sample: Sample) -> None:
     """The same of the Jacobian."""
-    only_if(sample.timed and sample.brief)
+    only_if(sample.brief)
     frequency = known(_frequency(*sample.slopes))
     start = ball_steps(sample.step_map, sample.start, 0)[0]
     with working_precision(BITS):

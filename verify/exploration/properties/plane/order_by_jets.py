@@ -31,7 +31,7 @@ _MOST_ORDER = 5  # of a scheme: with more there are too many jets
 
 def holds(sample: Sample) -> None:
     scheme = sample.scheme
-    only_if(sample.planar and _has_series_in_jets(sample))
+    only_if(_has_series_in_jets(sample))
     only_if(scheme.order <= _MOST_ORDER and sample.ordinary)
     proof = sample.proof
     only_if(proof.area_preserving is not None)
