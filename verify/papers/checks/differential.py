@@ -133,6 +133,13 @@ class Flow:
         """ΔJ of the map (p, q) → (p_next, q_next), by powers of h."""
         return self.ring.powers(self.bracket(p_next, q_next) - 1, "h")
 
+    def delta_j_gaps(self, eta: int, **told: Poly) -> list[Poly]:
+        """The coefficients of h, h², … in ΔJ of lieη, less what is `told` of them: h3=…"""
+        found = self.delta_j(*self.lie(eta))
+        powers = range(1, max([*found, 2 * eta]) + 1)
+        zero = self.ring.zero
+        return [found.get(n, zero) - told.get(f"h{n}", zero) for n in powers]
+
     def lie(self, eta: int) -> tuple[Poly, Poly]:
         """p', q' of the scheme lieη (Eq. 2)."""
         h = self.ring["h"]

@@ -10,7 +10,7 @@ from verify.papers.argument import Argument, Step, proof, refutation, step
 from verify.papers.checks.check import NUMBERS, Check, vanishes
 from verify.papers.checks.differential import flow_of_every_hamiltonian
 from verify.papers.checks.matrices import product_of_determinants
-from verify.papers.exact_maps import Point, areas, jacobian, next_point, value
+from verify.papers.exact_maps import Point, areas, jacobian, next_point, run_of, value
 from verify.papers.lie_derivative_scheme.criteria_examples import FRICTION, TO_AND_FRO, ExampleMap
 from verify.papers.lie_derivative_scheme.examples import duffing_step
 from verify.proof.assistant.stated import Shipped
@@ -49,10 +49,9 @@ def exact_determinant(most: int = 5, eta: int = 5) -> Argument:
 
 def _of_the_flow(most: int, eta: int) -> Check:
     flow = flow_of_every_hamiltonian(most + 1)
-    powers, zero = flow.delta_j(*flow.lie(eta)), flow.ring.zero
     return vanishes(
         f"the coefficients of h … `h^{most}` in ΔJ of the flow of a generic H",
-        *(powers.get(n, zero) for n in range(1, most + 1)),
+        *flow.delta_j_gaps(eta)[:most],
     )
 
 
@@ -153,11 +152,8 @@ def of_all_steps(stray: Fraction = Fraction(0)) -> list[Step]:
 
 
 def _composed(steps: int, stray: Fraction) -> Check:
-    scheme, p_next, q_next = duffing_step(), P, Q
-    for _ in range(steps):
-        put = {P: p_next, Q: q_next}
-        p_next, q_next = (x.subs(put, simultaneous=True) for x in (scheme.p_next, scheme.q_next))
-    entries = [sympy.diff(x, z) for x in (p_next, q_next) for z in (P, Q)]
+    scheme = duffing_step()
+    entries = [sympy.diff(x, z) for x in run_of(scheme, (P, Q), steps) for z in (P, Q)]
     a, b, c, d = (value(x, _START, _H) for x in entries)
     det, lam = a * d - b * c + stray, areas(scheme, _START, _H, steps).lam
     return Check(

@@ -182,7 +182,6 @@ def increasing(start: Point = START, h: Fraction = Fraction(1, 10), steps: int =
     totals = [abs(Areas(found[:n]).lam) for n in range(1, steps + 1)]
     shown = ", ".join(f"`{decimal(x, 4)}`" for x in totals)
     flow = flow_of_every_hamiltonian(4)
-    leading = flow.delta_j(*flow.lie(2))[3]
     falls = Check(
         f"Duffing, δ = 1, lie2, h = {text(h)}, from (p, q) = {start}: |Λ| after n steps falls, "
         f"n = 1 … {steps}",
@@ -192,7 +191,7 @@ def increasing(start: Point = START, h: Fraction = Fraction(1, 10), steps: int =
     )
     telescopes = vanishes(
         "the coefficient of h³ in ΔJ of lie2 is X·G for a generic H, with G = det Hess H/2",
-        leading - flow.derive(flow.hessian_determinant / 2),
+        flow.delta_j_gaps(2, h3=flow.derive(flow.hessian_determinant / 2))[2],
     )
     return refutation(
         f"for the Duffing oscillator (δ = 1, lie2, h = {text(h)}) from (p, q) = {start}, |Λ| after "

@@ -10,12 +10,11 @@ from verify.algebra.symbols import H_STEP, P, Q
 from verify.arithmetic.exact import text
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.papers.argument import Argument, proof, refutation, step
-from verify.papers.checks.check import Check
+from verify.papers.checks.check import Check, same
 from verify.papers.exact_maps import map_from_formulas
 from verify.papers.lie_derivative_scheme import families
 from verify.papers.lie_derivative_scheme.examples import duffing_step
 from verify.proof.assistant.stated import Shipped
-from verify.proof.order import prove
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.methods.taylor.lie import lie_map
 
@@ -187,11 +186,11 @@ def any_map(formulas: Sequence[str] = FOLDED) -> Argument:
         sympy.simplify(x.subs({P: -P, Q: -Q}, simultaneous=True) - x)
         for x in (found.p_next, found.q_next)
     ]
-    det = prove(found)
-    preserves = Check(
+    preserves = same(
         f"p' = `{formulas[0]}`, q' = `{formulas[1]}`: ΔJ is the zero function",
-        det.area_preserving is True,
-        f"`{to_text(det.delta_j)}`",
+        [found.delta_j],
+        ("p", "q", "h"),
+        "`0`",
     )
     covers = Check(
         "z and −z have the same image, and r'² = r²/2",

@@ -59,12 +59,7 @@ def criterion_2(not_small: ExampleMap = NOT_UNIFORM) -> Argument:
 
 
 def _vanishing() -> Check:
-    flows = {eta: flow_of_every_hamiltonian(eta + 1) for eta in _ETAS}
-    low = [
-        flow.delta_j(*flow.lie(eta)).get(n, flow.ring.zero)
-        for eta, flow in flows.items()
-        for n in range(1, eta + 1)
-    ]
+    low = [x for eta in _ETAS for x in flow_of_every_hamiltonian(eta + 1).delta_j_gaps(eta)[:eta]]
     return vanishes("the coefficients of h … `h^η` in ΔJ of lieη, η = 1, 2, 3, generic H", *low)
 
 
