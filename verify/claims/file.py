@@ -30,10 +30,9 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from verify.claims.claim import Claim
+from verify.claims.claim import Claim, outside
 from verify.claims.kinds import models
 from verify.claims.on_runs import RunKeys
-from verify.claims.outside import outside
 from verify.claims.quantified import QuantifiedClaim
 from verify.claims.readings import settled
 from verify.claims.scenes import HAMILTONIAN_KEYS, HAMILTONIAN_SOURCES, NamedScenes, scene_for

@@ -4,7 +4,7 @@ What is proved of an order in h, and what follows for one that is claimed.
 """
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Annotated, Self
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
 
 from pydantic import Field
 
@@ -79,19 +79,19 @@ def told_of(known: ProvedOrder, near: NearbyOrder | None) -> ProvedOrder:
 
 
 if TYPE_CHECKING:
-    from verify.claims.checked import AboutAll
     from verify.proof.every_proof import EveryProof
 
 Order = Annotated[int, Field(ge=1, le=64, strict=True)]
 _BEYOND = MOST_ORDERS + 1  # an order of what vanishes
-OF_DELTA_J: "AboutAll" = frozenset({"volume"})
-OF_S: "AboutAll" = frozenset({"defect"})
-OF_MAP: "AboutAll" = frozenset({"map"})
-OF_LAMBDA: "AboutAll" = frozenset({"product"})
 
 
 class OrderedClaim(QuantifiedClaim):
-    """The base of the kinds that say an order; with `at_least`, that it is no lower one."""
+    """The base of the kinds that say an order; with `at_least`, that it is no lower one.
+
+    `form`: of which form it is the order, S or, in any number of degrees of freedom, det J − 1.
+    """
+
+    form: ClassVar[Literal["S", "ΔJ"]] = "S"
 
     at_least: bool = False
     """Whether a higher order is as claimed, too."""
@@ -100,6 +100,14 @@ class OrderedClaim(QuantifiedClaim):
     def claimed(self) -> int:
         """The order that is claimed, which stands under the name of the kind."""
         return int(getattr(self, self.kind))
+
+    def judge_one(self, findings: Findings) -> ClaimResult:
+        return self.judge_known(order_of(self, findings, self.form))
+
+    def judge_every(self, proof: "EveryProof") -> ClaimResult:
+        preserves, order = proof.area_preserving, proof.order
+        known = ProvedOrder(order or 0, order is not None, preserves, proof.reason, proof.domain)
+        return self.judge_known(known)
 
     def judge_known(self, known: ProvedOrder) -> ClaimResult:
         """Whether what is proved is as claimed."""
@@ -112,23 +120,9 @@ class OrderedClaim(QuantifiedClaim):
         return self.model_copy(update={"every": None, "at_least": True}) if self.every else self
 
 
-def every_delta_j(proof: "EveryProof") -> ProvedOrder:
-    """The order of ΔJ for every H."""
-    preserves, order = proof.area_preserving, proof.order
-    return ProvedOrder(order or 0, order is not None, preserves, proof.reason, proof.domain)
-
-
-def delta_j_of(claim: Claim, findings: Findings) -> ProvedOrder:
-    """The order of ΔJ of the claim's scheme for its scene's H, in any number of degrees."""
-    return _order_of(claim, findings, "ΔJ")
-
-
-def defect_of(claim: Claim, findings: Findings) -> ProvedOrder:
-    """The order of S = JᵀΩJ − Ω, which in the plane is ΔJ·Ω."""
-    return _order_of(claim, findings, "S")
-
-
-def _order_of(claim: Claim, findings: Findings, form: str) -> ProvedOrder:
+def order_of(claim: Claim, findings: Findings, form: str) -> ProvedOrder:
+    """The order of S = JᵀΩJ − Ω of the claim's scheme for its scene's H, or of ΔJ = det J − 1; in
+    the plane S is ΔJ·Ω."""
     hamiltonian = findings.scene_of(claim).exact_hamiltonian()
     if hamiltonian.planar:
         form, known = "ΔJ", _delta_j_order(step_map_of(hamiltonian, claim.scheme))

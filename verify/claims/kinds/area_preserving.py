@@ -7,8 +7,8 @@ from pydantic import Field
 from verify.algebra.domain import EVERYWHERE, Domain
 from verify.claims.findings import Findings
 from verify.claims.formulas import within
-from verify.claims.orders import OF_DELTA_J, as_claimed, delta_j_of
-from verify.claims.quantified import QuantifiedClaim
+from verify.claims.orders import as_claimed, order_of
+from verify.claims.quantified import OF_DELTA_J, QuantifiedClaim
 from verify.scenes.results.claim import ClaimResult
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ class AreaClaim(QuantifiedClaim):
     """Whether det J ≡ 1 is claimed, or that it is not so."""
 
     def judge_one(self, findings: Findings) -> ClaimResult:
-        known = delta_j_of(self, findings)
+        known = order_of(self, findings, "ΔJ")
         domain = known.domain & known.exact_for
         return self.judge_known(known.vanishes, known.evidence + within(domain), domain)
 

@@ -6,7 +6,8 @@ The map agrees with the exact flow up to h to this power.
 from typing import TYPE_CHECKING, Literal
 
 from verify.claims.findings import Findings
-from verify.claims.orders import OF_MAP, Order, OrderedClaim, ProvedOrder, flow_of, told_of
+from verify.claims.orders import Order, OrderedClaim, ProvedOrder, flow_of, told_of
+from verify.claims.quantified import OF_MAP
 from verify.prose import Formula, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
