@@ -35,7 +35,13 @@ from verify.claims.kinds import models
 from verify.claims.on_runs import RunKeys
 from verify.claims.quantified import QuantifiedClaim
 from verify.claims.readings import settled
-from verify.claims.scenes import HAMILTONIAN_KEYS, HAMILTONIAN_SOURCES, NamedScenes, scene_for
+from verify.claims.scenes import (
+    HAMILTONIAN_KEYS,
+    HAMILTONIAN_SOURCES,
+    NamedScenes,
+    scene_for,
+    tables_of,
+)
 from verify.errors import NOT_GIVEN, InputError, LimitError, unknown
 from verify.files import read_text
 from verify.prose import read_prose
@@ -146,9 +152,7 @@ def _texts(file: ClaimsFile, key: str, given: Any) -> tuple[str, ...]:
 
 def _left_out(file: ClaimsFile, tables: Any) -> tuple[tuple[str, str], ...]:
     """What is not claimed, each with the reason."""
-    if not isinstance(tables, list):
-        raise InputError(f"{file.name}: left_out", tables, "write [[left_out]] tables")
-    for index, table in enumerate(tables):
+    for index, table in enumerate(tables_of(file.name, "left_out", tables)):
         if not isinstance(table, dict) or set(table) != {"what", "why"}:
             at = file.lines.of("left_out", index)
             raise InputError(f"{file.name}:{at}: left_out", table, "has `what` and `why`, both")
@@ -168,11 +172,9 @@ def _settle_readings(file: ClaimsFile) -> None:
 
 def _add_causes(file: ClaimsFile, tables: Any) -> None:
     """What explains several statements, after the claims that it speaks of."""
-    if not isinstance(tables, list):
-        raise InputError(f"{file.name}: cause", tables, "write [[cause]] tables")
     ids = {claim.id for claim in file.claims}
     statements = {claim.reading_of for claim in file.claims if claim.reading_of}
-    for index, table in enumerate(tables):
+    for index, table in enumerate(tables_of(file.name, "cause", tables)):
         with _named(f"{file.name}:{file.lines.of('cause', index)}: cause"):
             says = table.get("says") if isinstance(table, dict) else None
             if not isinstance(says, str) or not says:
@@ -195,10 +197,8 @@ def _named(where: str) -> Iterator[None]:
 
 def _add_figures(file: ClaimsFile, tables: Any, scenes: NamedScenes) -> None:
     """The figures to be made again, after the claims that they speak of."""
-    if not isinstance(tables, list):
-        raise InputError(f"{file.name}: figure", tables, "write [[figure]] tables")
     ids = {claim.id for claim in file.claims}
-    for index, table in enumerate(tables):
+    for index, table in enumerate(tables_of(file.name, "figure", tables)):
         with _named(f"{file.name}:{file.lines.of('figure', index)}: figure"):
             figure = PaperFigure.model_validate(table)
             if figure.label in {other.label for other in file.figures}:

@@ -77,6 +77,13 @@ def _check_hamiltonian(claim: Claim, scene: Scene) -> None:
         raise InputError("kind", claim.kind, problem)
 
 
+def tables_of(file: str, key: str, given: Any) -> list[Any]:
+    """The tables that stand under the key in a file of that name; InputError where none do."""
+    if not isinstance(given, list):
+        raise InputError(f"{file}: {key}", given, f"write [[{key}]] tables")
+    return given
+
+
 def slug(name: str) -> str:
     """The name with what a scene's name, or a file's, cannot have made a dash.
 
@@ -91,9 +98,7 @@ class NamedScenes:
 
     def __init__(self, path: Path, tables: Any, lines: Lines) -> None:
         self.folder, self.found = path.parent, dict[str, Scene]()
-        if not isinstance(tables, list):
-            raise InputError(f"{path.name}: scene", tables, "write [[scene]] tables")
-        for index, table in enumerate(tables):
+        for index, table in enumerate(tables_of(path.name, "scene", tables)):
             where = f"{path.name}:{lines.of('scene', index)}: scene"
             name = table.get("name") if isinstance(table, dict) else None
             if not isinstance(name, str) or not name or name in self.found:

@@ -4,8 +4,8 @@ from typing import Any
 
 import pytest
 
-from verify.claims.check import prepare
 from verify.claims.file import load_claims
+from verify.claims.judging import prepare
 from verify.claims.quantified import marks_for_every, marks_for_hamiltonian
 from verify.execution.execute import Store
 from verify.proof.certificates import checker
