@@ -1,10 +1,7 @@
-"""Claims that say an order in h, and what is proved of such an order.
-
-What is proved of an order in h, and what follows for one that is claimed.
-"""
+"""Claims that say an order in h, what is proved of it, and what follows for one that is claimed."""
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Field
 
@@ -17,6 +14,7 @@ from verify.claims.quantified import QuantifiedClaim
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import told_nearby
 from verify.proof.claimed import Convergence
+from verify.proof.every_proof import EveryProof
 from verify.proof.expansion import MOST_ORDERS
 from verify.proof.order import convergence_of_scheme, leading_of, nearby_defect_of
 from verify.proof.printed_formulas import told_defect
@@ -27,6 +25,9 @@ from verify.schemes import get
 from verify.schemes.conditions.condition import NearbyOrder
 from verify.schemes.maps.step_map import StepMap
 from verify.verdict import Verdict
+
+Order = Annotated[int, Field(ge=1, le=64, strict=True)]
+_BEYOND = MOST_ORDERS + 1  # an order of what vanishes
 
 
 @dataclass(frozen=True)
@@ -70,19 +71,19 @@ def as_claimed(vanishes: bool | None, claimed: bool) -> Verdict:
     return Verdict.PROVED if vanishes == claimed else Verdict.REFUTED
 
 
+def judge_vanishing(claim: Claim, known: ProvedOrder, claimed: bool) -> ClaimResult:
+    """Whether what the order is of vanishes, or does not, as it is claimed."""
+    domain = known.domain & known.exact_for
+    verdict = as_claimed(known.vanishes, claimed)
+    return claim.result(verdict, known.evidence + within(domain), domain=domain)
+
+
 def told_of(known: ProvedOrder, near: NearbyOrder | None) -> ProvedOrder:
     """What is known of exact coefficients near printed ones, if it is of such."""
     if near is None:
         return known
     evidence = prose(known.evidence, "; ", told_nearby(near))
     return replace(known, evidence=evidence, held=near.verdict)
-
-
-if TYPE_CHECKING:
-    from verify.proof.every_proof import EveryProof
-
-Order = Annotated[int, Field(ge=1, le=64, strict=True)]
-_BEYOND = MOST_ORDERS + 1  # an order of what vanishes
 
 
 class OrderedClaim(QuantifiedClaim):
@@ -104,7 +105,7 @@ class OrderedClaim(QuantifiedClaim):
     def judge_one(self, findings: Findings) -> ClaimResult:
         return self.judge_known(order_of(self, findings, self.form))
 
-    def judge_every(self, proof: "EveryProof") -> ClaimResult:
+    def judge_every(self, proof: EveryProof) -> ClaimResult:
         preserves, order = proof.area_preserving, proof.order
         known = ProvedOrder(order or 0, order is not None, preserves, proof.reason, proof.domain)
         return self.judge_known(known)

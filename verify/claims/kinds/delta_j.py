@@ -7,7 +7,7 @@ names, up to the first term.
 
 import re
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Literal, Self
+from typing import Literal, Self
 
 import sympy
 
@@ -22,14 +22,12 @@ from verify.claims.orders import Order
 from verify.claims.quantified import OF_DELTA_J, QuantifiedClaim, marks_for_hamiltonian
 from verify.errors import NOT_GIVEN, InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.proof.every_proof import EveryProof
 from verify.proof.order import leading_of
 from verify.prose import Formula, Prose, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.schemes.maps.step_map import grouped
 from verify.verdict import Verdict
-
-if TYPE_CHECKING:
-    from verify.proof.every_proof import EveryProof
 
 _NAME = re.compile(r"[A-Za-z]\w*")
 _DERIVATIVE = re.compile(r"H_([pq]+|\d\d)")  # ∂²H/∂p∂q is H_pq, H_qp or H_11
@@ -113,7 +111,7 @@ class DeltaJClaim(QuantifiedClaim, FormulaClaim):
             )
         _read_every(self.formula, self.id)
 
-    def judge_every(self, proof: "EveryProof") -> ClaimResult:
+    def judge_every(self, proof: EveryProof) -> ClaimResult:
         """Up to the first term, which is what is known of ΔJ for every H."""
         if proof.area_preserving is not True and (proof.order is None or not proof.leading):
             return self.result(Verdict.UNDECIDED, proof.reason)

@@ -7,8 +7,7 @@ from pydantic import Field
 
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
-from verify.claims.formulas import within
-from verify.claims.orders import as_claimed, order_of
+from verify.claims.orders import judge_vanishing, order_of
 from verify.claims.quantified import OF_S, marks_for_scene
 from verify.prose import Prose
 from verify.scenes.results.claim import ClaimResult
@@ -23,10 +22,7 @@ class SymplecticClaim(Claim):
 
     def judge(self, findings: Findings) -> ClaimResult:
         """By the proof for the scene's H."""
-        known = order_of(self, findings, "S")
-        domain = known.domain & known.exact_for
-        verdict = as_claimed(known.vanishes, self.symplectic)
-        return self.result(verdict, known.evidence + within(domain), domain=domain)
+        return judge_vanishing(self, order_of(self, findings, "S"), self.symplectic)
 
     def checked_by(self, found: ClaimResult, findings: Findings) -> Sequence[Prose]:
         return marks_for_scene(self, findings, OF_S)
