@@ -35,13 +35,7 @@ from verify.claims.kinds import models
 from verify.claims.on_runs import RunKeys
 from verify.claims.quantified import QuantifiedClaim
 from verify.claims.readings import settled
-from verify.claims.scenes import (
-    HAMILTONIAN_KEYS,
-    HAMILTONIAN_SOURCES,
-    NamedScenes,
-    scene_for,
-    tables_of,
-)
+from verify.claims.scenes import HAMILTONIAN_KEYS, HAMILTONIAN_SOURCES, NamedScenes, scene_for
 from verify.errors import NOT_GIVEN, InputError, LimitError, unknown
 from verify.files import read_text
 from verify.prose import read_prose
@@ -49,7 +43,7 @@ from verify.scenes.causes import Cause
 from verify.scenes.mistakes.values import one_line
 from verify.scenes.paper_figures import PaperFigure
 from verify.scenes.scene import Scene
-from verify.scenes.toml_file import Lines, lines_of, read_toml
+from verify.scenes.toml_file import Lines, lines_of, read_toml, tables_of
 
 _ROOT = ("title", "about", "defaults", "scene", "claim", "cause", "figure", "left_out")
 # Of each group a claim needs one: where it gives one itself, it takes none from the defaults.

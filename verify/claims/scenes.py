@@ -16,7 +16,7 @@ from verify.claims.claim import Claim
 from verify.errors import NOT_GIVEN, InputError
 from verify.scenes.frozen import Frozen
 from verify.scenes.scene import Scene, load_scene, scene_from
-from verify.scenes.toml_file import Lines
+from verify.scenes.toml_file import Lines, tables_of
 from verify.scenes.values import Number, SystemName
 
 HAMILTONIAN_SOURCES = ("scene", "system", "hamiltonian", "every")
@@ -75,13 +75,6 @@ def _check_hamiltonian(claim: Claim, scene: Scene) -> None:
     if exact and claim.autonomous and exact.time_dependent:
         problem = "is of an H without t, and so of no H that depends on t"
         raise InputError("kind", claim.kind, problem)
-
-
-def tables_of(file: str, key: str, given: Any) -> list[Any]:
-    """The tables that stand under the key in a file of that name; InputError where none do."""
-    if not isinstance(given, list):
-        raise InputError(f"{file}: {key}", given, f"write [[{key}]] tables")
-    return given
 
 
 def slug(name: str) -> str:

@@ -12,14 +12,7 @@ from verify.arithmetic.arb import rational_ball
 from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import BALLS, Check, same
 from verify.papers.checks.sums import geometric
-from verify.papers.lie_derivative_scheme.examples import (
-    SYSTEMS,
-    enclosures,
-    errors,
-    final_error,
-    oscillator,
-    with_symbols,
-)
+from verify.papers.lie_derivative_scheme import examples
 from verify.proof.assistant.stated import Shipped
 from verify.proof.order import convergence_of
 from verify.schemes.methods.taylor.lie import lie_map
@@ -84,11 +77,11 @@ def convergence(shift: int = 0) -> Argument:
 
 def local_orders(shift: int) -> list[Check]:
     """The local error is of order η + 1 + shift exactly, for both systems."""
-    return [_local_order(name, eta, eta + shift) for name in SYSTEMS for eta in ETAS]
+    return [_local_order(name, eta, eta + shift) for name in examples.SYSTEMS for eta in ETAS]
 
 
 def _local_order(name: str, eta: int, claimed: int) -> Check:
-    found = convergence_of(lie_map(with_symbols(name), eta))
+    found = convergence_of(lie_map(examples.with_symbols(name), eta))
     return Check(
         f"{name}, lie{eta}: the local error is of order `h^{claimed + 1}` exactly",
         found.decided and found.order == claimed,
@@ -100,8 +93,8 @@ def _within_the_bound(eta: int, order: int) -> Check:
     """On the oscillator M = 1, and L ≤ (e^h − 1)/h as the norm of every Xⁿ is 1."""
     shown, holds = [], True
     for steps in STEPS:
-        error = final_error(eta, steps)
-        with enclosures():
+        error = examples.final_error(eta, steps)
+        with examples.enclosures():
             h = rational_ball(Fraction(1, steps))
             lipschitz = (h.exp() - 1) / h
             bound = h**order / math.factorial(order + 1) * (lipschitz.exp() - 1) / lipschitz
@@ -123,11 +116,11 @@ def _listed(numbers: Sequence[int]) -> str:
 def eq_10(fixed: bool = True) -> Argument:
     """Eq. 10 with e_n, n = η, in the middle of it; `fixed` False: with e_k, as it must read."""
     eta, ratios = 1, []
-    with enclosures():
+    with examples.enclosures():
         for steps in STEPS:
             h = rational_ball(Fraction(1, steps))
-            end = final_error(eta, steps)
-            before = abs(errors(eta, Fraction(1, steps), eta if fixed else steps - 1)[-1])
+            end = examples.final_error(eta, steps)
+            before = abs(examples.errors(eta, Fraction(1, steps), eta if fixed else steps - 1)[-1])
             ratios.append((end - (h * _LIPSCHITZ).exp() * before) / h ** (eta + 1))
     grows = all(bool(b > 5 * a) for a, b in pairwise(ratios))
     shown = ", ".join(f"`{r.mid().str(4, radius=False)}`" for r in ratios)
@@ -170,7 +163,7 @@ def eq_10(fixed: bool = True) -> Argument:
 
 def _lengthened(eta: int = 1) -> Check:
     """p'² + q'² = (1 + h²)(p² + q²) for lie1 on the oscillator; not so for another `eta`."""
-    hamiltonian = oscillator()
+    hamiltonian = examples.oscillator()
     found, square = lie_map(hamiltonian, eta), P**2 + Q**2
     gap = found.p_next**2 + found.q_next**2 - (1 + H_STEP**2) * square
     h_p, h_q = (sympy.diff(hamiltonian.exact, z) for z in (P, Q))

@@ -14,14 +14,9 @@ from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import BALLS, NUMBERS, Check, same, vanishes
 from verify.papers.checks.differential import flow_of_every_hamiltonian
 from verify.papers.exact_maps import Areas, Point, areas, map_from_formulas, next_point, value
+from verify.papers.lie_derivative_scheme import examples
 from verify.papers.lie_derivative_scheme.convergence import STEPS
 from verify.papers.lie_derivative_scheme.error_measures import mean_of_squares
-from verify.papers.lie_derivative_scheme.examples import (
-    SYSTEMS,
-    duffing_step,
-    enclosures,
-    with_symbols,
-)
 from verify.proof.assistant.stated import Shipped
 from verify.schemes.methods.taylor.lie import lie_map
 
@@ -71,7 +66,7 @@ def _error_at_1(formulas: Sequence[str], steps: int) -> Check:
     jacobian = map_from_formulas(*formulas).jacobian
     h = Fraction(1, steps)
     a, b, c, d = (value(x, Point(Fraction(0), Fraction(0)), h) for x in jacobian)
-    with enclosures():
+    with examples.enclosures():
         entries = [rational_ball(x) for x in (a, b, c, d)]
         matrix = flint.arb_mat(2, 2, entries) ** steps
         p, q = matrix[0, 1], matrix[1, 1]  # from (p, q) = (0, 1)
@@ -97,7 +92,7 @@ def in_general() -> Argument:
             step(
                 "For δ ≠ 0, h > 0 ΔJ of lie2 is not identically 0 in (p, q): its part that is "
                 "proportional to p is not.",
-                *map(_part_in_p, SYSTEMS),
+                *map(_part_in_p, examples.SYSTEMS),
             ),
             step("Zeros of an analytic function that is not 0 everywhere have measure 0."),
         ],
@@ -107,14 +102,14 @@ def in_general() -> Argument:
 def _part_in_p(name: str) -> Check:
     """∂ΔJ/∂p for δ = 1, which has no zero but where it should have."""
     parameters = {"delta": 1} if name == "duffing" else {}
-    slope = lie_map(with_symbols(name).with_values(parameters), 2).delta_j
+    slope = lie_map(examples.with_symbols(name).with_values(parameters), 2).delta_j
     slope = sympy.simplify(sympy.diff(slope, P))
     return Check(f"{name}: ∂ΔJ/∂p of lie2", slope != 0, f"`{slope}`")
 
 
 def in_every_step(q: Fraction = Fraction(1), share: Fraction = Fraction(-4, 3)) -> Argument:
     """ΔJ = 0 on a curve of the Duffing oscillator; `share`: p on it at this q, over h."""
-    found = duffing_step()
+    found = examples.duffing_step()
     put = {P: sympy.Rational(share.numerator, share.denominator) * H_STEP, Q: sympy.Rational(q)}
     there = same(
         f"Duffing, δ = 1, lie2: ΔJ at q = {text(q)}, p = `{text(share)} h`",
@@ -139,7 +134,7 @@ def from_one_step_size(formulas: Sequence[str] = UNEVEN, steps: int = 20_000_000
     both = [value(found.delta_j, point, _POINT_ONE) for point in points]
     again = next_point(found, points[1], _POINT_ONE) == points[0]
     size, pair = max(map(abs, both)), (1 + both[0]) * (1 + both[1]) - 1
-    with enclosures():
+    with examples.enclosures():
         grown = (1 + rational_ball(pair)) ** (steps // 2) - 1
         near = bool(grown > 5e-6) and bool(grown < 2e-5)
         shown = grown.mid().str(3, radius=False)
@@ -178,7 +173,7 @@ def from_one_step_size(formulas: Sequence[str] = UNEVEN, steps: int = 20_000_000
 
 def increasing(start: Point = START, h: Fraction = Fraction(1, 10), steps: int = 3) -> Argument:
     """|Λ| after n steps falls: exact for the Duffing oscillator, and why for every even η."""
-    found = areas(duffing_step(), start, h, steps).delta_j
+    found = areas(examples.duffing_step(), start, h, steps).delta_j
     totals = [abs(Areas(found[:n]).lam) for n in range(1, steps + 1)]
     shown = ", ".join(f"`{decimal(x, 4)}`" for x in totals)
     flow = flow_of_every_hamiltonian(4)
