@@ -18,8 +18,8 @@ from verify.exploration.oracles.ball_steps import (
     Matrix,
     ball_steps,
     defect,
+    must_overlap,
     overlap,
-    unlike,
 )
 from verify.exploration.oracles.mpfr_runs import end_of, must_agree
 from verify.exploration.property import Violation, only_if
@@ -75,15 +75,12 @@ def _must_be_product(whole: BallState, planes: Sequence[BallState]) -> None:
     n, blocks = len(planes), Matrix(2 * len(planes), 2 * len(planes))
     for k, plane in enumerate(planes):
         for a, letter in enumerate(PLANE):
-            found, wanted = whole.point[f"{letter}{k + 1}"], plane.point[letter]
-            if not found.overlaps(wanted):
-                raise Violation(f"{letter}{k + 1} is {unlike(found, wanted)}, in its plane")
+            name = f"{letter}{k + 1}"
+            must_overlap(f"{name} is", whole.point[name], plane.point[letter], ", in its plane")
             for b in range(2):
                 blocks[n * a + k, n * b + k] = plane.matrix[a, b]
-        area = defect(whole.matrix)[k, n + k]
-        if not area.overlaps(plane.product - 1):
-            told = unlike(area, plane.product - 1)
-            raise Violation(f"W's entry dp{k + 1}∧dq{k + 1} is {told}, Λ of its plane")
+        entry, area = defect(whole.matrix)[k, n + k], plane.product - 1
+        must_overlap(f"W's entry dp{k + 1}∧dq{k + 1} is", entry, area, ", Λ of its plane")
     if not overlap(whole.matrix, blocks):
         raise Violation("J of the run does not have the planes' as its blocks")
 

@@ -2,7 +2,7 @@
 
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.oracles.ball_steps import BITS, ball_steps, stepped, unlike
+from verify.exploration.oracles.ball_steps import BITS, ball_steps, must_overlap, stepped
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
 from verify.proof.symmetry import by_series
@@ -20,6 +20,4 @@ def holds(sample: Sample) -> None:
     with working_precision(BITS):
         back = stepped(sample.step_map, last, rational_ball(-sample.step_size)).sharp()
     for name in sample.point:
-        if not back.point[name].overlaps(first.point[name]):
-            told = unlike(back.point[name], first.point[name])
-            raise Violation(f"{name} comes back as {told}")
+        must_overlap(f"{name} comes back as", back.point[name], first.point[name])

@@ -18,10 +18,10 @@ from verify.exploration.oracles.ball_steps import (
     BITS,
     BallState,
     ball_steps,
+    must_overlap,
     overlap,
     sharp,
     stepped,
-    unlike,
 )
 from verify.exploration.property import Violation, known, only_if
 from verify.exploration.sample import Sample
@@ -44,8 +44,8 @@ def _must_be_alike(one: BallState, other: BallState) -> None:
     for name, x in one.point.items():
         y = other.point[name]
         only_if(sharp(x) and sharp(y))
-        if name != "t" and not x.overlaps(y):
-            raise Violation(f"a period later {name}' is {unlike(y, x)}")
+        if name != "t":
+            must_overlap(f"a period later {name}' is", y, x)
     if not overlap(one.own, other.own):
         raise Violation("a period later J is another")
 
