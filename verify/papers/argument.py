@@ -62,7 +62,7 @@ class Argument(WithProse):
 HEAD = ("what the argument rests on", "value", "checked")
 
 
-def concluded(
+def _argument(
     verdict: Verdict,
     evidence: str,
     steps: Iterable[Step],
@@ -94,8 +94,8 @@ def concluded(
     )
 
 
-proof = partial(concluded, Verdict.PROVED)
-refutation = partial(concluded, Verdict.REFUTED)
+proof = partial(_argument, Verdict.PROVED)
+refutation = partial(_argument, Verdict.REFUTED)
 
 
 def checks_of(steps: Iterable[Step]) -> list[Check]:

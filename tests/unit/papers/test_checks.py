@@ -93,7 +93,7 @@ def test_an_h_whose_step_has_no_such_inverse_is_no_example_of_criterion_1() -> N
 
 
 def test_a_run_that_does_not_cancel_is_no_example_of_a_weaker_criterion() -> None:
-    assert refused(connections.against_2(compensated=FRICTION))
+    assert refused(connections.criterion_4_against_2(compensated=FRICTION))
 
 
 def test_formulas_are_the_same_by_algebra_and_not_by_their_text() -> None:

@@ -22,6 +22,46 @@ _ETAS = range(1, 5)
 _LEVEL = Q - P**3
 
 
+# -- Eq. 9 -----------------------------------------------------------------------------------------
+
+
+def eq_9_kept(etas: Sequence[int] = _ETAS) -> Argument:
+    """Eq. 9 in a norm with z̃_k on the right: 0 at k = 1, where the left side is not."""
+    return refutation(
+        "`z̃_1` and `z_1` are both one step from the initial value, so that the right side is 0 at "
+        "k = 1 in every norm and for every L; for the oscillator the left side, |Φ(`z̄_1`) − "
+        "Φ(`z_1`)|, is not",
+        [
+            step(
+                "The run begins on the exact solution, `z_0` = `z̄_0`; so "
+                "``z̃_1 = Φ(z̄_0) = Φ(z_0) = z_1``, and |`z̃_1` − `z_1`| = 0.",
+            ),
+            step(
+                "The left side at k = 1 is |`z̃_2` − `z_2`| = |Φ(`z̄_1`) − Φ(`z_1`)|. For the "
+                "oscillator Φ turns and stretches the plane by a factor R, |R| > 0, and `z̄_1` − "
+                "`z_1` is the local error, which is not 0: so it is not 0 either.",
+                *(_after_two(eta) for eta in etas),
+            ),
+        ],
+        given="Read |…| as a norm of the plane, and keep `z̃_k` on the right as printed.",
+        remark="For every scheme and every H it is so wherever the first step has a local error "
+        "and Φ is one-to-one. With `z̄_k` in place of `z̃_k`, as Eq. 8 and 10 need it, it holds.",
+    )
+
+
+def _after_two(eta: int, h: Fraction = Fraction(1, 10)) -> Check:
+    """The left side of Eq. 9 at k = 1, for the oscillator from (q, p) = (1, 0)."""
+    with enclosures():
+        left = abs(factor(eta, h) * errors(eta, h, 1)[-1])
+        shown, apart = left.mid().str(4, radius=False), bool(left > 0)
+    return Check(
+        f"oscillator from (q, p) = (1, 0), lie{eta}, h = {text(h)}: |`z̃_2` − `z_2`| > 0",
+        apart,
+        f"`{shown}`",
+        BALLS,
+    )
+
+
 # -- Eq. 10 and 11 ---------------------------------------------------------------------------------
 
 
@@ -131,46 +171,3 @@ def _at_1(formula: str, steps: int) -> Check:
         f"`{decimal(low, 4)}` ≥ `{decimal(h * h * (1 - h) / 2, 4)}`",
         BALLS,
     )
-
-
-# -- Eq. 9 -----------------------------------------------------------------------------------------
-
-
-def eq_9_kept(etas: Sequence[int] = _ETAS) -> Argument:
-    """Eq. 9 in a norm with z̃_k on the right: 0 at k = 1, where the left side is not."""
-    return refutation(
-        "`z̃_1` and `z_1` are both one step from the initial value, so that the right side is 0 at "
-        "k = 1 in every norm and for every L; for the oscillator the left side, |Φ(`z̄_1`) − "
-        "Φ(`z_1`)|, is not",
-        [
-            step(
-                "The run begins on the exact solution, `z_0` = `z̄_0`; so "
-                "``z̃_1 = Φ(z̄_0) = Φ(z_0) = z_1``, and |`z̃_1` − `z_1`| = 0.",
-            ),
-            step(
-                "The left side at k = 1 is |`z̃_2` − `z_2`| = |Φ(`z̄_1`) − Φ(`z_1`)|. For the "
-                "oscillator Φ turns and stretches the plane by a factor R, |R| > 0, and `z̄_1` − "
-                "`z_1` is the local error, which is not 0: so it is not 0 either.",
-                *(_after_two(eta) for eta in etas),
-            ),
-        ],
-        given="Read |…| as a norm of the plane, and keep `z̃_k` on the right as printed.",
-        remark="For every scheme and every H it is so wherever the first step has a local error "
-        "and Φ is one-to-one. With `z̄_k` in place of `z̃_k`, as Eq. 8 and 10 need it, it holds.",
-    )
-
-
-def _after_two(eta: int, h: Fraction = Fraction(1, 10)) -> Check:
-    """The left side of Eq. 9 at k = 1, for the oscillator from (q, p) = (1, 0)."""
-    with enclosures():
-        left = abs(factor(eta, h) * errors(eta, h, 1)[-1])
-        shown, apart = left.mid().str(4, radius=False), bool(left > 0)
-    return Check(
-        f"oscillator from (q, p) = (1, 0), lie{eta}, h = {text(h)}: |`z̃_2` − `z_2`| > 0",
-        apart,
-        f"`{shown}`",
-        BALLS,
-    )
-
-
-THEOREMS = {"eq-9-kept": eq_9_kept, "eq-10-components": eq_10_components, "eq-11": eq_11}

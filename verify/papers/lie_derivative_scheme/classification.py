@@ -5,7 +5,7 @@ from verify.papers.lie_derivative_scheme import developables, families
 from verify.papers.lie_derivative_scheme.determinant import PRESERVED, preserved
 
 
-def classification(flaw: int = 0) -> Argument:
+def determinant_classification(flaw: int = 0) -> Argument:
     """All H for which lie2 preserves area exactly; `flaw` spoils the conic family."""
     return proof(
         "locally complete for smooth H, near the points of an open dense set, globally for "
@@ -171,6 +171,3 @@ def _separable() -> list[Step]:
             families.twice(),
         ),
     ]
-
-
-THEOREMS = {"determinant-classification": classification}

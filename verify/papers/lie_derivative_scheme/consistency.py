@@ -58,7 +58,7 @@ def small_determinant(hamiltonian: bool = True) -> Check:
     )
 
 
-def of_smooth_schemes(hamiltonian: bool = True) -> Argument:
+def criteria_of_consistent_schemes(hamiltonian: bool = True) -> Argument:
     """Criteria 2, 3 and 4 hold for explicit Euler too, which blows every area up."""
     grown = enclosed_growth(STEP_SIZES[0])[1]
     return proof(
@@ -136,7 +136,7 @@ ORDERS = (1, 2, 3)
 STEPS = (4, 16)
 
 
-def alone(ripple: str = RIPPLE) -> Argument:
+def consistency_is_not_enough(ripple: str = RIPPLE) -> Argument:
     """A consistent scheme of any order that fails criteria 2 and 4; `ripple` is its p'."""
     found = [_rippled(ripple.format(n=m + 1, m=m), m) for m in ORDERS]
     local, whole, run = zip(*found, strict=True)
@@ -238,9 +238,3 @@ def _tends_to_e(steps: Sequence[int]) -> tuple[bool, str]:
         shown = ", ".join(f"`{x.str(6, radius=False)}`" for _, x in found)
     listed = ", ".join(map(str, steps))
     return all(near for near, _ in found), f"for N = {listed} it is {shown}, e − 1 to 1/N"
-
-
-THEOREMS = {
-    "criteria-of-consistent-schemes": of_smooth_schemes,
-    "consistency-is-not-enough": alone,
-}

@@ -170,6 +170,3 @@ def _lengthened(eta: int = 1) -> Check:
     kept = h_p * sympy.diff(square, Q) - h_q * sympy.diff(square, P)
     what = "oscillator, lie1: p'² + q'² − (1 + h²)(p² + q²), and X(p² + q²)"
     return same(what, [gap, kept], ("p", "q", "h"))
-
-
-THEOREMS = {"convergence": convergence, "eq-10": eq_10}

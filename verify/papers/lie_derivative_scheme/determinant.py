@@ -22,7 +22,7 @@ PRESERVED = ("p**3/6 + q", "(p**2 + q**2)**(3/4)", "(p*q)**(3/4)")
 SINGULAR = "q**2/p"  # det Hess H = 0 everywhere, and still ΔJ ≠ 0
 
 
-def examples(names: Sequence[str] = SYSTEMS) -> Argument:
+def determinant_of_the_examples(names: Sequence[str] = SYSTEMS) -> Argument:
     """For the paper's two systems det J ≠ 1: at the equilibrium, for every η and almost every h."""
     at_rest = [_at_rest(name, eta) for name in names for eta in ETAS]
     return proof(
@@ -90,7 +90,7 @@ def _at_rest(name: str, eta: int) -> Check:
     )
 
 
-def universal(formulas: Sequence[str] = PRESERVED) -> Argument:
+def determinant_of_every_h(formulas: Sequence[str] = PRESERVED) -> Argument:
     """As a statement on every H: refuted by H with det J ≡ 1 and a truncation error."""
     first, *others = map(preserved, formulas)
     return refutation(
@@ -164,6 +164,3 @@ def _singular() -> Check:
         sympy.simplify(hessian) == 0 and found.order == 4 and found.delta_j == told,
         f"ΔJ = `{to_text(found.delta_j)}`",
     )
-
-
-THEOREMS = {"determinant-of-the-examples": examples, "determinant-of-every-h": universal}

@@ -21,7 +21,7 @@ _FLOW = Shipped("Taylor", "flow_has_no_defect")
 CHAIN = Shipped("Differential", "slopes_of_composition")
 
 
-def exact_determinant(most: int = 5, eta: int = 5) -> Argument:
+def eq_14(most: int = 5, eta: int = 5) -> Argument:
     """det of the exact flow is 1 for a generic H up to h^most; `eta` is of what stands for it."""
     return proof(
         "the exact flow has det = 1 over every step, so det `J_k` − 1 is by how much one step’s "
@@ -55,7 +55,7 @@ def _of_the_flow(most: int, eta: int) -> Check:
     )
 
 
-def mean_square(true: int = 1, steps: int = 3) -> Argument:
+def eq_15(true: int = 1, steps: int = 3) -> Argument:
     """MSE is the mean of (det J − 1)², and 1 is the true value; `true`: what is taken for it."""
     squares = mean_of_squares(true, steps)
     return proof(
@@ -95,7 +95,7 @@ def mean_of_squares(true: int = 1, steps: int = 3) -> Check:
     )
 
 
-def sum_of_squares(steps: int = 2) -> Argument:
+def eq_15_sum(steps: int = 2) -> Argument:
     """The sum of the squares is N times Eq. 15, and another number for N > 1."""
     found = areas(duffing_step(), _START, _H, steps)
     total = sum((x * x for x in found.delta_j), Fraction(0))
@@ -117,7 +117,7 @@ def sum_of_squares(steps: int = 2) -> Argument:
     )
 
 
-def chain_rule(stray: Fraction = Fraction(0)) -> Argument:
+def criterion_4(stray: Fraction = Fraction(0)) -> Argument:
     """1 + Λ is the determinant of the map of all N steps; `stray` is added to it."""
     return proof(
         "by the chain rule 1 + Λ is the determinant of the map of all N steps at the initial "
@@ -168,7 +168,7 @@ def _composed(steps: int, stray: Fraction) -> Check:
 # -- “the system with a smaller cumulative error” --------------------------------------------------
 
 
-def smaller_is_better() -> Argument:
+def smaller_lambda() -> Argument:
     """|Λ| is by which part areas change after all steps."""
     return proof(
         "after all N steps a small region’s area has changed by |Λ| of it, by the chain rule, so "
@@ -182,7 +182,7 @@ def smaller_is_better() -> Argument:
     )
 
 
-def smaller_in_each_step(
+def smaller_lambda_each_step(
     to_and_fro: ExampleMap = TO_AND_FRO, friction: ExampleMap = FRICTION
 ) -> Argument:
     """Of two maps the one with the smaller |Λ| may change areas more in every step."""
@@ -223,13 +223,3 @@ def smaller_in_each_step(
         ],
         given="Λ is a number at the end.",
     )
-
-
-THEOREMS = {
-    "eq-14": exact_determinant,
-    "eq-15": mean_square,
-    "eq-15-sum": sum_of_squares,
-    "criterion-4": chain_rule,
-    "smaller-lambda": smaller_is_better,
-    "smaller-lambda-each-step": smaller_in_each_step,
-}

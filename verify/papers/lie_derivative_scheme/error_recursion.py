@@ -257,13 +257,3 @@ def _worst_sequence(rate: Fraction, power: Callable[[Fraction, int], Fraction]) 
         "exactly",
         NUMBERS,
     )
-
-
-THEOREMS = {
-    "local-error": local_error,
-    "eq-7": eq_7,
-    "eq-7-meant": eq_7_meant,
-    "eq-8": eq_8,
-    "eq-10-meant": eq_10_meant,
-    "eq-11-norm": eq_11_norm,
-}

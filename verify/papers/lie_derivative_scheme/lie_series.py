@@ -197,6 +197,3 @@ def eq_3_meant(coordinate: str = "q") -> Argument:
             ),
         ],
     )
-
-
-THEOREMS = {"lie-exponential": lie_exponential, "eq-3": eq_3, "eq-3-meant": eq_3_meant}

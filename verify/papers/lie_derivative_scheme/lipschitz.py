@@ -138,7 +138,7 @@ def _largest(left: Sequence[flint.arb], right: Sequence[flint.arb], scale: float
     return (max(known) - 1) * scale
 
 
-def of_the_plane(norm: float = 1.0) -> Argument:
+def eq_9_plane(norm: float = 1.0) -> Argument:
     """Eq. 9 for both components in one norm; `norm` scales L, to see that the check notices."""
     return proof(
         "repaired, with `z̄_k` for `z̃_k` and both components together, it holds: |Φ(`z̄_k`) − "
@@ -181,7 +181,7 @@ def _stretch(h: Fraction, norm: float) -> Check:
     )
 
 
-def inference() -> Argument:
+def convergence_inference() -> Argument:
     """“Therefore convergent”, by Eq. 9–11 as they are printed."""
     return refutation(
         "the printed way leads through Eq. 9 with the p-difference alone on the right, for which "
@@ -203,6 +203,3 @@ def inference() -> Argument:
         given="Eq. 11 is summed from Eq. 10, and that from Eq. 9.",
         remark="The conclusion is true, by the same steps for both components in one norm.",
     )
-
-
-THEOREMS = {"eq-9": eq_9, "eq-9-plane": of_the_plane, "convergence-inference": inference}

@@ -194,14 +194,6 @@ def near_identity_inference(p_next: str = "-q", q_next: str = "p") -> Argument:
     )
 
 
-THEOREMS = {
-    "eq-12": eq_12,
-    "eq-12-tangent": eq_12_tangent,
-    "near-identity": near_identity,
-    "near-identity-inference": near_identity_inference,
-}
-
-
 def euler(power: int = 2) -> Check:
     """d/ds [Φ(sz)/s] = [J(sz) sz − Φ(sz)]/s² for a generic Φ; `power` stands for the 2."""
     names = ["u", "s", "F", "F_p", "F_q", "p", "q"]

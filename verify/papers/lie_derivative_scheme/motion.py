@@ -17,7 +17,7 @@ PENDULUM = ("p**2/2 - cos(q)", "sin(q)")
 _NAMES = ("p", "q", "delta")
 
 
-def conservative(sign: int = -1) -> Argument:
+def eq_1(sign: int = -1) -> Argument:
     """X H = 0 and div X = 0 for a generic H; `sign` is that of p' = −H_q."""
     flow = flow_of_every_hamiltonian(2)
     diff, h_p, h_q = flow.ring.diff, flow.h_p, flow.h_q
@@ -90,6 +90,3 @@ def eq_25(formulas: Sequence[str] = PENDULUM) -> Argument:
     """q'' + sin q = 0 from Eq. 26."""
     moves = Shipped("Examples", "pendulum_moves")
     return _from_hamiltonian("eq-25", "Eq. 26", formulas, "", moves)
-
-
-THEOREMS = {"eq-1": conservative, "eq-17": eq_17, "eq-25": eq_25}

@@ -54,7 +54,7 @@ def partitioned(sign: int = -1) -> Argument:
     )
 
 
-def separable_alone(formula: str = "p*q + p**2*q**2") -> Argument:
+def partitioned_separable(formula: str = "p*q + p**2*q**2") -> Argument:
     """Eq. 2–5 serve an H that is no sum of a function of p and one of q."""
     hamiltonian = Hamiltonian.parse(formula)
     mixed = sympy.expand(sympy.diff(hamiltonian.exact, P, Q))
@@ -79,7 +79,7 @@ def separable_alone(formula: str = "p*q + p**2*q**2") -> Argument:
     )
 
 
-def of_functions() -> Argument:
+def higher_derivatives() -> Argument:
     """L² is a derivative of H_p and of −H_q."""
     flow = flow_of_every_hamiltonian(2)
     along = {"q": flow.h_p, "p": -flow.h_q}
@@ -91,7 +91,9 @@ def of_functions() -> Argument:
     )  # fmt: skip
 
 
-def nonlinearity(linear: str = "p**2/2 + p*q + q**2", curved: str = "p**2/2 + q**4/4") -> Argument:
+def higher_derivatives_nonlinearity(
+    linear: str = "p**2/2 + p*q + q**2", curved: str = "p**2/2 + q**4/4"
+) -> Argument:
     """The same for linear systems; and a nonlinear one whose second derivative is of a variable."""
     first, second = (Hamiltonian.parse(formula).exact for formula in (linear, curved))
     rates = [sympy.diff(first, z) for z in (P, Q)]
@@ -117,12 +119,3 @@ def nonlinearity(linear: str = "p**2/2 + p*q + q**2", curved: str = "p**2/2 + q*
                  "of a variable.", is_curved),
         ],
     )  # fmt: skip
-
-
-THEOREMS = {
-    "taylor-method": taylor_method,
-    "partitioned": partitioned,
-    "partitioned-separable": separable_alone,
-    "higher-derivatives": of_functions,
-    "higher-derivatives-nonlinearity": nonlinearity,
-}

@@ -26,7 +26,7 @@ START = Point(p=Fraction(1), q=Fraction(-1, 20))
 _POINT_ONE = Fraction(1, 10)
 
 
-def of_the_determinants() -> Argument:
+def mse_quantifies() -> Argument:
     """MSE(J) tells how far the determinants are from 1."""
     return proof(
         "√MSE is the root mean square of det `J_k` − 1 over [t₀, `t_end`], and no |det `J_k` − 1| "
@@ -41,7 +41,7 @@ def of_the_determinants() -> Argument:
     )
 
 
-def of_the_solution(formulas: Sequence[str] = EULER) -> Argument:
+def mse_quantifies_solution(formulas: Sequence[str] = EULER) -> Argument:
     """MSE = 0 and an error of order h: symplectic Euler for the oscillator."""
     found = map_from_formulas(*formulas)
     zero = same("symplectic Euler, H = (p² + q²)/2: ΔJ", [found.delta_j], ("p", "q", "h"))
@@ -83,7 +83,7 @@ def _error_at_1(formulas: Sequence[str], steps: int) -> Check:
     )
 
 
-def in_general() -> Argument:
+def errors_in_every_step() -> Argument:
     """ΔJ of lie2 is not 0 at almost every state of either system."""
     return proof(
         "for both systems ΔJ of lie2 is an analytic function of (p, q) that is not identically 0, "
@@ -107,7 +107,9 @@ def _part_in_p(name: str) -> Check:
     return Check(f"{name}: ∂ΔJ/∂p of lie2", slope != 0, f"`{slope}`")
 
 
-def in_every_step(q: Fraction = Fraction(1), share: Fraction = Fraction(-4, 3)) -> Argument:
+def errors_in_every_step_exactly(
+    q: Fraction = Fraction(1), share: Fraction = Fraction(-4, 3)
+) -> Argument:
     """ΔJ = 0 on a curve of the Duffing oscillator; `share`: p on it at this q, over h."""
     found = examples.duffing_step()
     put = {P: sympy.Rational(share.numerator, share.denominator) * H_STEP, Q: sympy.Rational(q)}
@@ -126,7 +128,9 @@ def in_every_step(q: Fraction = Fraction(1), share: Fraction = Fraction(-4, 3)) 
 # -- Section 4.1 -----------------------------------------------------------------------------------
 
 
-def from_one_step_size(formulas: Sequence[str] = UNEVEN, steps: int = 20_000_000) -> Argument:
+def duffing_criteria_inference(
+    formulas: Sequence[str] = UNEVEN, steps: int = 20_000_000
+) -> Argument:
     """A map with the numbers of Figure 3 at h = 0.001 that satisfies neither criterion."""
     found = map_from_formulas(*formulas)
     points = [Point(Fraction(0), Fraction(1))]
@@ -171,7 +175,9 @@ def from_one_step_size(formulas: Sequence[str] = UNEVEN, steps: int = 20_000_000
 # -- “the total error of the mapping will keep increasing” -----------------------------------------
 
 
-def increasing(start: Point = START, h: Fraction = Fraction(1, 10), steps: int = 3) -> Argument:
+def total_error_increases(
+    start: Point = START, h: Fraction = Fraction(1, 10), steps: int = 3
+) -> Argument:
     """|Λ| after n steps falls: exact for the Duffing oscillator, and why for every even η."""
     found = areas(examples.duffing_step(), start, h, steps).delta_j
     totals = [abs(Areas(found[:n]).lam) for n in range(1, steps + 1)]
@@ -214,13 +220,3 @@ def increasing(start: Point = START, h: Fraction = Fraction(1, 10), steps: int =
         ],
         remark="It is the next order that may grow with T.",
     )
-
-
-THEOREMS = {
-    "mse-quantifies": of_the_determinants,
-    "mse-quantifies-solution": of_the_solution,
-    "errors-in-every-step": in_general,
-    "errors-in-every-step-exactly": in_every_step,
-    "duffing-criteria-inference": from_one_step_size,
-    "total-error-increases": increasing,
-}

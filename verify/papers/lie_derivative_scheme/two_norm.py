@@ -98,7 +98,7 @@ def _stretch_of(name: str, told: str = "") -> Check:
     return same(f"{name}: s² for s = `{told or _STRETCHES[name]}`", [gap], ("p", "q", "delta"))
 
 
-def norm_of_the_step(scale: Fraction = Fraction(1)) -> Argument:
+def two_norm_of_the_step(scale: Fraction = Fraction(1)) -> Argument:
     """‖J‖₂ as the Lipschitz constant of the step itself, the 1 + hL of Eq. 9; `scale` times it.
 
     On the segment between two points |Φ(z̄) − Φ(z)|² ≤ max ‖J‖₂² |z̄ − z|².
@@ -138,6 +138,3 @@ def _norm_squared(entries: tuple[Fraction, ...]) -> Fraction:
     """A lower bound of ‖J‖₂²: |J v|²/|v|² for the better of v = (0, 1) and (1, 0)."""
     a, b, c, d = entries
     return max(a * a + c * c, b * b + d * d)
-
-
-THEOREMS = {"two-norm": two_norm, "two-norm-of-the-step": norm_of_the_step}

@@ -300,16 +300,16 @@ def test_each_number_said_of_an_example_is_held_against_its_run(
 def test_the_criteria_are_not_told_apart_by_maps_with_other_numbers() -> None:
     area_preserving = replace(criteria_examples.FRICTION, p_next="p", q_next="q + h*p")
     assert refused(
-        connections.two_implies_three(replace(criteria_examples.NOT_UNIFORM, q_next="q"))
+        connections.criterion_2_implies_3(replace(criteria_examples.NOT_UNIFORM, q_next="q"))
     )
-    assert refused(connections.connection_with_3(friction=area_preserving))
-    assert refused(connections.connection_with_3(alternating=[area_preserving]))
-    assert refused(connections.against_2(compensated=area_preserving))
-    assert refused(connections.against_2(alternating=[area_preserving]))
-    assert refused(connections.against_3(friction=area_preserving))
-    assert refused(connections.against_3(alternating=[area_preserving]))
+    assert refused(connections.criterion_4_and_3(friction=area_preserving))
+    assert refused(connections.criterion_4_and_3(alternating=[area_preserving]))
+    assert refused(connections.criterion_4_against_2(compensated=area_preserving))
+    assert refused(connections.criterion_4_against_2(alternating=[area_preserving]))
+    assert refused(connections.criterion_4_against_3(friction=area_preserving))
+    assert refused(connections.criterion_4_against_3(alternating=[area_preserving]))
     drifting = replace(criteria_examples.COMPENSATED, p_next="p*(1 + h*(3/4 - q))")
-    assert refused(connections.against_2(compensated=drifting))
+    assert refused(connections.criterion_4_against_2(compensated=drifting))
 
 
 def test_the_inequalities_hold_for_every_run_and_not_for_made_up_numbers() -> None:
@@ -322,7 +322,7 @@ def test_the_inequalities_hold_for_every_run_and_not_for_made_up_numbers() -> No
 
 
 def test_a_map_for_another_field_has_a_delta_j_of_order_h() -> None:
-    assert refused(consistency.of_smooth_schemes(hamiltonian=False))
+    assert refused(consistency.criteria_of_consistent_schemes(hamiltonian=False))
     assert 1 not in consistency.consistent_map()
 
 
@@ -335,26 +335,26 @@ def test_one_plus_h_times_the_norm_is_a_factor_up_to_an_edge_and_not_beyond(q: F
 
 def test_no_other_examples_pass_for_the_sentences_beside_equations() -> None:
     assert refused(sentences_of_section_2.partitioned(sign=1))
-    assert refused(sentences_of_section_2.separable_alone("p**2 + q**3"))
-    assert refused(sentences_of_section_2.nonlinearity(linear="p**2/2 + q**2"))
-    assert refused(sentences_of_section_2.nonlinearity(linear="p**2*q + p*q"))
-    assert refused(sentences_of_section_2.nonlinearity(curved="p**2/2 + q**2"))
-    assert refused(sentences_of_section_2.nonlinearity(curved="p**3 + q**4"))
-    assert refused(sentences_of_section_3.of_the_solution(("p - h*q", "q + h*p")))
-    assert refused(sentences_of_section_3.in_every_step(share=Fraction(4, 3)))
-    assert refused(sentences_of_section_3.in_every_step(q=Fraction(2)))
+    assert refused(sentences_of_section_2.partitioned_separable("p**2 + q**3"))
+    assert refused(sentences_of_section_2.higher_derivatives_nonlinearity(linear="p**2/2 + q**2"))
+    assert refused(sentences_of_section_2.higher_derivatives_nonlinearity(linear="p**2*q + p*q"))
+    assert refused(sentences_of_section_2.higher_derivatives_nonlinearity(curved="p**2/2 + q**2"))
+    assert refused(sentences_of_section_2.higher_derivatives_nonlinearity(curved="p**3 + q**4"))
+    assert refused(sentences_of_section_3.mse_quantifies_solution(("p - h*q", "q + h*p")))
+    assert refused(sentences_of_section_3.errors_in_every_step_exactly(share=Fraction(4, 3)))
+    assert refused(sentences_of_section_3.errors_in_every_step_exactly(q=Fraction(2)))
     for p_next, q_next in (
         ("-p*(1 + h*(q + 1/20)/10**8)", "-q"),  # depends on h
         ("-p*(1 + (q - 1/20)/10**11)", "-q"),  # areas shrink
         ("-p*(1 + (q + 1/2)/10**11)", "-q"),  # too fast
         ("-p*(1 + (q + 1/20)/10**9)", "-q"),
     ):
-        assert refused(sentences_of_section_3.from_one_step_size((p_next, q_next)))
+        assert refused(sentences_of_section_3.duffing_criteria_inference((p_next, q_next)))
 
 
 def test_a_start_from_which_the_total_error_grows_does_not_refute_that_it_grows() -> None:
     point = Point(Fraction(1), Fraction(1, 5))
-    assert refused(sentences_of_section_3.increasing(point))
+    assert refused(sentences_of_section_3.total_error_increases(point))
 
 
 def test_a_value_that_is_not_rational_is_not_taken_for_one() -> None:

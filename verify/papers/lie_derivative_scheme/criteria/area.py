@@ -63,7 +63,7 @@ def _by_regions(formula: str = TRIANGULAR) -> list[Check]:
 # -- the definition of Section 3 -------------------------------------------------------------------
 
 
-def definition(formula: str = TRIANGULAR) -> Argument:
+def area_definition(formula: str = TRIANGULAR) -> Argument:
     """Area is preserved where that of every region is, which det J tells."""
     return proof(
         "a continuously differentiable map leaves the area of every region, on which it is "
@@ -88,7 +88,7 @@ def definition(formula: str = TRIANGULAR) -> Argument:
     )
 
 
-def unchanged_flow(factor: int = 2) -> Argument:
+def area_definition_flow(factor: int = 2) -> Argument:
     """A map may leave the flow itself as it is and change areas, and the other way round."""
     c, s = sympy.symbols("c s", real=True)
     turn = sympy.Matrix([[c, -s], [s, c]])  # the oscillator's flow, c² + s² = 1
@@ -177,7 +177,7 @@ def _inverse(found: StepMap) -> Check:
     )
 
 
-def any_map(formulas: Sequence[str] = FOLDED) -> Argument:
+def criterion_1_any_map(formulas: Sequence[str] = FOLDED) -> Argument:
     """(r, θ) ↦ (r/√2, 2θ): det J = 1, every point is hit twice, and an annulus's area halves."""
     found = map_from_formulas(*formulas)
     r = sympy.sqrt(sympy.expand(found.p_next**2 + found.q_next**2))
@@ -222,11 +222,3 @@ def any_map(formulas: Sequence[str] = FOLDED) -> Argument:
         remark="It is no lieη, which is near the identity; Criterion 1 speaks of that algorithm "
         "alone, so that this is a limit of the criterion, not an error of it.",
     )
-
-
-THEOREMS = {
-    "area-definition": definition,
-    "area-definition-flow": unchanged_flow,
-    "criterion-1": criterion_1,
-    "criterion-1-any-map": any_map,
-}

@@ -52,7 +52,7 @@ def inequalities_hold(found: Areas) -> bool:
     )
 
 
-def two_implies_three(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
+def criterion_2_implies_3(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
     """Criterion 2 is sufficient for criterion 3."""
     return proof(
         "MSE ≤ (max |`ΔJ_k`|)², so criterion 2 gives even MSE = o(h²); “higher-order "
@@ -88,7 +88,7 @@ def two_implies_three(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
     )
 
 
-def connection_with_2(friction: ExampleMap = FRICTION) -> Argument:
+def criterion_4_and_2(friction: ExampleMap = FRICTION) -> Argument:
     """Criterion 4 follows from criterion 2, read uniformly in k."""
     return refutation(
         "criterion 2 implies criterion 4, by |Λ| ≤ exp(T max|`ΔJ_k`|/h) − 1",
@@ -110,7 +110,7 @@ def connection_with_2(friction: ExampleMap = FRICTION) -> Argument:
     )
 
 
-def connection_with_3(
+def criterion_4_and_3(
     friction: ExampleMap = FRICTION,
     alternating: Sequence[ExampleMap] = (TO_AND_FRO, TO_AND_FRO_ODD),
 ) -> Argument:
@@ -140,7 +140,7 @@ def connection_with_3(
     )
 
 
-def against_2(
+def criterion_4_against_2(
     compensated: ExampleMap = COMPENSATED,
     alternating: Sequence[ExampleMap] = (TO_AND_FRO, TO_AND_FRO_ODD),
 ) -> Argument:
@@ -185,7 +185,7 @@ def against_2(
     )
 
 
-def against_3(
+def criterion_4_against_3(
     friction: ExampleMap = FRICTION,
     alternating: Sequence[ExampleMap] = (TO_AND_FRO, TO_AND_FRO_ODD),
 ) -> Argument:
@@ -218,12 +218,3 @@ def to_and_fro(alternating: Sequence[ExampleMap]) -> list[Check]:
     """ΔJ of a map and of its next step, and its numbers for even and odd N."""
     each = [example.check() for example in alternating]
     return [alternating[0].changes(), turns_to_and_fro(), *each]
-
-
-THEOREMS = {
-    "criterion-2-implies-3": two_implies_three,
-    "criterion-4-and-2": connection_with_2,
-    "criterion-4-and-3": connection_with_3,
-    "criterion-4-against-2": against_2,
-    "criterion-4-against-3": against_3,
-}

@@ -87,7 +87,7 @@ def criterion_3(hamiltonian: bool = True) -> Argument:
     )
 
 
-def criterion_3_of_any_map(friction: ExampleMap = FRICTION) -> Argument:
+def criterion_3_any_map(friction: ExampleMap = FRICTION) -> Argument:
     """MSE = o(h), and every area shrinks to a fraction 1/e."""
     return refutation(
         "for p' = p − h(q + p), q' = q + hp MSE = h²(1 − h)² = o(h), and over [0, 1] every area "
@@ -106,10 +106,3 @@ def criterion_3_of_any_map(friction: ExampleMap = FRICTION) -> Argument:
         ],
         remark="It is no scheme for Eq. 1, of which alone the criterion speaks.",
     )
-
-
-THEOREMS = {
-    "criterion-2": criterion_2,
-    "criterion-3": criterion_3,
-    "criterion-3-any-map": criterion_3_of_any_map,
-}

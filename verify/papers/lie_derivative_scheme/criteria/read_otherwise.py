@@ -56,7 +56,7 @@ def _grows(example: ExampleMap) -> Check:
     )
 
 
-def pointwise_two_not_three(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
+def criterion_2_implies_3_pointwise(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
     """Each ΔJ_k = O(h²), and MSE → 1/5."""
     return refutation(
         "for p' = p(1 + q²), q' = q + h from (0, 0) each `ΔJ_k` = (kh)² = O(h²), but over [0, 1] "
@@ -83,7 +83,7 @@ def pointwise_two_not_three(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
     )
 
 
-def pointwise_connection(
+def criterion_4_and_2_pointwise(
     not_uniform: ExampleMap = NOT_UNIFORM,
     alternating: Sequence[ExampleMap] = (TO_AND_FRO, TO_AND_FRO_ODD),
 ) -> Argument:
@@ -120,7 +120,7 @@ def pointwise_connection(
     )
 
 
-def as_strong_as_2(hamiltonian: bool = False) -> Argument:
+def criterion_4_against_2_smooth(hamiltonian: bool = False) -> Argument:
     """For steps z + hg + h²r criterion 4 on every [0, t] and criterion 2 say the same.
 
     `hamiltonian`: as for `_of_every_time`.
@@ -140,7 +140,9 @@ def as_strong_as_2(hamiltonian: bool = False) -> Argument:
     )
 
 
-def stronger_than_3(hamiltonian: bool = False, friction: ExampleMap = FRICTION) -> Argument:
+def criterion_4_against_3_smooth(
+    hamiltonian: bool = False, friction: ExampleMap = FRICTION
+) -> Argument:
     """For steps z + hg + h²r: 4 on every [0, t] implies 3, and 3 does not imply 4."""
     return proof(
         "for steps z + hg(z) + h²r(z, h) with smooth g and r, criterion 4 on [0, t] for every t ≤ "
@@ -187,11 +189,3 @@ def _of_every_time(hamiltonian: bool) -> list[Step]:
             "O(h), and `ΔJ_k` = O(h²) uniformly: criteria 2 and 3 follow.",
         ),
     ]
-
-
-THEOREMS = {
-    "criterion-2-implies-3-pointwise": pointwise_two_not_three,
-    "criterion-4-and-2-pointwise": pointwise_connection,
-    "criterion-4-against-2-smooth": as_strong_as_2,
-    "criterion-4-against-3-smooth": stronger_than_3,
-}
