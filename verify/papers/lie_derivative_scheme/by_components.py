@@ -98,9 +98,7 @@ def eq_11(formula: str = LEVELS) -> Argument:
                 _added_up(),
                 tried=[_at_1(formula, n) for n in _STEPS],
             ),
-            step(
-                "The right sides of Eq. 11 are 0: `e^p_1` is, and so is every `C^p_m`.",
-            ),
+            step("The right sides of Eq. 11 are 0: `e^p_1` is, and so is every `C^p_m`."),
         ],
         given=_SETTING,
         remark="It makes no difference whether e is |`p̄_k` − `p_k`| or, as Eq. 7 has it, |`p̃_k` − "

@@ -60,16 +60,12 @@ def eq_9(pair: tuple[Point, Point] = PAIR, mixed: str = MIXED) -> Argument:
                 "not on p. The coefficients of h in p' and q' are −`H_q` and `H_p`.",
                 _first_terms(),
             ),
-            step(
-                "So ``H_{qq} = 0, H_{pp} = 0``, and H = a pq + b p + c q + d.",
-            ),
+            step("So ``H_{qq} = 0, H_{pp} = 0``, and H = a pq + b p + c q + d."),
             step(
                 "For such an H both components decouple, for every η.",
                 _decoupled(mixed),
             ),
-            step(
-                "There Eq. 9 holds for h ≤ h₀ with ``L_p = L_q = (e^(|a|h_0) − 1)/h_0``.",
-            ),
+            step("There Eq. 9 holds for h ≤ h₀ with ``L_p = L_q = (e^(|a|h_0) − 1)/h_0``."),
             step(
                 "It is no way out that `z̄_k` and `z_k` belong to an exact solution and to the run "
                 "that starts on it. For the oscillator H = (p² + q²)/2 from (q, p) = (1, 0) the "
