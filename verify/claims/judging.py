@@ -67,7 +67,7 @@ def judged(
             if closer is None:
                 break
             scenes = {**scenes, claim.scene: closer}
-            found = claim.judge(Findings(scenes, _found(claim, scenes, store, where)))
+            found = claim.judge(Findings(scenes, results_for(claim, scenes, store, where)))
     except LimitError as error:
         return claim.result(Verdict.UNDECIDED, prose(str(error)))
     return _marked(claim, found, Findings(scenes, results))
@@ -83,9 +83,10 @@ def _marked(claim: Claim, found: ClaimResult, findings: Findings) -> ClaimResult
         return found
 
 
-def _found(
+def results_for(
     claim: Claim, scenes: Mapping[str, Scene], store: Store, where: Placement
 ) -> dict[str, Frozen]:
+    """What the claim needs, by the tasks' keys."""
     plan = Plan()
     known = add_claims(plan, [claim], scenes)
     return {**known, **execute(plan, store, where=where)}

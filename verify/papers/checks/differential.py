@@ -68,12 +68,10 @@ class Differential:
                 total += x.derivative(index) * self._gradients[name][by]
         return self.reduce(total)
 
-    def bracket(self, x: Poly, y: Poly, by: tuple[str, str] = ("p", "q")) -> Poly:
-        """∂(x, y)/∂(p, q), or by another pair of variables."""
-        first, second = by
-        return self.reduce(
-            self.diff(x, first) * self.diff(y, second) - self.diff(x, second) * self.diff(y, first)
-        )
+    def bracket(self, x: Poly, y: Poly) -> Poly:
+        """∂(x, y)/∂(p, q)."""
+        diff = self.diff
+        return self.reduce(diff(x, "p") * diff(y, "q") - diff(x, "q") * diff(y, "p"))
 
     def powers(self, x: Poly, name: str) -> dict[int, Poly]:
         """x by powers of a constant: {power: coefficient}, the coefficients non-zero."""
@@ -113,10 +111,6 @@ class Flow:
             result.append(self.derive(result[-1]))
         return result
 
-    def bracket(self, x: Poly, y: Poly) -> Poly:
-        """∂(x, y)/∂(p, q)."""
-        return self.ring.bracket(x, y)
-
     @property
     def hessian(self) -> tuple[Poly, Poly, Poly]:
         """H_pp, H_pq, H_qq."""
@@ -131,7 +125,7 @@ class Flow:
 
     def delta_j(self, p_next: Poly, q_next: Poly) -> dict[int, Poly]:
         """ΔJ of the map (p, q) → (p_next, q_next), by powers of h."""
-        return self.ring.powers(self.bracket(p_next, q_next) - 1, "h")
+        return self.ring.powers(self.ring.bracket(p_next, q_next) - 1, "h")
 
     def delta_j_gaps(self, eta: int, **told: Poly) -> list[Poly]:
         """The coefficients of h, h², … in ΔJ of lieη, less what is `told` of them: h3=…"""

@@ -1,6 +1,5 @@
 """Eq. 9, 10 and 11 as their letters and superscripts are printed: with p̃_k, and for p alone."""
 
-from collections.abc import Sequence
 from fractions import Fraction
 
 import sympy
@@ -25,7 +24,7 @@ _LEVEL = Q - P**3
 # -- Eq. 9 -----------------------------------------------------------------------------------------
 
 
-def eq_9_kept(etas: Sequence[int] = _ETAS) -> Argument:
+def eq_9_kept() -> Argument:
     """Eq. 9 in a norm with z̃_k on the right: 0 at k = 1, where the left side is not."""
     return refutation(
         "`z̃_1` and `z_1` are both one step from the initial value, so that the right side is 0 at "
@@ -40,7 +39,7 @@ def eq_9_kept(etas: Sequence[int] = _ETAS) -> Argument:
                 "The left side at k = 1 is |`z̃_2` − `z_2`| = |Φ(`z̄_1`) − Φ(`z_1`)|. For the "
                 "oscillator Φ turns and stretches the plane by a factor R, |R| > 0, and `z̄_1` − "
                 "`z_1` is the local error, which is not 0: so it is not 0 either.",
-                *(_after_two(eta) for eta in etas),
+                *map(_after_two, _ETAS),
             ),
         ],
         given="Read |…| as a norm of the plane, and keep `z̃_k` on the right as printed.",
