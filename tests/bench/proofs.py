@@ -22,7 +22,7 @@ DEGREE_8 = "(p**8 + q**8)/8 + p**3*q**5/5 - 2*p**4*q**2 + p*q/3 + q**7/7"
 
 
 SYMBOLIC = (
-    "import sys; from verify.claims.check import prepare\n"
+    "import sys; from verify.claims.judging import prepare\n"
     "from verify.claims.file import load_claims\n"
     "from verify.commands.shared.input import paper_folder\n"
     "from verify.execution.execute import Store\n"

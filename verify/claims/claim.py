@@ -157,3 +157,27 @@ class Claim(Frozen):
     def drawn_runs(self, step_size: Fraction, steps: int) -> dict[str, Any]:
         """The keys of its runs, for a drawn run of so many steps."""
         return {"step_size": step_size, "steps": steps}
+
+
+# -- one that cannot be read ----------------------------------------------------------------------
+
+_OF_READINGS = ("reading_of", "reading", "standing")
+_KEPT = ("id", "kind", "source", "section", "statement", "scheme", *_OF_READINGS)
+
+
+class OutsideClaim(Claim):
+    """One that is too large, or in functions that are not known; so it is undecided, and the others
+    of its file are none the worse for it. `problem`: what is beyond the limits, in one line."""
+
+    on_scene = False
+    only_here = "it could not be read"
+    problem: str
+
+    def judge(self, findings: Findings) -> ClaimResult:
+        return self.result(Verdict.UNDECIDED, prose(self.problem))
+
+
+def outside(table: Mapping[str, Any], problem: str) -> OutsideClaim:
+    """The claim of that table. Raises pydantic's ValidationError where its texts are none."""
+    known = {key: table[key] for key in _KEPT if key in table}
+    return OutsideClaim.model_validate({"scheme": "", **known, "problem": problem})

@@ -30,10 +30,9 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from verify.claims.claim import Claim
+from verify.claims.claim import Claim, outside
 from verify.claims.kinds import models
 from verify.claims.on_runs import RunKeys
-from verify.claims.outside import outside
 from verify.claims.quantified import QuantifiedClaim
 from verify.claims.readings import settled
 from verify.claims.scenes import HAMILTONIAN_KEYS, HAMILTONIAN_SOURCES, NamedScenes, scene_for
@@ -44,7 +43,7 @@ from verify.scenes.causes import Cause
 from verify.scenes.mistakes.values import one_line
 from verify.scenes.paper_figures import PaperFigure
 from verify.scenes.scene import Scene
-from verify.scenes.toml_file import Lines, lines_of, read_toml
+from verify.scenes.toml_file import Lines, lines_of, read_toml, tables_of
 
 _ROOT = ("title", "about", "defaults", "scene", "claim", "cause", "figure", "left_out")
 # Of each group a claim needs one: where it gives one itself, it takes none from the defaults.
@@ -147,9 +146,7 @@ def _texts(file: ClaimsFile, key: str, given: Any) -> tuple[str, ...]:
 
 def _left_out(file: ClaimsFile, tables: Any) -> tuple[tuple[str, str], ...]:
     """What is not claimed, each with the reason."""
-    if not isinstance(tables, list):
-        raise InputError(f"{file.name}: left_out", tables, "write [[left_out]] tables")
-    for index, table in enumerate(tables):
+    for index, table in enumerate(tables_of(file.name, "left_out", tables)):
         if not isinstance(table, dict) or set(table) != {"what", "why"}:
             at = file.lines.of("left_out", index)
             raise InputError(f"{file.name}:{at}: left_out", table, "has `what` and `why`, both")
@@ -169,11 +166,9 @@ def _settle_readings(file: ClaimsFile) -> None:
 
 def _add_causes(file: ClaimsFile, tables: Any) -> None:
     """What explains several statements, after the claims that it speaks of."""
-    if not isinstance(tables, list):
-        raise InputError(f"{file.name}: cause", tables, "write [[cause]] tables")
     ids = {claim.id for claim in file.claims}
     statements = {claim.reading_of for claim in file.claims if claim.reading_of}
-    for index, table in enumerate(tables):
+    for index, table in enumerate(tables_of(file.name, "cause", tables)):
         with _named(f"{file.name}:{file.lines.of('cause', index)}: cause"):
             says = table.get("says") if isinstance(table, dict) else None
             if not isinstance(says, str) or not says:
@@ -196,10 +191,8 @@ def _named(where: str) -> Iterator[None]:
 
 def _add_figures(file: ClaimsFile, tables: Any, scenes: NamedScenes) -> None:
     """The figures to be made again, after the claims that they speak of."""
-    if not isinstance(tables, list):
-        raise InputError(f"{file.name}: figure", tables, "write [[figure]] tables")
     ids = {claim.id for claim in file.claims}
-    for index, table in enumerate(tables):
+    for index, table in enumerate(tables_of(file.name, "figure", tables)):
         with _named(f"{file.name}:{file.lines.of('figure', index)}: figure"):
             figure = PaperFigure.model_validate(table)
             if figure.label in {other.label for other in file.figures}:

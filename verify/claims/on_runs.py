@@ -15,7 +15,7 @@ from verify.arithmetic.arb import precision
 from verify.arithmetic.exact import text
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
-from verify.claims.runs import QUANTITIES, NoValueError
+from verify.claims.runs import QUANTITIES, NoValueError, Quantity
 from verify.errors import NOT_GIVEN, InputError
 from verify.execution.task import Task
 from verify.scenes.frozen import Frozen
@@ -65,17 +65,19 @@ class RunKeys(Frozen):
 class RunClaim(Claim):
     """The base of the kinds that runs decide.
 
-    `always_own`: it takes certified runs of its own, whatever the scene has.
+    `always_own`: it takes certified runs of its own, whatever the scene has. `compares`: what it
+    compares, where that is always the same.
     """
 
     exact = False
     run_keys = tuple(RunKeys.model_fields)
     only_here = "printed numbers are those of its own runs"
     always_own: ClassVar[bool] = False
+    compares: ClassVar[tuple[str, ...]] = ()
 
-    @abstractmethod
     def quantities(self) -> tuple[str, ...]:
         """What it compares, of `verify.claims.runs.QUANTITIES`."""
+        return self.compares
 
     def observables(self) -> tuple[str, ...]:
         """What its runs compute: what it asks for, and nothing else."""
@@ -188,6 +190,16 @@ class RunClaim(Claim):
             if Fraction(run.step_size) == step_size:
                 return run
         raise InputError(f"claim {self.id}: step size", text(step_size), "is not in the grid")
+
+
+class QuantityClaim(RunClaim):
+    """The base of the kinds that look at one quantity of runs."""
+
+    quantity: Quantity
+    """What is looked at."""
+
+    def quantities(self) -> tuple[str, ...]:
+        return (self.quantity,)
 
 
 def _length(keys: RunKeys, base: Grid | None) -> dict[str, Any]:

@@ -1,10 +1,7 @@
-"""Claims that say an order in h, and what is proved of such an order.
-
-What is proved of an order in h, and what follows for one that is claimed.
-"""
+"""Claims that say an order in h, what is proved of it, and what follows for one that is claimed."""
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Annotated, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Field
 
@@ -17,6 +14,7 @@ from verify.claims.quantified import QuantifiedClaim
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import told_nearby
 from verify.proof.claimed import Convergence
+from verify.proof.every_proof import EveryProof
 from verify.proof.expansion import MOST_ORDERS
 from verify.proof.order import convergence_of_scheme, leading_of, nearby_defect_of
 from verify.proof.printed_formulas import told_defect
@@ -27,6 +25,9 @@ from verify.schemes import get
 from verify.schemes.conditions.condition import NearbyOrder
 from verify.schemes.maps.step_map import StepMap
 from verify.verdict import Verdict
+
+Order = Annotated[int, Field(ge=1, le=64, strict=True)]
+_BEYOND = MOST_ORDERS + 1  # an order of what vanishes
 
 
 @dataclass(frozen=True)
@@ -70,6 +71,13 @@ def as_claimed(vanishes: bool | None, claimed: bool) -> Verdict:
     return Verdict.PROVED if vanishes == claimed else Verdict.REFUTED
 
 
+def judge_vanishing(claim: Claim, known: ProvedOrder, claimed: bool) -> ClaimResult:
+    """Whether what the order is of vanishes, or does not, as it is claimed."""
+    domain = known.domain & known.exact_for
+    verdict = as_claimed(known.vanishes, claimed)
+    return claim.result(verdict, known.evidence + within(domain), domain=domain)
+
+
 def told_of(known: ProvedOrder, near: NearbyOrder | None) -> ProvedOrder:
     """What is known of exact coefficients near printed ones, if it is of such."""
     if near is None:
@@ -78,20 +86,13 @@ def told_of(known: ProvedOrder, near: NearbyOrder | None) -> ProvedOrder:
     return replace(known, evidence=evidence, held=near.verdict)
 
 
-if TYPE_CHECKING:
-    from verify.claims.checked import AboutAll
-    from verify.proof.every_proof import EveryProof
-
-Order = Annotated[int, Field(ge=1, le=64, strict=True)]
-_BEYOND = MOST_ORDERS + 1  # an order of what vanishes
-OF_DELTA_J: "AboutAll" = frozenset({"volume"})
-OF_S: "AboutAll" = frozenset({"defect"})
-OF_MAP: "AboutAll" = frozenset({"map"})
-OF_LAMBDA: "AboutAll" = frozenset({"product"})
-
-
 class OrderedClaim(QuantifiedClaim):
-    """The base of the kinds that say an order; with `at_least`, that it is no lower one."""
+    """The base of the kinds that say an order; with `at_least`, that it is no lower one.
+
+    `form`: of which form it is the order, S or, in any number of degrees of freedom, det J − 1.
+    """
+
+    form: ClassVar[Literal["S", "ΔJ"]] = "S"
 
     at_least: bool = False
     """Whether a higher order is as claimed, too."""
@@ -100,6 +101,14 @@ class OrderedClaim(QuantifiedClaim):
     def claimed(self) -> int:
         """The order that is claimed, which stands under the name of the kind."""
         return int(getattr(self, self.kind))
+
+    def judge_one(self, findings: Findings) -> ClaimResult:
+        return self.judge_known(order_of(self, findings, self.form))
+
+    def judge_every(self, proof: EveryProof) -> ClaimResult:
+        preserves, order = proof.area_preserving, proof.order
+        known = ProvedOrder(order or 0, order is not None, preserves, proof.reason, proof.domain)
+        return self.judge_known(known)
 
     def judge_known(self, known: ProvedOrder) -> ClaimResult:
         """Whether what is proved is as claimed."""
@@ -112,23 +121,9 @@ class OrderedClaim(QuantifiedClaim):
         return self.model_copy(update={"every": None, "at_least": True}) if self.every else self
 
 
-def every_delta_j(proof: "EveryProof") -> ProvedOrder:
-    """The order of ΔJ for every H."""
-    preserves, order = proof.area_preserving, proof.order
-    return ProvedOrder(order or 0, order is not None, preserves, proof.reason, proof.domain)
-
-
-def delta_j_of(claim: Claim, findings: Findings) -> ProvedOrder:
-    """The order of ΔJ of the claim's scheme for its scene's H, in any number of degrees."""
-    return _order_of(claim, findings, "ΔJ")
-
-
-def defect_of(claim: Claim, findings: Findings) -> ProvedOrder:
-    """The order of S = JᵀΩJ − Ω, which in the plane is ΔJ·Ω."""
-    return _order_of(claim, findings, "S")
-
-
-def _order_of(claim: Claim, findings: Findings, form: str) -> ProvedOrder:
+def order_of(claim: Claim, findings: Findings, form: str) -> ProvedOrder:
+    """The order of S = JᵀΩJ − Ω of the claim's scheme for its scene's H, or of ΔJ = det J − 1; in
+    the plane S is ΔJ·Ω."""
     hamiltonian = findings.scene_of(claim).exact_hamiltonian()
     if hamiltonian.planar:
         form, known = "ΔJ", _delta_j_order(step_map_of(hamiltonian, claim.scheme))

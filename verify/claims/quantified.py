@@ -8,9 +8,9 @@ not zero for some H; det J ≡ 1 is false where some H has another det J.
 
 from abc import abstractmethod
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
-from verify.claims.checked import of_every, of_scene
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
 from verify.errors import InputError
@@ -20,9 +20,16 @@ from verify.scenes.results.claim import ClaimResult
 from verify.schemes import get
 
 if TYPE_CHECKING:
-    from verify.claims.checked import AboutAll
+    from verify.proof.checked.proved import About
     from verify.proof.every_proof import EveryProof
 
+    AboutAll = frozenset[About]
+
+# What of a proof a claim asks about.
+OF_DELTA_J: "AboutAll" = frozenset({"volume"})
+OF_S: "AboutAll" = frozenset({"defect"})
+OF_MAP: "AboutAll" = frozenset({"map"})
+OF_LAMBDA: "AboutAll" = frozenset({"product"})
 EVERY_SEPARABLE = "separable hamiltonian"
 _IN_TIME = " in time"
 Every = Literal[
@@ -55,8 +62,8 @@ class QuantifiedClaim(Claim):
     def checked_by(self, found: ClaimResult, findings: Findings) -> Sequence[Prose]:
         """By the proof for every H that it is made of, or for the scene's."""
         if self.every is None:
-            return of_scene(self, findings, self.about)
-        return of_every(self.scheme, self.about, **self._of_which)
+            return marks_for_scene(self, findings, self.about)
+        return marks_for_every(self.scheme, self.about, **self._of_which)
 
     @property
     def _of_which(self) -> dict[str, Any]:
@@ -99,3 +106,38 @@ class QuantifiedClaim(Claim):
 
     def of_one(self, hamiltonian: Hamiltonian) -> Self:
         return self.model_copy(update={"every": None})
+
+
+# -- who checked the proof that decides a claim ----------------------------------------------------
+
+
+def marks_for_scene(claim: Claim, findings: Findings, about: "AboutAll") -> tuple[Prose, ...]:
+    """The marks of the proof for the H of the claim's scene."""
+    hamiltonian = findings.scene_of(claim).exact_hamiltonian()
+    return marks_for_hamiltonian(hamiltonian, claim.scheme, about)
+
+
+@lru_cache(maxsize=64)
+def marks_for_hamiltonian(
+    hamiltonian: Hamiltonian, name: str, about: "AboutAll"
+) -> tuple[Prose, ...]:
+    """The marks of the proof for this H."""
+    from verify.claims.formulas import proof_of
+    from verify.proof.checked import marks
+    from verify.proof.checked.proved import of_one_hamiltonian
+
+    proof = proof_of(hamiltonian, name)
+    return marks(of_one_hamiltonian(proof, hamiltonian, get(name), about))
+
+
+@lru_cache(maxsize=64)
+def marks_for_every(
+    name: str, about: "AboutAll", *, separable: bool, timed: bool, least: int
+) -> tuple[Prose, ...]:
+    """The marks of the proof for every H that is meant; `least` as for `prove_every`."""
+    from verify.proof.checked import marks
+    from verify.proof.checked.proved import of_every_hamiltonian
+    from verify.proof.every import prove_every
+
+    proof = prove_every(name, separable=separable, timed=timed, least=least)
+    return marks(of_every_hamiltonian(proof, get(name), about))

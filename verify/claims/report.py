@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from verify.arithmetic.exact import text
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
-from verify.claims.judging import add_claims, all_judged
+from verify.claims.judging import add_claims, judged
 from verify.execution.execute import OnResult, Store, execute
 from verify.execution.executors import ANYWHERE, Placement
 from verify.execution.plan import Plan
@@ -55,13 +55,14 @@ def make_report(
     kept = store.taken - before
     computed = len(plan.tasks) - kept
     findings = Findings(own, results)
-    judged = all_judged(claims, spoken_of, {**known, **results}, store, where)
+    known |= results
+    verdicts = tuple(judged(claim, spoken_of, known, store, where) for claim in claims)
     return Report(
         title=title,
-        claims=judged,
-        statements=statements_of(judged),
+        claims=verdicts,
+        statements=statements_of(verdicts),
         scenes=tuple(_scene_result(scene, findings) for scene in scenes),
-        causes=tuple(each for each in causes if _shown(each, judged)),
+        causes=tuple(each for each in causes if _shown(each, verdicts)),
         figures=tuple(figures),
         preface=tuple(preface),
         left_out=(*not_claimed, *plan.left_out),

@@ -16,7 +16,7 @@ from verify.claims.claim import Claim
 from verify.errors import NOT_GIVEN, InputError
 from verify.scenes.frozen import Frozen
 from verify.scenes.scene import Scene, load_scene, scene_from
-from verify.scenes.toml_file import Lines
+from verify.scenes.toml_file import Lines, tables_of
 from verify.scenes.values import Number, SystemName
 
 HAMILTONIAN_SOURCES = ("scene", "system", "hamiltonian", "every")
@@ -42,8 +42,32 @@ def scene_for(
     runs: Mapping[str, Any],
     named: Callable[[str], Scene],
 ) -> tuple[str, Scene]:
-    """As `_scene_for`, and InputError where the claim speaks of no such H."""
-    name, scene = _scene_for(claim, hamiltonian_keys, runs, named)
+    """The scene that the claim speaks of and a name for it that no other claim's scene has.
+
+    `hamiltonian_keys` and `runs`: the claim's keys of H and of its runs; `named` finds a scene by
+    its name. Raises pydantic's ValidationError, and InputError, whose name is the key, also where
+    the claim speaks of no such H.
+    """
+    given = [name for name in HAMILTONIAN_SOURCES if name in hamiltonian_keys]
+    if len(given) != 1:
+        problem = f"give one of {', '.join(HAMILTONIAN_SOURCES)}"
+        raise InputError(" and ".join(given) or "scene", NOT_GIVEN, problem)
+    if "scene" not in hamiltonian_keys:
+        own = ClaimedHamiltonian.model_validate(hamiltonian_keys)
+        scene = Scene(**own.model_dump(), schemes=(claim.scheme,), name=slug(claim.id))
+        found = claim.scene_of_its_own(own.system or "own", scene, runs)
+    else:
+        for key in ("parameters", "t0"):
+            if key in hamiltonian_keys:
+                raise InputError(key, NOT_GIVEN, "stands in the scene's own file")
+        name = hamiltonian_keys["scene"]
+        found = claim.scene_on(name, named(name), runs)
+    _check_hamiltonian(claim, found[1])
+    return found
+
+
+def _check_hamiltonian(claim: Claim, scene: Scene) -> None:
+    """InputError where the claim speaks of no such H."""
     exact = scene.exact_hamiltonian() if claim.autonomous or claim.planar else None
     if exact and claim.planar and not exact.planar:
         problem = f"is of one degree of freedom; the H that it speaks of has {exact.degrees}"
@@ -51,34 +75,6 @@ def scene_for(
     if exact and claim.autonomous and exact.time_dependent:
         problem = "is of an H without t, and so of no H that depends on t"
         raise InputError("kind", claim.kind, problem)
-    return name, scene
-
-
-def _scene_for(
-    claim: Claim,
-    hamiltonian_keys: Mapping[str, Any],
-    runs: Mapping[str, Any],
-    named: Callable[[str], Scene],
-) -> tuple[str, Scene]:
-    """The scene that the claim speaks of and a name for it that no other claim's scene has.
-
-    `hamiltonian_keys` and `runs`: the claim's keys of H and of its runs; `named` finds a scene by
-    its name. Raises InputError, whose name is the key, and pydantic's ValidationError.
-    """
-    if len([name for name in HAMILTONIAN_SOURCES if name in hamiltonian_keys]) != 1:
-        given = " and ".join(name for name in HAMILTONIAN_SOURCES if name in hamiltonian_keys)
-        raise InputError(
-            given or "scene", NOT_GIVEN, f"give one of {', '.join(HAMILTONIAN_SOURCES)}"
-        )
-    if "scene" not in hamiltonian_keys:
-        own = ClaimedHamiltonian.model_validate(hamiltonian_keys)
-        scene = Scene(**own.model_dump(), schemes=(claim.scheme,), name=slug(claim.id))
-        return claim.scene_of_its_own(own.system or "own", scene, runs)
-    for key in ("parameters", "t0"):
-        if key in hamiltonian_keys:
-            raise InputError(key, NOT_GIVEN, "stands in the scene's own file")
-    name = hamiltonian_keys["scene"]
-    return claim.scene_on(name, named(name), runs)
 
 
 def slug(name: str) -> str:
@@ -95,9 +91,7 @@ class NamedScenes:
 
     def __init__(self, path: Path, tables: Any, lines: Lines) -> None:
         self.folder, self.found = path.parent, dict[str, Scene]()
-        if not isinstance(tables, list):
-            raise InputError(f"{path.name}: scene", tables, "write [[scene]] tables")
-        for index, table in enumerate(tables):
+        for index, table in enumerate(tables_of(path.name, "scene", tables)):
             where = f"{path.name}:{lines.of('scene', index)}: scene"
             name = table.get("name") if isinstance(table, dict) else None
             if not isinstance(name, str) or not name or name in self.found:

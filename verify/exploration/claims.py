@@ -13,14 +13,13 @@ from typing import Any
 
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
-from verify.claims.judging import add_claims
+from verify.claims.judging import results_for
 from verify.claims.kinds import models
 from verify.claims.quantified import QuantifiedClaim
 from verify.claims.scenes import scene_for
 from verify.errors import InputError
-from verify.execution.execute import Store, execute
+from verify.execution.execute import Store
 from verify.execution.executors import THIS_PROCESS
-from verify.execution.plan import Plan
 from verify.exploration.property import Property, Violation, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.hamiltonians.canonical_field import canonical_field
@@ -101,10 +100,8 @@ def _verdict_on(claim: Claim, sample: Sample) -> ClaimResult:
     """The claim's result for the sample."""
     claim = claim.of_one(sample.hamiltonian).model_copy(update={"scene": _NAME})
     scenes = {_NAME: _scene(claim, sample)}
-    plan = Plan()
-    known = add_claims(plan, [claim], scenes)
-    results = execute(plan, Store(None), where=THIS_PROCESS)
-    return claim.judge(Findings(scenes, {**known, **results}))
+    results = results_for(claim, scenes, Store(None), THIS_PROCESS)
+    return claim.judge(Findings(scenes, results))
 
 
 def _scene(claim: Claim, sample: Sample) -> Scene:

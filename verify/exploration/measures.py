@@ -37,8 +37,7 @@ class Measure:
 
     def of(self, sample: Sample, digits: int) -> float | None:
         """Its value for a sample; None where it is not of so many degrees of freedom."""
-        asked = self.said(sample.hamiltonian.degrees) or sample.planar
-        return self.value(sample, digits) if asked else None
+        return self.value(sample, digits) if self.said(sample.hamiltonian.degrees) else None
 
     def said(self, degrees: int) -> str:
         """What it is, in so many degrees of freedom."""
@@ -90,7 +89,7 @@ def _lost(sample: Sample, exact: Outcome, found: Outcome) -> float | None:
 def growth(sample: Sample, digits: int = DIGITS) -> float | None:
     """lg of the greatest |Λ| of the run, in numbers of so many digits: no rounding is in it; in n
     degrees of freedom of the greatest |entry| of W of the whole run."""
-    value = _observed(sample, digits, "lambda_max" if sample.planar else "symplectic_defect")
+    value = _observed(sample, digits, sample.hamiltonian.structure.over_run)
     return _lg(value) if value else None
 
 
@@ -100,7 +99,7 @@ def defect_of_step(sample: Sample, digits: int = DIGITS) -> float | None:
     order = sample.proof.order if sample.ordinary else None
     if order is None:
         return None
-    value = _observed(sample, digits, "delta_j_max" if sample.planar else "symplectic_defect_max")
+    value = _observed(sample, digits, sample.hamiltonian.structure.of_step)
     return _lg(value / sample.step_size**order) if value else None
 
 

@@ -46,17 +46,19 @@ class Property:
     not speak of it.
 
     Any other exception is an error of the code under test, too. `scheme`: that of which it speaks,
-    where this is not the sample's.
+    where this is not the sample's. `speaks_of`: the samples that it is asked of.
     """
 
     name: str
     sentence: str
     check: Callable[[Sample], None]
     scheme: str = ""
+    speaks_of: Callable[[Sample], bool] = lambda _: True
 
     def holds(self, sample: Sample) -> bool:
         """True, or False where the sentence does not speak of the sample; else as `check`."""
         try:
+            only_if(self.speaks_of(sample))
             self.check(sample)
         except Silent:
             return False

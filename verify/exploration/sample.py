@@ -92,12 +92,16 @@ class Sample:
     @property
     def p(self) -> Any:
         """The momentum at the start; in n degrees of freedom the tuple of them."""
-        return self.place[0] if self.planar else self.place[: self.hamiltonian.degrees]
+        return self._of_start("p")
 
     @property
     def q(self) -> Any:
         """The displacement at the start; in n degrees of freedom the tuple of them."""
-        return self.place[1] if self.planar else self.place[self.hamiltonian.degrees :]
+        return self._of_start("q")
+
+    def _of_start(self, letter: str) -> Any:
+        own = tuple(x for name, x in self.point.items() if name[0] == letter)
+        return own[0] if self.planar else own
 
     @cached_property
     def step_map(self) -> StepMap:
@@ -149,6 +153,11 @@ class Sample:
         if self.polynomial or scheme.order <= 2 or isinstance(scheme.every_h, TaylorSeries):
             return True
         return scheme.needs_separable and not self._kinds & {"inverse", "root"}
+
+    @property
+    def in_closed_form(self) -> bool:
+        """Whether its map is ordinary, and solves no equations."""
+        return self.ordinary and not self.step_map.implicit
 
     @property
     def short(self) -> bool:

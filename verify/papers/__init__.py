@@ -1,11 +1,12 @@
 """Theorems of papers in words: each with a verdict, a proof that can be quoted, and its checks.
 
-A file defines `THEOREMS`, its functions by name; each computes what its argument rests on, and
-returns an `Argument`. They are found by themselves: adding a theorem is adding a function.
+A function that returns an `Argument`, and computes what that rests on, is a theorem by its name:
+`eq_9` is `eq-9`. They are found by themselves: adding a theorem is adding a function.
 """
 
 from collections.abc import Callable, Mapping
 from functools import cache
+from inspect import isfunction
 
 from verify.discovery import Catalogue
 from verify.errors import unknown
@@ -19,8 +20,11 @@ _FILES = Catalogue(__name__, __path__)
 @cache
 def _functions() -> Mapping[str, Callable[[], Argument]]:
     found: dict[str, Callable[[], Argument]] = {}
-    for file in _FILES.names:
-        found.update(getattr(_FILES.module(file), "THEOREMS", {}))
+    for module in map(_FILES.module, _FILES.names):
+        for name, function in vars(module).items():
+            own = isfunction(function) and function.__module__ == module.__name__
+            if own and name[0] != "_" and function.__annotations__.get("return") is Argument:
+                found[name.replace("_", "-")] = function
     return found
 
 

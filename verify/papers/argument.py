@@ -7,6 +7,7 @@ examples, or stands on paper alone, counts as not checked by machine.
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import groupby
 
 from verify.papers.checks.check import Check
@@ -33,7 +34,7 @@ def step(text: str, *by: Check | Shipped, tried: Sequence[Check] = ()) -> Step:
 
 
 class Argument(WithProse):
-    """A verdict on what the claim of that name states, and the argument for it.
+    """A verdict on what a claim states, and the argument for it.
 
     `evidence` is one line; `given` what the steps speak of, `remark` what follows the proof and
     needs none; `proof` all of it in one paragraph that can be quoted; `details` a table, whose
@@ -41,7 +42,6 @@ class Argument(WithProse):
     checked.
     """
 
-    id: str
     verdict: Verdict
     evidence: Said
     given: Said
@@ -62,8 +62,7 @@ class Argument(WithProse):
 HEAD = ("what the argument rests on", "value", "checked")
 
 
-def concluded(
-    name: str,
+def _argument(
     verdict: Verdict,
     evidence: str,
     steps: Iterable[Step],
@@ -85,7 +84,6 @@ def concluded(
         verdict, steps = Verdict.UNDECIDED, ()
         evidence = f"the argument fails at: {failed[0].what}" if failed else "nothing was checked"
     return Argument(
-        id=name,
         verdict=verdict,
         evidence=read_prose(evidence),
         given=_read(given),
@@ -94,6 +92,10 @@ def concluded(
         details=tuple(tuple(map(read_prose, row)) for row in (HEAD, *rows)),
         checked_by=(_counted(steps),) if steps else (),
     )
+
+
+proof = partial(_argument, Verdict.PROVED)
+refutation = partial(_argument, Verdict.REFUTED)
 
 
 def checks_of(steps: Iterable[Step]) -> list[Check]:

@@ -1,5 +1,6 @@
 """Step maps at rational points, in Fractions: points, Jacobians, and the areas along an orbit."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import prod
@@ -58,6 +59,15 @@ def value(expression: sympy.Expr, point: Point, h: Fraction) -> Fraction:
 
 def next_point(step: StepMap, point: Point, h: Fraction) -> Point:
     return Point(value(step.p_next, point, h), value(step.q_next, point, h))
+
+
+def run_of(step: StepMap, start: Sequence[sympy.Expr], steps: int) -> tuple[sympy.Expr, ...]:
+    """p and q after so many steps, as expressions."""
+    found = tuple(start)
+    for _ in range(steps):
+        put = dict(zip((P, Q), found, strict=True))
+        found = tuple(x.subs(put, simultaneous=True) for x in (step.p_next, step.q_next))
+    return found
 
 
 def jacobian(step: StepMap, point: Point, h: Fraction) -> tuple[Fraction, ...]:

@@ -218,3 +218,10 @@ def _check_texts(data: Any, source: str, where: str = "") -> None:
     elif isinstance(data, list):
         for value in data:
             _check_texts(value, source, where)
+
+
+def tables_of(file: str, key: str, given: Any) -> list[Any]:
+    """The tables that stand under the key in a file of that name; InputError where none do."""
+    if not isinstance(given, list):
+        raise InputError(f"{file}: {key}", given, f"write [[{key}]] tables")
+    return given

@@ -4,9 +4,9 @@ from typing import Any
 
 import pytest
 
-from verify.claims.check import prepare
-from verify.claims.checked import of_every, of_hamiltonian
 from verify.claims.file import load_claims
+from verify.claims.judging import prepare
+from verify.claims.quantified import marks_for_every, marks_for_hamiltonian
 from verify.execution.execute import Store
 from verify.proof.certificates import checker
 from verify.proof.certificates import established as certificates
@@ -132,10 +132,10 @@ def test_a_claim_whose_certificate_is_refused_has_no_mark_of_the_small_checker(
 
     keys = {"kind": "order", "order": 3, "every": "hamiltonian", "scheme": "lie2"}
     monkeypatch.setattr(certificates, "check", refuse)
-    of_every.cache_clear()
+    marks_for_every.cache_clear()
     refused = judged(tmp_path, **keys)
     monkeypatch.setattr(certificates, "check", checker.check)
-    of_every.cache_clear()
+    marks_for_every.cache_clear()
     accepted = judged(tmp_path, **keys)
     assert refused.verdict is accepted.verdict is Verdict.PROVED
     assert who(refused) == ["Rocq"]
@@ -144,7 +144,7 @@ def test_a_claim_whose_certificate_is_refused_has_no_mark_of_the_small_checker(
 
 def test_a_certificate_of_another_h_is_not_taken_for_that_of_this_one(tmp_path: Any) -> None:
     """Marks are kept by the H, its values and the scheme that they are of."""
-    of_hamiltonian.cache_clear()
+    marks_for_hamiltonian.cache_clear()
     keys = {"kind": "order", "order": 3, "scheme": "lie2", "system": "duffing"}
     first, second = (judged(tmp_path, **keys, parameters={"delta": d}) for d in (1, 2))
     assert first.checked_by[0].endswith("L = 3*p*q")

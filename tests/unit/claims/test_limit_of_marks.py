@@ -6,10 +6,10 @@ from typing import Any
 import pytest
 
 from verify import effort
-from verify.claims.checked import of_hamiltonian
 from verify.claims.findings import Findings
 from verify.claims.judging import judged
 from verify.claims.kinds import models
+from verify.claims.quantified import marks_for_hamiltonian
 from verify.execution.keeping import NOTHING
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.checked import small_checker
@@ -34,7 +34,7 @@ def claim(scheme: str, kind: str = "area_preserving", **keys: Any) -> Any:
 
 
 def judge(formula: str, scheme: str) -> ClaimResult:
-    of_hamiltonian.cache_clear()
+    marks_for_hamiltonian.cache_clear()
     scene = Scene(hamiltonian=formula, schemes=(scheme,), name="made")
     return judged(claim(scheme), {"made": scene}, {}, NOTHING)
 
@@ -77,9 +77,11 @@ def test_a_certificate_that_is_not_made_in_time_gives_no_mark_and_the_next_is_tr
 
 def test_the_mark_is_there_where_it_is_made_in_time(monkeypatch: pytest.MonkeyPatch) -> None:
     duffing = Hamiltonian.parse("p**2/2 + q**2/2 + q**4/4")
-    of_hamiltonian.cache_clear()
-    assert any("small checker" in str(x) for x in of_hamiltonian(duffing, "lie2", DEFECT))
-    of_hamiltonian.cache_clear()
+    marks_for_hamiltonian.cache_clear()
+    assert any("small checker" in str(x) for x in marks_for_hamiltonian(duffing, "lie2", DEFECT))
+    marks_for_hamiltonian.cache_clear()
     monkeypatch.setattr(small_checker, "limited", lambda *of: effort.limited(*of, most=10))
-    assert not any("small checker" in str(x) for x in of_hamiltonian(duffing, "lie2", DEFECT))
-    of_hamiltonian.cache_clear()
+    assert not any(
+        "small checker" in str(x) for x in marks_for_hamiltonian(duffing, "lie2", DEFECT)
+    )
+    marks_for_hamiltonian.cache_clear()

@@ -16,7 +16,7 @@ from verify.claims.kinds.convergence_order import ConvergenceOrderClaim
 from verify.claims.kinds.defect_order import DefectOrderClaim
 from verify.claims.kinds.delta_j import DeltaJClaim
 from verify.claims.kinds.order import AMBIGUOUS, OrderClaim
-from verify.claims.orders import ProvedOrder
+from verify.claims.orders import ProvedOrder, judge_vanishing
 from verify.errors import InputError
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.scene import Scene
@@ -155,8 +155,10 @@ def test_area_is_judged_by_what_is_known() -> None:
         (False, REFUTED, PROVED),
         (None, UNDECIDED, UNDECIDED),
     ):
-        assert area(True, "lie2").judge_known(vanishes, "e").verdict is true
-        assert area(False, "lie2").judge_known(vanishes, "e").verdict is false
+        known = ProvedOrder(0, False, vanishes, "e")
+        for claimed, verdict in ((True, true), (False, false)):
+            found = judge_vanishing(area(claimed, "lie2"), known, claimed)
+            assert found.verdict is verdict
 
 
 # -- every H, by a stub of the proof --------------------------------------------------------------

@@ -104,7 +104,7 @@ def test_a_value_that_another_precision_does_not_confirm_is_dropped(
     def value(sample: Sample, digits: int) -> float:
         return float(sample.q) + (digits > 40) * (sample.q > 0)
 
-    monkeypatch.setitem(MEASURES, "planted", Measure("", value))
+    monkeypatch.setitem(MEASURES, "planted", Measure("planted", value))
     found = search(task(count=40)).worst
     assert found
     assert all(each.value <= 0 for each in found)

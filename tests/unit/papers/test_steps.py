@@ -5,7 +5,7 @@ import re
 import pytest
 
 from verify.papers import check_theorem, names
-from verify.papers.argument import Step, checks_of, concluded, step
+from verify.papers.argument import Step, checks_of, proof, step
 from verify.papers.checks.check import BALLS, NUMBERS, Check
 from verify.proof.assistant.stated import Shipped
 from verify.prose import Display, Formula
@@ -22,7 +22,7 @@ _MARK = re.compile(
 
 
 def marks(*steps: Step) -> list[tuple[tuple[str, ...], tuple[str, ...]]]:
-    made = concluded("x", Verdict.PROVED, "because", steps)
+    made = proof("because", steps)
     return [(tuple(map(str, s.checked_by)), tuple(map(str, s.tried))) for s in made.steps]
 
 
@@ -97,18 +97,18 @@ def test_a_check_of_several_steps_is_one_row() -> None:
 
 def test_a_failed_example_leaves_nothing_of_an_argument() -> None:
     wrong = Check("tried", False, "1", NUMBERS)
-    made = concluded("x", Verdict.PROVED, "because", [step("a", ONE), step("b", tried=[wrong])])
+    made = proof("because", [step("a", ONE), step("b", tried=[wrong])])
     assert (made.verdict, made.steps, made.checked_by) == (Verdict.UNDECIDED, (), ())
 
 
 def test_theorems_alone_are_no_argument() -> None:
     """Something of it is computed in each run."""
-    assert concluded("x", Verdict.PROVED, "because", [step("a", THEOREM)]).steps == ()
+    assert proof("because", [step("a", THEOREM)]).steps == ()
 
 
 def test_how_many_steps_a_machine_checked_is_said() -> None:
     def said(*steps: Step) -> str:
-        return str(concluded("x", Verdict.PROVED, "because", steps).checked_by[0])
+        return str(proof("because", steps).checked_by[0])
 
     assert said(step("a", ONE)) == "paper: an argument in 1 step, all checked by machine"
     assert said(step("a", ONE), step("b")) == (

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from verify.claims.check import prepare
 from verify.claims.file import load_claims
+from verify.claims.judging import prepare
 from verify.claims.report import make_report
 from verify.errors import InputError
 from verify.execution import execute

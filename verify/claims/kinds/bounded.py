@@ -20,14 +20,12 @@ _MOST_DIGITS = 200  # of runs that are made again
 class BoundedClaim(RunClaim):
     """A bound of |Λ| along whole runs."""
 
+    compares = ("lambda_max",)
     always_own = True
     only_here = ""
     kind: Literal["bounded"]
     bound: Annotated[ExactNumber, Field(ge=0)]
     """What |Λ| is not to pass."""
-
-    def quantities(self) -> tuple[str, ...]:
-        return ("lambda_max",)
 
     def closer(self, scene: Scene) -> Scene | None:
         """Twice as many digits, where max |Λ| and the bound share all that are known."""

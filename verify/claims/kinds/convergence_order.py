@@ -3,16 +3,15 @@
 The map agrees with the exact flow up to h to this power.
 """
 
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from verify.claims.findings import Findings
-from verify.claims.orders import OF_MAP, Order, OrderedClaim, ProvedOrder, flow_of, told_of
+from verify.claims.orders import Order, OrderedClaim, ProvedOrder, flow_of, told_of
+from verify.claims.quantified import OF_MAP
+from verify.proof.every_proof import EveryProof
 from verify.prose import Formula, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
-
-if TYPE_CHECKING:
-    from verify.proof.every_proof import EveryProof
 
 
 class ConvergenceOrderClaim(OrderedClaim):
@@ -31,7 +30,7 @@ class ConvergenceOrderClaim(OrderedClaim):
     def judge_one(self, findings: Findings) -> ClaimResult:
         return self.judge_known(flow_of(self, findings))
 
-    def judge_every(self, proof: "EveryProof") -> ClaimResult:
+    def judge_every(self, proof: EveryProof) -> ClaimResult:
         found = proof.convergence_order
         if found is None:
             return self.result(Verdict.UNDECIDED, proof.reason)

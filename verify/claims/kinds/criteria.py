@@ -5,10 +5,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from verify.claims.checked import of_scene
 from verify.claims.findings import Findings
 from verify.claims.on_runs import RunClaim
-from verify.claims.orders import OF_DELTA_J, OF_LAMBDA
+from verify.claims.quantified import OF_DELTA_J, OF_LAMBDA, marks_for_scene
 from verify.execution.task import Task
 from verify.prose import Prose, joined, prose
 from verify.scenes.observables import CLOSED_FORM
@@ -30,9 +29,6 @@ class CriteriaClaim(RunClaim):
         tuple[Annotated[int, Field(ge=1, le=4, strict=True)], ...], Field(min_length=1)
     ]
     """The criteria that are satisfied."""
-
-    def quantities(self) -> tuple[str, ...]:
-        return ()
 
     def observables(self) -> tuple[str, ...]:
         return CLOSED_FORM
@@ -60,7 +56,8 @@ class CriteriaClaim(RunClaim):
         """What is known of ΔJ, and what follows for Λ."""
         if found.verdict is not Verdict.PROVED:
             return ()
-        return of_scene(self, findings, OF_DELTA_J | OF_LAMBDA if 4 in self.numbers else OF_DELTA_J)
+        about = OF_DELTA_J | OF_LAMBDA if 4 in self.numbers else OF_DELTA_J
+        return marks_for_scene(self, findings, about)
 
     def compare(self, findings: Findings) -> ClaimResult:
         scene = findings.scene(self.scene)

@@ -3,14 +3,10 @@
 In the plane S is ΔJ·Ω, and this is the order of ΔJ.
 """
 
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
-from verify.claims.findings import Findings
-from verify.claims.orders import OF_S, Order, OrderedClaim, defect_of, every_delta_j
-from verify.scenes.results.claim import ClaimResult
-
-if TYPE_CHECKING:
-    from verify.proof.every_proof import EveryProof
+from verify.claims.orders import Order, OrderedClaim
+from verify.claims.quantified import OF_S
 
 
 class DefectOrderClaim(OrderedClaim):
@@ -21,12 +17,6 @@ class DefectOrderClaim(OrderedClaim):
     kind: Literal["defect_order"]
     defect_order: Order
     """The first power of h in S, or ΔJ."""
-
-    def judge_one(self, findings: Findings) -> ClaimResult:
-        return self.judge_known(defect_of(self, findings))
-
-    def judge_every(self, proof: "EveryProof") -> ClaimResult:
-        return self.judge_known(every_delta_j(proof))
 
 
 CLAIM = DefectOrderClaim

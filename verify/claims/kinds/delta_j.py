@@ -5,32 +5,32 @@
 names, up to the first term.
 """
 
+import re
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Literal, Self
+from typing import Literal, Self
 
 import sympy
 
 from verify.algebra.domain import Domain
 from verify.algebra.embedding import embed
 from verify.algebra.expressions.formula_text import to_text
+from verify.algebra.formula import read, symbol
 from verify.algebra.symbols import H_STEP
-from verify.claims import every_formula
-from verify.claims.checked import of_hamiltonian
 from verify.claims.findings import Findings
 from verify.claims.formulas import FormulaClaim, gaps, within
-from verify.claims.orders import OF_DELTA_J, Order
-from verify.claims.quantified import QuantifiedClaim
+from verify.claims.orders import Order
+from verify.claims.quantified import OF_DELTA_J, QuantifiedClaim, marks_for_hamiltonian
 from verify.errors import NOT_GIVEN, InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.proof.every_proof import EveryProof
 from verify.proof.order import leading_of
 from verify.prose import Formula, Prose, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.schemes.maps.step_map import grouped
 from verify.verdict import Verdict
 
-if TYPE_CHECKING:
-    from verify.proof.every_proof import EveryProof
-
+_NAME = re.compile(r"[A-Za-z]\w*")
+_DERIVATIVE = re.compile(r"H_([pq]+|\d\d)")  # ∂²H/∂p∂q is H_pq, H_qp or H_11
 _PRINTED_AS = {
     "delta_j": "ΔJ",
     "mse_summand": "the bracket that is squared in the mean (ΔJ by Eq. 15)",
@@ -77,7 +77,7 @@ class DeltaJClaim(QuantifiedClaim, FormulaClaim):
         power = leading_of(step_map).power
         if power is None or self.up_to > power + 1:
             return ()
-        return of_hamiltonian(step_map.hamiltonian, self.scheme, self.about)
+        return marks_for_hamiltonian(step_map.hamiltonian, self.scheme, self.about)
 
     # -- of one H ---------------------------------------------------------------------------------
 
@@ -109,9 +109,9 @@ class DeltaJClaim(QuantifiedClaim, FormulaClaim):
             raise InputError(
                 "up_to", NOT_GIVEN, "is missing: of every H only the first term is known"
             )
-        every_formula.read(self.formula, self.id)
+        _read_every(self.formula, self.id)
 
-    def judge_every(self, proof: "EveryProof") -> ClaimResult:
+    def judge_every(self, proof: EveryProof) -> ClaimResult:
         """Up to the first term, which is what is known of ΔJ for every H."""
         if proof.area_preserving is not True and (proof.order is None or not proof.leading):
             return self.result(Verdict.UNDECIDED, proof.reason)
@@ -137,15 +137,64 @@ class DeltaJClaim(QuantifiedClaim, FormulaClaim):
         return self.result(Verdict.PROVED, holds, domain=domain)
 
     def _every(self, formula: str) -> tuple[sympy.Expr, Domain]:
-        read = every_formula.read(formula, self.id)
-        return every_formula.normal(*read, separable=self.of_separable)
+        return _normal(*_read_every(formula, self.id), separable=self.of_separable)
 
     def of_one(self, hamiltonian: Hamiltonian) -> Self:
         if self.every is None:
             return self
-        read, _ = every_formula.read(self.formula, self.id)
-        own = every_formula.of_hamiltonian(read, hamiltonian)
+        written, _ = _read_every(self.formula, self.id)
+        own = _put_in(written, hamiltonian)
         return self.model_copy(update={"every": None, "formula": own})
+
+
+# -- formulas made of every H: in h, p, q and its derivatives, such as H_pq or H_11 ----------------
+
+
+def _read_every(formula: str, claim: str) -> tuple[sympy.Expr, Domain]:
+    """The formula of that claim as an expression, and where it is defined.
+
+    InputError where it names more than derivatives of H.
+    """
+    derivatives = {name for name in _NAME.findall(formula) if _DERIVATIVE.fullmatch(name)}
+    key = f"claim {claim}: formula"
+    try:
+        found, asked = read(formula, ("p", "q", "h", *derivatives), source=key)
+        return found, Domain.of(asked)
+    except InputError as error:
+        if "unknown name" not in error.problem:
+            raise
+        problem = f"{error.problem.partition(';')[0]}; allowed: h and derivatives such as H_pq"
+        raise InputError(key, formula, problem) from None
+
+
+def _normal(formula: sympy.Expr, domain: Domain, *, separable: bool) -> tuple[sympy.Expr, Domain]:
+    """The same with one name for each derivative; of a separable H the mixed ones are zero."""
+    put = {}
+    for s, (p_times, q_times) in _derivatives(formula).items():
+        zero = separable and p_times and q_times
+        put[s] = sympy.S.Zero if zero else symbol("H_" + "p" * p_times + "q" * q_times)
+    return formula.xreplace(put), domain.replaced(put)
+
+
+def _put_in(formula: sympy.Expr, hamiltonian: Hamiltonian) -> str:
+    """The formula's text with the derivatives of this H put in. InputError where it is too long."""
+    p, q = symbol("p"), symbol("q")
+    put = {
+        s: hamiltonian.exact.diff((p, p_times), (q, q_times))
+        for s, (p_times, q_times) in _derivatives(formula).items()
+    }
+    return to_text(formula.xreplace(put))
+
+
+def _derivatives(formula: sympy.Expr) -> dict[sympy.Symbol, tuple[int, int]]:
+    """The derivatives of H in it, with how often each is taken by p, and by q."""
+    found = {}
+    for s in formula.free_symbols:
+        if match := _DERIVATIVE.fullmatch(s.name):
+            by = match[1]
+            digits = (int(by[0]), int(by[1])) if by.isdecimal() else None
+            found[s] = digits or (by.count("p"), by.count("q"))
+    return found
 
 
 CLAIM = DeltaJClaim

@@ -36,15 +36,13 @@ _NEAR = Fraction(1, 8)
 class GrowthClaim(RunClaim):
     """The growth of |Λ| along one run."""
 
+    compares = ("lambda_max",)
     one_run = True
     always_own = True
     only_here = ""
     kind: Literal["growth"]
     growth: Literal["bounded", "linear"]
     """How max |Λ| over [0, t] grows, t = T/8 … T."""
-
-    def quantities(self) -> tuple[str, ...]:
-        return ("lambda_max",)
 
     def check_scene(self, scene: Scene) -> None:
         self.tasks(scene)

@@ -6,25 +6,20 @@ from typing import Any, Literal
 
 from verify.arithmetic.arb import shown
 from verify.claims.findings import Findings
-from verify.claims.on_runs import RunClaim
-from verify.claims.runs import QUANTITIES, Quantity, all_hold, sign, start_of, table_of
+from verify.claims.on_runs import QuantityClaim
+from verify.claims.runs import QUANTITIES, all_hold, sign, start_of, table_of
 from verify.prose import Number, number, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.verdict import Verdict
 
 
-class MonotoneClaim(RunClaim):
+class MonotoneClaim(QuantityClaim):
     """A quantity that increases, or decreases, with the step size."""
 
     only_here = ""
     kind: Literal["monotone"]
-    quantity: Quantity
-    """What is looked at."""
     direction: Literal["increases", "decreases"]
     """Which way it goes as the step size increases."""
-
-    def quantities(self) -> tuple[str, ...]:
-        return (self.quantity,)
 
     def compare(self, findings: Findings) -> ClaimResult:
         rows = self.run_rows(findings)

@@ -3,22 +3,12 @@
 In n degrees of freedom it is the order of det J − 1, and not of S.
 """
 
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
-from verify.claims.findings import Findings
-from verify.claims.orders import (
-    OF_DELTA_J,
-    Order,
-    OrderedClaim,
-    ProvedOrder,
-    delta_j_of,
-    every_delta_j,
-)
+from verify.claims.orders import Order, OrderedClaim, ProvedOrder
+from verify.claims.quantified import OF_DELTA_J
 from verify.prose import prose
 from verify.scenes.results.claim import ClaimResult
-
-if TYPE_CHECKING:
-    from verify.proof.every_proof import EveryProof
 
 AMBIGUOUS = (
     "here order is that of det J − 1, not the method's: write defect_order (of ΔJ; of S in several "
@@ -30,21 +20,15 @@ class OrderClaim(OrderedClaim):
     """The order of ΔJ in h."""
 
     warning = AMBIGUOUS
-
     about = OF_DELTA_J
+    form = "ΔJ"
 
     kind: Literal["order"]
     order: Order
     """The first power of h in ΔJ; better written as a `defect_order`."""
 
-    def judge_one(self, findings: Findings) -> ClaimResult:
-        return self._warned(delta_j_of(self, findings))
-
-    def judge_every(self, proof: "EveryProof") -> ClaimResult:
-        return self._warned(every_delta_j(proof))
-
-    def _warned(self, known: ProvedOrder) -> ClaimResult:
-        found = self.judge_known(known)
+    def judge_known(self, known: ProvedOrder) -> ClaimResult:
+        found = super().judge_known(known)
         return found.model_copy(update={"evidence": prose(found.evidence, "; ", AMBIGUOUS)})
 
 

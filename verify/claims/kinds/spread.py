@@ -8,25 +8,20 @@ from pydantic import Field
 from verify.arithmetic.arb import bounds, in_reach, shown
 from verify.arithmetic.exact import decimal, text
 from verify.claims.findings import Findings
-from verify.claims.on_runs import RunClaim
-from verify.claims.runs import QUANTITIES, Quantity, all_hold, middle
+from verify.claims.on_runs import QuantityClaim
+from verify.claims.runs import QUANTITIES, all_hold, middle
 from verify.prose import Number, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.values import Number as ExactNumber
 
 
-class SpreadClaim(RunClaim):
+class SpreadClaim(QuantityClaim):
     """How far values from several initial values lie apart."""
 
     only_here = "a spread is over the initial values of its own scene"
     kind: Literal["spread"]
-    quantity: Quantity
-    """What is looked at."""
     factor: Annotated[ExactNumber, Field(ge=1)]
     """The largest quotient of two of its values at one step size."""
-
-    def quantities(self) -> tuple[str, ...]:
-        return (self.quantity,)
 
     def compare(self, findings: Findings) -> ClaimResult:
         rows, quantity = self.run_rows(findings), QUANTITIES[self.quantity]

@@ -5,11 +5,10 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from verify.claims.checked import of_scene
 from verify.claims.claim import Claim
 from verify.claims.findings import Findings
-from verify.claims.formulas import within
-from verify.claims.orders import OF_S, as_claimed, defect_of
+from verify.claims.orders import judge_vanishing, order_of
+from verify.claims.quantified import OF_S, marks_for_scene
 from verify.prose import Prose
 from verify.scenes.results.claim import ClaimResult
 
@@ -23,13 +22,10 @@ class SymplecticClaim(Claim):
 
     def judge(self, findings: Findings) -> ClaimResult:
         """By the proof for the scene's H."""
-        known = defect_of(self, findings)
-        domain = known.domain & known.exact_for
-        verdict = as_claimed(known.vanishes, self.symplectic)
-        return self.result(verdict, known.evidence + within(domain), domain=domain)
+        return judge_vanishing(self, order_of(self, findings, "S"), self.symplectic)
 
     def checked_by(self, found: ClaimResult, findings: Findings) -> Sequence[Prose]:
-        return of_scene(self, findings, OF_S)
+        return marks_for_scene(self, findings, OF_S)
 
 
 CLAIM = SymplecticClaim

@@ -66,8 +66,8 @@ def check(
     p = 0
     printed = "-2.666e-06"            # or lg_printed
     """
-    from verify.claims.check import prepare
     from verify.claims.file import load_claims
+    from verify.claims.judging import prepare
 
     path = paper_folder() / "claims.toml" if claims == "paper" else Path(claims)
     prepared = prepare(load_claims(path), only)

@@ -13,7 +13,7 @@ import flint
 
 from verify.arithmetic.arb import Ball, rational_ball, shown
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.property import Silent, known, only_if
+from verify.exploration.property import Silent, Violation, known, only_if
 from verify.schemes.maps.ball_algebra import UndefinedError, step_in_balls
 from verify.schemes.maps.step_map import StepMap
 
@@ -118,6 +118,13 @@ def unlike(found: Ball, wanted: Ball) -> str:
         difference = found - wanted
     given = f"{shown(found, 12)}, and should be {shown(wanted, 12)}"
     return f"{given} (too large by {shown(difference, 3)})"
+
+
+def must_overlap(what: str, found: Ball, wanted: Ball, how: str = "") -> None:
+    """Violation where the two are apart: `what` with its verb, what it should be, and `how` that is
+    known."""
+    if not found.overlaps(wanted):
+        raise Violation(f"{what} {unlike(found, wanted)}{how}")
 
 
 def sharp(x: Ball) -> bool:

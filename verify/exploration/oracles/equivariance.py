@@ -22,9 +22,9 @@ from verify.exploration.oracles.ball_steps import (
     Matrix,
     ball_steps,
     defect,
+    must_overlap,
     omega,
     overlap,
-    unlike,
 )
 from verify.exploration.oracles.symplectic_matrices import Exact, exact
 from verify.exploration.property import Violation, only_if
@@ -104,8 +104,7 @@ def _must_be_image(
     there, back = Matrix(change.matrix), Matrix(change.inverse)
     wanted = there * Matrix([[mine.point[name]] for name in names])
     for k, name in enumerate(names):
-        if not found.point[name].overlaps(wanted[k, 0]):
-            raise Violation(f"{name}' is {unlike(found.point[name], wanted[k, 0])}")
+        must_overlap(f"{name}' is", found.point[name], wanted[k, 0])
     if not overlap(found.matrix, there * mine.matrix * back):
         raise Violation("J is not M J M⁻¹")
     # Of c AᵀSA, A = M⁻¹, c by AᵀΩA = Ω/c.

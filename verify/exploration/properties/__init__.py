@@ -6,14 +6,22 @@ plane or in n degrees of freedom, and raises what is to be said of it (see
 """
 
 import ast
+from collections.abc import Callable, Mapping
 from functools import cache
 from inspect import getsource
 
 from verify.discovery import Catalogue
 from verify.errors import unknown
 from verify.exploration.property import Property
+from verify.exploration.sample import Sample
 
 _FILES = Catalogue(__name__, __path__)
+# Of which samples the properties in a folder speak; those in others do of all.
+_SPEAK_OF: Mapping[str, Callable[[Sample], bool]] = {
+    "plane": lambda sample: sample.planar,
+    "degrees": lambda sample: not sample.planar,
+    "time": lambda sample: sample.timed,
+}
 
 
 def names() -> tuple[str, ...]:
@@ -33,4 +41,5 @@ def get(name: str) -> Property:
     module = _FILES.module(name)
     text = ast.get_docstring(ast.parse(getsource(module)))  # python -OO keeps no __doc__
     sentence = (text or "").splitlines()[0]
-    return Property(name, sentence, module.holds)
+    speaks_of = _SPEAK_OF.get(_FILES.folder(name), lambda _: True)
+    return Property(name, sentence, module.holds, speaks_of=speaks_of)

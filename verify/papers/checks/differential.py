@@ -44,6 +44,12 @@ class Differential:
         """The partial derivatives of the variable `name`: ∂name/∂key for each key."""
         self._gradients[name] = partials
 
+    def set_coordinates(self, first: str = "p", second: str = "q") -> None:
+        """These two variables are what partial derivatives are taken by."""
+        one = self.context.constant(1)
+        self.set_gradient(first, **{first: one, second: self.zero})
+        self.set_gradient(second, **{first: self.zero, second: one})
+
     def relate(self, *relations: Poly) -> None:
         """Each relation = 0."""
         self._relations += relations
@@ -62,12 +68,10 @@ class Differential:
                 total += x.derivative(index) * self._gradients[name][by]
         return self.reduce(total)
 
-    def bracket(self, x: Poly, y: Poly, by: tuple[str, str] = ("p", "q")) -> Poly:
-        """∂(x, y)/∂(p, q), or by another pair of variables."""
-        first, second = by
-        return self.reduce(
-            self.diff(x, first) * self.diff(y, second) - self.diff(x, second) * self.diff(y, first)
-        )
+    def bracket(self, x: Poly, y: Poly) -> Poly:
+        """∂(x, y)/∂(p, q)."""
+        diff = self.diff
+        return self.reduce(diff(x, "p") * diff(y, "q") - diff(x, "q") * diff(y, "p"))
 
     def powers(self, x: Poly, name: str) -> dict[int, Poly]:
         """x by powers of a constant: {power: coefficient}, the coefficients non-zero."""
@@ -79,6 +83,12 @@ class Differential:
             power = int(monomial[at])
             parts[power] = parts[power] + term if power in parts else term
         return parts
+
+
+def free_variables(names: str) -> list[Poly]:
+    """Variables, named with blanks between, none of which depends on another."""
+    ring = Differential(names.split())
+    return [ring[name] for name in ring.names]
 
 
 @dataclass(frozen=True)
@@ -101,10 +111,6 @@ class Flow:
             result.append(self.derive(result[-1]))
         return result
 
-    def bracket(self, x: Poly, y: Poly) -> Poly:
-        """∂(x, y)/∂(p, q)."""
-        return self.ring.bracket(x, y)
-
     @property
     def hessian(self) -> tuple[Poly, Poly, Poly]:
         """H_pp, H_pq, H_qq."""
@@ -119,7 +125,14 @@ class Flow:
 
     def delta_j(self, p_next: Poly, q_next: Poly) -> dict[int, Poly]:
         """ΔJ of the map (p, q) → (p_next, q_next), by powers of h."""
-        return self.ring.powers(self.bracket(p_next, q_next) - 1, "h")
+        return self.ring.powers(self.ring.bracket(p_next, q_next) - 1, "h")
+
+    def delta_j_gaps(self, eta: int, **told: Poly) -> list[Poly]:
+        """The coefficients of h, h², … in ΔJ of lieη, less what is `told` of them: h3=…"""
+        found = self.delta_j(*self.lie(eta))
+        powers = range(1, max([*found, 2 * eta]) + 1)
+        zero = self.ring.zero
+        return [found.get(n, zero) - told.get(f"h{n}", zero) for n in powers]
 
     def lie(self, eta: int) -> tuple[Poly, Poly]:
         """p', q' of the scheme lieη (Eq. 2)."""
@@ -138,7 +151,7 @@ def flow_of_every_hamiltonian(order: int, more: Sequence[str] = ()) -> Flow:
     """The flow of a generic H, whose partial derivatives up to `order` are variables."""
     pairs = [(i, n - i) for n in range(1, order + 1) for i in range(n, -1, -1)]
     ring = Differential(["h", *more, "p", "q", *(f"H{i}_{j}" for i, j in pairs)])
-    _set_coordinates(ring)
+    ring.set_coordinates()
     for i, j in pairs:
         if i + j < order:
             ring.set_gradient(f"H{i}_{j}", p=ring[f"H{i + 1}_{j}"], q=ring[f"H{i}_{j + 1}"])
@@ -147,18 +160,13 @@ def flow_of_every_hamiltonian(order: int, more: Sequence[str] = ()) -> Flow:
     return Flow(ring, ring["H1_0"], ring["H0_1"])
 
 
-def _set_coordinates(ring: Differential) -> None:
-    ring.set_gradient("p", p=ring.context.constant(1), q=ring.zero)
-    ring.set_gradient("q", p=ring.zero, q=ring.context.constant(1))
-
-
 def of_one_function(constants: Sequence[str], u: str, rest: str, order: int = 4) -> Flow:
     """The flow of H = F(u) + rest for a generic F: u and rest are polynomials in p, q, constants.
 
     The derivatives of F at u up to `order` are the variables F1, F2, …
     """
     ring = Differential(["h", *constants, "p", "q", *(f"F{k}" for k in range(1, order + 1))])
-    _set_coordinates(ring)
+    ring.set_coordinates()
     inner, outer = (_polynomial(ring, text) for text in (u, rest))
     u_p, u_q = ring.diff(inner, "p"), ring.diff(inner, "q")
     for k in range(1, order):

@@ -2,16 +2,15 @@
 
 import sympy
 
-from verify.papers.checks.check import Check, vanishes
-from verify.papers.checks.differential import Differential, Poly, flow_of_every_hamiltonian
+from verify.papers.checks.check import Check, same, vanishes
+from verify.papers.checks.differential import Poly, flow_of_every_hamiltonian, free_variables
 
 Matrix = tuple[tuple[Poly, Poly], tuple[Poly, Poly]]
 
 
 def product_of_determinants(sign: int = 1) -> Check:
     """det (AB) = det A det B, all entries free; `sign` is that of one entry of the product."""
-    ring = Differential(["a", "b", "c", "d", "e", "f", "g", "h"])
-    a, b, c, d, e, f, g, h = (ring[name] for name in ring.names)
+    a, b, c, d, e, f, g, h = free_variables("a b c d e f g h")
     product = ((a * e + sign * b * g, a * f + b * h), (c * e + d * g, c * f + d * h))
     return vanishes(
         "det (AB) − det A det B, all entries free",
@@ -21,8 +20,7 @@ def product_of_determinants(sign: int = 1) -> Check:
 
 def of_the_field(trace: int = 0) -> Check:
     """A = f' of a generic H: A² = −D, and det (x + yA) = x² + y² D; `trace` is added to A."""
-    ring = Differential(["x", "y", "H2_0", "H1_1", "H0_2"])
-    x, y, pp, pq, qq = (ring[name] for name in ring.names)
+    x, y, pp, pq, qq = free_variables("x y H2_0 H1_1 H0_2")
     (a, b), (c, d) = field = ((-pq + trace, -qq), (pp, pq))
     det = pp * qq - pq * pq
     square = (a * a + b * c + det, a * b + b * d, c * a + d * c, c * b + d * d + det)
@@ -58,13 +56,12 @@ def stretching(factor: int = 1) -> Check:
     field = sympy.Matrix([[-pq, -qq], [pp, pq]])
     part = (field + field.T) / 2
     square = factor * pq**2 + (pp - qq) ** 2 / 4
-    gap = (part * part - square * sympy.eye(2)).applyfunc(sympy.expand)
-    return Check(
+    what = (
         "the symmetric part of f' squared is s² times the unit matrix, s² = `H_pq²` + (`H_pp` − "
-        "`H_qq`)²/4",
-        gap == sympy.zeros(2, 2),
-        "exactly" if gap == sympy.zeros(2, 2) else f"{gap[0, 0]}",
+        "`H_qq`)²/4"
     )
+    gap = part * part - square * sympy.eye(2)
+    return same(what, list(gap), ("H_pp", "H_pq", "H_qq"), "exactly")
 
 
 def _det(matrix: Matrix) -> Poly:

@@ -6,15 +6,14 @@ F(N) is the sum of the first N terms f(0) … f(N − 1) where F(0) = 0 and F(N 
 from collections.abc import Callable
 
 from verify.papers.checks.check import Check, vanishes
-from verify.papers.checks.differential import Differential, Poly
+from verify.papers.checks.differential import Poly, free_variables
 
 Of = Callable[[Poly], Poly]
 
 
 def geometric(offset: int = 0) -> Check:
     """G_k = (r^k − 1)/(r − 1) obeys G_(k+1) = r G_k + 1 and G_0 = 0; `offset` is added to it."""
-    ring = Differential(["r", "w"])  # w = r^k
-    r, w = ring["r"], ring["w"]
+    r, w = free_variables("r w")  # w = r^k
 
     def scaled(power: Poly) -> Poly:
         """(r − 1) G."""
@@ -29,8 +28,7 @@ def geometric(offset: int = 0) -> Check:
 
 def bound_of_eq_11(extra: int = 1) -> Check:
     """h^(n+1) (E + (E − 1)/(hL)) = h^n ((E − 1)/L + h E); `extra`: how often the last counts."""
-    ring = Differential(["h", "L", "E", "w"])  # w = h^n
-    h, rate, e, w = (ring[name] for name in ring.names)
+    h, rate, e, w = free_variables("h L E w")  # w = h^n
     left = w * (h * rate * e + e - 1)  # times L
     return vanishes(
         "`h^(n+1)` (E + (E − 1)/(hL)) − `h^n` ((E − 1)/L + hE), times L, with E = `e^(LT)`",
@@ -40,7 +38,7 @@ def bound_of_eq_11(extra: int = 1) -> Check:
 
 def squares_of_times(factor: int = 1) -> Check:
     """Σ (kh)², h = 1/N, is (N − 1)(2N − 1)/(6N), above N/8 by (5N − 2)(N − 2)/(24N)."""
-    n = _count()
+    (n,) = free_variables("N")
     above = 4 * (n - 1) * (2 * n - 1) - 3 * n * n - (5 * n - 2) * (n - 2)  # times 24 N
     return vanishes(
         "Σ (kh)² − (N − 1)(2N − 1)/(6N), and that less N/8 − (5N − 2)(N − 2)/(24N), h = 1/N",
@@ -55,7 +53,7 @@ def mean_of_fourth_powers(fifth: int = 5) -> Check:
     def total(k: Poly) -> Poly:
         return (k - 1) * k * (2 * k - 1) * (3 * k * k - 3 * k - 1) / 30
 
-    n = _count()
+    (n,) = free_variables("N")
     rest = total(n) - n**5 / fifth
     found = vanishes(
         "Σ k⁴ − (N − 1)N(2N − 1)(3N² − 3N − 1)/30, which is N⁵/5 and lower powers of N",
@@ -67,7 +65,7 @@ def mean_of_fourth_powers(fifth: int = 5) -> Check:
 
 def compensated_changes(double: int = 2) -> Check:
     """Σ h(1/2 − kh), h = 1/N, is h/2; `double` stands for the first 2."""
-    n = _count()
+    (n,) = free_variables("N")
     total = n * n / double - n * (n - 1) / 2  # times N²; Σ k is checked beside it
     return vanishes(
         "Σ h(1/2 − kh) − h/2, h = 1/N, times N²",
@@ -76,11 +74,7 @@ def compensated_changes(double: int = 2) -> Check:
     )
 
 
-def _count() -> Poly:
-    return Differential(["N"])["N"]
-
-
 def _sum_gaps(term: Of, total: Of) -> list[Poly]:
     """What is 0 where the total is the sum of the terms before it."""
-    n = _count()
+    (n,) = free_variables("N")
     return [total(n + 1) - total(n) - term(n), total(0 * n)]

@@ -1,21 +1,19 @@
 """Eq. 9, 10 and 11 as their letters and superscripts are printed: with p̃_k, and for p alone."""
 
-from collections.abc import Sequence
 from fractions import Fraction
 
 import sympy
 
 from verify.algebra.symbols import H_STEP, P, Q
 from verify.arithmetic.exact import decimal, text
-from verify.arithmetic.flint_precision import working_precision
 from verify.execution.keeping import NOTHING
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import Argument, Step, concluded, step
+from verify.papers.argument import Argument, Step, refutation, step
 from verify.papers.checks.check import BALLS, Check, same
-from verify.papers.lie_derivative_scheme.oscillator import PRECISION, errors, factor
+from verify.papers.exact_maps import run_of
+from verify.papers.lie_derivative_scheme.examples import enclosures, errors, factor
 from verify.runs.task import RunTask
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.verdict import Verdict
 
 LEVELS = "-(q - p**3) + (q - p**3)**2/2"  # H is a function of u = q − p³, which it keeps
 _STEPS = (10, 100, 1000)
@@ -23,14 +21,52 @@ _ETAS = range(1, 5)
 _LEVEL = Q - P**3
 
 
+# -- Eq. 9 -----------------------------------------------------------------------------------------
+
+
+def eq_9_kept() -> Argument:
+    """Eq. 9 in a norm with z̃_k on the right: 0 at k = 1, where the left side is not."""
+    return refutation(
+        "`z̃_1` and `z_1` are both one step from the initial value, so that the right side is 0 at "
+        "k = 1 in every norm and for every L; for the oscillator the left side, |Φ(`z̄_1`) − "
+        "Φ(`z_1`)|, is not",
+        [
+            step(
+                "The run begins on the exact solution, `z_0` = `z̄_0`; so "
+                "``z̃_1 = Φ(z̄_0) = Φ(z_0) = z_1``, and |`z̃_1` − `z_1`| = 0.",
+            ),
+            step(
+                "The left side at k = 1 is |`z̃_2` − `z_2`| = |Φ(`z̄_1`) − Φ(`z_1`)|. For the "
+                "oscillator Φ turns and stretches the plane by a factor R, |R| > 0, and `z̄_1` − "
+                "`z_1` is the local error, which is not 0: so it is not 0 either.",
+                *map(_after_two, _ETAS),
+            ),
+        ],
+        given="Read |…| as a norm of the plane, and keep `z̃_k` on the right as printed.",
+        remark="For every scheme and every H it is so wherever the first step has a local error "
+        "and Φ is one-to-one. With `z̄_k` in place of `z̃_k`, as Eq. 8 and 10 need it, it holds.",
+    )
+
+
+def _after_two(eta: int, h: Fraction = Fraction(1, 10)) -> Check:
+    """The left side of Eq. 9 at k = 1, for the oscillator from (q, p) = (1, 0)."""
+    with enclosures():
+        left = abs(factor(eta, h) * errors(eta, h, 1)[-1])
+        shown, apart = left.mid().str(4, radius=False), bool(left > 0)
+    return Check(
+        f"oscillator from (q, p) = (1, 0), lie{eta}, h = {text(h)}: |`z̃_2` − `z_2`| > 0",
+        apart,
+        f"`{shown}`",
+        BALLS,
+    )
+
+
 # -- Eq. 10 and 11 ---------------------------------------------------------------------------------
 
 
 def eq_10_components(formula: str = LEVELS) -> Argument:
     """Eq. 10 for p alone, e_k in place of e_n: its right side is 0 at k = 1, its left is not."""
-    return concluded(
-        "eq-10-components",
-        Verdict.REFUTED,
+    return refutation(
         "for H = −(q − p³) + (q − p³)²/2, η = 2, from (0, 0), `e^p_1` = 0 and every `C^p_k` = 0, "
         "so that Eq. 10 says `e^p_2` ≤ 0 whatever `L_p` is; but `e^p_2` = h⁴",
         [
@@ -49,9 +85,7 @@ def eq_10_components(formula: str = LEVELS) -> Argument:
 
 def eq_11(formula: str = LEVELS) -> Argument:
     """Eq. 11 for p alone: its right side is 0, and e^p is h²/2 at t = 1."""
-    return concluded(
-        "eq-11",
-        Verdict.REFUTED,
+    return refutation(
         "for H = −(q − p³) + (q − p³)²/2, η = 2, from (0, 0), the exact solution is p = t, q = t³, "
         "`e^p_1` = 0 and every `C^p_m` = 0, so that Eq. 11 says `e^p_k` = 0 whatever `L_p` and "
         "`C̃_p` are; but at t = 1 `e^p` ≥ h²(1 − h)/2",
@@ -63,9 +97,7 @@ def eq_11(formula: str = LEVELS) -> Argument:
                 _added_up(),
                 tried=[_at_1(formula, n) for n in _STEPS],
             ),
-            step(
-                "The right sides of Eq. 11 are 0: `e^p_1` is, and so is every `C^p_m`.",
-            ),
+            step("The right sides of Eq. 11 are 0: `e^p_1` is, and so is every `C^p_m`."),
         ],
         given=_SETTING,
         remark="It makes no difference whether e is |`p̄_k` − `p_k`| or, as Eq. 7 has it, |`p̃_k` − "
@@ -109,11 +141,8 @@ def _steps_of(formula: str) -> list[Step]:
 
 
 def _second_step(formula: str) -> Check:
-    scheme, point = lie_map(Hamiltonian.parse(formula), 2), (sympy.Integer(0), sympy.Integer(0))
-    for _ in range(2):
-        put = dict(zip((P, Q), point, strict=True))
-        point = tuple(x.subs(put, simultaneous=True) for x in (scheme.p_next, scheme.q_next))
-    gap = sympy.expand(point[0] - 2 * H_STEP - H_STEP**4)
+    p, _ = run_of(lie_map(Hamiltonian.parse(formula), 2), (sympy.S.Zero, sympy.S.Zero), 2)
+    gap = p - 2 * H_STEP - H_STEP**4
     return same("two steps of lie2 from (0, 0): `p_2` − 2h − h⁴", [gap], ("h",))
 
 
@@ -139,48 +168,3 @@ def _at_1(formula: str, steps: int) -> Check:
         f"`{decimal(low, 4)}` ≥ `{decimal(h * h * (1 - h) / 2, 4)}`",
         BALLS,
     )
-
-
-# -- Eq. 9 -----------------------------------------------------------------------------------------
-
-
-def eq_9_kept(etas: Sequence[int] = _ETAS) -> Argument:
-    """Eq. 9 in a norm with z̃_k on the right: 0 at k = 1, where the left side is not."""
-    return concluded(
-        "eq-9-kept",
-        Verdict.REFUTED,
-        "`z̃_1` and `z_1` are both one step from the initial value, so that the right side is 0 at "
-        "k = 1 in every norm and for every L; for the oscillator the left side, |Φ(`z̄_1`) − "
-        "Φ(`z_1`)|, is not",
-        [
-            step(
-                "The run begins on the exact solution, `z_0` = `z̄_0`; so "
-                "``z̃_1 = Φ(z̄_0) = Φ(z_0) = z_1``, and |`z̃_1` − `z_1`| = 0.",
-            ),
-            step(
-                "The left side at k = 1 is |`z̃_2` − `z_2`| = |Φ(`z̄_1`) − Φ(`z_1`)|. For the "
-                "oscillator Φ turns and stretches the plane by a factor R, |R| > 0, and `z̄_1` − "
-                "`z_1` is the local error, which is not 0: so it is not 0 either.",
-                *(_after_two(eta) for eta in etas),
-            ),
-        ],
-        given="Read |…| as a norm of the plane, and keep `z̃_k` on the right as printed.",
-        remark="For every scheme and every H it is so wherever the first step has a local error "
-        "and Φ is one-to-one. With `z̄_k` in place of `z̃_k`, as Eq. 8 and 10 need it, it holds.",
-    )
-
-
-def _after_two(eta: int, h: Fraction = Fraction(1, 10)) -> Check:
-    """The left side of Eq. 9 at k = 1, for the oscillator from (q, p) = (1, 0)."""
-    with working_precision(PRECISION):
-        left = abs(factor(eta, h) * errors(eta, h, 1)[-1])
-        shown, apart = left.mid().str(4, radius=False), bool(left > 0)
-    return Check(
-        f"oscillator from (q, p) = (1, 0), lie{eta}, h = {text(h)}: |`z̃_2` − `z_2`| > 0",
-        apart,
-        f"`{shown}`",
-        BALLS,
-    )
-
-
-THEOREMS = {"eq-9-kept": eq_9_kept, "eq-10-components": eq_10_components, "eq-11": eq_11}

@@ -16,18 +16,16 @@ import flint
 import sympy
 
 from verify.algebra.symbols import H_STEP, P
+from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.exact import text
-from verify.arithmetic.flint_precision import working_precision
-from verify.hamiltonians import systems
-from verify.papers.argument import Argument, concluded, step
+from verify.papers.argument import Argument, proof, step
 from verify.papers.checks.check import BALLS, NUMBERS, Check, vanishes
 from verify.papers.checks.differential import Differential, Poly, flow_of_every_hamiltonian
 from verify.papers.exact_maps import Point, areas, map_from_formulas
-from verify.papers.lie_derivative_scheme.oscillator import PRECISION
+from verify.papers.lie_derivative_scheme.examples import enclosures, oscillator
 from verify.proof.assistant.stated import Shipped
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.verdict import Verdict
 
 TIME = 20000
 STEP_SIZES = (Fraction(1, 100), Fraction(1, 1000), Fraction(1, 10**6), Fraction(1, 10**9))
@@ -60,12 +58,10 @@ def small_determinant(hamiltonian: bool = True) -> Check:
     )
 
 
-def of_smooth_schemes(hamiltonian: bool = True) -> Argument:
+def criteria_of_consistent_schemes(hamiltonian: bool = True) -> Argument:
     """Criteria 2, 3 and 4 hold for explicit Euler too, which blows every area up."""
     grown = enclosed_growth(STEP_SIZES[0])[1]
-    return concluded(
-        "criteria-of-consistent-schemes",
-        Verdict.PROVED,
+    return proof(
         "every smoothly consistent scheme has ΔJ = O(h²), hence MSE = O(h⁴) and Λ = O(h) on every "
         "[0, T]: all satisfy all three, explicit Euler too, whose Λ for the oscillator at h = "
         f"{text(STEP_SIZES[0])}, T = {TIME} is {grown}",
@@ -113,15 +109,14 @@ def of_smooth_schemes(hamiltonian: bool = True) -> Argument:
 
 
 def _euler() -> Check:
-    one = systems.get("harmonic").hamiltonian().with_values({"omega": 1})
-    delta_j = lie_map(one, 1).delta_j
+    delta_j = lie_map(oscillator(), 1).delta_j
     return Check("ΔJ of lie1 for H = (p² + q²)/2 is h²", str(delta_j) == "h**2", f"`{delta_j}`")
 
 
 def enclosed_growth(h: Fraction) -> tuple[bool, str]:
     """Whether 1 + Λ ≤ e^(Th) for lie1 on the oscillator over [0, TIME], and Λ, both enclosed."""
-    with working_precision(PRECISION):
-        size = flint.arb(flint.fmpq(h.numerator, h.denominator))
+    with enclosures():
+        size = rational_ball(h)
         log = (1 + size * size).log() * TIME / size
         lam = log.exp() - 1
         # 1 + Λ = exp(T log(1 + h²)/h) ≤ exp(T h), which is what tends to 1.
@@ -141,14 +136,12 @@ ORDERS = (1, 2, 3)
 STEPS = (4, 16)
 
 
-def alone(ripple: str = RIPPLE) -> Argument:
+def consistency_is_not_enough(ripple: str = RIPPLE) -> Argument:
     """A consistent scheme of any order that fails criteria 2 and 4; `ripple` is its p'."""
     found = [_rippled(ripple.format(n=m + 1, m=m), m) for m in ORDERS]
     local, whole, run = zip(*found, strict=True)
     limit, growth = _tends_to_e(STEPS)
-    return concluded(
-        "consistency-is-not-enough",
-        Verdict.PROVED,
+    return proof(
         "for H = q the scheme p' = p − h + h² sin(2πp/h)/(2π), q' = q is of order 1, and along its "
         "run from (0, 0) every `ΔJ_k` is h, so that Λ = `(1 + h)^N` − 1 → e − 1 on [0, 1]",
         [
@@ -237,17 +230,11 @@ def _run_of(found: StepMap, steps: int) -> bool:
 
 def _tends_to_e(steps: Sequence[int]) -> tuple[bool, str]:
     """Whether e − (1 + 1/N)^N lies between 0 and e/(2N + 1), and Λ."""
-    with working_precision(PRECISION):
+    with enclosures():
         e, found = flint.arb(1).exp(), []
         for n in steps:
-            power = flint.arb(flint.fmpq(n + 1, n)) ** n
+            power = rational_ball(Fraction(n + 1, n)) ** n
             found.append((bool(e / (2 * n + 1) > e - power > 0), (power - 1)))
         shown = ", ".join(f"`{x.str(6, radius=False)}`" for _, x in found)
     listed = ", ".join(map(str, steps))
     return all(near for near, _ in found), f"for N = {listed} it is {shown}, e − 1 to 1/N"
-
-
-THEOREMS = {
-    "criteria-of-consistent-schemes": of_smooth_schemes,
-    "consistency-is-not-enough": alone,
-}

@@ -5,23 +5,18 @@ from collections.abc import Sequence
 from fractions import Fraction
 from itertools import pairwise
 
-import flint
 import sympy
 
 from verify.algebra.symbols import H_STEP, P, Q
-from verify.arithmetic.flint_precision import working_precision
-from verify.hamiltonians import systems
-from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import Argument, concluded, step
+from verify.arithmetic.arb import rational_ball
+from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import BALLS, Check, same
 from verify.papers.checks.sums import geometric
-from verify.papers.lie_derivative_scheme.oscillator import PRECISION, errors, final_error
+from verify.papers.lie_derivative_scheme import examples
 from verify.proof.assistant.stated import Shipped
 from verify.proof.order import convergence_of
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.verdict import Verdict
 
-SYSTEMS = ("duffing", "pendulum")
 ETAS = range(1, 5)
 STEPS = (10, 100, 1000)
 _LIPSCHITZ = 1  # of lie1 for the oscillator: ψ = f, and the norm of f' is 1
@@ -29,9 +24,7 @@ _LIPSCHITZ = 1  # of lie1 for the oscillator: ψ = f, and the norm of f' is 1
 
 def convergence(shift: int = 0) -> Argument:
     """The global error is O(h^η). `shift`: what is added to the claimed orders, 0 as printed."""
-    return concluded(
-        "convergence",
-        Verdict.PROVED,
+    return proof(
         "it holds for every H of class `C^(η+1)`, with one Lipschitz constant for (p, q) together "
         "in place of Eq. 9's two",
         [
@@ -84,12 +77,11 @@ def convergence(shift: int = 0) -> Argument:
 
 def local_orders(shift: int) -> list[Check]:
     """The local error is of order η + 1 + shift exactly, for both systems."""
-    return [_local_order(name, eta, eta + shift) for name in SYSTEMS for eta in ETAS]
+    return [_local_order(name, eta, eta + shift) for name in examples.SYSTEMS for eta in ETAS]
 
 
 def _local_order(name: str, eta: int, claimed: int) -> Check:
-    hamiltonian = Hamiltonian(systems.get(name).hamiltonian().expression)
-    found = convergence_of(lie_map(hamiltonian, eta))
+    found = convergence_of(lie_map(examples.with_symbols(name), eta))
     return Check(
         f"{name}, lie{eta}: the local error is of order `h^{claimed + 1}` exactly",
         found.decided and found.order == claimed,
@@ -101,9 +93,9 @@ def _within_the_bound(eta: int, order: int) -> Check:
     """On the oscillator M = 1, and L ≤ (e^h − 1)/h as the norm of every Xⁿ is 1."""
     shown, holds = [], True
     for steps in STEPS:
-        error = final_error(eta, steps)
-        with working_precision(PRECISION):
-            h = flint.arb(flint.fmpq(1, steps))
+        error = examples.final_error(eta, steps)
+        with examples.enclosures():
+            h = rational_ball(Fraction(1, steps))
             lipschitz = (h.exp() - 1) / h
             bound = h**order / math.factorial(order + 1) * (lipschitz.exp() - 1) / lipschitz
             holds = holds and bool(error <= bound)
@@ -124,11 +116,11 @@ def _listed(numbers: Sequence[int]) -> str:
 def eq_10(fixed: bool = True) -> Argument:
     """Eq. 10 with e_n, n = η, in the middle of it; `fixed` False: with e_k, as it must read."""
     eta, ratios = 1, []
-    with working_precision(PRECISION):
+    with examples.enclosures():
         for steps in STEPS:
-            h = flint.arb(flint.fmpq(1, steps))
-            end = final_error(eta, steps)
-            before = abs(errors(eta, Fraction(1, steps), eta if fixed else steps - 1)[-1])
+            h = rational_ball(Fraction(1, steps))
+            end = examples.final_error(eta, steps)
+            before = abs(examples.errors(eta, Fraction(1, steps), eta if fixed else steps - 1)[-1])
             ratios.append((end - (h * _LIPSCHITZ).exp() * before) / h ** (eta + 1))
     grows = all(bool(b > 5 * a) for a, b in pairwise(ratios))
     shown = ", ".join(f"`{r.mid().str(4, radius=False)}`" for r in ratios)
@@ -140,9 +132,7 @@ def eq_10(fixed: bool = True) -> Argument:
         f"{shown}: {'grows like N' if grows else 'stays bounded'}",
         BALLS,
     )
-    return concluded(
-        "eq-10",
-        Verdict.REFUTED,
+    return refutation(
         "with `e_n` in place of `e_k` the error would be O(`h^(η+1)`) after any number of steps; "
         f"for the oscillator and η = 1 it is h/2 to leading order at T = 1 (C would have to be "
         f"{shown} for N = {_listed(STEPS)})",
@@ -173,13 +163,10 @@ def eq_10(fixed: bool = True) -> Argument:
 
 def _lengthened(eta: int = 1) -> Check:
     """p'² + q'² = (1 + h²)(p² + q²) for lie1 on the oscillator; not so for another `eta`."""
-    hamiltonian = systems.get("harmonic").hamiltonian().with_values({"omega": 1})
+    hamiltonian = examples.oscillator()
     found, square = lie_map(hamiltonian, eta), P**2 + Q**2
     gap = found.p_next**2 + found.q_next**2 - (1 + H_STEP**2) * square
     h_p, h_q = (sympy.diff(hamiltonian.exact, z) for z in (P, Q))
     kept = h_p * sympy.diff(square, Q) - h_q * sympy.diff(square, P)
     what = "oscillator, lie1: p'² + q'² − (1 + h²)(p² + q²), and X(p² + q²)"
     return same(what, [gap, kept], ("p", "q", "h"))
-
-
-THEOREMS = {"convergence": convergence, "eq-10": eq_10}

@@ -4,7 +4,7 @@ T is fixed, N = T/h steps. Every closed form is held against the map itself, run
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache
 from math import prod
@@ -106,17 +106,11 @@ def _friction(h: Fraction) -> Numbers:
 
 
 def _to_and_fro(h: Fraction) -> Numbers:
-    """ΔJ alternates between −2ε/(1 + ε) and 2ε/(1 − ε), ε = √h; N is even."""
-    e = _root(h)
-    down, up = -2 * e / (1 + e), 2 * e / (1 - e)
-    return up, (down**2 + up**2) / 2, Fraction(0)
-
-
-def _to_and_fro_odd(h: Fraction) -> Numbers:
-    """The same for odd N: one contraction more than expansions."""
+    """ΔJ alternates between −2ε/(1 + ε) and 2ε/(1 − ε), ε = √h; for odd N there is one contraction
+    more than expansions."""
     e, n = _root(h), int(1 / h)
-    down, up = -2 * e / (1 + e), 2 * e / (1 - e)
-    return up, ((n + 1) * down**2 + (n - 1) * up**2) / (2 * n), down
+    down, up, odd = -2 * e / (1 + e), 2 * e / (1 - e), n % 2
+    return up, ((n + odd) * down**2 + (n - odd) * up**2) / (2 * n), odd * down
 
 
 def _compensated(h: Fraction) -> Numbers:
@@ -159,15 +153,11 @@ TO_AND_FRO = ExampleMap(
     "max |ΔJ| > 2√h and MSE > 4h, while Λ = 0 for even N",
     "-2*sqrt(h)*q/(1 + sqrt(h)*q)",
 )
-TO_AND_FRO_ODD = ExampleMap(
-    "to and fro, odd N",
-    TO_AND_FRO.p_next,
-    TO_AND_FRO.q_next,
-    _UNIT,
-    (9, 25, 81),
-    _to_and_fro_odd,
-    "Λ = −2√h/(1 + √h) → 0 for odd N",
-    TO_AND_FRO.delta_j,
+TO_AND_FRO_ODD = replace(
+    TO_AND_FRO,
+    name="to and fro, odd N",
+    steps=(9, 25, 81),
+    says="Λ = −2√h/(1 + √h) → 0 for odd N",
 )
 COMPENSATED = ExampleMap(
     "near the identity, compensated",

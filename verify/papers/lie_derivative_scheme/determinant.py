@@ -7,29 +7,25 @@ import sympy
 
 from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.symbols import H_STEP, P, Q
-from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import Argument, concluded, step
+from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import Check, same
 from verify.papers.checks.matrices import of_the_field, where_it_rests
 from verify.papers.lie_derivative_scheme import families
+from verify.papers.lie_derivative_scheme.examples import SYSTEMS, with_symbols
 from verify.proof.order import convergence_of, prove
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.verdict import Verdict
 
-SYSTEMS = ("duffing", "pendulum")
 ETAS = range(1, 6)
 # det J = 1 exactly, and the scheme is not the flow.
 PRESERVED = ("p**3/6 + q", "(p**2 + q**2)**(3/4)", "(p*q)**(3/4)")
 SINGULAR = "q**2/p"  # det Hess H = 0 everywhere, and still ΔJ ≠ 0
 
 
-def examples(names: Sequence[str] = SYSTEMS) -> Argument:
+def determinant_of_the_examples(names: Sequence[str] = SYSTEMS) -> Argument:
     """For the paper's two systems det J ≠ 1: at the equilibrium, for every η and almost every h."""
     at_rest = [_at_rest(name, eta) for name in names for eta in ETAS]
-    return concluded(
-        "determinant-of-the-examples",
-        Verdict.PROVED,
+    return proof(
         "wherever H has an equilibrium with D = det Hess H ≠ 0, as both systems have at (0, 0), "
         "det J of lie2 is 1 + h⁴D²/4 there, and for every η it is 1 for finitely many h only",
         [
@@ -80,8 +76,7 @@ def _last_coefficients(sign: int = -1) -> Check:
 
 def _at_rest(name: str, eta: int) -> Check:
     """ΔJ at (0, 0) against R(ih) R(−ih) − 1, all parameters symbols."""
-    hamiltonian = Hamiltonian(systems.get(name).hamiltonian().expression)
-    delta_j = sympy.expand(lie_map(hamiltonian, eta).delta_j.subs({P: 0, Q: 0}))
+    delta_j = sympy.expand(lie_map(with_symbols(name), eta).delta_j.subs({P: 0, Q: 0}))
     # R(z) R(−z) at z² = −h²
     z = sympy.Symbol("z")
     terms = [z**n / sympy.factorial(n) for n in range(eta + 1)]
@@ -95,12 +90,10 @@ def _at_rest(name: str, eta: int) -> Check:
     )
 
 
-def universal(formulas: Sequence[str] = PRESERVED) -> Argument:
+def determinant_of_every_h(formulas: Sequence[str] = PRESERVED) -> Argument:
     """As a statement on every H: refuted by H with det J ≡ 1 and a truncation error."""
     first, *others = map(preserved, formulas)
-    return concluded(
-        "determinant-of-every-h",
-        Verdict.REFUTED,
+    return refutation(
         "for H = p³/6 + q the local error of lie2 is h³/6 in q, and det J = 1 for all p, q, h; so "
         "it is for H = `(p² + q²)^(3/4)`, where lie2 spirals outwards; see the classification",
         [
@@ -171,6 +164,3 @@ def _singular() -> Check:
         sympy.simplify(hessian) == 0 and found.order == 4 and found.delta_j == told,
         f"ΔJ = `{to_text(found.delta_j)}`",
     )
-
-
-THEOREMS = {"determinant-of-the-examples": examples, "determinant-of-every-h": universal}

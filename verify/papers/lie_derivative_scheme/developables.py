@@ -5,13 +5,12 @@ lines; see `families` for the notation.
 """
 
 from verify.papers.checks.check import Check, vanishes
-from verify.papers.checks.differential import Differential, Flow, Poly
+from verify.papers.checks.differential import Differential, Flow, Poly, free_variables
 
 
 def adjugate_identity() -> Check:
     """(v·Yv) Y = (Yv)(Yv)ᵀ + det Y (Sv)(Sv)ᵀ for symmetric Y, Sv = (−v₂, v₁)."""
-    ring = Differential(["y11", "y12", "y22", "v1", "v2"])
-    y11, y12, y22, v1, v2 = (ring[n] for n in ring.names)
+    y11, y12, y22, v1, v2 = free_variables("y11 y12 y22 v1 v2")
     image = (y11 * v1 + y12 * v2, y12 * v1 + y22 * v2)
     size, det = v1 * image[0] + v2 * image[1], y11 * y22 - y12 * y12
     return vanishes(
@@ -28,8 +27,7 @@ def contracted(turned: int = 1) -> Check:
     With v = (a, b), u = (a', b'), w = Yv: v·w = Ψ − c, u·w = −c', u·Sv = −ω, and tr (Y Hess Ψ) = 2
     says u·Yu = −2W. That is (3).
     """
-    ring = Differential(["y11", "y12", "y22", "v1", "v2", "u1", "u2"])
-    y11, y12, y22, v1, v2, u1, u2 = (ring[n] for n in ring.names)
+    y11, y12, y22, v1, v2, u1, u2 = free_variables("y11 y12 y22 v1 v2 u1 u2")
 
     def form(a: tuple[Poly, Poly], b: tuple[Poly, Poly]) -> Poly:
         return y11 * a[0] * b[0] + y12 * (a[0] * b[1] + a[1] * b[0]) + y22 * a[1] * b[1]
@@ -46,9 +44,7 @@ def legendre(sign: int = 1) -> Check:
     """∇(w·∇L − L) = (Hess L) w for a generic L(w); `sign` is that of L."""
     ring = Differential(["x", "y", "L", "L_x", "L_y", "L_xx", "L_xy", "L_yy"])
     x, y, transform, l_x, l_y, xx, xy, yy = (ring[n] for n in ring.names)
-    one, zero = ring.context.constant(1), ring.zero
-    ring.set_gradient("x", x=one, y=zero)
-    ring.set_gradient("y", x=zero, y=one)
+    ring.set_coordinates("x", "y")
     ring.set_gradient("L", x=l_x, y=l_y)
     ring.set_gradient("L_x", x=xx, y=xy)
     ring.set_gradient("L_y", x=xy, y=yy)
@@ -62,8 +58,7 @@ def legendre(sign: int = 1) -> Check:
 
 def radial(bent: int = 0) -> Check:
     """κ and ω of (a, b) = r(s) (α, β) are 0; `bent` s is added to b."""
-    ring = Differential(["r", "r1", "r2", "alpha", "beta", "s"])
-    r, r1, r2, alpha, beta, s = (ring[n] for n in ring.names)
+    r, r1, r2, alpha, beta, s = free_variables("r r1 r2 alpha beta s")
     (a, a1, a2), (b, b1, b2) = ([k * x for x in (r, r1, r2)] for k in (alpha, beta))
     b, b1 = b + bent * s, b1 + bent
     return vanishes(
@@ -116,8 +111,7 @@ def _put(x: Poly, values: dict[str | int, Poly]) -> Poly:
 
 def ruling() -> Check:
     """ωW = ωc'' − ω'c' + κ(Ψ − c) on the line xa' + yb' + c' = 0 where xa + yb + c = Ψ."""
-    ring = Differential(["a", "a1", "a2", "b", "b1", "b2", "c1", "c2", "e"])
-    a, a1, a2, b, b1, b2, c1, c2, e = (ring[n] for n in ring.names)
+    a, a1, a2, b, b1, b2, c1, c2, e = free_variables("a a1 a2 b b1 b2 c1 c2 e")
     omega, turned, kappa = a1 * b - a * b1, a2 * b - a * b2, a1 * b2 - a2 * b1
     x, y = -(e * b1 + c1 * b), a * c1 + a1 * e  # ω times the point, e = Ψ − c
     return vanishes(
@@ -145,19 +139,15 @@ def developable() -> Check:
     slope = {z: direct[z] + w3 * s[z] for z in s}
     ring.set_gradient("W", **slope)
     ring.set_gradient("V", **{z: -v * v * slope[z] for z in s})
-    one, zero = ring.context.constant(1), ring.zero
-    ring.set_gradient("p", p=one, q=zero)
-    ring.set_gradient("q", p=zero, q=one)
+    ring.set_coordinates()
     flow = Flow(ring, a, b)
-    delta_j = flow.delta_j(*flow.lie(2))
     omega, kappa = a1 * b - a * b1, a1 * b2 - a2 * b1
-    fourth = ring.reduce(delta_j.pop(4, zero) + omega**2 * kappa**2 * v**4 / 4)
+    gaps = flow.delta_j_gaps(2, h4=-(omega**2) * kappa**2 * v**4 / 4)
     return vanishes(
         "D ≡ 0, ∇H = (a(s), b(s)): D = 0, and ΔJ = −(h⁴/4) ω²κ²/W⁴ with ω = a'b − ab', "
         "κ = a'b'' − a''b'",
         flow.hessian_determinant,
-        fourth,
-        *delta_j.values(),
+        *map(ring.reduce, gaps),
     )
 
 

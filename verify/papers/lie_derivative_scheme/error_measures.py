@@ -6,17 +6,14 @@ import sympy
 
 from verify.algebra.symbols import P, Q
 from verify.arithmetic.exact import decimal, text
-from verify.hamiltonians import systems
-from verify.papers.argument import Argument, Step, concluded, step
+from verify.papers.argument import Argument, Step, proof, refutation, step
 from verify.papers.checks.check import NUMBERS, Check, vanishes
 from verify.papers.checks.differential import flow_of_every_hamiltonian
 from verify.papers.checks.matrices import product_of_determinants
-from verify.papers.exact_maps import Point, areas, jacobian, next_point, value
+from verify.papers.exact_maps import Point, areas, jacobian, next_point, run_of, value
 from verify.papers.lie_derivative_scheme.criteria_examples import FRICTION, TO_AND_FRO, ExampleMap
+from verify.papers.lie_derivative_scheme.examples import duffing_step
 from verify.proof.assistant.stated import Shipped
-from verify.schemes.maps.step_map import StepMap
-from verify.schemes.methods.taylor.lie import lie_map
-from verify.verdict import Verdict
 
 _H = Fraction(1, 10)
 _START = Point(Fraction(1, 2), Fraction(1))
@@ -24,15 +21,9 @@ _FLOW = Shipped("Taylor", "flow_has_no_defect")
 CHAIN = Shipped("Differential", "slopes_of_composition")
 
 
-def _duffing() -> StepMap:
-    return lie_map(systems.get("duffing").hamiltonian().with_values({"delta": 1}), 2)
-
-
-def exact_determinant(most: int = 5, eta: int = 5) -> Argument:
+def eq_14(most: int = 5, eta: int = 5) -> Argument:
     """det of the exact flow is 1 for a generic H up to h^most; `eta` is of what stands for it."""
-    return concluded(
-        "eq-14",
-        Verdict.PROVED,
+    return proof(
         "the exact flow has det = 1 over every step, so det `J_k` − 1 is by how much one step’s "
         "determinant is off, a local error, and the relative change of a small region’s area",
         [
@@ -58,19 +49,16 @@ def exact_determinant(most: int = 5, eta: int = 5) -> Argument:
 
 def _of_the_flow(most: int, eta: int) -> Check:
     flow = flow_of_every_hamiltonian(most + 1)
-    powers, zero = flow.delta_j(*flow.lie(eta)), flow.ring.zero
     return vanishes(
         f"the coefficients of h … `h^{most}` in ΔJ of the flow of a generic H",
-        *(powers.get(n, zero) for n in range(1, most + 1)),
+        *flow.delta_j_gaps(eta)[:most],
     )
 
 
-def mean_square(true: int = 1, steps: int = 3) -> Argument:
+def eq_15(true: int = 1, steps: int = 3) -> Argument:
     """MSE is the mean of (det J − 1)², and 1 is the true value; `true`: what is taken for it."""
     squares = mean_of_squares(true, steps)
-    return concluded(
-        "eq-15",
-        Verdict.PROVED,
+    return proof(
         "Eq. 15 is the mean of the squares of det `J_k` − 1, and 1 is the true value of the "
         "determinant",
         [
@@ -91,7 +79,7 @@ def mean_square(true: int = 1, steps: int = 3) -> Argument:
 
 def mean_of_squares(true: int = 1, steps: int = 3) -> Check:
     """MSE by its closed form against det J from its entries; `true`: what is taken for 1."""
-    scheme, point, dets = _duffing(), _START, []
+    scheme, point, dets = duffing_step(), _START, []
     for _ in range(steps):
         a, b, c, d = jacobian(scheme, point, _H)
         dets.append(a * d - b * c)
@@ -107,9 +95,9 @@ def mean_of_squares(true: int = 1, steps: int = 3) -> Check:
     )
 
 
-def sum_of_squares(steps: int = 2) -> Argument:
+def eq_15_sum(steps: int = 2) -> Argument:
     """The sum of the squares is N times Eq. 15, and another number for N > 1."""
-    found = areas(_duffing(), _START, _H, steps)
+    found = areas(duffing_step(), _START, _H, steps)
     total = sum((x * x for x in found.delta_j), Fraction(0))
     differ = Check(
         f"Duffing, δ = 1, lie2, h = {text(_H)}, (p, q) = {_START}, N = {steps}: Σ `ΔJ_k`² and MSE",
@@ -117,9 +105,7 @@ def sum_of_squares(steps: int = 2) -> Argument:
         f"`{decimal(total, 4)}` and `{decimal(found.mse, 4)}`",
         NUMBERS,
     )
-    return concluded(
-        "eq-15-sum",
-        Verdict.REFUTED,
+    return refutation(
         "Eq. 15 is the mean: the sum of the squares is N times as much",
         [
             step(
@@ -131,11 +117,9 @@ def sum_of_squares(steps: int = 2) -> Argument:
     )
 
 
-def chain_rule(stray: Fraction = Fraction(0)) -> Argument:
+def criterion_4(stray: Fraction = Fraction(0)) -> Argument:
     """1 + Λ is the determinant of the map of all N steps; `stray` is added to it."""
-    return concluded(
-        "criterion-4",
-        Verdict.PROVED,
+    return proof(
         "by the chain rule 1 + Λ is the determinant of the map of all N steps at the initial "
         "value, so that Λ → 0, uniformly on a region of initial values, says that areas within it "
         "change by o(1) over the whole of [t₀, `t_end`]",
@@ -168,11 +152,8 @@ def of_all_steps(stray: Fraction = Fraction(0)) -> list[Step]:
 
 
 def _composed(steps: int, stray: Fraction) -> Check:
-    scheme, p_next, q_next = _duffing(), P, Q
-    for _ in range(steps):
-        put = {P: p_next, Q: q_next}
-        p_next, q_next = (x.subs(put, simultaneous=True) for x in (scheme.p_next, scheme.q_next))
-    entries = [sympy.diff(x, z) for x in (p_next, q_next) for z in (P, Q)]
+    scheme = duffing_step()
+    entries = [sympy.diff(x, z) for x in run_of(scheme, (P, Q), steps) for z in (P, Q)]
     a, b, c, d = (value(x, _START, _H) for x in entries)
     det, lam = a * d - b * c + stray, areas(scheme, _START, _H, steps).lam
     return Check(
@@ -187,11 +168,9 @@ def _composed(steps: int, stray: Fraction) -> Check:
 # -- “the system with a smaller cumulative error” --------------------------------------------------
 
 
-def smaller_is_better() -> Argument:
+def smaller_lambda() -> Argument:
     """|Λ| is by which part areas change after all steps."""
-    return concluded(
-        "smaller-lambda",
-        Verdict.PROVED,
+    return proof(
         "after all N steps a small region’s area has changed by |Λ| of it, by the chain rule, so "
         "the smaller |Λ|, the less",
         [
@@ -203,7 +182,7 @@ def smaller_is_better() -> Argument:
     )
 
 
-def smaller_in_each_step(
+def smaller_lambda_each_step(
     to_and_fro: ExampleMap = TO_AND_FRO, friction: ExampleMap = FRICTION
 ) -> Argument:
     """Of two maps the one with the smaller |Λ| may change areas more in every step."""
@@ -220,9 +199,7 @@ def smaller_in_each_step(
         "exactly",
         NUMBERS,
     )
-    return concluded(
-        "smaller-lambda-each-step",
-        Verdict.REFUTED,
+    return refutation(
         "a Λ may be small because changes cancel: p' = −p (1 − √h q)/(1 + √h q), q' = −q has Λ = "
         "0 and changes areas more in every single step than p' = p − h(q + p), q' = q + hp, whose "
         "|Λ| tends to 1 − 1/e",
@@ -246,13 +223,3 @@ def smaller_in_each_step(
         ],
         given="Λ is a number at the end.",
     )
-
-
-THEOREMS = {
-    "eq-14": exact_determinant,
-    "eq-15": mean_square,
-    "eq-15-sum": sum_of_squares,
-    "criterion-4": chain_rule,
-    "smaller-lambda": smaller_is_better,
-    "smaller-lambda-each-step": smaller_in_each_step,
-}

@@ -7,24 +7,22 @@ Eq. 10 and 11 in one norm of the plane; by components:
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 
-import flint
 import sympy
 
 from verify.algebra.symbols import P, Q
+from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.exact import text
-from verify.arithmetic.flint_precision import working_precision
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import Argument, concluded, step
+from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import BALLS, NUMBERS, Check, vanishes
-from verify.papers.checks.differential import Differential
+from verify.papers.checks.differential import free_variables
 from verify.papers.checks.sums import bound_of_eq_11, geometric
 from verify.papers.checks.triangle import difference, triangle
 from verify.papers.exact_maps import Point, next_point
 from verify.papers.lie_derivative_scheme.convergence import STEPS, local_orders
-from verify.papers.lie_derivative_scheme.oscillator import PRECISION
+from verify.papers.lie_derivative_scheme.examples import enclosures
 from verify.proof.assistant.stated import Shipped
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.verdict import Verdict
 
 _RATES = (Fraction(1, 2), Fraction(1), Fraction(3))  # L
 _ORDER = 2
@@ -33,9 +31,7 @@ _TIME = sympy.Symbol("t")
 
 def local_error(shift: int = 0) -> Argument:
     """The step from the exact solution is off by C h^(η+1); `shift` is added to the order."""
-    return concluded(
-        "local-error",
-        Verdict.PROVED,
+    return proof(
         "one step from the exact solution, Eq. 6, is its Taylor polynomial of degree η, so that "
         "the local error is C `h^(η+1)` with |C| ≤ max |`X^(η+1)` z|/(η+1)!, of that order "
         "exactly for both systems and η = 1 … 4",
@@ -63,9 +59,7 @@ def local_error(shift: int = 0) -> Argument:
 def eq_7(formula: str = "p**2/2 + q", steps: Sequence[int] = (1, 2)) -> Argument:
     """|p̃ − p| is 0 after the first step, and the global error is not: H = p²/2 + q, lie1."""
     solves, first, later = _after_steps(formula, steps)
-    return concluded(
-        "eq-7",
-        Verdict.REFUTED,
+    return refutation(
         "`p̃_1` is one step from the exact initial value, and so is `p_1`: Eq. 7 is 0 after the "
         "first step, where the global error, `z̄_1` − `z_1`, is the local error (h²/2 in q for H = "
         "p²/2 + q and η = 1)",
@@ -123,9 +117,7 @@ def _after_steps(formula: str, steps: Sequence[int]) -> list[Check]:
 
 def eq_7_meant(of: str = "ab") -> Argument:
     """Eq. 7 differs from the global error by the local error at most; `of`: see `difference`."""
-    return concluded(
-        "eq-7-meant",
-        Verdict.PROVED,
+    return proof(
         "by the triangle inequality Eq. 7 and the global error differ by |`z̄_{k+1}` − "
         "`z̃_{k+1}`|, one local error, `O(h^(η+1))`: the one is `O(h^η)` where the other is",
         [
@@ -149,15 +141,12 @@ def eq_7_meant(of: str = "ab") -> Argument:
 
 def eq_8(middle_sign: int = 1) -> Argument:
     """The triangle inequality; `middle_sign` −1 makes one of its sides wrong."""
-    ring = Differential(["exact", "step", "run"])
-    exact, stepped, run = (ring[name] for name in ring.names)
+    exact, stepped, run = free_variables("exact step run")
     split = vanishes(
         "(p̄ − p̃) + (p̃ − p) − (p̄ − p)",
         (exact - stepped) + (middle_sign * stepped - run) - (exact - run),
     )
-    return concluded(
-        "eq-8",
-        Verdict.PROVED,
+    return proof(
         "it is the triangle inequality: p̄ − p = (p̄ − p̃) + (p̃ − p), the local error of the last "
         "step and what the step makes of the error before it",
         [
@@ -176,8 +165,8 @@ def eq_8(middle_sign: int = 1) -> Argument:
 
 def eq_10_meant(slope: int = 1) -> Argument:
     """Eq. 10 with e_k for e_n: from Eq. 8 and a Lipschitz constant; `slope` is that of 1 + x."""
-    with working_precision(PRECISION):
-        sizes = [flint.arb(flint.fmpq(int(10 * rate), 10 * n)) for rate in _RATES for n in STEPS]
+    with enclosures():
+        sizes = [rational_ball(rate / n) for rate in _RATES for n in STEPS]
         exponentials = [bool(1 + slope * x <= x.exp()) for x in sizes]
     example = Check(
         "1 + hL ≤ `e^(hL)`",
@@ -185,9 +174,7 @@ def eq_10_meant(slope: int = 1) -> Argument:
         f"L = {', '.join(map(text, _RATES))}, N = {', '.join(map(str, STEPS))}, enclosed",
         BALLS,
     )
-    return concluded(
-        "eq-10-meant",
-        Verdict.PROVED,
+    return proof(
         "with `e_k` for `e_n` and the plane’s norm for the two components, the first inequality is "
         "Eq. 8 with the local error, the second 1 + hL ≤ `e^(hL)`",
         [
@@ -215,9 +202,7 @@ def eq_11_norm(factor: Callable[[Fraction, int], Fraction] | None = None) -> Arg
     """Eq. 11 for every sequence with the first inequality of Eq. 10; `factor`: in place of
     (1 + hL)^k, to see that the sum notices."""
     power = factor or (lambda rate, k: rate**k)
-    return concluded(
-        "eq-11-norm",
-        Verdict.PROVED,
+    return proof(
         "for every sequence with `e_{k+1}` ≤ (1 + hL) `e_k` + C `h^(n+1)`, n = η, both "
         "inequalities hold, with C̃ = (`e^(LT)` − 1)/L + h `e^(LT)` (the term m = 1 of the sum "
         "counts the first step twice, which only weakens it)",
@@ -272,13 +257,3 @@ def _worst_sequence(rate: Fraction, power: Callable[[Fraction, int], Fraction]) 
         "exactly",
         NUMBERS,
     )
-
-
-THEOREMS = {
-    "local-error": local_error,
-    "eq-7": eq_7,
-    "eq-7-meant": eq_7_meant,
-    "eq-8": eq_8,
-    "eq-10-meant": eq_10_meant,
-    "eq-11-norm": eq_11_norm,
-}

@@ -6,17 +6,15 @@ import sympy
 
 from verify.algebra.formula import symbol
 from verify.algebra.symbols import H_STEP, P, Q
-from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import Argument, concluded, step
+from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import Check, same, vanishes
 from verify.papers.checks.differential import Flow, Poly, flow_of_every_hamiltonian
+from verify.papers.lie_derivative_scheme.examples import SYSTEMS, with_symbols
 from verify.proof.assistant.stated import Shipped
 from verify.schemes.methods.taylor.lie import lie_map
-from verify.verdict import Verdict
 
 MOST = 5  # powers of X looked at for a generic H; the rest is by induction
-SYSTEMS = ("duffing", "pendulum")
 Recursion = Callable[[Flow, Poly], Poly]
 
 
@@ -45,12 +43,10 @@ def lie_exponential(recursion: Recursion = eq_4, eta: int = 4) -> Argument:
     powers = [powers_of(name, recursion) for name in ("p", "q")]
     for_systems = []
     for name in SYSTEMS:
-        hamiltonian = Hamiltonian(systems.get(name).hamiltonian().expression)
+        hamiltonian = with_symbols(name)
         for order in range(1, eta + 1):
             for_systems.append(_same(name, hamiltonian, order))
-    return concluded(
-        "lie-exponential",
-        Verdict.PROVED,
+    return proof(
         "with L p = −`H_q` and L q = `H_p` to start from, Eq. 4 and 5 say Lⁿ = X Lⁿ⁻¹, so that Eq. "
         f"2 is exp(hX) cut off after `h^η`; checked for a generic H up to `X^{MOST}`",
         [
@@ -131,9 +127,7 @@ def eq_3(coordinate: str = "p") -> Argument:
         by_eq_5 != h_p,
         f"`{by_eq_5}`",
     )
-    return concluded(
-        "eq-3",
-        Verdict.REFUTED,
+    return refutation(
         "p and q are independent coordinates, so ∂q/∂p = 0 and the right side is 0, not `H_p`; "
         "with q for p, `L_{H_p}`(`q_k`) = `H_p` ∂q/∂q = `H_p`, it is what Eq. 2 needs",
         [
@@ -187,10 +181,8 @@ def _example() -> Check:
 
 def eq_3_meant(coordinate: str = "q") -> Argument:
     """Eq. 3 with q for p in its first line: L_{H_p}(q) = H_p, L_{−H_q}(p) = −H_q, by Eq. 5."""
-    found = [Hamiltonian(systems.get(name).hamiltonian().expression) for name in SYSTEMS]
-    return concluded(
-        "eq-3-meant",
-        Verdict.PROVED,
+    found = [with_symbols(name) for name in SYSTEMS]
+    return proof(
         "`L_{H_p}`(`q_k`) = `H_p` ∂q/∂q = `H_p` and `L_{−H_q}`(`p_k`) = −`H_q` ∂p/∂p = −`H_q` are "
         "Eq. 5 for y = q and y = p, and what Eq. 2 begins with",
         [
@@ -205,6 +197,3 @@ def eq_3_meant(coordinate: str = "q") -> Argument:
             ),
         ],
     )
-
-
-THEOREMS = {"lie-exponential": lie_exponential, "eq-3": eq_3, "eq-3-meant": eq_3_meant}

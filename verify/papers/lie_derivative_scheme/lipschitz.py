@@ -8,16 +8,12 @@ import sympy
 
 from verify.algebra.symbols import H_STEP, P, Q
 from verify.arithmetic.exact import decimal, text
-from verify.arithmetic.flint_precision import working_precision
-from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import Argument, concluded, step
+from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import BALLS, NUMBERS, Check, same, vanishes
 from verify.papers.checks.differential import flow_of_every_hamiltonian
 from verify.papers.exact_maps import Point, jacobian, next_point, squared
-from verify.papers.lie_derivative_scheme.oscillator import PRECISION, errors, factor
-from verify.schemes.methods.taylor.lie import lie_map
-from verify.verdict import Verdict
+from verify.papers.lie_derivative_scheme.examples import duffing_step, enclosures, errors, factor
 
 PAIR = (Point(p=Fraction(0), q=Fraction(0)), Point(p=Fraction(0), q=Fraction(1)))
 STEP_SIZES = (Fraction(1, 10), Fraction(1, 100), Fraction(1, 1000))
@@ -25,16 +21,11 @@ LATEST = 4  # runs are looked at up to this time
 MIXED = "a*p*q + b*p + c*q"  # H_pp = H_qq = 0
 
 
-def duffing() -> Hamiltonian:
-    """The Duffing oscillator with δ = 1."""
-    return systems.get("duffing").hamiltonian().with_values({"delta": 1})
-
-
 def eq_9(pair: tuple[Point, Point] = PAIR, mixed: str = MIXED) -> Argument:
     """Eq. 9 by a pair of points with equal p, and along a run of the oscillator; `mixed`: an H for
     which both components decouple."""
     h = Fraction(1, 10)
-    found = lie_map(duffing(), 2)
+    found = duffing_step()
     ends = [next_point(found, point, h) for point in pair]
     left, right = abs(ends[1].p - ends[0].p), abs(pair[1].p - pair[0].p)
     apart = Check(
@@ -50,9 +41,7 @@ def eq_9(pair: tuple[Point, Point] = PAIR, mixed: str = MIXED) -> Argument:
         [both[0] - both[1] - 2 * H_STEP],
         ("h",),
     )
-    return concluded(
-        "eq-9",
-        Verdict.REFUTED,
+    return refutation(
         f"for the Duffing oscillator (δ = 1, h = 0.1) two points with equal p and q = "
         f"{text(pair[0].q)}, {text(pair[1].q)} have |p̃ − p| = {text(left)} after one step, where "
         "the right side is 0 for every `L_p`; it holds for lieη, any H and all small h only if "
@@ -71,16 +60,12 @@ def eq_9(pair: tuple[Point, Point] = PAIR, mixed: str = MIXED) -> Argument:
                 "not on p. The coefficients of h in p' and q' are −`H_q` and `H_p`.",
                 _first_terms(),
             ),
-            step(
-                "So ``H_{qq} = 0, H_{pp} = 0``, and H = a pq + b p + c q + d.",
-            ),
+            step("So ``H_{qq} = 0, H_{pp} = 0``, and H = a pq + b p + c q + d."),
             step(
                 "For such an H both components decouple, for every η.",
                 _decoupled(mixed),
             ),
-            step(
-                "There Eq. 9 holds for h ≤ h₀ with ``L_p = L_q = (e^(|a|h_0) − 1)/h_0``.",
-            ),
+            step("There Eq. 9 holds for h ≤ h₀ with ``L_p = L_q = (e^(|a|h_0) − 1)/h_0``."),
             step(
                 "It is no way out that `z̄_k` and `z_k` belong to an exact solution and to the run "
                 "that starts on it. For the oscillator H = (p² + q²)/2 from (q, p) = (1, 0) the "
@@ -124,7 +109,7 @@ def _decoupled(mixed: str) -> Check:
 def along_a_run(h: Fraction) -> Check:
     """The greatest L_p that one step of the run asks for, for both readings of the right side."""
     steps = int(LATEST / h)
-    with working_precision(PRECISION):
+    with enclosures():
         error, scheme = errors(2, h, steps), factor(2, h)
         size = 1 / float(h)
         barred = _largest([(scheme * e).imag for e in error], [e.imag for e in error], size)
@@ -149,11 +134,9 @@ def _largest(left: Sequence[flint.arb], right: Sequence[flint.arb], scale: float
     return (max(known) - 1) * scale
 
 
-def of_the_plane(norm: float = 1.0) -> Argument:
+def eq_9_plane(norm: float = 1.0) -> Argument:
     """Eq. 9 for both components in one norm; `norm` scales L, to see that the check notices."""
-    return concluded(
-        "eq-9-plane",
-        Verdict.PROVED,
+    return proof(
         "repaired, with `z̄_k` for `z̃_k` and both components together, it holds: |Φ(`z̄_k`) − "
         "Φ(`z_k`)| ≤ (1 + hL) |`z̄_k` − `z_k`|, with L the greatest norm of ψ', Φ = z + hψ, on a "
         "convex compact set around the solution: one L for all 0 < h ≤ h₀",
@@ -178,7 +161,7 @@ def of_the_plane(norm: float = 1.0) -> Argument:
 def _stretch(h: Fraction, norm: float) -> Check:
     """Duffing, δ = 1, lie2 on the square |p|, |q| ≤ 1, where every entry of ψ' is largest in size
     at a corner: ‖ψ'‖² is at most the sum of their squares."""
-    scheme, bound = lie_map(duffing(), 2), Fraction(norm) * 5
+    scheme, bound = duffing_step(), Fraction(norm) * 5
     corners = [Point(Fraction(a), Fraction(b)) for a in (-1, 1) for b in (-1, 1)]
     images = [next_point(scheme, z, h) for z in corners]
     pairs = [(i, j) for i in range(len(corners)) for j in range(i)]
@@ -194,11 +177,9 @@ def _stretch(h: Fraction, norm: float) -> Check:
     )
 
 
-def inference() -> Argument:
+def convergence_inference() -> Argument:
     """“Therefore convergent”, by Eq. 9–11 as they are printed."""
-    return concluded(
-        "convergence-inference",
-        Verdict.REFUTED,
+    return refutation(
         "the printed way leads through Eq. 9 with the p-difference alone on the right, for which "
         "no constant `L_p` will do along a run of the oscillator: an `L_p` above 1/h makes "
         "`e^(L_p T)` of Eq. 11 useless; with both components together the same steps prove it",
@@ -218,6 +199,3 @@ def inference() -> Argument:
         given="Eq. 11 is summed from Eq. 10, and that from Eq. 9.",
         remark="The conclusion is true, by the same steps for both components in one norm.",
     )
-
-
-THEOREMS = {"eq-9": eq_9, "eq-9-plane": of_the_plane, "convergence-inference": inference}

@@ -7,18 +7,17 @@ import sympy
 from verify.algebra.expressions.formula_text import to_text
 from verify.algebra.formula import parse
 from verify.algebra.symbols import P, Q
-from verify.papers.argument import Argument, concluded, step
+from verify.papers.argument import Argument, proof, step
 from verify.papers.checks.check import same, vanishes
 from verify.papers.checks.differential import flow_of_every_hamiltonian
 from verify.proof.assistant.stated import Shipped
-from verify.verdict import Verdict
 
 DUFFING = ("p**2/2 + q**2/2 + delta*q**4/4", "q + delta*q**3")  # H, and q'' less its sign
 PENDULUM = ("p**2/2 - cos(q)", "sin(q)")
 _NAMES = ("p", "q", "delta")
 
 
-def conservative(sign: int = -1) -> Argument:
+def eq_1(sign: int = -1) -> Argument:
     """X H = 0 and div X = 0 for a generic H; `sign` is that of p' = −H_q."""
     flow = flow_of_every_hamiltonian(2)
     diff, h_p, h_q = flow.ring.diff, flow.h_p, flow.h_q
@@ -27,9 +26,7 @@ def conservative(sign: int = -1) -> Argument:
         "the divergence ∂p'/∂p + ∂q'/∂q for a generic H",
         sign * diff(h_q, "p") + diff(h_p, "q"),
     )
-    return concluded(
-        "eq-1",
-        Verdict.PROVED,
+    return proof(
         "along solutions of Eq. 1 dH/dt = −`H_q` `H_p` + `H_p` `H_q` = 0 for every H, and the flow "
         "has no divergence",
         [
@@ -68,9 +65,7 @@ def _from_hamiltonian(
     whole = same(
         f"q'' by Eq. 1 with H = `{formulas[0]}`, plus `{formulas[1]}`", [second + force], _NAMES
     )
-    return concluded(
-        name,
-        Verdict.PROVED,
+    return proof(
         f"H as in {source} gives q' = p and p' = −(`{to_text(force)}`), so that q'' + "
         f"`{to_text(force)}` = 0{words}",
         [
@@ -95,6 +90,3 @@ def eq_25(formulas: Sequence[str] = PENDULUM) -> Argument:
     """q'' + sin q = 0 from Eq. 26."""
     moves = Shipped("Examples", "pendulum_moves")
     return _from_hamiltonian("eq-25", "Eq. 26", formulas, "", moves)
-
-
-THEOREMS = {"eq-1": conservative, "eq-17": eq_17, "eq-25": eq_25}

@@ -4,18 +4,15 @@ import sympy
 
 from verify.algebra.symbols import P, Q
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import Argument, concluded, step
+from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import Check, vanishes
 from verify.papers.checks.differential import flow_of_every_hamiltonian
 from verify.papers.lie_derivative_scheme.lie_series import eq_4, powers_of
-from verify.verdict import Verdict
 
 
 def taylor_method() -> Argument:
     """lieη is the Taylor series method of order η, step for step."""
-    return concluded(
-        "taylor-method",
-        Verdict.PROVED,
+    return proof(
         "for every H a step of lieη is the Taylor polynomial of degree η of the exact flow: the "
         "Taylor series method of order η; by the paper’s own account references 23 to 29 have "
         "applied it as the Lie derivative method",
@@ -41,9 +38,7 @@ def partitioned(sign: int = -1) -> Argument:
     ring = flow.ring
     ring.set_gradient("y", p=ring["y_p"], q=ring["y_q"])
     parts = flow.h_p * ring["y_q"] + sign * flow.h_q * ring["y_p"]
-    return concluded(
-        "partitioned",
-        Verdict.PROVED,
+    return proof(
         "Eq. 1 is two equations, and the derivative along the motion the sum of one term from "
         "each, `L_{H_p}` + `L_{−H_q}` = `H_p` ∂/∂q − `H_q` ∂/∂p, for every H",
         [
@@ -59,15 +54,13 @@ def partitioned(sign: int = -1) -> Argument:
     )
 
 
-def separable_alone(formula: str = "p*q + p**2*q**2") -> Argument:
+def partitioned_separable(formula: str = "p*q + p**2*q**2") -> Argument:
     """Eq. 2–5 serve an H that is no sum of a function of p and one of q."""
     hamiltonian = Hamiltonian.parse(formula)
     mixed = sympy.expand(sympy.diff(hamiltonian.exact, P, Q))
     flow = flow_of_every_hamiltonian(2)
     second = flow.lie_derivatives("q", 2)
-    return concluded(
-        "partitioned-separable",
-        Verdict.REFUTED,
+    return refutation(
         "Eq. 3 to 5 hold for every H(p, q), such as `pq + p²q²`, which is no sum of a function of "
         "p and a function of q",
         [
@@ -86,21 +79,21 @@ def separable_alone(formula: str = "p*q + p**2*q**2") -> Argument:
     )
 
 
-def of_functions() -> Argument:
+def higher_derivatives() -> Argument:
     """L² is a derivative of H_p and of −H_q."""
     flow = flow_of_every_hamiltonian(2)
     along = {"q": flow.h_p, "p": -flow.h_q}
     gaps = [eq_4(flow, y) - flow.lie_derivatives(name, 2)[2] for name, y in along.items()]
-    return concluded(
-        "higher-derivatives",
-        Verdict.PROVED,
+    return proof(
         "`L²` q = L `H_p` and `L²` p = −L `H_q`, and so on: derivatives of functions of p and q",
         [step("By Eq. 4 ``L^2 q = X H_p, L^2 p = −X H_q``.",
               vanishes("Eq. 4 from `H_p` and −`H_q`, less X² q and X² p, for a generic H", *gaps))],
     )  # fmt: skip
 
 
-def nonlinearity(linear: str = "p**2/2 + p*q + q**2", curved: str = "p**2/2 + q**4/4") -> Argument:
+def higher_derivatives_nonlinearity(
+    linear: str = "p**2/2 + p*q + q**2", curved: str = "p**2/2 + q**4/4"
+) -> Argument:
     """The same for linear systems; and a nonlinear one whose second derivative is of a variable."""
     first, second = (Hamiltonian.parse(formula).exact for formula in (linear, curved))
     rates = [sympy.diff(first, z) for z in (P, Q)]
@@ -116,9 +109,7 @@ def nonlinearity(linear: str = "p**2/2 + p*q + q**2", curved: str = "p**2/2 + q*
         speed == P and sympy.diff(force, Q, Q) != 0,
         f"`{speed}`, `{force}`",
     )
-    return concluded(
-        "higher-derivatives-nonlinearity",
-        Verdict.REFUTED,
+    return refutation(
         "the linear system of H = `p²/2 + pq + q²` has L q = p + q, a function, whose derivative "
         "`L²` q is; and the nonlinear one of H = `p²/2 + q⁴/4` has L q = p, a variable",
         [
@@ -128,12 +119,3 @@ def nonlinearity(linear: str = "p**2/2 + p*q + q**2", curved: str = "p**2/2 + q*
                  "of a variable.", is_curved),
         ],
     )  # fmt: skip
-
-
-THEOREMS = {
-    "taylor-method": taylor_method,
-    "partitioned": partitioned,
-    "partitioned-separable": separable_alone,
-    "higher-derivatives": of_functions,
-    "higher-derivatives-nonlinearity": nonlinearity,
-}

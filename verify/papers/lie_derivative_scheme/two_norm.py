@@ -6,15 +6,13 @@ import sympy
 
 from verify.algebra.symbols import P, Q
 from verify.arithmetic.exact import decimal, text
-from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.papers.argument import Argument, concluded, step
+from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import NUMBERS, Check, same
 from verify.papers.checks.matrices import stretching
 from verify.papers.exact_maps import Point, jacobian, next_point, squared
-from verify.papers.lie_derivative_scheme.lipschitz import PAIR, duffing
-from verify.schemes.methods.taylor.lie import lie_map
-from verify.verdict import Verdict
+from verify.papers.lie_derivative_scheme.examples import duffing_step, with_symbols
+from verify.papers.lie_derivative_scheme.lipschitz import PAIR
 
 _EDGE = Fraction(2, 3)  # of |δ|q²
 STRETCHED = Point(p=Fraction(0), q=Fraction(2))
@@ -24,7 +22,7 @@ _STRETCHES = {"duffing": "3*delta*q**2/2", "pendulum": "(1 - cos(q))/2"}
 
 def two_norm(point: Point = STRETCHED, h: Fraction = Fraction(1, 10)) -> Argument:
     """L_p = ‖J_k‖₂ in Eq. 9: refuted at a point where ‖J‖₂ > 1 + h ‖J‖₂ is exact."""
-    a, b, c, d = jacobian(lie_map(duffing(), 2), point, h)
+    a, b, c, d = jacobian(duffing_step(), point, h)
     # With |Jv| ≤ ‖J‖₂ |v| for v = (1, −1), ‖J‖₂ (1 − h) > 1 follows from |Jv|² (1 − h)² > |v|².
     stretch = ((a - b) ** 2 + (c - d) ** 2) / 2
     exceeds = Check(
@@ -34,9 +32,7 @@ def two_norm(point: Point = STRETCHED, h: Fraction = Fraction(1, 10)) -> Argumen
         text(stretch * (1 - h) ** 2),
         NUMBERS,
     )
-    return concluded(
-        "two-norm",
-        Verdict.REFUTED,
+    return refutation(
         f"a map with ‖J‖₂ > 1 + h‖J‖₂ has no Lipschitz constant 1 + h‖J‖₂, and the Duffing step is "
         f"one: at (p, q) = {point}, h = {text(h)}, (1 − h)² ‖J‖₂² ≥ {text(stretch * (1 - h) ** 2)}",
         [
@@ -80,7 +76,7 @@ def two_norm(point: Point = STRETCHED, h: Fraction = Fraction(1, 10)) -> Argumen
 
 def _is_a_factor(q: Fraction, h: Fraction = Fraction(1, 100), edge: Fraction = _EDGE) -> Check:
     """‖J‖₂ ≤ 1 + h‖J‖₂ for Duffing with δ = 1 at p = 0, exactly where q² < `edge`."""
-    a, b, c, d = jacobian(lie_map(duffing(), 2), Point(Fraction(0), q), h)
+    a, b, c, d = jacobian(duffing_step(), Point(Fraction(0), q), h)
     trace, square = a * a + b * b + c * c + d * d, (a * d - b * c) ** 2
     most = 1 / (1 - h) ** 2  # what the greater zero of x² − trace x + square may be at most
     holds = most**2 - trace * most + square >= 0 and 2 * most >= trace
@@ -95,20 +91,20 @@ def _is_a_factor(q: Fraction, h: Fraction = Fraction(1, 100), edge: Fraction = _
 
 def _stretch_of(name: str, told: str = "") -> Check:
     """s² of the system, all parameters symbols; `told`: what is taken for s."""
-    energy = systems.get(name).hamiltonian().expression
+    energy = with_symbols(name).expression
     s = Hamiltonian.parse(told or _STRETCHES[name]).expression
     pp, pq, qq = (sympy.diff(energy, *by) for by in ((P, P), (P, Q), (Q, Q)))
     gap = s**2 - (pq**2 + (pp - qq) ** 2 / 4)
     return same(f"{name}: s² for s = `{told or _STRETCHES[name]}`", [gap], ("p", "q", "delta"))
 
 
-def norm_of_the_step(scale: Fraction = Fraction(1)) -> Argument:
+def two_norm_of_the_step(scale: Fraction = Fraction(1)) -> Argument:
     """‖J‖₂ as the Lipschitz constant of the step itself, the 1 + hL of Eq. 9; `scale` times it.
 
     On the segment between two points |Φ(z̄) − Φ(z)|² ≤ max ‖J‖₂² |z̄ − z|².
     """
     h = Fraction(1, 10)
-    found, ends = lie_map(duffing(), 2), PAIR
+    found, ends = duffing_step(), PAIR
     images = [next_point(found, z, h) for z in ends]
     moved = squared(*images) / squared(*ends)
     between = [Point(Fraction(0), Fraction(k, 8)) for k in range(9)]
@@ -120,9 +116,7 @@ def norm_of_the_step(scale: Fraction = Fraction(1)) -> Argument:
         f"`{decimal(moved, 4)}` ≤ `{decimal(scale * max(norms), 4)}`",
         NUMBERS,
     )
-    return concluded(
-        "two-norm-of-the-step",
-        Verdict.PROVED,
+    return proof(
         "the greatest ‖`J_k`‖₂ on a convex set is the least Lipschitz constant there of "
         "(`p_{k+1}`, `q_{k+1}`) as functions of (`p_k`, `q_k`), which is the factor 1 + hL of Eq. "
         "9",
@@ -144,6 +138,3 @@ def _norm_squared(entries: tuple[Fraction, ...]) -> Fraction:
     """A lower bound of ‖J‖₂²: |J v|²/|v|² for the better of v = (0, 1) and (1, 0)."""
     a, b, c, d = entries
     return max(a * a + c * c, b * b + d * d)
-
-
-THEOREMS = {"two-norm": two_norm, "two-norm-of-the-step": norm_of_the_step}

@@ -9,8 +9,8 @@ import pytest
 from pydantic import ValidationError
 
 from tests.helpers.constructed.runs import CLAIM, FLAT, STARTS, Given, check
-from verify.claims.check import prepare
 from verify.claims.file import load_claims
+from verify.claims.judging import prepare
 from verify.claims.kinds.comparisons.solution_error import SolutionErrorClaim
 from verify.errors import InputError
 from verify.execution.execute import Store

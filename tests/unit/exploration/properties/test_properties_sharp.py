@@ -20,8 +20,8 @@ from verify.arithmetic.exact import decimal
 from verify.exploration import properties
 from verify.exploration.oracles import mpfr_runs
 from verify.exploration.properties.numbers import number_systems_agree, results_read_back
-from verify.exploration.properties.orbits import growth_laws
 from verify.exploration.properties.orders import planted_errors
+from verify.exploration.properties.plane import growth_laws
 from verify.exploration.property import Violation
 from verify.exploration.sample import Sample
 from verify.proof.expansion import VANISHES

@@ -11,16 +11,16 @@ from verify.schemes import get
 
 
 def test_an_oscillator_whose_hessian_determinant_is_not_one_is_noticed() -> None:
-    assert refused(determinant.examples(["harmonic"]))  # ω is a symbol: D = ω²
+    assert refused(determinant.determinant_of_the_examples(["harmonic"]))  # ω is a symbol: D = ω²
 
 
 @pytest.mark.parametrize("formula", ["p**2/2 + q**3", "q**2/p", "(p**2 + q**2)**(2/3)", "p*q**2"])
 def test_an_h_that_is_not_preserved_does_not_refute_the_sentence(formula: str) -> None:
-    assert refused(determinant.universal([formula]))
+    assert refused(determinant.determinant_of_every_h([formula]))
 
 
 def test_an_h_whose_flow_the_scheme_is_does_not_refute_a_sentence_on_truncation_errors() -> None:
-    assert refused(determinant.universal(["p**2/2 + q"]))
+    assert refused(determinant.determinant_of_every_h(["p**2/2 + q"]))
 
 
 @pytest.mark.parametrize(
@@ -32,7 +32,7 @@ def test_families_that_are_none_are_not_taken_for_such(u: str, rest: str) -> Non
 
 
 def test_the_classification_notices_a_flaw_in_its_equations() -> None:
-    assert refused(classification.classification(flaw=1))
+    assert refused(classification.determinant_classification(flaw=1))
     assert not developables.Conic(1).exists().holds
     assert not developables.Conic(1).preserves_area().holds
 

@@ -4,24 +4,19 @@ from itertools import pairwise
 from typing import Literal
 
 from verify.claims.findings import Findings
-from verify.claims.on_runs import RunClaim
-from verify.claims.runs import QUANTITIES, Quantity, all_hold, sign, table_of
+from verify.claims.on_runs import QuantityClaim
+from verify.claims.runs import QUANTITIES, all_hold, sign, table_of
 from verify.prose import Number, joined, prose
 from verify.scenes.results.claim import ClaimResult
 
 _WAYS = {True: "rises", False: "falls"}
 
 
-class AlikeClaim(RunClaim):
+class AlikeClaim(QuantityClaim):
     """One pattern over the step sizes, whatever the initial value."""
 
     only_here = "a pattern is over the initial values of its own scene"
     kind: Literal["alike"]
-    quantity: Quantity
-    """What is looked at."""
-
-    def quantities(self) -> tuple[str, ...]:
-        return (self.quantity,)
 
     def compare(self, findings: Findings) -> ClaimResult:
         rows, quantity = self.run_rows(findings), QUANTITIES[self.quantity]

@@ -30,11 +30,9 @@ _QUANTITY = "abs_lambda"
 class NoPatternClaim(RunClaim):
     """No one order of the initial values by |Λ|."""
 
+    compares = (_QUANTITY,)
     only_here = "a pattern is over the initial values of its own scene"
     kind: Literal["no_pattern"]
-
-    def quantities(self) -> tuple[str, ...]:
-        return (_QUANTITY,)
 
     def compare(self, findings: Findings) -> ClaimResult:
         rows = self.run_rows(findings)

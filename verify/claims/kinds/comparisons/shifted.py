@@ -31,6 +31,7 @@ DeltaJ = Callable[[Ball, Ball, Ball], Ball]
 class ShiftedClaim(AgainClaim):
     """Claims that do not depend on which step is counted first."""
 
+    compares = _SHIFTED
     autonomous = planar = True
     kind: Literal["shifted"]
 
@@ -38,9 +39,6 @@ class ShiftedClaim(AgainClaim):
         if claim.always_own or set(claim.observables()) - set(_SHIFTED):
             return f"is not made of {' and '.join(_SHIFTED)} of the scene’s runs alone"
         return ""
-
-    def quantities(self) -> tuple[str, ...]:
-        return _SHIFTED
 
     def compare(self, findings: Findings) -> ClaimResult:
         scene = findings.scene_of(self)

@@ -56,7 +56,8 @@ class _Error(NamedTuple):
 class SolutionErrorClaim(RunClaim):
     """`within` or `beyond` so much of the reach, for every run of the grid or for some run.
 
-    `step_size` of the grid alone, where it is given. MEASURED at best: the reach is an estimate.
+    `step_size` of the grid alone, where it is given. MEASURED at best: the reach is an estimate. It
+    takes p and q at the end, which every run has that is done and not proved.
     """
 
     planar = True
@@ -80,10 +81,6 @@ class SolutionErrorClaim(RunClaim):
         if self.series and self.step_size is not None:
             raise InputError("step_size", NOT_GIVEN, "is of the grid; give it, or series")
         return self
-
-    def quantities(self) -> tuple[str, ...]:
-        """None: p and q at the end, which every run has that is done and not proved."""
-        return ()
 
     def check_scene(self, scene: Scene) -> None:
         sizes = scene.grid.step_sizes if scene.grid else ()

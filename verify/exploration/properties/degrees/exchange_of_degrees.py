@@ -16,17 +16,14 @@ from verify.exploration.oracles.symplectic_matrices import cycled
 from verify.exploration.property import only_if
 from verify.exploration.sample import Sample
 
-_IN, _OF_EQUATIONS = 2, 4  # one in so many samples
-
 
 def holds(sample: Sample) -> None:
-    only_if(not sample.planar)
     change = Change(cycled(sample.hamiltonian.degrees))
     if sample.scheme.explicit:
-        only_if(sample.is_turn(_IN))
+        only_if(sample.is_turn(one_in=2))
         must_be_same_steps(sample, change)
         return
-    only_if(sample.is_turn(_OF_EQUATIONS) and sample.short)
+    only_if(sample.is_turn(one_in=4) and sample.short)
     other = replace(sample, hamiltonian=transformed_hamiltonian(sample, change))
     only_if(other.hamiltonian.coordinates == sample.hamiltonian.coordinates)
     wanted = moved(change, end_of(sample))

@@ -18,8 +18,8 @@ from verify.exploration.oracles.ball_steps import (
     Matrix,
     ball_steps,
     defect,
+    must_overlap,
     overlap,
-    unlike,
 )
 from verify.exploration.oracles.mpfr_runs import end_of, must_agree
 from verify.exploration.property import Violation, only_if
@@ -27,16 +27,14 @@ from verify.exploration.sample import Sample
 from verify.hamiltonians.coordinates import PLANE
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
-_IN, _OF_EQUATIONS = 2, 4  # one in so many samples
 _MOST_STEPS = 3
 
 
 def holds(sample: Sample) -> None:
-    only_if(not sample.planar)
     parts = [_of_degree(sample, k) for k in range(sample.hamiltonian.degrees)]
     together = Hamiltonian(sympy.Add(*parts))
     only_if(together.coordinates == sample.hamiltonian.coordinates and sample.brief)
-    only_if(sample.is_turn(_IN if sample.scheme.explicit else _OF_EQUATIONS))
+    only_if(sample.is_turn(one_in=2 if sample.scheme.explicit else 4))
     whole = replace(sample, hamiltonian=together)
     planes = [_plane(sample, k, part) for k, part in enumerate(parts)]
     if not sample.scheme.explicit:
@@ -77,15 +75,12 @@ def _must_be_product(whole: BallState, planes: Sequence[BallState]) -> None:
     n, blocks = len(planes), Matrix(2 * len(planes), 2 * len(planes))
     for k, plane in enumerate(planes):
         for a, letter in enumerate(PLANE):
-            found, wanted = whole.point[f"{letter}{k + 1}"], plane.point[letter]
-            if not found.overlaps(wanted):
-                raise Violation(f"{letter}{k + 1} is {unlike(found, wanted)}, in its plane")
+            name = f"{letter}{k + 1}"
+            must_overlap(f"{name} is", whole.point[name], plane.point[letter], ", in its plane")
             for b in range(2):
                 blocks[n * a + k, n * b + k] = plane.matrix[a, b]
-        area = defect(whole.matrix)[k, n + k]
-        if not area.overlaps(plane.product - 1):
-            told = unlike(area, plane.product - 1)
-            raise Violation(f"W's entry dp{k + 1}∧dq{k + 1} is {told}, Λ of its plane")
+        entry, area = defect(whole.matrix)[k, n + k], plane.product - 1
+        must_overlap(f"W's entry dp{k + 1}∧dq{k + 1} is", entry, area, ", Λ of its plane")
     if not overlap(whole.matrix, blocks):
         raise Violation("J of the run does not have the planes' as its blocks")
 

@@ -20,16 +20,15 @@ from verify.runs.run import run
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.run import RunResult
 
-_IN, _AFTER = 2, 1  # one in so many samples, and not those that are taken apart
+_IN = 2  # one in so many samples, and not those that are taken apart
 _DIGITS = 30
 _COMPILED = 997  # of so many samples one is run in a number system that compiles
 _OBSERVABLES = ("lambda", "lambda_max", "mse", "delta_j_max")
-_OF_FORM = ("symplectic_defect_max", "symplectic_defect")  # in the plane |ΔJ| and |Λ|
 
 
 def holds(sample: Sample) -> None:
     """W from the Jacobian of the run, not its sum."""
-    only_if(sample.is_turn(_IN, _AFTER) and sample.short)
+    only_if(sample.is_turn(_IN, after=1) and sample.short)
     name = _turn(sample)
     wanted = _enclosed(sample)
     found = _run(sample, name, number_systems.about(name).digits or _DIGITS)
@@ -77,13 +76,14 @@ def _ball(value: Value) -> Ball:
 
 
 def _run(sample: Sample, arithmetic: str, digits: int) -> RunResult:
+    of_structure = sample.hamiltonian.structure.of_step, sample.hamiltonian.structure.of_run
     found = run(
         sample.hamiltonian,
         sample.scheme.name,
         **sample.run_arguments,
         arithmetic=arithmetic,
         digits=digits,
-        observables=_OBSERVABLES if sample.planar else (*_OBSERVABLES, *_OF_FORM),
+        observables=tuple(dict.fromkeys((*_OBSERVABLES, *of_structure))),
     )
     only_if(found.status == "finished")
     return found

@@ -14,16 +14,15 @@ from verify.scenes.toml_text import scene_text
 from verify.schemes.maps.by_formulas import map_by_formulas
 from verify.schemes.maps.parts import parts_of
 
-_SCENES, _MAPS = 2, 3  # one in so many is read back; where no scene is, H is
 _LONGEST = 15  # terms of a map
 
 
 def holds(sample: Sample) -> None:
-    if sample.is_turn(_SCENES):
+    if sample.is_turn(one_in=2):
         _must_be_same_scene(sample.scene)
     else:
         _must_be_same(sample)
-    if sample.is_turn(_MAPS) and sample.brief:
+    if sample.is_turn(one_in=3) and sample.brief:
         _must_be_same_map(sample)
 
 

@@ -17,7 +17,6 @@ from verify.exploration.sample import Sample
 from verify.flows.extrapolation import Flow, NoFlowError
 from verify.proof.plane.potential import potential_of
 
-_IN, _OF_POTENTIALS = 3, 6  # one in so many samples
 _DIGITS, _BITS = 40, 220
 _TIME, _INSTANT = Fraction(1, 1000), Fraction(1, 2**60)
 _MOST_STEPS = 100  # of the flow, in so short a time: a field that wants more is left out
@@ -29,7 +28,7 @@ Element = tuple[Ring, Poly]
 
 def holds(sample: Sample) -> None:
     """The potential is one of the plane."""
-    only_if(sample.is_turn(_IN) and (sample.ordinary if sample.planar else sample.short))
+    only_if(sample.is_turn(one_in=3) and (sample.ordinary if sample.planar else sample.short))
     flow = sample.flow(_DIGITS)
     start = sample.start
     after = _flow_to(flow, start, _TIME)
@@ -39,7 +38,7 @@ def holds(sample: Sample) -> None:
         if abs(x - y) > _KNOWN * (1 + abs(x)):
             raise Violation(f"{name} comes back as {float(y)!r}, from {float(x)!r}")
     _energy_must_be_kept(sample, after)
-    if sample.planar and sample.is_turn(_OF_POTENTIALS):
+    if sample.planar and sample.is_turn(one_in=6):
         with suppress(Silent):  # the flow has been looked at
             _potential_must_move(sample)
 

@@ -16,12 +16,11 @@ from verify.proof.certificates.checker import check
 from verify.proof.certificates.one import of_one
 from verify.proof.plane.potential import potential_of
 
-_IN = 10  # one in so many samples
 _LONGEST = 20_000  # characters of a certificate that is checked here
 
 
 def holds(sample: Sample) -> None:
-    only_if(sample.is_turn(_IN) and sample.ordinary and not sample.step_map.implicit)
+    only_if(sample.is_turn(one_in=10) and sample.in_closed_form)
     proof = sample.proof
     with silent_at(InputError):  # such a map, or such functions, have no certificate
         data = of_one(proof, potential_of(proof, sample.scheme) if sample.planar else None)

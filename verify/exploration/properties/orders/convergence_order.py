@@ -24,7 +24,7 @@ Point = Mapping[str, Fraction]
 
 
 def holds(sample: Sample) -> None:
-    only_if(sample.ordinary and not sample.step_map.implicit)
+    only_if(sample.in_closed_form)
     order = known(sample.proof.convergence_order)
     beside = {name: x + _ASIDE / k for k, (name, x) in enumerate(sample.start.items(), start=2)}
     for point in (sample.start, beside):

@@ -13,7 +13,6 @@ from verify.verdict import Verdict
 
 # Of a scheme that is proved for every H here; in 3 degrees such a proof takes seconds, once.
 _MOST_IN_PLANE, _MOST_ORDER = 4, 3
-_IN = 3  # one in so many samples of the plane is asked whether its leading coefficient telescopes
 
 
 @lru_cache(maxsize=128)
@@ -39,7 +38,7 @@ def _telescopes(sample: Sample) -> bool | None:
     """Whether the leading coefficient is a Lie derivative: in the plane X·G, which takes long."""
     if not sample.planar:
         return sample.proof.telescopes
-    if sample.is_turn(_IN) and sample.polynomial:
+    if sample.is_turn(one_in=3) and sample.polynomial:
         return potential_of(sample.proof, sample.scheme).holds
     return None
 

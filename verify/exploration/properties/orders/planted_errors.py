@@ -11,13 +11,11 @@ from verify.schemes.maps.step_map import StepMap
 from verify.schemes.steps.step_algebra import StepAlgebra
 from verify.verdict import Verdict
 
-_IN = 2  # one in so many samples
-
 
 def holds(sample: Sample) -> None:
     """With h^order f_k added to the coordinate that z_k is paired with, f_k not 0."""
     order, slopes = sample.scheme.order, sample.field.slopes
-    only_if(sample.is_turn(_IN) and sample.ordinary and not sample.step_map.implicit)
+    only_if(sample.is_turn(one_in=2) and sample.in_closed_form)
     only_if(sample.proof.verdict is Verdict.PROVED)
     place = next(k for k, x in enumerate(slopes) if sample.field.ring.vanishes(x) is False)
     with silent_at(InputError):  # its closed form is too large to be looked at

@@ -10,11 +10,9 @@ from verify.exploration.oracles.symplectic_matrices import exchanged
 from verify.exploration.property import only_if
 from verify.exploration.sample import Sample
 
-_IN = 2  # one in so many samples
-
 
 def holds(sample: Sample) -> None:
     """All of p with all of q."""
-    only_if(sample.is_turn(_IN) and knows_no_coordinates(sample))
+    only_if(sample.is_turn(one_in=2) and knows_no_coordinates(sample))
     every = exchanged(sample.hamiltonian.degrees)
     must_be_same_steps(sample, Change(every, Fraction(-1)))

@@ -8,12 +8,10 @@ from verify.exploration.oracles.symplectic_matrices import of_places, symplectic
 from verify.exploration.property import only_if
 from verify.exploration.sample import Sample
 
-_IN, _AFTER = 2, 1  # one in so many samples, and not those whose time is scaled
-
 
 def holds(sample: Sample) -> None:
     """For S as a form: AᵀSA, A = M⁻¹; of schemes that step p and q by turns for an M that moves q
     by q, and p by p."""
-    only_if(sample.is_turn(_IN, _AFTER))
+    only_if(sample.is_turn(one_in=2, after=1))  # not those whose time is scaled
     matrix = symplectic if knows_no_coordinates(sample) else of_places
     must_be_same_steps(sample, Change(matrix(sample.turn, sample.hamiltonian.degrees)))

@@ -2,19 +2,17 @@
 
 from verify.arithmetic.arb import rational_ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.oracles.ball_steps import BITS, ball_steps, stepped, unlike
+from verify.exploration.oracles.ball_steps import BITS, ball_steps, must_overlap, stepped
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
 from verify.proof.symmetry import by_series
 from verify.verdict import Verdict
 
-_IN = 3  # one in so many samples of the plane is looked at by series, too
-
 
 def holds(sample: Sample) -> None:
     only_if(sample.scheme.symmetric and (sample.planar or sample.brief))
     # In n degrees of freedom such a series may take a minute.
-    if sample.planar and sample.is_turn(_IN) and sample.ordinary and not sample.step_map.implicit:
+    if sample.planar and sample.is_turn(one_in=3) and sample.in_closed_form:
         series = by_series(sample.step_map, sample.scheme.order + 1)
         if series.verdict is Verdict.REFUTED:
             raise Violation(f"by series it is not symmetric: {series.reason}")
@@ -22,6 +20,4 @@ def holds(sample: Sample) -> None:
     with working_precision(BITS):
         back = stepped(sample.step_map, last, rational_ball(-sample.step_size)).sharp()
     for name in sample.point:
-        if not back.point[name].overlaps(first.point[name]):
-            told = unlike(back.point[name], first.point[name])
-            raise Violation(f"{name} comes back as {told}")
+        must_overlap(f"{name} comes back as", back.point[name], first.point[name])

@@ -16,7 +16,6 @@ from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
 
 _BITS_OF_DIFFERENCES = 700
-_BY_DIFFERENCES = 8  # one in so many samples of several degrees of freedom that solves equations
 _SMALL = Fraction(1, 10**30)  # where H is steep, the entries lose twenty digits in a step
 
 
@@ -36,7 +35,7 @@ def holds(sample: Sample) -> None:
 
 
 def _by_runs(sample: Sample) -> None:
-    only_if(sample.planar or (sample.is_turn(_BY_DIFFERENCES) and sample.short))
+    only_if(sample.planar or (sample.is_turn(one_in=8) and sample.short))
     jacobian, error = jacobian_of_run(sample)
     with working_precision(_BITS_OF_DIFFERENCES):
         seen = largest(defect(jacobian))

@@ -11,11 +11,10 @@ from verify.exploration.oracles.symplectic_matrices import identity
 from verify.exploration.property import only_if
 from verify.exploration.sample import Sample
 
-_IN = 2  # one in so many samples
 _FACTOR = Fraction(-2, 3)
 
 
 def holds(sample: Sample) -> None:
-    only_if(sample.is_turn(_IN))
+    only_if(sample.is_turn(one_in=2))
     same = identity(2 * sample.hamiltonian.degrees)
     must_be_same_steps(sample, Change(same, factor=_FACTOR, pace=1 / _FACTOR))

@@ -12,8 +12,8 @@ import flint
 from verify.algebra.enclosure import enclose_all, enclose_over
 from verify.arithmetic.arb import Ball, rational_ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.oracles.ball_steps import BITS, ball_steps, sharp, unlike
-from verify.exploration.property import Silent, Violation, known, only_if
+from verify.exploration.oracles.ball_steps import BITS, ball_steps, must_overlap, sharp
+from verify.exploration.property import Silent, known, only_if
 from verify.exploration.sample import Sample
 from verify.schemes.conditions.every_hamiltonian import RungeKutta
 from verify.schemes.conditions.splitting_conditions import Splitting
@@ -23,15 +23,13 @@ Point = tuple[Ball, ...]  # the coordinates, and t
 
 def holds(sample: Sample) -> None:
     """With (f, 1) as the slope, and the two clocks of a splitting."""
-    only_if(sample.timed and sample.brief)
+    only_if(sample.brief)
     with working_precision(BITS):
         wanted = _step(sample)
     found = ball_steps(sample.step_map, sample.start, 1)[-1].sharp()
     for name, true in zip(sample.point, wanted, strict=False):
         only_if(sharp(true))
-        if not found.point[name].overlaps(true):
-            told = unlike(found.point[name], true)
-            raise Violation(f"{name}' is {told}, with t as a coordinate")
+        must_overlap(f"{name}' is", found.point[name], true, ", with t as a coordinate")
 
 
 def _step(sample: Sample) -> Point:

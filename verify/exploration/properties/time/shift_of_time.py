@@ -7,11 +7,10 @@ from verify.exploration.oracles.symplectic_matrices import identity
 from verify.exploration.property import only_if
 from verify.exploration.sample import Sample
 
-_IN, _AFTER = 2, 1  # one in so many samples, and not those whose time is scaled
 _SHIFT = Fraction(-5, 3)
 
 
 def holds(sample: Sample) -> None:
-    only_if(sample.timed and sample.is_turn(_IN, _AFTER))
+    only_if(sample.is_turn(one_in=2, after=1))  # not those whose time is scaled
     same = identity(2 * sample.hamiltonian.degrees)
     must_be_same_steps(sample, Change(same, shift=_SHIFT))

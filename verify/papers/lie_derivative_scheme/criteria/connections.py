@@ -7,7 +7,7 @@ criterion 4 is Λ = o(1), as h → 0.
 from collections.abc import Sequence
 from fractions import Fraction
 
-from verify.papers.argument import Argument, concluded, step
+from verify.papers.argument import Argument, proof, refutation, step
 from verify.papers.checks.check import NUMBERS, Check
 from verify.papers.checks.sums import compensated_changes, mean_of_fourth_powers
 from verify.papers.exact_maps import Areas
@@ -22,7 +22,6 @@ from verify.papers.lie_derivative_scheme.criteria_examples import (
     turns_to_and_fro,
 )
 from verify.proof.assistant.stated import Shipped
-from verify.verdict import Verdict
 
 SETTING = """Fix T, let h = T/N, and write `x_k` = `ΔJ_k`, k = 0 … N − 1, m = max |`x_k`|.
 Criterion 2 is m = o(h), criterion 3 is MSE = (1/N) Σ `x_k²` = o(h), criterion 4 is Λ = Π (1 +
@@ -53,11 +52,9 @@ def inequalities_hold(found: Areas) -> bool:
     )
 
 
-def two_implies_three(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
+def criterion_2_implies_3(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
     """Criterion 2 is sufficient for criterion 3."""
-    return concluded(
-        "criterion-2-implies-3",
-        Verdict.PROVED,
+    return proof(
         "MSE ≤ (max |`ΔJ_k`|)², so criterion 2 gives even MSE = o(h²); “higher-order "
         "infinitesimal” must be meant uniformly in k, else it fails",
         [
@@ -91,11 +88,9 @@ def two_implies_three(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
     )
 
 
-def connection_with_2(friction: ExampleMap = FRICTION) -> Argument:
+def criterion_4_and_2(friction: ExampleMap = FRICTION) -> Argument:
     """Criterion 4 follows from criterion 2, read uniformly in k."""
-    return concluded(
-        "criterion-4-and-2",
-        Verdict.REFUTED,
+    return refutation(
         "criterion 2 implies criterion 4, by |Λ| ≤ exp(T max|`ΔJ_k`|/h) − 1",
         [
             step(
@@ -115,14 +110,12 @@ def connection_with_2(friction: ExampleMap = FRICTION) -> Argument:
     )
 
 
-def connection_with_3(
+def criterion_4_and_3(
     friction: ExampleMap = FRICTION,
     alternating: Sequence[ExampleMap] = (TO_AND_FRO, TO_AND_FRO_ODD),
 ) -> Argument:
     """Neither of criteria 3 and 4 implies the other."""
-    return concluded(
-        "criterion-4-and-3",
-        Verdict.PROVED,
+    return proof(
         "criterion 3 does not imply criterion 4 (an oscillator with friction has MSE = O(h²) and "
         "Λ → `e^(−T)` − 1), nor does 4 imply 3 (p' = −p (1 − √h q)/(1 + √h q), q' = −q)",
         [
@@ -132,13 +125,13 @@ def connection_with_3(
                 "+ h² at every point, so ``MSE = h^2(1 − h)^2 = o(h)``, and ``Λ = (1 − h + "
                 "h^2)^(T/h) − 1 → e^(−T) − 1``: criterion 3 calls a map nearly area-preserving "
                 "that shrinks every area to a fraction `e^(−T)`.",
-                *_shrinking(friction),
+                *shrinking(friction),
             ),
             step(
                 "In the other direction criterion 4 does not imply 3: for p' = −p (1 − √h q)/(1 + "
                 "√h q), q' = −q from q = 1, det J is (1 − √h)/(1 + √h) and its reciprocal in turn, "
                 "so Λ is 0 or −2√h/(1 + √h), which tends to 0, while MSE > 4h for even N.",
-                *_to_and_fro(alternating),
+                *to_and_fro(alternating),
             ),
         ],
         given=SETTING,
@@ -147,7 +140,7 @@ def connection_with_3(
     )
 
 
-def against_2(
+def criterion_4_against_2(
     compensated: ExampleMap = COMPENSATED,
     alternating: Sequence[ExampleMap] = (TO_AND_FRO, TO_AND_FRO_ODD),
 ) -> Argument:
@@ -156,9 +149,7 @@ def against_2(
     small = Check(
         "0 < Λ < h for the compensated map", all(between), f"{len(between)} step sizes", NUMBERS
     )
-    return concluded(
-        "criterion-4-against-2",
-        Verdict.REFUTED,
+    return refutation(
         "criterion 2 implies criterion 4 and not the other way round, so 4 is the weaker one",
         [
             step(
@@ -185,7 +176,7 @@ def against_2(
             ),
             step(
                 "And it does so far from the identity: p' = −p (1 − √h q)/(1 + √h q), q' = −q.",
-                *_to_and_fro(alternating),
+                *to_and_fro(alternating),
             ),
         ],
         given=SETTING,
@@ -194,45 +185,36 @@ def against_2(
     )
 
 
-def against_3(
+def criterion_4_against_3(
     friction: ExampleMap = FRICTION,
     alternating: Sequence[ExampleMap] = (TO_AND_FRO, TO_AND_FRO_ODD),
 ) -> Argument:
     """Criterion 4 is not stronger than criterion 3, of any one-step map."""
-    return concluded(
-        "criterion-4-against-3",
-        Verdict.REFUTED,
+    return refutation(
         "criteria 3 and 4 imply each other in neither direction: p' = −p (1 − √h q)/(1 + √h q), q' "
         "= −q satisfies 4 and not 3",
         [
             step(
                 "4 does not imply 3: p' = −p (1 − √h q)/(1 + √h q), q' = −q from q = 1 has Λ → 0, "
                 "and MSE > 4h for even N.",
-                *_to_and_fro(alternating),
+                *to_and_fro(alternating),
             ),
             step(
                 "Criterion 3 does not imply 4 (friction: ΔJ = −h + h²), so 3 and 4 cannot be "
                 "ordered.",
-                *_shrinking(friction),
+                *shrinking(friction),
             ),
         ],
         given=SETTING,
     )
 
 
-def _shrinking(friction: ExampleMap) -> list[Check]:
+def shrinking(friction: ExampleMap) -> list[Check]:
+    """ΔJ, the limit of Λ, and the numbers of an oscillator with friction."""
     return [friction.changes(), shrinks_to(), friction.check()]
 
 
-def _to_and_fro(alternating: Sequence[ExampleMap]) -> list[Check]:
+def to_and_fro(alternating: Sequence[ExampleMap]) -> list[Check]:
+    """ΔJ of a map and of its next step, and its numbers for even and odd N."""
     each = [example.check() for example in alternating]
     return [alternating[0].changes(), turns_to_and_fro(), *each]
-
-
-THEOREMS = {
-    "criterion-2-implies-3": two_implies_three,
-    "criterion-4-and-2": connection_with_2,
-    "criterion-4-and-3": connection_with_3,
-    "criterion-4-against-2": against_2,
-    "criterion-4-against-3": against_3,
-}

@@ -8,22 +8,23 @@ t ≤ T, at once.
 from collections.abc import Sequence
 from fractions import Fraction
 
-from verify.papers.argument import Argument, Step, concluded, step
+from verify.papers.argument import Argument, Step, proof, refutation, step
 from verify.papers.checks.check import NUMBERS, Check, vanishes
 from verify.papers.checks.sums import mean_of_fourth_powers, squares_of_times
 from verify.papers.lie_derivative_scheme.consistency import consistent_map
-from verify.papers.lie_derivative_scheme.criteria.connections import BY_MANY_STEPS
+from verify.papers.lie_derivative_scheme.criteria.connections import (
+    BY_MANY_STEPS,
+    shrinking,
+    to_and_fro,
+)
 from verify.papers.lie_derivative_scheme.criteria_examples import (
     FRICTION,
     NOT_UNIFORM,
     TO_AND_FRO,
     TO_AND_FRO_ODD,
     ExampleMap,
-    shrinks_to,
-    turns_to_and_fro,
 )
 from verify.proof.assistant.stated import Shipped
-from verify.verdict import Verdict
 
 _FIXED = (0, 1, 2)  # k
 
@@ -55,11 +56,9 @@ def _grows(example: ExampleMap) -> Check:
     )
 
 
-def pointwise_two_not_three(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
+def criterion_2_implies_3_pointwise(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
     """Each ΔJ_k = O(h²), and MSE → 1/5."""
-    return concluded(
-        "criterion-2-implies-3-pointwise",
-        Verdict.REFUTED,
+    return refutation(
         "for p' = p(1 + q²), q' = q + h from (0, 0) each `ΔJ_k` = (kh)² = O(h²), but over [0, 1] "
         "MSE → 1/5; for a step that depends smoothly on (p, q, h), as lieη does, the two senses "
         "agree",
@@ -84,7 +83,7 @@ def pointwise_two_not_three(not_uniform: ExampleMap = NOT_UNIFORM) -> Argument:
     )
 
 
-def pointwise_connection(
+def criterion_4_and_2_pointwise(
     not_uniform: ExampleMap = NOT_UNIFORM,
     alternating: Sequence[ExampleMap] = (TO_AND_FRO, TO_AND_FRO_ODD),
 ) -> Argument:
@@ -93,9 +92,7 @@ def pointwise_connection(
     at_first = Check(
         "to and fro: |`ΔJ_0`| ≥ √h", all(first), f"{len(first)} step sizes, exactly", NUMBERS
     )
-    return concluded(
-        "criterion-4-and-2-pointwise",
-        Verdict.PROVED,
+    return proof(
         "read for each fixed k, criterion 2 does not imply criterion 4 (p' = p(1 + q²), q' = q + "
         "h), nor 4 criterion 2; but neither map is lieη, for which the two senses agree and 2 "
         "implies 4",
@@ -116,23 +113,19 @@ def pointwise_connection(
             step(
                 "4 and not 2: p' = −p (1 − √h q)/(1 + √h q), q' = −q from q = 1 has Λ → 0 and "
                 "``|ΔJ_0| = 2√h/(1 + √h) ≥ √h``.",
-                *(each.changes() for each in alternating[:1]),
-                turns_to_and_fro(),
-                *(example.check() for example in alternating),
+                *to_and_fro(alternating),
                 at_first,
             ),
         ],
     )
 
 
-def as_strong_as_2(hamiltonian: bool = False) -> Argument:
+def criterion_4_against_2_smooth(hamiltonian: bool = False) -> Argument:
     """For steps z + hg + h²r criterion 4 on every [0, t] and criterion 2 say the same.
 
     `hamiltonian`: as for `_of_every_time`.
     """
-    return concluded(
-        "criterion-4-against-2-smooth",
-        Verdict.REFUTED,
+    return refutation(
         "for steps z + hg(z) + h²r(z, h) with smooth g and r, criterion 4 on [0, t] for every t ≤ "
         "T implies criterion 2, and criterion 2 implies it: 4 is as strong as 2, and no stronger",
         [
@@ -147,11 +140,11 @@ def as_strong_as_2(hamiltonian: bool = False) -> Argument:
     )
 
 
-def stronger_than_3(hamiltonian: bool = False, friction: ExampleMap = FRICTION) -> Argument:
+def criterion_4_against_3_smooth(
+    hamiltonian: bool = False, friction: ExampleMap = FRICTION
+) -> Argument:
     """For steps z + hg + h²r: 4 on every [0, t] implies 3, and 3 does not imply 4."""
-    return concluded(
-        "criterion-4-against-3-smooth",
-        Verdict.PROVED,
+    return proof(
         "for steps z + hg(z) + h²r(z, h) with smooth g and r, criterion 4 on [0, t] for every t ≤ "
         "T implies criterion 3, which always holds then, and is not implied by it",
         [
@@ -162,9 +155,7 @@ def stronger_than_3(hamiltonian: bool = False, friction: ExampleMap = FRICTION) 
             ),
             step(
                 "Criterion 4 does not hold for the oscillator with friction, where div g = −1.",
-                friction.changes(),
-                shrinks_to(),
-                friction.check(),
+                *shrinking(friction),
             ),
         ],
         given="Let the orbit of z' = g(z) exist on [0, T].",
@@ -198,11 +189,3 @@ def _of_every_time(hamiltonian: bool) -> list[Step]:
             "O(h), and `ΔJ_k` = O(h²) uniformly: criteria 2 and 3 follow.",
         ),
     ]
-
-
-THEOREMS = {
-    "criterion-2-implies-3-pointwise": pointwise_two_not_three,
-    "criterion-4-and-2-pointwise": pointwise_connection,
-    "criterion-4-against-2-smooth": as_strong_as_2,
-    "criterion-4-against-3-smooth": stronger_than_3,
-}

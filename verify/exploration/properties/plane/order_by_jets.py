@@ -15,8 +15,8 @@ from verify.algebra.generator import terms_of
 from verify.algebra.series.jets import Jets, Poly, Series
 from verify.arithmetic.arb import Ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.exploration.oracles.ball_steps import BITS, sharp, unlike
-from verify.exploration.property import Violation, known, only_if
+from verify.exploration.oracles.ball_steps import BITS, must_overlap, sharp
+from verify.exploration.property import known, only_if
 from verify.exploration.sample import Sample
 from verify.schemes.conditions.every_hamiltonian import (
     BySeries,
@@ -31,7 +31,7 @@ _MOST_ORDER = 5  # of a scheme: with more there are too many jets
 
 def holds(sample: Sample) -> None:
     scheme = sample.scheme
-    only_if(sample.planar and _has_series_in_jets(sample))
+    only_if(_has_series_in_jets(sample))
     only_if(scheme.order <= _MOST_ORDER and sample.ordinary)
     proof = sample.proof
     only_if(proof.area_preserving is not None)
@@ -41,9 +41,8 @@ def holds(sample: Sample) -> None:
         wanted = _value(x, derivatives)
         found = _leading(sample) if n == proof.order else flint.arb(0)
         only_if(sharp(found) and sharp(wanted))
-        if not found.overlaps(wanted):
-            at_point = f"at the initial value {unlike(found, wanted)}, by jets"
-            raise Violation(f"the coefficient of h^{n} in ΔJ is {at_point}")
+        what = f"the coefficient of h^{n} in ΔJ is at the initial value"
+        must_overlap(what, found, wanted, ", by jets")
         if n == proof.order:
             return
 

@@ -14,13 +14,12 @@ from verify.exploration.sample import Sample
 from verify.flows.extrapolation import NoFlowError
 from verify.flows.orbit_average import average
 
-_IN = 16  # one in so many samples
 _DIGITS = 12
 _SPARE = Fraction(1, 10**9)  # of the values averaged, whose estimated bound is not rigorous
 
 
 def holds(sample: Sample) -> None:
-    only_if(sample.planar and sample.is_turn(_IN) and not sample.timed)
+    only_if(sample.is_turn(one_in=16) and not sample.timed)
     only_if(sample.polynomial and sample.ordinary)
     field = sample.field
     ring = field.ring

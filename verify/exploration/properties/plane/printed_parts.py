@@ -10,12 +10,11 @@ from verify.exploration.sample import Sample
 from verify.scenes.results.separation import Chain
 from verify.studies.separation.separate import separate
 
-_IN = 8  # one in so many samples
 _DIGITS = 6
 
 
 def holds(sample: Sample) -> None:
-    only_if(sample.planar and sample.is_turn(_IN) and sample.short)
+    only_if(sample.is_turn(one_in=8) and sample.short)
     found = separate(sample.hamiltonian, sample.scheme.name, **sample.run_arguments, digits=_DIGITS)
     only_if(found.status == "finished")
     for evaluation in (found.plain, found.closed_form):

@@ -22,12 +22,11 @@ from verify.studies.separation.links import separated_chains
 from verify.studies.separation.stepper.run import Stopped
 from verify.studies.separation.ways.determinants import WORKING
 
-_IN = 2  # one in so many samples
 _DIGITS = 8
 
 
 def holds(sample: Sample) -> None:
-    only_if(sample.planar and sample.is_turn(_IN) and sample.short)
+    only_if(sample.is_turn(one_in=2) and sample.short)
     with silent_at(Stopped):
         chains = alone(separated_chains(*sample.kernel_inputs, _DIGITS))
     wanted = _lambda_by_balls(sample)

@@ -24,8 +24,7 @@ _MOST_ORDER = 4
 
 
 def holds(sample: Sample) -> None:
-    only_if(sample.planar and not sample.step_map.implicit)
-    only_if(sample.scheme.order <= _MOST_ORDER and sample.ordinary)
+    only_if(sample.scheme.order <= _MOST_ORDER and sample.in_closed_form)
     # ΔJ in closed form, which the law is made of, may be long.
     only_if(sample.polynomial or isinstance(sample.scheme.every_h, TaylorSeries))
     with silent_at(NoLawError, InputError):  # ΔJ ≡ 0, or too large a closed form

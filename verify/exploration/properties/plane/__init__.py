@@ -1,0 +1,1 @@
+"""Properties that only the plane has."""
