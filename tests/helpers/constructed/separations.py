@@ -6,11 +6,11 @@ from typing import Any
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.separation import (
     EvaluationResult,
-    GrowthResult,
     Parts,
     SeparationGrid,
     SeparationResult,
 )
+from verify.scenes.results.separation_growth import GrowthResult
 from verify.studies.separation.separate import as_grid
 
 PARTS = ("input", "trajectory", "determinant", "product")

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from verify.arithmetic.exact import magnitude
-from verify.scenes.results.separation import ROUNDING
+from verify.scenes.results.separation import Parts
 from verify.studies.separation.stepper.trail import Kind, Link, Trail
 
-PARTS = ROUNDING  # in the plane
+PARTS = Parts.rounding  # in the plane
 _WHOLES = ("lambda_working", "truncation", "total")
 QUANTITIES = (*_WHOLES, *PARTS)
 

@@ -33,18 +33,11 @@ from verify.kernels.chunked_loop import ENTRIES
 from verify.kernels.step.computation import Computation, Observed, computed, step_map_of
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.observables.observable import Need
-from verify.scenes.results.separation_in_degrees import FORM_ROUNDING
+from verify.scenes.results.separation import FormParts, SeparationInDegrees
 from verify.schemes.maps.step_map import StepMap
 from verify.studies.separation.stepper.run import marks_of
 from verify.studies.separation.stepper.trail import Entries, Links, exact_links
-from verify.studies.separation.stepper.way import (
-    Lines,
-    Side,
-    Size,
-    State,
-    Stepped,
-    Way,
-)
+from verify.studies.separation.stepper.way import Lines, Side, Size, State, Stepped, Way
 from verify.studies.separation.ways.matrix_bounds import counted
 from verify.studies.separation.ways.matrix_lines import matrix_lines
 
@@ -57,10 +50,11 @@ class Matrices(Way):
 
     count: int
 
+    result: ClassVar = SeparationInDegrees
     observable: ClassVar = "symplectic_defect"
     observables: ClassVar = frozenset({"symplectic_defect", ENTRIES})
     points: ClassVar = POINTS
-    parts: ClassVar = FORM_ROUNDING
+    parts: ClassVar = FormParts.rounding
     cancelled: ClassVar = 20
     products: ClassVar = 20
     hidden: ClassVar = 25
