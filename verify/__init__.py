@@ -43,9 +43,7 @@ if TYPE_CHECKING:
     from verify.proof.proof import Proof as Proof
     from verify.scenes.results.orbit import OrbitTable as OrbitTable
     from verify.scenes.results.separation import SeparationGrid as SeparationGrid
-    from verify.scenes.results.separation import (
-        SeparationGridInDegrees as SeparationGridInDegrees,
-    )
+    from verify.scenes.results.separation import SeparationGridInDegrees as SeparationGridInDegrees
     from verify.scenes.results.separation import SeparationInDegrees as SeparationInDegrees
     from verify.scenes.results.separation import SeparationResult as SeparationResult
     from verify.scenes.results.sweep import Sweep as Sweep

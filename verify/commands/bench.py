@@ -1,6 +1,6 @@
 """The command `verify bench`: error against run time of one scene."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,10 +23,15 @@ if TYPE_CHECKING:
     from verify.studies.work_precision.task import WorkPrecisionTask
 
 
-# Columns of the table in the plane, and in n degrees of freedom: of a point's fields.
+# Columns of the table, by what is kept: of a point's fields.
 _ERRORS = {
-    True: {"error": "error", "Λ": "lam"},
-    False: {"error": "error", "energy": "energy", "Λ": "lam", "max |W|": "symplectic_defect"},
+    "area": {"error": "error", "Λ": "lam"},
+    "symplectic": {
+        "error": "error",
+        "energy": "energy",
+        "Λ": "lam",
+        "max |W|": "symplectic_defect",
+    },
 }
 
 
@@ -163,8 +168,9 @@ def _print_bench(name: str, result: "WorkPrecisionResult") -> None:
 
     console = Console(highlight=False)
     console.print(_table(name, result))
+    *_, area = _ERRORS[result.structure.name]
     for line in result.lines:
-        console.print(_about(line, "Λ" if result.planar else "max |W|"))
+        console.print(_about(line, area))
     for system in result.systems:
         known = f"{system.certified} certified digits" if system.certified else system.reason
         asked = f"{system.arithmetic}, {system.digits} digits"
@@ -185,6 +191,7 @@ def _table(name: str, result: "WorkPrecisionResult") -> "Table":
     from rich import box
     from rich.table import Table
 
+    errors = _ERRORS[result.structure.name]
     title = f"{name}: error at T = {result.time} against run time"
     table = Table(
         title=title,
@@ -193,22 +200,22 @@ def _table(name: str, result: "WorkPrecisionResult") -> "Table":
         pad_edge=False,
         collapse_padding=True,
     )
-    for head in ("scheme", "h or tol.", "N", *_ERRORS[result.planar], "seconds", "limited by"):
+    for head in ("scheme", "h or tol.", "N", *errors, "seconds", "limited by"):
         left = head in ("scheme", "limited by")
         table.add_column(head, justify="left" if left else "right", no_wrap=not left)
     for line in result.lines:
         for k, point in enumerate(line.points):
-            table.add_row("" if k else line.name, *_row(point, result.planar))
+            table.add_row("" if k else line.name, *_row(point, errors.values()))
         table.add_section()
     return table
 
 
-def _row(point: "WorkPoint", planar: bool) -> tuple[str, ...]:
+def _row(point: "WorkPoint", errors: "Iterable[str]") -> tuple[str, ...]:
     failed = f"failed, step {point.failed_step}" if point.failed_step else point.limited_by
     return (
         point.step_size or point.tolerance or "",
         "" if point.steps is None else str(point.steps),
-        *(_few(getattr(point, name)) for name in _ERRORS[planar].values()),
+        *(_few(getattr(point, name)) for name in errors),
         _seconds(point.seconds_median),
         failed,
     )

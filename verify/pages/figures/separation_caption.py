@@ -5,8 +5,7 @@ from decimal import Decimal
 from fractions import Fraction
 
 from verify.pages.text.typography import NBSP, between, interval, number, step, whole
-from verify.scenes.results.separation import WAYS, Separation, SeparationGrid
-from verify.scenes.results.separation_growth import CrossoverResult
+from verify.scenes.results.separation import WAYS, CrossoverResult, Separation, SeparationGrid
 
 PLAIN, CLOSED_FORM = "plain", "closed_form"
 _NONE = "none in this range: "  # how a crossover's reason begins where there is none

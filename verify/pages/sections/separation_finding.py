@@ -14,7 +14,8 @@ from verify.pages.figures.logarithm import lg
 from verify.pages.figures.separation_caption import PLAIN
 from verify.pages.sections.separation_table import greatest_part
 from verify.pages.text.typography import between, counted, every, listed, whole
-from verify.scenes.results.separation import WAYS, EvaluationResult, SeparationResult
+from verify.scenes.results.separation import WAYS, SeparationResult
+from verify.scenes.results.separation_parts import AnyEvaluation, EvaluationResult
 
 
 def finding(points: Sequence[SeparationResult], where: str = "") -> Iterator[str]:
@@ -92,7 +93,7 @@ def _range(found: Sequence[float]) -> str:
     return between(f"{min(found):.1f}", f"{max(found):.1f}")
 
 
-def decades_below(evaluation: EvaluationResult) -> float | None:
+def decades_below(evaluation: AnyEvaluation) -> float | None:
     """By how many decades the greatest |rounding| lies below the greatest |truncation|."""
     gap = lg(evaluation.largest["truncation"]) - lg(evaluation.largest["total"])
     return gap if isfinite(gap) else None

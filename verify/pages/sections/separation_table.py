@@ -15,7 +15,8 @@ from verify.pages.text.typography import listed, start, step, whole
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.form_value import largest
 from verify.scenes.results.proof import ProofResult
-from verify.scenes.results.separation import AnyEvaluation, GridOf, Separation
+from verify.scenes.results.separation import GridOf, Separation
+from verify.scenes.results.separation_parts import AnyEvaluation
 
 Kinds = Callable[["Counter[str]"], str]
 Grids = Sequence[GridOf[Any]]

@@ -9,149 +9,22 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal, TypeVar
 from verify.frames import library, nearest_float
 from verify.notebook import html_table
 from verify.scenes.frozen import Frozen, OfScheme, Seconds
-from verify.scenes.results.bounded_value import Value
-from verify.scenes.results.form_value import FormValue, largest
-from verify.scenes.results.separation_growth import (
-    CrossoverResult,
-    GrowthResult,
-    PowerLawResult,
+from verify.scenes.results.form_value import largest
+from verify.scenes.results.separation_parts import (
+    AnyEvaluation,
+    EvaluationResult,
+    FormEvaluation,
+    FormParts,
+    Parts,
+    PartsOfRun,
     TangentGrowth,
 )
-from verify.structures import AREA, SYMPLECTIC, Structure
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
 WAYS = {"plain": "the plain way", "closed_form": "closed form"}
-
-# -- the parts ------------------------------------------------------------------------------------
-
-
-class PartsOfRun(Frozen):
-    """The parts of what float64 finds, the first of its fields; `rounding`: those of rounding."""
-
-    structure: ClassVar[Structure]
-    rounding: ClassVar[tuple[str, ...]]
-
-    @property
-    def of_rounding(self) -> tuple[str, ...]:
-        """The names of the parts of rounding, in the chain's order."""
-        first, *others = self.rounding
-        return first, *(["clock"] if hasattr(self, "clock") else []), *others
-
-    def labels(self, mark: str) -> dict[str, str]:
-        """What each part is called; those of rounding by their names after a `mark`."""
-        working, *_ = type(self).model_fields
-        wholes = {working: f"{self.structure.accumulated} in float64", "truncation": "truncation"}
-        return wholes | {"total": "rounding"} | {n: mark + n for n in self.of_rounding}
-
-
-class Parts(PartsOfRun):
-    """truncation + input + trajectory + determinant + product = lambda_working (one equation of
-    exact rationals, of which these are the known digits); total is the sum of the last four."""
-
-    structure: ClassVar = AREA
-    rounding: ClassVar = ("input", "trajectory", "determinant", "product")
-    lambda_working: Value
-    truncation: Value
-    total: Value
-    input: Value
-    trajectory: Value
-    determinant: Value
-    product: Value
-
-
-class PartsInTime(Parts):
-    """Of an H that depends on time: what float64's clock does stands between input and
-    trajectory."""
-
-    clock: Value
-
-
-class FormParts(PartsOfRun):
-    """truncation + input + trajectory + derivatives + product = w_working, entry by entry (an
-    equation of exact rationals, of which these are the known digits); total is the sum of the last
-    four."""
-
-    structure: ClassVar = SYMPLECTIC
-    rounding: ClassVar = ("input", "trajectory", "derivatives", "product")
-    w_working: FormValue
-    truncation: FormValue
-    total: FormValue
-    input: FormValue
-    trajectory: FormValue
-    derivatives: FormValue
-    product: FormValue
-
-
-class FormPartsInTime(FormParts):
-    """Of an H that depends on time: what float64's clock does stands between input and
-    trajectory."""
-
-    clock: FormValue
-
-
-class PartsAt(Frozen):
-    """The parts after `steps` steps, as decimals of a few digits, for a figure."""
-
-    steps: int
-    truncation: str
-    total: str
-    input: str
-    trajectory: str
-    determinant: str
-    product: str
-
-
-class PartsInTimeAt(PartsAt):
-    """The same of an H that depends on time."""
-
-    clock: str
-
-
-class FormAt(Frozen):
-    """After `steps` steps: ‖M‖² of Frobenius, and the greatest |entry| of w_working and of each
-    part, as decimals of a few digits."""
-
-    steps: int
-    norm_squared: str
-    parts: dict[str, str]
-
-
-# -- one run --------------------------------------------------------------------------------------
-
-
-class EvaluationResult(Frozen):
-    """Λ of a float64 run, split, for one way to evaluate it; `growth`: of total and of each part.
-
-    `largest`: the greatest |truncation| and |total| at the checkpoints of the run.
-    """
-
-    parts: PartsInTime | Parts
-    largest: dict[str, str]
-    growth: dict[str, GrowthResult]
-    series: tuple[PartsInTimeAt | PartsAt, ...]
-    error_kind: Literal["enclosed", "estimated"]
-
-
-class FormEvaluation(Frozen):
-    """W of a float64 run, split, for one way to evaluate it.
-
-    `largest`: the greatest |entry| of truncation and of total at any checkpoint. `growth`: of the
-    greatest |entry| of total and of each part, as of Λ. `law`: how that of w_working grows with N,
-    measured.
-    """
-
-    parts: FormPartsInTime | FormParts
-    largest: dict[str, str]
-    growth: dict[str, GrowthResult]
-    law: PowerLawResult
-    series: tuple[FormAt, ...]
-    error_kind: Literal["enclosed", "estimated"]
-
-
-AnyEvaluation = EvaluationResult | FormEvaluation
 
 
 class Separation(OfScheme):
@@ -254,6 +127,14 @@ class SeparationInDegrees(Separation):
 
 AnySeparation = SeparationResult | SeparationInDegrees
 # -- over step sizes ------------------------------------------------------------------------------
+
+
+class CrossoverResult(Frozen):
+    """A `verify.studies.separation.growth.Crossover`."""
+
+    step_size: str | None
+    bracket: tuple[str, str] | None
+    reason: str
 
 
 P = TypeVar("P", bound=Separation)

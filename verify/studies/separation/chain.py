@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from verify.arithmetic.exact import magnitude
-from verify.scenes.results.separation import Parts
+from verify.scenes.results.separation_parts import Parts
 from verify.studies.separation.stepper.trail import Kind, Link, Trail
 
 PARTS = Parts.rounding  # in the plane

@@ -7,19 +7,20 @@ from typing import Any
 from verify.arithmetic.exact import decimal, known_text
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.form_value import FormValue
-from verify.scenes.results.separation import (
+from verify.scenes.results.separation_parts import (
     AnyEvaluation,
     EvaluationResult,
     FormAt,
     FormEvaluation,
     FormParts,
     FormPartsInTime,
+    GrowthResult,
     Parts,
     PartsAt,
     PartsInTime,
     PartsInTimeAt,
+    PowerLawResult,
 )
-from verify.scenes.results.separation_growth import GrowthResult, PowerLawResult
 from verify.studies.separation.chain import Chain
 from verify.studies.separation.growth import growth, log_spaced, motion_of, power_law
 from verify.studies.separation.stepper.trail import Trail

@@ -58,16 +58,16 @@ from verify.runs.run import AskedRun, check
 from verify.runs.start import Start
 from verify.scenes.results.separation import (
     WAYS,
-    AnyEvaluation,
     AnyGrid,
     AnySeparation,
+    CrossoverResult,
     Separation,
     SeparationGrid,
     SeparationGridInDegrees,
     SeparationInDegrees,
     SeparationResult,
 )
-from verify.scenes.results.separation_growth import CrossoverResult
+from verify.scenes.results.separation_parts import AnyEvaluation
 from verify.schemes import canonical
 from verify.studies.separation.growth import crossover
 from verify.studies.separation.links import Chains, separated_chains, way_of
@@ -174,7 +174,7 @@ def separate_grid(
     )
 
 
-def as_grid(points: Sequence[AnySeparation]) -> AnyGrid:
+def as_grid(points: Sequence[Separation]) -> AnyGrid:
     """Separations for several step sizes, with the crossover of each way to evaluate Λ, or W."""
     crossed = {way: crossing((x.step_size, getattr(x, way)) for x in points) for way in WAYS}
     return _GRIDS[type(points[0])].model_validate({"points": tuple(points), **crossed})

@@ -66,6 +66,11 @@ class Problem(InitialValueProblem):
 
     solution: Solution
 
+    @classmethod
+    def of(cls, asked: InitialValueProblem, solution: Solution) -> "Problem":
+        """The same with its solution."""
+        return cls(**vars(asked), solution=solution)
+
     @cached_property
     def _ends(self) -> dict[Fraction, Solution]:
         return {self.time: self.solution}

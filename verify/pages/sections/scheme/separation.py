@@ -28,13 +28,12 @@ from verify.scenes.results.proof import ProofResult
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.separation import (
     WAYS,
-    AnyEvaluation,
     SeparationGrid,
     SeparationGridInDegrees,
     SeparationInDegrees,
     SeparationResult,
 )
-from verify.scenes.results.separation_growth import GrowthResult
+from verify.scenes.results.separation_parts import AnyEvaluation, GrowthResult
 from verify.structures import AREA, SYMPLECTIC, Structure
 
 

@@ -42,7 +42,8 @@ from verify.kernels.step.kinds import may_leave_range
 from verify.kernels.stepping import KernelRun, Outcome, limits
 from verify.runs.estimated import working_digits
 from verify.runs.run import proved
-from verify.scenes.results.separation import Parts, SeparationResult
+from verify.scenes.results.separation import SeparationResult
+from verify.scenes.results.separation_parts import Parts
 from verify.schemes import get
 from verify.schemes.maps.step_map import StepMap
 from verify.studies.separation.stepper.run import marks_of

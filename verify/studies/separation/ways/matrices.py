@@ -33,7 +33,8 @@ from verify.kernels.chunked_loop import ENTRIES
 from verify.kernels.step.computation import Computation, Observed, computed, step_map_of
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.observables.observable import Need
-from verify.scenes.results.separation import FormParts, SeparationInDegrees
+from verify.scenes.results.separation import SeparationInDegrees
+from verify.scenes.results.separation_parts import FormParts
 from verify.schemes.maps.step_map import StepMap
 from verify.studies.separation.stepper.run import marks_of
 from verify.studies.separation.stepper.trail import Entries, Links, exact_links
