@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from verify.scenes.results.bounded_value import Value
     from verify.scenes.results.work_precision import WorkLine, WorkPoint, WorkPrecisionResult
     from verify.scenes.scene import Scene
-    from verify.studies.work_precision.task import WorkPrecisionTask
 
 
 # Columns of the table, by what is kept: of a point's fields.
@@ -79,10 +78,11 @@ def _section(
 
 def _measured(scenes: "list[Scene]") -> "Iterator[tuple[str, WorkPrecisionResult]]":
     from verify.commands.shared.progress import progress_bar
+    from verify.studies.kinds.work_precision import work_precision_task
     from verify.studies.work_precision import peers
 
     for scene in scenes:
-        task = _task(scene)
+        task = work_precision_task(scene)
         total = len(task.schemes) * len(task.step_sizes)
         total += sum(len(peers.get(name).TOLERANCES) for name in task.peers)
         with progress_bar(f"{scene.name}, errors", total, unit="") as advance:
@@ -95,20 +95,14 @@ def _measured_on_cluster(
     """On the cluster, one after another: the times are of the machine that each result names."""
     from verify.execution.execute import compute_task
     from verify.execution.executors import FunctionCall, Placement, open_place, results_of
+    from verify.studies.kinds.work_precision import work_precision_task
 
     calls = [
-        FunctionCall(each.name, compute_task, (_task(each),), f"scene {each.name}")
+        FunctionCall(each.name, compute_task, (work_precision_task(each),), f"scene {each.name}")
         for each in scenes
     ]
     with open_place(Placement(cluster=cluster)) as place:
         yield from results_of(place, calls, one_by_one=True)
-
-
-def _task(scene: "Scene") -> "WorkPrecisionTask":
-    from verify.studies.work_precision.plan import work_precision_task
-
-    assert scene.work_precision is not None  # noqa: S101 - the caller's condition
-    return work_precision_task(scene, scene.work_precision)
 
 
 def _draw(result: "WorkPrecisionResult", path: Path) -> None:

@@ -60,7 +60,7 @@ def flow_tasks(scene: Scene, flow: Flow) -> Iterator[FlowTask]:
                 digits=flow.digits,
                 mean_lambda=flow.mean_lambda and not kept and carries_defect(exact),
                 distance=by_scheme and flow.exact and exact.planar,
-                point={} if exact.planar else flow.point(exact),
+                point=flow.point(exact),
                 plane=flow.plane,
             )
 
