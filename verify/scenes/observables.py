@@ -29,6 +29,12 @@ def observed(hamiltonian: Hamiltonian, asked: Sequence[str] | None) -> tuple[str
     return tuple(name for name in _USUAL if _carried(hamiltonian, _EVERY[name]))
 
 
+def accumulated(hamiltonian: Hamiltonian) -> tuple[str, ...]:
+    """What all steps together do: Λ, and W where that is more, and is carried."""
+    usual = observed(hamiltonian, None)
+    return tuple(name for name in ("lambda", "symplectic_defect") if name in usual)
+
+
 def carries_defect(hamiltonian: Hamiltonian) -> bool:
     """Whether W is carried in so many degrees of freedom."""
     return _carried(hamiltonian, _EVERY["symplectic_defect"])

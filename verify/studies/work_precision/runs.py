@@ -32,7 +32,7 @@ from verify.kernels.stepping import KernelRun
 from verify.lockstep import alone
 from verify.runs.digits_on_demand import choose, measure
 from verify.runs.estimated import Bounds
-from verify.scenes.observables import observed
+from verify.scenes.observables import accumulated
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.work_precision import CostResult, LimitedBy, WorkPoint
 from verify.schemes import get
@@ -126,6 +126,8 @@ class Ladder:
         self.problem, self.scheme = problem, get(scheme)
         self.name = scheme
         self.preserves_area = step_map_of(problem.hamiltonian, scheme).preserves_area
+        # What measures the loss of area, or of the symplectic form, the sharper one last.
+        self.lost = accumulated(problem.hamiltonian)
         # Anew: what is kept of an earlier run is loaded, which says nothing of compiling.
         self.arithmetic: Arithmetic = float64.compiled_at_once(anew=True)
         step_map = step_map_of(self._kernel_run(problem.time, frozenset()).hamiltonian, scheme)
@@ -133,13 +135,6 @@ class Ladder:
         self.kernel: Kernel = Writer(step_map, self.arithmetic, frozenset(), False).kernel()
         self.call(problem.time, blank=True)()
         self.compile_seconds = time.perf_counter() - begun
-
-    @cached_property
-    def lost(self) -> tuple[str, ...]:
-        """What measures the loss of area, or of the symplectic form, the sharper one
-        last; none where H has too many degrees of freedom for it."""
-        usual = observed(self.problem.hamiltonian, None)
-        return tuple(name for name in ("lambda", "symplectic_defect") if name in usual)
 
     @property
     def cost(self) -> CostResult:
