@@ -49,16 +49,16 @@ from verify.schemes.maps.step_map import StepMap
 _MOST = 64  # states that are looked at
 
 
-def left_domain(run: KernelRun, outcome: Outcome) -> str:
+def left_domain(hamiltonian: Hamiltonian, run: KernelRun, outcome: Outcome) -> str:
     """By which step it has, and what then no longer holds; empty where none is seen to."""
-    domain, start, count = run.hamiltonian.domain, run.start, len(outcome.trail)
+    domain, start, count = hamiltonian.domain, run.start, len(outcome.trail)
     if not domain.requirements or not count:
         return ""
     signs = domain.signs(start)
     for k in _looked_at(count):
         done = min(k * run.section, run.steps)
         note = outcome.trail[k - 1]
-        state = {name: note[name] for name in run.hamiltonian.coordinates}
+        state = {name: note[name] for name in hamiltonian.coordinates}
         left = domain.left_since(signs, {**state, "t": start["t"] + done * start["h"]})
         if left:
             return f"by step {done} the orbit has left where H is defined: {', '.join(left)}"
@@ -145,7 +145,8 @@ class AskedRun:
     def result(self, progress: Progress | None = None) -> Course[RunResult]:
         """What is told of it."""
         done = yield from self.measured(progress)
-        return self._told(done, left_domain(self.kernel_run, done.outcome))
+        left = left_domain(self.begun.hamiltonian, self.kernel_run, done.outcome)
+        return self._told(done, left)
 
     def proved(self) -> RunResult | None:
         """The observables without any step, and without p and q, where a proof gives all of them;

@@ -16,7 +16,7 @@ REPORTED = (*CLOSED_FORM, "lambda_plain")  # of float64, whose plain way is what
 
 def names(*, planar: bool) -> tuple[str, ...]:
     """All that may be asked for in the plane, or in some number of degrees of freedom."""
-    fits = (lambda x: not x.in_plane) if planar else (lambda x: x.most_degrees != 0)
+    fits = (lambda x: not x.in_plane) if planar else (lambda x: x.most_degrees != 1)
     return tuple(name for name, each in _EVERY.items() if fits(each))
 
 
@@ -37,12 +37,17 @@ def accumulated(hamiltonian: Hamiltonian) -> tuple[str, ...]:
 
 def carries_defect(hamiltonian: Hamiltonian) -> bool:
     """Whether W is carried in so many degrees of freedom."""
-    return _carried(hamiltonian, _EVERY["symplectic_defect"])
+    return carries(hamiltonian, "symplectic_defect")
+
+
+def carries(hamiltonian: Hamiltonian, name: str) -> bool:
+    """Whether an observable is carried in so many degrees of freedom."""
+    return _carried(hamiltonian, _EVERY[name])
 
 
 def _carried(hamiltonian: Hamiltonian, observable: Observable) -> bool:
     most = observable.most_degrees
-    return hamiltonian.planar or most is None or hamiltonian.degrees <= most
+    return most is None or hamiltonian.degrees <= most
 
 
 def check_observables(hamiltonian: Hamiltonian, asked: Sequence[str]) -> None:

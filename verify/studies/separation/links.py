@@ -26,6 +26,7 @@ from verify.runs.digits_on_demand import Measured, choose, measure
 from verify.runs.estimated import working_digits
 from verify.runs.run import AskedRun
 from verify.schemes.maps.step_map import StepMap
+from verify.structures import AREA, SYMPLECTIC, Structure
 from verify.studies.separation.chain import Chain, lacking
 from verify.studies.separation.stepper.run import (
     Advance,
@@ -40,6 +41,7 @@ from verify.studies.separation.stepper.way import Size, Way
 from verify.studies.separation.ways.determinants import Determinants
 from verify.studies.separation.ways.matrices import Matrices
 
+_WAYS: dict[Structure, type[Way]] = {AREA: Determinants, SYMPLECTIC: Matrices}
 _MANTISSAS = 2**53  # whole numbers up to here are float64s
 _DOUBLINGS = 6
 _ATTEMPTS = 4
@@ -63,7 +65,7 @@ class Chains:
 
 def way_of(hamiltonian: Hamiltonian) -> Way:
     """The way in which its runs are followed."""
-    return Determinants() if hamiltonian.planar else Matrices(len(hamiltonian.coordinates))
+    return _WAYS[hamiltonian.structure](len(hamiltonian.coordinates))
 
 
 def separated_chains(

@@ -32,7 +32,7 @@ from verify.kernels.stepping import KernelRun
 from verify.lockstep import alone
 from verify.runs.digits_on_demand import choose, measure
 from verify.runs.estimated import Bounds
-from verify.scenes.observables import accumulated
+from verify.scenes.observables import accumulated, carries
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.work_precision import CostResult, LimitedBy, WorkPoint
 from verify.schemes import get
@@ -208,8 +208,9 @@ class Ladder:
     def _area(self, h: Fraction, exact: Bounds) -> dict[str, Any]:
         """Of a point: Λ, and in n degrees of freedom W; what limits them; and in the plane Λ by the
         plain product, too."""
-        plain = {"lambda_plain"} if self.problem.hamiltonian.planar else set[str]()
-        asked = plain | (set() if self.preserves_area else set(self.lost))
+        plain = "lambda_plain"
+        asked = {plain} if carries(self.problem.hamiltonian, plain) else set[str]()
+        asked |= set() if self.preserves_area else set(self.lost)
         run = self._kernel_run(h, frozenset(asked)).run(float64.make(17)) if asked else None
         if run is not None and run.done < self.problem.time // h:
             return {"lambda_limited_by": "failed"}

@@ -168,16 +168,19 @@ class Stepped:
         return None if values is None else [values[at] for at in roots]
 
 
+@dataclass(frozen=True)
 class Way(ABC):
     """How the last links are evaluated in float64, and followed exactly beside it.
 
-    `result`: the model of what is told. `observable`, of `observables`: what a run in exact
-    arithmetic's stead has. `points`: its checkpoints. `parts`: of rounding, in the chain's order.
-    `cancelled`: digits that differences between links cancel, and `products` those that reading a
-    product does beside them. `hidden`: so many digits further below the greatest quantity a part is
-    taken for noise, if ever. `vanishes`: in words, why the closed form is exactly 0 where it is.
+    `count`: of coordinates. `result`: the model of what is told. `observable`, of `observables`:
+    what a run in exact arithmetic's stead has. `points`: its checkpoints. `parts`: of rounding, in
+    the chain's order. `cancelled`: digits that differences between links cancel, and `products`
+    those that reading a product does beside them. `hidden`: so many digits further below the
+    greatest quantity a part is taken for noise, if ever. `vanishes`: in words, why the closed form
+    is exactly 0 where it is.
     """
 
+    count: int
     result: ClassVar[type[AnySeparation]]
     observable: ClassVar[str]
     observables: ClassVar[frozenset[str]]

@@ -73,6 +73,8 @@ _CLOSED_SUM = (
 class Determinants(Way):
     """Λ = Π det J − 1 of a run in the plane."""
 
+    count: int = 2
+
     result: ClassVar = SeparationResult
     observable: ClassVar = "lambda"
     observables: ClassVar = frozenset({"lambda"})

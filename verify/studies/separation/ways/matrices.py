@@ -47,9 +47,7 @@ POINTS = 512  # checkpoints of a run; each has a matrix for each link
 
 @dataclass(frozen=True)
 class Matrices(Way):
-    """W = MᵀΩM − Ω of a run with so many coordinates."""
-
-    count: int
+    """W = MᵀΩM − Ω of a run."""
 
     result: ClassVar = SeparationInDegrees
     observable: ClassVar = "symplectic_defect"
