@@ -43,13 +43,9 @@ if TYPE_CHECKING:
     from verify.proof.proof import Proof as Proof
     from verify.scenes.results.orbit import OrbitTable as OrbitTable
     from verify.scenes.results.separation import SeparationGrid as SeparationGrid
+    from verify.scenes.results.separation import SeparationGridInDegrees as SeparationGridInDegrees
+    from verify.scenes.results.separation import SeparationInDegrees as SeparationInDegrees
     from verify.scenes.results.separation import SeparationResult as SeparationResult
-    from verify.scenes.results.separation_in_degrees import (
-        SeparationGridInDegrees as SeparationGridInDegrees,
-    )
-    from verify.scenes.results.separation_in_degrees import (
-        SeparationInDegrees as SeparationInDegrees,
-    )
     from verify.scenes.results.sweep import Sweep as Sweep
     from verify.scenes.scene import Scene as Scene
     from verify.scenes.scene import load_scene as load_scene
@@ -99,11 +95,11 @@ _NAMES = {
     "SeparationResult": ("verify.scenes.results.separation", "what a separation gave"),
     "SeparationGrid": ("verify.scenes.results.separation", "separations over step sizes"),
     "SeparationInDegrees": (
-        "verify.scenes.results.separation_in_degrees",
+        "verify.scenes.results.separation",
         "what a separation gave in n degrees of freedom",
     ),
     "SeparationGridInDegrees": (
-        "verify.scenes.results.separation_in_degrees",
+        "verify.scenes.results.separation",
         "such separations over step sizes",
     ),
     "Report": ("verify.calls.report", "a whole report"),

@@ -8,7 +8,7 @@ from verify.calls.progress import Progress, progress_of
 from verify.errors import InputError
 from verify.hamiltonians.start import Given
 from verify.scenes.results.work_precision import WorkPrecisionResult
-from verify.studies.work_precision.plan import work_precision_task
+from verify.studies.kinds.work_precision import work_precision_task
 
 
 def bench(
@@ -43,8 +43,7 @@ def bench(
         "peers": None if peers else False,
     }
     scene = scene_of(system, scheme, parameters, t0=t0, work_precision=section)
-    assert scene.work_precision is not None  # noqa: S101 - it was just given
-    task = work_precision_task(scene, scene.work_precision)
+    task = work_precision_task(scene)
     points = len(task.schemes) * len(task.step_sizes)
     with progress_of(progress, "errors", points, adding=True) as tell:
         return task.measure(tell or (lambda _: None))

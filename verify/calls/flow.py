@@ -8,7 +8,7 @@ from verify.calls.given import GivenParameters, GivenSystem, listed, performed, 
 from verify.errors import InputError
 from verify.hamiltonians.start import Given
 from verify.scenes.results.regions import FlowResult
-from verify.studies.regions.plan import flows_of, need_flows
+from verify.studies.kinds.regions import flows_of, need_flows
 
 _ORIGIN = (0, 0)
 

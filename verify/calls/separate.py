@@ -15,8 +15,12 @@ from verify.calls.given import (
 )
 from verify.calls.progress import Progress, progress_of
 from verify.hamiltonians.start import Given, check_start
-from verify.scenes.results.separation import SeparationGrid, SeparationResult
-from verify.scenes.results.separation_in_degrees import SeparationGridInDegrees, SeparationInDegrees
+from verify.scenes.results.separation import (
+    SeparationGrid,
+    SeparationGridInDegrees,
+    SeparationInDegrees,
+    SeparationResult,
+)
 from verify.scenes.values import AUTO, steps_from
 from verify.studies.separation import separate as study
 

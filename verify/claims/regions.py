@@ -15,7 +15,7 @@ from verify.execution.task import Task
 from verify.prose import Number, Prose, prose
 from verify.scenes.results.regions import FlowImage
 from verify.scenes.scene import Scene
-from verify.studies.regions.plan import flow_tasks, maps_of
+from verify.studies.kinds.regions import flow_tasks, maps_of
 from verify.studies.regions.task import FlowTask
 from verify.verdict import Verdict
 

@@ -1,6 +1,6 @@
 """The command `verify bench`: error against run time of one scene."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,13 +20,17 @@ if TYPE_CHECKING:
     from verify.scenes.results.bounded_value import Value
     from verify.scenes.results.work_precision import WorkLine, WorkPoint, WorkPrecisionResult
     from verify.scenes.scene import Scene
-    from verify.studies.work_precision.task import WorkPrecisionTask
 
 
-# Columns of the table in the plane, and in n degrees of freedom: of a point's fields.
+# Columns of the table, by what is kept: of a point's fields.
 _ERRORS = {
-    True: {"error": "error", "Λ": "lam"},
-    False: {"error": "error", "energy": "energy", "Λ": "lam", "max |W|": "symplectic_defect"},
+    "area": {"error": "error", "Λ": "lam"},
+    "symplectic": {
+        "error": "error",
+        "energy": "energy",
+        "Λ": "lam",
+        "max |W|": "symplectic_defect",
+    },
 }
 
 
@@ -74,10 +78,11 @@ def _section(
 
 def _measured(scenes: "list[Scene]") -> "Iterator[tuple[str, WorkPrecisionResult]]":
     from verify.commands.shared.progress import progress_bar
+    from verify.studies.kinds.work_precision import work_precision_task
     from verify.studies.work_precision import peers
 
     for scene in scenes:
-        task = _task(scene)
+        task = work_precision_task(scene)
         total = len(task.schemes) * len(task.step_sizes)
         total += sum(len(peers.get(name).TOLERANCES) for name in task.peers)
         with progress_bar(f"{scene.name}, errors", total, unit="") as advance:
@@ -90,20 +95,14 @@ def _measured_on_cluster(
     """On the cluster, one after another: the times are of the machine that each result names."""
     from verify.execution.execute import compute_task
     from verify.execution.executors import FunctionCall, Placement, open_place, results_of
+    from verify.studies.kinds.work_precision import work_precision_task
 
     calls = [
-        FunctionCall(each.name, compute_task, (_task(each),), f"scene {each.name}")
+        FunctionCall(each.name, compute_task, (work_precision_task(each),), f"scene {each.name}")
         for each in scenes
     ]
     with open_place(Placement(cluster=cluster)) as place:
         yield from results_of(place, calls, one_by_one=True)
-
-
-def _task(scene: "Scene") -> "WorkPrecisionTask":
-    from verify.studies.work_precision.plan import work_precision_task
-
-    assert scene.work_precision is not None  # noqa: S101 - the caller's condition
-    return work_precision_task(scene, scene.work_precision)
 
 
 def _draw(result: "WorkPrecisionResult", path: Path) -> None:
@@ -163,8 +162,9 @@ def _print_bench(name: str, result: "WorkPrecisionResult") -> None:
 
     console = Console(highlight=False)
     console.print(_table(name, result))
+    *_, area = _ERRORS[result.structure.name]
     for line in result.lines:
-        console.print(_about(line, "Λ" if result.planar else "max |W|"))
+        console.print(_about(line, area))
     for system in result.systems:
         known = f"{system.certified} certified digits" if system.certified else system.reason
         asked = f"{system.arithmetic}, {system.digits} digits"
@@ -185,6 +185,7 @@ def _table(name: str, result: "WorkPrecisionResult") -> "Table":
     from rich import box
     from rich.table import Table
 
+    errors = _ERRORS[result.structure.name]
     title = f"{name}: error at T = {result.time} against run time"
     table = Table(
         title=title,
@@ -193,22 +194,22 @@ def _table(name: str, result: "WorkPrecisionResult") -> "Table":
         pad_edge=False,
         collapse_padding=True,
     )
-    for head in ("scheme", "h or tol.", "N", *_ERRORS[result.planar], "seconds", "limited by"):
+    for head in ("scheme", "h or tol.", "N", *errors, "seconds", "limited by"):
         left = head in ("scheme", "limited by")
         table.add_column(head, justify="left" if left else "right", no_wrap=not left)
     for line in result.lines:
         for k, point in enumerate(line.points):
-            table.add_row("" if k else line.name, *_row(point, result.planar))
+            table.add_row("" if k else line.name, *_row(point, errors.values()))
         table.add_section()
     return table
 
 
-def _row(point: "WorkPoint", planar: bool) -> tuple[str, ...]:
+def _row(point: "WorkPoint", errors: "Iterable[str]") -> tuple[str, ...]:
     failed = f"failed, step {point.failed_step}" if point.failed_step else point.limited_by
     return (
         point.step_size or point.tolerance or "",
         "" if point.steps is None else str(point.steps),
-        *(_few(getattr(point, name)) for name in _ERRORS[planar].values()),
+        *(_few(getattr(point, name)) for name in errors),
         _seconds(point.seconds_median),
         failed,
     )

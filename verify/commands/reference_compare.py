@@ -224,11 +224,10 @@ def _few(lines: "Sequence[str]", rest: str) -> None:
 
 def _separated(x: "Separated") -> str:
     from verify.arithmetic.exact import decimal
-    from verify.scenes.results.separation import ROUNDING
 
     plain = x.result.plain
     assert plain is not None  # noqa: S101 - it is not shown without
-    parts = ", ".join(f"{n} {getattr(plain.parts, n).value}" for n in ROUNDING)
+    parts = ", ".join(f"{n} {getattr(plain.parts, n).value}" for n in plain.parts.rounding)
     return (
         f"     your Λ is off by {decimal(x.apart, 2)} at step {x.step} ({_run(x.run)}); rounding "
         f"makes {plain.parts.total.value} of the Λ of a plain float64 program there ({parts})"

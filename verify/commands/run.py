@@ -117,7 +117,7 @@ def _result(
     from verify.execution.keeping import Keeper, name_of
     from verify.hamiltonians.start import check_start
     from verify.runs.run import run as run_scheme
-    from verify.scenes.observables import REPORTED
+    from verify.scenes.observables import REPORTED, carries
     from verify.scenes.values import AUTO, rounded_down, steps_from
 
     start: dict[str, Any] = {"q": listed(q, exact), "p": listed(p, exact), "t0": t0}
@@ -127,7 +127,7 @@ def _result(
     if keep is not None:
         keepable(keep)
     asked = (exact.formula, exact.values, scheme, step_size, count, start, digits, arithmetic)
-    keeper = Keeper(keep, name_of(asked))
+    keeper, reported = Keeper(keep, name_of(asked)), all(carries(exact, n) for n in REPORTED)
     with counting_bar("stepping", count) as tell:
         result = run_scheme(
             exact,
@@ -137,7 +137,7 @@ def _result(
             arithmetic=arithmetic,
             digits=17 if digits is None else digits,
             # The plain way shows what rounding does to it; at many digits that is nothing.
-            observables=REPORTED if arithmetic == "float64" and exact.planar else None,
+            observables=REPORTED if arithmetic == "float64" and reported else None,
             progress=tell,
             keeper=keeper,
             **start,

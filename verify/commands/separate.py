@@ -15,8 +15,8 @@ from verify.commands.shared.output import plain_json, print_once
 
 if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
-    from verify.scenes.results.separation import CrossoverResult
-    from verify.scenes.results.separation_in_degrees import AnyEvaluation, AnyGrid, AnySeparation
+    from verify.scenes.results.separation import AnyGrid, CrossoverResult, Separation
+    from verify.scenes.results.separation_parts import AnyEvaluation, PartsOfRun
 
 _WIDTH = 88  # of a line of prose
 _LABELS = {"plain": "plain", "closed_form": "closed form"}
@@ -30,21 +30,12 @@ def separation_json(grid: "AnyGrid") -> dict[str, Any]:
     return {**points[0], "crossover": crossover, "grid": points, "seconds": seconds}
 
 
-def _separated(point: "AnySeparation") -> dict[str, Any]:
-    from verify.scenes.results.separation import Parts, SeparationResult
-    from verify.scenes.results.separation_in_degrees import FormParts
-
-    names: dict[str, Any] = {}
-    motion: dict[str, Any] = {}
-    if not isinstance(point, SeparationResult):
-        names = {"coordinates": list(point.coordinates)}
-        motion = {"tangent": plain_json(point.tangent) if point.tangent else None}
-    without = FormParts if names else Parts
+def _separated(point: "Separation") -> dict[str, Any]:
+    of_form = {n: x for n, x in plain_json(point).items() if n in ("coordinates", "tangent")}
     return {
-        **names,
-        **_evaluated(point.plain, without),
-        "closed_form": _evaluated(point.closed_form, without),
-        **motion,
+        **of_form,
+        **_evaluated(point.plain, point.split_into),
+        "closed_form": _evaluated(point.closed_form, point.split_into),
         **picked(point, "step_size", "steps", "digits"),
         "working_arithmetic": "float64",
         **picked(point, "arithmetic", "error_method", "status", "failed_step", "reason"),
@@ -52,7 +43,7 @@ def _separated(point: "AnySeparation") -> dict[str, Any]:
     }
 
 
-def _evaluated(way: "AnyEvaluation | None", without: type[Any]) -> dict[str, Any]:
+def _evaluated(way: "AnyEvaluation | None", without: "type[PartsOfRun]") -> dict[str, Any]:
     """`without`: the model whose names the parts have where there are none."""
     working, *names = (type(way.parts) if way else without).model_fields
     values = {n: getattr(way.parts, n) for n in (working, *names)} if way else {}
@@ -85,16 +76,12 @@ def print_separation(grid: "AnyGrid") -> None:
             click.echo(f"rounding overtakes truncation, {label}: {_crossed(getattr(grid, way))}")
 
 
-def _print_parts(point: "AnySeparation") -> None:
-    from verify.scenes.results.separation import SHOWN, SeparationResult
-    from verify.scenes.results.separation_in_degrees import FORM_SHOWN
-
-    planar = isinstance(point, SeparationResult)
-    ways = {label: way for key, label in _LABELS.items() if (way := getattr(point, key))}
-    first, kinds = ways["plain"], dict.fromkeys(way.error_kind for way in ways.values())
-    shown, head, width = (SHOWN, "", 26) if planar else (FORM_SHOWN, "greatest entry", 38)
+def _print_parts(point: "Separation") -> None:
+    ways = {_LABELS[key]: way for key, way in point.ways.items()}
+    parts, kinds = ways["plain"].parts, [way.error_kind for way in ways.values()]
+    head, width, told = ("greatest entry", 38, kinds) if point.greatest else ("", 26, kinds[:1])
     click.echo(f"  {head:16}{'plain':{width}}{'closed form' if len(ways) > 1 else ''}")
-    for name, label in (shown | {name: f"  {name}" for name in first.parts.of_rounding}).items():
+    for name, label in parts.labels("  ").items():
         cells = (_cell(point, getattr(way.parts, name)) for way in ways.values())
         click.echo(f"  {label:16}" + "".join(f"{cell:{width}}" for cell in cells).rstrip())
     for label, way in ways.items():
@@ -111,7 +98,7 @@ def _print_parts(point: "AnySeparation") -> None:
         click.echo(f"  {meaning}")
     click.echo(
         f"  {point.arithmetic} as exact arithmetic, {point.seconds:.3g} s; "
-        f"bounds {first.error_kind if planar else ', '.join(kinds)} ({point.error_method})"
+        f"bounds {', '.join(dict.fromkeys(told))} ({point.error_method})"
     )
 
 

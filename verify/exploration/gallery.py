@@ -14,7 +14,8 @@ from verify.exploration.island_search import COEFFICIENTS, REACH, STEP_SIZES
 from verify.exploration.measures import MEASURES, orbit
 from verify.exploration.sample import Sample
 from verify.scenes.results.exploration import Gallery, GalleryScene, HuntResult, Worst
-from verify.scenes.results.separation import PartsAt, SeparationResult
+from verify.scenes.results.separation import SeparationResult
+from verify.scenes.results.separation_parts import PartsAt
 from verify.scenes.toml_text import scene_text
 from verify.studies.separation.task import SeparationTask
 

@@ -14,7 +14,7 @@ from verify.papers.checks.check import Check
 from verify.proof.assistant.stated import Shipped
 from verify.prose import Formula, Prose, count, joined, prose, read_prose
 from verify.scenes.frozen import Said, WithProse
-from verify.scenes.results.step import StepResult
+from verify.scenes.results.claim import StepResult
 from verify.verdict import Verdict
 
 

@@ -33,7 +33,7 @@ from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.digits_on_demand import choose
 from verify.runs.estimated import LINEAR, digits_of, spread, working_digits
 from verify.runs.start import Start
-from verify.scenes.observables import observed
+from verify.scenes.observables import accumulated
 from verify.scenes.results.orbit import MOST_POINTS as MOST_POINTS
 from verify.scenes.results.orbit import OrbitTable
 from verify.scenes.results.run import RunResult
@@ -88,7 +88,7 @@ def _states(
     """The states of the run; in float64 where no digits are asked for."""
     start = orbit.inputs
     nothing_lost = step_map_of(orbit.hamiltonian, orbit.scheme).preserves_area
-    asked = frozenset[str]() if nothing_lost else frozenset(_observed(orbit))
+    asked = frozenset[str]() if nothing_lost else frozenset(accumulated(orbit.hamiltonian))
     while True:
         run = KernelRun(orbit.hamiltonian, orbit.scheme, start, steps, asked, 0, sections=points)
         found = _confirmed(run, digits, progress) if digits else _binary(run, progress)
@@ -99,14 +99,8 @@ def _states(
     first = orbit.point if digits else _first(own, orbit.point)
     every = -(-steps // points)
     at = (0, *(min(k * every, steps) for k in range(1, len(notes) + 1)))
-    nothing = dict.fromkeys((*orbit.point, *_observed(orbit)), _ZERO)
+    nothing = dict.fromkeys((*orbit.point, *accumulated(orbit.hamiltonian)), _ZERO)
     return _States(at, ({**nothing, **first}, *notes), (nothing, *radii))
-
-
-def _observed(orbit: Start) -> tuple[str, ...]:
-    """Λ, and W where that is more."""
-    usual = observed(orbit.hamiltonian, None)
-    return tuple(name for name in ("lambda", "symplectic_defect") if name in usual)
 
 
 Found = tuple[Arithmetic, int, tuple[Note, ...], tuple[Note, ...]]
@@ -165,10 +159,10 @@ class _Rows:
 
     def __init__(self, orbit: Start, digits: int) -> None:
         self.orbit, self.digits = orbit, digits
-        exact, self.names = orbit.hamiltonian, tuple(orbit.point)
-        ring, energy = energy_of(exact)
+        self.names = tuple(orbit.point)
+        ring, energy = energy_of(orbit.hamiltonian)
         self.energy = Enclosures(ring, [energy])
-        self.observed = _observed(orbit)
+        self.observed = accumulated(orbit.hamiltonian)
         self.delta_j = _DeltaJ(orbit, digits) if "lambda" in self.observed else None
 
     def of(self, states: _States, binary: bool) -> Iterator[tuple[str, ...]]:

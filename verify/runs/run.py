@@ -98,7 +98,6 @@ class AskedRun:
         self.steps, self.digits = steps, digits
         self.wanted = observed(hamiltonian, observables)
         check(hamiltonian, steps, digits, self.wanted)
-        check_times(hamiltonian, self.begun.t0, h, steps)
         whole("points", points, 0)
         step_map = step_map_of(hamiltonian, scheme)
         looked_at = {*self.wanted, *(("lambda",) if points else ())}
@@ -127,9 +126,16 @@ class AskedRun:
     def measured(self, progress: Progress | None = None) -> Course[Measured]:
         """All steps, done once; `progress` is called with the number of those done."""
         if self._measured is None:
-            given = self.kernel_run, self.arithmetic, self.digits, self.known
-            self._measured = yield from _run(*given, progress)
+            self._measured = yield from self._step(progress)
         return self._measured
+
+    def _step(self, progress: Progress | None) -> Course[Measured]:
+        begun, run = self.begun, self.kernel_run
+        check_times(begun.hamiltonian, begun.t0, begun.step_size, self.steps)
+        if self.arithmetic != float64.NAME:
+            return (yield from measure(run, self.arithmetic, self.digits, progress))
+        first = run.run(number_systems.get(self.arithmetic, self.digits), progress=progress)
+        return Measured((yield from bounded(run, first, self.known)), self.arithmetic, first)
 
     @property
     def done(self) -> bool:
@@ -139,9 +145,46 @@ class AskedRun:
     def result(self, progress: Progress | None = None) -> Course[RunResult]:
         """What is told of it."""
         done = yield from self.measured(progress)
-        found = _result(self.begun, self.steps, self.digits, self.wanted, self.known, done)
         left = left_domain(self.begun.hamiltonian, self.kernel_run, done.outcome)
-        return found.model_copy(update={"left_domain": left}) if left else found
+        return self._told(done, left)
+
+    def proved(self) -> RunResult | None:
+        """The observables without any step, and without p and q, where a proof gives all of them;
+        of a run that is asked for p and q alone it gives none."""
+        if not self.wanted or not set(self.wanted) <= set(self.known):
+            return None
+        found = Bounds({}, "a proof, and no run", rigorous=True)
+        return self._told(Measured(found, ball.NAME, Outcome()))
+
+    def _told(self, done: Measured, left: str = "") -> RunResult:
+        """What was found of the run, and what was known of it by a proof."""
+        begun, found, known = self.begun, done.bounds, self.known
+        most = min(self.digits, number_systems.about(done.arithmetic).digits or self.digits)
+        names = (*begun.point, *self.wanted)
+        values = {n: Value.of(*found.values[n], most) for n in names if n in found.values}
+        if found.status == "finished":
+            values |= {n: Value.of(*known[n], self.digits) for n in self.wanted if n in known}
+        return RunResult(
+            **begun.hamiltonian.texts,
+            scheme=begun.scheme,
+            arithmetic=done.arithmetic,
+            fallback=done.fallback,
+            left_domain=left,
+            digits=self.digits,
+            step_size=text(begun.step_size),
+            steps=self.steps,
+            q=begun.text("q"),
+            p=begun.text("p"),
+            t0=text(begun.t0),
+            status=found.status,
+            failed_step=found.failed_step,
+            values=values,
+            error_kind="enclosed" if found.rigorous else "estimated",
+            error_method=found.method,
+            exact=tuple(o for o in self.wanted if o in known),
+            series=done.outcome.series,
+            seconds=done.outcome.seconds,
+        )
 
 
 def run(
@@ -160,78 +203,6 @@ def run(
     unknown names, lists of another length.
     """
     return alone(AskedRun(hamiltonian, scheme, **asked).result(progress))
-
-
-def proved_run(
-    hamiltonian: Hamiltonian,
-    scheme: str,
-    *,
-    q: Given,
-    p: Given,
-    step_size: Fraction,
-    steps: int,
-    t0: Fraction,
-    digits: int,
-    observables: Sequence[str] | None,
-) -> RunResult | None:
-    """The observables without any step, and without p and q, where a proof gives all of them; of a
-    run that is asked for p and q alone it gives none.
-    """
-    wanted = observed(hamiltonian, observables)
-    check(hamiltonian, steps, digits, wanted)
-    known = proved(step_map_of(hamiltonian, scheme), wanted, step_size, steps, digits)
-    if not wanted or not set(wanted) <= set(known):
-        return None
-    found = Bounds({}, "a proof, and no run", rigorous=True)
-    done = Measured(found, ball.NAME, Outcome())
-    begun = Start(hamiltonian, scheme, step_size, point_of(hamiltonian, q, p), t0)
-    return _result(begun, steps, digits, wanted, known, done)
-
-
-def _result(
-    begun: Start,
-    steps: int,
-    digits: int,
-    observables: Sequence[str],
-    known: Bounded,
-    done: Measured,
-) -> RunResult:
-    """What was found of the run, and what was `known` of it by a proof."""
-    found = done.bounds
-    most = min(digits, number_systems.about(done.arithmetic).digits or digits)
-    names = (*begun.point, *observables)
-    values = {n: Value.of(*found.values[n], most) for n in names if n in found.values}
-    if found.status == "finished":
-        values |= {n: Value.of(*known[n], digits) for n in observables if n in known}
-    return RunResult(
-        **begun.hamiltonian.texts,
-        scheme=begun.scheme,
-        arithmetic=done.arithmetic,
-        fallback=done.fallback,
-        digits=digits,
-        step_size=text(begun.step_size),
-        steps=steps,
-        q=begun.text("q"),
-        p=begun.text("p"),
-        t0=text(begun.t0),
-        status=found.status,
-        failed_step=found.failed_step,
-        values=values,
-        error_kind="enclosed" if found.rigorous else "estimated",
-        error_method=found.method,
-        exact=tuple(o for o in observables if o in known),
-        series=done.outcome.series,
-        seconds=done.outcome.seconds,
-    )
-
-
-def _run(
-    kernel_run: KernelRun, arithmetic: str, digits: int, known: Bounded, progress: Progress | None
-) -> Course[Measured]:
-    if arithmetic != float64.NAME:
-        return (yield from measure(kernel_run, arithmetic, digits, progress))
-    first = kernel_run.run(number_systems.get(arithmetic, digits), progress=progress)
-    return Measured((yield from bounded(kernel_run, first, known)), arithmetic, first)
 
 
 def check(hamiltonian: Hamiltonian, steps: int, digits: int, observables: Sequence[str]) -> None:

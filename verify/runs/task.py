@@ -5,12 +5,12 @@ from typing import Literal
 
 from verify.arithmetic import AUTO, in_lanes, step_cost
 from verify.arithmetic.systems import float64, mpfr
-from verify.execution.keeping import Keeper
+from verify.execution.keeping import NOTHING, Keeper
 from verify.execution.task import StartTask
 from verify.kernels.run_inputs import SECTIONS
 from verify.lockstep import Course, alone
 from verify.runs.float64 import DIRECT_STEPS
-from verify.runs.run import AskedRun, proved_run
+from verify.runs.run import AskedRun
 from verify.scenes.frozen import Frozen
 from verify.scenes.results.run import RunResult
 from verify.scenes.values import Number, StepSize
@@ -57,10 +57,9 @@ class RunTask(StartTask):
 
     def proved(self) -> RunResult | None:
         """What a proof gives of the run without a step; None where it is not all that is asked."""
-        asked = self.asked("arithmetic", "points", "sections", "shares_kernel")
-        return proved_run(self.exact_hamiltonian(), **asked)
+        return self.asked_run().proved()
 
-    def asked_run(self, keeper: Keeper) -> AskedRun:
+    def asked_run(self, keeper: Keeper = NOTHING) -> AskedRun:
         """The run that `compute` does."""
         return AskedRun(self.exact_hamiltonian(), **self.asked(), keeper=keeper)
 

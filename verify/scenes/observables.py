@@ -25,9 +25,20 @@ def observed(hamiltonian: Hamiltonian, asked: Sequence[str] | None) -> tuple[str
     return tuple(name for name in _USUAL if _EVERY[name].fits(hamiltonian.degrees))
 
 
+def accumulated(hamiltonian: Hamiltonian) -> tuple[str, ...]:
+    """What all steps together do: Λ, and W where that is more, and is carried."""
+    usual = observed(hamiltonian, None)
+    return tuple(name for name in ("lambda", "symplectic_defect") if name in usual)
+
+
 def carries_defect(hamiltonian: Hamiltonian) -> bool:
     """Whether W is carried in so many degrees of freedom, or Λ, which it is in the plane."""
-    return _EVERY[hamiltonian.structure.of_run].fits(hamiltonian.degrees)
+    return carries(hamiltonian, hamiltonian.structure.of_run)
+
+
+def carries(hamiltonian: Hamiltonian, name: str) -> bool:
+    """Whether an observable is carried in so many degrees of freedom."""
+    return _EVERY[name].fits(hamiltonian.degrees)
 
 
 def check_observables(hamiltonian: Hamiltonian, asked: Sequence[str]) -> None:

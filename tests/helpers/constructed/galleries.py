@@ -5,7 +5,7 @@ from typing import Any
 from tests.helpers.constructed.separations import evaluation, point
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.exploration import Gallery, GalleryScene
-from verify.scenes.results.separation import EvaluationResult, PartsAt
+from verify.scenes.results.separation_parts import EvaluationResult, PartsAt
 
 SCENE = 'hamiltonian = "p**2/2 + q**4/4"\nschemes = ["lie2"]\n'
 

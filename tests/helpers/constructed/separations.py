@@ -4,13 +4,8 @@ from decimal import Decimal
 from typing import Any
 
 from verify.scenes.results.bounded_value import Value
-from verify.scenes.results.separation import (
-    EvaluationResult,
-    GrowthResult,
-    Parts,
-    SeparationGrid,
-    SeparationResult,
-)
+from verify.scenes.results.separation import SeparationGrid, SeparationResult
+from verify.scenes.results.separation_parts import EvaluationResult, GrowthResult, Parts
 from verify.studies.separation.separate import as_grid
 
 PARTS = ("input", "trajectory", "determinant", "product")

@@ -20,7 +20,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.scenes.results.claim import ClaimResult
 from verify.scenes.results.regions import EXACT_FLOW, FlowImage
 from verify.scenes.scene import Scene, scene_from
-from verify.studies.regions.plan import need_flows
+from verify.studies.kinds.regions import need_flows
 from verify.studies.regions.task import FlowTask
 from verify.verdict import Verdict
 

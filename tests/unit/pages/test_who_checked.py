@@ -6,8 +6,7 @@ from typing import Any
 from tests.unit.pages.test_page import EVIL, proof, report, scene
 from verify.pages.page import render
 from verify.prose import prose, read_prose
-from verify.scenes.results.claim import ClaimResult
-from verify.scenes.results.step import StepResult
+from verify.scenes.results.claim import ClaimResult, StepResult
 from verify.verdict import Verdict
 
 

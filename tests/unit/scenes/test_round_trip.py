@@ -15,7 +15,7 @@ from verify.prose import read_prose
 from verify.scenes.causes import Cause
 from verify.scenes.frozen import Frozen, OfScheme, WithProse
 from verify.scenes.results import bounded_value as value
-from verify.scenes.results import claim, growth, proof, separation, separation_in_degrees
+from verify.scenes.results import claim, form_value, growth, proof, separation, separation_parts
 from verify.scenes.results import orbit_sections as orbit_results
 from verify.scenes.results import regions as flow_results
 from verify.scenes.results import report as scene_results
@@ -35,7 +35,8 @@ RESULTS = (
     orbit_results,
     proof,
     separation,
-    separation_in_degrees,
+    separation_parts,
+    form_value,
     value,
     run_results,
     scene_results,

@@ -5,8 +5,7 @@ from decimal import Decimal
 from fractions import Fraction
 
 from verify.pages.text.typography import NBSP, between, interval, number, step, whole
-from verify.scenes.results.separation import WAYS, CrossoverResult, SeparationGrid
-from verify.scenes.results.separation_in_degrees import AnySeparation
+from verify.scenes.results.separation import WAYS, CrossoverResult, Separation, SeparationGrid
 
 PLAIN, CLOSED_FORM = "plain", "closed_form"
 _NONE = "none in this range: "  # how a crossover's reason begins where there is none
@@ -61,7 +60,7 @@ def short(step_size: str) -> str:
     return number(f"{Decimal(step_size):.1e}").replace(" ", NBSP)
 
 
-def end_of(points: Sequence[AnySeparation]) -> str:
+def end_of(points: Sequence[Separation]) -> str:
     """`, over [t₀, t₀ + T]` where all runs end at one time."""
     lengths = {Fraction(point.step_size) * point.steps for point in points}
     if len(lengths) != 1:

@@ -15,6 +15,7 @@ from verify.pages.figures.logarithm import lg
 from verify.pages.text.typography import interval, listed
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.work_precision import LimitedBy, WorkLine, WorkPoint, WorkPrecisionResult
+from verify.structures import SYMPLECTIC
 
 if TYPE_CHECKING:
     from verify.pages.figures.work_precision_figure import DrawnLine, Mark, Panel
@@ -68,17 +69,16 @@ def _area_panels(found: WorkPrecisionResult) -> "Iterator[Panel]":
     if lines:
         from verify.pages.figures.work_precision_figure import Panel
 
-        area = "|Λ|" if found.planar else "max |W|"
-        yield Panel(f"{area} against run time", _RUN_TIME, lines)
+        yield Panel(f"{found.structure.size} against run time", _RUN_TIME, lines)
 
 
 def _of_areas(found: WorkPrecisionResult) -> str:
-    if not found.planar:
-        kept = [line.name for line in found.lines if line.area_preserving]
-        said = f" For {listed(kept)} S ≡ 0 is proved, and W is 0." if kept else ""
+    keeping = [line for line in found.lines if line.area_preserving]
+    if found.structure is SYMPLECTIC:
+        kept = listed(line.name for line in keeping)
+        said = f" For {kept} S ≡ 0 is proved, and W is 0." if keeping else ""
         return f"max |W| is the greatest entry of W, the symplectic defect of the run.{said}"
     caption = "Λ in float64 by the closed form of ΔJ."
-    keeping = [line for line in found.lines if line.area_preserving]
     if keeping:
         caption += (
             f" For {listed(line.name for line in keeping)} ΔJ ≡ 0 is proved and Λ is 0; what is "

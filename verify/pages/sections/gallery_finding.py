@@ -8,7 +8,7 @@ from verify.pages.figures.logarithm import lg
 from verify.pages.sections.separation_finding import decades_below
 from verify.pages.text.typography import NBSP, counted, number, whole
 from verify.scenes.results.exploration import GalleryScene
-from verify.scenes.results.separation import EvaluationResult
+from verify.scenes.results.separation_parts import EvaluationResult
 
 _ALL_DIGITS = 53 * 0.30103  # of float64
 _PLAIN = (-2, 3)  # lg of what is written without a power of ten

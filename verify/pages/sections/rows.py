@@ -2,14 +2,11 @@
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from markupsafe import Markup
 
-from verify.pages.figures.separation_caption import end_of
-from verify.pages.text.typography import start, whole
-from verify.scenes.results.separation_in_degrees import AnyGrid, AnySeparation
+from verify.pages.text.typography import whole
 
 MOST_ROWS = 600  # of a table; the others are in results.json
 Member = TypeVar("Member")
@@ -62,23 +59,3 @@ def told(count: int, shown: int, failures: int = 0) -> str:
     elif failures:
         which = f", the {whole(failures)} that did not end well among them"
     return f"{whole(shown)} of {whole(count)} are shown{which}; all are in results.json."
-
-
-def groups_of_grids(grids: Sequence[AnyGrid], row: Callable[[Any], Row | None]) -> Iterator[Group]:
-    """A group for each grid with a row; as many rows as are shown, of all that there are."""
-    every: list[Sequence[AnySeparation]] = [grid.points for grid in grids]
-    for grid, held in zip(grids, shown(every, _unsplit), strict=True):
-        points = sorted(held, key=lambda point: Fraction(point.step_size))
-        rows = [found for point in points if (found := row(point))]
-        if rows:
-            yield Group(start(points[0]) + end_of(grid.points), rows)
-
-
-def told_of_points(points: Sequence[AnySeparation]) -> str:
-    """As `told`; what could not be separated is what failed."""
-    (held,) = shown([points], _unsplit)
-    return told(len(points), len(held), sum(map(_unsplit, points)))
-
-
-def _unsplit(point: AnySeparation) -> bool:
-    return point.plain is None

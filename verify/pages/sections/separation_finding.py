@@ -5,17 +5,17 @@ What stands for a run is the greatest |truncation| and |rounding| along it, sinc
 """
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
-from decimal import Decimal
+from collections.abc import Iterator, Sequence
 from math import isfinite
 
 from markupsafe import Markup
 
 from verify.pages.figures.logarithm import lg
 from verify.pages.figures.separation_caption import PLAIN
+from verify.pages.sections.separation_table import greatest_part
 from verify.pages.text.typography import between, counted, every, listed, whole
-from verify.scenes.results.separation import WAYS, EvaluationResult, SeparationResult
-from verify.scenes.results.separation_in_degrees import AnySeparation
+from verify.scenes.results.separation import WAYS, SeparationResult
+from verify.scenes.results.separation_parts import AnyEvaluation, EvaluationResult
 
 
 def finding(points: Sequence[SeparationResult], where: str = "") -> Iterator[str]:
@@ -83,27 +83,6 @@ def growth_finding(points: Sequence[SeparationResult]) -> str:
     return f"How rounding grows with N: {'; '.join(said)}." if said else ""
 
 
-def computed(
-    points: Sequence[AnySeparation], bounds: Callable[[Counter[str]], str] | None = None
-) -> str:
-    """What stood for exact arithmetic, and how errors were bounded; `bounds` tells of the kinds."""
-    finished = [p for p in points if p.plain]
-    if not finished:
-        return ""
-    systems = listed(dict.fromkeys(p.arithmetic for p in finished))
-    ways = (way for p in finished for way in (p.plain, p.closed_form))
-    kinds = Counter(str(way.error_kind) for way in ways if way)
-    methods = "; ".join(dict.fromkeys(p.error_method for p in finished))
-    told = (bounds or _each_kind)(kinds)
-    return f"In place of exact arithmetic: {systems}. Error bounds {told}: {methods}."
-
-
-def _each_kind(kinds: Counter[str]) -> str:
-    if len(kinds) == 1:
-        return f"all {next(iter(kinds))}"
-    return listed(f"{n} {kind}" for kind, n in kinds.most_common())
-
-
 def _of(n: int, count: int) -> str:
     if n == count:
         return every(count, "entry", "entries")
@@ -114,16 +93,7 @@ def _range(found: Sequence[float]) -> str:
     return between(f"{min(found):.1f}", f"{max(found):.1f}")
 
 
-def decades_below(evaluation: EvaluationResult) -> float | None:
+def decades_below(evaluation: AnyEvaluation) -> float | None:
     """By how many decades the greatest |rounding| lies below the greatest |truncation|."""
     gap = lg(evaluation.largest["truncation"]) - lg(evaluation.largest["total"])
     return gap if isfinite(gap) else None
-
-
-def greatest_part(evaluation: EvaluationResult) -> str:
-    sizes = {
-        name: abs(Decimal(getattr(evaluation.parts, name).value))
-        for name in evaluation.parts.of_rounding
-    }
-    greatest = max(sizes, key=lambda name: sizes[name])
-    return greatest if sizes[greatest] else ""

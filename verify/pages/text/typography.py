@@ -15,7 +15,7 @@ from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.growth import AverageResult
 from verify.scenes.results.regions import EXACT_FLOW
 from verify.scenes.results.run import RunResult
-from verify.scenes.results.separation_in_degrees import AnySeparation
+from verify.scenes.results.separation import Separation
 from verify.scenes.results.work_precision import WorkPrecisionResult
 
 NBSP = "\u00a0"
@@ -130,7 +130,7 @@ def grouped(text: str) -> Markup:
 
 
 def start(
-    run: RunResult | AnySeparation | AverageResult | WorkPrecisionResult,
+    run: RunResult | Separation | AverageResult | WorkPrecisionResult,
 ) -> str:
     """A run's initial value, and when it starts, where that is not 0."""
     t0 = getattr(run, "t0", "0")

@@ -4,10 +4,21 @@ from typing import Literal
 
 from verify.prose import Prose
 from verify.scenes.frozen import Said, WithProse
-from verify.scenes.results.step import StepResult
 from verify.verdict import Verdict
 
 Standing = Literal["fair", "strict", "misprint", "ours"]  # see `verify.scenes.results.statement`
+
+
+class StepResult(WithProse):
+    """A step in words and formulas.
+
+    `checked_by`: what checked it by machine, one text each; where there is none it was not checked
+    by machine. `tried`: examples of it that were computed, which prove nothing by themselves.
+    """
+
+    text: Said
+    checked_by: tuple[Said, ...] = ()
+    tried: tuple[Said, ...] = ()
 
 
 class CriterionResult(WithProse):

@@ -2,7 +2,7 @@
 
 from verify.prose import Prose
 from verify.scenes.frozen import Frozen, OfScheme, Said, Seconds, WithProse
-from verify.scenes.results.step import StepResult
+from verify.scenes.results.claim import StepResult
 from verify.schemes.conditions.condition import Condition
 from verify.verdict import Verdict
 

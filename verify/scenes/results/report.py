@@ -18,8 +18,7 @@ from verify.scenes.results.orbit_sections import PoincareResult, StroboscopicRes
 from verify.scenes.results.proof import EveryResult, ProofResult
 from verify.scenes.results.regions import FlowResult
 from verify.scenes.results.run import RunResult
-from verify.scenes.results.separation import SeparationGrid
-from verify.scenes.results.separation_in_degrees import SeparationGridInDegrees
+from verify.scenes.results.separation import SeparationGrid, SeparationGridInDegrees
 from verify.scenes.results.stability import (
     LargestStepResult,
     OrbitMapResult,

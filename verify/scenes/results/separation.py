@@ -1,156 +1,132 @@
-"""Truncation and rounding in Λ as they were found, and how they show themselves in a notebook."""
+"""Truncation and rounding as they were found, and how they show themselves in a notebook.
 
-from collections.abc import Callable, Iterator, Mapping
+In the plane Λ is split, a number; in n degrees of freedom W, the symplectic defect of the run,
+entry by entry.
+"""
+
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, Literal, TypeVar
 
 from verify.frames import library, nearest_float
 from verify.notebook import html_table
-from verify.scenes.frozen import Frozen, OfScheme, Said, Seconds, WithProse
-from verify.scenes.results.bounded_value import Value
+from verify.scenes.frozen import Frozen, OfScheme, Seconds
+from verify.scenes.results.form_value import largest
+from verify.scenes.results.separation_parts import (
+    AnyEvaluation,
+    EvaluationResult,
+    FormEvaluation,
+    FormParts,
+    Parts,
+    PartsOfRun,
+    TangentGrowth,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-ROUNDING = ("input", "trajectory", "determinant", "product")  # the parts of it
-SHOWN = {"lambda_working": "Λ in float64", "truncation": "truncation", "total": "rounding"}
 WAYS = {"plain": "the plain way", "closed_form": "closed form"}
 
 
-class Chain(Frozen):
-    """The parts of what float64 finds, which the chain's kinds of rounding end."""
+class Separation(OfScheme):
+    """Truncation and rounding of one run in float64; see `verify.studies.separation.separate`.
 
-    rounding: ClassVar[tuple[str, ...]]
-
-    @property
-    def of_rounding(self) -> tuple[str, ...]:
-        """The names of the parts of rounding, in the chain's order."""
-        first, *others = self.rounding
-        return first, *(["clock"] if hasattr(self, "clock") else []), *others
-
-
-class Parts(Chain):
-    """truncation + input + trajectory + determinant + product = lambda_working (one equation of
-    exact rationals, of which these are the known digits); total is the sum of the last four."""
-
-    rounding: ClassVar = ROUNDING
-    lambda_working: Value
-    truncation: Value
-    total: Value
-    input: Value
-    trajectory: Value
-    determinant: Value
-    product: Value
-
-
-class PartsInTime(Parts):
-    """Of an H that depends on time: what float64's clock does stands between input and
-    trajectory."""
-
-    clock: Value
-
-
-class PartsAt(Frozen):
-    """The parts after `steps` steps, as decimals of a few digits, for a figure."""
-
-    steps: int
-    truncation: str
-    total: str
-    input: str
-    trajectory: str
-    determinant: str
-    product: str
-
-
-class PartsInTimeAt(PartsAt):
-    """The same of an H that depends on time."""
-
-    clock: str
-
-
-class GrowthResult(WithProse):
-    """A `verify.studies.separation.growth.Growth`."""
-
-    exponent: str | None
-    standard_error: str | None
-    name: Literal["random walk", "drift", "undecided"]
-    reason: Said
-    first: int
-    last: int
-    points: int
-
-
-class EvaluationResult(Frozen):
-    """Λ of a float64 run, split, for one way to evaluate it; `growth`: of total and of each part.
-
-    `largest`: the greatest |truncation| and |total| at the checkpoints of the run.
+    `plain` and `closed_form`, its ways to evaluate what is split, are None where `status` is not
+    "finished" (`reason` says why). `arithmetic` is what stood for exact arithmetic; `seconds` is
+    the stepping of all runs.
     """
 
-    parts: PartsInTime | Parts
-    largest: dict[str, str]
-    growth: dict[str, GrowthResult]
-    series: tuple[PartsInTimeAt | PartsAt, ...]
-    error_kind: Literal["enclosed", "estimated"]
-
-
-class SeparationResult(OfScheme):
-    """Truncation and rounding in Λ of one run in float64; see `verify.studies.separation.separate`.
-
-    `plain` and `closed_form` are None where `status` is not "finished" (`reason` says why), and
-    `closed_form` also where some det J ≤ 0, whose logarithm it would take. `arithmetic` is what
-    stood for exact arithmetic; `seconds` is the stepping of all runs.
-    """
-
+    split_into: ClassVar[type[PartsOfRun]]
+    greatest: ClassVar[str] = ""  # what is said of the parts where each is the greatest of several
     arithmetic: str
     digits: int
     step_size: str
     steps: int
-    q: str
-    p: str
+    q: str | tuple[str, ...]
+    p: str | tuple[str, ...]
     t0: str = "0"
     status: Literal["finished", "left range", "unresolved"]
     failed_step: int | None
     reason: str
-    plain: EvaluationResult | None
-    closed_form: EvaluationResult | None
+    plain: AnyEvaluation | None
+    closed_form: AnyEvaluation | None
     error_method: str
     seconds: Seconds
+
+    @property
+    def ways(self) -> dict[str, Any]:
+        """What was evaluated, by the names of `WAYS`."""
+        return {way: found for way in WAYS if (found := getattr(self, way))}
 
     def __repr__(self) -> str:
         what = f"{self.scheme}, {self.steps} steps of h = {self.step_size}"
         if self.plain is None:
-            return f"SeparationResult({what}: {self.status})"
-        parts = self.plain.parts
-        return f"SeparationResult({what}: truncation {parts.truncation}, rounding {parts.total})"
+            return f"{type(self).__name__}({what}: {self.status})"
+        truncation, total = map(largest, (self.plain.parts.truncation, self.plain.parts.total))
+        sizes = f"{self.greatest}truncation {truncation}, rounding {total}"
+        return f"{type(self).__name__}({what}: {sizes})"
+
+    def _beside(self) -> tuple[list[tuple[str, ...]], str]:
+        """More rows of its table, and what is said at its foot, first."""
+        grows = (way.growth["total"].name for way in self.ways.values())
+        return [("rounding with N", *grows)], ""
 
     def _repr_html_(self) -> str:
-        """The parts of Λ for each way to evaluate it, with their bounds."""
-        return parts_table(self, "Λ", SHOWN, str, grows=lambda way: way.growth["total"].name)
+        """The parts for each way to evaluate, with their bounds; of matrices the greatest entry."""
+        whole = self.split_into.structure.accumulated
+        caption = f"{self.scheme}: {self.steps} steps of h = {self.step_size}, {whole} in float64"
+        if self.plain is None:
+            return html_table(caption, (), [(self.status, self.reason)])
+        rows = [
+            (label, *(str(largest(getattr(way.parts, name))) for way in self.ways.values()))
+            for name, label in self.plain.parts.labels("– ").items()
+        ]
+        more, said = self._beside()
+        bounds = f"bounds {self.plain.error_kind}: {self.error_method}"
+        foot = f"{said}{self.arithmetic} as exact arithmetic; {bounds}"
+        return html_table(caption, ("", *(WAYS[way] for way in self.ways)), [*rows, *more], foot)
 
 
-def parts_table(
-    point: Any,
-    whole: str,
-    labels: Mapping[str, str],
-    cell: Callable[[Any], str],
-    said: str = "",
-    grows: Callable[[Any], str] | None = None,
-) -> str:
-    """What was split, of Λ or W, for each way to evaluate it, and how rounding `grows` with N;
-    `said` at its foot, first."""
-    caption = f"{point.scheme}: {point.steps} steps of h = {point.step_size}, {whole} in float64"
-    if point.plain is None:
-        return html_table(caption, (), [(point.status, point.reason)])
-    ways = {label: getattr(point, way) for way, label in WAYS.items() if getattr(point, way)}
-    parts = {**labels, **{name: f"– {name}" for name in point.plain.parts.of_rounding}}
-    rows = [
-        (label, *(cell(getattr(way.parts, name)) for way in ways.values()))
-        for name, label in parts.items()
-    ]
-    if grows:
-        rows.append(("rounding with N", *map(grows, ways.values())))
-    foot = f"{said}{point.arithmetic} as exact arithmetic; bounds {point.plain.error_kind}: "
-    return html_table(caption, ("", *ways), rows, foot + point.error_method)
+class SeparationResult(Separation):
+    """Truncation and rounding in Λ of one run in float64.
+
+    `closed_form` is None also where some det J ≤ 0, whose logarithm it would take.
+    """
+
+    split_into: ClassVar = Parts
+    q: str
+    p: str
+    plain: EvaluationResult | None
+    closed_form: EvaluationResult | None
+
+
+class SeparationInDegrees(Separation):
+    """Truncation and rounding in W of one run in float64, in n degrees of freedom; see
+    `verify.studies.separation.ways.matrices`.
+
+    `coordinates` name the rows and columns of all matrices. `plain` takes W = MᵀΩM − Ω of float64's
+    M, `closed_form` sums MᵀSM. `tangent` is None where they are.
+    """
+
+    split_into: ClassVar = FormParts
+    greatest: ClassVar = "greatest entries: "
+    coordinates: tuple[str, ...]
+    q: tuple[str, ...]
+    p: tuple[str, ...]
+    plain: FormEvaluation | None
+    closed_form: FormEvaluation | None
+    tangent: TangentGrowth | None
+
+    def name_of(self, place: tuple[int, int]) -> str:
+        """An entry as a 2-form: dp1∧dq1."""
+        return "∧".join(f"d{self.coordinates[k]}" for k in place)
+
+    def _beside(self) -> tuple[list[tuple[str, ...]], str]:
+        said = f"the greatest entry of each; {self.tangent.meaning} " if self.tangent else ""
+        return [], said
+
+
+AnySeparation = SeparationResult | SeparationInDegrees
+# -- over step sizes ------------------------------------------------------------------------------
 
 
 class CrossoverResult(Frozen):
@@ -161,7 +137,7 @@ class CrossoverResult(Frozen):
     reason: str
 
 
-P = TypeVar("P")  # a separation
+P = TypeVar("P", bound=Separation)
 
 
 class GridOf(Frozen, Generic[P]):
@@ -172,7 +148,7 @@ class GridOf(Frozen, Generic[P]):
     closed_form: CrossoverResult
 
     def __repr__(self) -> str:
-        sizes = ", ".join(point.step_size for point in list[Any](self.points))
+        sizes = ", ".join(point.step_size for point in self.points)
         return f"{type(self).__name__}({len(self.points)} step sizes: {sizes})"
 
 
@@ -185,8 +161,7 @@ class SeparationGrid(GridOf[SeparationResult]):
         return [
             {"step_size": point.step_size, "steps": str(point.steps), "way": way, **_texts(found)}
             for point in self.points
-            for way in WAYS
-            if (found := getattr(point, way)) is not None
+            for way, found in point.ways.items()
         ]
 
     def to_dataframe(self) -> "pd.DataFrame":
@@ -219,18 +194,24 @@ def _texts(way: EvaluationResult) -> dict[str, str]:
     return {name: value.value for name, value in parts.items()} | bounds
 
 
-def _sizes(point: SeparationResult) -> Iterator[str]:
+def _sizes(point: SeparationResult) -> list[str]:
     if point.plain is None:
-        yield f"{point.status}: {point.reason}"
-        return
-    yield str(point.plain.parts.truncation)
-    for way in (point.plain, point.closed_form):
-        yield _rounding(way)
-
-
-def _rounding(way: EvaluationResult | None) -> str:
-    return str(way.parts.total) if way else "–"
+        return [f"{point.status}: {point.reason}"]
+    rounding = (str(found.parts.total) if found else "–" for found in map(point.ways.get, WAYS))
+    return [str(point.plain.parts.truncation), *rounding]
 
 
 def _crossing(way: CrossoverResult) -> str:
     return f"below h = {way.step_size}" if way.step_size else way.reason
+
+
+class SeparationGridInDegrees(GridOf[SeparationInDegrees]):
+    """The separation of W for several step sizes, in the order given, and the crossover of the
+    greatest entries, each way."""
+
+    def _repr_html_(self) -> str:
+        """Each step size in full, one below the other."""
+        return "".join(point._repr_html_() for point in self.points)
+
+
+AnyGrid = SeparationGrid | SeparationGridInDegrees

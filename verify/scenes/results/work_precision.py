@@ -6,6 +6,7 @@ from typing import Literal
 from verify.scenes.frozen import Frozen, Said, Seconds, WithProse
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.values import rounded_down
+from verify.structures import Structure, structure_in
 
 LimitedBy = Literal["truncation", "rounding", "undecided", "tolerance", "failed"]
 
@@ -181,9 +182,9 @@ class WorkPrecisionResult(Frozen):
     seconds: Seconds
 
     @property
-    def planar(self) -> bool:
-        """Whether it is of p and q, and not of lists of them."""
-        return isinstance(self.q, str)
+    def structure(self) -> Structure:
+        """What its schemes are to keep."""
+        return structure_in(1 if isinstance(self.q, str) else len(self.q))
 
     @property
     def rounded_down(self) -> str:

@@ -13,6 +13,7 @@ from verify.runs.task import RunTask
 from verify.scenes.observables import observed
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene
+from verify.studies.separation.links import way_of
 from verify.studies.separation.task import does_for_first_link
 from verify.studies.separation.ways.determinants import POINTS
 
@@ -57,10 +58,11 @@ def _fields_of_all(scene: Scene) -> dict[str, Any]:
 def shares_runs(scene: Scene) -> bool:
     """Whether the grid's runs are its separations' first links too."""
     grid = scene.grid
-    if grid is None or not grid.separate or not scene.exact_hamiltonian().planar:
+    if grid is None or not grid.separate:
         return False
-    asked = observed(scene.exact_hamiltonian(), grid.observables)
-    return "lambda" in asked and does_for_first_link(grid.arithmetic, grid.digits)
+    exact = scene.exact_hamiltonian()
+    has_links = way_of(exact).observables <= set(observed(exact, grid.observables))
+    return has_links and does_for_first_link(grid.arithmetic, grid.digits)
 
 
 def grid_runs(scene: Scene, scheme: str, results: Results) -> list[RunResult]:

@@ -5,25 +5,37 @@ In n degrees of freedom it is W that is split.
 
 from collections.abc import Iterator, Sequence
 from itertools import chain, repeat
-from typing import Any
+from typing import Any, NamedTuple
 
 from verify.execution.plan import Plan
 from verify.execution.study import Results, Section, Study, called, known_results
-from verify.scenes.results.separation import SeparationResult
-from verify.scenes.results.separation_in_degrees import SeparationInDegrees
+from verify.scenes.results.separation import Separation
 from verify.scenes.run_sections import Grid
 from verify.scenes.scene import Scene
+from verify.structures import AREA, SYMPLECTIC
 from verify.studies.kinds.grid import grid_tasks, shares_runs
 from verify.studies.separation.separate import as_grid
 from verify.studies.separation.task import DIGITS, FormSeparationTask, SeparationTask
 
 
-def _rows(
-    scene: Scene, scheme: str, grid: Grid
-) -> Sequence[Sequence[SeparationTask | FormSeparationTask]]:
+class _Split(NamedTuple):
+    """What is computed, and where a `SceneResult` has it: of the grid's runs, and beside them."""
+
+    task: type[SeparationTask]
+    own: str
+    beside: str
+
+
+_SPLITS = {
+    AREA: _Split(SeparationTask, "separations", "crossovers"),
+    SYMPLECTIC: _Split(FormSeparationTask, "form_separations", "form_crossovers"),
+}
+
+
+def _rows(scene: Scene, scheme: str, grid: Grid) -> Sequence[Sequence[SeparationTask]]:
     """The splits of the grid's runs, by initial value, then step size."""
     given = scene.hamiltonian_fields()
-    task = SeparationTask if scene.exact_hamiltonian().planar else FormSeparationTask
+    task = _SPLITS[scene.exact_hamiltonian().structure].task
     shared = grid is scene.grid and shares_runs(scene)
     runs: Iterator[dict[str, Any]] = repeat({})
     if shared:  # they are in the same order
@@ -49,31 +61,28 @@ def _beside(scene: Scene) -> list[Grid]:
 
 
 def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
-    name, exact = called(scene), scene.exact_hamiltonian()
-    what, why = ("Λ", "ΔJ ≡ 0") if exact.planar else ("W", "S ≡ 0")
-    title = f"{name}: truncation separated from rounding"
+    structure = scene.exact_hamiltonian().structure
+    title = f"{called(scene)}: truncation separated from rounding"
     for grid in (*_own(scene), *_beside(scene)):
         if preserves:
-            without = f"{why} is proved: the truncation part is exactly 0"
+            without = f"{structure.identity} is proved: the truncation part is exactly 0"
             plan.leave_out(f"{title} for {scheme}", without)
             continue
         for task in chain.from_iterable(_rows(scene, scheme, grid)):
-            plan.need(task, f"{title} in {what}")
+            plan.need(task, f"{title} in {structure.accumulated}")
 
 
 def _found(scene: Scene, results: Results) -> dict[str, Any]:
-    planar = scene.exact_hamiltonian().planar
-    model: Any = SeparationResult if planar else SeparationInDegrees
-    of_each = {"separations": _own(scene), "crossovers": _beside(scene)}
+    split = _SPLITS[scene.exact_hamiltonian().structure]
     return {
-        name if planar else f"form_{name}": tuple(
+        name: tuple(
             as_grid(known)
             for scheme in scene.schemes
             for grid in grids
             for row in _rows(scene, scheme, grid)
-            if (known := known_results(model, row, results))
+            if (known := known_results(Separation, row, results))
         )
-        for name, grids in of_each.items()
+        for name, grids in ((split.own, _own(scene)), (split.beside, _beside(scene)))
     }
 
 

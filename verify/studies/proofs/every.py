@@ -4,8 +4,8 @@ from typing import Any, Literal
 
 from verify.execution.keeping import Keeper
 from verify.execution.task import Task
+from verify.scenes.results.claim import StepResult
 from verify.scenes.results.proof import EveryResult
-from verify.scenes.results.step import StepResult
 
 _COST = 20_000_000  # of a proof, about
 

@@ -14,17 +14,42 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import groupby, pairwise
+from typing import Any, Protocol
 
 import numpy as np
 
 from verify.scenes.shapes.outline import Outline
-from verify.studies.regions.carrier import PointCarrier, Points
 from verify.studies.regions.panels import NODES, Rule, nodes_between, rule
 
 FIRST_PANELS = 8  # of an outline, at least
 MOST_NODES = 120_000
 _MOST_ROUNDS = 24
 _STUCK = 2  # a difference that halving does not make smaller by this factor is rounding's
+
+
+Points = tuple[Any, ...]
+"""q and p, or q1 … qn and p1 … pn: a sequence of each."""
+
+
+class PointCarrier(Protocol):
+    """Points in one number system, and a map of them."""
+
+    bits: int  # about so many are right after the point
+    grid: int  # 2^grid is what `whole` multiplies by
+    sampled: int  # panels that are carried in finer arithmetic
+    radius: Fraction | None  # a bound of the images' error, where that is known otherwise
+
+    def points(self, outline: Outline, arc: int, s: Sequence[Fraction]) -> Points:
+        """An arc's points."""
+
+    def images(self, *points: Any) -> Points:
+        """Their images."""
+
+    def finer(self, *points: Any) -> Points:
+        """Their images in finer arithmetic."""
+
+    def whole(self, x: Any) -> np.ndarray:
+        """2^grid x, rounded to whole numbers; an array of int."""
 
 
 class NoAreaError(Exception):

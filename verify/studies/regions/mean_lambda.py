@@ -61,13 +61,13 @@ def mean_over(
 
     By rays from the centre (q, p). Raises LeftRangeError.
     """
-    name, observable = "lam", "lambda"
-    if not hamiltonian.planar:
-        name, observable = f"w_{place.index}_{place.degrees + place.index}", "symplectic_defect"
+    observables = frozenset({hamiltonian.structure.of_run})
     carried = PointMap(
         hamiltonian, scheme, step_size=step_size, steps=steps, t0=t0,
-        arithmetic=number_systems.get(float64.NAME, 17), observables=frozenset({observable}),
+        arithmetic=number_systems.get(float64.NAME, 17), observables=observables,
     )  # fmt: skip
+    entry = f"w_{place.index}_{place.degrees + place.index}"
+    name = entry if entry in carried.kernel.state_names else "lam"
 
     def density(x: np.ndarray, y: np.ndarray) -> np.ndarray:
         points = place.embed(x, y, lambda value: np.full(len(x), float(value)))
@@ -75,7 +75,7 @@ def mean_over(
         return found
 
     found = _mean_of(density, outline, centre)
-    written = hamiltonian.planar or step_map_of(hamiltonian, scheme).written_defect is not None
+    written = name == "lam" or step_map_of(hamiltonian, scheme).written_defect is not None
     return found if written else Mean(found.value, found.error + steps * _DEFECT)
 
 

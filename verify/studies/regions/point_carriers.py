@@ -26,7 +26,7 @@ from verify.flows.points import exact_points
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.many_points import PointMap
 from verify.scenes.shapes.outline import Outline
-from verify.studies.regions.carrier import Points
+from verify.studies.regions.area import Points
 from verify.studies.regions.hausdorff import FARTHEST, hausdorff
 from verify.studies.regions.place import ITSELF, Place
 from verify.studies.regions.polyline import dense

@@ -28,7 +28,7 @@ class FlowTask(HamiltonianTask):
     mean_lambda: bool
     distance: bool
     point: dict[str, Number] = Field(default_factory=dict)
-    """In n degrees of freedom the centre's coordinates by their names; `plane`, where it lies."""
+    """The centre's coordinates by their names; `plane`: in which it lies. Left out: p and q."""
     plane: int = 1
 
     @property

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from verify.arithmetic.exact import magnitude
-from verify.scenes.results.separation import ROUNDING
+from verify.scenes.results.separation_parts import Parts
 from verify.studies.separation.stepper.trail import Kind, Link, Trail
 
-PARTS = ROUNDING  # in the plane
+PARTS = Parts.rounding  # in the plane
 _WHOLES = ("lambda_working", "truncation", "total")
 QUANTITIES = (*_WHOLES, *PARTS)
 
@@ -35,19 +35,19 @@ class Chain:
 
         truncation + all parts = lambda_working, exactly.
         """
-        first, last = self._between(name)
-        trail = last.trail - first.trail if first else last.trail
-        return trail, _bound(first, last)
+        before, after = self._ends(name)
+        last = self.links[after]
+        if before is None:
+            return last.trail, last.bound
+        first = self.links[before]
+        # What one object has from itself is exactly 0.
+        bound = Fraction(0) if first is last else first.bound + last.bound
+        return last.trail - first.trail, bound
 
     def final(self, name: str) -> tuple[Fraction, Fraction]:
         """A quantity after the last step, and the bound of its error."""
-        first, last = self._between(name)
-        value = last.trail[-1] - first.trail[-1] if first else last.trail[-1]
-        return value, _bound(first, last)
-
-    def _between(self, name: str) -> tuple[Link | None, Link]:
-        before, after = self._ends(name)
-        return None if before is None else self.links[before], self.links[after]
+        trail, bound = self.trail(name)
+        return trail[-1], bound
 
     def _ends(self, name: str) -> tuple[int | None, int]:
         """Between which links a quantity lies; None: nothing is before it."""
@@ -83,13 +83,6 @@ class Chain:
     def methods(self) -> tuple[str, ...]:
         """How the errors of the links were bounded, the last one's apart, each way once."""
         return tuple(dict.fromkeys(link.method for link in self.links[:-1]))
-
-
-def _bound(first: Link | None, last: Link) -> Fraction:
-    """Of the difference; what one object has from itself is exactly 0."""
-    if first is last:
-        return Fraction(0)
-    return first.bound + last.bound if first else last.bound
 
 
 def lacking(chains: Sequence[Chain], digits: int, hidden: int | None = None) -> list[int]:

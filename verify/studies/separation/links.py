@@ -26,6 +26,7 @@ from verify.runs.digits_on_demand import Measured, choose, measure
 from verify.runs.estimated import working_digits
 from verify.runs.run import AskedRun
 from verify.schemes.maps.step_map import StepMap
+from verify.structures import AREA, SYMPLECTIC, Structure
 from verify.studies.separation.chain import Chain, lacking
 from verify.studies.separation.stepper.run import (
     Advance,
@@ -40,6 +41,7 @@ from verify.studies.separation.stepper.way import Size, Way
 from verify.studies.separation.ways.determinants import Determinants
 from verify.studies.separation.ways.matrices import Matrices
 
+_WAYS: dict[Structure, type[Way]] = {AREA: Determinants, SYMPLECTIC: Matrices}
 _MANTISSAS = 2**53  # whole numbers up to here are float64s
 _DOUBLINGS = 6
 _ATTEMPTS = 4
@@ -63,7 +65,7 @@ class Chains:
 
 def way_of(hamiltonian: Hamiltonian) -> Way:
     """The way in which its runs are followed."""
-    return Determinants() if hamiltonian.planar else Matrices(len(hamiltonian.coordinates))
+    return _WAYS[hamiltonian.structure](len(hamiltonian.coordinates))
 
 
 def separated_chains(
@@ -111,11 +113,10 @@ class LinksOnDemand:
         self.advance: Advance = lambda _: None
         self.marks = marks_of(kernel_run.steps, way.points)
         self.digits = {"first": digits, "second": digits, "beside": digits + way.products}
-        self.rounded = _with_rounded_inputs(kernel_run)
-        self.same = (
-            self.rounded.start == kernel_run.start
-            and self.rounded.parameters == kernel_run.parameters
-        )
+        rounded = _with_rounded_inputs(kernel_run)
+        self.runs = {"first": kernel_run, "second": rounded}
+        inputs, of_rounded = ((run.start, run.parameters) for run in self.runs.values())
+        self.same = inputs == of_rounded
         self._proved: dict[str, Links | None] = {}
         self._asked: AskedRun | None = None
         self._working: Working | None = None
@@ -134,9 +135,8 @@ class LinksOnDemand:
     def proved(self, name: str) -> Links | None:
         """The `first` link or the `second` to its digits, where a proof gives it; made once."""
         if name not in self._proved:
-            run = self.kernel_run if name == "first" else self.rounded
-            exact = _map_for_parameters(self.step_map, run)
-            self._proved[name] = self.way.proved(run, exact, self.digits[name])
+            exact = _map_for_parameters(self.step_map, self.runs[name])
+            self._proved[name] = self.way.proved(self.runs[name], exact, self.digits[name])
         return self._proved[name]
 
     def working(self) -> Course[Working]:
@@ -164,13 +164,11 @@ class LinksOnDemand:
         """The chains of the plain way and those of the closed form."""
         # Before the longer runs: where float64 leaves its range there is nothing to separate.
         working = yield from self.working()
-        first = self.proved("first") or (yield from self._reference(self.kernel_run, "first"))
-        second = first
-        if not self.same:
-            second = self.proved("second") or (yield from self._reference(self.rounded, "second"))
+        first = yield from self._link("first")
+        second = first if self.same else (yield from self._link("second"))
         shared, parts = [first, second, working.trajectory or second], self.way.parts
         if self.kernel_run.hamiltonian.time_dependent:
-            exact = _clock_is_exact(self.rounded)
+            exact = _clock_is_exact(self.runs["second"])
             shared.insert(2, second if exact or working.clock is None else working.clock)
             parts = (parts[0], "clock", *parts[1:])
 
@@ -218,9 +216,13 @@ class LinksOnDemand:
         asked = number_systems.about(self.arithmetic)
         return asked.name if digits <= asked.most_digits else last_system().name
 
-    def _reference(self, kernel_run: KernelRun, name: str) -> Course[Links]:
+    def _link(self, name: str) -> Course[Links]:
+        """The `first` or the `second`, as a proof gives it, or a run."""
+        return self.proved(name) or (yield from self._reference(name))
+
+    def _reference(self, name: str) -> Course[Links]:
         if name not in self._made:
-            digits, asked = self.digits[name], self._asked
+            digits, asked, kernel_run = self.digits[name], self._asked, self.runs[name]
             if name == "first" and asked and digits <= asked.digits:
                 measured = yield from asked.measured(self._progress())
                 if measured.bounds.status == "finished":

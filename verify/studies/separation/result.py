@@ -6,20 +6,19 @@ from typing import Any
 
 from verify.arithmetic.exact import decimal, known_text
 from verify.scenes.results.bounded_value import Value
-from verify.scenes.results.separation import (
+from verify.scenes.results.form_value import FormValue
+from verify.scenes.results.separation_parts import (
+    AnyEvaluation,
     EvaluationResult,
+    FormAt,
+    FormEvaluation,
+    FormParts,
+    FormPartsInTime,
     GrowthResult,
     Parts,
     PartsAt,
     PartsInTime,
     PartsInTimeAt,
-)
-from verify.scenes.results.separation_in_degrees import (
-    FormAt,
-    FormEvaluation,
-    FormParts,
-    FormPartsInTime,
-    FormValue,
     PowerLawResult,
 )
 from verify.studies.separation.chain import Chain
@@ -78,8 +77,12 @@ def _greatest(trails: Sequence[Trail]) -> Trail:
     return Trail.of(max(map(abs, entries)) for entries in zip(*trails, strict=True))
 
 
-def evaluation(split: Split, digits: int) -> EvaluationResult:
-    """That of Λ."""
+def evaluation(split: Split, digits: int, sizes: Sequence[Size] = ()) -> AnyEvaluation:
+    """As a result has it; `sizes`: of M at the checkpoints, for W."""
+    return _of_form(split, digits, sizes) if sizes else _of_area(split, digits)
+
+
+def _of_area(split: Split, digits: int) -> EvaluationResult:
     parts = {name: value for name, (value,) in split.values(digits).items()}
     timed = "clock" in parts
     at = PartsInTimeAt if timed else PartsAt
@@ -94,8 +97,7 @@ def evaluation(split: Split, digits: int) -> EvaluationResult:
     )
 
 
-def form_evaluation(split: Split, digits: int, sizes: Sequence[Size]) -> FormEvaluation:
-    """That of W; `sizes`: of M at the checkpoints."""
+def _of_form(split: Split, digits: int, sizes: Sequence[Size]) -> FormEvaluation:
     values = split.values(digits).items()
     parts = {_name_in_degrees(name): FormValue.of(entries) for name, entries in values}
     motion = motion_of(split.marks, [x.norm for x in sizes])

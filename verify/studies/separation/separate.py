@@ -42,7 +42,6 @@ checkpoints and of a grid of step sizes in `verify.studies.separation.growth`.
 
 from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
-from functools import partial
 from typing import Any
 
 from verify import arithmetic as number_systems
@@ -57,22 +56,30 @@ from verify.hamiltonians.times_on_the_way import check_times
 from verify.lockstep import Course, alone
 from verify.runs.run import AskedRun, check
 from verify.runs.start import Start
-from verify.scenes.results.separation import WAYS, CrossoverResult, SeparationGrid, SeparationResult
-from verify.scenes.results.separation_in_degrees import (
-    AnyEvaluation,
+from verify.scenes.results.separation import (
+    WAYS,
     AnyGrid,
     AnySeparation,
+    CrossoverResult,
+    Separation,
+    SeparationGrid,
     SeparationGridInDegrees,
     SeparationInDegrees,
+    SeparationResult,
 )
+from verify.scenes.results.separation_parts import AnyEvaluation
 from verify.schemes import canonical
 from verify.studies.separation.growth import crossover
-from verify.studies.separation.links import Chains, separated_chains
-from verify.studies.separation.result import Split, evaluation, form_evaluation
+from verify.studies.separation.links import Chains, separated_chains, way_of
+from verify.studies.separation.result import Split, evaluation
 from verify.studies.separation.stepper.run import Stopped
 from verify.studies.separation.tangent import tangent_growth
 
 Progress = Callable[[int], None]  # called with a number of steps just done, of 3 N in all
+_GRIDS: dict[type[Separation], type[AnyGrid]] = {
+    SeparationResult: SeparationGrid,
+    SeparationInDegrees: SeparationGridInDegrees,
+}
 RUNS = 3  # of N steps each: two in exact arithmetic's stead and one in both
 
 
@@ -105,43 +112,39 @@ def separate_in_turn(
     h ≤ 0, N < 1, a parameter without a value, unknown names, more than 4 degrees of freedom, and
     for float64, which is what is examined.
     """
-    scheme, h, planar = canonical(scheme), positive(step_size, "step_size"), hamiltonian.planar
+    scheme, h, way = canonical(scheme), positive(step_size, "step_size"), way_of(hamiltonian)
     begun = Start(hamiltonian, scheme, h, point_of(hamiltonian, q, p), rational(t0, "t0"))
     start = {**begun.point, "h": h}
     if hamiltonian.time_dependent:
         start["t"] = begun.t0
-        check_times(hamiltonian, begun.t0, h, steps)
-    check(hamiltonian, steps, digits, () if planar else ("symplectic_defect",))
+    check_times(hamiltonian, begun.t0, h, steps)
+    check(hamiltonian, steps, digits, (way.observable,))
     check_reference(arithmetic)
     asked = hamiltonian, scheme, start, steps, digits, arithmetic, progress or (lambda _: None)
-    result: dict[str, Any] = {
+    told: dict[str, Any] = {
         **hamiltonian.texts, "scheme": scheme, "arithmetic": arithmetic, "digits": digits,
         "step_size": text(h), "steps": steps, "q": begun.text("q"), "p": begun.text("p"),
         "t0": text(start.get("t", Fraction(0))), "status": "finished", "failed_step": None,
         "reason": "", "plain": None, "closed_form": None, "error_method": "none", "seconds": 0.0,
+        "coordinates": hamiltonian.coordinates, "tangent": None,
     }  # fmt: skip
-    if not planar:
-        result |= {"coordinates": hamiltonian.coordinates, "tangent": None}
     try:
         chains = yield from separated_chains(*asked, keeper, run)
-        result |= _split(chains, begun, steps, digits)
+        told |= _split(chains, begun, steps, digits)
     except Stopped as stopped:
-        ends = {"status": stopped.status, "failed_step": stopped.step, "reason": stopped.reason}
-        result |= ends
-    return SeparationResult(**result) if planar else SeparationInDegrees(**result)
+        told |= {"status": stopped.status, "failed_step": stopped.step, "reason": stopped.reason}
+    return way.result(**{name: told[name] for name in way.result.model_fields})
 
 
 def _split(chains: Chains, begun: Start, steps: int, digits: int) -> dict[str, Any]:
     """What the chains give of a result."""
     sizes, closed = chains.sizes, chains.closed_form and Split(chains.closed_form)
-    evaluated = partial(form_evaluation, sizes=sizes) if sizes else evaluation
     methods = dict.fromkeys(x for chain in chains.plain for x in chain.methods)
-    tangent = closed and sizes and tangent_growth(closed, sizes, begun, steps)
     return {
         "arithmetic": chains.arithmetic,
-        "plain": evaluated(Split(chains.plain), digits),
-        "closed_form": closed and evaluated(closed, digits),
-        **({"tangent": tangent} if tangent else {}),
+        "plain": evaluation(Split(chains.plain), digits, sizes),
+        "closed_form": closed and evaluation(closed, digits, sizes),
+        "tangent": tangent_growth(closed, sizes, begun, steps) if closed and sizes else None,
         "error_method": "; ".join(methods),
         "seconds": chains.seconds,
     }
@@ -171,12 +174,10 @@ def separate_grid(
     )
 
 
-def as_grid(points: Sequence[AnySeparation]) -> AnyGrid:
+def as_grid(points: Sequence[Separation]) -> AnyGrid:
     """Separations for several step sizes, with the crossover of each way to evaluate Λ, or W."""
     crossed = {way: crossing((x.step_size, getattr(x, way)) for x in points) for way in WAYS}
-    in_degrees = any(isinstance(point, SeparationInDegrees) for point in points)
-    model = SeparationGridInDegrees if in_degrees else SeparationGrid
-    return model.model_validate({"points": tuple(points), **crossed})
+    return _GRIDS[type(points[0])].model_validate({"points": tuple(points), **crossed})
 
 
 def crossing(ways: Iterable[tuple[str, AnyEvaluation | None]]) -> CrossoverResult:

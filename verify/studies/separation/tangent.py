@@ -19,7 +19,7 @@ from verify.kernels.stepping import KernelRun
 from verify.prose import Number, Prose, prose
 from verify.runs.start import Start
 from verify.runs.tangent_growth import finite_time_lyapunov
-from verify.scenes.results.separation_in_degrees import PowerLawResult, TangentGrowth
+from verify.scenes.results.separation_parts import PowerLawResult, TangentGrowth
 from verify.studies.separation.growth import Motion, PowerLaw, motion_of, power_law
 from verify.studies.separation.links import last_system
 from verify.studies.separation.result import SHOWN, Split

@@ -11,8 +11,7 @@ from verify.lockstep import Course, alone
 from verify.runs.run import AskedRun
 from verify.runs.task import RunTask
 from verify.scenes.frozen import Frozen
-from verify.scenes.results.separation import SeparationResult
-from verify.scenes.results.separation_in_degrees import SeparationInDegrees
+from verify.scenes.results.separation import AnySeparation, SeparationInDegrees, SeparationResult
 from verify.scenes.values import Number, StepSize
 from verify.studies.separation.separate import separate_in_turn
 from verify.studies.separation.ways.determinants import Determinants
@@ -26,46 +25,30 @@ def does_for_first_link(arithmetic: str, digits: int) -> bool:
     return arithmetic not in (float64.NAME, ball.NAME) and digits >= DIGITS + Determinants.cancelled
 
 
-class _Separation(StartTask):
-    """Split what a float64 run shows into truncation and rounding."""
+class SeparationTask(StartTask):
+    """Split Λ of a float64 run into truncation and rounding."""
 
-    runs: ClassVar[int]
+    result: ClassVar[type[AnySeparation]] = SeparationResult
+    runs: ClassVar[int] = 3
     """Of the chain, in wide numbers."""
-    points: ClassVar[int]
+    points: ClassVar[int] = Determinants.points
     """Checkpoints, each of which costs about as much as `point_cost` float64 steps."""
-    point_cost: ClassVar[int]
+    point_cost: ClassVar[int] = 80_000
+    kind: Literal["separation", "separation in degrees"] = "separation"
     step_size: StepSize
     steps: int
     t0: Number = Fraction(0)
     digits: int
-
-    @property
-    def cost(self) -> int:
-        """About how many float64 steps its runs and their checkpoints are worth."""
-        of_points = self.point_cost * min(self.steps, self.points)
-        return of_points + self.runs * self.steps * step_cost(AUTO)
-
-    def _separated(self, keeper: Keeper, run: AskedRun | None = None) -> Course[Any]:
-        asked = self.asked("run")
-        return separate_in_turn(self.exact_hamiltonian(), **asked, run=run, keeper=keeper)
-
-
-class SeparationTask(_Separation):
-    """Split Λ of a float64 run into truncation and rounding."""
-
-    result = SeparationResult
-    runs = 3
-    points = Determinants.points
-    point_cost = 80_000
-    kind: Literal["separation"] = "separation"
     run: RunTask | None = None
     """One that is wanted too, of the same steps: its exact run is the separation's first link."""
 
     @property
     def cost(self) -> int:
-        """As without a run, which is done in place of one of the chain's."""
+        """About how many float64 steps its runs and their checkpoints are worth; a run that is
+        wanted too is done in place of one of the chain's."""
+        of_points = self.point_cost * min(self.steps, self.points)
         spared = 0 if self.run is None else self.run.cost - self.steps * step_cost(AUTO)
-        return super().cost + spared
+        return of_points + self.runs * self.steps * step_cost(AUTO) + spared
 
     @property
     def ensemble(self) -> str | None:
@@ -77,22 +60,28 @@ class SeparationTask(_Separation):
         """The run."""
         return () if self.run is None else (self.run,)
 
-    def compute(self, keeper: Keeper) -> SeparationResult:
+    def _separated(self, keeper: Keeper, run: AskedRun | None) -> Course[Any]:
+        asked = self.asked("run")
+        return separate_in_turn(self.exact_hamiltonian(), **asked, run=run, keeper=keeper)
+
+    def compute(self, keeper: Keeper) -> AnySeparation:
         """The separation, as a result."""
-        run = self.run.asked_run(keeper) if self.run else None
-        split: SeparationResult = alone(self._separated(keeper, run))
+        split: AnySeparation = alone(self._separated(keeper, self._asked_run(keeper)))
         return split
 
     def compute_in_turn(self, keeper: Keeper) -> Course[dict[str, Frozen]]:
         """The separation, and the run where that was done for it."""
-        run = self.run.asked_run(keeper) if self.run else None
+        run = self._asked_run(keeper)
         results: dict[str, Frozen] = {self.key: (yield from self._separated(keeper, run))}
         if self.run and run and run.done:
             results[self.run.key] = yield from run.result()
         return results
 
+    def _asked_run(self, keeper: Keeper) -> AskedRun | None:
+        return self.run.asked_run(keeper) if self.run else None
 
-class FormSeparationTask(_Separation):
+
+class FormSeparationTask(SeparationTask):
     """Split W of a float64 run into truncation and rounding."""
 
     result = SeparationInDegrees
@@ -101,7 +90,7 @@ class FormSeparationTask(_Separation):
     point_cost = 400_000
     kind: Literal["separation in degrees"] = "separation in degrees"
 
-    def compute(self, keeper: Keeper) -> SeparationInDegrees:
-        """The separation, as a result."""
-        split: SeparationInDegrees = alone(self._separated(keeper))
-        return split
+    @property
+    def ensemble(self) -> None:
+        """None: no number system steps several of them together."""
+        return None

@@ -9,9 +9,8 @@ from verify.arithmetic.exact import text
 from verify.errors import InputError
 from verify.flows.extrapolation import NoFlowError
 from verify.flows.solution import Solution
-from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.start import Given, point_of
 from verify.scenes.results.work_precision import WorkPoint
+from verify.studies.work_precision.peer_interface import InitialValueProblem
 from verify.studies.work_precision.runs import Ladder, Problem, reference
 
 Advance = Callable[[int], None]  # called with a number of points just done
@@ -28,27 +27,21 @@ class Errors:
 
 
 def find_errors(
-    hamiltonian: Hamiltonian,
-    *,
-    q: Given,
-    p: Given,
-    time: Fraction,
-    t0: Fraction,
+    asked: InitialValueProblem,
     schemes: Sequence[str],
     step_sizes: Sequence[Fraction],
     advance: Advance,
 ) -> Errors:
-    """The errors over [t0, t0 + time] from (q, p), of each scheme with each step size.
+    """The errors of each scheme with each step size.
 
     Raises InputError where the exact solution does not reach the time.
     """
     begun = perf_counter()
-    point = point_of(hamiltonian, q, p)
     try:
-        exact = reference(hamiltonian, point, time, t0)
+        exact = reference(**vars(asked))
     except NoFlowError as error:
-        raise InputError("work_precision.time", text(time), str(error)) from None
-    problem = Problem(hamiltonian, point, time, t0, exact)
+        raise InputError("work_precision.time", text(asked.time), str(error)) from None
+    problem = Problem.of(asked, exact)
     points = {}
     for ladder in (Ladder(problem, name) for name in schemes):
         for h in step_sizes:

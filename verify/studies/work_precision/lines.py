@@ -27,12 +27,17 @@ from verify.scenes.results.work_precision import (
     WorkPoint,
 )
 from verify.schemes.scheme import Scheme
+from verify.structures import AREA, SYMPLECTIC, Structure
 
 SETTLED = 0.1
 ALIKE = 1.1  # a ratio within this both ways is within what run times are known to
 FEWEST = 3  # points of a slope
 _ANY = "Infinity"  # the size of an orbit that no error is too large for
 _NOTHING = SlopeResult(value=None, standard_error=None, points=0, reason="not of a peer")
+_PHRASES = {  # of what is kept, of two that keep it, and of one
+    AREA: ("In area", "preserve area exactly", "In area {} makes no error"),
+    SYMPLECTIC: ("Of the symplectic form", "are symplectic", "{} is symplectic"),
+}
 Place = tuple[float, float]  # lg of one quantity and of another
 
 
@@ -43,8 +48,7 @@ def line(
     cost: CostResult | None,
     compile_seconds: float,
     scale: str = _ANY,
-    *,
-    planar: bool = True,
+    structure: Structure = AREA,
 ) -> WorkLine:
     """A scheme's line, or with only a name a peer's; `scale` is the orbit's size."""
     peer = isinstance(scheme, str)
@@ -56,7 +60,7 @@ def line(
         error_slope=_NOTHING if peer else error_slope(points, scale),
         lambda_slope=_NOTHING
         if peer
-        else lambda_slope(points, bool(preserves_area), scale, planar),
+        else lambda_slope(points, bool(preserves_area), scale, structure),
         cost=cost,
         compile_seconds=compile_seconds,
         points=tuple(points),
@@ -73,11 +77,14 @@ def error_slope(points: Sequence[WorkPoint], scale: str = _ANY) -> SlopeResult:
 
 
 def lambda_slope(
-    points: Sequence[WorkPoint], preserves_area: bool, scale: str = _ANY, planar: bool = True
+    points: Sequence[WorkPoint],
+    preserves_area: bool,
+    scale: str = _ANY,
+    structure: Structure = AREA,
 ) -> SlopeResult:
     """The order of |Λ| in h; in n degrees of freedom that of max |W|."""
     if preserves_area:
-        why = "ΔJ ≡ 0 is proved: Λ is exactly 0" if planar else "S ≡ 0 is proved: W is exactly 0"
+        why = f"{structure.identity} is proved: {structure.accumulated} is exactly 0"
         return SlopeResult(value=None, standard_error=None, points=0, reason=why)
     limited = [x for x in points if x.lambda_limited_by == "truncation"]
     return _order_within_orbit(limited, [(x, x.area_error) for x in within_orbit(limited, scale)])
@@ -139,14 +146,16 @@ def lg(text: str) -> float:
 
 
 def comparisons(
-    lines: Sequence[WorkLine], scale: str, *, planar: bool = True
+    lines: Sequence[WorkLine], scale: str, structure: Structure = AREA
 ) -> tuple[ComparisonResult, ...]:
     """Every two schemes that claim the same order; `scale` is the orbit's size."""
     pairs = combinations([line for line in lines if not line.peer], 2)
-    return tuple(compare(a, b, scale, planar=planar) for a, b in pairs if a.order == b.order)
+    return tuple(compare(a, b, scale, structure) for a, b in pairs if a.order == b.order)
 
 
-def compare(one: WorkLine, other: WorkLine, scale: str, *, planar: bool = True) -> ComparisonResult:
+def compare(
+    one: WorkLine, other: WorkLine, scale: str, structure: Structure = AREA
+) -> ComparisonResult:
     """The two at equal run time; see the module's text."""
     errors = _places(one, "error", scale), _places(other, "error", scale)
     span = _overlap(errors)
@@ -164,7 +173,7 @@ def compare(one: WorkLine, other: WorkLine, scale: str, *, planar: bool = True) 
         times = f"`{first}` to `{last}` s"
         smaller = _smaller(_called(one), _called(other), error, times)
         said = f"At equal run time (`{seconds}` s) the solution error of {smaller}. "
-        said += (_area_sentence if planar else _form_sentence)(one, other, area, scale)
+        said += _kept_sentence(one, other, area, scale, structure)
     return ComparisonResult(
         one=one.name,
         other=other.name,
@@ -216,38 +225,24 @@ def _called(line: WorkLine) -> str:
     return f"`{line.name}`" if "=" in line.name else line.name
 
 
-def _area_sentence(one: WorkLine, other: WorkLine, ratio: RatioResult | None, scale: str) -> str:
+def _kept_sentence(
+    one: WorkLine, other: WorkLine, ratio: RatioResult | None, scale: str, structure: Structure
+) -> str:
+    """How they compare in what a step is to keep."""
+    of, both, keeps = _PHRASES[structure]
     exact = [_called(line) for line in (one, other) if line.area_preserving]
     if len(exact) == 2:
-        return f"Both preserve area exactly: {exact[0]} and {exact[1]} have ΔJ ≡ 0 by proof."
+        return f"Both {both}: {exact[0]} and {exact[1]} have {structure.identity} by proof."
     if exact:
-        rest = one if other.area_preserving else other
-        keeps = other if other.area_preserving else one
-        errors = _sizes(x.lam for x in within_orbit(rest.points, scale))
-        rounded = _sizes(x.lam_plain for x in within_orbit(keeps.points, scale))
-        seen = f", where {_called(rest)} has |Λ| of {_span(errors)}" if errors else ""
+        rest, kept = (one, other) if other.area_preserving else (other, one)
+        errors = _sizes(x.area_error for x in within_orbit(rest.points, scale))
+        rounded = _sizes(x.lam_plain for x in within_orbit(kept.points, scale))
+        seen = f", where {_called(rest)} has {structure.size} of {_span(errors)}" if errors else ""
         shown = f"; what float64’s rounding shows of it is {_span(rounded)}" if rounded else ""
-        return f"In area {exact[0]} makes no error (ΔJ ≡ 0 is proved){seen}{shown}."
+        return f"{keeps.format(exact[0])} ({structure.identity} is proved){seen}{shown}."
     if ratio is None:
-        return "In area there is nothing to compare."
-    return f"In area, |Λ| of {_smaller(_called(one), _called(other), ratio, '')}."
-
-
-def _form_sentence(one: WorkLine, other: WorkLine, ratio: RatioResult | None, scale: str) -> str:
-    """The same of the symplectic form, in n degrees of freedom."""
-    exact = [_called(line) for line in (one, other) if line.area_preserving]
-    if len(exact) == 2:
-        return f"Both are symplectic: {exact[0]} and {exact[1]} have S ≡ 0 by proof."
-    if exact:
-        rest = one if other.area_preserving else other
-        errors = _sizes(x.symplectic_defect for x in within_orbit(rest.points, scale))
-        seen = f", where {_called(rest)} has max |W| of {_span(errors)}" if errors else ""
-        return f"{exact[0]} is symplectic (S ≡ 0 is proved){seen}."
-    if ratio is None:
-        return "Of the symplectic form there is nothing to compare."
-    return (
-        f"Of the symplectic form, max |W| of {_smaller(_called(one), _called(other), ratio, '')}."
-    )
+        return f"{of} there is nothing to compare."
+    return f"{of}, {structure.size} of {_smaller(_called(one), _called(other), ratio, '')}."
 
 
 def _sizes(values: Iterable[Value | None]) -> list[float]:

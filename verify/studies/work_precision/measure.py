@@ -17,8 +17,7 @@ from verify.arithmetic import about
 from verify.arithmetic.exact import text, upper
 from verify.arithmetic.systems import float64
 from verify.execution.machine import machine
-from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.start import Given, point_of, shown_of
+from verify.hamiltonians.start import shown_of
 from verify.runs.run import run
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.run import RunResult
@@ -26,7 +25,12 @@ from verify.scenes.results.work_precision import SystemPoint, WorkPoint, WorkPre
 from verify.studies.work_precision import peers as peer_catalogue
 from verify.studies.work_precision.errors import Advance, Errors
 from verify.studies.work_precision.lines import comparisons, lg, line
-from verify.studies.work_precision.peer_interface import Answer, PeerError, Solver
+from verify.studies.work_precision.peer_interface import (
+    Answer,
+    InitialValueProblem,
+    PeerError,
+    Solver,
+)
 from verify.studies.work_precision.runs import ROUNDING_SHARE, SHOWN, Ladder, Problem, failed, size
 from verify.studies.work_precision.timing import Timed, above, clock, interleaved, nothing
 
@@ -41,12 +45,8 @@ class _Timing:
 
 
 def work_precision(
-    hamiltonian: Hamiltonian,
+    asked: InitialValueProblem,
     *,
-    q: Given,
-    p: Given,
-    time: Fraction,
-    t0: Fraction,
     schemes: Sequence[str],
     step_sizes: Sequence[Fraction],
     repeats: int,
@@ -59,13 +59,11 @@ def work_precision(
     errors: Errors,
     advance: Advance,
 ) -> WorkPrecisionResult:
-    """Errors and run times over [t0, t0 + time] from (q, p), a number each or a list: of each
-    scheme with each step size, of peers, and of number systems with so many digits, on one scheme
-    at one step size. `errors`: those of the schemes.
+    """Errors and run times of each scheme with each step size, of peers, and of number systems with
+    so many digits, on one scheme at one step size. `errors`: those of the schemes.
     """
     begun = perf_counter()
-    begun_at = point_of(hamiltonian, q, p)
-    problem = Problem(hamiltonian, begun_at, time, t0, errors.solution)
+    hamiltonian, problem = asked.hamiltonian, Problem.of(asked, errors.solution)
     _wake_compiler()
     ladders = [Ladder(problem, name) for name in schemes]
     own = [
@@ -76,7 +74,7 @@ def work_precision(
     overhead = _time([*own, *(timings for timings, _ in others)], repeats)
     lines = [
         line([t.point for t in timings], ladder.scheme, ladder.preserves_area, ladder.cost,
-             ladder.compile_seconds, problem.scale, planar=hamiltonian.planar)
+             ladder.compile_seconds, problem.scale, hamiltonian.structure)
         for ladder, timings in zip(ladders, own, strict=True)
     ]  # fmt: skip
     lines += [
@@ -89,10 +87,10 @@ def work_precision(
     )
     return WorkPrecisionResult(
         **hamiltonian.texts,
-        time=text(time),
-        t0=text(t0),
-        q=shown_of(hamiltonian, begun_at, "q"),
-        p=shown_of(hamiltonian, begun_at, "p"),
+        time=text(asked.time),
+        t0=text(asked.t0),
+        q=shown_of(hamiltonian, asked.point, "q"),
+        p=shown_of(hamiltonian, asked.point, "p"),
         repeats=repeats,
         clock=clock()[1],
         overhead=overhead,
@@ -102,7 +100,7 @@ def work_precision(
         reference_bound=upper(problem.solution.bound),
         machine=machine(),
         lines=tuple(lines),
-        comparisons=comparisons(lines, problem.scale, planar=hamiltonian.planar),
+        comparisons=comparisons(lines, problem.scale, hamiltonian.structure),
         systems=tuple(systems),
         systems_scheme=number_systems_scheme,
         systems_step_size=text(number_systems_step_size),
@@ -190,13 +188,10 @@ def _system_points(
     The run times are those of one scheme at one step size.
     """
 
-    def at(letter: str) -> Given:
-        own = [x for name, x in problem.point.items() if name[0] == letter]
-        return own[0] if problem.hamiltonian.planar else own
-
     def go(name: str, digits: int) -> RunResult:
+        q, p = (shown_of(problem.hamiltonian, problem.point, letter) for letter in "qp")
         return run(
-            problem.hamiltonian, scheme, q=at("q"), p=at("p"), step_size=h, t0=problem.t0,
+            problem.hamiltonian, scheme, q=q, p=p, step_size=h, t0=problem.t0,
             steps=problem.time // h, arithmetic=name, digits=digits, observables=(),
         )  # fmt: skip
 
@@ -242,10 +237,8 @@ def _digits_of_state(result: RunResult) -> str | None:
     state = list(result.values.values())  # no observable was asked for
     if not state:
         return None
-    length, bound = (
-        size(tuple(Fraction(x.value) for x in state)),
-        sum(Fraction(x.bound) for x in state),
-    )
+    length = size(tuple(Fraction(x.value) for x in state))
+    bound = sum(Fraction(x.bound) for x in state)
     if not bound or not length:
         return None
     part = bound / length

@@ -31,7 +31,7 @@ from verify.kernels.stepping import KernelRun
 from verify.lockstep import alone
 from verify.runs.digits_on_demand import choose, measure
 from verify.runs.estimated import Bounds
-from verify.scenes.observables import observed
+from verify.scenes.observables import accumulated, carries
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.work_precision import CostResult, LimitedBy, WorkPoint
 from verify.schemes import get
@@ -64,6 +64,11 @@ class Problem(InitialValueProblem):
     """An initial value problem with its exact solution at the time."""
 
     solution: Solution
+
+    @classmethod
+    def of(cls, asked: InitialValueProblem, solution: Solution) -> "Problem":
+        """The same with its solution."""
+        return cls(**vars(asked), solution=solution)
 
     @cached_property
     def _ends(self) -> dict[Fraction, Solution]:
@@ -120,6 +125,8 @@ class Ladder:
         self.problem, self.scheme = problem, get(scheme)
         self.name = scheme
         self.preserves_area = step_map_of(problem.hamiltonian, scheme).preserves_area
+        # What measures the loss of area, or of the symplectic form, the sharper one last.
+        self.lost = accumulated(problem.hamiltonian)
         # Anew: what is kept of an earlier run is loaded, which says nothing of compiling.
         self.arithmetic: Arithmetic = float64.compiled_at_once(anew=True)
         step_map = step_map_of(self._kernel_run(problem.time, frozenset()).hamiltonian, scheme)
@@ -127,13 +134,6 @@ class Ladder:
         self.kernel: Kernel = Writer(step_map, self.arithmetic, frozenset(), False).kernel()
         self.call(problem.time, blank=True)()
         self.compile_seconds = time.perf_counter() - begun
-
-    @cached_property
-    def lost(self) -> tuple[str, ...]:
-        """What measures the loss of area, or of the symplectic form, the sharper one
-        last; none where H has too many degrees of freedom for it."""
-        usual = observed(self.problem.hamiltonian, None)
-        return tuple(name for name in ("lambda", "symplectic_defect") if name in usual)
 
     @property
     def cost(self) -> CostResult:
@@ -207,8 +207,9 @@ class Ladder:
     def _area(self, h: Fraction, exact: Bounds) -> dict[str, Any]:
         """Of a point: Λ, and in n degrees of freedom W; what limits them; and in the plane Λ by the
         plain product, too."""
-        plain = {"lambda_plain"} if self.problem.hamiltonian.planar else set[str]()
-        asked = plain | (set() if self.preserves_area else set(self.lost))
+        plain = "lambda_plain"
+        asked = {plain} if carries(self.problem.hamiltonian, plain) else set[str]()
+        asked |= set() if self.preserves_area else set(self.lost)
         run = self._kernel_run(h, frozenset(asked)).run(float64.make(17)) if asked else None
         if run is not None and run.done < self.problem.time // h:
             return {"lambda_limited_by": "failed"}

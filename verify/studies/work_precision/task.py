@@ -6,8 +6,10 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 
 from verify.execution.keeping import Keeper
 from verify.execution.task import HamiltonianTask
+from verify.hamiltonians.start import point_of
 from verify.scenes.results.work_precision import WorkPrecisionResult
 from verify.scenes.values import Coordinates, Number, StepSize
+from verify.studies.work_precision.peer_interface import InitialValueProblem
 
 if TYPE_CHECKING:
     from verify.studies.work_precision.errors import Errors
@@ -48,10 +50,7 @@ class WorkPrecisionTask(HamiltonianTask):
         """The errors of the schemes, of which nothing is timed; `advance` as in `measure`."""
         from verify.studies.work_precision.errors import find_errors
 
-        return find_errors(
-            self.exact_hamiltonian(), q=self.q, p=self.p, time=self.time, t0=self.t0,
-            schemes=self.schemes, step_sizes=self.step_sizes, advance=advance,
-        )  # fmt: skip
+        return find_errors(self._problem, self.schemes, self.step_sizes, advance)
 
     def compute(self, keeper: Keeper) -> WorkPrecisionResult:
         """The measured points, as a result; the errors may be prepared."""
@@ -63,7 +62,10 @@ class WorkPrecisionTask(HamiltonianTask):
         """As `compute`; `advance` is called with the number of points just done."""
         from verify.studies.work_precision.measure import work_precision
 
-        found = errors or self.prepare(advance)
-        return work_precision(
-            self.exact_hamiltonian(), **self.asked(), errors=found, advance=advance
-        )
+        found, asked = errors or self.prepare(advance), self.asked("q", "p", "time", "t0")
+        return work_precision(self._problem, **asked, errors=found, advance=advance)
+
+    @property
+    def _problem(self) -> InitialValueProblem:
+        exact = self.exact_hamiltonian()
+        return InitialValueProblem(exact, point_of(exact, self.q, self.p), self.time, self.t0)

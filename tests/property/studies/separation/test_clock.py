@@ -11,7 +11,8 @@ import pytest
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.run import run
-from verify.scenes.results.separation import PartsInTime, SeparationResult
+from verify.scenes.results.separation import SeparationResult
+from verify.scenes.results.separation_parts import PartsInTime
 from verify.studies.separation.separate import separate
 
 FORMULA = "p**2/2 - (1 + eps*cos(2*t))*cos(q)"

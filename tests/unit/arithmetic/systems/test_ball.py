@@ -24,7 +24,7 @@ from verify.arithmetic.systems import ball
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.kernels.kernel import kernel_for
 from verify.kernels.stepping import KernelRun
-from verify.runs import enclosed as ball_bounds
+from verify.runs import digits_on_demand
 from verify.runs.run import run
 from verify.scenes.observables import CLOSED_FORM, REPORTED
 from verify.scenes.results.run import RunResult
@@ -160,7 +160,7 @@ def test_what_would_need_too_many_digits_is_given_none_and_says_how_many() -> No
 
 
 def test_the_number_of_attempts_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(ball_bounds, "_ATTEMPTS", 1)
+    monkeypatch.setattr(digits_on_demand, "_BALL_ATTEMPTS", 1)
     found = run(PENDULUM, "symplectic-euler", **CHAOTIC, steps=300, arithmetic="ball", digits=10)
     assert found.status == "unresolved"
     easy = run(PENDULUM, "symplectic-euler", **CHAOTIC, steps=3, arithmetic="ball", digits=10)

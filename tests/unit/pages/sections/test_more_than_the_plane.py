@@ -9,6 +9,7 @@ from verify.scenes.results.proof import FormResult, ProofResult
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.work_precision import WorkLine, WorkPoint, WorkPrecisionResult
 from verify.scenes.scene import load_scene
+from verify.structures import SYMPLECTIC
 from verify.studies.work_precision.lines import lambda_slope
 
 PAPER = Path(__file__).parents[4] / "reports" / "paper"
@@ -27,7 +28,7 @@ def point(scheme: str, form: str, volume: str, error: str = "0.001") -> WorkPoin
 
 
 def line(one: WorkPoint, *, kept: bool) -> WorkLine:
-    slope = lambda_slope([one], kept, planar=False)
+    slope = lambda_slope([one], kept, structure=SYMPLECTIC)
     return WorkLine(
         name=one.scheme, peer=False, order=2, area_preserving=kept, error_slope=slope,
         lambda_slope=slope, cost=None, compile_seconds=0.0, points=(one,),

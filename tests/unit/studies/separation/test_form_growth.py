@@ -8,7 +8,7 @@ import pytest
 from verify.hamiltonians import systems
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.runs.tangent_growth import finite_time_lyapunov
-from verify.scenes.results.separation_in_degrees import TangentGrowth
+from verify.scenes.results.separation_parts import TangentGrowth
 from verify.studies.separation.growth import motion_of, power_law
 from verify.studies.separation.separate import separate
 from verify.studies.separation.ways.matrices import of_product, size_of

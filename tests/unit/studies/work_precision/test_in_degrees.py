@@ -10,6 +10,7 @@ from verify.hamiltonians.start import point_of
 from verify.hamiltonians.systems import get
 from verify.kernels.step.computation import step_map_of
 from verify.scenes.results.bounded_value import Value
+from verify.structures import SYMPLECTIC
 from verify.studies.work_precision import peers
 from verify.studies.work_precision.lines import error_slope, lambda_slope
 from verify.studies.work_precision.runs import Ladder, Problem, reference
@@ -47,7 +48,7 @@ def test_orders_are_those_of_the_schemes_and_w_is_lost_by_what_is_not_symplectic
         assert float(error_slope(points).value or 0) == pytest.approx(order, abs=0.06)
         assert ladder.preserves_area is kept
         assert all((number(point.symplectic_defect) == 0) is kept for point in points)
-        of_form = lambda_slope(points, kept, planar=False)
+        of_form = lambda_slope(points, kept, structure=SYMPLECTIC)
         if kept:
             assert of_form.reason == "S ≡ 0 is proved: W is exactly 0"
         else:

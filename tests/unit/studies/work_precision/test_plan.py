@@ -18,8 +18,8 @@ from verify.execution.execute import Store, execute
 from verify.execution.executors import THIS_PROCESS
 from verify.runs.task import RunTask
 from verify.scenes.frozen import Frozen
+from verify.studies.kinds import work_precision as section_plan
 from verify.studies.plan import Plan, plan_scenes
-from verify.studies.work_precision import plan as section_plan
 from verify.studies.work_precision.task import WorkPrecisionTask
 
 START = "initial_value = { q = 1, p = 0 }"

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
-from verify.scenes.results.separation import Chain
+from verify.scenes.results.separation_parts import PartsOfRun
 from verify.studies.separation.separate import separate
 
 _DIGITS = 6
@@ -24,7 +24,7 @@ def holds(sample: Sample) -> None:
             _must_add_up(evaluation.parts, rounding, "total")
 
 
-def _must_add_up(parts: Chain, names: tuple[str, ...], whole: str) -> None:
+def _must_add_up(parts: PartsOfRun, names: tuple[str, ...], whole: str) -> None:
     values = [getattr(parts, name) for name in (*names, whole)]
     numbers, bounds = ([Fraction(getattr(v, key)) for v in values] for key in ("value", "bound"))
     apart = abs(sum(numbers[:-1]) - numbers[-1])

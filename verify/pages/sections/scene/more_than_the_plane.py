@@ -15,6 +15,7 @@ from verify.pages.text import words
 from verify.pages.text.typography import counted, listed, number, power_of_h, start, step, whole
 from verify.scenes.results.report import SceneResult
 from verify.scenes.results.work_precision import WorkLine, WorkPoint, WorkPrecisionResult
+from verify.structures import SYMPLECTIC
 
 
 @dataclass(frozen=True)
@@ -28,7 +29,7 @@ class BeyondView:
 
 def _view(scene: SceneResult, _: str) -> BeyondView | None:
     found = scene.work_precision
-    if found is None or found.planar:
+    if found is None or found.structure is not SYMPLECTIC:
         return None
     own = [line for line in found.lines if not line.peer]
     caption = f"float64 runs to T = {number(found.time)} from {start(found)}"

@@ -21,13 +21,16 @@ from verify.scenes.results.work_precision import (
     WorkPoint,
     WorkPrecisionResult,
 )
+from verify.structures import AREA, SYMPLECTIC
 
+_HEADS = {AREA: ("order of Λ", "Λ, plain"), SYMPLECTIC: ("order of max |W|", "max |W|")}
 _UNIT = re.compile(r"(\d) ")  # a count and what is counted stay on one line
 
 
 @dataclass(frozen=True)
 class WorkPrecisionView:
     result: WorkPrecisionResult
+    heads: tuple[str, str]  # of the order of what is lost, and of what is the sharper
     finding: tuple[str, ...]
     plots: tuple[Plot, ...]
     schemes: tuple[Row, ...]
@@ -46,6 +49,7 @@ def _view(scene: SceneResult, anchor: str) -> WorkPrecisionView | None:
     own = [line for line in found.lines if not line.peer]
     return WorkPrecisionView(
         result=found,
+        heads=_HEADS[found.structure],
         finding=tuple(_finding(found)),
         plots=tuple(plots(found, name=anchor)),
         schemes=tuple(_scheme(line) for line in own),

@@ -22,6 +22,7 @@ from verify.kernels.step.computation import Computation
 from verify.kernels.step.lowering import Lowering
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.runs.estimated import working_digits
+from verify.scenes.results.separation import AnySeparation
 from verify.schemes.maps.step_map import StepMap
 from verify.studies.separation.stepper.trail import Entries, Links
 
@@ -167,16 +168,20 @@ class Stepped:
         return None if values is None else [values[at] for at in roots]
 
 
+@dataclass(frozen=True)
 class Way(ABC):
     """How the last links are evaluated in float64, and followed exactly beside it.
 
-    `observable`, of `observables`: what a run in exact arithmetic's stead has. `points`: its
-    checkpoints. `parts`: of rounding, in the chain's order. `cancelled`: digits that differences
-    between links cancel, and `products` those that reading a product does beside them. `hidden`: so
-    many digits further below the greatest quantity a part is taken for noise, if ever. `vanishes`:
-    in words, why the closed form is exactly 0 where it is.
+    `count`: of coordinates. `result`: the model of what is told. `observable`, of `observables`:
+    what a run in exact arithmetic's stead has. `points`: its checkpoints. `parts`: of rounding, in
+    the chain's order. `cancelled`: digits that differences between links cancel, and `products`
+    those that reading a product does beside them. `hidden`: so many digits further below the
+    greatest quantity a part is taken for noise, if ever. `vanishes`: in words, why the closed form
+    is exactly 0 where it is.
     """
 
+    count: int
+    result: ClassVar[type[AnySeparation]]
     observable: ClassVar[str]
     observables: ClassVar[frozenset[str]]
     points: ClassVar[int]

@@ -42,7 +42,8 @@ from verify.kernels.step.kinds import may_leave_range
 from verify.kernels.stepping import KernelRun, Outcome, limits
 from verify.runs.estimated import working_digits
 from verify.runs.run import proved
-from verify.scenes.results.separation import ROUNDING
+from verify.scenes.results.separation import SeparationResult
+from verify.scenes.results.separation_parts import Parts
 from verify.schemes import get
 from verify.schemes.maps.step_map import StepMap
 from verify.studies.separation.stepper.run import marks_of
@@ -72,10 +73,13 @@ _CLOSED_SUM = (
 class Determinants(Way):
     """Λ = Π det J − 1 of a run in the plane."""
 
+    count: int = 2
+
+    result: ClassVar = SeparationResult
     observable: ClassVar = "lambda"
     observables: ClassVar = frozenset({"lambda"})
     points: ClassVar = POINTS
-    parts: ClassVar = ROUNDING
+    parts: ClassVar = Parts.rounding
     # Float64's 16 digits, less those by which a long run magnifies what is rounded.
     cancelled: ClassVar = 14
     vanishes: ClassVar = "ΔJ ≡ 0"

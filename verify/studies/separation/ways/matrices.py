@@ -33,18 +33,12 @@ from verify.kernels.chunked_loop import ENTRIES
 from verify.kernels.step.computation import Computation, Observed, computed, step_map_of
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.observables.observable import Need
-from verify.scenes.results.separation_in_degrees import FORM_ROUNDING
+from verify.scenes.results.separation import SeparationInDegrees
+from verify.scenes.results.separation_parts import FormParts
 from verify.schemes.maps.step_map import StepMap
 from verify.studies.separation.stepper.run import marks_of
 from verify.studies.separation.stepper.trail import Entries, Links, exact_links
-from verify.studies.separation.stepper.way import (
-    Lines,
-    Side,
-    Size,
-    State,
-    Stepped,
-    Way,
-)
+from verify.studies.separation.stepper.way import Lines, Side, Size, State, Stepped, Way
 from verify.studies.separation.ways.matrix_bounds import counted
 from verify.studies.separation.ways.matrix_lines import matrix_lines
 
@@ -53,14 +47,13 @@ POINTS = 512  # checkpoints of a run; each has a matrix for each link
 
 @dataclass(frozen=True)
 class Matrices(Way):
-    """W = MᵀΩM − Ω of a run with so many coordinates."""
+    """W = MᵀΩM − Ω of a run."""
 
-    count: int
-
+    result: ClassVar = SeparationInDegrees
     observable: ClassVar = "symplectic_defect"
     observables: ClassVar = frozenset({"symplectic_defect", ENTRIES})
     points: ClassVar = POINTS
-    parts: ClassVar = FORM_ROUNDING
+    parts: ClassVar = FormParts.rounding
     cancelled: ClassVar = 20
     products: ClassVar = 20
     hidden: ClassVar = 25

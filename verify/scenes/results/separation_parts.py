@@ -1,0 +1,183 @@
+"""What one way to evaluate Λ, or W, in float64 gives: its parts, and how they grow."""
+
+from typing import ClassVar, Literal
+
+from verify.scenes.frozen import Frozen, Said, WithProse
+from verify.scenes.results.bounded_value import Value
+from verify.scenes.results.form_value import FormValue
+from verify.structures import AREA, SYMPLECTIC, Structure
+
+
+class PartsOfRun(Frozen):
+    """The parts of what float64 finds, the first of its fields; `rounding`: those of rounding."""
+
+    structure: ClassVar[Structure]
+    rounding: ClassVar[tuple[str, ...]]
+
+    @property
+    def of_rounding(self) -> tuple[str, ...]:
+        """The names of the parts of rounding, in the chain's order."""
+        first, *others = self.rounding
+        return first, *(["clock"] if hasattr(self, "clock") else []), *others
+
+    def labels(self, mark: str) -> dict[str, str]:
+        """What each part is called; those of rounding by their names after a `mark`."""
+        working, *_ = type(self).model_fields
+        wholes = {working: f"{self.structure.accumulated} in float64", "truncation": "truncation"}
+        return wholes | {"total": "rounding"} | {n: mark + n for n in self.of_rounding}
+
+
+class Parts(PartsOfRun):
+    """truncation + input + trajectory + determinant + product = lambda_working (one equation of
+    exact rationals, of which these are the known digits); total is the sum of the last four."""
+
+    structure: ClassVar = AREA
+    rounding: ClassVar = ("input", "trajectory", "determinant", "product")
+    lambda_working: Value
+    truncation: Value
+    total: Value
+    input: Value
+    trajectory: Value
+    determinant: Value
+    product: Value
+
+
+class PartsInTime(Parts):
+    """Of an H that depends on time: what float64's clock does stands between input and
+    trajectory."""
+
+    clock: Value
+
+
+class FormParts(PartsOfRun):
+    """truncation + input + trajectory + derivatives + product = w_working, entry by entry (an
+    equation of exact rationals, of which these are the known digits); total is the sum of the last
+    four."""
+
+    structure: ClassVar = SYMPLECTIC
+    rounding: ClassVar = ("input", "trajectory", "derivatives", "product")
+    w_working: FormValue
+    truncation: FormValue
+    total: FormValue
+    input: FormValue
+    trajectory: FormValue
+    derivatives: FormValue
+    product: FormValue
+
+
+class FormPartsInTime(FormParts):
+    """Of an H that depends on time: what float64's clock does stands between input and
+    trajectory."""
+
+    clock: FormValue
+
+
+class PartsAt(Frozen):
+    """The parts after `steps` steps, as decimals of a few digits, for a figure."""
+
+    steps: int
+    truncation: str
+    total: str
+    input: str
+    trajectory: str
+    determinant: str
+    product: str
+
+
+class PartsInTimeAt(PartsAt):
+    """The same of an H that depends on time."""
+
+    clock: str
+
+
+class FormAt(Frozen):
+    """After `steps` steps: ‖M‖² of Frobenius, and the greatest |entry| of w_working and of each
+    part, as decimals of a few digits."""
+
+    steps: int
+    norm_squared: str
+    parts: dict[str, str]
+
+
+# -- how they grow ---------------------------------------------------------------------------------
+
+
+class GrowthResult(WithProse):
+    """A `verify.studies.separation.growth.Growth`."""
+
+    exponent: str | None
+    standard_error: str | None
+    name: Literal["random walk", "drift", "undecided"]
+    reason: Said
+    first: int
+    last: int
+    points: int
+
+
+class PowerLawResult(WithProse):
+    """A `verify.studies.separation.growth.PowerLaw`: measured, not proved."""
+
+    exponent: str | None
+    standard_error: str | None
+    name: Literal["bounded", "N", "N²", "exponential", "undecided"]
+    reason: Said
+
+
+class TangentGrowth(WithProse):
+    """How M, the product of the Jacobians that float64 computed, grew, and what follows for W.
+
+    `norm_squared`: ‖M_N‖² of Frobenius. `areas`: ‖∧²M_N‖, the root of the sum of all squares of its
+    2 × 2 minors, as which a 2-form grows, and which is below ‖M_N‖². `finite_time_lyapunov`:
+    ln(‖M_N‖/√(2n))/T per unit of time, `time` T. `motion`: whether ‖M‖ grew exponentially in this
+    run, and then `cause`, whose that growth is: `at_half_step` is the exponent over the same time
+    with half the step size (`verify.studies.separation.tangent`). `law`, `law_of_areas`: those
+    of ‖M‖² and ‖∧²M‖ where it did not. `per_area`: the greatest |entry| of the truncation of W_N,
+    over ‖∧²M_N‖.
+    """
+
+    norm_squared: str
+    areas: str
+    time: str
+    finite_time_lyapunov: str
+    motion: Literal["exponential", "polynomial", "undecided"]
+    cause: Literal["motion", "scheme", "undecided"] | None
+    at_half_step: str | None
+    law: PowerLawResult
+    law_of_areas: PowerLawResult
+    per_area: str
+    meaning: Said
+
+
+# -- all of it -------------------------------------------------------------------------------------
+
+
+class EvaluationResult(Frozen):
+    """Λ of a float64 run, split, for one way to evaluate it; `growth`: of total and of each part.
+
+    `largest`: the greatest |truncation| and |total| at the checkpoints of the run.
+    """
+
+    parts: PartsInTime | Parts
+    largest: dict[str, str]
+    growth: dict[str, GrowthResult]
+    series: tuple[PartsInTimeAt | PartsAt, ...]
+    error_kind: Literal["enclosed", "estimated"]
+
+
+class FormEvaluation(Frozen):
+    """W of a float64 run, split, for one way to evaluate it.
+
+    `largest`: the greatest |entry| of truncation and of total at any checkpoint. `growth`: of the
+    greatest |entry| of total and of each part, as of Λ. `law`: how that of w_working grows with N,
+    measured.
+    """
+
+    parts: FormPartsInTime | FormParts
+    largest: dict[str, str]
+    growth: dict[str, GrowthResult]
+    law: PowerLawResult
+    series: tuple[FormAt, ...]
+    error_kind: Literal["enclosed", "estimated"]
+
+
+AnyEvaluation = EvaluationResult | FormEvaluation
