@@ -112,9 +112,7 @@ def _orders(field: Field, rows: Rows, zs: list[Vector], t: Number, order: int) -
     for k in range(order):
         if k > 0:
             known.more(zs[-1])
-        slopes = [known.coefficient(x, k) for _, x in rows.f]
-        pairs = zip(slopes, zs[0], strict=True)
-        zs.append([0 * z if x is None else x / (k + 1) for x, z in pairs])
+        zs.append([known.c[x][k] / (k + 1) for _, x in rows.f])
         yield k
 
 
@@ -126,8 +124,7 @@ def lie(field: Field, eta: int) -> Step:
     def step(z: Vector, h: Number, t: Number) -> tuple[Vector, Matrix]:
         zs, ms, orders = [z], [identity(size)], []
         for k in _orders(field, field.all, zs, t, eta):
-            entries = ((row, column, known.coefficient(x, k)) for row, column, x in a)
-            orders.append([entry for entry in entries if entry[2] is not None])
+            orders.append([(row, column, known.c[x][k]) for row, column, x in a])
             total: Matrix = [0] * size**2
             for m, a_j in zip(reversed(ms), orders, strict=True):  # Σ A_j M_(k−j)
                 _add_product(total, a_j, m, size)

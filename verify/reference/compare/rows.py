@@ -1,5 +1,5 @@
-"""What a table of somebody's numbers is made of: which column is which, a row's numbers, its step,
-and the rows of each run that are kept.
+"""What a table of somebody's numbers is made of: which column is which, a row's numbers, and the
+rows of each run that are kept.
 
 A table of numbers in a text file, line by line: CSV with commas, semicolons, tabs or spaces.
 
@@ -10,7 +10,6 @@ line is held.
 
 import csv
 import io
-import re
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -56,6 +55,13 @@ class Table:
         """What is wrong with the line that was read last."""
         return InputError("file", self.name, f"line {self.line} {problem}")
 
+    def number(self, text: str, name: str) -> Fraction:
+        """The number that a cell is; InputError names the line."""
+        try:
+            return rational(text, name)
+        except InputError as error:
+            raise self.error(f"has the {name} {text[:40]!r}: {error.problem}") from None
+
     def __iter__(self) -> Iterator[list[str]]:
         try:
             for row in self._cells:
@@ -100,8 +106,6 @@ def _numbers(cells: tuple[str, ...]) -> bool:
 
 
 _SHOWN = 60  # characters of a text
-_SAME_NUMBER = Fraction(1, 10**6)  # of a step, by which N·h may miss a time
-_WHOLE = re.compile(r"[0-9]{1,40}")
 COUNTED = ("step", "time")
 _ALIASES = {
     "step": ("n", "k", "i", "index", "steps"),
@@ -190,31 +194,6 @@ def places_of(
     found.columns = tuple(name for name in values if name in places)
     found.ignored = tuple(ignored)
     return places
-
-
-def step_of(
-    lines: Table, row: list[str], places: Mapping[str, int], t0: Fraction, step_size: str
-) -> int | None:
-    """How many steps a row is of; None where its time is no multiple of the step size."""
-    if "step" in places:
-        text = row[places["step"]]
-        if _WHOLE.fullmatch(text):
-            return int(text)
-        count = number_of(lines, text, "step")  # 1e3 and 1000.0 are whole numbers, too
-        if count.denominator != 1:
-            raise lines.error(f"has the step {text[:40]!r}, which is not a whole number")
-        return int(count)
-    count = (number_of(lines, row[places["time"]], "time") - t0) / rational(step_size)
-    near = round(count)
-    return near if abs(count - near) <= _SAME_NUMBER * max(1, abs(near)) else None
-
-
-def number_of(lines: Table, text: str, name: str) -> Fraction:
-    """The number that a cell is; InputError names the line."""
-    try:
-        return rational(text, name)
-    except InputError as error:
-        raise lines.error(f"has the {name} {text[:40]!r}: {error.problem}") from None
 
 
 def printable(text: str) -> str:

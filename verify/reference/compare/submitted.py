@@ -8,6 +8,7 @@ what is compared is kept, so that memory does not grow with the file (see
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
+from functools import lru_cache
 from pathlib import Path
 
 from verify.arithmetic.systems.float64 import nearest_double
@@ -18,15 +19,15 @@ from verify.reference.compare.rows import (
     Row,
     Table,
     Theirs,
-    number_of,
     opened,
     places_of,
     printable,
-    step_of,
 )
 
 _MOST_KNOWN = 10_000  # of the inputs' texts that are remembered
 _BEGINS = "t0"  # of an H in time; a scene has one, so that it need not be told
+_SAME_NUMBER = Fraction(1, 10**6)  # of a step, by which N·h may miss a time
+_WHOLE = re.compile(r"[0-9]{1,40}")
 _OF_SEVERAL = re.compile(r"[pq][1-9][0-9]?")
 
 
@@ -92,7 +93,7 @@ class _Keys:
             ours.scene(given["scene"])  # a misspelt one has no rows, and is the reason for none
         self.named = tuple(n for n in ("scene", *ours.keys, _BEGINS) if n in places)
         self.at = tuple(places[name] for name in self.named)
-        self._known: dict[tuple[str, ...], PublishedRun | None] = {}
+        self._known = lru_cache(_MOST_KNOWN)(lambda texts: self._find(self._inputs(texts)))
 
     def describe(self, row: list[str]) -> str:
         """What is said of a row's run, by options and by its cells."""
@@ -100,25 +101,32 @@ class _Keys:
         return ", ".join(f"{name} = {printable(text)}" for name, text in said.items())
 
     def run_of(self, row: list[str]) -> PublishedRun | None:
-        texts = tuple([row[at] for at in self.at])
-        if texts not in self._known:
-            if len(self._known) > _MOST_KNOWN:
-                self._known.clear()
-            self._known[texts] = self._find(self._inputs(texts))
-        return self._known[texts]
+        return self._known(tuple([row[at] for at in self.at]))
 
     def _inputs(self, texts: Iterable[str]) -> dict[str, str]:
         named = zip(self.named, texts, strict=True)
         return {**self.given, **{name: text.strip() for name, text in named}}
 
     def step_of(self, row: list[str], run: PublishedRun) -> int | None:
-        return step_of(self.lines, row, self.places, run.t0 or Fraction(0), run.run.step_size)
+        """How many steps a row is of; None where its time is no multiple of the step size."""
+        if "step" in self.places:
+            text = row[self.places["step"]]
+            if _WHOLE.fullmatch(text):
+                return int(text)
+            count = self.lines.number(text, "step")  # 1e3 and 1000.0 are whole numbers, too
+            if count.denominator != 1:
+                raise self.lines.error(f"has the step {text[:40]!r}, which is not a whole number")
+            return int(count)
+        time = self.lines.number(row[self.places["time"]], "time")
+        count = (time - (run.t0 or 0)) / run.exact["step_size"]
+        near = round(count)
+        return near if abs(count - near) <= _SAME_NUMBER * max(1, abs(near)) else None
 
     def _find(self, inputs: dict[str, str]) -> PublishedRun | None:
         """The run of these inputs, or of the same doubles where these tell one."""
         told = {name: inputs[name] for name in self.ours.keys if name in inputs}
         told |= {name: x for name, x in inputs.items() if name not in ("scene", _BEGINS)}
-        exact = {name: self._number(x, name) for name, x in told.items() if name != "scheme"}
+        exact = {name: self.lines.number(x, name) for name, x in told.items() if name != "scheme"}
         doubles: Inputs = {**told, **{name: nearest_double(x) for name, x in exact.items()}}
         scene = inputs.get("scene") or self._scene(doubles)
         if scene is None:
@@ -151,7 +159,7 @@ class _Keys:
         """Whether it begins at the time that is told, if one is and H depends on time."""
         if run.t0 is None or _BEGINS not in inputs:
             return True
-        return nearest_double(self._number(inputs[_BEGINS], _BEGINS)) == nearest_double(run.t0)
+        return nearest_double(self.lines.number(inputs[_BEGINS], _BEGINS)) == nearest_double(run.t0)
 
     def _scene(self, inputs: Inputs) -> str | None:
         """The one scene that has such runs; InputError where several have."""
@@ -165,9 +173,6 @@ class _Keys:
                 "--scene", NOT_GIVEN, f"is wanted: {len(matching)} have such runs: {names}"
             )
         return matching[0] if matching else None
-
-    def _number(self, text: str, name: str) -> Fraction:
-        return number_of(self.lines, text, name)
 
 
 def _option(name: str) -> str:
