@@ -39,6 +39,7 @@ from verify.kernels.orbit import Orbit
 from verify.kernels.stepping import KernelRun
 from verify.reference.compare.findings import DOUBLE, Spread, Spreads
 from verify.runs.run import run
+from verify.structures import AREA, SYMPLECTIC
 
 _OFF = Fraction(1, 2**24)  # of the orbit's size: what is carried has 20 digits of bits beside it
 _AT_WORST = 4  # times what is carried, for each step
@@ -130,6 +131,7 @@ _MOST_STEPS = 20_000  # followed; beyond, what has grown by then is taken to go 
 _LARGE = 1e-3  # of a value: beyond it errors do not just add up, and nothing is said
 _BLOCK = 64  # steps whose random numbers are drawn at once
 _TOGETHER = 64  # orbits
+_SUMS = {AREA: frozenset({"mse", "lambda"}), SYMPLECTIC: frozenset({"lambda"})}
 _COUNT = "step"  # what a kernel's clock counts by
 
 
@@ -231,8 +233,8 @@ class Scatter:
 
 def run_of(orbit: Orbit) -> KernelRun:
     """One step of the orbit, with Λ and, in the plane, MSE."""
-    observed = frozenset({"mse", "lambda"} if orbit.hamiltonian.planar else {"lambda"})
-    return KernelRun(orbit.hamiltonian, orbit.scheme, orbit.start, 1, observed, 0)
+    exact = orbit.hamiltonian
+    return KernelRun(exact, orbit.scheme, orbit.start, 1, _SUMS[exact.structure], 0)
 
 
 def inputs_of(run: KernelRun, kernel: Kernel, arithmetic: Arithmetic) -> list[Fraction]:
@@ -258,7 +260,7 @@ class Scatters:
         """They may be asked for, too; so those of a kind that are new step together."""
         kinds: dict[object, list[Orbit]] = {}
         for orbit in dict.fromkeys(orbits):
-            if orbit.hamiltonian.planar and orbit not in self._place:
+            if orbit not in self._place:
                 kinds.setdefault((orbit.hamiltonian.expression, orbit.scheme), []).append(orbit)
         for kind in kinds.values():
             for first in range(0, len(kind), _TOGETHER):

@@ -31,11 +31,9 @@ from verify.reference.make.columns import AFTER_A_STEP, MAY_LACK, orbit_columns
 from verify.reference.make.correct_rounding import correctly_rounded, near_zero
 from verify.runs.run import AskedRun
 from verify.scenes.results.reference import (
-    FlowPoint,
-    FlowPointInDegrees,
+    FLOW_POINTS,
+    ORBIT_POINTS,
     Kind,
-    OrbitPoint,
-    OrbitPointInDegrees,
     Rounded,
 )
 from verify.scenes.values import AUTO
@@ -51,12 +49,11 @@ Numbers = Mapping[str, Rounded | None]  # by the names of their columns
 def orbit_points(orbit: Orbit, steps: Sequence[int], digits: int) -> Course[tuple[Any, ...]]:
     """The orbit after each of these numbers of steps, every number to so many digits."""
     exact, points = orbit.hamiltonian, []
-    model = OrbitPoint if exact.planar else OrbitPointInDegrees
     for step in steps:
         told, values = yield from _after_steps(orbit, step, digits)
-        numbers = _state(exact, values)
+        numbers = _state(values)
         numbers |= {name: values.get(name) for name in orbit_columns(exact.degrees)}
-        points.append(model(step=step, **_UNKNOWN | told, **numbers))
+        points.append(ORBIT_POINTS[exact.structure](step=step, **_UNKNOWN | told, **numbers))
     return tuple(points)
 
 
@@ -105,12 +102,10 @@ def _all_rounded(
     return values
 
 
-def _state(hamiltonian: Hamiltonian, values: Numbers) -> dict[str, Any]:
+def _state(values: Numbers) -> dict[str, Any]:
     """p and q of a row: a number each, or a list; None where there are none."""
-    names = hamiltonian.coordinates
-    if hamiltonian.planar or not values:
-        return {letter: values.get(letter) for letter in "pq"}
-    return {letter: tuple(values[x] for x in names if x[0] == letter) for letter in "pq"}
+    lists = {letter: tuple(values[x] for x in values if x[0] == letter != x) for letter in "pq"}
+    return {letter: values.get(letter) or several or None for letter, several in lists.items()}
 
 
 def _at_state(
@@ -123,12 +118,14 @@ def _at_state(
         box = {name: around(*known[name]) for name in orbit.hamiltonian.coordinates}
         if orbit.hamiltonian.time_dependent:
             box["t"] = rational_ball(orbit.t0 + step * orbit.step_size)
-        if orbit.hamiltonian.planar:
-            name, value = "delta_j", _delta_j(orbit, box)
-        else:
-            field, _ = canonical_field(orbit.hamiltonian)
-            name, value = "energy", enclose_over(field.ring, field.energy, box)
+        (name,) = (x for x in orbit_columns(orbit.hamiltonian.degrees) if x in MAY_LACK)
+        value = _delta_j(orbit, box) if name == "delta_j" else _energy(orbit, box)
         return {name: middle_and_radius(value)} if value is not None and in_reach(value) else {}
+
+
+def _energy(orbit: Orbit, box: dict[str, flint.arb]) -> flint.arb | None:
+    field, _ = canonical_field(orbit.hamiltonian)
+    return enclose_over(field.ring, field.energy, box)
 
 
 def _delta_j(orbit: Orbit, box: dict[str, flint.arb]) -> flint.arb | None:
@@ -162,10 +159,10 @@ def solution_points(
 ) -> Iterator[Any]:
     """The exact flow from the coordinates in `start` and t0, at these times after it by their N, to
     so many digits."""
-    model = FlowPoint if hamiltonian.planar else FlowPointInDegrees
+    model = FLOW_POINTS[hamiltonian.structure]
     for step, time in times.items():
         status, kind, values = _solution_at(hamiltonian, start, t0, time, digits)
-        state: dict[str, Any] = {"status": status, "kind": kind, **_state(hamiltonian, values)}
+        state: dict[str, Any] = {"status": status, "kind": kind, **_state(values)}
         yield model(step=step, time=text(time), **state)
 
 
