@@ -152,8 +152,10 @@ class Scatter:
         self._names, self._function = kernel.state_names, kernel.function
         self._pushed = ("p", "q", *([_COUNT] if kernel.timed else []))
         self._shape = len(orbits), _ALL
-        inputs = [inputs_of(run, kernel, arithmetic) for run in runs]
-        self._given = [self._off(column) for column in zip(*inputs, strict=True)]
+        clocks = clock_inputs if kernel.timed else lambda *_: {}
+        inputs = [each.inputs(kernel, 0) | clocks(arithmetic, each.start) for each in runs]
+        columns = zip(*(each.values() for each in inputs), strict=True)
+        self._given = [self._off(column) for column in columns]
         self._state = {"p": self._off([c.p for c in orbits]), "q": self._off([c.q for c in orbits])}
         rest = zip(self._names[2:], kernel.start, strict=True)
         self._state |= {n: np.full(self._shape, WIDE.rational(Fraction(x))) for n, x in rest}
@@ -231,18 +233,10 @@ class Scatter:
         return apart[:, :_COPIES].max(axis=1), apart.max(axis=1)
 
 
-def run_of(orbit: Orbit) -> KernelRun:
-    """One step of the orbit, with Λ and, in the plane, MSE."""
+def run_of(orbit: Orbit, steps: int = 1) -> KernelRun:
+    """So many steps of the orbit, with Λ and, in the plane, MSE."""
     exact = orbit.hamiltonian
-    return KernelRun(exact, orbit.scheme, orbit.start, 1, _SUMS[exact.structure], 0)
-
-
-def inputs_of(run: KernelRun, kernel: Kernel, arithmetic: Arithmetic) -> list[Fraction]:
-    """What the kernel takes beside the state: h, the parameters, and t₀ where it has a clock."""
-    given = run.inputs(kernel, 0)
-    if kernel.timed:
-        given |= clock_inputs(arithmetic, run.start)
-    return list(given.values())
+    return KernelRun(exact, orbit.scheme, orbit.start, steps, _SUMS[exact.structure], 0)
 
 
 class Scatters:

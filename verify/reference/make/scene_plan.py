@@ -9,9 +9,9 @@ from verify.reference.make.columns import orbit_columns
 from verify.reference.make.tasks import OrbitTask, SolutionTask
 from verify.scenes.scene import Scene
 from verify.scenes.sections import Reference
+from verify.structures import AREA, SYMPLECTIC
 from verify.studies.kinds.proofs import proof_task
 from verify.studies.proofs.one import ProofTask
-from verify.structures import AREA, SYMPLECTIC
 
 _NUMBERS = {AREA: "ΔJ, MSE and Λ", SYMPLECTIC: "H, S, W and Λ"}
 
