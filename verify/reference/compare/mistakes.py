@@ -4,7 +4,7 @@ Adding a mistake is adding a line. In n degrees of freedom fewer are tried, as r
 What may be wrong with a column beside the state is in `verify.reference.compare.column_meanings`.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -22,7 +22,7 @@ from verify.kernels.orbit import Orbit
 from verify.reference.compare.agreement import nearest_single
 from verify.reference.compare.setting import Setting
 from verify.schemes.conditions.splitting_conditions import Part, Splitting
-from verify.structures import AREA, SYMPLECTIC
+from verify.structures import AREA, SYMPLECTIC, Structure
 
 _MOST_INEXACT = 4  # inputs of which all subsets are tried
 _OF_SCHEME = "scheme "
@@ -48,6 +48,7 @@ class Mistake:
 
 
 Change = tuple[str, str, dict[str, Any]]  # a mistake's name, what it says, and what it changes
+Changes = Callable[[Setting], Iterable[Change]]  # of the right setting
 
 
 def of_inputs(right: Setting) -> Iterator[Mistake]:
@@ -103,7 +104,7 @@ def _in_degrees(right: Setting) -> Iterator[Change]:
         yield f"scheme-{other.scheme}", says, {"orbit": other}
 
 
-_OF_INPUTS = {AREA: _of_doubles, SYMPLECTIC: lambda _: iter(())}
+_OF_INPUTS: Mapping[Structure, Changes] = {AREA: _of_doubles, SYMPLECTIC: lambda _: ()}
 _OF_STATES = {AREA: _in_plane, SYMPLECTIC: _in_degrees}
 
 

@@ -21,24 +21,23 @@ Jacobian rounds their products, however small they are: the columns of these run
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
 from verify.arithmetic.float_context import WIDE
-from verify.arithmetic.number_system import Arithmetic, UnsupportedError
+from verify.arithmetic.number_system import UnsupportedError
 from verify.arithmetic.systems import float64
 from verify.errors import InputError
 from verify.flows.extrapolation_of_many import arrays
 from verify.hamiltonians.start import point_of
 from verify.kernels.clock import clock_inputs
-from verify.kernels.kernel import Kernel, kernel_for
+from verify.kernels.kernel import kernel_for
 from verify.kernels.orbit import Orbit
 from verify.kernels.stepping import KernelRun
 from verify.reference.compare.findings import DOUBLE, Spread, Spreads
-from verify.runs.run import run
 from verify.structures import AREA, SYMPLECTIC
 
 _OFF = Fraction(1, 2**24)  # of the orbit's size: what is carried has 20 digits of bits beside it
@@ -113,15 +112,13 @@ class Carried:
 
     def _after(self, point: Mapping[str, Fraction], steps: int) -> dict[str, Fraction] | None:
         """The numbers after so many steps from a point; None where they cannot be had."""
-        each, half = list(point.values()), len(point) // 2
-        aside = replace(self._orbit, p=each[:half], q=each[half:])
+        exact, scheme, start = self._orbit.hamiltonian, self._orbit.scheme, self._orbit.start
         try:
-            done = run(**vars(aside), steps=steps, arithmetic=float64.NAME, observables=_OBSERVED)
+            aside = KernelRun(exact, scheme, {**start, **point}, steps, frozenset(_OBSERVED), 0)
+            done = aside.run(float64.make(17))
         except (InputError, ArithmeticError):
             return None
-        if done.status != "finished":
-            return None
-        return {name: Fraction(value.value) for name, value in done.values.items()}
+        return dict(done.values) if done.done == steps else None
 
 
 _PUSH = 2.0**-42 if WIDE.prec > 60 else 2.0**-32  # numbers have 20 bits and more beside it

@@ -31,16 +31,21 @@ from verify.reference.make.columns import AFTER_A_STEP, MAY_LACK, orbit_columns
 from verify.reference.make.correct_rounding import correctly_rounded, near_zero
 from verify.runs.run import AskedRun
 from verify.scenes.results.reference import (
-    FLOW_POINTS,
-    ORBIT_POINTS,
+    FlowPoint,
+    FlowPointInDegrees,
     Kind,
+    OrbitPoint,
+    OrbitPointInDegrees,
     Rounded,
 )
 from verify.scenes.values import AUTO
 from verify.schemes.maps.ball_algebra import UndefinedError, step_in_balls
+from verify.structures import AREA, SYMPLECTIC
 
 _GUARDS = (10, 25, 60, 150)  # digits beyond those asked for, in turn
 _BITS = 64  # beyond the digits, for the roundings of one step, or of H
+_ORBITS = {AREA: OrbitPoint, SYMPLECTIC: OrbitPointInDegrees}
+_FLOWS = {AREA: FlowPoint, SYMPLECTIC: FlowPointInDegrees}
 _UNKNOWN: dict[str, Any] = {"status": "unresolved", "kind": None, "failed_step": None}
 Bounded = tuple[Fraction, Fraction]  # a value and its bound
 Numbers = Mapping[str, Rounded | None]  # by the names of their columns
@@ -53,7 +58,7 @@ def orbit_points(orbit: Orbit, steps: Sequence[int], digits: int) -> Course[tupl
         told, values = yield from _after_steps(orbit, step, digits)
         numbers = _state(values)
         numbers |= {name: values.get(name) for name in orbit_columns(exact.degrees)}
-        points.append(ORBIT_POINTS[exact.structure](step=step, **_UNKNOWN | told, **numbers))
+        points.append(_ORBITS[exact.structure](step=step, **_UNKNOWN | told, **numbers))
     return tuple(points)
 
 
@@ -159,7 +164,7 @@ def solution_points(
 ) -> Iterator[Any]:
     """The exact flow from the coordinates in `start` and t0, at these times after it by their N, to
     so many digits."""
-    model = FLOW_POINTS[hamiltonian.structure]
+    model = _FLOWS[hamiltonian.structure]
     for step, time in times.items():
         status, kind, values = _solution_at(hamiltonian, start, t0, time, digits)
         state: dict[str, Any] = {"status": status, "kind": kind, **_state(values)}

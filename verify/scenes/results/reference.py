@@ -4,13 +4,11 @@ In the plane p and q are a number each, in n degrees of freedom a list each. A d
 what the published JSON Schema says of a key.
 """
 
-from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field
 
 from verify.scenes.frozen import Frozen
-from verify.structures import AREA, SYMPLECTIC, Structure
 
 _DECIMAL = r"^-?[0-9](\.[0-9]+)?(e[+-][0-9]{2,})?$"
 Decimal = Annotated[str, Field(pattern=_DECIMAL)]
@@ -135,16 +133,6 @@ class FlowPointInDegrees(FlowRow):
     )
     p: Cells = Field(description=f"{_EACH_P} at that time")
     q: Cells = Field(description=f"{_EACH_Q} at that time")
-
-
-ORBIT_POINTS: Mapping[Structure, type[OrbitRow]] = {
-    AREA: OrbitPoint,
-    SYMPLECTIC: OrbitPointInDegrees,
-}
-FLOW_POINTS: Mapping[Structure, type[FlowRow]] = {
-    AREA: FlowPoint,
-    SYMPLECTIC: FlowPointInDegrees,
-}
 
 
 class SolutionResult(Frozen):
