@@ -12,22 +12,23 @@ from functools import lru_cache
 from pathlib import Path
 
 from verify.arithmetic.systems.float64 import nearest_double
-from verify.errors import NOT_GIVEN, InputError
+from verify.errors import NOT_GIVEN, InputError, unknown, without_controls
 from verify.reference.compare.published import Inputs, Published, PublishedRun
-from verify.reference.compare.rows import (
-    COUNTED,
-    Row,
-    Table,
-    Theirs,
-    opened,
-    places_of,
-    printable,
-)
+from verify.reference.compare.rows import Row, Table, Theirs, opened
 
 _MOST_KNOWN = 10_000  # of the inputs' texts that are remembered
 _BEGINS = "t0"  # of an H in time; a scene has one, so that it need not be told
 _SAME_NUMBER = Fraction(1, 10**6)  # of a step, by which N·h may miss a time
 _WHOLE = re.compile(r"[0-9]{1,40}")
+_SHOWN = 60  # characters of a text
+_COUNTED = ("step", "time")
+_ALIASES = {
+    "step": ("n", "k", "i", "index", "steps"),
+    "time": ("t",),
+    "step_size": ("h", "dt"),
+    "delta_j": ("Δj", "dj", "deltaj", "delta-j"),
+    "lambda": ("λ", "lam"),
+}
 _OF_SEVERAL = re.compile(r"[pq][1-9][0-9]?")
 
 
@@ -45,9 +46,8 @@ def read(path: Path, ours: Published, given: Mapping[str, str], names: Mapping[s
     does not tell which run a row is of.
     """
     found = Theirs()
-    columns = ("scene", *ours.keys, _BEGINS, *COUNTED, *ours.columns)
     with opened(path) as lines:
-        places = places_of(lines, names, columns, ours.columns, found)
+        places = _places(lines, names, ours, found)
         keys = _Keys(ours, _each(given, ours), places, lines)
         texts = [(name, places[name]) for name in found.columns]
         for row in lines:
@@ -78,6 +78,51 @@ def _each(given: Mapping[str, str], ours: Published) -> dict[str, str]:
     return parted
 
 
+def _places(
+    lines: Table, names: Mapping[str, str], ours: Published, found: Theirs
+) -> dict[str, int]:
+    """Where each column of ours stands; `names`: what the table calls a column, by ours. `found`
+    gets those that are compared, and those that mean nothing."""
+    known, values = ("scene", *ours.keys, _BEGINS, *_COUNTED, *ours.columns), ours.columns
+    own_names = {alias: name for name, aliases in _ALIASES.items() for alias in aliases}
+    own_names |= {name: name for name in known}
+    for name, theirs in names.items():
+        if name not in known:
+            raise unknown("--column", name, known)
+        if theirs not in lines.header:
+            has = ", ".join(lines.header)
+            raise InputError("--column", theirs, f"is no column of the table; it has: {has}")
+    own = {theirs: name for name, theirs in names.items()}
+    places: dict[str, int] = {}
+    ignored = []
+    for at, head in enumerate(lines.header):
+        column = own.get(head) or own_names.get(head.casefold())
+        means_nothing = column not in known or (column in own.values() and head not in own)
+        if column is None or means_nothing:
+            ignored.append(_printable(head))
+        elif column in places:
+            raise lines.error(f"has two columns for {column}; --column {column}=… says which")
+        else:
+            places[column] = at
+    if not any(name in places for name in values):
+        raise lines.error(f"names no column of {', '.join(values)}; it has {_listed(lines.header)}")
+    if not any(name in places for name in _COUNTED):
+        raise lines.error(f"names no column step or time; it has {_listed(lines.header)}")
+    found.columns = tuple(name for name in values if name in places)
+    found.ignored = tuple(ignored)
+    return places
+
+
+def _printable(text: str) -> str:
+    """A text of a file as it may be shown: short, and without control characters."""
+    short = text if len(text) <= _SHOWN else text[: _SHOWN - 1] + "…"
+    return without_controls(short)
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    return ", ".join(names[:12]) + (", …" if len(names) > 12 else "")
+
+
 class _Keys:
     """Which run and which step a row is of."""
 
@@ -98,7 +143,7 @@ class _Keys:
     def describe(self, row: list[str]) -> str:
         """What is said of a row's run, by options and by its cells."""
         said = self._inputs(row[at] for at in self.at)
-        return ", ".join(f"{name} = {printable(text)}" for name, text in said.items())
+        return ", ".join(f"{name} = {_printable(text)}" for name, text in said.items())
 
     def run_of(self, row: list[str]) -> PublishedRun | None:
         return self._known(tuple([row[at] for at in self.at]))
