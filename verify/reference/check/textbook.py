@@ -128,15 +128,10 @@ def lie(field: Field, eta: int) -> Step:
 
 
 def polynomials(coefficients: list[Vector], h: Number) -> Vector:
-    """Σ z_k h^k, of vectors."""
-    return [polynomial(series, h) for series in zip(*coefficients, strict=True)]
-
-
-def polynomial(coefficients: Sequence[Number], h: Number) -> Number:
-    """Σ c_k h^k, by Horner's rule."""
-    total = coefficients[-1]
-    for c in reversed(coefficients[:-1]):
-        total = c + h * total
+    """Σ z_k h^k, of vectors, by Horner's rule."""
+    *rest, total = coefficients
+    for z in reversed(rest):
+        total = _added(z, h, total)
     return total
 
 
@@ -186,6 +181,7 @@ def _slope(rows: Rows, at: Vector, t: Number, size: int) -> Vector:
 
 
 def _added(x: Vector, by: Number, slope: Vector) -> Vector:
+    """x + by · slope."""
     return [a + by * b for a, b in zip(x, slope, strict=True)]
 
 
