@@ -1,4 +1,5 @@
-"""flint's precision, which is one for the whole process, set for a while and given back."""
+"""flint's precision and its length of series, which are one for the whole process, set for a while
+and given back."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -16,6 +17,16 @@ def working_precision(bits: int) -> Iterator[None]:
     """Ball arithmetic with so many bits, by one thread at a time; leaves flint's as it was."""
     with _ONE_THREAD, flint.ctx.workprec(bits):
         yield
+
+
+@contextmanager
+def length_of_series(terms: int) -> Iterator[None]:
+    """Power series of so many terms; leaves flint's length of them as it was."""
+    before, flint.ctx.cap = flint.ctx.cap, terms
+    try:
+        yield
+    finally:
+        flint.ctx.cap = before
 
 
 class AtEachPrecision(Generic[T]):

@@ -1,6 +1,7 @@
 """A scheme's orbit in balls, with the sums and products over its steps that a row has."""
 
 from fractions import Fraction
+from functools import reduce
 
 import flint
 
@@ -52,10 +53,8 @@ class Orbit:
                 raise TooWideError
 
     def _greatest_defect(self, jacobian: flint.arb_mat) -> Number:
-        total = flint.arb(0)
-        for x in defect(jacobian.entries(), self.known.degrees).values():
-            total = total.max(abs(x))
-        return total
+        entries = defect(jacobian.entries(), self.known.degrees).values()
+        return reduce(flint.arb.max, map(abs, entries), flint.arb(0))
 
     def values(self) -> dict[str, Number]:
         """The state, and what is defined beside it, by the names of their columns."""

@@ -25,7 +25,7 @@ from verify.reference.make.columns import (
     values_of,
 )
 from verify.reference.make.correct_rounding import correctly_rounded
-from verify.reference.make.models import AnyData, AnyFlow, AnyProof, AnyRun
+from verify.reference.make.models import AnyData, AnyFlow, AnyProof, AnyRun, heading
 from verify.reference.make.reading import rows_of
 from verify.reference.make.scene_plan import orbit_tasks, proof_tasks, solution_tasks
 from verify.reference.make.writing import csv_text
@@ -63,8 +63,7 @@ def of_data(data: AnyData, scene: Scene, file: Place) -> None:
 
 def _inputs(data: AnyData, scene: Scene, file: Place) -> None:
     """Names and inputs, against those of the scene."""
-    exact = scene.exact_hamiltonian()
-    written = exact.texts | ({} if exact.planar else {"degrees": exact.degrees})
+    written = heading(scene.exact_hamiltonian())
     wanted: dict[str, Any] = {"name": scene.name, **written}
     wanted["proofs"] = [task.scheme for task in proof_tasks(scene)]
     wanted["runs"] = [(t.scheme, *t.inputs.values(), t.steps) for t in orbit_tasks(scene)]

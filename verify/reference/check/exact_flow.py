@@ -66,7 +66,7 @@ def _taylor_solution(
         if not waiting:
             return states, None
         t = flint.arb(number(start.get("t", Fraction(0)) + done))
-        zs = flow_series(field, z, t, order)
+        zs = flow_series(field.slopes, z, t, order)
         reach = _reach(zs, digits)
         if not all(x.is_finite() for vector in zs for x in vector):
             return states, NoSolutionError("H is not defined there")

@@ -5,12 +5,12 @@ S = JᵀΩJ − Ω there is one entry in the plane, which is ΔJ.
 """
 
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
 from fractions import Fraction
 from typing import Any
 
 import flint
 
+from verify.arithmetic.flint_precision import length_of_series
 from verify.reference.check.difference import Place
 from verify.reference.check.taylor import Expansion, Number, number
 from verify.reference.check.textbook import Field, Step, defect, flow_series, step_of
@@ -42,7 +42,7 @@ def proof_again(known: Field, data: AnyData, proof: AnyProof, file: Place) -> No
     unordered = _MOST_ORDER if known.degrees == 1 else _OF_SEVERAL
     looking = _Looking(known, proof, row, max(order or unordered, (convergence or 0) + 1))
     for point in _points(known, data):
-        with flint.ctx.workprec(_BITS), _length_of_series(looking.most + 1):
+        with flint.ctx.workprec(_BITS), length_of_series(looking.most + 1):
             looking.at(point)
     looking.end()
 
@@ -117,15 +117,15 @@ def _powers(
     z, t = [flint.arb(number(point[name])) for name in names], flint.arb(number(point["t"]))
     h = flint.arb_series([0, 1], most + 1)
     zero = 0 * h
-    after, jacobian = step([x + zero for x in z], h, t + zero)
+    after, jacobian = step(z, h, t)
     form = {
         _AREA if known.degrees == 1 else f"d{names[a]}∧d{names[b]}": _coefficients(x + zero, most)
         for (a, b), x in defect(jacobian, known.degrees).items()
     }
-    along = zip(names, after, *[zip(*flow_series(known, z, t, most), strict=True)], strict=True)
+    flow = zip(*flow_series(known.slopes, z, t, most), strict=True)
     apart = {
         name: [u - v for u, v in zip(_coefficients(x + zero, most), series, strict=True)]
-        for name, x, series in along
+        for name, x, series in zip(names, after, flow, strict=True)
     }
     values = Expansion(known.tape, list(leading.values()))
     values.begin([*z, t])
@@ -153,13 +153,3 @@ def _points(known: Field, data: AnyData) -> Iterator[Point]:
                 point[p] = (x or y / 3 or Fraction(2, 3)) * (by_p + more)
                 point[q] = (y or x / 5 or Fraction(4, 5)) * (by_q + more)
             yield point
-
-
-@contextmanager
-def _length_of_series(length: int) -> Iterator[None]:
-    """flint's length of power series, set for a while and given back."""
-    before, flint.ctx.cap = flint.ctx.cap, length
-    try:
-        yield
-    finally:
-        flint.ctx.cap = before

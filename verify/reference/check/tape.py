@@ -204,15 +204,10 @@ class Tape:
 
     def needed(self, *roots: int) -> tuple[int, ...]:
         """The nodes that the roots are made of, themselves among them, in order."""
-        found: set[int] = set()
-        waiting = list(roots)
-        while waiting:
-            x = waiting.pop()
+        found = set(roots)
+        for x in reversed(range(len(self.nodes))):
             if x in found:
-                continue
-            found.add(x)
-            kind, *args = self.nodes[x]
-            if kind in PAIRS:  # each needs the other's coefficients
-                waiting.append(self._known[PAIRS[kind], args[0]])
-            waiting += [a for a in args if not isinstance(a, Fraction)]
-        return tuple(sorted(found))
+                found.update(a for a in self.nodes[x][1:] if not isinstance(a, Fraction))
+        own = [self.nodes[x] for x in found]  # of a pair each needs the other's coefficients
+        others = {self._known[PAIRS[kind], *args] for kind, *args in own if kind in PAIRS}
+        return tuple(sorted(found | others))

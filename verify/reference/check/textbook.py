@@ -8,7 +8,7 @@ each part is at t + h times what the parts of the other kind before it add up to
 """
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
 from itertools import combinations
 
@@ -97,39 +97,29 @@ def step_of(name: str, field: Field) -> Step:
 # -- the Lie-derivative scheme: the Taylor polynomial of the flow ---------------------------------
 
 
-def flow_series(field: Field, z: Vector, t: Number, order: int) -> list[Vector]:
-    """The Taylor coefficients of z from t on, up to that order: (k+1) z_(k+1) = f_k."""
-    zs = [z]
-    for _ in _orders(field, field.slopes, zs, t, order):
-        pass
-    return zs
-
-
-def _orders(field: Field, rows: Rows, zs: list[Vector], t: Number, order: int) -> Iterator[int]:
-    """The orders 0 … order − 1 of all `rows`; after each, zs has the next coefficients."""
-    known = rows.expansion
-    known.begin([*zs[0], t])
+def flow_series(rows: Rows, z: Vector, t: Number, order: int) -> list[Vector]:
+    """The Taylor coefficients of z from t on, up to that order: (k+1) z_(k+1) = f_k. `rows`: all,
+    whose coefficients are known then."""
+    zs, known = [z], rows.expansion
+    known.begin([*z, t])
     for k in range(order):
         if k > 0:
             known.more(zs[-1])
-        slopes = [known.coefficient(x, k) for _, x in rows.f]
-        pairs = zip(slopes, zs[0], strict=True)
-        zs.append([0 * z if x is None else x / (k + 1) for x, z in pairs])
-        yield k
+        zs.append([known.c[x][k] / (k + 1) for _, x in rows.f])
+    return zs
 
 
 def lie(field: Field, eta: int) -> Step:
     """z' = Σ h^k z_k, and J the same sum of the variational equation M' = A M, M_0 = 1."""
-    size = len(field.names)
-    known, a = field.all.expansion, field.all.a
+    size, rows = len(field.names), field.all
 
     def step(z: Vector, h: Number, t: Number) -> tuple[Vector, Matrix]:
-        zs, ms, orders = [z], [identity(size)], []
-        for k in _orders(field, field.all, zs, t, eta):
-            entries = ((row, column, known.coefficient(x, k)) for row, column, x in a)
-            orders.append([entry for entry in entries if entry[2] is not None])
+        zs, ms = flow_series(rows, z, t, eta), [identity(size)]
+        a = [(row, column, rows.expansion.c[x]) for row, column, x in rows.a]
+        orders = [[(row, column, c[k]) for row, column, c in a] for k in range(eta)]
+        for k in range(eta):
             total: Matrix = [0] * size**2
-            for m, a_j in zip(reversed(ms), orders, strict=True):  # Σ A_j M_(k−j)
+            for m, a_j in zip(reversed(ms), orders, strict=False):  # Σ A_j M_(k−j)
                 _add_product(total, a_j, m, size)
             ms.append([x / (k + 1) for x in total])
         return polynomials(zs, h), polynomials(ms, h)
@@ -138,15 +128,10 @@ def lie(field: Field, eta: int) -> Step:
 
 
 def polynomials(coefficients: list[Vector], h: Number) -> Vector:
-    """Σ z_k h^k, of vectors."""
-    return [polynomial(series, h) for series in zip(*coefficients, strict=True)]
-
-
-def polynomial(coefficients: Sequence[Number], h: Number) -> Number:
-    """Σ c_k h^k, by Horner's rule."""
-    total = coefficients[-1]
-    for c in reversed(coefficients[:-1]):
-        total = c + h * total
+    """Σ z_k h^k, of vectors, by Horner's rule."""
+    *rest, total = coefficients
+    for z in reversed(rest):
+        total = _added(z, h, total)
     return total
 
 
@@ -196,6 +181,7 @@ def _slope(rows: Rows, at: Vector, t: Number, size: int) -> Vector:
 
 
 def _added(x: Vector, by: Number, slope: Vector) -> Vector:
+    """x + by · slope."""
     return [a + by * b for a, b in zip(x, slope, strict=True)]
 
 
@@ -236,13 +222,10 @@ SHEARS: dict[str, Callable[[], list[tuple[str, Number]]]] = {
 def shears(field: Field, parts: Callable[[], list[tuple[str, Number]]]) -> Step:
     """p ← p − a h ∂V/∂q(q, s), q ← q + a h ∂T/∂p(p, s), and J's rows by A likewise."""
     size = len(field.names)
-    made: dict[int, list[tuple[str, Number]]] = {}
 
     def step(z: Vector, h: Number, t: Number) -> tuple[Vector, Matrix]:
-        if flint.ctx.prec not in made:
-            made[flint.ctx.prec] = parts()
         at, reads = [*z, *identity(size)], {"kick": t, "drift": t}
-        for kind, share in made[flint.ctx.prec]:
+        for kind, share in parts():
             rows = field.of_q if kind == "kick" else field.of_p
             at = _added(at, h * share, _slope(rows, at, reads[kind], size))
             reads["drift" if kind == "kick" else "kick"] += h * share

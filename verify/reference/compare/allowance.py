@@ -19,10 +19,12 @@ from verify.reference.compare.findings import DOUBLE, SINGLE, Spread
 from verify.reference.compare.scatter import Scatters
 from verify.reference.make.orbit_points import Bounded
 from verify.schemes.maps.parts import parts_of
+from verify.structures import AREA, SYMPLECTIC
 
 USUAL, WORST = 8, 16  # times what the copies show, since operations differ
 _NOT_AT_ALL = Spread(0, 0)
-_FEW, _FEW_IN_DEGREES = 4, 8  # roundings of the state in a step
+_FEW = {AREA: 4, SYMPLECTIC: 8}  # roundings of the state in a step
+_CARRIED = {AREA: False, SYMPLECTIC: True}  # what products of a Jacobian's entries are rounded by
 _PRODUCTS = 8  # roundings of a determinant
 _BITS = 200
 _UNDERFLOWS = (  # units of roundoff, and what all numbers of that format are lost below
@@ -36,7 +38,8 @@ class Allowance:
 
     def __init__(self, orbit: Orbit, unit: Fraction, scatters: Scatters) -> None:
         self.orbit, self.unit, self._scatters = orbit, unit, scatters
-        self._few = _FEW if orbit.hamiltonian.planar else _FEW_IN_DEGREES
+        kept = orbit.hamiltonian.structure
+        self._few, self._carried = _FEW[kept], _CARRIED[kept]
         self._entries: dict[int, Fraction] = {}
         self._smallest = next((x for of, x in _UNDERFLOWS if unit >= of), Fraction(0))
 
@@ -49,7 +52,7 @@ class Allowance:
             size = max(abs(known[n][0]) for n in exact.coordinates)
             return (self._few * self.unit * size + self._smallest) * many
         size = abs(known[name][0])
-        if not exact.planar:
+        if self._carried:
             return self._few * self.unit * size * many
         one = self._one(step, known)
         if name == "lambda":
@@ -65,7 +68,7 @@ class Allowance:
         if spreads is None:
             return None
         moved = spreads.get(name, _NOT_AT_ALL)
-        adds_up = name == "lambda" or not self.orbit.hamiltonian.planar
+        adds_up = name == "lambda" or self._carried
         long = least * (1 + math.isqrt(step)) if adds_up else least
         return Spread(
             least + USUAL * Fraction(moved.usual) * self.unit,
@@ -83,7 +86,7 @@ class Allowance:
 def products(orbit: Orbit, done: int, known: dict[str, Bounded]) -> Fraction:
     """A bound of |a d| + |b c| over the substeps of the step after so many, at least 1: what det J
     is the rest of. 1 where that is not looked at, as in n degrees of freedom."""
-    if not orbit.hamiltonian.planar:
+    if _CARRIED[orbit.hamiltonian.structure]:
         return Fraction(1)
     step_map = step_map_of(orbit.hamiltonian, orbit.scheme)
     parts = parts_of(step_map) or (step_map.closed,)

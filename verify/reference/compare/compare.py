@@ -17,10 +17,11 @@ from verify.reference.compare.rows import Theirs
 from verify.reference.compare.scatter import Scatters
 from verify.reference.compare.setting import Points, Setting
 from verify.scenes.results.separation import SeparationResult
+from verify.structures import AREA, SYMPLECTIC
 from verify.studies.separation.separate import separate
 
 _MOST_SEARCHES = 3  # in vain: a mistake that they all had would have been found
-_MOST_SEPARATED = 100_000  # steps
+_MOST_SEPARATED = {AREA: 100_000, SYMPLECTIC: 0}  # steps: with S it takes long
 _SEPARATED_DIGITS = 3
 
 
@@ -124,11 +125,10 @@ def _off_by_rounding(judge: Judge, judged: RunFindings) -> Iterator[_Off]:
     if of is None or of.verdict not in (Verdict.ROUNDING, Verdict.PERHAPS):
         return
     orbit = judge.ours.orbit
-    if not orbit.hamiltonian.planar:  # there it takes long
-        return
-    last = _MOST_SEPARATED if judged.lost_from is None else judged.lost_from - 1
+    most = _MOST_SEPARATED[orbit.hamiltonian.structure]
+    last = most if judged.lost_from is None else min(most, judged.lost_from - 1)
     for (step, name), cell in judge.cells.items():
-        if name != "lambda" or not 0 < step <= min(last, _MOST_SEPARATED) or cell.theirs is None:
+        if name != "lambda" or not 0 < step <= last or cell.theirs is None:
             continue
         if cell.apart:
             yield judged.lost_from is None, cell.apart, step, judged.label, orbit

@@ -16,11 +16,7 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache
 
-import numpy as np
-
-from verify.arithmetic.float_context import FLOAT
-from verify.flows.extrapolation_of_many import arrays
-from verify.kernels.kernel import kernel_for
+from verify.arithmetic.systems import float64
 from verify.kernels.orbit import Orbit
 from verify.reference.compare.agreement import Cell, Printing, beside
 from verify.reference.compare.allowance import Allowance, products
@@ -28,7 +24,7 @@ from verify.reference.compare.column_meanings import Foretold
 from verify.reference.compare.findings import DOUBLE, Fit, Of, RunFindings, Verdict
 from verify.reference.compare.published import PublishedRun
 from verify.reference.compare.rows import Row
-from verify.reference.compare.scatter import Scatters, inputs_of, run_of
+from verify.reference.compare.scatter import Scatters, run_of
 from verify.reference.compare.setting import Points, Setting
 from verify.reference.make.orbit_points import Bounded
 
@@ -48,20 +44,11 @@ def may_overflow(orbit: Orbit, step: int, known: dict[str, Bounded]) -> bool:
 
 @lru_cache(maxsize=4096)
 def _overflows(orbit: Orbit, step: int) -> bool:
-    run = run_of(orbit)
-    if run.implicit:
-        return False
-    arithmetic = replace(arrays(), bits=FLOAT.prec, number=FLOAT.rational)
+    run = run_of(orbit, min(step, _MOST_STEPS) + 1)
     try:
-        kernel = kernel_for(run.hamiltonian, orbit.scheme, arithmetic, run.observables, False)
-        given = [FLOAT.rational(x) for x in inputs_of(run, kernel, arithmetic)]
-        begun = [orbit.start[name] for name in kernel.coordinates]
-        state = [FLOAT.rational(Fraction(x)) for x in (*begun, *kernel.start)]
+        return not run.implicit and run.run(float64.make(_DOUBLE_DIGITS)).done < run.steps
     except OverflowError:  # what is given is no double
         return True
-    with np.errstate(all="ignore"):
-        _, *after = kernel.function(min(step, _MOST_STEPS) + 1, *given, *state)
-    return not np.isfinite(np.array(after, dtype=float)).all()
 
 
 _DOUBLE_DIGITS = 17  # more than these may be of a more precise number

@@ -4,7 +4,7 @@ Adding a mistake is adding a line. In n degrees of freedom fewer are tried, as r
 What may be wrong with a column beside the state is in `verify.reference.compare.column_meanings`.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -22,6 +22,7 @@ from verify.kernels.orbit import Orbit
 from verify.reference.compare.agreement import nearest_single
 from verify.reference.compare.setting import Setting
 from verify.schemes.conditions.splitting_conditions import Part, Splitting
+from verify.structures import AREA, SYMPLECTIC, Structure
 
 _MOST_INEXACT = 4  # inputs of which all subsets are tried
 _OF_SCHEME = "scheme "
@@ -47,21 +48,17 @@ class Mistake:
 
 
 Change = tuple[str, str, dict[str, Any]]  # a mistake's name, what it says, and what it changes
+Changes = Callable[[Setting], Iterable[Change]]  # of the right setting
 
 
 def of_inputs(right: Setting) -> Iterator[Mistake]:
     """Inputs that are doubles; no program that works with doubles can be told by them."""
-    changes = _of_doubles(right.orbit) if right.orbit.hamiltonian.planar else ()
-    return _mistakes(right, changes)
+    return _mistakes(right, _OF_INPUTS[right.orbit.hamiltonian.structure](right))
 
 
 def of_states(right: Setting) -> Iterator[Mistake]:
     """All that can be seen in doubles."""
-    orbit = right.orbit
-    if not orbit.hamiltonian.planar:
-        return _mistakes(right, _in_degrees(right))
-    first = chain(_of_columns(orbit), _of_clock(orbit), _of_scheme(orbit))
-    return _mistakes(right, chain(first, _staggered(right, orbit), _of_step(orbit)))
+    return _mistakes(right, _OF_STATES[right.orbit.hamiltonian.structure](right))
 
 
 def _mistakes(right: Setting, changes: Iterable[Change]) -> Iterator[Mistake]:
@@ -69,7 +66,14 @@ def _mistakes(right: Setting, changes: Iterable[Change]) -> Iterator[Mistake]:
         yield Mistake(name, says, replace(right, **change))
 
 
-def _of_doubles(orbit: Orbit) -> Iterator[Change]:
+def _in_plane(right: Setting) -> Iterator[Change]:
+    orbit = right.orbit
+    first = chain(_of_columns(orbit), _of_clock(orbit), _of_scheme(orbit))
+    return chain(first, _staggered(right, orbit), _of_step(orbit))
+
+
+def _of_doubles(right: Setting) -> Iterator[Change]:
+    orbit = right.orbit
     exact = {"h": orbit.step_size, "q0": orbit.q, "p0": orbit.p, **dict(orbit.hamiltonian.values)}
     if orbit.hamiltonian.time_dependent:
         exact["t0"] = orbit.t0
@@ -98,6 +102,10 @@ def _in_degrees(right: Setting) -> Iterator[Change]:
     for other in right.points.of_other_schemes(right.orbit):
         says = f"your numbers are those of {other.scheme}, and not of {right.orbit.scheme}"
         yield f"scheme-{other.scheme}", says, {"orbit": other}
+
+
+_OF_INPUTS: Mapping[Structure, Changes] = {AREA: _of_doubles, SYMPLECTIC: lambda _: ()}
+_OF_STATES = {AREA: _in_plane, SYMPLECTIC: _in_degrees}
 
 
 def _of_columns(orbit: Orbit) -> Iterator[Change]:
@@ -196,7 +204,7 @@ def without_synonyms(mistakes: list[Mistake]) -> list[Mistake]:
     for mistake in mistakes:
         setting, (q, p, h) = mistake.setting, _ELSEWHERE
         state = None
-        if mistake.name.startswith(_OF_SCHEME) and setting.orbit.hamiltonian.planar:
+        if mistake.name.startswith(_OF_SCHEME):
             there = replace(setting.orbit, q=q, p=p, step_size=h)
             known = replace(setting, orbit=there).numbers(1, _SHARP)
             state = (known["p"][0], known["q"][0]) if "p" in known else None

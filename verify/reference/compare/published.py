@@ -80,11 +80,9 @@ class PublishedRun:
     @cached_property
     def orbit(self) -> Orbit:
         """What was run."""
-        h, *start = self.exact.values()
-        scheme, t0 = self.run.scheme, self.t0 or Fraction(0)
-        half = self.hamiltonian.degrees
-        q, p = start if half == 1 else (tuple(start[:half]), tuple(start[half:]))
-        return Orbit(self.hamiltonian, scheme, h, q, p, t0=t0)
+        run, t0 = self.run, self.t0 or Fraction(0)
+        q, p = (rational(x) if isinstance(x, str) else (*map(rational, x),) for x in (run.q, run.p))
+        return Orbit(self.hamiltonian, run.scheme, rational(run.step_size), q, p, t0=t0)
 
     @property
     def t0(self) -> Fraction | None:

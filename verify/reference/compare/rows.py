@@ -1,7 +1,6 @@
-"""What a table of somebody's numbers is made of: which column is which, a row's numbers, its step,
-and the rows of each run that are kept.
+"""A table of numbers in a text file, line by line, and the rows of each run that are kept.
 
-A table of numbers in a text file, line by line: CSV with commas, semicolons, tabs or spaces.
+It is CSV with commas, semicolons, tabs or spaces.
 
 The first line names the columns, and may begin with #; other lines that do are comments. A file may
 be corrupt or hostile: what cannot be read is one InputError that names the line, and no more than a
@@ -10,8 +9,7 @@ line is held.
 
 import csv
 import io
-import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -20,7 +18,7 @@ from typing import IO
 
 from verify import files
 from verify.arithmetic.exact import rational
-from verify.errors import InputError, unknown, without_controls
+from verify.errors import InputError
 from verify.reference.compare.published import PublishedRun
 
 _LONGEST_LINE = 2**16
@@ -55,6 +53,13 @@ class Table:
     def error(self, problem: str) -> InputError:
         """What is wrong with the line that was read last."""
         return InputError("file", self.name, f"line {self.line} {problem}")
+
+    def number(self, text: str, name: str) -> Fraction:
+        """The number that a cell is; InputError names the line."""
+        try:
+            return rational(text, name)
+        except InputError as error:
+            raise self.error(f"has the {name} {text[:40]!r}: {error.problem}") from None
 
     def __iter__(self) -> Iterator[list[str]]:
         try:
@@ -99,19 +104,6 @@ def _numbers(cells: tuple[str, ...]) -> bool:
     return True
 
 
-_SHOWN = 60  # characters of a text
-_SAME_NUMBER = Fraction(1, 10**6)  # of a step, by which N·h may miss a time
-_WHOLE = re.compile(r"[0-9]{1,40}")
-COUNTED = ("step", "time")
-_ALIASES = {
-    "step": ("n", "k", "i", "index", "steps"),
-    "time": ("t",),
-    "step_size": ("h", "dt"),
-    "delta_j": ("Δj", "dj", "deltaj", "delta-j"),
-    "lambda": ("λ", "lam"),
-}
-
-
 @dataclass(frozen=True)
 class Row:
     """A row of theirs: where it stands, and the texts of its values."""
@@ -152,76 +144,3 @@ class Theirs:
             steps = f"{self.other_steps} rows of other steps" if self.other_steps else "no rows"
             raise InputError("table", self.first_outside or steps, "has no row of these data")
         return [row for _, own in self.runs.values() for row in own.values()]
-
-
-def places_of(
-    lines: Table,
-    names: Mapping[str, str],
-    known: Collection[str],
-    values: Collection[str],
-    found: Theirs,
-) -> dict[str, int]:
-    """Where each `known` column stands; `names`: what the table calls a column, by ours. `found`
-    gets the columns that are `values`, and those that mean nothing."""
-    own_names = {alias: name for name, aliases in _ALIASES.items() for alias in aliases}
-    own_names |= {name: name for name in known}
-    for name, theirs in names.items():
-        if name not in known:
-            raise unknown("--column", name, known)
-        if theirs not in lines.header:
-            has = ", ".join(lines.header)
-            raise InputError("--column", theirs, f"is no column of the table; it has: {has}")
-    own = {theirs: name for name, theirs in names.items()}
-    places: dict[str, int] = {}
-    ignored = []
-    for at, head in enumerate(lines.header):
-        column = own.get(head) or own_names.get(head.casefold())
-        means_nothing = column not in known or (column in own.values() and head not in own)
-        if column is None or means_nothing:
-            ignored.append(printable(head))
-        elif column in places:
-            raise lines.error(f"has two columns for {column}; --column {column}=… says which")
-        else:
-            places[column] = at
-    if not any(name in places for name in values):
-        raise lines.error(f"names no column of {', '.join(values)}; it has {_listed(lines.header)}")
-    if not any(name in places for name in COUNTED):
-        raise lines.error(f"names no column step or time; it has {_listed(lines.header)}")
-    found.columns = tuple(name for name in values if name in places)
-    found.ignored = tuple(ignored)
-    return places
-
-
-def step_of(
-    lines: Table, row: list[str], places: Mapping[str, int], t0: Fraction, step_size: str
-) -> int | None:
-    """How many steps a row is of; None where its time is no multiple of the step size."""
-    if "step" in places:
-        text = row[places["step"]]
-        if _WHOLE.fullmatch(text):
-            return int(text)
-        count = number_of(lines, text, "step")  # 1e3 and 1000.0 are whole numbers, too
-        if count.denominator != 1:
-            raise lines.error(f"has the step {text[:40]!r}, which is not a whole number")
-        return int(count)
-    count = (number_of(lines, row[places["time"]], "time") - t0) / rational(step_size)
-    near = round(count)
-    return near if abs(count - near) <= _SAME_NUMBER * max(1, abs(near)) else None
-
-
-def number_of(lines: Table, text: str, name: str) -> Fraction:
-    """The number that a cell is; InputError names the line."""
-    try:
-        return rational(text, name)
-    except InputError as error:
-        raise lines.error(f"has the {name} {text[:40]!r}: {error.problem}") from None
-
-
-def printable(text: str) -> str:
-    """A text of a file as it may be shown: short, and without control characters."""
-    short = text if len(text) <= _SHOWN else text[: _SHOWN - 1] + "…"
-    return without_controls(short)
-
-
-def _listed(names: tuple[str, ...]) -> str:
-    return ", ".join(names[:12]) + (", …" if len(names) > 12 else "")

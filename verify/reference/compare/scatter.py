@@ -21,24 +21,24 @@ Jacobian rounds their products, however small they are: the columns of these run
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
 from verify.arithmetic.float_context import WIDE
-from verify.arithmetic.number_system import Arithmetic, UnsupportedError
+from verify.arithmetic.number_system import UnsupportedError
 from verify.arithmetic.systems import float64
 from verify.errors import InputError
 from verify.flows.extrapolation_of_many import arrays
 from verify.hamiltonians.start import point_of
 from verify.kernels.clock import clock_inputs
-from verify.kernels.kernel import Kernel, kernel_for
+from verify.kernels.kernel import kernel_for
 from verify.kernels.orbit import Orbit
 from verify.kernels.stepping import KernelRun
 from verify.reference.compare.findings import DOUBLE, Spread, Spreads
-from verify.runs.run import run
+from verify.structures import AREA, SYMPLECTIC
 
 _OFF = Fraction(1, 2**24)  # of the orbit's size: what is carried has 20 digits of bits beside it
 _AT_WORST = 4  # times what is carried, for each step
@@ -112,15 +112,13 @@ class Carried:
 
     def _after(self, point: Mapping[str, Fraction], steps: int) -> dict[str, Fraction] | None:
         """The numbers after so many steps from a point; None where they cannot be had."""
-        each, half = list(point.values()), len(point) // 2
-        aside = replace(self._orbit, p=each[:half], q=each[half:])
+        exact, scheme, start = self._orbit.hamiltonian, self._orbit.scheme, self._orbit.start
         try:
-            done = run(**vars(aside), steps=steps, arithmetic=float64.NAME, observables=_OBSERVED)
+            aside = KernelRun(exact, scheme, {**start, **point}, steps, frozenset(_OBSERVED), 0)
+            done = aside.run(float64.make(17))
         except (InputError, ArithmeticError):
             return None
-        if done.status != "finished":
-            return None
-        return {name: Fraction(value.value) for name, value in done.values.items()}
+        return dict(done.values) if done.done == steps else None
 
 
 _PUSH = 2.0**-42 if WIDE.prec > 60 else 2.0**-32  # numbers have 20 bits and more beside it
@@ -130,6 +128,7 @@ _MOST_STEPS = 20_000  # followed; beyond, what has grown by then is taken to go 
 _LARGE = 1e-3  # of a value: beyond it errors do not just add up, and nothing is said
 _BLOCK = 64  # steps whose random numbers are drawn at once
 _TOGETHER = 64  # orbits
+_SUMS = {AREA: frozenset({"mse", "lambda"}), SYMPLECTIC: frozenset({"lambda"})}
 _COUNT = "step"  # what a kernel's clock counts by
 
 
@@ -150,8 +149,10 @@ class Scatter:
         self._names, self._function = kernel.state_names, kernel.function
         self._pushed = ("p", "q", *([_COUNT] if kernel.timed else []))
         self._shape = len(orbits), _ALL
-        inputs = [inputs_of(run, kernel, arithmetic) for run in runs]
-        self._given = [self._off(column) for column in zip(*inputs, strict=True)]
+        clocks = clock_inputs if kernel.timed else lambda *_: {}
+        inputs = [each.inputs(kernel, 0) | clocks(arithmetic, each.start) for each in runs]
+        columns = zip(*(each.values() for each in inputs), strict=True)
+        self._given = [self._off(column) for column in columns]
         self._state = {"p": self._off([c.p for c in orbits]), "q": self._off([c.q for c in orbits])}
         rest = zip(self._names[2:], kernel.start, strict=True)
         self._state |= {n: np.full(self._shape, WIDE.rational(Fraction(x))) for n, x in rest}
@@ -229,18 +230,10 @@ class Scatter:
         return apart[:, :_COPIES].max(axis=1), apart.max(axis=1)
 
 
-def run_of(orbit: Orbit) -> KernelRun:
-    """One step of the orbit, with Λ and, in the plane, MSE."""
-    observed = frozenset({"mse", "lambda"} if orbit.hamiltonian.planar else {"lambda"})
-    return KernelRun(orbit.hamiltonian, orbit.scheme, orbit.start, 1, observed, 0)
-
-
-def inputs_of(run: KernelRun, kernel: Kernel, arithmetic: Arithmetic) -> list[Fraction]:
-    """What the kernel takes beside the state: h, the parameters, and t₀ where it has a clock."""
-    given = run.inputs(kernel, 0)
-    if kernel.timed:
-        given |= clock_inputs(arithmetic, run.start)
-    return list(given.values())
+def run_of(orbit: Orbit, steps: int = 1) -> KernelRun:
+    """So many steps of the orbit, with Λ and, in the plane, MSE."""
+    exact = orbit.hamiltonian
+    return KernelRun(exact, orbit.scheme, orbit.start, steps, _SUMS[exact.structure], 0)
 
 
 class Scatters:
@@ -258,7 +251,7 @@ class Scatters:
         """They may be asked for, too; so those of a kind that are new step together."""
         kinds: dict[object, list[Orbit]] = {}
         for orbit in dict.fromkeys(orbits):
-            if orbit.hamiltonian.planar and orbit not in self._place:
+            if orbit not in self._place:
                 kinds.setdefault((orbit.hamiltonian.expression, orbit.scheme), []).append(orbit)
         for kind in kinds.values():
             for first in range(0, len(kind), _TOGETHER):

@@ -15,9 +15,9 @@ from verify.lockstep import alone
 from verify.reference.make.columns import values_of
 from verify.reference.make.orbit_points import Bounded, orbit_points
 from verify.scenes.results.reference import OrbitRow
+from verify.structures import AREA, SYMPLECTIC
 
-_MOST_STEPS = 2_000_000  # run; what is farther is not known
-_MOST_STEPS_IN_DEGREES = 20_000
+_MOST_STEPS = {AREA: 2_000_000, SYMPLECTIC: 20_000}  # run; what is farther is not known
 
 
 def numbers_of(point: OrbitRow, degrees: int) -> dict[str, Bounded]:
@@ -79,7 +79,7 @@ class Setting:
 
 @lru_cache(maxsize=4096)
 def _run_at(orbit: Orbit, step: int, digits: int) -> OrbitRow | None:
-    if step > (_MOST_STEPS if orbit.hamiltonian.planar else _MOST_STEPS_IN_DEGREES):
+    if step > _MOST_STEPS[orbit.hamiltonian.structure]:
         return None
     try:
         (point,) = alone(orbit_points(orbit, steps=(step,), digits=digits))

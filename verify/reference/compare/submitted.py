@@ -8,25 +8,27 @@ what is compared is kept, so that memory does not grow with the file (see
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
+from functools import lru_cache
 from pathlib import Path
 
 from verify.arithmetic.systems.float64 import nearest_double
-from verify.errors import NOT_GIVEN, InputError
+from verify.errors import NOT_GIVEN, InputError, unknown, without_controls
 from verify.reference.compare.published import Inputs, Published, PublishedRun
-from verify.reference.compare.rows import (
-    COUNTED,
-    Row,
-    Table,
-    Theirs,
-    number_of,
-    opened,
-    places_of,
-    printable,
-    step_of,
-)
+from verify.reference.compare.rows import Row, Table, Theirs, opened
 
 _MOST_KNOWN = 10_000  # of the inputs' texts that are remembered
 _BEGINS = "t0"  # of an H in time; a scene has one, so that it need not be told
+_SAME_NUMBER = Fraction(1, 10**6)  # of a step, by which N·h may miss a time
+_WHOLE = re.compile(r"[0-9]{1,40}")
+_SHOWN = 60  # characters of a text
+_COUNTED = ("step", "time")
+_ALIASES = {
+    "step": ("n", "k", "i", "index", "steps"),
+    "time": ("t",),
+    "step_size": ("h", "dt"),
+    "delta_j": ("Δj", "dj", "deltaj", "delta-j"),
+    "lambda": ("λ", "lam"),
+}
 _OF_SEVERAL = re.compile(r"[pq][1-9][0-9]?")
 
 
@@ -44,9 +46,8 @@ def read(path: Path, ours: Published, given: Mapping[str, str], names: Mapping[s
     does not tell which run a row is of.
     """
     found = Theirs()
-    columns = ("scene", *ours.keys, _BEGINS, *COUNTED, *ours.columns)
     with opened(path) as lines:
-        places = places_of(lines, names, columns, ours.columns, found)
+        places = _places(lines, names, ours, found)
         keys = _Keys(ours, _each(given, ours), places, lines)
         texts = [(name, places[name]) for name in found.columns]
         for row in lines:
@@ -77,6 +78,51 @@ def _each(given: Mapping[str, str], ours: Published) -> dict[str, str]:
     return parted
 
 
+def _places(
+    lines: Table, names: Mapping[str, str], ours: Published, found: Theirs
+) -> dict[str, int]:
+    """Where each column of ours stands; `names`: what the table calls a column, by ours. `found`
+    gets those that are compared, and those that mean nothing."""
+    known, values = ("scene", *ours.keys, _BEGINS, *_COUNTED, *ours.columns), ours.columns
+    own_names = {alias: name for name, aliases in _ALIASES.items() for alias in aliases}
+    own_names |= {name: name for name in known}
+    for name, theirs in names.items():
+        if name not in known:
+            raise unknown("--column", name, known)
+        if theirs not in lines.header:
+            has = ", ".join(lines.header)
+            raise InputError("--column", theirs, f"is no column of the table; it has: {has}")
+    own = {theirs: name for name, theirs in names.items()}
+    places: dict[str, int] = {}
+    ignored = []
+    for at, head in enumerate(lines.header):
+        column = own.get(head) or own_names.get(head.casefold())
+        means_nothing = column not in known or (column in own.values() and head not in own)
+        if column is None or means_nothing:
+            ignored.append(_printable(head))
+        elif column in places:
+            raise lines.error(f"has two columns for {column}; --column {column}=… says which")
+        else:
+            places[column] = at
+    if not any(name in places for name in values):
+        raise lines.error(f"names no column of {', '.join(values)}; it has {_listed(lines.header)}")
+    if not any(name in places for name in _COUNTED):
+        raise lines.error(f"names no column step or time; it has {_listed(lines.header)}")
+    found.columns = tuple(name for name in values if name in places)
+    found.ignored = tuple(ignored)
+    return places
+
+
+def _printable(text: str) -> str:
+    """A text of a file as it may be shown: short, and without control characters."""
+    short = text if len(text) <= _SHOWN else text[: _SHOWN - 1] + "…"
+    return without_controls(short)
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    return ", ".join(names[:12]) + (", …" if len(names) > 12 else "")
+
+
 class _Keys:
     """Which run and which step a row is of."""
 
@@ -92,33 +138,40 @@ class _Keys:
             ours.scene(given["scene"])  # a misspelt one has no rows, and is the reason for none
         self.named = tuple(n for n in ("scene", *ours.keys, _BEGINS) if n in places)
         self.at = tuple(places[name] for name in self.named)
-        self._known: dict[tuple[str, ...], PublishedRun | None] = {}
+        self._known = lru_cache(_MOST_KNOWN)(lambda texts: self._find(self._inputs(texts)))
 
     def describe(self, row: list[str]) -> str:
         """What is said of a row's run, by options and by its cells."""
         said = self._inputs(row[at] for at in self.at)
-        return ", ".join(f"{name} = {printable(text)}" for name, text in said.items())
+        return ", ".join(f"{name} = {_printable(text)}" for name, text in said.items())
 
     def run_of(self, row: list[str]) -> PublishedRun | None:
-        texts = tuple([row[at] for at in self.at])
-        if texts not in self._known:
-            if len(self._known) > _MOST_KNOWN:
-                self._known.clear()
-            self._known[texts] = self._find(self._inputs(texts))
-        return self._known[texts]
+        return self._known(tuple([row[at] for at in self.at]))
 
     def _inputs(self, texts: Iterable[str]) -> dict[str, str]:
         named = zip(self.named, texts, strict=True)
         return {**self.given, **{name: text.strip() for name, text in named}}
 
     def step_of(self, row: list[str], run: PublishedRun) -> int | None:
-        return step_of(self.lines, row, self.places, run.t0 or Fraction(0), run.run.step_size)
+        """How many steps a row is of; None where its time is no multiple of the step size."""
+        if "step" in self.places:
+            text = row[self.places["step"]]
+            if _WHOLE.fullmatch(text):
+                return int(text)
+            count = self.lines.number(text, "step")  # 1e3 and 1000.0 are whole numbers, too
+            if count.denominator != 1:
+                raise self.lines.error(f"has the step {text[:40]!r}, which is not a whole number")
+            return int(count)
+        time = self.lines.number(row[self.places["time"]], "time")
+        count = (time - (run.t0 or 0)) / run.exact["step_size"]
+        near = round(count)
+        return near if abs(count - near) <= _SAME_NUMBER * max(1, abs(near)) else None
 
     def _find(self, inputs: dict[str, str]) -> PublishedRun | None:
         """The run of these inputs, or of the same doubles where these tell one."""
         told = {name: inputs[name] for name in self.ours.keys if name in inputs}
         told |= {name: x for name, x in inputs.items() if name not in ("scene", _BEGINS)}
-        exact = {name: self._number(x, name) for name, x in told.items() if name != "scheme"}
+        exact = {name: self.lines.number(x, name) for name, x in told.items() if name != "scheme"}
         doubles: Inputs = {**told, **{name: nearest_double(x) for name, x in exact.items()}}
         scene = inputs.get("scene") or self._scene(doubles)
         if scene is None:
@@ -151,7 +204,7 @@ class _Keys:
         """Whether it begins at the time that is told, if one is and H depends on time."""
         if run.t0 is None or _BEGINS not in inputs:
             return True
-        return nearest_double(self._number(inputs[_BEGINS], _BEGINS)) == nearest_double(run.t0)
+        return nearest_double(self.lines.number(inputs[_BEGINS], _BEGINS)) == nearest_double(run.t0)
 
     def _scene(self, inputs: Inputs) -> str | None:
         """The one scene that has such runs; InputError where several have."""
@@ -165,9 +218,6 @@ class _Keys:
                 "--scene", NOT_GIVEN, f"is wanted: {len(matching)} have such runs: {names}"
             )
         return matching[0] if matching else None
-
-    def _number(self, text: str, name: str) -> Fraction:
-        return number_of(self.lines, text, name)
 
 
 def _option(name: str) -> str:

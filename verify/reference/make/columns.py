@@ -4,16 +4,19 @@ Beside the coordinates there is in the plane ΔJ of the next step; in several de
 and S and W in place of ΔJ.
 """
 
-from itertools import count
 from typing import Any
 
+from verify.hamiltonians.coordinates import coordinates_in
 from verify.scenes.results.reference import Cell, FlowRow, OrbitRow
+from verify.structures import AREA, SYMPLECTIC, structure_in
 
 Row = tuple[str, ...]
-_OF_PLANE = ("delta_j", "mse", "lambda")
-_OF_SEVERAL = ("energy", "symplectic_defect_max", "symplectic_defect", "lambda")
 AFTER_A_STEP = ("mse", "symplectic_defect_max")  # what there is not for N = 0
-MAY_LACK = ("delta_j", "energy")
+MAY_LACK = ("delta_j", "energy")  # what is of the state alone
+_BESIDE = {
+    AREA: ("delta_j", "mse", "lambda"),
+    SYMPLECTIC: ("energy", "symplectic_defect_max", "symplectic_defect", "lambda"),
+}
 
 
 def cell(value: Any) -> str:
@@ -26,24 +29,24 @@ def cell(value: Any) -> str:
 
 
 def start_columns(degrees: int) -> Row:
-    """The names of the columns that hold the start: q first."""
-    if degrees == 1:
-        return "q0", "p0"
-    return tuple(f"{letter}0_{k}" for letter in "qp" for k in range(1, degrees + 1))
+    """The names of the columns that hold the start: q first; q0, or q0_1 …"""
+    names = coordinates_in(degrees)
+    return tuple(f"{x[0]}0_{x[1:]}".rstrip("_") for x in (*names[degrees:], *names[:degrees]))
 
 
 def orbit_columns(degrees: int) -> Row:
     """The names of those that an orbit has beside its state."""
-    return _OF_PLANE if degrees == 1 else _OF_SEVERAL
+    return _BESIDE[structure_in(degrees)]
 
 
 def values_of(row: OrbitRow | FlowRow, degrees: int) -> dict[str, Cell]:
     """The numbers of a row by the names of their columns; None for one that there is not."""
     values: dict[str, Cell] = {}
     for letter, numbers in (("p", row.p), ("q", row.q)):
-        each = numbers if isinstance(numbers, tuple) else (numbers,) * degrees
-        names = [letter] if degrees == 1 else (f"{letter}{k}" for k in count(1))
-        values |= dict(zip(names, each, strict=False))
+        if isinstance(numbers, tuple):  # a file may have too few or too many
+            values |= {f"{letter}{k}": x for k, x in enumerate(numbers, start=1)}
+        else:
+            values |= {x: numbers for x in coordinates_in(degrees) if x[0] == letter}
     if isinstance(row, OrbitRow):
         beside = orbit_columns(degrees)
         values |= {name: getattr(row, "lam" if name == "lambda" else name) for name in beside}

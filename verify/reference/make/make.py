@@ -19,6 +19,7 @@ from verify.reference.make.models import (
     Manifest,
     SceneFile,
     format_of,
+    heading,
 )
 from verify.reference.make.scene_plan import orbit_tasks, proof_tasks, size_of, solution_tasks
 from verify.reference.make.writing import (
@@ -81,8 +82,7 @@ def data_of(scene: Scene, results: Mapping[str, Any]) -> AnyData:
     content = {
         "format": form,
         "name": scene.name,
-        **exact.texts,
-        **({} if exact.planar else {"degrees": exact.degrees}),
+        **heading(exact),
         "proofs": [_proof(task.scheme, results[task.key]) for task in proof_tasks(scene)],
         "runs": [
             {"scheme": task.scheme, **task.inputs, "rows": _rows(results[task.key])}

@@ -12,6 +12,7 @@ from pydantic import ConfigDict, Field
 
 from verify.formats import names_format
 from verify.hamiltonians.coordinates import coordinates_in
+from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.reference.make.columns import start_columns
 from verify.scenes.frozen import Frozen
 from verify.scenes.results.reference import (
@@ -20,6 +21,7 @@ from verify.scenes.results.reference import (
     OrbitPoint,
     OrbitPointInDegrees,
 )
+from verify.structures import AREA, SYMPLECTIC, structure_in
 from verify.verdict import Verdict
 
 DataFormat = Literal["areaproof reference data 1"]
@@ -251,9 +253,19 @@ AnyData = Data | DataInDegrees
 MODELS: dict[str, type[AnyData]] = {DATA_FORMAT: Data, DATA_IN_DEGREES_FORMAT: DataInDegrees}
 
 
+_FORMATS = {AREA: DATA_FORMAT, SYMPLECTIC: DATA_IN_DEGREES_FORMAT}
+
+
 def format_of(degrees: int) -> str:
     """The format of data in so many degrees of freedom."""
-    return DATA_FORMAT if degrees == 1 else DATA_IN_DEGREES_FORMAT
+    return _FORMATS[structure_in(degrees)]
+
+
+def heading(hamiltonian: Hamiltonian) -> dict[str, Any]:
+    """What a file says of H: its formula and parameters, and in its format the degrees."""
+    told = {**hamiltonian.texts, "degrees": hamiltonian.degrees}
+    fields = MODELS[format_of(hamiltonian.degrees)].model_fields
+    return {name: x for name, x in told.items() if name in fields}
 
 
 def format_at(path: Path) -> str:

@@ -39,9 +39,12 @@ from verify.scenes.results.reference import (
 )
 from verify.scenes.values import AUTO
 from verify.schemes.maps.ball_algebra import UndefinedError, step_in_balls
+from verify.structures import AREA, SYMPLECTIC
 
 _GUARDS = (10, 25, 60, 150)  # digits beyond those asked for, in turn
 _BITS = 64  # beyond the digits, for the roundings of one step, or of H
+_ORBITS = {AREA: OrbitPoint, SYMPLECTIC: OrbitPointInDegrees}
+_FLOWS = {AREA: FlowPoint, SYMPLECTIC: FlowPointInDegrees}
 _UNKNOWN: dict[str, Any] = {"status": "unresolved", "kind": None, "failed_step": None}
 Bounded = tuple[Fraction, Fraction]  # a value and its bound
 Numbers = Mapping[str, Rounded | None]  # by the names of their columns
@@ -50,12 +53,11 @@ Numbers = Mapping[str, Rounded | None]  # by the names of their columns
 def orbit_points(orbit: Orbit, steps: Sequence[int], digits: int) -> Course[tuple[Any, ...]]:
     """The orbit after each of these numbers of steps, every number to so many digits."""
     exact, points = orbit.hamiltonian, []
-    model = OrbitPoint if exact.planar else OrbitPointInDegrees
     for step in steps:
         told, values = yield from _after_steps(orbit, step, digits)
-        numbers = _state(exact, values)
+        numbers = _state(values)
         numbers |= {name: values.get(name) for name in orbit_columns(exact.degrees)}
-        points.append(model(step=step, **_UNKNOWN | told, **numbers))
+        points.append(_ORBITS[exact.structure](step=step, **_UNKNOWN | told, **numbers))
     return tuple(points)
 
 
@@ -104,12 +106,10 @@ def _all_rounded(
     return values
 
 
-def _state(hamiltonian: Hamiltonian, values: Numbers) -> dict[str, Any]:
+def _state(values: Numbers) -> dict[str, Any]:
     """p and q of a row: a number each, or a list; None where there are none."""
-    names = hamiltonian.coordinates
-    if hamiltonian.planar or not values:
-        return {letter: values.get(letter) for letter in "pq"}
-    return {letter: tuple(values[x] for x in names if x[0] == letter) for letter in "pq"}
+    lists = {letter: tuple(values[x] for x in values if x[0] == letter != x) for letter in "pq"}
+    return {letter: values.get(letter) or several or None for letter, several in lists.items()}
 
 
 def _at_state(
@@ -122,12 +122,14 @@ def _at_state(
         box = {name: around(*known[name]) for name in orbit.hamiltonian.coordinates}
         if orbit.hamiltonian.time_dependent:
             box["t"] = rational_ball(orbit.t0 + step * orbit.step_size)
-        if orbit.hamiltonian.planar:
-            name, value = "delta_j", _delta_j(orbit, box)
-        else:
-            field, _ = canonical_field(orbit.hamiltonian)
-            name, value = "energy", enclose_over(field.ring, field.energy, box)
+        (name,) = (x for x in orbit_columns(orbit.hamiltonian.degrees) if x in MAY_LACK)
+        value = _delta_j(orbit, box) if name == "delta_j" else _energy(orbit, box)
         return {name: middle_and_radius(value)} if value is not None and in_reach(value) else {}
+
+
+def _energy(orbit: Orbit, box: dict[str, flint.arb]) -> flint.arb | None:
+    field, _ = canonical_field(orbit.hamiltonian)
+    return enclose_over(field.ring, field.energy, box)
 
 
 def _delta_j(orbit: Orbit, box: dict[str, flint.arb]) -> flint.arb | None:
@@ -161,10 +163,10 @@ def solution_points(
 ) -> Iterator[Any]:
     """The exact flow from the coordinates in `start` and t0, at these times after it by their N, to
     so many digits."""
-    model = FlowPoint if hamiltonian.planar else FlowPointInDegrees
+    model = _FLOWS[hamiltonian.structure]
     for step, time in times.items():
         status, kind, values = _solution_at(hamiltonian, start, t0, time, digits)
-        state: dict[str, Any] = {"status": status, "kind": kind, **_state(hamiltonian, values)}
+        state: dict[str, Any] = {"status": status, "kind": kind, **_state(values)}
         yield model(step=step, time=text(time), **state)
 
 

@@ -9,8 +9,11 @@ from verify.reference.make.columns import orbit_columns
 from verify.reference.make.tasks import OrbitTask, SolutionTask
 from verify.scenes.run_sections import Reference
 from verify.scenes.scene import Scene
+from verify.structures import AREA, SYMPLECTIC
 from verify.studies.kinds.proofs import proof_task
 from verify.studies.proofs.one import ProofTask
+
+_NUMBERS = {AREA: "ΔJ, MSE and Λ", SYMPLECTIC: "H, S, W and Λ"}
 
 
 def plan_references(scenes: Sequence[Scene]) -> Plan:
@@ -21,7 +24,7 @@ def plan_references(scenes: Sequence[Scene]) -> Plan:
     plan = Plan()
     for scene in scenes:
         name = scene.name or scene.title or "scene"
-        numbers = "ΔJ, MSE and Λ" if scene.exact_hamiltonian().planar else "H, S, W and Λ"
+        numbers = _NUMBERS[scene.exact_hamiltonian().structure]
         for proof in proof_tasks(scene):
             plan.need(proof, f"{name}: orders and leading coefficients")
         for orbit in orbit_tasks(scene):

@@ -12,8 +12,7 @@ over the whole box, no numbers in it satisfy them. That some do is shown in
 J is a difference quotient with a step of 2⁻¹⁶⁰, whose error B bounds too. All is done in balls.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Protocol
@@ -21,6 +20,7 @@ from typing import Protocol
 import flint
 
 from verify.arithmetic.arb import Ball, middle_and_radius, rational_ball
+from verify.arithmetic.flint_precision import length_of_series
 from verify.schemes.printed.asked import Asked, ball_of, size_of
 from verify.schemes.printed.printed_numbers import entries_at
 
@@ -151,7 +151,7 @@ class Nearby:
         wide = rational_ball(Fraction(units))
         box = [x + around(u * wide) for x, u in zip(self.start, self.unit, strict=True)]
         columns = []
-        with _series_of_two_terms():
+        with length_of_series(2):
             for k in range(len(box)):
                 point = {
                     n: flint.arb_series([x, int(i == k)], prec=2)
@@ -223,13 +223,3 @@ def around(radius: Ball) -> Ball:
 
 def _constant(x: "flint.arb") -> flint.arb_series:
     return flint.arb_series([ball_of(x)], prec=2)
-
-
-@contextmanager
-def _series_of_two_terms() -> Iterator[None]:
-    """A value and its derivative; leaves flint's length of series as it was."""
-    before, flint.ctx.cap = flint.ctx.cap, 2
-    try:
-        yield
-    finally:
-        flint.ctx.cap = before

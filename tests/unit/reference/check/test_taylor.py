@@ -65,7 +65,7 @@ def test_taylor_coefficients_are_those_of_sympy(formula: str) -> None:
             known.more([ps[k], qs[k]])
         for k in range(4):
             exact = (sympy.diff(along, T, k) / sympy.factorial(k)).subs(T, 0).evalf(60)
-            assert known.coefficient(h, k).overlaps(flint.arb(f"{exact} +/- 1e-45")), k
+            assert known.c[h][k].overlaps(flint.arb(f"{exact} +/- 1e-45")), k
 
 
 @pytest.mark.parametrize("formula", ["p +", "__import__('os')", "b*q", "p.real", "q**p", "f(q)"])

@@ -11,6 +11,7 @@ import pytest
 from verify.reference.compare.allowance import USUAL, WORST, Allowance
 from verify.reference.compare.column_meanings import _sum, readings
 from verify.reference.compare.findings import DOUBLE, Spread
+from verify.structures import AREA, SYMPLECTIC
 
 KNOWN = {"p": (Fraction(1, 3), Fraction(0)), "q": (Fraction(-7, 2), Fraction(0)),
          "p1": (Fraction(1, 3), Fraction(0)), "q1": (Fraction(-7, 2), Fraction(0)),
@@ -20,7 +21,8 @@ KNOWN = {"p": (Fraction(1, 3), Fraction(0)), "q": (Fraction(-7, 2), Fraction(0))
 
 def allowance(spreads: dict[str, Spread] | None, *, planar: bool, unit: Fraction = DOUBLE) -> Any:
     coordinates = ("p", "q") if planar else ("p1", "q1")
-    hamiltonian = SimpleNamespace(planar=planar, coordinates=coordinates)
+    structure = AREA if planar else SYMPLECTIC
+    hamiltonian = SimpleNamespace(structure=structure, coordinates=coordinates)
     scatters: Any = SimpleNamespace(at=lambda *_: spreads)
     return Allowance(SimpleNamespace(hamiltonian=hamiltonian), unit, scatters)  # type: ignore[arg-type]
 
