@@ -36,7 +36,7 @@ def carries_defect(hamiltonian: Hamiltonian) -> bool:
 
 def _carried(hamiltonian: Hamiltonian, observable: Observable) -> bool:
     most = observable.most_degrees
-    return hamiltonian.planar or most is None or hamiltonian.degrees <= most
+    return most is None or hamiltonian.degrees <= max(most, 1)  # in the plane all are
 
 
 def check_observables(hamiltonian: Hamiltonian, asked: Sequence[str]) -> None:
