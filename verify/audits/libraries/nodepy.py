@@ -44,7 +44,7 @@ def integrators() -> Iterator[ReleasedIntegrator]:
     for key, method in methods.items():
         order, embedded = claimed(key, method.name)
         yield ReleasedIntegrator(
-            _titled(key, method.name),
+            key if method.name in key else f"{key} ({method.name})",
             f"the exact coefficients A and b of rk.loadRKM('{key}')",
             _claim_source(key, method.name),
             tableau_of(method.A, method.b),
@@ -97,10 +97,6 @@ def claimed(key: str, name: str) -> tuple[int | None, int | None]:
         return _ORDERS[key], None
     stages = _STAGES_ORDER.match(key)
     return (int(stages[2]), None) if stages else (None, None)
-
-
-def _titled(key: str, name: str) -> str:
-    return key if name in key else f"{key} ({name})"
 
 
 def _claim_source(key: str, name: str) -> str:
