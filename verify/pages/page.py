@@ -174,20 +174,16 @@ def write(report: Report, folder: Path, *, full: bool = False) -> Path:
 
 def render(report: Report, *, full: bool = False) -> str:
     """The whole page as text; `full`: with all that it folds open, on paper too."""
+    # The page's policy names its one script by its digest: no other may run.
     script = (TEMPLATES / "page.js").read_text(encoding="utf-8")
     template = _environment().get_template("page.html")
     page = template.render(
         page=page_view(report),
         full=full,
         script=Markup(script),  # noqa: S704 - our own
-        digest=_digest(script),
+        digest=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
     )
     return page.replace("<details", "<details open") if full else page
-
-
-def _digest(script: str) -> str:
-    """What the page's policy names its one script by: no other may run."""
-    return base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
 
 
 @cache

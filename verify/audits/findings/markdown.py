@@ -59,7 +59,8 @@ def note(found: Confirmed, versions: str) -> str:
 @cache
 def _template() -> Template:
     text = (Path(__file__).parent / "note.jinja").read_text(encoding="utf-8")
-    return Template(text, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    made: Template = Template(text, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    return made
 
 
 def _orders(claims: Sequence[ClaimResult]) -> Iterator[tuple[str, ...]]:
