@@ -170,7 +170,7 @@ class Flow(_SizedShape, Section):
         degrees = hamiltonian.degrees
         if self.plane > degrees:
             raise InputError("plane", self.plane, f"must be 1 … {degrees}: H is in (q1, p1), …")
-        if not hamiltonian.planar and "centre" not in self.model_fields_set:
+        if "centre" not in self.model_fields_set:
             return dict.fromkeys(hamiltonian.coordinates, Fraction(0))
         return point_of(hamiltonian, self.centre.q, self.centre.p)
 
