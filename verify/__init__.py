@@ -15,8 +15,7 @@ if TYPE_CHECKING:
     from verify import schemes as schemes
     from verify.calls.bench import bench as bench
     from verify.calls.check import check as check
-    from verify.calls.check_map import check_map as check_map
-    from verify.calls.check_table import check_table as check_table
+    from verify.calls.check import check_map as check_map
     from verify.calls.export import export as export
     from verify.calls.flow import flow as flow
     from verify.calls.modified import modified_hamiltonian as modified_hamiltonian
@@ -32,6 +31,7 @@ if TYPE_CHECKING:
     from verify.hamiltonians import systems as systems
     from verify.hamiltonians.hamiltonian import Hamiltonian as Hamiltonian
     from verify.hamiltonians.named_system import System as System
+    from verify.integrators.tables.check import check_table as check_table
     from verify.pages.plotting import plot_flow as plot_flow
     from verify.pages.plotting import plot_over_time as plot_over_time
     from verify.pages.plotting import plot_runs as plot_runs
@@ -67,8 +67,8 @@ _NAMES = {
     "stability": ("verify.calls.stability", "runs judged: stable or not, and whose fault it is"),
     "bench": ("verify.calls.bench", "error against run time"),
     "check": ("verify.calls.check", "a step function of one's own: proved, else measured"),
-    "check_map": ("verify.calls.check_map", "any map of one's own: symplectic or not"),
-    "check_table": ("verify.calls.check_table", "printed coefficients, by what they claim"),
+    "check_map": ("verify.calls.check", "any map of one's own: symplectic or not"),
+    "check_table": ("verify.integrators.tables.check", "printed coefficients, by what they claim"),
     "plot_orbit": ("verify.pages.plotting_orbits", "an orbit's quantity over t, or in the plane"),
     "plot_energy_drift": ("verify.pages.plotting_orbits", "the drift of H and of H̃ over t"),
     "plot_runs": ("verify.pages.plotting", "a quantity of runs against the step size"),

@@ -19,7 +19,7 @@ from verify.audits import libraries, printed_libraries
 from verify.audits.claims import claims_of
 from verify.audits.methods.integrator import ReleasedIntegrator
 from verify.audits.methods.measured import FAILURES
-from verify.execution.processes import Processes
+from verify.execution.executors import Placement, open_place
 from verify.execution.provenance import provenance
 from verify.integrators.tables.check import read_tables
 from verify.integrators.tables.cost import Severity
@@ -117,10 +117,9 @@ def look_at_each(workers: int, on_part: Callable[[str], None]) -> list[Found]:
             on_part(title_of(name))
             found.append(look_at(name))
         return found
-    processes, told = Processes(workers), dict[str, Found]()
-    try:
-        waiting = [*every]
-        running: dict[Future[Found], str] = {}
+    told, waiting = dict[str, Found](), [*every]
+    running: dict[Future[Found], str] = {}
+    with open_place(Placement(workers)) as processes:
         while waiting or running:
             while waiting and len(running) < workers:
                 name = waiting.pop(0)
@@ -132,10 +131,6 @@ def look_at_each(workers: int, on_part: Callable[[str], None]) -> list[Found]:
                 if error is not None and not processes.lost(error):
                     raise error
                 told[name] = _lost(name) if error is not None else future.result()
-    except BaseException:
-        processes.end()
-        raise
-    processes.close()
     return [told[name] for name in every]
 
 

@@ -6,9 +6,13 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from verify.commands.shared.answer import Answer, answering, picked
-from verify.commands.shared.input import hamiltonian_of, hamiltonian_options, scheme_option
+from verify.commands.shared.input import (
+    every_options,
+    hamiltonian_options,
+    one_or_every,
+    scheme_option,
+)
 from verify.commands.shared.output import cut
-from verify.errors import NOT_GIVEN, InputError
 
 if TYPE_CHECKING:
     from verify.proof.plane.modified.equation import ModifiedEquation, Term
@@ -26,14 +30,7 @@ if TYPE_CHECKING:
     metavar="N",
     help="The highest power of h in H̃: 1 … 10, for every H 1 … 8.",
 )
-@click.option(
-    "--every-hamiltonian",
-    is_flag=True,
-    help="For every smooth H, its derivatives as free variables, instead of one.",
-)
-@click.option(
-    "--separable", is_flag=True, help="With --every-hamiltonian: for every H = T(p) + V(q)."
-)
+@every_options
 def modified(
     scheme: str, order: int, every_hamiltonian: bool, separable: bool, **named: Any
 ) -> Answer:
@@ -49,16 +46,8 @@ def modified(
     from verify.calls.modified import modified_hamiltonian
 
     begun = time.perf_counter()
-    if every_hamiltonian:
-        if any(given not in (None, ()) for given in named.values()):
-            problem = "goes without --system, --hamiltonian, --param"
-            raise InputError("--every-hamiltonian", NOT_GIVEN, problem)
-        found = modified_hamiltonian(scheme, None, order, separable=separable)
-    else:
-        if separable:
-            raise InputError("--separable", NOT_GIVEN, "goes with --every-hamiltonian")
-        exact = hamiltonian_of(**named)
-        found = modified_hamiltonian(scheme, exact, order)
+    exact = one_or_every(every_hamiltonian, named, separable=separable)
+    found = modified_hamiltonian(scheme, exact, order, separable=separable)
     seconds = f"{time.perf_counter() - begun:.6f}"
     return Answer(
         lambda: _json(found, seconds), lambda: _print(found), failed=found.verdict == "REFUTED"

@@ -10,9 +10,14 @@ import click
 from verify.commands.shared import proofs as show
 from verify.commands.shared.answer import Answer, answering, picked
 from verify.commands.shared.destinations import OUT_FILE
-from verify.commands.shared.input import hamiltonian_of, hamiltonian_options, scheme_option
+from verify.commands.shared.input import (
+    every_options,
+    hamiltonian_options,
+    one_or_every,
+    scheme_option,
+)
 from verify.commands.shared.output import cut, line
-from verify.errors import NOT_GIVEN, InputError
+from verify.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -28,14 +33,7 @@ if TYPE_CHECKING:
 @hamiltonian_options
 @scheme_option
 @answering
-@click.option(
-    "--every-hamiltonian",
-    is_flag=True,
-    help="For every smooth H, its derivatives as free variables, instead of one.",
-)
-@click.option(
-    "--separable", is_flag=True, help="With --every-hamiltonian: for every H = T(p) + V(q)."
-)
+@every_options
 @click.option(
     "--time-dependent",
     is_flag=True,
@@ -77,16 +75,10 @@ def prove(
     verify prove --every-hamiltonian --degrees 2 --scheme lie4
     verify prove --every-hamiltonian --time-dependent --scheme stormer-verlet
     """
-    if not every_hamiltonian:
-        only = {"separable": separable, "time-dependent": time_dependent, "degrees": degrees}
-        for option, given in only.items():
-            if given:
-                raise InputError(f"--{option}", NOT_GIVEN, "goes with --every-hamiltonian")
-        return _prove_one(hamiltonian_of(**named), scheme, certificate)
-    if any(given not in (None, ()) for given in named.values()):
-        raise InputError(
-            "--every-hamiltonian", NOT_GIVEN, "goes without --system, --hamiltonian, --param"
-        )
+    only = {"separable": separable, "time_dependent": time_dependent, "degrees": degrees}
+    exact = one_or_every(every_hamiltonian, named, **only)
+    if exact is not None:
+        return _prove_one(exact, scheme, certificate)
     return _prove_every(scheme, separable, time_dependent, degrees, certificate)
 
 

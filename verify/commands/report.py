@@ -138,7 +138,7 @@ def _sections(
     exact = hamiltonian_of(given["system"], given["hamiltonian"], given["params"])
     start = {"q": q, "p": p}
     grid: dict[str, Any] = {"step_sizes": step_sizes, "initial_values": [start]}
-    grid |= {"separate": True} if exact.planar or carries_defect(exact) else {}
+    grid |= {"separate": True} if carries_defect(exact) else {}
     grid |= {"growth": True} if exact.planar and not exact.time_dependent else {}
     largest = max(positive(h, "step_size") for h in step_sizes)
     return {

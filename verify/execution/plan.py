@@ -30,11 +30,6 @@ class Plan:
         if reason not in reasons:
             reasons.append(reason)
 
-    @property
-    def given(self) -> set[str]:
-        """The keys of the tasks whose results come with another's."""
-        return given_by(self.tasks.values())
-
     def leave_out(self, what: str, why: str) -> None:
         """Says what is not computed, and why."""
         if (what, why) not in self.left_out:
@@ -45,7 +40,7 @@ class Plan:
         """About how much processor time the tasks take: by their costs, within a factor of four
         or so, on a machine on which a float64 step takes 4 ns.
         """
-        given = self.given
+        given = given_by(self.tasks.values())
         own = (task for name, task in self.tasks.items() if name not in given)
         return _STEP_SECONDS * sum(task.cost for task in own if task.proved() is None)
 

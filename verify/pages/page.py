@@ -10,7 +10,7 @@ import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
@@ -135,7 +135,8 @@ TEMPLATES = Path(__file__).parent / "templates"
 _FILTERS = (
     prose.prose, prose.quoted, prose.sentence, prose.cell, notation.notation, mathml.name,
     mathml.formula, mathml.plain, typography.exact, typography.number,
-    typography.whole, typography.listed, typography.every,
+    typography.whole, typography.listed, typography.every, typography.power_of_h,
+    typography.start, typography.step,
 )  # fmt: skip
 
 
@@ -149,13 +150,14 @@ def environment(drawn: Callable[[Plot], Markup] = lambda plot: plot.svg) -> Envi
         lstrip_blocks=True,
     )
     made.filters.update({each.__name__: each for each in _FILTERS})
-    own = {"equation": _equation, "hamiltonian": mathml.hamiltonian}
-    made.globals.update(own, words=words, signs=SIGNS, drawn=drawn)
+    own = {
+        "equation": lambda left, text: mathml.equation(mathml.NAMED[left], text),
+        "hamiltonian": mathml.hamiltonian,
+        "jacobian": partial(mathml.matrix, mathml.NAMED["J"]),
+        "order_equation": mathml.order_equation,
+    }
+    made.globals.update(own, signs=SIGNS, drawn=drawn)
     return made
-
-
-def _equation(left: str, text: str) -> Markup:
-    return mathml.equation(mathml.NAMED[left], text)
 
 
 PAGE, DATA = "index.html", "results.json"
@@ -172,20 +174,16 @@ def write(report: Report, folder: Path, *, full: bool = False) -> Path:
 
 def render(report: Report, *, full: bool = False) -> str:
     """The whole page as text; `full`: with all that it folds open, on paper too."""
+    # The page's policy names its one script by its digest: no other may run.
     script = (TEMPLATES / "page.js").read_text(encoding="utf-8")
     template = _environment().get_template("page.html")
     page = template.render(
         page=page_view(report),
         full=full,
         script=Markup(script),  # noqa: S704 - our own
-        digest=_digest(script),
+        digest=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
     )
     return page.replace("<details", "<details open") if full else page
-
-
-def _digest(script: str) -> str:
-    """What the page's policy names its one script by: no other may run."""
-    return base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
 
 
 @cache

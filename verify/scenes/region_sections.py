@@ -79,50 +79,36 @@ class PlacedShape(_SizedShape):
 
     @model_validator(mode="after")
     def _check_place(self) -> Self:
-        if _reach(*self._key()) > FARTHEST:
+        if _reach(self) > FARTHEST:
             raise InputError("flow", "centre, scale", f"the shape reaches beyond ±{FARTHEST:g}")
         return self
 
     def to_shape(self) -> Shape:
         """The shape where it is put."""
-        return _placed(*self._key())
-
-    def _key(self) -> "_Key":
-        at = self.centre
-        return self.shape, self.polygon, self.path, at.q, at.p, self.scale
-
-
-_Key = tuple[str | None, tuple[Corner, ...] | None, str | None, Fraction, Fraction, Fraction]
+        return _placed(self)
 
 
 # A plan asks for the same few shapes again for each map and number of steps.
 @lru_cache(maxsize=64)
-def _placed(
-    name: str | None,
-    corners: tuple[Corner, ...] | None,
-    path: str | None,
-    q: Fraction,
-    p: Fraction,
-    scale: Fraction,
-) -> Shape:
-    if name is not None:
-        made = shapes.get(name)
-    elif corners is not None:
+def _placed(given: PlacedShape) -> Shape:
+    if given.shape is not None:
+        made = shapes.get(given.shape)
+    elif given.polygon is not None:
         from verify.scenes.shapes.user_outline import polygon
 
-        made = polygon(corners)
+        made = polygon(given.polygon)
     else:
         from verify.scenes.shapes.user_outline import svg_path
 
-        made = svg_path(path or "")
-    return made.placed(q, p, scale)
+        made = svg_path(given.path or "")
+    return made.placed(given.centre.q, given.centre.p, given.scale)
 
 
 @lru_cache(maxsize=64)
-def _reach(*key: Any) -> Any:
+def _reach(given: PlacedShape) -> Any:
     """The greatest coordinate of some points of each arc, in mpmath's numbers of any size."""
     mp = MPContext()
-    arcs = (arc for outline in _placed(*key).outlines for arc in outline.arcs)
+    arcs = (arc for outline in _placed(given).outlines for arc in outline.arcs)
     points = (arc(mp, mp.mpf(k) / 2) for arc in arcs for k in (0, 1))
     return max(abs(x) for point in points for x in point)
 
@@ -184,7 +170,7 @@ class Flow(_SizedShape, Section):
         degrees = hamiltonian.degrees
         if self.plane > degrees:
             raise InputError("plane", self.plane, f"must be 1 … {degrees}: H is in (q1, p1), …")
-        if not hamiltonian.planar and "centre" not in self.model_fields_set:
+        if "centre" not in self.model_fields_set:
             return dict.fromkeys(hamiltonian.coordinates, Fraction(0))
         return point_of(hamiltonian, self.centre.q, self.centre.p)
 

@@ -61,47 +61,44 @@ def _names(entry: Mapping[str, Any], count: int) -> tuple[str, ...]:
 def _script(entry: Mapping[str, Any]) -> str:
     """The step in plain Python, for the pendulum, and the slope of its error."""
     table = table_of(entry)
-    numbers = "\n".join(
-        f"{name} = {value.strip()}" for name, value in table.printed.numbers.items()
-    )
+    numbers = [f"{name} = {value.strip()}\n" for name, value in table.printed.numbers.items()]
     parts = ", ".join(f'("{kind}", {size})' for kind, size in table.parts)
-    lines = [
-        "from math import log2, sin",
-        "",
-        *([numbers] if numbers else []),
-        f"parts = [{parts}]",
-        "",
-        "",
-        "def step(p, q, h):",
-        "    for kind, a in parts:",
-    ]
-    if entry["kind"] == "composition":
-        lines += [
-            "        p = p - a * h / 2 * sin(q)",
-            "        q = q + a * h * p",
-            "        p = p - a * h / 2 * sin(q)",
-        ]
-    else:
-        speed = "p" if entry["kind"] == "nystrom" else "sin(p)"
-        lines += [
-            '        if kind == "kick":',
-            "            p = p - a * h * sin(q)",
-            "        else:",
-            f"            q = q + a * h * {speed}",
-        ]
-    lines += [
-        "    return p, q",
-        "",
-        "",
-        "def error(h):  # against many steps a hundred times smaller",
-        "    x = step(1.0, 0.5, h)",
-        "    y = (1.0, 0.5)",
-        "    for _ in range(100):",
-        "        y = step(*y, h / 100)",
-        "    return max(abs(x[0] - y[0]), abs(x[1] - y[1]))",
-        "",
-        "",
-        f"# the error of one step is O(h^r), r = order + 1; claimed: order {entry['order']}",
-        "print(log2(error(0.2) / error(0.1)))",
-    ]
-    return "\n".join(lines)
+    step = _STEPS[entry["kind"]]
+    return _SCRIPT.format(numbers="".join(numbers), parts=parts, step=step, order=entry["order"])
+
+
+_ALTERNATING = """\
+        if kind == "kick":
+            p = p - a * h * sin(q)
+        else:
+            q = q + a * h * """
+_STEPS = {
+    "splitting": f"{_ALTERNATING}sin(p)",
+    "nystrom": f"{_ALTERNATING}p",
+    "composition": """\
+        p = p - a * h / 2 * sin(q)
+        q = q + a * h * p
+        p = p - a * h / 2 * sin(q)""",
+}
+_SCRIPT = """\
+from math import log2, sin
+
+{numbers}parts = [{parts}]
+
+
+def step(p, q, h):
+    for kind, a in parts:
+{step}
+    return p, q
+
+
+def error(h):  # against many steps a hundred times smaller
+    x = step(1.0, 0.5, h)
+    y = (1.0, 0.5)
+    for _ in range(100):
+        y = step(*y, h / 100)
+    return max(abs(x[0] - y[0]), abs(x[1] - y[1]))
+
+
+# the error of one step is O(h^r), r = order + 1; claimed: order {order}
+print(log2(error(0.2) / error(0.1)))"""

@@ -43,23 +43,11 @@ def integrators() -> Iterator[ReleasedIntegrator]:
     methods = _loaded()
     for key, method in methods.items():
         order, embedded = claimed(key, method.name)
-        yield ReleasedIntegrator(
-            _titled(key, method.name),
-            f"the exact coefficients A and b of rk.loadRKM('{key}')",
-            _claim_source(key, method.name),
-            tableau_of(method.A, method.b),
-            order,
-            reproduction=_script(key, "b"),
-        )
+        title = key if method.name in key else f"{key} ({method.name})"
+        yield _by_weights(title, key, method, "b", _claim_source(key, method.name), order)
         if hasattr(method, "bhat") and embedded is not None:
-            yield ReleasedIntegrator(
-                f"{key}, embedded",
-                f"the exact coefficients A and bhat of rk.loadRKM('{key}')",
-                f"its name, {method.name}",
-                tableau_of(method.A, method.bhat),
-                embedded,
-                reproduction=_script(key, "bhat"),
-            )
+            said = f"its name, {method.name}"
+            yield _by_weights(f"{key}, embedded", key, method, "bhat", said, embedded)
     yield ReleasedIntegrator(
         "nodes",
         "c and A of each of these methods",
@@ -88,6 +76,15 @@ def integrators() -> Iterator[ReleasedIntegrator]:
     )
 
 
+def _by_weights(
+    title: str, key: str, method: Any, weights: str, source: str, order: int | None
+) -> ReleasedIntegrator:
+    """The method with those of its weights."""
+    driven = f"the exact coefficients A and {weights} of rk.loadRKM('{key}')"
+    table, shown = tableau_of(method.A, getattr(method, weights)), _script(key, weights)
+    return ReleasedIntegrator(title, driven, source, table, order, reproduction=shown)
+
+
 def claimed(key: str, name: str) -> tuple[int | None, int | None]:
     """The order of the method that its names claim, and that of the embedded one."""
     pair = _PAIR.search(name)
@@ -97,10 +94,6 @@ def claimed(key: str, name: str) -> tuple[int | None, int | None]:
         return _ORDERS[key], None
     stages = _STAGES_ORDER.match(key)
     return (int(stages[2]), None) if stages else (None, None)
-
-
-def _titled(key: str, name: str) -> str:
-    return key if name in key else f"{key} ({name})"
 
 
 def _claim_source(key: str, name: str) -> str:

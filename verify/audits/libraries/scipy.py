@@ -97,32 +97,16 @@ def integrators() -> Iterator[ReleasedIntegrator]:
     for name, order in (("RK23", 3), ("RK45", 5)):
         said, title = _SOURCE.format(name), f"{name}, as a step"
         yield from scripted(title, _IN_SPACE, name, said, order, None, (HENON_HEILES,))
-    yield ReleasedIntegrator(
-        "Radau, as a step",
-        "the collocation equations of scipy's Radau, by its own solver, to rounding",
-        _SOURCE.format("Radau"),
-        FloatStep(_PENDULUM, lambda: _without_time(_radau(_field))),
-        5,
-        None,
-    )
-    yield ReleasedIntegrator(
-        "Radau, as a step, driven",
-        "the collocation equations of scipy's Radau, by its own solver, to rounding",
-        f"{_SOURCE.format('Radau')}: y' = f(t, y)",
-        FloatStep(_DRIVEN, lambda: _radau(_driven), _PLAIN),
-        5,
-        None,
-    )
+    said = _SOURCE.format("Radau")
+    driven = "the collocation equations of scipy's Radau, by its own solver, to rounding"
+    still = FloatStep(_PENDULUM, lambda: _without_time(_radau(_field)))
+    moving = FloatStep(_DRIVEN, lambda: _radau(_driven), _PLAIN)
+    yield ReleasedIntegrator("Radau, as a step", driven, said, still, 5)
+    yield ReleasedIntegrator("Radau, as a step, driven", driven, f"{said}: y' = f(t, y)", moving, 5)
     for name, order, pair in (("RK23", 3, 2), ("RK45", 5, 4), ("DOP853", 8, None)):
         yield from _tables(name, order, pair)
-    yield ReleasedIntegrator(
-        "Radau, its table",
-        "the collocation method of scipy's nodes, (4 ∓ √6)/10 and 1",
-        _SOURCE.format("Radau"),
-        ExactTableau(_radau_tableau()),
-        5,
-        None,
-    )
+    nodes = "the collocation method of scipy's nodes, (4 ∓ √6)/10 and 1"
+    yield ReleasedIntegrator("Radau, its table", nodes, said, ExactTableau(_radau_tableau()), 5)
 
 
 def _field(_: float, z: Any) -> Any:

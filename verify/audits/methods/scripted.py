@@ -7,6 +7,7 @@ Of each kind there are two, as what one problem does not show another may.
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 from verify.audits.methods.integrator import FloatStep, Map, ReleasedIntegrator
@@ -102,19 +103,14 @@ USUAL = tuple(
 # -- steps ----------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class Script:
-    """Lines of Python that define step(p, q, h), or step(p, q, t, h), with nothing but the library
-    that they import. They are ours: nothing that is read from elsewhere is in them."""
-
-    text: str
-
-    def step(self) -> Map:
-        """Raises what the library raises."""
-        names: dict[str, Any] = {}
-        exec(compile(self.text, "<the lines shown>", "exec"), names)  # noqa: S102 - our own text
-        made: Map = names["step"]
-        return made
+def step_of(text: str) -> Map:
+    """The step(p, q, h), or step(p, q, t, h), that lines of Python define with nothing but the
+    library that they import. They are ours: nothing that is read from elsewhere is in them. Raises
+    what the library raises."""
+    names: dict[str, Any] = {}
+    exec(compile(text, "<the lines shown>", "exec"), names)  # noqa: S102 - our own text
+    made: Map = names["step"]
+    return made
 
 
 @dataclass(frozen=True)
@@ -159,7 +155,7 @@ def by_script(
     ladder: Sequence[Fraction] = (),
 ) -> ReleasedIntegrator:
     """The integrator whose step the lines of `text` define, which are what is shown of it."""
-    step = FloatStep(hamiltonian, Script(text).step, tuple(points), tuple(ladder))
+    step = FloatStep(hamiltonian, partial(step_of, text), tuple(points), tuple(ladder))
     return ReleasedIntegrator(name, driven, source, step, order, symplectic, text)
 
 

@@ -1,13 +1,12 @@
 """The command `verify check`: the claims of a paper, one verdict each."""
 
-from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from verify.commands.checks.failing import allow_undecided_option, fails
+from verify.commands.checks.failing import allow_undecided_option, fails, print_tally
 from verify.commands.shared.answer import Answer, picked
 from verify.commands.shared.input import CLAIMS, paper_folder
 from verify.commands.shared.tasks import kept_tasks, with_tasks
@@ -93,9 +92,7 @@ def _print(found: "list[ClaimResult]", statements: "Sequence[StatementResult]") 
     for claim in found:
         source = f"{claim.source}: " if claim.source else ""
         click.echo(f"{claim.verdict:9}  {claim.id:{width}}  {source}{claim.evidence}")
-    verdicts = Counter(str(claim.verdict) for claim in found)
-    of = f"{len(found)} claim{'s' if len(found) > 1 else ''}"
-    click.echo(f"{of}: " + ", ".join(f"{n} {word}" for word, n in verdicts.most_common()))
+    print_tally(claim.verdict for claim in found)
     if statements:
         click.echo(counted(statements, [c for c in found if _counts(c, statements)]))
 

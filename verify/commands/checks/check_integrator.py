@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from verify.hamiltonians.hamiltonian import Hamiltonian
     from verify.integrators.results import Finding
     from verify.integrators.user_code.loading import Callee
+    from verify.proof.proof import Proof
 
 _CLAIMED = click.IntRange(1, 12)
 
@@ -154,8 +155,7 @@ def _json(exact: "Hamiltonian", target: str, finding: "Finding", seconds: str) -
     from verify.arithmetic.exact import text
     from verify.integrators.results import potential_of_finding
 
-    proof, example = finding.proof, finding.counterexample
-    of_form = proof if proof and not proof.planar else None
+    proof, example, of_form = finding.proof, finding.counterexample, _of_form(finding)
     potential = None if of_form else potential_of_finding(finding)
     witness = proof.witness if proof and finding.symplectic is not True else {}
     if not witness and example is not None and finding.degrees > 1:
@@ -191,17 +191,22 @@ def _json(exact: "Hamiltonian", target: str, finding: "Finding", seconds: str) -
     }  # fmt: skip
 
 
+def _of_form(finding: "Finding") -> "Proof | None":
+    """Its proof, where that is one of S."""
+    return finding.proof if finding.proof and not finding.proof.planar else None
+
+
 def _print(exact: "Hamiltonian", target: str, finding: "Finding") -> None:
     from dataclasses import replace
 
     from verify.integrators.results import potential_of_finding
 
-    proof, degrees = finding.proof, finding.degrees
-    if proof and proof.planar and finding.verdict is proof.verdict:
-        show.print_proof(exact, target, proof, potential_of_finding(finding))
-    elif proof is not None and not proof.planar:
-        shown = replace(proof, verdict=finding.verdict, reason=finding.reason)
+    proof, of_form, degrees = finding.proof, _of_form(finding), finding.degrees
+    if of_form is not None:
+        shown = replace(of_form, verdict=finding.verdict, reason=finding.reason)
         show.print_symplectic(exact.texts, target, shown)
+    elif proof is not None and finding.verdict is proof.verdict:
+        show.print_proof(exact, target, proof, potential_of_finding(finding))
     else:
         show.print_head(exact, target, finding)
         if finding.leading is not None and finding.order is not None and degrees == 1:

@@ -1,14 +1,13 @@
 """The command `verify check-table`: coefficients as papers and libraries print them."""
 
 import time
-from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from verify.commands.checks.failing import allow_undecided_option, fails
-from verify.commands.shared.answer import Answer, answering
+from verify.commands.checks.failing import allow_undecided_option, fails, print_tally
+from verify.commands.shared.answer import Answer, answering, picked
 
 if TYPE_CHECKING:
     from verify.integrators.tables.check import Judgement
@@ -60,31 +59,18 @@ def check_table(tables: Path, allow_undecided: bool) -> Answer:
 def _json(found: "Judgement") -> dict[str, Any]:
     claim = found.claim
     return {
-        "id": found.id,
-        "table": found.table,
-        "line": found.line,
-        "statement": claim.statement,
-        "verdict": claim.verdict,
-        "evidence": claim.evidence,
-        "severity": claim.severity,
-        "nearest": claim.nearest,
+        **picked(found, "id", "table", "line"),
+        **picked(claim, "statement", "verdict", "evidence", "severity", "nearest"),
         "cost": claim.cost and _cost(claim.cost),
         "details": claim.details,
     }
 
 
 def _cost(cost: "Cost") -> dict[str, Any]:
-    def short(x: float | None) -> str | None:
-        return None if x is None else f"{x:.3g}"
-
+    sizes = picked(cost, "ulps", "error_constant", "nearest_error_constant", "below")
     return {
-        "double": cost.double,
-        "order": cost.order,
-        "claimed": cost.claimed,
-        "ulps": short(cost.ulps),
-        "error_constant": short(cost.error_constant),
-        "nearest_error_constant": short(cost.nearest_error_constant),
-        "below": short(cost.below),
+        **picked(cost, "double", "order", "claimed"),
+        **{name: None if x is None else f"{x:.3g}" for name, x in sizes.items()},
         "said": cost.said,
     }
 
@@ -102,6 +88,4 @@ def _print(found: "list[Judgement]") -> None:
             click.echo(
                 f"{'':9}  {'':{width}}  {name}: {printed}, exact {exact}, off by {off} units"
             )
-    verdicts = Counter(str(each.claim.verdict) for each in found)
-    of = f"{len(found)} claim{'s' if len(found) > 1 else ''}"
-    click.echo(f"{of}: " + ", ".join(f"{n} {word}" for word, n in verdicts.most_common()))
+    print_tally(each.claim.verdict for each in found)

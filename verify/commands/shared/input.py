@@ -1,7 +1,7 @@
 """Options that commands share, and what they stand for."""
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial, wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -128,7 +128,16 @@ scheme_option = click.option(
     " 'p_next = …; q_next = …'.",
 )
 
-
+every_options = options(
+    click.option(
+        "--every-hamiltonian",
+        is_flag=True,
+        help="For every smooth H, its derivatives as free variables, instead of one.",
+    ),
+    click.option(
+        "--separable", is_flag=True, help="With --every-hamiltonian: for every H = T(p) + V(q)."
+    ),
+)
 start_options = options(
     click.option(
         "--q",
@@ -206,6 +215,20 @@ def hamiltonian_of(
     from verify.hamiltonians.kept import kept_or_read
 
     return kept_or_read(source, values, read)
+
+
+def one_or_every(every: bool, named: Mapping[str, Any], **only: Any) -> "Hamiltonian | None":
+    """The one H that the options name; None where every one is meant. InputError where they name
+    one all the same, and where one is meant and an option is given that goes with every `only`."""
+    if every:
+        if any(given not in (None, ()) for given in named.values()):
+            problem = "goes without --system, --hamiltonian, --param"
+            raise InputError("every_hamiltonian", NOT_GIVEN, problem)
+        return None
+    for option, given in only.items():
+        if given:
+            raise InputError(option, NOT_GIVEN, "goes with --every-hamiltonian")
+    return hamiltonian_of(**named)
 
 
 def listed(given: str, exact: "Hamiltonian") -> str | list[str]:

@@ -10,6 +10,7 @@ sizes = ["7/24", "2/3", "3/4", "-2/3", "-1/24", "1"]
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -122,9 +123,21 @@ def located(name: str, lines: Lines, index: int, table: str, error: InputError) 
     return type(error)(f"{where}: {said}" if said else where, error.value, error.problem)
 
 
-def check_table(path: Path) -> list[Judgement]:
-    """Every claim of every table of the file, judged.
+def check_table(path: str | PathLike[str]) -> list[Judgement]:
+    """Each claim of each `[[table]]` of a TOML file, with its verdict, evidence and cost.
 
-    Raises InputError, which names the file, the line and the table, for what is none.
+    Raises InputError, one line with the file, the line and the table, for what is none.
+
+    >>> import tempfile
+    >>> with tempfile.NamedTemporaryFile("w", suffix=".toml") as file:
+    ...     print(
+    ...         '[[table]]\\nname = "Verlet"\\nkind = "splitting"\\norder = 3\\n'
+    ...         'first = "kick"\\nsizes = ["1/2", "1", "1/2"]',
+    ...         file=file,
+    ...         flush=True,
+    ...     )
+    ...     (found,) = check_table(file.name)
+    >>> found.id, str(found.claim.verdict), found.claim.cost.order
+    ('Verlet/order', 'REFUTED', 2)
     """
-    return list(read_tables(path).judged())
+    return list(read_tables(Path(path)).judged())

@@ -10,6 +10,7 @@ from markupsafe import Markup
 
 from verify.pages.text.typography import NBSP, between, is_decimal, number, whole
 from verify.scenes.results.bounded_value import Value
+from verify.scenes.results.regions import FlowImage
 from verify.scenes.results.run import RunResult
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ def computed(runs: Sequence[RunResult]) -> str:
     """The arithmetic, the number of steps and the origin of the error bounds, in one sentence."""
     steps = sorted({run.steps for run in runs})
     count = between(whole(steps[0]), whole(steps[-1]), " … ")
-    systems = " and ".join(dict.fromkeys(_arithmetic(run) for run in runs))
+    systems = " and ".join(dict.fromkeys(map(arithmetic_of, runs)))
     methods = dict.fromkeys(
         f"{run.error_kind}: {run.error_method}" for run in runs if run.status == "finished"
     )
@@ -64,10 +65,10 @@ def computed(runs: Sequence[RunResult]) -> str:
     return f"Computed in {systems} with N = {count} steps{bounds}."
 
 
-def _arithmetic(run: RunResult) -> str:
-    return (
-        run.arithmetic if run.arithmetic == "float64" else f"{run.arithmetic} ({run.digits} digits)"
-    )
+def arithmetic_of(found: RunResult | FlowImage) -> str:
+    """Its number system, and with how many digits where it may have more or fewer than 17."""
+    name = found.arithmetic
+    return name if name in ("float64", "") else f"{name} ({found.digits} digits)"
 
 
 def few_digits(found: Value | None, *, strong: bool = False) -> Markup:

@@ -110,7 +110,7 @@ def _inline(root: Any, name: str, label: str) -> Markup:
     for attribute in ("width", "height", "version"):
         root.attrib.pop(attribute)
     used: set[str] = set()
-    name = _short(name)
+    name = f"f{hashlib.sha256(name.encode()).hexdigest()[:8]}"  # short: of thousands of marks
     for element in root.iter():
         element.tag = element.tag.removeprefix(f"{{{_SVG}}}")
         element.text, element.tail = _stripped(element.text), _stripped(element.tail)
@@ -168,11 +168,6 @@ def _look(element: Any) -> tuple[tuple[str, str], ...] | None:
     if element.tag != "use":
         return None
     return tuple(sorted((k, v) for k, v in element.attrib.items() if k not in _OWN))
-
-
-def _short(name: str) -> str:
-    """A prefix of ids: thousands of marks name theirs."""
-    return f"f{hashlib.sha256(name.encode()).hexdigest()[:8]}"
 
 
 def _stripped(text: str | None) -> str | None:

@@ -175,12 +175,9 @@ def _is_block(node: Node) -> bool:
 
 
 def _paragraph(children: Iterable[Node | str]) -> list[Markdown]:
-    found = line(child for child in children if not _is_for_screen(child))
+    kept = (c for c in children if isinstance(c, str) or not _ON_SCREEN & set(c.classes))
+    found = line(kept)
     return [found] if found else []
-
-
-def _is_for_screen(child: Node | str) -> bool:
-    return isinstance(child, Node) and bool(_ON_SCREEN & set(child.classes))
 
 
 def _heading(node: Node) -> Iterator[Markdown]:

@@ -39,11 +39,8 @@ def _digits_lost(value: float) -> str:
     if value >= _ALL_DIGITS:
         return "no digit of p and q is left"
     count = f"{value:.1f}"
-    return f"{count} digit{'' if count == '1.0' else 's'} of p and q {_are(count)} lost"
-
-
-def _are(count: str) -> str:
-    return "is" if count == "1.0" else "are"
+    digits, are = ("digit", "is") if count == "1.0" else ("digits", "are")
+    return f"{count} {digits} of p and q {are} lost"
 
 
 def in_short(measure: str, value: float) -> tuple[str, str]:
@@ -92,7 +89,8 @@ def lambda_of(each: GalleryScene) -> Iterator[str]:
 def _kept(plain: EvaluationResult, count: str) -> str:
     parts = plain.parts
     if _zero(parts.truncation.value) and _zero(parts.total.value):
-        if parts.truncation.bound == parts.total.bound == "0" and _silent(plain):
+        silent = all(map(_zero, plain.largest.values()))
+        if parts.truncation.bound == parts.total.bound == "0" and silent:
             return f"Λ is exactly 0 over {count}, in float64 as in exact arithmetic."
         return f"Neither of truncation nor of rounding is a digit known after {count}."
     gap = decades_below(plain)
@@ -113,10 +111,6 @@ def _without_truncation(plain: EvaluationResult) -> Iterator[str]:
 
 def _zero(size: str) -> bool:
     return Decimal(size) == 0
-
-
-def _silent(plain: EvaluationResult) -> bool:
-    return all(_zero(size) for size in plain.largest.values())
 
 
 def run_beyond(each: GalleryScene) -> Iterator[str]:

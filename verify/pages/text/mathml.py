@@ -116,12 +116,8 @@ def order_equation(leading: str, order: int) -> Markup | None:
         return None
     h = sympy.Symbol("h", real=True)
     body = _sum(h**order * expression)
-    rest = f"<mi>O</mi>{_OPEN}{_power_of_h(order + 1)}{_CLOSE}"
+    rest = f"<mi>O</mi>{_OPEN}{_power(h ** (order + 1))}{_CLOSE}"
     return _math(f"{NAMED['ΔJ']}<mo>=</mo><mrow>{body}<mo>+</mo>{rest}</mrow>", display=True)
-
-
-def _power_of_h(n: int) -> str:
-    return "<mi>h</mi>" if n == 1 else f"<msup><mi>h</mi><mn>{n}</mn></msup>"
 
 
 def free_names(text: str) -> tuple[str, ...]:

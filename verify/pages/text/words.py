@@ -1,4 +1,4 @@
-"""What every format of the report says in the same words: the terms, and what its tables hold."""
+"""Terms that several sections explain in the same words, and how judged runs are counted."""
 
 from collections.abc import Mapping
 
@@ -7,54 +7,6 @@ from markupsafe import Markup
 from verify import arithmetic as number_systems
 from verify.pages.text.typography import listed, whole
 from verify.scenes.results.stability import KINDS, Kind
-
-RUNS = (
-    "Only known digits are printed, each value with its error bound. “|·| ≤” stands where no digit "
-    "is known."
-)
-JUDGED = (
-    "Bounds are ten times the exact orbit’s reach in p and in q, and a hundred times its energy "
-    "scale. Each run is done in float64, in 40 digits or more, where they differ in twice as many, "
-    "and where float64’s range may be to blame in 53 bits with wider exponents."
-)
-GROWTH_LAW = (
-    "boundary + secular = log(1 + Λ), of which “predicted” is the Λ; “difference” is what it "
-    "differs by, divided by the measured |Λ|. The first four known digits are printed; all are in "
-    "results.json."
-)
-SEPARATION = (
-    "Λ in float64 is truncation + rounding, and rounding the plain way is input + trajectory + "
-    "determinant + product, the greatest of them bold. All are those at the end of the run, and "
-    "only known digits are printed, the first four of them; all are in results.json. With each "
-    "rounding stands by how many decades its greatest size along the run is below, or above, that "
-    "of truncation. “|·| ≤” stands where no digit is known."
-)
-CLOCK = (
-    "H depends on time, so float64’s clock, t ← t + h, is a part of its own, between input and "
-    "trajectory: what its errors do to the motion in exact arithmetic."
-)
-FORM_SEPARATION = (
-    "W in float64 is truncation + rounding, and rounding the plain way is input + trajectory + "
-    "derivatives + product, entry by entry of a matrix; of each the greatest |entry| at the end of "
-    "the run stands here, the greatest part bold, and all entries are in results.json. The plain "
-    "way multiplies the steps’ Jacobians and takes MᵀΩM − Ω; the closed form sums MᵀSM."
-)
-FORM_GROWTH = (
-    "W sums MᵀSM, and a 2-form grows as areas do under M: like ‖∧²M‖, the root of the sum of all "
-    "squares of 2 × 2 minors, which is below ‖M‖². Where ‖M‖ grows exponentially at half the "
-    "step size too, and at about that rate, the growth is the motion’s and not the scheme’s. The "
-    "finite-time Lyapunov exponent is ln(‖M‖/√(2n))/T of this run, by unit of time. The law of "
-    "max |W| is the slope of its envelope over N, in logarithms: bounded, N or N² where one of "
-    "these is near, and fitted only where ‖M‖ does not grow exponentially."
-)
-ROUNDING_GROWTH = (
-    "The exponent is the slope of the greatest |rounding| so far over N, in logarithms, with its "
-    "standard error. Errors of both signs make a random walk, N to the ½; errors of one sign "
-    "drift, N to the 1. A run is named by the one of the two that lies within 2.5 standard errors, "
-    "and undecided where both do or neither."
-)
-COSTS = "Orders, and what one step executes (a subexpression that occurs twice is computed once)"
-WORK = "Errors at T and run times, by scheme and step size; the first four known digits"
 
 ALWAYS = {
     "ΔJ": Markup(

@@ -12,7 +12,7 @@ from tests.helpers.constructed.scenes import HEAD, load
 from verify.execution.execute import Store, execute
 from verify.execution.executors import THIS_PROCESS, Placement
 from verify.execution.keeping import NOTHING
-from verify.execution.plan import Plan
+from verify.execution.plan import Plan, given_by
 from verify.kernels.stepping import KernelRun
 from verify.lockstep import Course
 from verify.runs.digits_on_demand import Measured
@@ -62,7 +62,7 @@ def test_both_have_one_run_in_exact_arithmetic(
     plan = planned(tmp_path)
     runs, separations = of_kind(plan, RunTask), of_kind(plan, SeparationTask)
     assert len(runs) == len(separations) == 2
-    assert plan.given == set(runs)
+    assert given_by(plan.tasks.values()) == set(runs)
     results = execute(plan, Store(None), where=THIS_PROCESS)
     assert set(results) == set(plan.tasks)
     exact = {Fraction(1, 10), Fraction(1, 20)}
@@ -127,14 +127,14 @@ def test_runs_that_do_not_do_for_a_first_link_are_done_by_themselves(
     tmp_path: Path, arithmetic: str, digits: int, shared: bool
 ) -> None:
     plan = planned(tmp_path, digits, arithmetic)
-    assert bool(plan.given) is shared is does_for_first_link(arithmetic, digits)
+    assert bool(given_by(plan.tasks.values())) is shared is does_for_first_link(arithmetic, digits)
     assert all((task.run is not None) is shared for task in of_kind(plan, SeparationTask).values())
 
 
 @pytest.mark.parametrize("observables", [[], ["mse"], ["lambda_max", "lambda_plain"]])
 def test_a_run_without_lambda_is_no_first_link(tmp_path: Path, observables: list[str]) -> None:
     plan = planned(tmp_path, more=f"observables = {observables}\n")
-    assert not plan.given
+    assert not given_by(plan.tasks.values())
     found = execute(plan, Store(None), where=THIS_PROCESS)
     assert set(found) == set(plan.tasks)
 

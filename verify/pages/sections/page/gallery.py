@@ -29,7 +29,6 @@ class CardView:
     result: GalleryScene
     anchor: str
     title: str
-    setting: Markup
     finding: tuple[str, ...]
     plots: tuple[Plot, ...]
 
@@ -115,7 +114,6 @@ def _card(each: GalleryScene, place: int, gallery: Gallery) -> CardView:
         result=each,
         anchor=anchor,
         title=f"Scene {place}: {said}",
-        setting=_setting(each, gallery.steps),
         finding=(*lambda_of(each), *run_beyond(each), *_at_rest(each)),
         plots=tuple(_plots(each, place, gallery.steps, anchor)),
     )
@@ -124,13 +122,6 @@ def _card(each: GalleryScene, place: int, gallery: Gallery) -> CardView:
 def _at_rest(each: GalleryScene) -> Iterator[str]:
     if len(each.orbit) > 1 and len(set(each.orbit)) == 1:
         yield "The orbit stays where it starts."
-
-
-def _setting(each: GalleryScene, steps: int) -> Markup:
-    of = each.separation
-    return Markup("<code>{0}</code> with h{1}={1}{2} from {3}, over {4} steps.").format(
-        of.scheme, NBSP, step(of.step_size), start(of), whole(steps)
-    )
 
 
 # -- figures --------------------------------------------------------------------------------------

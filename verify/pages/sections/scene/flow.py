@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
-from verify.pages.figures.captioned_plot import Plot, plotted
+from verify.pages.figures.captioned_plot import Plot, arithmetic_of, plotted
 from verify.pages.sections.flow_finding import finding, findings, mean_of, region_of
 from verify.pages.sections.flow_words import words
 from verify.pages.sections.rows import Row
@@ -106,7 +106,7 @@ def _row(image: FlowImage) -> Row:
         _cell(image.area_change, image.probe_error, missing="not known"),
         _cell(*mean_of(image), missing=no_mean),
         _planes(image) or _cell(image.distance, image.distance_error),
-        _arithmetic(image),
+        arithmetic_of(image),
     )
     disagreement = "the two measures disagree" if image.agree is False else ""
     return Row(image.map, cells, image.problem or disagreement)
@@ -116,12 +116,6 @@ def _planes(image: FlowImage) -> str | Markup:
     """What the region's outline encloses in each plane, with its error."""
     seen = image.outlines[0].projections if image.outlines else ()
     return Markup(" ").join(_cell(x.area, x.area_error) for x in seen)
-
-
-def _arithmetic(image: FlowImage) -> str:
-    if not image.arithmetic or image.arithmetic == "float64":
-        return image.arithmetic
-    return f"{image.arithmetic} ({image.digits} digits)"
 
 
 # -- the figure -----------------------------------------------------------------------------------

@@ -12,8 +12,6 @@ from verify.pages.figures.captioned_plot import Plot, few, plotted
 from verify.pages.figures.logarithm import lg
 from verify.pages.sections.rows import MOST_ROWS, Group, Row, shown, told
 from verify.pages.sections.section import Section
-from verify.pages.text import mathml
-from verify.pages.text.prose import prose
 from verify.pages.text.typography import NBSP, between, listed, number, start, step, whole
 from verify.pages.text.typography import power_of_h as _h
 from verify.scenes.results.growth import AverageResult, GrowthLawResult, PredictionResult
@@ -23,7 +21,7 @@ from verify.scenes.results.report import SceneResult
 
 @dataclass(frozen=True)
 class GrowthView:
-    law: Markup
+    law: AverageResult
     finding: tuple[str, ...]
     plots: tuple[Plot, ...]
     groups: tuple[Group, ...]
@@ -37,7 +35,7 @@ def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> GrowthView | N
     if not laws:
         return None
     return GrowthView(
-        law=_law(laws[0].law),
+        law=laws[0].law,
         finding=tuple(_finding(laws, scene.growth_explains)),
         plots=tuple(_plots(laws, anchor)),
         groups=tuple(_groups(laws)),
@@ -48,34 +46,6 @@ def _view(scene: SceneResult, proof: ProofResult, anchor: str) -> GrowthView | N
 
 
 # -- sentences ------------------------------------------------------------------------------------
-
-
-def _law(law: AverageResult) -> Markup:
-    """The law with its G and g."""
-    if not law.power:
-        return Markup("There is no growth law: {}.").format(prose(law.reason))
-    n = law.power
-    g = Markup("g = {}").format(mathml.formula(law.g))
-    if not law.by_potential:
-        return Markup(
-            "log(1 + Λ) = {0} (T ⟨g⟩ + [B]) + a remainder, with {1}, the leading coefficient of "
-            "ΔJ{2}."
-        ).format(_h(n), g, _telescopes(law))
-    return Markup(
-        "log(1 + Λ) = {0} [G] + {1} (T ⟨g⟩ + [B − ½ X G]) + a remainder, with G = {2}, whose "
-        "derivative along the flow is the leading coefficient of ΔJ, and {3}, the next one."
-    ).format(_h(n - 1), _h(n), mathml.formula(law.potential), g)
-
-
-def _telescopes(law: AverageResult) -> Markup:
-    """What is known of whether the leading coefficient does, as `verify prove` says it."""
-    if law.telescopes is None:
-        return Markup("; whether it telescopes is not decided")
-    if not law.telescopes:
-        return Markup(", which does not telescope")
-    return Markup(
-        ", which telescopes: it is X·G with G = {}, and ⟨g⟩ is 0 where p and q come back"
-    ).format(mathml.formula(law.potential))
 
 
 def _finding(laws: Sequence[GrowthLawResult], explains: str) -> Iterator[str]:
