@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import point_of, shown_of
@@ -27,6 +28,16 @@ class Start:
         point = point_of(hamiltonian, result.q, result.p)
         step_size, t0 = Fraction(result.step_size), Fraction(result.t0)
         return cls(hamiltonian, result.scheme, step_size, point, t0)
+
+    def __hash__(self) -> int:
+        point = frozenset(self.point.items())
+        return hash((self.hamiltonian, self.scheme, self.step_size, point, self.t0))
+
+    @property
+    def asked(self) -> dict[str, Any]:
+        """What a run from there is asked for with, beside its steps."""
+        fields = {name: x for name, x in vars(self).items() if name != "point"}
+        return {**fields, "q": self.text("q"), "p": self.text("p")}
 
     @property
     def inputs(self) -> dict[str, Fraction]:

@@ -13,11 +13,11 @@ import flint
 from verify.algebra.enclosure import enclose_all
 from verify.arithmetic.arb import around, in_reach, middle_and_radius, rational_ball
 from verify.arithmetic.flint_precision import working_precision
-from verify.kernels.orbit import Orbit
 from verify.kernels.step.computation import step_map_of
 from verify.reference.compare.findings import DOUBLE, SINGLE, Spread
 from verify.reference.compare.scatter import Scatters
 from verify.reference.make.orbit_points import Bounded
+from verify.runs.start import Start
 from verify.schemes.maps.parts import parts_of
 from verify.structures import AREA, SYMPLECTIC
 
@@ -36,7 +36,7 @@ _UNDERFLOWS = (  # units of roundoff, and what all numbers of that format are lo
 class Allowance:
     """Of one orbit, for one unit roundoff."""
 
-    def __init__(self, orbit: Orbit, unit: Fraction, scatters: Scatters) -> None:
+    def __init__(self, orbit: Start, unit: Fraction, scatters: Scatters) -> None:
         self.orbit, self.unit, self._scatters = orbit, unit, scatters
         kept = orbit.hamiltonian.structure
         self._few, self._carried = _FEW[kept], _CARRIED[kept]
@@ -83,7 +83,7 @@ class Allowance:
         return _PRODUCTS * self.unit * most
 
 
-def products(orbit: Orbit, done: int, known: dict[str, Bounded]) -> Fraction:
+def products(orbit: Start, done: int, known: dict[str, Bounded]) -> Fraction:
     """A bound of |a d| + |b c| over the substeps of the step after so many, at least 1: what det J
     is the rest of. 1 where that is not looked at, as in n degrees of freedom."""
     if _CARRIED[orbit.hamiltonian.structure]:

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from verify.errors import InputError
-from verify.kernels.orbit import Orbit
 from verify.reference.compare.agreement import printing
 from verify.reference.compare.diagnosis import Diagnosis
 from verify.reference.compare.findings import Named, Of, RunFindings, Verdict
@@ -16,6 +15,7 @@ from verify.reference.compare.published import Published, PublishedRun
 from verify.reference.compare.rows import Theirs
 from verify.reference.compare.scatter import Scatters
 from verify.reference.compare.setting import Points, Setting
+from verify.runs.start import Start
 from verify.scenes.results.separation import SeparationResult
 from verify.structures import AREA, SYMPLECTIC
 from verify.studies.separation.separate import separate
@@ -117,7 +117,7 @@ def compare(
 
 
 # Whether its run is never lost; how far, when, where.
-_Off = tuple[bool, Fraction, int, str, Orbit]
+_Off = tuple[bool, Fraction, int, str, Start]
 
 
 def _off_by_rounding(judge: Judge, judged: RunFindings) -> Iterator[_Off]:
@@ -139,7 +139,7 @@ def _separated(off: list[_Off]) -> Separated | None:
     if not off:
         return None
     _, apart, step, label, orbit = max(off, key=lambda x: x[:2])
-    result = separate(**vars(orbit), steps=step, digits=_SEPARATED_DIGITS)
+    result = separate(**orbit.asked, steps=step, digits=_SEPARATED_DIGITS)
     assert isinstance(result, SeparationResult)  # noqa: S101 - tables are of the plane
     return Separated(label, step, apart, result) if result.plain else None
 
@@ -163,7 +163,7 @@ class _Search:
         return len(self.known) > before
 
 
-def _orbits(runs: Iterable[PublishedRun], points: Points, names: Container[str]) -> Iterator[Orbit]:
+def _orbits(runs: Iterable[PublishedRun], points: Points, names: Container[str]) -> Iterator[Start]:
     """What runs with one of these mistakes would be."""
     for run in runs:
         for mistake in of_states(Setting(run.orbit, points)):

@@ -17,7 +17,6 @@ from fractions import Fraction
 from functools import lru_cache
 
 from verify.arithmetic.systems import float64
-from verify.kernels.orbit import Orbit
 from verify.reference.compare.agreement import Cell, Printing, beside
 from verify.reference.compare.allowance import Allowance, products
 from verify.reference.compare.column_meanings import Foretold
@@ -27,12 +26,13 @@ from verify.reference.compare.rows import Row
 from verify.reference.compare.scatter import Scatters, run_of
 from verify.reference.compare.setting import Points, Setting
 from verify.reference.make.orbit_points import Bounded
+from verify.runs.start import Start
 
 _LARGE = Fraction(10) ** 250  # what is summed up or multiplied on the way to it may be larger
 _MOST_STEPS = 20_000  # stepped
 
 
-def may_overflow(orbit: Orbit, step: int, known: dict[str, Bounded]) -> bool:
+def may_overflow(orbit: Start, step: int, known: dict[str, Bounded]) -> bool:
     """Within so many steps and the next; `known` are the run's numbers then, the state among them
     unless it has left the reference data's range, too."""
     if any(name not in known for name in orbit.hamiltonian.coordinates):
@@ -43,7 +43,7 @@ def may_overflow(orbit: Orbit, step: int, known: dict[str, Bounded]) -> bool:
 
 
 @lru_cache(maxsize=4096)
-def _overflows(orbit: Orbit, step: int) -> bool:
+def _overflows(orbit: Start, step: int) -> bool:
     run = run_of(orbit, min(step, _MOST_STEPS) + 1)
     try:
         return not run.implicit and run.run(float64.make(_DOUBLE_DIGITS)).done < run.steps

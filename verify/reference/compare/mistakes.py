@@ -18,9 +18,9 @@ from verify.arithmetic.exact import short
 from verify.arithmetic.systems.float64 import nearest_double
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.kernels.orbit import Orbit
 from verify.reference.compare.agreement import nearest_single
 from verify.reference.compare.setting import Setting
+from verify.runs.start import Start
 from verify.schemes.conditions.splitting_conditions import Part, Splitting
 from verify.structures import AREA, SYMPLECTIC, Structure
 
@@ -74,7 +74,8 @@ def _in_plane(right: Setting) -> Iterator[Change]:
 
 def _of_doubles(right: Setting) -> Iterator[Change]:
     orbit = right.orbit
-    exact = {"h": orbit.step_size, "q0": orbit.q, "p0": orbit.p, **dict(orbit.hamiltonian.values)}
+    starts = {"q0": orbit.point["q"], "p0": orbit.point["p"]}
+    exact = {"h": orbit.step_size, **starts, **dict(orbit.hamiltonian.values)}
     if orbit.hamiltonian.time_dependent:
         exact["t0"] = orbit.t0
     doubles = {n: nearest_double(x) for n, x in exact.items()}
@@ -108,9 +109,9 @@ _OF_INPUTS: Mapping[Structure, Changes] = {AREA: _of_doubles, SYMPLECTIC: lambda
 _OF_STATES = {AREA: _in_plane, SYMPLECTIC: _in_degrees}
 
 
-def _of_columns(orbit: Orbit) -> Iterator[Change]:
-    exchanged, swap = replace(orbit, q=orbit.p, p=orbit.q), (("p", "q"),)
-    turned = replace(orbit, p=-orbit.p)
+def _of_columns(orbit: Start) -> Iterator[Change]:
+    p, q, swap = orbit.point["p"], orbit.point["q"], (("p", "q"),)
+    exchanged, turned = _with(orbit, {"p0": q, "q0": p}), _with(orbit, {"p0": -p})
     energy = Hamiltonian(-orbit.hamiltonian.expression, orbit.hamiltonian.values)
     backwards = replace(orbit, hamiltonian=energy)
     yield "swapped-columns", "your columns p and q are swapped", {"exchanged": swap}
@@ -125,7 +126,7 @@ def _of_columns(orbit: Orbit) -> Iterator[Change]:
     yield "late-1", "your step index is too high by one", {"late": -1}
 
 
-def _of_clock(orbit: Orbit) -> Iterator[Change]:
+def _of_clock(orbit: Start) -> Iterator[Change]:
     if not orbit.hamiltonian.time_dependent:
         return
     for how, says in _CLOCKS.items():
@@ -142,7 +143,7 @@ def _of_clock(orbit: Orbit) -> Iterator[Change]:
         yield name, says, {"orbit": replace(orbit, t0=begin)}
 
 
-def _of_step(orbit: Orbit) -> Iterator[Change]:
+def _of_step(orbit: Start) -> Iterator[Change]:
     h, values = orbit.step_size, orbit.hamiltonian.values
     changes = [
         ("half-step", "your h is half what it should be", {"h": h / 2}),
@@ -160,7 +161,7 @@ def _of_step(orbit: Orbit) -> Iterator[Change]:
         yield name, says, {"orbit": _with(orbit, change)}
 
 
-def _of_scheme(orbit: Orbit) -> Iterator[Change]:
+def _of_scheme(orbit: Start) -> Iterator[Change]:
     """Its relatives by name, then all other schemes."""
     said = dict(_relatives(orbit.scheme))
     known = sorted(schemes.names(), key=lambda x: x.startswith("implicit") - x.startswith("lie"))
@@ -171,7 +172,7 @@ def _of_scheme(orbit: Orbit) -> Iterator[Change]:
         yield f"{_OF_SCHEME}{name}", says, {"orbit": replace(orbit, scheme=name)}
 
 
-def _staggered(right: Setting, orbit: Orbit) -> Iterator[Change]:
+def _staggered(right: Setting, orbit: Start) -> Iterator[Change]:
     """A leapfrog's p between its q's, or q between its p's, of a splitting a/2; b; a/2.
 
     That is the splitting b; a of a start that is half an a farther, or a; b of one that is behind.
@@ -193,7 +194,7 @@ def _staggered(right: Setting, orbit: Orbit) -> Iterator[Change]:
 
 def _a_part_on(right: Setting, name: str, scheme: str, sign: int) -> Fraction | None:
     """The initial `name` after half of the scheme's first part, which changes it alone."""
-    start = getattr(right.orbit, name)
+    start = right.orbit.point[name]
     after = replace(right, orbit=replace(right.orbit, scheme=scheme)).numbers(1, _SHARP)
     return start + sign * (after[name][0] - start) / 2 if name in after else None
 
@@ -205,7 +206,7 @@ def without_synonyms(mistakes: list[Mistake]) -> list[Mistake]:
         setting, (q, p, h) = mistake.setting, _ELSEWHERE
         state = None
         if mistake.name.startswith(_OF_SCHEME):
-            there = replace(setting.orbit, q=q, p=p, step_size=h)
+            there = _with(setting.orbit, {"q0": q, "p0": p, "h": h})
             known = replace(setting, orbit=there).numbers(1, _SHARP)
             state = (known["p"][0], known["q"][0]) if "p" in known else None
         first = found.setdefault(state or mistake.name, mistake)
@@ -244,10 +245,11 @@ def _named(parts: tuple[Part, ...]) -> str:
     return "; ".join(f"{kind} {to_text(size)}" for kind, size in parts)
 
 
-def _with(orbit: Orbit, changed: dict[str, Fraction]) -> Orbit:
+def _with(orbit: Start, changed: dict[str, Fraction]) -> Start:
     """The orbit with other numbers: h, q0, p0, t0 and parameters by their names."""
-    fields = {"h": "step_size", "q0": "q", "p0": "p", "t0": "t0"}
-    numbers: dict[str, Any] = {fields[name]: x for name, x in changed.items() if name in fields}
-    parameters = {name: x for name, x in changed.items() if name not in fields}
+    known = {"h": orbit.step_size, "t0": orbit.t0} | {f"{n}0": x for n, x in orbit.point.items()}
+    numbers = known | changed
+    parameters = {name: x for name, x in changed.items() if name not in known}
     hamiltonian = orbit.hamiltonian.with_values(dict(orbit.hamiltonian.values) | parameters)
-    return replace(orbit, hamiltonian=hamiltonian, **numbers)
+    point = {name: numbers[f"{name}0"] for name in orbit.point}
+    return Start(hamiltonian, orbit.scheme, numbers["h"], point, numbers["t0"])

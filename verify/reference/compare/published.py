@@ -18,7 +18,6 @@ from verify.formats import check_format
 from verify.hamiltonians.coordinates import coordinates_in
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.hamiltonians.start import point_of
-from verify.kernels.orbit import Orbit
 from verify.reference.compare.setting import numbers_of
 from verify.reference.make.columns import orbit_columns, values_of
 from verify.reference.make.models import (
@@ -32,6 +31,7 @@ from verify.reference.make.models import (
 from verify.reference.make.orbit_points import Bounded
 from verify.reference.make.reading import json_of
 from verify.reference.make.writing import MANIFEST, SCHEMAS
+from verify.runs.start import Start
 from verify.scenes.results.reference import OrbitRow, Rounded
 
 _EXPONENT_DIGITS = 6
@@ -78,11 +78,11 @@ class PublishedRun:
         return f"{self.scene}: {self.run.label}"
 
     @cached_property
-    def orbit(self) -> Orbit:
+    def orbit(self) -> Start:
         """What was run."""
-        run, t0 = self.run, self.t0 or Fraction(0)
-        q, p = (rational(x) if isinstance(x, str) else (*map(rational, x),) for x in (run.q, run.p))
-        return Orbit(self.hamiltonian, run.scheme, rational(run.step_size), q, p, t0=t0)
+        exact, run, h = self.hamiltonian, self.run, self.exact["step_size"]
+        point = point_of(exact, run.q, run.p)
+        return Start(exact, run.scheme, h, point, self.t0 or Fraction(0))
 
     @property
     def t0(self) -> Fraction | None:

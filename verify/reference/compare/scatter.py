@@ -21,7 +21,7 @@ Jacobian rounds their products, however small they are: the columns of these run
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -32,12 +32,11 @@ from verify.arithmetic.number_system import UnsupportedError
 from verify.arithmetic.systems import float64
 from verify.errors import InputError
 from verify.flows.extrapolation_of_many import arrays
-from verify.hamiltonians.start import point_of
 from verify.kernels.clock import clock_inputs
 from verify.kernels.kernel import kernel_for
-from verify.kernels.orbit import Orbit
 from verify.kernels.stepping import KernelRun
 from verify.reference.compare.findings import DOUBLE, Spread, Spreads
+from verify.runs.start import Start
 from verify.structures import AREA, SYMPLECTIC
 
 _OFF = Fraction(1, 2**24)  # of the orbit's size: what is carried has 20 digits of bits beside it
@@ -60,7 +59,7 @@ class _Row:
 class Carried:
     """That of one orbit."""
 
-    def __init__(self, orbit: Orbit) -> None:
+    def __init__(self, orbit: Start) -> None:
         self._orbit = orbit
         self._rows: dict[int, _Row | None] = {}
 
@@ -92,7 +91,7 @@ class Carried:
 
     def _row(self, step: int) -> _Row | None:
         orbit = self._orbit
-        start = point_of(orbit.hamiltonian, orbit.q, orbit.p)
+        start = orbit.point
         if step == 0:
             return _Row(max(map(abs, start.values())), {}, Fraction(1))
         middle = self._after(start, step) if step <= _MOST_STEPS else None
@@ -102,7 +101,7 @@ class Carried:
         off = _OFF * (size or 1)
         carried, entry = dict.fromkeys(middle, _ZERO), Fraction(1)
         for name in start:
-            aside = self._after(start | {name: start[name] + off}, step)
+            aside = self._after({**start, name: start[name] + off}, step)
             if aside is None:
                 return None
             slopes = {n: abs(aside[n] - middle[n]) / off for n in middle}
@@ -112,9 +111,8 @@ class Carried:
 
     def _after(self, point: Mapping[str, Fraction], steps: int) -> dict[str, Fraction] | None:
         """The numbers after so many steps from a point; None where they cannot be had."""
-        exact, scheme, start = self._orbit.hamiltonian, self._orbit.scheme, self._orbit.start
+        aside = run_of(replace(self._orbit, point=point), steps, _OBSERVED)
         try:
-            aside = KernelRun(exact, scheme, {**start, **point}, steps, frozenset(_OBSERVED), 0)
             done = aside.run(float64.make(17))
         except (InputError, ArithmeticError):
             return None
@@ -136,7 +134,7 @@ class Scatter:
     """The copies of some orbits of one scheme and one H (whose parameters may differ), which step
     on together as they are asked to; what is known at `marks` on the way is kept."""
 
-    def __init__(self, orbits: Sequence[Orbit], marks: Sequence[int] = ()) -> None:
+    def __init__(self, orbits: Sequence[Start], marks: Sequence[int] = ()) -> None:
         """Raises UnsupportedError for a scheme that solves equations."""
         runs = [run_of(orbit) for orbit in orbits]
         if runs[0].implicit:
@@ -153,7 +151,7 @@ class Scatter:
         inputs = [each.inputs(kernel, 0) | clocks(arithmetic, each.start) for each in runs]
         columns = zip(*(each.values() for each in inputs), strict=True)
         self._given = [self._off(column) for column in columns]
-        self._state = {"p": self._off([c.p for c in orbits]), "q": self._off([c.q for c in orbits])}
+        self._state = {n: self._off([each.point[n] for each in orbits]) for n in ("p", "q")}
         rest = zip(self._names[2:], kernel.start, strict=True)
         self._state |= {n: np.full(self._shape, WIDE.rational(Fraction(x))) for n, x in rest}
         self._biased = self._draw(())
@@ -230,26 +228,27 @@ class Scatter:
         return apart[:, :_COPIES].max(axis=1), apart.max(axis=1)
 
 
-def run_of(orbit: Orbit, steps: int = 1) -> KernelRun:
-    """So many steps of the orbit, with Λ and, in the plane, MSE."""
+def run_of(orbit: Start, steps: int = 1, observed: Iterable[str] = ()) -> KernelRun:
+    """So many steps of the orbit; where nothing is said, with Λ and, in the plane, MSE."""
     exact = orbit.hamiltonian
-    return KernelRun(exact, orbit.scheme, orbit.start, steps, _SUMS[exact.structure], 0)
+    asked = frozenset(observed) or _SUMS[exact.structure]
+    return KernelRun(exact, orbit.scheme, orbit.inputs, steps, asked, 0)
 
 
 class Scatters:
     """The scatters of a table's orbits, each made when it is first needed, with others of its kind;
     other orbits have one of their own."""
 
-    def __init__(self, orbits: Iterable[Orbit] = (), marks: Sequence[int] = ()) -> None:
-        self._carried: dict[Orbit, Carried] = {}
-        self._place: dict[Orbit, tuple[tuple[Orbit, ...], int]] = {}
+    def __init__(self, orbits: Iterable[Start] = (), marks: Sequence[int] = ()) -> None:
+        self._carried: dict[Start, Carried] = {}
+        self._place: dict[Start, tuple[tuple[Start, ...], int]] = {}
         self._marks = marks
-        self._made: dict[tuple[Orbit, ...], Scatter] = {}
+        self._made: dict[tuple[Start, ...], Scatter] = {}
         self.expect(orbits)
 
-    def expect(self, orbits: Iterable[Orbit]) -> None:
+    def expect(self, orbits: Iterable[Start]) -> None:
         """They may be asked for, too; so those of a kind that are new step together."""
-        kinds: dict[object, list[Orbit]] = {}
+        kinds: dict[object, list[Start]] = {}
         for orbit in dict.fromkeys(orbits):
             if orbit not in self._place:
                 kinds.setdefault((orbit.hamiltonian.expression, orbit.scheme), []).append(orbit)
@@ -258,7 +257,7 @@ class Scatters:
                 together = tuple(kind[first : first + _TOGETHER])
                 self._place |= {orbit: (together, k) for k, orbit in enumerate(together)}
 
-    def at(self, orbit: Orbit, step: int) -> Spreads | None:
+    def at(self, orbit: Start, step: int) -> Spreads | None:
         """As `Scatter.at`, in any order; of no number where the scheme solves equations, unless in
         n degrees of freedom."""
         if not orbit.hamiltonian.planar:

@@ -10,10 +10,10 @@ from functools import lru_cache
 
 from verify.arithmetic.number_system import UnsupportedError
 from verify.errors import InputError
-from verify.kernels.orbit import Orbit
 from verify.lockstep import alone
 from verify.reference.make.columns import values_of
 from verify.reference.make.orbit_points import Bounded, orbit_points
+from verify.runs.start import Start
 from verify.scenes.results.reference import OrbitRow
 from verify.structures import AREA, SYMPLECTIC
 
@@ -29,11 +29,11 @@ def numbers_of(point: OrbitRow, degrees: int) -> dict[str, Bounded]:
 class Points:
     """Orbits after some steps: from the reference data where they have them, else by a run."""
 
-    def __init__(self, known: Mapping[Orbit, tuple[int, Mapping[int, OrbitRow]]]) -> None:
+    def __init__(self, known: Mapping[Start, tuple[int, Mapping[int, OrbitRow]]]) -> None:
         """`known`: of an orbit its digits, and its points by step."""
         self._known = known
 
-    def at(self, orbit: Orbit, step: int, digits: int) -> OrbitRow | None:
+    def at(self, orbit: Start, step: int, digits: int) -> OrbitRow | None:
         """To so many digits and no fewer; None where there is no such state."""
         have, rows = self._known.get(orbit, (0, {}))
         if have >= digits and step in rows:
@@ -41,7 +41,7 @@ class Points:
             return point if point.status == "finished" else None
         return _run_at(orbit, step, digits)
 
-    def of_other_schemes(self, orbit: Orbit) -> Iterator[Orbit]:
+    def of_other_schemes(self, orbit: Start) -> Iterator[Start]:
         """Those of the reference data that differ from an orbit in the scheme alone."""
         for other in self._known:
             if other != orbit and replace(other, scheme=orbit.scheme) == orbit:
@@ -53,7 +53,7 @@ class Setting:
     """A run; row N holds what it is after N + `late` steps, some columns perhaps `exchanged` in
     pairs, and every p perhaps `negated`. `points` knows what it is."""
 
-    orbit: Orbit
+    orbit: Start
     points: Points = field(compare=False)
     late: int = 0
     exchanged: tuple[tuple[str, str], ...] = ()
@@ -78,7 +78,7 @@ class Setting:
 
 
 @lru_cache(maxsize=4096)
-def _run_at(orbit: Orbit, step: int, digits: int) -> OrbitRow | None:
+def _run_at(orbit: Start, step: int, digits: int) -> OrbitRow | None:
     if step > _MOST_STEPS[orbit.hamiltonian.structure]:
         return None
     try:

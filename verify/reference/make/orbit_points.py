@@ -22,13 +22,12 @@ from verify.flows.extrapolation import NoFlowError
 from verify.flows.solution import Solution, leaves_by_algebra, solution_from
 from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.start import point_of
-from verify.kernels.orbit import Orbit
 from verify.kernels.step.computation import step_map_of
 from verify.lockstep import Course
 from verify.reference.make.columns import AFTER_A_STEP, MAY_LACK, orbit_columns
 from verify.reference.make.correct_rounding import correctly_rounded, near_zero
 from verify.runs.run import AskedRun
+from verify.runs.start import Start
 from verify.scenes.results.reference import (
     FlowPoint,
     FlowPointInDegrees,
@@ -50,7 +49,7 @@ Bounded = tuple[Fraction, Fraction]  # a value and its bound
 Numbers = Mapping[str, Rounded | None]  # by the names of their columns
 
 
-def orbit_points(orbit: Orbit, steps: Sequence[int], digits: int) -> Course[tuple[Any, ...]]:
+def orbit_points(orbit: Start, steps: Sequence[int], digits: int) -> Course[tuple[Any, ...]]:
     """The orbit after each of these numbers of steps, every number to so many digits."""
     exact, points = orbit.hamiltonian, []
     for step in steps:
@@ -61,9 +60,9 @@ def orbit_points(orbit: Orbit, steps: Sequence[int], digits: int) -> Course[tupl
     return tuple(points)
 
 
-def _after_steps(orbit: Orbit, step: int, digits: int) -> Course[tuple[dict[str, Any], Numbers]]:
+def _after_steps(orbit: Start, step: int, digits: int) -> Course[tuple[dict[str, Any], Numbers]]:
     """What is known after so many steps, and the numbers, if they are."""
-    start = point_of(orbit.hamiltonian, orbit.q, orbit.p)
+    start = orbit.point
     beside = orbit_columns(orbit.hamiltonian.degrees)
     observables = tuple(x for x in beside if x not in MAY_LACK)
     at_first = [x for x in observables if x not in AFTER_A_STEP]
@@ -73,7 +72,7 @@ def _after_steps(orbit: Orbit, step: int, digits: int) -> Course[tuple[dict[str,
         kind: Kind = "enclosed"
         if step > 0:
             asked = AskedRun(
-                **vars(orbit),
+                **orbit.asked,
                 steps=step,
                 arithmetic=AUTO,
                 digits=digits + guard,
@@ -113,7 +112,7 @@ def _state(values: Numbers) -> dict[str, Any]:
 
 
 def _at_state(
-    orbit: Orbit, step: int, known: Mapping[str, Bounded], digits: int
+    orbit: Start, step: int, known: Mapping[str, Bounded], digits: int
 ) -> dict[str, Bounded]:
     """ΔJ of the orbit's next step after so many, or H in several degrees of freedom, from any state
     within the bounds in `known`; nothing where it may not be defined there.
@@ -127,12 +126,12 @@ def _at_state(
         return {name: middle_and_radius(value)} if value is not None and in_reach(value) else {}
 
 
-def _energy(orbit: Orbit, box: dict[str, flint.arb]) -> flint.arb | None:
+def _energy(orbit: Start, box: dict[str, flint.arb]) -> flint.arb | None:
     field, _ = canonical_field(orbit.hamiltonian)
     return enclose_over(field.ring, field.energy, box)
 
 
-def _delta_j(orbit: Orbit, box: dict[str, flint.arb]) -> flint.arb | None:
+def _delta_j(orbit: Start, box: dict[str, flint.arb]) -> flint.arb | None:
     """None, too, where a step is given by equations and does not preserve area by proof."""
     step_map = step_map_of(orbit.hamiltonian, orbit.scheme)
     if step_map.preserves_area:

@@ -7,8 +7,8 @@ from verify.arithmetic import automatic
 from verify.execution.keeping import Keeper
 from verify.execution.task import HamiltonianTask
 from verify.hamiltonians.start import point_of
-from verify.kernels.orbit import Orbit
 from verify.lockstep import Course, alone
+from verify.runs.start import Start
 from verify.scenes.frozen import Frozen
 from verify.scenes.results.reference import OrbitResult, SolutionResult
 from verify.scenes.values import Coordinates, Number, StepSize
@@ -55,10 +55,11 @@ class OrbitTask(AtSteps):
         return f"{self.kind} {self.scheme} {self.hamiltonian}"
 
     @property
-    def orbit(self) -> Orbit:
+    def orbit(self) -> Start:
         """The orbit of which these are points."""
         exact, t0 = self.exact_hamiltonian(), self.t0 or Fraction()
-        return Orbit(exact, self.scheme, self.step_size, self.q, self.p, t0=t0)
+        point = point_of(exact, self.q, self.p)
+        return Start(exact, self.scheme, self.step_size, point, t0)
 
     def compute(self, keeper: Keeper) -> OrbitResult:
         from verify.reference.make.orbit_points import orbit_points
