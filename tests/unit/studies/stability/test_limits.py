@@ -1,6 +1,7 @@
 """The largest step with bounded motion, and the map of step size and stiffness."""
 
 from fractions import Fraction
+from typing import Any
 
 import pytest
 
@@ -11,6 +12,10 @@ from verify.studies.stability.limits import largest_step, linear_limit, stabilit
 ONE, NONE = Fraction(1), Fraction(0)
 HARMONIC = Hamiltonian.parse("p**2/2 + w**2*q**2/2", {"w": "3"})
 DUFFING = Hamiltonian.parse("p**2/2 + q**2/2 + d*q**4/4", {"d": "1"})
+# Masses 1 with springs 1 and 4, whose normal frequencies are 1 and 3.
+COUPLED = Hamiltonian.parse("(p1**2 + p2**2 + q1**2 + q2**2)/2 + k*(q1 - q2)**2", {"k": "2"})
+PLANE: dict[str, Any] = {"p": NONE, "q": ONE}
+DEGREES: dict[str, Any] = {"p": (NONE, NONE), "q": (ONE, NONE)}
 
 
 @pytest.mark.left_to_ci
@@ -26,10 +31,15 @@ def test_on_a_linear_problem_the_largest_step_is_that_of_linear_theory(scheme: s
     assert abs(bounded / linear - 1) < Fraction(1, 50)
 
 
-def test_where_linear_theory_allows_no_step_it_is_the_time_that_decides() -> None:
-    short, long = (
-        largest_step(HARMONIC, "lie2", p=NONE, q=ONE, time=Fraction(time)) for time in (30, 300)
-    )
+@pytest.mark.parametrize(
+    ("h", "scheme", "start", "times"),
+    [(HARMONIC, "lie2", PLANE, (30, 300)), (COUPLED, "euler", DEGREES, (5, 20))],
+    ids=["plane", "degrees"],
+)
+def test_where_linear_theory_allows_no_step_it_is_the_time_that_decides(
+    h: Hamiltonian, scheme: str, start: dict[str, Any], times: tuple[int, int]
+) -> None:
+    short, long = (largest_step(h, scheme, **start, time=Fraction(time)) for time in times)
     assert short.linear == long.linear == "0"
     assert short.bounded is not None
     assert long.bounded is not None
@@ -44,11 +54,20 @@ def test_near_an_equilibrium_of_a_nonlinear_problem_linear_theory_holds() -> Non
     assert abs(Fraction(found.bounded) - 2) < Fraction(1, 20)
 
 
-def test_an_exact_solution_that_leaves_has_no_largest_step() -> None:
-    cubic = Hamiltonian.parse("p**2/2 + q**2/2 - q**3/3")
-    found = largest_step(cubic, "rk4", p=NONE, q=Fraction(3, 2), time=Fraction(10))
+@pytest.mark.parametrize(
+    ("formula", "start", "time", "said"),
+    [
+        ("p**2/2 + q**2/2 - q**3/3", PLANE | {"q": Fraction(3, 2)}, 10, "blows up at t = 3.14159"),
+        ("(p1**2 + p2**2 - q1**2 - q2**2)/2", DEGREES, 40, "is 1e+06 times as far out as z0"),
+    ],
+    ids=["plane", "degrees"],
+)
+def test_an_exact_solution_that_leaves_has_no_largest_step(
+    formula: str, start: dict[str, Any], time: int, said: str
+) -> None:
+    found = largest_step(Hamiltonian.parse(formula), "rk4", **start, time=Fraction(time))
     assert (found.bounded, found.unbounded) == (None, None)
-    assert found.detail == "the exact solution blows up at t = 3.14159"
+    assert str(found.detail).startswith(f"the exact solution {said}")
 
 
 def test_what_never_fails_is_told() -> None:
