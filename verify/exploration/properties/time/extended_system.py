@@ -59,7 +59,7 @@ def _by_flows(sample: Sample, every_h: Splitting, start: Point) -> Point:
     n = sample.hamiltonian.degrees
     z, read = list(start[:-1]), {"K": start[-1], "D": start[-1]}  # the clock that each flow reads
     ring, parts = every_h.numbers
-    for letter, size in parts:
+    for letter, size, _ in parts:
         by = rational_ball(sample.step_size) * known(enclose_over(ring, size, {}))
         slopes = _slopes(sample, (*z, read[letter]))
         for k in range(n) if letter == "K" else range(n, 2 * n):
