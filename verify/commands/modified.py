@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from verify.commands.shared import proofs as show
 from verify.commands.shared.answer import Answer, answering, picked
 from verify.commands.shared.input import (
     every_options,
@@ -69,13 +70,11 @@ def _json(found: "ModifiedEquation", seconds: str) -> dict[str, Any]:
 
 
 def _term_json(term: "Term") -> dict[str, Any]:
-    from verify.arithmetic.exact import text
-
     return {
         "power": term.power,
         "field": {"p": term.p, "q": term.q},
         **picked(term, "hamiltonian", "is_hamiltonian", "divergence"),
-        "witness": {name: text(value) for name, value in term.witness.items()},
+        "witness": show.point_json(term.witness),
     }
 
 
@@ -99,14 +98,10 @@ def _print(found: "ModifiedEquation") -> None:
 
 
 def _print_term(term: "Term", name: str) -> None:
-    from verify.arithmetic.exact import text
-
     if term.hamiltonian is not None:
         click.echo(f"  {name:8} {cut(term.hamiltonian)}")
         return
     click.echo(f"  {name:8} p' = {cut(term.p)}, q' = {cut(term.q)}")
     click.echo(f"  {'':8} divergence {cut(term.divergence)}")
-    if term.is_hamiltonian is False:
-        at = ", ".join(f"{n} = {text(v)}" for n, v in term.witness.items())
-        if at:
-            click.echo(f"  witness  {at}: the divergence is {term.enclosure}")
+    if term.is_hamiltonian is False and (at := show.point_text(term.witness)):
+        click.echo(f"  witness  {at}: the divergence is {term.enclosure}")

@@ -172,7 +172,7 @@ def _json(exact: "Hamiltonian", target: str, finding: "Finding", seconds: str) -
         "convergence_order": finding.convergence_order,
         "convergence_order_known": finding.order_decided,
         "entry": finding.entry,
-        "witness": {name: text(value) for name, value in witness.items()},
+        "witness": show.point_json(witness),
         "value": of_form.enclosure if of_form else example.found if example else "",
         "telescopes": of_form.telescopes if of_form else potential and potential.holds,
         "potential": (of_form.potential or None) if of_form else potential and potential.text,
@@ -180,7 +180,7 @@ def _json(exact: "Hamiltonian", target: str, finding: "Finding", seconds: str) -
         "probe_error": None if finding.probe_error is None else f"{finding.probe_error:.1e}",
         "step_size": None if against is None else text(against.h),
         "counterexample": example and {
-            **{name: text(value) for name, value in example.z.items()},
+            **show.point_json(example.z),
             **({} if example.h is None else {"h": text(example.h)}),
             **({} if example.t is None else {"t": text(example.t)}),
             **picked(example, "quantity", "found", "expected"),

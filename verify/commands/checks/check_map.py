@@ -16,6 +16,7 @@ from verify.commands.checks.looking import (
 from verify.commands.shared.answer import Answer, answering, picked
 from verify.commands.shared.input import time_limit_option, values_of
 from verify.commands.shared.progress import clock
+from verify.commands.shared.proofs import point_json
 
 if TYPE_CHECKING:
     from verify.integrators.results import Finding
@@ -90,15 +91,13 @@ def check_map(
 
 
 def _json(target: str, names: tuple[str, ...], finding: "Finding", seconds: str) -> dict[str, Any]:
-    from verify.arithmetic.exact import text
-
     example = finding.counterexample
     return {
         **picked(finding, "verdict", "reason"),
         "map": target,
         **picked(finding, "degrees", "how", "symplectic", "area_preserving"),
         "counterexample": example and {
-            **{name: text(x) for name, x in example.z.items()},
+            **point_json(example.z),
             "entry": finding.entry,
             "found": example.found,
         },

@@ -97,6 +97,11 @@ def point_json(point: "Mapping[str, Fraction]") -> dict[str, str]:
     return {name: text(value) for name, value in point.items()}
 
 
+def point_text(point: "Mapping[str, Fraction]") -> str:
+    """The same in a line."""
+    return ", ".join(f"{name} = {value}" for name, value in point_json(point).items())
+
+
 # -- as lines ------------------------------------------------------------------------------------
 
 
@@ -125,13 +130,11 @@ def print_proof(
     potential: "Potential",
     special: "Iterable[SpecialValue]" = (),
 ) -> None:
-    from verify.arithmetic.exact import text
-
     print_head(exact, scheme, proof)
     if proof.order is not None:
         click.echo(f"  ΔJ       ({cut(proof.first.text)})·h^{proof.order} + O(h^{proof.order + 1})")
-        at = ", ".join(f"{n} = {text(v)}" for n, v in proof.witness.items())
-        click.echo(f"  witness  {at or 'any point'}: the coefficient is {proof.enclosure}")
+        at = point_text(proof.witness) or "any point"
+        click.echo(f"  witness  {at}: the coefficient is {proof.enclosure}")
     closed = proof.step_map.delta_j_text
     shown = "left out: the closed form is too large" if closed is None else cut(closed)
     click.echo(f"  exactly  ΔJ = {shown}")
@@ -173,10 +176,8 @@ def print_symplectic(texts: Mapping[str, Any], scheme: str, proof: "Proof | Ever
 
 
 def _witness(proof: "Proof") -> str:
-    from verify.arithmetic.exact import text
-
-    at = ", ".join(f"{n} = {text(v)}" for n, v in proof.witness.items())
-    return f"{at or 'any point'}: the coefficient of {proof.entry} is {proof.enclosure}"
+    at = point_text(proof.witness) or "any point"
+    return f"{at}: the coefficient of {proof.entry} is {proof.enclosure}"
 
 
 def _telescoping(proof: "Proof | EveryProof") -> str:
