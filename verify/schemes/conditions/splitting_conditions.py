@@ -127,9 +127,9 @@ class Splitting:
     def in_time(self, kinetic: Kinetic | None = None, times: Times = ()) -> Splitting:
         """The same for every H = T + V(q, t), T of that class, at these times or its own."""
         own = tuple(times) or self.times
-        right = all(time is None for time in own)
-        in_time = self.nearby_in_time if own == self.times else None
-        near = self.nearby if right else in_time
+        near = self.nearby_in_time if own == self.times else None
+        if all(time is None for time in own):
+            near = self.nearby
         return replace(self, times=own, kinetic=kinetic or Kinetic.GENERAL, nearby=near)
 
     @cached_property
