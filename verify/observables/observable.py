@@ -103,7 +103,7 @@ class Observable:
     - `constant`: its value where ΔJ is the same number at every step, if that is known then.
     - `bound`: of its error, by a certificate, if there is one; None: it has none.
     - `growth`: the power of N by which that bound grows where the tangent map grows linearly.
-    - `most_degrees`: of freedom, 1 for what is of the plane alone; a step's operations bound it.
+    - `most_degrees`: of freedom, 0 for what is of the plane alone; a step's operations bound it.
       `in_plane`: what is the same in the plane, and is asked for there in its place.
       `timed`: whether there is one of an H that depends on t.
     - `heading`: over a column of a page; `plotted`: at an axis; `short`: on a terminal. Where one
@@ -131,11 +131,6 @@ class Observable:
     heading: str = ""
     plotted: str = ""
     short: str = ""
-
-    def fits(self, degrees: int) -> bool:
-        """Whether it may be asked for in so many degrees of freedom."""
-        least, most = 2 if self.in_plane else 1, self.most_degrees
-        return least <= degrees and (most is None or degrees <= most)
 
     @property
     def signed(self) -> bool:

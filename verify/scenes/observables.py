@@ -5,29 +5,38 @@ from collections.abc import Sequence
 from verify import observables
 from verify.errors import InputError, unknown
 from verify.hamiltonians.hamiltonian import Hamiltonian
+from verify.observables.observable import Observable
 
 _EVERY = observables.by_name()
 _BY_PLACE = sorted((each.usual, name) for name, each in _EVERY.items() if each.usual is not None)
 _USUAL = tuple(name for _, name in _BY_PLACE)
-CLOSED_FORM = tuple(name for name in _USUAL if _EVERY[name].fits(1))
+CLOSED_FORM = tuple(name for name in _USUAL if not _EVERY[name].in_plane)
 REPORTED = (*CLOSED_FORM, "lambda_plain")  # of float64, whose plain way is what is looked at
 
 
 def names(*, planar: bool) -> tuple[str, ...]:
     """All that may be asked for in the plane, or in some number of degrees of freedom."""
-    return tuple(n for n, x in _EVERY.items() if (x.fits(1) if planar else x.most_degrees != 1))
+    fits = (lambda x: not x.in_plane) if planar else (lambda x: x.most_degrees != 0)
+    return tuple(name for name, each in _EVERY.items() if fits(each))
 
 
 def observed(hamiltonian: Hamiltonian, asked: Sequence[str] | None) -> tuple[str, ...]:
     """What is asked for; where it is left out, ΔJ, MSE and Λ, and S and W where they are more."""
     if asked is not None:
         return tuple(asked)
-    return tuple(name for name in _USUAL if _EVERY[name].fits(hamiltonian.degrees))
+    if hamiltonian.planar:
+        return CLOSED_FORM
+    return tuple(name for name in _USUAL if _carried(hamiltonian, _EVERY[name]))
 
 
 def carries_defect(hamiltonian: Hamiltonian) -> bool:
-    """Whether W is carried in so many degrees of freedom, or Λ, which it is in the plane."""
-    return _EVERY[hamiltonian.structure.of_run].fits(hamiltonian.degrees)
+    """Whether W is carried in so many degrees of freedom."""
+    return _carried(hamiltonian, _EVERY["symplectic_defect"])
+
+
+def _carried(hamiltonian: Hamiltonian, observable: Observable) -> bool:
+    most = observable.most_degrees
+    return hamiltonian.planar or most is None or hamiltonian.degrees <= most
 
 
 def check_observables(hamiltonian: Hamiltonian, asked: Sequence[str]) -> None:
@@ -35,14 +44,14 @@ def check_observables(hamiltonian: Hamiltonian, asked: Sequence[str]) -> None:
     there = names(planar=hamiltonian.planar)
     for name in asked:
         each = _EVERY.get(name)
-        if each and each.in_plane and name not in there:
+        if hamiltonian.planar and each and each.in_plane:
             problem = f"is |{each.in_plane}| in one degree of freedom; ask for it"
             raise InputError("observable", name, problem)
         if each is None or name not in there:
             raise unknown("observable", name, there)
         if hamiltonian.time_dependent and not each.timed:
             raise InputError("observable", name, "is for an H that does not depend on t")
-        if not each.fits(hamiltonian.degrees):
+        if not _carried(hamiltonian, each):
             most = each.most_degrees
             problem = f"is for up to {most} degrees of freedom; H has {hamiltonian.degrees}"
             raise InputError("observable", name, problem)
