@@ -8,7 +8,8 @@ from verify.calls.given import GivenParameters, GivenSystem, listed, performed, 
 from verify.errors import InputError
 from verify.hamiltonians.start import Given
 from verify.scenes.results.regions import FlowResult
-from verify.studies.regions.plan import flows_of, need_flows
+from verify.studies.regions.findings import flows_of
+from verify.studies.regions.plan import need_flows
 
 _ORIGIN = (0, 0)
 

@@ -57,7 +57,8 @@ def flow(scene: str | None, keep: Path | None, where: "Placement", **given: Any)
     """
     from verify.execution.study import plan_of
     from verify.scenes.values import rounded_down
-    from verify.studies.regions.plan import flow_json, flows_of, need_flows
+    from verify.studies.regions.findings import flow_json, flows_of
+    from verify.studies.regions.plan import need_flows
 
     scenes = scenes_of(scene, given, (), _sections)
     plan = plan_of(scenes, need_flows)

@@ -1,7 +1,8 @@
 """Regions carried by maps, and their areas."""
 
 from verify.execution.study import Study, toml_section
-from verify.studies.regions.plan import flows_of, need_flows
+from verify.studies.regions.findings import flows_of
+from verify.studies.regions.plan import need_flows
 
 _SECTION = toml_section(7, "regions carried by maps, and their areas", "[[flow]]")
 STUDY = Study(

@@ -1,17 +1,13 @@
-"""A scene's regions carried by maps → the tasks that they need, and what was found of them."""
+"""A scene's regions carried by maps → the tasks that they need."""
 
-from collections.abc import Iterator, Sequence
-from fractions import Fraction
-from typing import Any
+from collections.abc import Iterator
 
-from verify.arithmetic.exact import text
 from verify.execution.plan import Plan
-from verify.execution.study import Results, called, known_results
+from verify.execution.study import called
 from verify.kernels.step.computation import step_map_of
-from verify.scenes.frozen import PLAIN
 from verify.scenes.observables import carries_defect
 from verify.scenes.region_sections import Flow
-from verify.scenes.results.regions import EXACT_FLOW, DrawnOutline, FlowImage, FlowResult
+from verify.scenes.results.regions import EXACT_FLOW
 from verify.scenes.scene import Scene
 from verify.studies.regions.task import FlowTask
 
@@ -47,7 +43,6 @@ def maps_of(scene: Scene, flow: Flow) -> tuple[str, ...]:
 def flow_tasks(scene: Scene, flow: Flow) -> Iterator[FlowTask]:
     """One a map and number of steps, in that order."""
     exact, given, shape = scene.exact_hamiltonian(), scene.hamiltonian_fields(), flow.placed_shape()
-    begin, point = scene.begin, _point(scene, flow)
     for name in maps_of(scene, flow):
         by_scheme = name != EXACT_FLOW
         kept = not by_scheme or step_map_of(exact, name).preserves_area
@@ -57,75 +52,11 @@ def flow_tasks(scene: Scene, flow: Flow) -> Iterator[FlowTask]:
                 map=name,
                 shape=shape,
                 step_size=flow.step_size,
-                t0=begin,
+                t0=scene.t0 if exact.time_dependent else None,
                 steps=steps,
                 digits=flow.digits,
                 mean_lambda=flow.mean_lambda and not kept and carries_defect(exact),
                 distance=by_scheme and flow.exact and exact.planar,
-                point=point,
+                point={} if exact.planar else flow.point(exact),
                 plane=flow.plane,
             )
-
-
-def _point(scene: Scene, flow: Flow) -> dict[str, Fraction]:
-    """Where the region lies, by the names of H's coordinates; empty in the plane."""
-    exact = scene.exact_hamiltonian()
-    return {} if exact.planar else flow.point(exact)
-
-
-def flows_of(scene: Scene, results: Results) -> tuple[FlowResult, ...]:
-    """One a section of the scene that was computed."""
-    found = (_flow(scene, flow, results) for flow in scene.flow)
-    return tuple(each for each in found if each.images)
-
-
-def _flow(scene: Scene, flow: Flow, results: Results) -> FlowResult:
-    centre, point = flow.placed_shape().centre, _point(scene, flow)
-    return FlowResult(
-        shape=flow.shape or ("polygon" if flow.polygon else "path"),
-        centre=(text(centre.q), text(centre.p)),
-        scale=text(flow.scale),
-        step_size=text(flow.step_size),
-        before=_outlines_to_draw(flow),
-        images=tuple(known_results(FlowImage, flow_tasks(scene, flow), results)),
-        source=flow.source,
-        t0=None if scene.begin is None else text(scene.begin),
-        plane=flow.plane if point else None,
-        point={name: text(x) for name, x in point.items()},
-    )
-
-
-def _outlines_to_draw(flow: Flow) -> tuple[DrawnOutline, ...]:
-    from verify.studies.regions.polyline import text as points_text
-    from verify.studies.regions.polyline import traced
-
-    shape = flow.placed_shape().to_shape()
-    return tuple(
-        DrawnOutline(name=outline.name, points=points_text(points))
-        for outline, points in zip(shape.outlines, traced(shape), strict=True)
-    )
-
-
-def flow_json(found: Sequence[tuple[str, FlowResult]]) -> dict[str, Any]:
-    """The scene's first scheme after the most steps, then all images.
-
-    Those keys are null where there is no such scheme; `images` have no points.
-    """
-    images = [
-        {"scene": name, "shape": flow.shape, "step_size": flow.step_size} | _without_points(image)
-        for name, flow in found
-        for image in flow.images
-    ]
-    first = next((i for i in images if not i["area_preserving"]), images[0])
-    same = [i for i in images if i["map"] == first["map"] and i["scene"] == first["scene"]]
-    top = max(same, key=lambda image: image["steps"])
-    keys = ("map", "steps", "area_change", "probe_error", "mean_lambda", "mean_defect")
-    return {**{name: top[name] for name in keys}, "images": images}
-
-
-def _without_points(image: FlowImage) -> dict[str, Any]:
-    data = image.model_dump(mode="json", context=PLAIN)
-    for outline in data["outlines"]:
-        for drawn in (outline, *outline["projections"]):
-            del drawn["points"]
-    return data

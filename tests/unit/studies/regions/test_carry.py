@@ -16,8 +16,9 @@ from verify.scenes.results.regions import EXACT_FLOW, FlowImage, FlowResult
 from verify.studies.regions import carry as module
 from verify.studies.regions import mean_lambda as region_mean
 from verify.studies.regions import point_carriers
+from verify.studies.regions.findings import flow_json, flows_of
 from verify.studies.regions.hausdorff import Distance
-from verify.studies.regions.plan import flow_json, flows_of, need_flows
+from verify.studies.regions.plan import need_flows
 from verify.studies.regions.task import FlowTask
 
 HEAD = 'system = "duffing"\nparameters = { delta = 1 }\nschemes = ["lie2", "stormer-verlet"]\n'
