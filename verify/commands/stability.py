@@ -145,7 +145,7 @@ def _frequencies(found: "LinearAtEquilibrium") -> str:
 
 if TYPE_CHECKING:
     from verify.execution.executors import Placement
-    from verify.studies.stability.plan import StabilityFindings
+    from verify.studies.kinds.stability import StabilityFindings
 
 _PLAIN = ("stable", "drifts")  # verdicts that say all there is
 _WIDTH, _IN = 100, " " * 6
@@ -183,7 +183,7 @@ def stability(
         return linear_answer(scene, given)
     from verify.execution.study import plan_of
     from verify.scenes.values import rounded_down
-    from verify.studies.stability.plan import findings_of, need_stability
+    from verify.studies.kinds.stability import findings_of, need_stability
 
     scenes = scenes_of(scene, given, ("q", "p"), _section)
     plan = plan_of(scenes, need_stability)
