@@ -40,4 +40,4 @@ def stability(
         "time": time,
     }
     scene = scene_of(system, scheme, parameters, t0=t0, stability=[section])
-    return findings_of([scene], performed(scene, need_stability, workers)).runs
+    return findings_of([scene], performed(scene, need_stability, workers)).stability

@@ -209,8 +209,8 @@ def _section(*, q: Any, p: Any, **rest: Any) -> dict[str, Any]:
 
 
 def _print(found: "StabilityFindings") -> None:
-    width = max((len(run.verdict) for run in found.runs), default=0)
-    for run in found.runs:
+    width = max((len(run.verdict) for run in found.stability), default=0)
+    for run in found.stability:
         click.echo(f"{run.verdict:{width}}  {run.id}")
         if run.kind not in _PLAIN:
             detail = textwrap.fill(run.detail, _WIDTH, initial_indent=_IN, subsequent_indent=_IN)
@@ -227,7 +227,7 @@ def _print(found: "StabilityFindings") -> None:
         with_ = f" with {' and '.join(within)}" if within else ""
         said = f"{measured}{with_} until t = {step.time}; {linear}  {detail}"
         click.echo(f"{step.scheme}: {said}")
-    for over in found.maps:
+    for over in found.stability_maps:
         counted = ", ".join(f"{n} {kind}" for kind, n in over.counted().items())
         click.echo(f"{over.scheme}: {over.parameter} and step size: {counted}")
     for starts in found.orbit_maps:

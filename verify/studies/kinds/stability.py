@@ -83,11 +83,11 @@ def _tasks_over(scene: Scene) -> Iterator[tuple[Task, str]]:
 
 @dataclass(frozen=True)
 class StabilityFindings:
-    """All that was found for some scenes."""
+    """All that was found for some scenes, by the keys of a `SceneResult`."""
 
-    runs: tuple[StabilityResult, ...]
+    stability: tuple[StabilityResult, ...]
     largest_steps: tuple[LargestStepResult, ...]
-    maps: tuple[StabilityMapResult, ...]
+    stability_maps: tuple[StabilityMapResult, ...]
     orbit_maps: tuple[OrbitMapResult, ...] = ()
 
     def as_json(self) -> dict[str, list[dict[str, Any]]]:
@@ -96,10 +96,10 @@ class StabilityFindings:
             "cases": [
                 {"id": run.id, "verdict": run.verdict}
                 | run.model_dump(mode="json", exclude={"id"}, context=PLAIN)
-                for run in self.runs
+                for run in self.stability
             ],
             "largest_steps": [x.model_dump(mode="json", context=PLAIN) for x in self.largest_steps],
-            "maps": [x.model_dump(mode="json") for x in self.maps],
+            "maps": [x.model_dump(mode="json") for x in self.stability_maps],
             "orbit_maps": [x.model_dump(mode="json") for x in self.orbit_maps],
         }
 
@@ -121,16 +121,6 @@ def findings_of(scenes: Sequence[Scene], results: Results) -> StabilityFindings:
     )
 
 
-def _found(scene: Scene, results: Results) -> dict[str, Any]:
-    found = findings_of([scene], results)
-    return {
-        "stability": found.runs,
-        "largest_steps": found.largest_steps,
-        "stability_maps": found.maps,
-        "orbit_maps": found.orbit_maps,
-    }
-
-
 def _asked(scene: Scene) -> bool:
     """Also in the plane, where nobody asks it: nothing is then said of it."""
     return bool(scene.orbit_map) or scene.exact_hamiltonian().planar
@@ -142,4 +132,9 @@ _SECTIONS = (
     Section(13, "orbits over two initial values", "the scene has no [[orbit_map]]", _asked),
     toml_section(10, "the map of step size and stiffness", "[[stability_map]]"),
 )
-STUDY = Study(9, _SECTIONS, need=need_stability, found=_found)
+STUDY = Study(
+    9,
+    _SECTIONS,
+    need=need_stability,
+    found=lambda scene, results: dict(vars(findings_of([scene], results))),
+)
