@@ -6,7 +6,7 @@ from verify.arithmetic.exact import Exact
 from verify.calls.given import GivenParameters, GivenSystem, listed, performed, scene_of
 from verify.hamiltonians.start import Given
 from verify.scenes.results.stability import StabilityResult
-from verify.studies.stability.plan import findings_of, need_stability
+from verify.studies.kinds.stability import findings_of, need_stability
 
 
 def stability(
@@ -40,4 +40,4 @@ def stability(
         "time": time,
     }
     scene = scene_of(system, scheme, parameters, t0=t0, stability=[section])
-    return findings_of([scene], performed(scene, need_stability, workers)).runs
+    return findings_of([scene], performed(scene, need_stability, workers)).stability

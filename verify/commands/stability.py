@@ -145,7 +145,7 @@ def _frequencies(found: "LinearAtEquilibrium") -> str:
 
 if TYPE_CHECKING:
     from verify.execution.executors import Placement
-    from verify.studies.stability.plan import StabilityFindings
+    from verify.studies.kinds.stability import StabilityFindings
 
 _PLAIN = ("stable", "drifts")  # verdicts that say all there is
 _WIDTH, _IN = 100, " " * 6
@@ -183,7 +183,7 @@ def stability(
         return linear_answer(scene, given)
     from verify.execution.study import plan_of
     from verify.scenes.values import rounded_down
-    from verify.studies.stability.plan import findings_of, need_stability
+    from verify.studies.kinds.stability import findings_of, need_stability
 
     scenes = scenes_of(scene, given, ("q", "p"), _section)
     plan = plan_of(scenes, need_stability)
@@ -209,8 +209,8 @@ def _section(*, q: Any, p: Any, **rest: Any) -> dict[str, Any]:
 
 
 def _print(found: "StabilityFindings") -> None:
-    width = max((len(run.verdict) for run in found.runs), default=0)
-    for run in found.runs:
+    width = max((len(run.verdict) for run in found.stability), default=0)
+    for run in found.stability:
         click.echo(f"{run.verdict:{width}}  {run.id}")
         if run.kind not in _PLAIN:
             detail = textwrap.fill(run.detail, _WIDTH, initial_indent=_IN, subsequent_indent=_IN)
@@ -227,7 +227,7 @@ def _print(found: "StabilityFindings") -> None:
         with_ = f" with {' and '.join(within)}" if within else ""
         said = f"{measured}{with_} until t = {step.time}; {linear}  {detail}"
         click.echo(f"{step.scheme}: {said}")
-    for over in found.maps:
+    for over in found.stability_maps:
         counted = ", ".join(f"{n} {kind}" for kind, n in over.counted().items())
         click.echo(f"{over.scheme}: {over.parameter} and step size: {counted}")
     for starts in found.orbit_maps:
