@@ -15,10 +15,10 @@ variables for the same reason.
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from fractions import Fraction
 
 import flint
 
+from verify.algebra.identities.polynomials import Polynomials
 from verify.algebra.zero_test import Decision
 from verify.errors import LimitError
 
@@ -28,7 +28,7 @@ Series = list[Poly]
 Index = tuple[int, ...]  # how often by each variable
 
 
-class JetsInDegrees:
+class JetsInDegrees(Polynomials):
     """The ring of the variables and of H's derivatives of orders 1 … `order`.
 
     `separable`: H = T(p) + V(q), whose mixed derivatives are 0. `timed`: t is one more variable.
@@ -48,12 +48,7 @@ class JetsInDegrees:
             raise LimitError("degrees", self._half, problem)
         self.indices = [x for n in range(1, order + 1) for x in self._of_order(n)]
         written = [self._called(index) for index in self.indices]
-        self.context = flint.fmpq_mpoly_ctx.get(
-            [*self.variables, *written], flint.Ordering.degrevlex
-        )
-        self.gens = self.context.gens()
-        self.zero, self.one = self.context.constant(0), self.context.constant(1)
-        self.places = {name: k for k, name in enumerate(self.variables)}
+        super().__init__([*self.variables, *written], ordering=flint.Ordering.degrevlex)
         self._at = {index: len(self.variables) + k for k, index in enumerate(self.indices)}
 
     def _of_order(self, n: int) -> Iterator[Index]:
@@ -81,22 +76,6 @@ class JetsInDegrees:
         return self.of(tuple(int(other == name) for other in self.variables))
 
     # -- as a ring ----------------------------------------------------------------------------
-
-    def reduce(self, x: Poly) -> Poly:
-        """x itself: between jets there are no relations."""
-        return x
-
-    def multiply(self, x: Poly, y: Poly) -> Poly:
-        """The product."""
-        return x * y
-
-    def constant(self, value: Fraction) -> Poly:
-        """A rational number as an element."""
-        return self.context.constant(flint.fmpq(value.numerator, value.denominator))
-
-    def variable(self, name: str) -> Poly:
-        """A variable as an element."""
-        return self.gens[self.places[name]]
 
     def diff(self, x: Poly, name: str) -> Poly:
         """The partial derivative by a variable, which sends H's derivatives to the next."""
