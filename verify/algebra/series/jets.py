@@ -15,6 +15,7 @@ variables for the same reason.
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import combinations_with_replacement
 
 import flint
 
@@ -52,7 +53,9 @@ class JetsInDegrees(Polynomials):
         self._at = {index: len(self.variables) + k for k, index in enumerate(self.indices)}
 
     def _of_order(self, n: int) -> Iterator[Index]:
-        for index in _partitions(n, len(self.variables)):
+        places = range(len(self.variables))
+        for chosen in combinations_with_replacement(places, n):
+            index = tuple(map(chosen.count, places))
             if not self._vanishes(index):
                 yield index
 
@@ -99,16 +102,6 @@ class JetsInDegrees(Polynomials):
     def text(self, x: Poly) -> str:
         """x as a formula."""
         return str(x).replace("^", "**")
-
-
-def _partitions(total: int, parts: int) -> Iterator[Index]:
-    """All tuples of so many numbers ≥ 0 with that sum."""
-    if parts == 1:
-        yield (total,)
-        return
-    for first in range(total, -1, -1):
-        for rest in _partitions(total - first, parts - 1):
-            yield (first, *rest)
 
 
 class Jets(JetsInDegrees):
