@@ -128,12 +128,6 @@ class Expansion:
         self._powers = terms or {}
         self._derivatives = [x]
 
-    @property
-    def length(self) -> int:
-        """How many coefficients there are to look at."""
-        last = max(self._powers, default=0) - self.pole if self.polynomial else MOST_ORDERS
-        return max(last, 0) + 1
-
     def coefficient(self, n: int) -> tuple[Ring, Poly]:
         """The coefficient of hⁿ, with the ring that it is an element of."""
         if not self._smooth:
@@ -164,8 +158,7 @@ class Expansion:
     @cached_property
     def _quotient(self) -> Series | None:
         """All coefficients that are looked at, where x is a quotient of polynomials in h."""
-        length = self.length + 1 + self.pole
-        return QuotientSeries(self.ring, length).of(self._derivatives[0])
+        return QuotientSeries(self.ring, MOST_ORDERS + 2 + self.pole).of(self._derivatives[0])
 
 
 def _without_pole(ring: Ring, x: Poly) -> tuple[int, Poly]:
