@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache, partial
 from typing import TypeAlias
@@ -115,17 +115,14 @@ VANISHES = Leading(None, Decision(True))
 class Expansion:
     """The Taylor coefficients in h, at h = 0, of a ring element.
 
-    `terms`: those that are not 0, where the element is known to be a polynomial in h. Of an element
-    with 1/h in it they are those of hᵐ times it, whose first m must vanish.
+    Of an element with 1/h in it they are those of hᵐ times it, whose first m must vanish.
     """
 
-    def __init__(self, ring: Ring, x: Poly, terms: Mapping[int, Poly] | None = None) -> None:
-        self.ring, self.pole = ring, 0
-        if terms is None:
-            self.pole, x = _without_pole(ring, x)
-            terms = None if h_inside(ring, x) else ring.powers(x, "h")
-        self.polynomial = terms is not None
-        self._powers = terms or {}
+    def __init__(self, ring: Ring, x: Poly) -> None:
+        self.ring = ring
+        self.pole, x = _without_pole(ring, x)
+        self.polynomial = not h_inside(ring, x)
+        self._powers = ring.powers(x, "h") if self.polynomial else {}
         self._derivatives = [x]
 
     def coefficient(self, n: int) -> tuple[Ring, Poly]:
