@@ -6,9 +6,6 @@ What it is for, and how zero is decided in it, is told in `verify.algebra.ring`.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from fractions import Fraction
-
-import flint
 
 from verify.algebra.generator import Generator, Poly
 from verify.algebra.identities.polynomials import Polynomials, occurring, split
@@ -39,18 +36,6 @@ class DifferentialRing(Polynomials):
         self.expressions: dict[int, sympy.Expr] = {}  # of generators
 
     # -- elements -----------------------------------------------------------------------------
-
-    def constant(self, value: Fraction) -> Poly:
-        """A rational number as an element."""
-        return self.context.constant(flint.fmpq(value.numerator, value.denominator))
-
-    def variable(self, name: str) -> Poly:
-        """A variable as an element; KeyError where the ring has none of that name."""
-        return self.gens[self.places[name]]
-
-    def multiply(self, x: Poly, y: Poly) -> Poly:
-        """x y in normal form."""
-        return self.reduce(x * y)
 
     def diff(self, x: Poly, name: str) -> Poly:
         """∂x/∂name in normal form, by the chain rule over the generators."""

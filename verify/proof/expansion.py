@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache, partial
 from typing import TypeAlias
@@ -115,24 +115,15 @@ VANISHES = Leading(None, Decision(True))
 class Expansion:
     """The Taylor coefficients in h, at h = 0, of a ring element.
 
-    `terms`: those that are not 0, where the element is known to be a polynomial in h. Of an element
-    with 1/h in it they are those of hᵐ times it, whose first m must vanish.
+    Of an element with 1/h in it they are those of hᵐ times it, whose first m must vanish.
     """
 
-    def __init__(self, ring: Ring, x: Poly, terms: Mapping[int, Poly] | None = None) -> None:
-        self.ring, self.pole = ring, 0
-        if terms is None:
-            self.pole, x = _without_pole(ring, x)
-            terms = None if h_inside(ring, x) else ring.powers(x, "h")
-        self.polynomial = terms is not None
-        self._powers = terms or {}
+    def __init__(self, ring: Ring, x: Poly) -> None:
+        self.ring = ring
+        self.pole, x = _without_pole(ring, x)
+        self.polynomial = not h_inside(ring, x)
+        self._powers = ring.powers(x, "h") if self.polynomial else {}
         self._derivatives = [x]
-
-    @property
-    def length(self) -> int:
-        """How many coefficients there are to look at."""
-        last = max(self._powers, default=0) - self.pole if self.polynomial else MOST_ORDERS
-        return max(last, 0) + 1
 
     def coefficient(self, n: int) -> tuple[Ring, Poly]:
         """The coefficient of hⁿ, with the ring that it is an element of."""
@@ -164,8 +155,7 @@ class Expansion:
     @cached_property
     def _quotient(self) -> Series | None:
         """All coefficients that are looked at, where x is a quotient of polynomials in h."""
-        length = self.length + 1 + self.pole
-        return QuotientSeries(self.ring, length).of(self._derivatives[0])
+        return QuotientSeries(self.ring, MOST_ORDERS + 2 + self.pole).of(self._derivatives[0])
 
 
 def _without_pole(ring: Ring, x: Poly) -> tuple[int, Poly]:

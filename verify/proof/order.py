@@ -34,12 +34,9 @@ _FIRST_ORDERS = 6  # of them, those that are made at once where no order is clai
 _MOST = 8  # powers of h that are looked at beyond the plane; more where a higher order is claimed
 
 
-def prove(step_map: StepMap, scheme: Scheme | None = None, claimed: Claimed | None = None) -> Proof:
-    """The order of S and of the map by exact algebra, and whether what `scheme` claims holds.
-
-    `claimed`: what is held against it in place of the scheme's own.
-    """
-    claimed = claimed or (Claimed.of(scheme) if scheme else Claimed())
+def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
+    """The order of S and of the map by exact algebra, and whether what `scheme` claims holds."""
+    claimed = Claimed.of(scheme) if scheme else Claimed()
     first = scheme.order + 1 if scheme else _FIRST_ORDERS
     planar = step_map.planar
     most = MOST_ORDERS if planar else max(_MOST, claimed.order + 1)

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 
 import flint
 
@@ -71,15 +72,29 @@ def by_monomials(x: Poly, places: Collection[int]) -> dict[Monomial, dict[Monomi
 class Polynomials:
     """Those in the given names and in up to `room` generators, which are made one by one."""
 
-    def __init__(self, names: Sequence[str], room: int) -> None:
+    def __init__(
+        self, names: Sequence[str], room: int = 0, ordering: flint.Ordering = flint.Ordering.lex
+    ) -> None:
         own = [f"_{k}" for k in range(room)]  # no name begins so
         # Lexicographic with the newest generator first: relations then reduce to older ones.
-        self.context = flint.fmpq_mpoly_ctx.get([*own, *names], flint.Ordering.lex)
+        self.context = flint.fmpq_mpoly_ctx.get([*own, *names], ordering)
         self.gens = self.context.gens()
         self.places = {name: room + k for k, name in enumerate(names)}
         self.zero, self.one = self.context.constant(0), self.context.constant(1)
         self.free = room  # generators from this place on are in use
         self.relations: list[tuple[int, int, Poly]] = []  # generator, its power, polynomial = 0
+
+    def constant(self, value: Fraction) -> Poly:
+        """A rational number as an element."""
+        return self.context.constant(flint.fmpq(value.numerator, value.denominator))
+
+    def variable(self, name: str) -> Poly:
+        """A variable as an element; KeyError where the ring has none of that name."""
+        return self.gens[self.places[name]]
+
+    def multiply(self, x: Poly, y: Poly) -> Poly:
+        """x y in normal form."""
+        return self.reduce(x * y)
 
     def made(self) -> int:
         """The place of a new generator; OverflowError where there is no room."""

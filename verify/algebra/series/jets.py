@@ -15,10 +15,11 @@ variables for the same reason.
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from fractions import Fraction
+from itertools import combinations_with_replacement
 
 import flint
 
+from verify.algebra.identities.polynomials import Polynomials
 from verify.algebra.zero_test import Decision
 from verify.errors import LimitError
 
@@ -28,7 +29,7 @@ Series = list[Poly]
 Index = tuple[int, ...]  # how often by each variable
 
 
-class JetsInDegrees:
+class JetsInDegrees(Polynomials):
     """The ring of the variables and of H's derivatives of orders 1 … `order`.
 
     `separable`: H = T(p) + V(q), whose mixed derivatives are 0. `timed`: t is one more variable.
@@ -48,16 +49,13 @@ class JetsInDegrees:
             raise LimitError("degrees", self._half, problem)
         self.indices = [x for n in range(1, order + 1) for x in self._of_order(n)]
         written = [self._called(index) for index in self.indices]
-        self.context = flint.fmpq_mpoly_ctx.get(
-            [*self.variables, *written], flint.Ordering.degrevlex
-        )
-        self.gens = self.context.gens()
-        self.zero, self.one = self.context.constant(0), self.context.constant(1)
-        self.places = {name: k for k, name in enumerate(self.variables)}
+        super().__init__([*self.variables, *written], ordering=flint.Ordering.degrevlex)
         self._at = {index: len(self.variables) + k for k, index in enumerate(self.indices)}
 
     def _of_order(self, n: int) -> Iterator[Index]:
-        for index in _partitions(n, len(self.variables)):
+        places = range(len(self.variables))
+        for chosen in combinations_with_replacement(places, n):
+            index = tuple(map(chosen.count, places))
             if not self._vanishes(index):
                 yield index
 
@@ -82,22 +80,6 @@ class JetsInDegrees:
 
     # -- as a ring ----------------------------------------------------------------------------
 
-    def reduce(self, x: Poly) -> Poly:
-        """x itself: between jets there are no relations."""
-        return x
-
-    def multiply(self, x: Poly, y: Poly) -> Poly:
-        """The product."""
-        return x * y
-
-    def constant(self, value: Fraction) -> Poly:
-        """A rational number as an element."""
-        return self.context.constant(flint.fmpq(value.numerator, value.denominator))
-
-    def variable(self, name: str) -> Poly:
-        """A variable as an element."""
-        return self.gens[self.places[name]]
-
     def diff(self, x: Poly, name: str) -> Poly:
         """The partial derivative by a variable, which sends H's derivatives to the next."""
         by, count = self.places[name], len(self.variables)
@@ -120,16 +102,6 @@ class JetsInDegrees:
     def text(self, x: Poly) -> str:
         """x as a formula."""
         return str(x).replace("^", "**")
-
-
-def _partitions(total: int, parts: int) -> Iterator[Index]:
-    """All tuples of so many numbers ≥ 0 with that sum."""
-    if parts == 1:
-        yield (total,)
-        return
-    for first in range(total, -1, -1):
-        for rest in _partitions(total - first, parts - 1):
-            yield (first, *rest)
 
 
 class Jets(JetsInDegrees):

@@ -17,7 +17,6 @@ from verify.proof.certificates.coefficients import (
 from verify.proof.certificates.numbers import Number, Residues
 from verify.proof.certificates.readers import Poly
 
-_NUMBERS = "AlgebraicNumbers"
 _SHEARS = ["Differential", "Symplectic", "Hamiltonians", "SymplecticMethods", "AlgebraicNumbers"]
 _FORMULAS = ["Rings", "Formulas", "Calculation", "RealFormulas", "Coefficients"]
 _STAGES = [*_SHEARS, *_FORMULAS, "StageSchemes"]

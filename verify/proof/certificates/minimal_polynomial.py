@@ -38,13 +38,12 @@ class MinimalPolynomials:
         g = self._kinds[index]
         if g.kind not in ("root", "inverse"):
             raise ValueError("is not made by roots")
-        inner = [int(c) for c in self._of_element(g.inner).coeffs()]
+        inner = self._of_element(g.inner)
         if g.kind == "inverse":
-            found = flint.fmpz_poly(inner[::-1])
+            found = flint.fmpz_poly(inner.coeffs()[::-1])
         else:
-            self._check((len(inner) - 1) * g.degree)
-            gaps = [0] * (g.degree - 1)
-            found = flint.fmpz_poly([x for c in inner[:-1] for x in (c, *gaps)] + inner[-1:])
+            self._check(inner.degree() * g.degree)
+            found = inner.inflate(g.degree)
         return self._factor(found, self.ring.context.gens()[index])
 
     def _of_element(self, x: Poly) -> flint.fmpz_poly:
@@ -56,13 +55,15 @@ class MinimalPolynomials:
         # X − x, from which one generator after the other is taken by its own polynomial.
         names = ["x", *(f"_{place}" for place in places)]
         context = flint.fmpq_mpoly_ctx.get(names, flint.Ordering.lex)
-        left = context.gens()[0] - context.from_dict(
+        variable, *own = context.gens()
+        left = variable - context.from_dict(
             {(0, *(monomial[place] for place in places)): c for monomial, c in terms_of(x)}
         )
-        for k, place in enumerate(places, start=1):
-            powers = {_power(n, k, len(names)): c for n, c in enumerate(self.of(place).coeffs())}
-            left = left.resultant(context.from_dict(powers), names[k])
-        coefficients = [left[_power(n, 0, len(names))] for n in range(left.degrees()[0] + 1)]
+        for name, gen, place in zip(names[1:], own, places, strict=True):
+            powers = (c * gen**n for n, c in enumerate(self.of(place).coeffs()))
+            left = left.resultant(sum(powers, context.constant(0)), name)
+        by_power = {powers[0]: c for powers, c in terms_of(left)}
+        coefficients = [by_power.get(n, 0) for n in range(max(by_power) + 1)]
         return self._factor(flint.fmpq_poly(coefficients).numer(), x)
 
     def _check(self, degree: int) -> None:
@@ -75,19 +76,7 @@ class MinimalPolynomials:
         for precision in _PRECISIONS:
             ball = enclose(self.ring, x, {}, precision)
             with working_precision(precision):
-                factors = [f for f in factors if ball is None or _at(f, ball).contains(0)]
+                factors = [f for f in factors if ball is None or f(ball).contains(0)]
             if len(factors) == 1:
                 return factors[0]
         raise ValueError("is not told from other numbers")
-
-
-def _at(polynomial: flint.fmpz_poly, x: flint.arb) -> flint.arb:
-    total = flint.arb(0)
-    for c in reversed(polynomial.coeffs()):
-        total = total * x + c
-    return total
-
-
-def _power(n: int, place: int, length: int) -> tuple[int, ...]:
-    """The exponents of the n-th power of the variable of that place."""
-    return tuple(n if k == place else 0 for k in range(length))
