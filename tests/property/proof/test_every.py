@@ -13,6 +13,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from tests.examples import drawn
+from tests.helpers.lie_derivatives import along_flow
 from tests.helpers.sampled.formulas import (
     P,
     Q,
@@ -25,6 +26,7 @@ from tests.helpers.sampled.formulas import (
     trigonometric,
 )
 from verify.algebra.series.jets import Jets
+from verify.exploration.properties.orders.order_by_jets import delta_j as delta_j_of
 from verify.hamiltonians.jet_flow import JetFlow
 from verify.proof.telescoping import potential_of_lie
 from verify.schemes.conditions.every_hamiltonian import TaylorSeries
@@ -55,7 +57,7 @@ def test_the_leading_coefficient_is_the_limit_of_delta_j(
 ) -> None:
     hamiltonian = plain(text)
     jets = Jets(eta + 2)
-    leading = list(jets.delta_j(*TaylorSeries(eta).taylor(jets, eta + 1)))[-1]
+    leading = list(delta_j_of(jets, *TaylorSeries(eta).taylor(jets, eta + 1)))[-1]
     delta_j = plain_delta_j(*lie_step(hamiltonian, eta))
     with mpmath.workdps(120 + 45 * (eta + 1)):
         small = {**point, "h": SMALL}
@@ -66,4 +68,4 @@ def test_the_leading_coefficient_is_the_limit_of_delta_j(
         assert abs(limit + expected) > mpmath.mpf(10) ** -30, "the other sign"
         if eta % 2 == 0:
             potential = potential_of_lie(JetFlow.over(jets), eta).divergence
-            assert abs(limit - at(jets, jets.derive(potential), hamiltonian, point)) < 1e-30
+            assert abs(limit - at(jets, along_flow(jets, potential), hamiltonian, point)) < 1e-30

@@ -27,7 +27,6 @@ class Names(ABC):
 
     def form(self, x: Form) -> str:
         """A 2-form as a person writes it."""
-
         if self.entries.layout.single:
             return self.bound(x.values(), self.shallow.poly(x.get(PLANE, {})))
         entries = self.bound(x.values(), form_list(x, self.coordinates, self.shallow))
