@@ -93,7 +93,7 @@ class Hamiltonian:
             formula=record["formula"],
             values=tuple((name, Fraction(value)) for name, value in record["values"]),
             parameters=tuple(record["parameters"]),
-            coordinates=PLANE,
+            coordinates=tuple(record["coordinates"]),
             time_dependent=record["time_dependent"],
             written=EVERYWHERE,
             domain=EVERYWHERE,
