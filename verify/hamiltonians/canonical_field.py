@@ -15,7 +15,6 @@ from functools import cached_property, lru_cache
 from verify.algebra.embedding import MAX_TERMS
 from verify.algebra.ring import Poly, Ring
 from verify.algebra.series.power_series import CoefficientRing, Derivatives
-from verify.hamiltonians.coordinates import PLANE
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.late import sympy
 
@@ -123,11 +122,6 @@ class CanonicalField(Flow):
         exact = self.ring.constant(size) if isinstance(size, Fraction) else size
         share = self.ring.variable("h") * exact
         return [self.ring.reduce(share * self.slopes[k]) for k in places]
-
-    @property
-    def planar(self) -> bool:
-        """Whether it is one of p and q."""
-        return self.names == PLANE
 
     @cached_property
     def quadratic(self) -> bool:

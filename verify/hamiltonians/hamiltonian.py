@@ -6,7 +6,7 @@ in `verify.hamiltonians.canonical_field`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
@@ -93,7 +93,7 @@ class Hamiltonian:
             formula=record["formula"],
             values=tuple((name, Fraction(value)) for name, value in record["values"]),
             parameters=tuple(record["parameters"]),
-            coordinates=PLANE,
+            coordinates=tuple(record["coordinates"]),
             time_dependent=record["time_dependent"],
             written=EVERYWHERE,
             domain=EVERYWHERE,
@@ -179,6 +179,10 @@ class Hamiltonian:
         """Of freedom."""
         return len(self.coordinates) // 2
 
+    def halves(self, z: Sequence[Any]) -> tuple[Any, Any]:  # Any: one of z's, or several
+        """p and q of a point: one each in the plane, in n degrees of freedom n each, as z is."""
+        return (z[0], z[1]) if self.planar else (z[: self.degrees], z[self.degrees :])
+
     @cached_property
     def time_dependent(self) -> bool:
         """Whether t is in H, with the parameters' values put in."""
@@ -252,9 +256,8 @@ class Hamiltonian:
         """
         if self.symbols:
             raise InputError("parameter", self.symbols[0], "has no value; a gradient needs one")
-        at, n = [symbol(name) for name in self.coordinates], self.degrees
-        slopes = [self.exact.diff(x) for x in at]
-        given, wanted = ((x[0], x[1]) if self.planar else (x[:n], x[n:]) for x in (at, slopes))
+        at = [symbol(name) for name in self.coordinates]
+        given, wanted = map(self.halves, (at, [self.exact.diff(x) for x in at]))
         time = (symbol("t"),) if self.time_dependent else ()
         made: Callable[..., tuple[Any, Any]]
         made = sympy.lambdify((*given, *time), wanted, modules="math", cse=True)

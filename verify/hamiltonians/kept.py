@@ -5,8 +5,8 @@ a formula takes sympy, whose import is half of what a short command does. So wha
 beside the kernels (`verify.code_cache`), and the formula is read again only by who asks for its
 expression.
 
-Kept is an H(p, q), or H(p, q, t), that is smooth everywhere: under a name made of what it was read
-from, the values of its parameters, and the code and libraries that read it.
+Kept is an H that is smooth everywhere: under a name made of what it was read from, the values of
+its parameters, and the code and libraries that read it.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from verify.content import digest_of
 from verify.errors import InputError
 from verify.hamiltonians.hamiltonian import Hamiltonian
 
-_FORMAT = "hamiltonian 1"
+_FORMAT = "hamiltonian 2"
 _MOST_BYTES, _MOST_TERMS = 2**20, 2000
 _CODE = (
     "algebra/**/*.py",
@@ -61,7 +61,7 @@ def kept_or_read(
 
 def _record_of(hamiltonian: Hamiltonian) -> dict[str, Any] | None:
     """What is kept of it; None where nothing is."""
-    if not hamiltonian.planar or hamiltonian.domain or hamiltonian.written:
+    if hamiltonian.domain or hamiltonian.written:
         return None
     if parse(hamiltonian.formula) != hamiltonian.expression:  # with zeros put in it may be so
         return None
@@ -74,6 +74,7 @@ def _record_of(hamiltonian: Hamiltonian) -> dict[str, Any] | None:
         "formula": hamiltonian.formula,
         "values": [(name, text(value)) for name, value in hamiltonian.values],
         "parameters": hamiltonian.parameters,
+        "coordinates": hamiltonian.coordinates,
         "time_dependent": hamiltonian.time_dependent,
         "ring": record_of(ring, energy),
         "generic": _record_of(hamiltonian.with_symbols()) if hamiltonian.values else None,

@@ -42,8 +42,9 @@ def shown_of(
     hamiltonian: Hamiltonian, point: Mapping[str, Fraction], letter: str
 ) -> str | tuple[str, ...]:
     """q or p of a point as it is shown: a number, or a list in n degrees of freedom."""
-    own = tuple(text(x) for name, x in point.items() if name[0] == letter)
-    return own[0] if hamiltonian.planar else own
+    p, q = hamiltonian.halves(tuple(text(point[name]) for name in hamiltonian.coordinates))
+    shown: str | tuple[str, ...] = {"p": p, "q": q}[letter]
+    return shown
 
 
 def start_texts(

@@ -13,7 +13,7 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 def uncoupled(hamiltonian: Hamiltonian) -> list[tuple[Hamiltonian, tuple[str, ...]]]:
     """H as a sum of Hamiltonians in coordinates of their own: each, in p and q or p1 … qn, with the
     names that these have in H. What is coupled with nothing and does not move is left together."""
-    if hamiltonian.planar:
+    if hamiltonian.planar:  # whose p and q have no numbers, and which need not be expanded
         return [(hamiltonian, PLANE)]
     groups = {k: {k} for k in range(1, hamiltonian.degrees + 1)}
     exact = hamiltonian.exact

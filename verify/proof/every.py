@@ -32,6 +32,7 @@ Stages. Where A J = B with det A = det B, det J = 1; see `StageEquations.determi
 Coefficients. Conditions on them, exact; see `verify.proof.by_conditions`.
 """
 
+import math
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -53,9 +54,10 @@ from verify.schemes.conditions.tree_conditions import TreeConditions, all_trees_
 from verify.schemes.conditions.words.kinetic import Kinetic
 from verify.schemes.maps import kind_of
 from verify.schemes.scheme import Scheme
+from verify.structures import AREA, SYMPLECTIC
 from verify.verdict import Verdict
 
-_MOST_ORDER = 14  # the terms of L double with every order; lie14 takes 20 s
+_MOST_ORDER = {AREA: 14, SYMPLECTIC: math.inf}  # L's terms double with each; lie14 takes 20 s
 _MOST_ETA = 8  # in time the terms triple with every order; lie8 takes 2 s
 
 
@@ -87,21 +89,20 @@ def prove_every(
     asked = isinstance(every_h, ByConditions) or (timed and not isinstance(every_h, TaylorSeries))
     if isinstance(every_h, BySeries) and not (blank.planar and asked):
         return prove_by_series(blank, scheme, every_h)
-    found = _by_conditions(blank, scheme, _conditions(blank, every_h), least)
-    return found if blank.planar else _in_degrees(blank, scheme, every_h, found)
+    proved = {AREA: _by_conditions, SYMPLECTIC: _in_degrees}[blank.structure]
+    return proved(blank, scheme, every_h, least)
 
 
 def _check_length(blank: EveryProof, scheme: Scheme, every_h: BySeries | ByConditions) -> None:
     """Refuses polynomials that would be too long."""
     name, order, taylor = scheme.name, scheme.order, isinstance(every_h, TaylorSeries)
-    if not blank.planar:
-        if isinstance(every_h, BySeries) and is_long(blank.degrees, blank.timed, order):
-            problem = f"are too many for {name}: its polynomials are too long"
-            raise LimitError("degrees", blank.degrees, problem)
-    elif not blank.timed and order > _MOST_ORDER:
-        problem = f"of order {_MOST_ORDER} at most: its polynomials have too many terms"
+    if isinstance(every_h, BySeries) and is_long(blank, order):
+        problem = f"are too many for {name}: its polynomials are too long"
+        raise LimitError("degrees", blank.degrees, problem)
+    if not blank.timed and order > _MOST_ORDER[blank.structure]:
+        problem = f"of order {_MOST_ORDER[AREA]} at most: its polynomials have too many terms"
         raise InputError("scheme", name, f"for every H a scheme is proved {problem}")
-    elif blank.timed and taylor and order > _MOST_ETA:
+    if blank.timed and taylor and order > _MOST_ETA:
         told = f"up to lie{_MOST_ETA}: its polynomials are too long"
         raise InputError("scheme", name, f"is proved for every H in t {told}")
 
@@ -119,10 +120,11 @@ def _conditions(blank: EveryProof, every_h: BySeries | ByConditions) -> ByCondit
 
 
 def _by_conditions(
-    blank: EveryProof, scheme: Scheme, conditions: ByConditions, least: int
+    blank: EveryProof, scheme: Scheme, every_h: BySeries | ByConditions, least: int
 ) -> EveryProof:
     """By its coefficients; where they leave det J open, by the series, if the scheme has one, and
     else by an H: in time, too, since one without t is one of these."""
+    conditions = _conditions(blank, every_h)
     found = prove_by_conditions(scheme, conditions, least)
     found = replace(found, separable=blank.separable, timed=blank.timed)
     agreed = found.convergence_order or 0
@@ -179,9 +181,10 @@ def _of_fewer(scheme: Scheme, timed: Splitting, general: int) -> Iterator[Prose]
 
 
 def _in_degrees(
-    blank: EveryProof, scheme: Scheme, every_h: object, planar: EveryProof
+    blank: EveryProof, scheme: Scheme, every_h: BySeries | ByConditions, least: int
 ) -> EveryProof:
     """What the plane's proof says of the order, and the conditions that suffice for S ≡ 0."""
+    planar = _by_conditions(blank, scheme, every_h, least)
     own = kind_of(every_h, scheme.name).conditions(every_h, blank.degrees)
     verdict, reason = planar.verdict, planar.reason
     symplectic = True if own and first_wrong(own) is None else None

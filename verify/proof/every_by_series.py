@@ -28,16 +28,17 @@ from verify.schemes.maps import kind_of
 from verify.schemes.scheme import Scheme
 from verify.schemes.steps.defect import DefectSeries
 from verify.schemes.steps.two_form import TwoForm, lie_derivative
+from verify.structures import AREA, SYMPLECTIC
 from verify.verdict import Verdict
 
-_MORE = 3  # orders that are looked at beyond the first of S, in the plane; in n terms are too many
+_MORE = {AREA: 3, SYMPLECTIC: 0}  # orders that are looked at beyond the first of S
 _SAME = "A J = B with det A = det B = "  # what a condition on stages of the plane begins with
-_MOST_TERMS = 5000  # (2n)^order, which is about the number of terms of X^order z
+_MOST_TERMS = {AREA: math.inf, SYMPLECTIC: 5000}  # (2n)^order, about those of X^order z
 
 
-def is_long(degrees: int, timed: bool, order: int) -> bool:
+def is_long(proof: EveryProof, order: int) -> bool:
     """Whether the terms of X^order z are too many in so many degrees of freedom."""
-    return bool((2 * degrees + timed) ** order > _MOST_TERMS)
+    return bool((2 * proof.degrees + proof.timed) ** order > _MOST_TERMS[proof.structure])
 
 
 def series_in_jets(proof: EveryProof, every_h: BySeries, most: int) -> DefectSeries[JetFlow]:
@@ -49,7 +50,7 @@ def series_in_jets(proof: EveryProof, every_h: BySeries, most: int) -> DefectSer
 
 def prove_by_series(blank: EveryProof, scheme: Scheme, every_h: BySeries) -> EveryProof:
     """The proof for every H that `blank` is to be of; REFUTED where the scheme claims more."""
-    most, last = scheme.order + 1, scheme.order + 1 + _MORE * blank.planar
+    most, last = scheme.order + 1, scheme.order + 1 + _MORE[blank.structure]
     own = kind_of(every_h, scheme.name).conditions(every_h, blank.degrees)
     preserved = bool(own) and first_wrong(own) is None
     while True:
@@ -96,7 +97,7 @@ def _symplectic(found: EveryProof, own: tuple[Condition, ...]) -> EveryProof:
     """Of stages that are solved for: S ≡ 0 by what their coefficients fulfil."""
     reason = prose(f"{found.structure.vanishes}, stage by stage")
     found = replace(found, verdict=Verdict.PROVED, reason=reason, area_preserving=True)
-    if not found.planar:
+    if not found.planar:  # where a condition is no identity in H_pp, H_pq and H_qq
         return replace(found, telescopes=True, potential="0", conditions=own)
     names = (condition.name for condition in own)
     ratios = joined(", ", dict.fromkeys(Formula(name.removeprefix(_SAME)) for name in names))
@@ -113,9 +114,10 @@ def _leading(
     """With the coefficient of h^order, the first in S that is not the zero form."""
     form, defect = series.form(order), found.structure.defect
     volume = form.divergence
-    below = f"the entries of S up to `h^{order - 1}` are zero polynomials"
-    if found.planar:
-        below = f"the coefficients of h¹ … `h^{order - 1}` in det J are the zero polynomial"
+    below = {
+        AREA: f"the coefficients of h¹ … `h^{order - 1}` in det J are the zero polynomial",
+        SYMPLECTIC: f"the entries of S up to `h^{order - 1}` are zero polynomials",
+    }[found.structure]
     found = replace(
         found,
         verdict=Verdict.PROVED,
@@ -190,8 +192,8 @@ def _told_in_degrees(by: str, eta: int) -> _OfLie:
 
 def _of_lie(found: EveryProof, flow: JetFlow, eta: int, form: TwoForm) -> EveryProof:
     """What is known of lieη, each identity checked."""
-    told = (_told_in_plane if found.planar else _told_in_degrees)("D" if flow.timed else "X", eta)
-    short = found.planar or not is_long(found.degrees, found.timed, eta + 1)
+    tell = {AREA: _told_in_plane, SYMPLECTIC: _told_in_degrees}[found.structure]
+    told, short = tell("D" if flow.timed else "X", eta), not is_long(found, eta + 1)
     if found.order == eta + 1 and short and not (_of_flow(flow, eta) - form).entries:
         found = replace(found, formula=told.formula, checked=(*found.checked, told.first))
     if eta % 2:

@@ -10,7 +10,7 @@ from verify.schemes.conditions.condition import Condition, NearbyOrder
 from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 from verify.schemes.maps.step_map import solvable
 from verify.schemes.steps.two_form import MOST_TERMS, TwoForm
-from verify.structures import Structure, structure_in
+from verify.structures import AREA, SYMPLECTIC, Structure, structure_in
 from verify.verdict import Verdict
 
 NONE = Prose()
@@ -89,7 +89,7 @@ class EveryProof:
     @property
     def argument(self) -> Prose:
         """What is proved on paper, for every η, beside what the machine checked of this one."""
-        taylor = isinstance(get(self.scheme).every_h, TaylorSeries)
+        taylor = isinstance(get(self.scheme).every_h, TaylorSeries)  # told of p and q
         return paragraph() if taylor and self.planar and not self.timed else NONE
 
     @property
@@ -102,9 +102,8 @@ class EveryProof:
     def quantifier(self) -> str:
         """For which H it is proved, in words."""
         t = ", t" * self.timed
-        if not self.planar:
-            both = f"H = T(p{t}) + V(q{t})" if self.separable else f"H(p, q{t})"
-            return f"every smooth {both} in {self.degrees} degrees of freedom"
-        if self.separable:
-            return f"every smooth H = T(p{t}) + V(q{t})"
-        return "every smooth H(p, q, t)" if self.timed else "every smooth H"
+        general, degrees = {
+            AREA: ("H(p, q, t)" if self.timed else "H", ""),
+            SYMPLECTIC: (f"H(p, q{t})", f" in {self.degrees} degrees of freedom"),
+        }[self.structure]
+        return f"every smooth {f'H = T(p{t}) + V(q{t})' if self.separable else general}{degrees}"

@@ -27,6 +27,7 @@ from verify.schemes.conditions.timed.for_scheme import conditions_for
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.scheme import Scheme
 from verify.schemes.splitting import splitting
+from verify.structures import AREA, SYMPLECTIC
 from verify.verdict import Verdict
 
 RESIDUE = Fraction(1, 2**100)  # and above it what the coefficients of the nearest leave
@@ -38,7 +39,7 @@ def prove(step_map: StepMap, scheme: Scheme | None = None) -> Proof:
     """The order of S and of the map by exact algebra, and whether what `scheme` claims holds."""
     claimed = Claimed.of(scheme) if scheme else Claimed()
     first = scheme.order + 1 if scheme else _FIRST_ORDERS
-    planar = step_map.planar
+    planar = step_map.hamiltonian.planar  # where S is det J − 1, and conditions stand in the reason
     most = MOST_ORDERS if planar else max(_MOST, claimed.order + 1)
     convergence, near = convergence_of_scheme(step_map, scheme, first, most)
     leading, domain = leading_of(step_map, first, most), step_map.domain
@@ -103,12 +104,12 @@ def leading_of(step_map: StepMap, first: int = _FIRST_ORDERS, most: int = MOST_O
             return leading
     if polynomial:  # S is a polynomial in h, all of whose coefficients vanish
         return VANISHES
-    beyond = most + 1 if step_map.planar else None
+    beyond = {AREA: most + 1, SYMPLECTIC: None}[step_map.structure]
     if step_map.closed is None:
         return Leading(beyond, Decision(None))
     whole = step_map.closed.defect
     leading = Leading.of_form(None, whole, step_map.closed.ring)
-    undecided = leading.decision.zero is None and step_map.planar
+    undecided = leading.decision.zero is None and beyond is not None
     return Leading(beyond, leading.decision) if undecided else leading
 
 
@@ -132,7 +133,7 @@ def _telescoping(step_map: StepMap, first: int, defect: Leading) -> tuple[bool |
     """Of lieη in several degrees; of other maps it is not known. In the plane see
     `verify.proof.plane.potential`."""
     eta = step_map.flow_up_to
-    if step_map.planar or eta < 1 or defect.power != eta + 1 or defect.form is None:
+    if step_map.hamiltonian.planar or eta < 1 or defect.power != eta + 1 or defect.form is None:
         known = True if defect.decision.zero is True else None  # 0 is the derivative of 0
         return known, "0" if known else ""
     return telescopes_of_lie(series_of(step_map, first).flow, eta, defect.form)
@@ -156,7 +157,7 @@ def convergence_of(
         return Convergence(known, True, lambda: Domain.of((), almost) if almost else EVERYWHERE)
     series = series_of(step_map, first)
     given = step_map.closed if step_map.formulas is not None and step_map.expand is None else None
-    if given is not None and step_map.planar:  # all of a polynomial, and one more
+    if given is not None:  # all of a polynomial, and one more
         most = max(most, (most if given.degree is None else given.degree) + 1)
     return convergence_by(series, step_map.flow_up_to + 1, most, residues)
 

@@ -50,7 +50,7 @@ class Proof:
     @property
     def planar(self) -> bool:
         """Whether it is of p and q."""
-        return self.step_map.planar
+        return self.step_map.hamiltonian.planar
 
     @property
     def structure(self) -> Structure:

@@ -19,6 +19,7 @@ from verify.proof.expansion import ClosedSeries, series_of
 from verify.proof.plane.potential import Potential
 from verify.proof.proof import Proof
 from verify.proof.telescoping import potential_of_lie
+from verify.structures import AREA, SYMPLECTIC
 from verify.verdict import Verdict
 
 
@@ -30,10 +31,8 @@ def of_one(proof: Proof, potential: Potential | None = None) -> Certificate:
     """
     if proof.verdict is not Verdict.PROVED or proof.convergence_order is None:
         raise InputError("proof", proof.verdict.value, "there is nothing to certify")
-    if proof.planar:
-        field, statement = _in_plane(proof, potential or Potential(None, ""))
-    else:
-        field, statement = _in_degrees(proof)
+    made = {AREA: _in_plane, SYMPLECTIC: _in_degrees}[proof.structure]
+    field, statement = made(proof, potential or Potential(None, ""))
     return certificate_of_one(statement, field, proof.witness)
 
 
@@ -67,7 +66,7 @@ def _form(x: Poly) -> Form:
     return {} if x.is_zero() else {PLANE: x}
 
 
-def _in_degrees(proof: Proof) -> tuple[CanonicalField, Statement]:
+def _in_degrees(proof: Proof, _: Potential) -> tuple[CanonicalField, Statement]:
     step, order, agreed = proof.step_map, proof.order, proof.convergence_order or 0
     most: int | None = max(order or 0, agreed)
     if order is None:

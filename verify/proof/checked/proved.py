@@ -13,6 +13,7 @@ from verify.proof.every_proof import EveryProof
 from verify.proof.plane.potential import Potential
 from verify.proof.proof import Proof
 from verify.schemes.scheme import Scheme
+from verify.structures import Structure, structure_in
 
 About = Literal["defect", "volume", "map", "telescopes", "product"]
 DEFECT: frozenset[About] = frozenset({"defect"})
@@ -42,9 +43,9 @@ class Proved:
     certificates: tuple[Callable[[], Certificate], ...] = ()
 
     @property
-    def planar(self) -> bool:
-        """Whether there is one degree of freedom."""
-        return self.degrees == 1
+    def structure(self) -> Structure:
+        """What a canonical step of it keeps."""
+        return structure_in(self.degrees)
 
 
 def of_every_hamiltonian(proof: EveryProof, scheme: Scheme, about: frozenset[About]) -> Proved:

@@ -13,6 +13,7 @@ from verify.hamiltonians.canonical_field import canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.late import sympy
 from verify.schemes.maps.step_map import StepMap
+from verify.structures import AREA, SYMPLECTIC
 
 _NEXT = "_next"
 
@@ -30,7 +31,7 @@ def map_by_formulas(
         raise _other_coordinates(hamiltonian, formulas)
     time = ("t",) if hamiltonian.time_dependent else ()
     names = [*coordinates, "h", *time, *hamiltonian.parameters, *numbers]
-    if hamiltonian.planar and "p_next" in names:
+    if "p_next" in formulas and "p_next" in names:
         raise InputError("parameter", "p_next", "stands for p' in a map's formulas")
     put: dict[sympy.Symbol, sympy.Expr] = {}
     asked = Domain.of(())
@@ -45,12 +46,13 @@ def map_by_formulas(
 
 
 def _other_coordinates(hamiltonian: Hamiltonian, formulas: Mapping[str, str]) -> InputError:
-    if hamiltonian.planar:
-        written = "; ".join(f"{name} = {formula}" for name, formula in formulas.items())
-        problem = "H has other coordinates; allowed: formulas of p_next and q_next"
-        return InputError("scheme", written, problem)
+    written = "; ".join(map(" = ".join, formulas.items()))
     needed = ", ".join(name + _NEXT for name in hamiltonian.coordinates)
-    return InputError("scheme", "; ".join(formulas), f"H needs {needed}, once each")
+    shown, problem = {
+        AREA: (written, "H has other coordinates; allowed: formulas of p_next and q_next"),
+        SYMPLECTIC: ("; ".join(formulas), f"H needs {needed}, once each"),
+    }[hamiltonian.structure]
+    return InputError("scheme", shown, problem)
 
 
 def map_by_expressions(

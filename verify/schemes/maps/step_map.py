@@ -92,11 +92,6 @@ class StepMap:
         return self.field.degrees
 
     @property
-    def planar(self) -> bool:
-        """Whether it is one of p and q."""
-        return self.field.planar
-
-    @property
     def structure(self) -> Structure:
         """What a canonical step of it keeps."""
         return self.hamiltonian.structure

@@ -27,6 +27,6 @@ def all_of_them() -> tuple[Applies, ...]:
 def marks(proved: Proved) -> Iterator[Prose]:
     """One for each that applies: the names of the theorems, and what they say of this scheme."""
     for each in all_of_them():
-        if each.about in proved.about and each.applies(proved):
-            by = by_rocq(each.names(proved))
-            yield prose(by, ": ", read_prose(each.sentence(proved)))
+        names = each.names(proved)
+        if names and each.about in proved.about and each.applies(proved):
+            yield prose(by_rocq(names), ": ", read_prose(each.sentence(proved)))

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from verify.proof.checked.proved import About, Proved
 from verify.schemes.conditions.every_hamiltonian import TaylorSeries
+from verify.structures import AREA, SYMPLECTIC
 
 
 @dataclass(frozen=True)
@@ -12,8 +13,8 @@ class Applies:
     """`about`: what of a proof they say again; `applies`: of which schemes and H; `theorems`: those
     by which, as FILE.NAME; `says`: what they say there, as `read_prose` takes it.
 
-    In the plane `in_plane` stand in their place, where there are any; what is `symplectic` keeps
-    area there, by one theorem more, and `so` is said.
+    In the plane `in_plane` stand in their place, where there are any, alone where `theorems` are
+    none; what is `symplectic` keeps area there, by one theorem more, and `so` is said.
     """
 
     about: About
@@ -26,13 +27,13 @@ class Applies:
 
     def names(self, proved: Proved) -> tuple[str, ...]:
         """Of the theorems, for what is proved."""
-        names = (self.in_plane if proved.planar else ()) or self.theorems
-        more = ("Theorems.symplectic_is_area_preserving",) * (self.symplectic and proved.planar)
-        return (*names, *more)
+        more = ("Theorems.symplectic_is_area_preserving",) * self.symplectic
+        in_plane = (*(self.in_plane or self.theorems), *more)
+        return {AREA: in_plane, SYMPLECTIC: self.theorems}[proved.structure]
 
     def sentence(self, proved: Proved) -> str:
         """What they say."""
-        return self.says(proved) + self.so * proved.planar
+        return self.says(proved) + {AREA: self.so, SYMPLECTIC: ""}[proved.structure]
 
 
 def eta_of(proved: Proved) -> int | None:
@@ -48,7 +49,7 @@ def is_lie(proved: Proved) -> bool:
 
 def for_every(proved: Proved) -> str:
     """For which H they hold, in words."""
-    degrees = "" if proved.planar else f" of {proved.degrees} degrees of freedom"
+    degrees = {AREA: "", SYMPLECTIC: f" of {proved.degrees} degrees of freedom"}[proved.structure]
     return f"for every smooth H{'(p, q, t)' * proved.timed}{degrees}"
 
 

@@ -51,8 +51,8 @@ def by_equations(hamiltonian: Hamiltonian, tableau: ImplicitTableau) -> StepMap:
     clocks = [sum(row, field.ring.zero) for row in rows]
 
     def known_order() -> int | None:
-        """By rooted trees, which are those of an autonomous H."""
-        return order_of(tableau, field) if field.planar and not field.timed else None
+        """By rooted trees, which are those of an autonomous H, by its derivatives by p and q."""
+        return order_of(tableau, field) if hamiltonian.planar and not field.timed else None
 
     return StepMap(
         hamiltonian,

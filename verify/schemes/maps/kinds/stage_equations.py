@@ -32,7 +32,7 @@ def build(coefficients: StageEquations, hamiltonian: Hamiltonian, name: str) -> 
                 part for s in coefficients.stages for part in (("kick", s.kick), ("drift", s.drift))
             ]
             return splittings.build(Splitting(tuple(parts)), hamiltonian, name)
-        if field.planar and coefficients.stages == (_EULER,):
+        if hamiltonian.planar and coefficients.stages == (_EULER,):
             linear = _linear_in_p(hamiltonian, field)
             if linear is not None:
                 return linear

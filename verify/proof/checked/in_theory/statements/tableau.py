@@ -1,8 +1,10 @@
 """That a Runge–Kutta method with b_i a_ij + b_j a_ji = b_i b_j is symplectic."""
 
 from verify.proof.checked.in_theory.applies import Applies
-from verify.proof.checked.proved import Proved
 from verify.schemes.conditions.tree_conditions import TreeConditions
+from verify.structures import AREA, SYMPLECTIC
+
+_KEPT = {AREA: "det J = 1", SYMPLECTIC: "S = 0"}
 
 
 def fulfilled(every_h: object) -> bool:
@@ -13,18 +15,13 @@ def fulfilled(every_h: object) -> bool:
     return bool(conditions) and all(condition.holds for condition in conditions)
 
 
-def _says(proved: Proved) -> str:
-    what = "det J = 1" if proved.planar else "S = 0"
-    return (
-        f"{what} for every twice differentiable H wherever the stages have a differentiable "
-        "solution, by `b_i` `a_ij` + `b_j` `a_ji` = `b_i` `b_j`"
-    )
-
-
 APPLIES = Applies(
     about="defect",
     applies=lambda proved: fulfilled(proved.scheme.every_h),
     theorems=("Theorems.runge_kutta_is_symplectic",),
-    says=_says,
+    says=lambda proved: (
+        f"{_KEPT[proved.structure]} for every twice differentiable H wherever the stages have a "
+        "differentiable solution, by `b_i` `a_ij` + `b_j` `a_ji` = `b_i` `b_j`"
+    ),
     symplectic=True,
 )

@@ -4,9 +4,8 @@ from verify.proof.checked.in_theory.applies import Applies, eta_of
 
 APPLIES = Applies(
     about="telescopes",
-    applies=lambda proved: (
-        proved.every and proved.planar and not proved.timed and (eta_of(proved) or 0) % 2 == 1
-    ),
-    theorems=("Theorems.lie_does_not_telescope_for_odd",),
+    applies=lambda proved: proved.every and not proved.timed and (eta_of(proved) or 0) % 2 == 1,
+    theorems=(),
+    in_plane=("Theorems.lie_does_not_telescope_for_odd",),
     says=lambda _: "for H = (p² + q²)/2 the leading coefficient is X·G for no smooth G",
 )

@@ -9,15 +9,16 @@ from verify.proof.checked.in_theory.applies import (
     is_lie,
 )
 from verify.proof.checked.proved import Proved
+from verify.structures import AREA, SYMPLECTIC
 
 
 def _says(proved: Proved) -> str:
-    if proved.planar:
-        return first_term(proved, "ΔJ", divergence(proved))
     last = (eta_of(proved) or 0) + 1
     by = f"{by_flow(proved)}^{last}"
     parts = f"d(`{by}` `p_i`)∧d`q_i` + d`p_i`∧d(`{by}` `q_i`)"
-    return first_term(proved, "S", f"−1/{last}! `Σ_i` ({parts})")
+    form = f"−1/{last}! `Σ_i` ({parts})"
+    coefficient = {AREA: divergence(proved), SYMPLECTIC: form}[proved.structure]
+    return first_term(proved, proved.structure.defect, coefficient)
 
 
 APPLIES = Applies(

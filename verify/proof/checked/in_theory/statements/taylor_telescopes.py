@@ -2,11 +2,12 @@
 
 from verify.proof.checked.in_theory.applies import Applies, by_flow, eta_of, for_every
 from verify.proof.checked.proved import Proved
+from verify.structures import AREA, SYMPLECTIC
 
 
 def _says(proved: Proved) -> str:
-    in_plane, known = f"{by_flow(proved)}·G, G in closed form", "a Lie derivative, in closed form"
-    return f"{for_every(proved)} the leading coefficient is {in_plane if proved.planar else known}"
+    known = {AREA: f"{by_flow(proved)}·G, G", SYMPLECTIC: "a Lie derivative,"}[proved.structure]
+    return f"{for_every(proved)} the leading coefficient is {known} in closed form"
 
 
 APPLIES = Applies(
