@@ -26,7 +26,7 @@ from verify.prose import Prose, prose, read_prose
 from verify.schemes.maps import closed_form
 from verify.verdict import Verdict
 
-_MOST_WRITTEN, _MOST_OF_MAP = 3000, 4000  # operations of which a closed form is tried
+_MOST_OF_MAP = 4000  # operations of which a closed form is tried
 _MOST_TERMS = 2000
 _MOST_INSIDE = 100  # operations of what is divided by, or of which a root is taken
 _NOT_WRITTEN = "the function divides by no 0, and takes no root or logarithm of what is negative"

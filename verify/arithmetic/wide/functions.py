@@ -31,7 +31,6 @@ _OCTAVE = 1 << 12  # table steps of a factor 2
 _SHIFT = 12  # half a step of a turn, and a step of a factor 2, are below 2^−12
 _SURELY_POSITIVE = 1 << 28  # table steps, whole turns and factors of 2
 _NEGLIGIBLE = 32  # units of a fraction's last place, 2^−W
-_DOUBLE = ir.DoubleType()
 
 
 def arb_integer(value: flint.arb, shift: int) -> int:

@@ -18,7 +18,6 @@ from verify.integrators.user_code.step import unless_it_fails
 Line = tuple[str, int, int]  # file, line, instruction
 _BEYOND = 1.25  # times the way to where the sides meet
 _TRIES, _MOST_LINES = 6, 12
-_FARTHEST = 100  # units
 _ITERATED = 4  # comparisons of one line in one call are those of a loop
 
 

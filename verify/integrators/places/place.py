@@ -17,7 +17,6 @@ _AMPLITUDES = tuple(
     for q, p in (("1", "1"), ("2/5", "9/4"), ("9/4", "2/5"), ("1/8", "1/8"), ("2", "2"))
 )
 _ALL_SIGNS = 4  # coordinates up to which every pattern of signs is looked at
-_MOST = 12  # patterns of more coordinates
 
 
 @dataclass(frozen=True)
