@@ -29,15 +29,17 @@ from verify.structures import AREA, SYMPLECTIC
 
 
 class Most(NamedTuple):
-    """The terms up to which a proof is made, a kernel written, a point looked at in a moment."""
+    """The terms up to which a proof is made, a kernel written, a point looked at in a moment, and
+    whether kernels are written also of what is not proved."""
 
     proof: int
     kernels: int
     points: int
+    unproved: bool
 
 
 # The plane counts a whole map, n degrees of freedom what a step is made of: see `Sample.terms`.
-_MOST = {AREA: Most(40, 20, 150), SYMPLECTIC: Most(30, 60, 250)}
+_MOST = {AREA: Most(40, 20, 150, False), SYMPLECTIC: Most(30, 60, 250, True)}
 _MOST_ORDER = 4  # of a scheme whose series is made in n degrees of freedom
 _OF_SHORT_SERIES = {"variable", CIRCLE.odd, CIRCLE.even}  # as other functions' are not
 
@@ -150,7 +152,7 @@ class Sample:
     @property
     def short(self) -> bool:
         """Whether kernels of it are written in a moment."""
-        return self.terms <= self.most.kernels and (self.ordinary or not self.hamiltonian.planar)
+        return self.terms <= self.most.kernels and (self.ordinary or self.most.unproved)
 
     @property
     def brief(self) -> bool:

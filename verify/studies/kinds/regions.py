@@ -60,7 +60,7 @@ def flow_tasks(scene: Scene, flow: Flow) -> Iterator[FlowTask]:
                 steps=steps,
                 digits=flow.digits,
                 mean_lambda=flow.mean_lambda and not kept and carries_defect(exact),
-                distance=by_scheme and flow.exact and exact.planar,
+                distance=by_scheme and flow.exact and exact.planar,  # of curves in it
                 point=point,
                 plane=flow.plane,
             )
