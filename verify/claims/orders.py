@@ -18,12 +18,11 @@ from verify.proof.every_proof import EveryProof
 from verify.proof.expansion import MOST_ORDERS
 from verify.proof.order import convergence_of_scheme, leading_of, nearby_defect_of
 from verify.proof.printed_formulas import told_defect
-from verify.proof.proof import Proof
 from verify.prose import Formula, prose
 from verify.scenes.results.claim import ClaimResult
 from verify.schemes import get
 from verify.schemes.conditions.condition import NearbyOrder
-from verify.schemes.maps.step_map import StepMap
+from verify.structures import AREA, SYMPLECTIC
 from verify.verdict import Verdict
 
 Order = Annotated[int, Field(ge=1, le=64, strict=True)]
@@ -125,11 +124,10 @@ def order_of(claim: Claim, findings: Findings, form: str) -> ProvedOrder:
     """The order of S = JᵀΩJ − Ω of the claim's scheme for its scene's H, or of ΔJ = det J − 1; in
     the plane S is ΔJ·Ω."""
     hamiltonian = findings.scene_of(claim).exact_hamiltonian()
-    if hamiltonian.planar:
-        form, known = "ΔJ", _delta_j_order(step_map_of(hamiltonian, claim.scheme))
-    else:
-        known = _order_in_degrees(proof_of(hamiltonian, claim.scheme), of_s=form == "S")
-    return _with_printed(known, claim.scheme, hamiltonian, form)
+    order_in = {AREA: _delta_j_order, SYMPLECTIC: _order_in_degrees}[hamiltonian.structure]
+    known = order_in(hamiltonian, claim.scheme, of_s=form == "S")
+    told = hamiltonian.structure.defect if form == "S" else form
+    return _with_printed(known, claim.scheme, hamiltonian, told)
 
 
 def _with_printed(
@@ -151,8 +149,9 @@ def _with_printed(
     )
 
 
-def _order_in_degrees(proof: Proof, *, of_s: bool) -> ProvedOrder:
+def _order_in_degrees(hamiltonian: Hamiltonian, scheme: str, *, of_s: bool) -> ProvedOrder:
     """The order of S, or of det J − 1."""
+    proof = proof_of(hamiltonian, scheme)
     vanishes, order = proof.area_preserving, proof.volume_order
     if of_s:
         vanishes, order = proof.symplectic, proof.order
@@ -165,8 +164,9 @@ def _order_in_degrees(proof: Proof, *, of_s: bool) -> ProvedOrder:
     return ProvedOrder(order, True, False, evidence, proof.domain)
 
 
-def _delta_j_order(step_map: StepMap) -> ProvedOrder:
-    """The order of ΔJ in h."""
+def _delta_j_order(hamiltonian: Hamiltonian, scheme: str, *, of_s: bool) -> ProvedOrder:
+    """The order of ΔJ in h, which S has in the plane."""
+    step_map = step_map_of(hamiltonian, scheme)
     leading = leading_of(step_map).within(step_map.domain)
     decision = leading.decision
     if decision.zero is True:
@@ -189,7 +189,7 @@ def _delta_j_order(step_map: StepMap) -> ProvedOrder:
 def flow_of(claim: Claim, findings: Findings) -> ProvedOrder:
     """Up to which power of h its map agrees with the exact flow, in any number of degrees."""
     hamiltonian = findings.scene_of(claim).exact_hamiltonian()
-    if hamiltonian.planar:
+    if hamiltonian.planar:  # by the map alone: nothing is asked of ΔJ
         step_map = step_map_of(hamiltonian, claim.scheme)
         found, near = convergence_of_scheme(step_map, get(claim.scheme))
         return _flow_order(found, near, step_map.domain, MOST_ORDERS)

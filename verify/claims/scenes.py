@@ -68,11 +68,11 @@ def scene_for(
 
 def _check_hamiltonian(claim: Claim, scene: Scene) -> None:
     """InputError where the claim speaks of no such H."""
-    exact = scene.exact_hamiltonian() if claim.autonomous or claim.planar else None
-    if exact and claim.planar and not exact.planar:
+    exact = scene.exact_hamiltonian()
+    if claim.planar and not exact.planar:
         problem = f"is of one degree of freedom; the H that it speaks of has {exact.degrees}"
         raise InputError("kind", claim.kind, problem)
-    if exact and claim.autonomous and exact.time_dependent:
+    if claim.autonomous and exact.time_dependent:
         problem = "is of an H without t, and so of no H that depends on t"
         raise InputError("kind", claim.kind, problem)
 

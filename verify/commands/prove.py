@@ -114,7 +114,7 @@ def _prove_one(exact: "Hamiltonian", scheme: str, certificate: Path | None) -> A
     chosen = get(scheme)
     proof = prove_order(chosen.step_map(exact), chosen)
     potential = potential_of(proof, chosen) if proof.planar else None
-    special = special_values(proof, chosen) if proof.planar else ()
+    special = () if potential is None else special_values(proof, chosen)
     seconds = f"{time.perf_counter() - begun:.6f}"
     if certificate is not None:
         _write(_certificate(partial(of_one, proof, potential), proof, exact, chosen), certificate)

@@ -139,10 +139,11 @@ def _sections(
     start = {"q": q, "p": p}
     grid: dict[str, Any] = {"step_sizes": step_sizes, "initial_values": [start]}
     grid |= {"separate": True} if carries_defect(exact) else {}
-    grid |= {"growth": True} if exact.planar and not exact.time_dependent else {}
+    plane = exact.planar  # which alone has the criteria and a law of growth
+    grid |= {"growth": True} if plane and not exact.time_dependent else {}
     largest = max(positive(h, "step_size") for h in step_sizes)
     return {
-        **({"criteria": [1, 2, 3, 4], "every_hamiltonian": True} if exact.planar else {}),
+        **({"criteria": [1, 2, 3, 4], "every_hamiltonian": True} if plane else {}),
         "grid": {**grid, **length},
         "series": [{"step_size": largest, "initial_value": start, **length}],
     }

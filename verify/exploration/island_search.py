@@ -63,12 +63,9 @@ def neighbours(
 
 
 def _scene(sample: Sample, formula: str, at: Iterable[Fraction], h: Fraction) -> Scene:
-    moved = sample.at(at)
-    grid = {
-        "steps": sample.steps,
-        "step_sizes": [h],
-        "initial_values": [{"q": moved.q, "p": moved.p}],
-    }
+    moved = sample.at(at).run_arguments
+    start = {name: moved[name] for name in ("q", "p")}
+    grid = {"steps": sample.steps, "step_sizes": [h], "initial_values": [start]}
     whole = {"hamiltonian": formula, "t0": sample.t0, "schemes": sample.scene.schemes, "grid": grid}
     return scene_from(whole, "neighbour")
 

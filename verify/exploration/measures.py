@@ -112,13 +112,13 @@ def _observed(sample: Sample, digits: int, name: str) -> Fraction | None:
 def orbit(sample: Sample) -> list[tuple[Fraction, Fraction]]:
     """Points (q, p) of the run with 40 digits, from the initial value on."""
     trail = sample.run("mpfr", DIGITS, sections=_POINTS).trail
-    return [(sample.q, sample.p), *((x["q"], x["p"]) for x in trail)]
+    return [(sample.point["q"], sample.point["p"]), *((x["q"], x["p"]) for x in trail)]
 
 
 def _stays(sample: Sample, digits: int, *observables: str) -> Outcome | None:
     """The run with so many digits; None where it goes far, or, in n degrees of freedom, where its
     kernel is long or nothing is to be observed."""
-    if not sample.planar and (
+    if not sample.hamiltonian.planar and (
         not sample.short or (observables and sample.step_map.symplectic_by_conditions)
     ):
         return None

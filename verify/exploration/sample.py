@@ -14,28 +14,32 @@ from verify.flows.extrapolation import Flow
 from verify.functions.function import CIRCLE
 from verify.hamiltonians.canonical_field import CanonicalField, canonical_field
 from verify.hamiltonians.hamiltonian import Hamiltonian
-from verify.hamiltonians.start import point_of
+from verify.hamiltonians.start import point_of, start_texts
 from verify.kernels.run_inputs import SECTIONS
 from verify.kernels.stepping import KernelRun, Outcome
 from verify.proof.order import prove
+from verify.proof.plane.potential import Potential, potential_of
 from verify.proof.proof import Proof
 from verify.scenes.scene import Scene
 from verify.schemes import get
 from verify.schemes.conditions.every_hamiltonian import TaylorSeries
 from verify.schemes.maps.step_map import StepMap
 from verify.schemes.scheme import Scheme
+from verify.structures import AREA, SYMPLECTIC
 
 
 class Most(NamedTuple):
-    """The terms up to which a proof is made, a kernel written, a point looked at in a moment."""
+    """The terms up to which a proof is made, a kernel written, a point looked at in a moment, and
+    whether kernels are written also of what is not proved."""
 
     proof: int
     kernels: int
     points: int
+    unproved: bool
 
 
 # The plane counts a whole map, n degrees of freedom what a step is made of: see `Sample.terms`.
-_IN_PLANE, _IN_DEGREES = Most(40, 20, 150), Most(30, 60, 250)
+_MOST = {AREA: Most(40, 20, 150, False), SYMPLECTIC: Most(30, 60, 250, True)}
 _MOST_ORDER = 4  # of a scheme whose series is made in n degrees of freedom
 _OF_SHORT_SERIES = {"variable", CIRCLE.odd, CIRCLE.even}  # as other functions' are not
 
@@ -80,28 +84,9 @@ class Sample:
         return replace(self, place=tuple(place))
 
     @property
-    def planar(self) -> bool:
-        """Whether it is of p and q."""
-        return self.hamiltonian.planar
-
-    @property
     def point(self) -> dict[str, Fraction]:
         """The coordinates at the start, by name."""
         return dict(zip(self.hamiltonian.coordinates, self.place, strict=True))
-
-    @property
-    def p(self) -> Any:
-        """The momentum at the start; in n degrees of freedom the tuple of them."""
-        return self._of_start("p")
-
-    @property
-    def q(self) -> Any:
-        """The displacement at the start; in n degrees of freedom the tuple of them."""
-        return self._of_start("q")
-
-    def _of_start(self, letter: str) -> Any:
-        own = tuple(x for name, x in self.point.items() if name[0] == letter)
-        return own[0] if self.planar else own
 
     @cached_property
     def step_map(self) -> StepMap:
@@ -113,18 +98,23 @@ class Sample:
         """What is proved of the map: orders, the leading coefficient of its defect."""
         return prove(self.step_map, self.scheme)
 
+    @cached_property
+    def potential(self) -> Potential | None:
+        """That of the leading coefficient of ΔJ; None in n degrees of freedom."""
+        return potential_of(self.proof, self.scheme) if self.hamiltonian.planar else None
+
     # -- how long it is ---------------------------------------------------------------------------
 
     @property
     def most(self) -> Most:
         """The terms that it may have."""
-        return _IN_PLANE if self.planar else _IN_DEGREES
+        return _MOST[self.hamiltonian.structure]
 
     @cached_property
     def terms(self) -> float:
         """How many terms its map has in the plane; in n degrees of freedom its slopes, of a Taylor
         series those of all its terms, made one after the other and as long as they are few."""
-        if self.planar:
+        if self.hamiltonian.planar:
             return self.step_map.terms
         field, generic = self.field, self.scheme.every_h
         total: float = sum(map(len, field.slopes))
@@ -147,7 +137,7 @@ class Sample:
         scheme = self.scheme
         if self.terms > self.most.proof:
             return False
-        if not self.planar:
+        if not self.hamiltonian.planar:
             exact = self.step_map.symplectic_by_conditions or self._kinds <= _OF_SHORT_SERIES
             return exact and scheme.order <= _MOST_ORDER
         if self.polynomial or scheme.order <= 2 or isinstance(scheme.every_h, TaylorSeries):
@@ -162,12 +152,17 @@ class Sample:
     @property
     def short(self) -> bool:
         """Whether kernels of it are written in a moment."""
-        return self.terms <= self.most.kernels and (self.ordinary or not self.planar)
+        return self.terms <= self.most.kernels and (self.ordinary or self.most.unproved)
 
     @property
     def brief(self) -> bool:
         """Whether its map is short enough to be looked at in a few points in a moment."""
         return self.terms <= self.most.points
+
+    @property
+    def light(self) -> bool:
+        """Whether one step of it is looked at: in the plane of every one, however long its map."""
+        return self.hamiltonian.planar or self.brief
 
     @property
     def field(self) -> CanonicalField:
@@ -226,8 +221,8 @@ class Sample:
     @property
     def run_arguments(self) -> dict[str, Any]:
         """What `run` and `separate` are called with beside H and the scheme."""
-        own = {"q": self.q, "p": self.p, "step_size": self.step_size, "steps": self.steps}
-        return own | {"t0": self.t0}
+        own = start_texts(self.hamiltonian, self.point, self.t0)
+        return own | {"step_size": self.step_size, "steps": self.steps}
 
     @property
     def timed(self) -> bool:

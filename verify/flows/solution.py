@@ -33,6 +33,7 @@ from verify.hamiltonians.start import Given, point_of
 from verify.hamiltonians.systems import get
 from verify.hamiltonians.times_on_the_way import first_fault
 from verify.hamiltonians.uncoupled import uncoupled
+from verify.structures import AREA, SYMPLECTIC
 
 METHOD = "numerical flow: Gragg's method, extrapolated"
 _GUARD = 6  # digits beyond those asked for with which the first flow is followed
@@ -136,7 +137,7 @@ def solution_from(
     solutions = []
     for part, names in uncoupled(hamiltonian):
         own = {name: point[old] for name, old in zip(part.coordinates, names, strict=True)}
-        known = _of_plane if part.planar else _ellipse
+        known = {AREA: _of_plane, SYMPLECTIC: _ellipse}[part.structure]
         solved = known(part, own, time, digits, t0)
         solutions.append(solved or numerical_solution(part, own, time, digits, t0))
         found |= dict(zip(names, solutions[-1].point.values(), strict=True))

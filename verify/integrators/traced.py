@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import Any
 
 import sympy
 
@@ -72,8 +73,11 @@ def proved_step(trace: Trace, hamiltonian: Hamiltonian) -> Finding:
     """By the prover for one H. Raises InputError where it has no series and no closed form."""
     traced = traced_map(hamiltonian, trace.roots)
     proof = prove(traced.step_map)
-    said = "traced with symbols" + f"; the map {traced.how}" * proof.planar
-    finding = Finding(
+    said, more = "traced with symbols", dict[str, Any]()
+    if proof.planar:  # of which alone closed forms and a bound of the order are told
+        said, power = f"{said}; the map {traced.how}", proof.first.power
+        more = {"area_at_least": power or MOST_ORDERS + 1, "delta_j": proof.step_map.delta_j_text}
+    return Finding(
         proof.verdict,
         proof.reason,
         "proof",
@@ -87,13 +91,8 @@ def proved_step(trace: Trace, hamiltonian: Hamiltonian) -> Finding:
         order_decided=proof.convergence_decided,
         domain=(proof.domain & domain_of(trace.tape)).texts,
         notes=(prose(said), *_notes(trace.tape)),
-    )
-    if not proof.planar:
-        return replace(finding, entry=proof.entry)
-    return replace(
-        finding,
-        area_at_least=proof.first.power or MOST_ORDERS + 1,
-        delta_j=proof.step_map.delta_j_text,
+        entry=proof.entry,
+        **more,
     )
 
 

@@ -56,7 +56,7 @@ def near(q: str, p: str) -> Callable[[Sample], float]:
     """By far the greatest at one initial value, and ever greater towards it."""
 
     def value(sample: Sample) -> float:
-        far = abs(sample.q - Fraction(q)) + abs(sample.p - Fraction(p))
+        far = abs(sample.point["q"] - Fraction(q)) + abs(sample.point["p"] - Fraction(p))
         return -math.log10(far + Fraction(1, 10**9))
 
     return value
@@ -67,7 +67,7 @@ def test_a_planted_worst_scene_is_found(plant: Plant) -> None:
     worst = search(task()).worst[0]
     assert worst.value == pytest.approx(9)
     found = Sample.of(scene_of(worst))
-    assert (found.q, found.p) == (Fraction("1.37"), Fraction("-0.74"))
+    assert found.place == (Fraction("-0.74"), Fraction("1.37"))
 
 
 def test_without_the_local_search_it_is_not_found(
@@ -81,7 +81,7 @@ def test_without_the_local_search_it_is_not_found(
 def test_what_is_out_of_bounds_is_not_found(plant: Plant) -> None:
     plant(near("2.5", "0"))
     worst = search(task()).worst[0]
-    assert Sample.of(scene_of(worst)).q == 2
+    assert Sample.of(scene_of(worst)).point["q"] == 2
 
 
 @pytest.mark.left_to_ci
@@ -102,7 +102,8 @@ def test_a_value_that_another_precision_does_not_confirm_is_dropped(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     def value(sample: Sample, digits: int) -> float:
-        return float(sample.q) + (digits > 40) * (sample.q > 0)
+        q = sample.point["q"]
+        return float(q) + (digits > 40) * (q > 0)
 
     monkeypatch.setitem(MEASURES, "planted", Measure("planted", value))
     found = search(task(count=40)).worst
@@ -135,9 +136,9 @@ def test_all_scenes_that_are_looked_at_are_within_the_bounds(plant: Plant) -> No
     search(task())
     least, most = island_search.STEP_SIZES
     assert len(seen) > 150
-    assert all(max(abs(x.q), abs(x.p)) <= island_search.REACH for x in seen)
+    assert all(max(map(abs, x.place)) <= island_search.REACH for x in seen)
     assert all(least <= x.step_size <= most for x in seen)
-    reached = {abs(x.q) for x in seen} & {abs(x.p) for x in seen}
+    reached = {abs(x.point["q"]) for x in seen} & {abs(x.point["p"]) for x in seen}
     assert island_search.REACH in reached, "the bounds themselves are looked at"
 
 
@@ -185,7 +186,7 @@ def test_islands_look_at_other_scenes(plant: Plant) -> None:
     seen: list[set[str]] = []
     for island in (0, 1, 0):
         own: set[str] = set()
-        plant(lambda x, own=own: own.add(str(x.scene)) or float(x.q + x.p / 9))  # type: ignore[misc]
+        plant(lambda x, own=own: own.add(str(x.scene)) or float(x.point["q"] + x.point["p"] / 9))  # type: ignore[misc]
         search(task(island=island, count=60))
         seen.append(own)
     assert seen[0] == seen[2], "the same island looks at the same ones"

@@ -31,8 +31,9 @@ from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.schemes.conditions.every_hamiltonian import RungeKutta, TaylorSeries
+from verify.structures import AREA, SYMPLECTIC
 
-_MOST_STEPS = 3
+_MOST_STEPS = {AREA: 1, SYMPLECTIC: 3}
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,7 @@ def must_be_same_steps(sample: Sample, change: Change) -> None:
     """Violation where the run of K from M z is not the image of that of H, or S not that of S;
     Silent where one is not known. In the plane of one step, whose maps may be long."""
     only_if(sample.brief)
-    steps = 1 if sample.planar else min(sample.steps, _MOST_STEPS)
+    steps = min(sample.steps, _MOST_STEPS[sample.hamiltonian.structure])
     ours = [state.sharp() for state in ball_steps(sample.step_map, sample.start, steps)]
     other = replace(
         sample,
@@ -85,7 +86,7 @@ def must_be_same_steps(sample: Sample, change: Change) -> None:
     ).at(moved(change, sample.point))
     # A part of H may have vanished with a coordinate: K is of fewer degrees then.
     only_if(other.hamiltonian.coordinates == sample.hamiltonian.coordinates)
-    only_if(other.planar or other.brief)
+    only_if(other.light)
     theirs = [state.sharp() for state in ball_steps(other.step_map, other.start, steps)]
     with working_precision(BITS):
         for mine, found in zip(ours[1:], theirs[1:], strict=True):

@@ -107,7 +107,7 @@ class Published:
         for run in runs:
             self.by_scene[run.scene].append(run)
         widest = max(runs, key=lambda run: run.hamiltonian.degrees)
-        self.planar = widest.hamiltonian.planar
+        self.structure = widest.hamiltonian.structure
         self.keys = tuple(widest.texts)  # what a run of a scene is told by
         self.columns = widest.columns
 

@@ -15,6 +15,7 @@ from verify.arithmetic.systems.float64 import nearest_double
 from verify.errors import NOT_GIVEN, InputError, unknown, without_controls
 from verify.reference.compare.published import Inputs, Published, PublishedRun
 from verify.reference.compare.rows import Row, Table, Theirs, opened
+from verify.structures import AREA, SYMPLECTIC
 
 _MOST_KNOWN = 10_000  # of the inputs' texts that are remembered
 _BEGINS = "t0"  # of an H in time; a scene has one, so that it need not be told
@@ -194,8 +195,8 @@ class _Keys:
         """InputError where an input is not told and the scene has several; in n degrees of freedom,
         where the runs that fit have."""
         values = self.ours.values_of(scene, name)
-        left = values if self.ours.planar else {x.texts.get(name) for x in fitting}
-        if len(left) > 1:
+        left = {AREA: values, SYMPLECTIC: {x.texts.get(name) for x in fitting}}
+        if len(left[self.ours.structure]) > 1:
             has = f"{scene} has: {', '.join(values[:8])}"
             wanted = f"is wanted, as no column of {self.lines.name} is {name}; {has}"
             raise InputError(f"--{_option(name)}", NOT_GIVEN, wanted)

@@ -13,6 +13,7 @@ from verify.runs.task import RunTask
 from verify.scenes.observables import observed
 from verify.scenes.results.run import RunResult
 from verify.scenes.scene import Scene
+from verify.structures import AREA, SYMPLECTIC
 from verify.studies.separation.links import way_of
 from verify.studies.separation.task import does_for_first_link
 from verify.studies.separation.ways.determinants import POINTS
@@ -77,9 +78,8 @@ def _need(plan: Plan, scene: Scene, scheme: str, preserves: bool) -> None:
     every = observables.by_name()
     vanishing = {name for name, each in every.items() if each.vanishes is of_defect}
     if preserves and asked and asked <= vanishing:
-        why = "ΔJ ≡ 0 is proved: ΔJ, MSE and Λ are exactly 0"
-        if not exact.planar:
-            why = "S ≡ 0 is proved: S, W, ΔJ, MSE and Λ are exactly 0"
+        also = {AREA: "", SYMPLECTIC: "S, W, "}[exact.structure]
+        why = f"{exact.structure.identity} is proved: {also}ΔJ, MSE and Λ are exactly 0"
         plan.leave_out(f"{name}: {len(tasks)} runs of {scheme}", why)
         return
     for task in tasks:

@@ -13,6 +13,7 @@ from verify.scenes.observables import carries_defect
 from verify.scenes.region_sections import Flow
 from verify.scenes.results.regions import EXACT_FLOW, DrawnOutline, FlowImage, FlowResult
 from verify.scenes.scene import Scene
+from verify.structures import AREA, SYMPLECTIC
 from verify.studies.regions.task import FlowTask
 
 
@@ -29,13 +30,11 @@ def need_flows(plan: Plan, scene: Scene) -> None:
 
 def _no_mean(scene: Scene, name: str, scheme: str) -> tuple[str, str]:
     exact = scene.exact_hamiltonian()
-    if exact.planar:
-        why = "ΔJ ≡ 0 is proved: Λ is exactly 0"
-        return f"{name}: mean of Λ over the region for {scheme}", why
-    why = "S ≡ 0 is shown: W is exactly 0"
+    kept, known = exact.structure, {AREA: "proved", SYMPLECTIC: "shown"}[exact.structure]
+    why = f"{kept.identity} is {known}: {kept.accumulated} is exactly 0"
     if not step_map_of(exact, scheme).preserves_area:
-        why = f"W is not carried in {exact.degrees} degrees of freedom"
-    return f"{name}: mean of W over the region for {scheme}", why
+        why = f"{kept.accumulated} is not carried in {exact.degrees} degrees of freedom"
+    return f"{name}: mean of {kept.accumulated} over the region for {scheme}", why
 
 
 def maps_of(scene: Scene, flow: Flow) -> tuple[str, ...]:
@@ -61,7 +60,7 @@ def flow_tasks(scene: Scene, flow: Flow) -> Iterator[FlowTask]:
                 steps=steps,
                 digits=flow.digits,
                 mean_lambda=flow.mean_lambda and not kept and carries_defect(exact),
-                distance=by_scheme and flow.exact and exact.planar,
+                distance=by_scheme and flow.exact and exact.planar,  # of curves in it
                 point=point,
                 plane=flow.plane,
             )

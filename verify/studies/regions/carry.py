@@ -30,6 +30,7 @@ from verify.kernels.step.computation import step_map_of
 from verify.prose import Number, Prose, prose, read_prose
 from verify.scenes.results.regions import EXACT_FLOW, CarriedOutline, FlowImage, Projection
 from verify.scenes.shapes.outline import Outline, Shape
+from verify.structures import AREA, SYMPLECTIC
 from verify.studies.regions.area import Goal, Measured, NoAreaError, Probe
 from verify.studies.regions.mean_lambda import mean_over, middle_of
 from verify.studies.regions.place import ITSELF, Place
@@ -284,7 +285,7 @@ def _mean(by: _Carrying, region: _OutlineImage) -> dict[str, Any]:
     value, error = Fraction(found.value), Fraction(found.error)
     agree = abs(value - region.measured.change) <= error + region.measured.error
     shown, bound = _shown(value, error)
-    name = "mean_lambda" if by.hamiltonian.planar else "mean_defect"
+    name = {AREA: "mean_lambda", SYMPLECTIC: "mean_defect"}[by.hamiltonian.structure]
     return {name: shown, f"{name}_error": bound, "agree": agree}
 
 

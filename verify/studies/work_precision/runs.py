@@ -35,6 +35,7 @@ from verify.scenes.observables import accumulated, carries
 from verify.scenes.results.bounded_value import Value
 from verify.scenes.results.work_precision import CostResult, LimitedBy, WorkPoint
 from verify.schemes import get
+from verify.structures import AREA, SYMPLECTIC
 from verify.studies.work_precision.peer_interface import InitialValueProblem
 from verify.studies.work_precision.step_cost import cost
 
@@ -42,8 +43,8 @@ ROUNDING_SHARE = Fraction(1, 20)  # of the error: a larger rounding part limits 
 EXACT_DIGITS = 33  # of the run that stands for exact arithmetic
 SHOWN = 12  # digits of an error at most
 _BITS = 400
-_REFERENCE_DIGITS = 33  # of the exact solution: float64 has 16
-_IN_DEGREES = 20  # of one in n degrees of freedom: each more costs, and most have no closed form
+# Of the exact solution: float64 has 16; in n degrees most have no closed form, and each more costs.
+_REFERENCE_DIGITS = {AREA: 33, SYMPLECTIC: 20}
 _ROOT_BITS = 160
 
 # The observables of a run, as a point has them.
@@ -55,8 +56,7 @@ State = tuple[Fraction, ...]  # p1 … pn, q1 … qn
 
 def reference(hamiltonian: Hamiltonian, point: Point, time: Fraction, t0: Fraction) -> Solution:
     """The exact solution that errors are held against; NoFlowError where it is not reached."""
-    digits = _REFERENCE_DIGITS if hamiltonian.planar else _IN_DEGREES
-    return solution_from(hamiltonian, point, time, digits, t0)
+    return solution_from(hamiltonian, point, time, _REFERENCE_DIGITS[hamiltonian.structure], t0)
 
 
 @dataclass(frozen=True)

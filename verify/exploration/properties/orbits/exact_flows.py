@@ -15,7 +15,7 @@ from verify.arithmetic.flint_precision import working_precision
 from verify.exploration.property import Silent, Violation, known, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.flows.extrapolation import Flow, NoFlowError
-from verify.proof.plane.potential import potential_of
+from verify.structures import AREA, SYMPLECTIC
 
 _DIGITS, _BITS = 40, 220
 _TIME, _INSTANT = Fraction(1, 1000), Fraction(1, 2**60)
@@ -28,7 +28,8 @@ Element = tuple[Ring, Poly]
 
 def holds(sample: Sample) -> None:
     """The potential is one of the plane."""
-    only_if(sample.is_turn(one_in=3) and (sample.ordinary if sample.planar else sample.short))
+    only_if(sample.is_turn(one_in=3))
+    only_if({AREA: sample.ordinary, SYMPLECTIC: sample.short}[sample.hamiltonian.structure])
     flow = sample.flow(_DIGITS)
     start = sample.start
     after = _flow_to(flow, start, _TIME)
@@ -38,7 +39,7 @@ def holds(sample: Sample) -> None:
         if abs(x - y) > _KNOWN * (1 + abs(x)):
             raise Violation(f"{name} comes back as {float(y)!r}, from {float(x)!r}")
     _energy_must_be_kept(sample, after)
-    if sample.planar and sample.is_turn(one_in=6):
+    if sample.is_turn(one_in=6):
         with suppress(Silent):  # the flow has been looked at
             _potential_must_move(sample)
 
@@ -58,7 +59,7 @@ def _energy_must_be_kept(sample: Sample, after: Point) -> None:
 def _potential_must_move(sample: Sample) -> None:
     """Holds the change of G over an instant against L, where there is a G."""
     only_if(sample.polynomial)
-    found = potential_of(sample.proof, sample.scheme)
+    found = known(sample.potential)
     only_if(bool(found.holds))
     _must_grow(sample, "G", known(found.element), "L", known(sample.proof.first.element))
 

@@ -14,18 +14,16 @@ from verify.exploration.property import Violation, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.proof.certificates.checker import check
 from verify.proof.certificates.one import of_one
-from verify.proof.plane.potential import potential_of
 
 _LONGEST = 20_000  # characters of a certificate that is checked here
 
 
 def holds(sample: Sample) -> None:
     only_if(sample.is_turn(one_in=10) and sample.in_closed_form)
-    proof = sample.proof
     with silent_at(InputError):  # such a map, or such functions, have no certificate
-        data = of_one(proof, potential_of(proof, sample.scheme) if sample.planar else None)
+        data = of_one(sample.proof, sample.potential)
     only_if(len(json.dumps(data)) <= _LONGEST)
-    if sample.planar:
+    if sample.hamiltonian.planar:  # whose certificates have a form of their own
         _must_be_checked(data, data["leading"], {n: data[n] for n in ("p_next", "q_next")})
     else:
         leading = data["leading"][0][2] if data["leading"] else []

@@ -7,12 +7,12 @@ from verify.exploration.property import Violation, only_if, silent_at
 from verify.exploration.sample import Sample
 from verify.proof.every import prove_every
 from verify.proof.every_proof import EveryProof
-from verify.proof.plane.potential import potential_of
 from verify.proof.proof import Proof
+from verify.structures import AREA, SYMPLECTIC
 from verify.verdict import Verdict
 
 # Of a scheme that is proved for every H here; in 3 degrees such a proof takes seconds, once.
-_MOST_IN_PLANE, _MOST_ORDER = 4, 3
+_MOST_ORDER = {AREA: 4, SYMPLECTIC: 3}
 
 
 @lru_cache(maxsize=128)
@@ -21,7 +21,7 @@ def _proved(scheme: str, timed: bool, degrees: int) -> EveryProof:
 
 
 def holds(sample: Sample) -> None:
-    scheme, most = sample.scheme, _MOST_IN_PLANE if sample.planar else _MOST_ORDER
+    scheme, most = sample.scheme, _MOST_ORDER[sample.hamiltonian.structure]
     only_if(scheme.every_h is not None and scheme.order <= most and sample.ordinary)
     with silent_at(LimitError):
         every = _proved(scheme.name, sample.timed, sample.hamiltonian.degrees)
@@ -36,11 +36,9 @@ def holds(sample: Sample) -> None:
 
 def _telescopes(sample: Sample) -> bool | None:
     """Whether the leading coefficient is a Lie derivative: in the plane X·G, which takes long."""
-    if not sample.planar:
-        return sample.proof.telescopes
-    if sample.is_turn(one_in=3) and sample.polynomial:
-        return potential_of(sample.proof, sample.scheme).holds
-    return None
+    if sample.is_turn(one_in=3) and sample.polynomial and sample.potential:
+        return sample.potential.holds
+    return sample.proof.telescopes
 
 
 def _contradiction(every: EveryProof, proof: Proof) -> str:

@@ -10,9 +10,9 @@ from verify.verdict import Verdict
 
 
 def holds(sample: Sample) -> None:
-    only_if(sample.scheme.symmetric and (sample.planar or sample.brief))
+    only_if(sample.scheme.symmetric and sample.light)
     # In n degrees of freedom such a series may take a minute.
-    if sample.planar and sample.is_turn(one_in=3) and sample.in_closed_form:
+    if sample.hamiltonian.planar and sample.is_turn(one_in=3) and sample.in_closed_form:
         series = by_series(sample.step_map, sample.scheme.order + 1)
         if series.verdict is Verdict.REFUTED:
             raise Violation(f"by series it is not symmetric: {series.reason}")

@@ -14,6 +14,8 @@ from verify.exploration.oracles.ball_steps import BITS, ball_steps, defect, entr
 from verify.exploration.oracles.mpfr_runs import end_of, jacobian_of_run
 from verify.exploration.property import Violation, only_if
 from verify.exploration.sample import Sample
+from verify.scenes.observables import carries
+from verify.structures import AREA, SYMPLECTIC
 
 _BITS_OF_DIFFERENCES = 700
 _SMALL = Fraction(1, 10**30)  # where H is steep, the entries lose twenty digits in a step
@@ -21,7 +23,7 @@ _SMALL = Fraction(1, 10**30)  # where H is steep, the entries lose twenty digits
 
 def holds(sample: Sample) -> None:
     only_if(sample.scheme.area_preserving)
-    only_if(sample.ordinary if sample.planar else sample.brief)
+    only_if({AREA: sample.ordinary, SYMPLECTIC: sample.brief}[sample.hamiltonian.structure])
     if sample.ordinary and sample.proof.symplectic is False:
         raise Violation(f"the proof says that S has order {sample.proof.order}")
     if sample.step_map.implicit:
@@ -35,16 +37,16 @@ def holds(sample: Sample) -> None:
 
 
 def _by_runs(sample: Sample) -> None:
-    only_if(sample.planar or (sample.is_turn(one_in=8) and sample.short))
+    only_if(sample.hamiltonian.planar or (sample.is_turn(one_in=8) and sample.short))
     jacobian, error = jacobian_of_run(sample)
     with working_precision(_BITS_OF_DIFFERENCES):
         seen = largest(defect(jacobian))
         wrong = seen > error
     if wrong:
         raise Violation(f"W is {seen.str(6)} after two steps, by differences of runs")
-    if sample.planar:
+    if carries(sample.hamiltonian, "lambda_plain"):
         end = end_of(sample, "lambda_plain")
-        change, small = end["lambda_plain"], _SMALL * (1 + abs(end["p"]) + abs(end["q"]))
+        change, small = end["lambda_plain"], _SMALL * (1 + sum(abs(end[n]) for n in sample.point))
         if abs(change) > small:
             again = end_of(sample, times=2)
             only_if(all(abs(x - end[name]) <= small for name, x in again.items()))
