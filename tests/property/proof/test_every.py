@@ -26,7 +26,7 @@ from tests.helpers.sampled.formulas import (
     trigonometric,
 )
 from verify.algebra.series.jets import Jets
-from verify.exploration.properties.orders.order_by_jets import delta_j as delta_j_of
+from verify.exploration.properties.plane.order_by_jets import delta_j as delta_j_of
 from verify.hamiltonians.jet_flow import JetFlow
 from verify.proof.telescoping import potential_of_lie
 from verify.schemes.conditions.every_hamiltonian import TaylorSeries

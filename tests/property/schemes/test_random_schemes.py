@@ -13,7 +13,7 @@ from tests.helpers.constructed.schemes import proof_of
 from tests.helpers.sampled.formulas import H, P, Q, plain, rationals
 from verify.algebra.series.jets import Jets
 from verify.errors import InputError
-from verify.exploration.properties.orders.order_by_jets import delta_j
+from verify.exploration.properties.plane.order_by_jets import delta_j
 from verify.hamiltonians.hamiltonian import Hamiltonian
 from verify.proof.by_conditions import prove_by_conditions
 from verify.proof.every import counterexample, prove_every

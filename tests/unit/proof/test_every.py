@@ -15,7 +15,7 @@ from verify import schemes
 from verify.algebra.series.jets import Jets
 from verify.algebra.series.power_series import Derivatives, Series, at_moved
 from verify.errors import InputError
-from verify.exploration.properties.orders.order_by_jets import delta_j
+from verify.exploration.properties.plane.order_by_jets import delta_j
 from verify.hamiltonians.jet_flow import JetFlow
 from verify.proof import every
 from verify.proof.every import prove_every

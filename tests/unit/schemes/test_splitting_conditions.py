@@ -27,7 +27,7 @@ from verify import schemes
 from verify.algebra.embedding import embed
 from verify.algebra.series.jets import Jets
 from verify.errors import InputError
-from verify.exploration.properties.orders.order_by_jets import delta_j
+from verify.exploration.properties.plane.order_by_jets import delta_j
 from verify.proof.by_conditions import prove_by_conditions
 from verify.proof.every import prove_every
 from verify.schemes.conditions.splitting_conditions import (

@@ -19,7 +19,7 @@ _FILES = Catalogue(__name__, __path__)
 # Of which samples the properties in a folder speak; those in others do of all.
 _SPEAK_OF: Mapping[str, Callable[[Sample], bool]] = {
     "plane": lambda sample: sample.hamiltonian.planar,
-    "degrees": lambda sample: not sample.hamiltonian.planar,
+    "several": lambda sample: not sample.hamiltonian.planar,
     "time": lambda sample: sample.timed,
 }
 

@@ -21,7 +21,7 @@ from tests.helpers.sampled.formulas import P, Q, plain, polynomials, rationals
 from verify.algebra.linear_combination import combination
 from verify.algebra.series.jets import Jets
 from verify.algebra.series.power_series import Derivatives, Series, at_moved
-from verify.exploration.properties.orders.order_by_jets import delta_j
+from verify.exploration.properties.plane.order_by_jets import delta_j
 from verify.hamiltonians.jet_flow import JetFlow
 from verify.proof.every import prove_every
 from verify.proof.telescoping import potential_of_lie, telescopes
