@@ -133,9 +133,8 @@ class Observable:
     short: str = ""
 
     def fits(self, degrees: int) -> bool:
-        """Whether it may be asked for in so many degrees of freedom."""
-        least, most = 2 if self.in_plane else 1, self.most_degrees
-        return least <= degrees and (most is None or degrees <= most)
+        """Whether it is carried in so many degrees of freedom."""
+        return self.most_degrees is None or degrees <= self.most_degrees
 
     @property
     def signed(self) -> bool:

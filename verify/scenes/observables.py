@@ -9,20 +9,21 @@ from verify.hamiltonians.hamiltonian import Hamiltonian
 _EVERY = observables.by_name()
 _BY_PLACE = sorted((each.usual, name) for name, each in _EVERY.items() if each.usual is not None)
 _USUAL = tuple(name for _, name in _BY_PLACE)
-CLOSED_FORM = tuple(name for name in _USUAL if _EVERY[name].fits(1))
+CLOSED_FORM = tuple(name for name in _USUAL if not _EVERY[name].in_plane)
 REPORTED = (*CLOSED_FORM, "lambda_plain")  # of float64, whose plain way is what is looked at
 
 
 def names(*, planar: bool) -> tuple[str, ...]:
     """All that may be asked for in the plane, or in some number of degrees of freedom."""
-    return tuple(n for n, x in _EVERY.items() if (x.fits(1) if planar else x.most_degrees != 1))
+    fits = (lambda x: not x.in_plane) if planar else (lambda x: x.most_degrees != 1)
+    return tuple(name for name, each in _EVERY.items() if fits(each))
 
 
 def observed(hamiltonian: Hamiltonian, asked: Sequence[str] | None) -> tuple[str, ...]:
     """What is asked for; where it is left out, ΔJ, MSE and Λ, and S and W where they are more."""
     if asked is not None:
         return tuple(asked)
-    return tuple(name for name in _USUAL if _EVERY[name].fits(hamiltonian.degrees))
+    return tuple(name for name in _USUAL if carries(hamiltonian, name))
 
 
 def accumulated(hamiltonian: Hamiltonian) -> tuple[str, ...]:
@@ -37,8 +38,9 @@ def carries_defect(hamiltonian: Hamiltonian) -> bool:
 
 
 def carries(hamiltonian: Hamiltonian, name: str) -> bool:
-    """Whether an observable is carried in so many degrees of freedom."""
-    return _EVERY[name].fits(hamiltonian.degrees)
+    """Whether an observable is carried of such an H, and is no other one's in the plane."""
+    each = _EVERY[name]
+    return each.fits(hamiltonian.degrees) and not (each.in_plane and hamiltonian.planar)
 
 
 def check_observables(hamiltonian: Hamiltonian, asked: Sequence[str]) -> None:
