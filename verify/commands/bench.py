@@ -13,6 +13,7 @@ from verify.commands.shared.one_line import scenes_of, start_options, with_one_l
 from verify.commands.shared.output import plain_json
 from verify.commands.shared.tasks import cluster_option
 from verify.errors import NOT_GIVEN, InputError
+from verify.structures import AREA, SYMPLECTIC
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -24,8 +25,8 @@ if TYPE_CHECKING:
 
 # Columns of the table, by what is kept: of a point's fields.
 _ERRORS = {
-    "area": {"error": "error", "Λ": "lam"},
-    "symplectic": {
+    AREA: {"error": "error", "Λ": "lam"},
+    SYMPLECTIC: {
         "error": "error",
         "energy": "energy",
         "Λ": "lam",
@@ -162,7 +163,7 @@ def _print_bench(name: str, result: "WorkPrecisionResult") -> None:
 
     console = Console(highlight=False)
     console.print(_table(name, result))
-    *_, area = _ERRORS[result.structure.name]
+    *_, area = _ERRORS[result.structure]
     for line in result.lines:
         console.print(_about(line, area))
     for system in result.systems:
@@ -185,7 +186,7 @@ def _table(name: str, result: "WorkPrecisionResult") -> "Table":
     from rich import box
     from rich.table import Table
 
-    errors = _ERRORS[result.structure.name]
+    errors = _ERRORS[result.structure]
     title = f"{name}: error at T = {result.time} against run time"
     table = Table(
         title=title,

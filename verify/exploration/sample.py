@@ -152,7 +152,7 @@ class Sample:
     @property
     def short(self) -> bool:
         """Whether kernels of it are written in a moment."""
-        return self.terms <= self.most.kernels and (self.ordinary or self.most.unproved)
+        return self.terms <= self.most.kernels and (self.most.unproved or self.ordinary)
 
     @property
     def brief(self) -> bool:

@@ -85,7 +85,7 @@ class Hamiltonian:
     _record: Mapping[str, Any] | None = field(default=None, init=False, repr=False)
 
     @classmethod
-    def recorded(cls, record: Mapping[str, Any]) -> Hamiltonian:
+    def from_record(cls, record: Mapping[str, Any]) -> Hamiltonian:
         """As it was kept (see `verify.hamiltonians.kept`); its expression is read again only by who
         asks for it."""
         made = cls.__new__(cls)
@@ -275,7 +275,7 @@ class Hamiltonian:
         if self._record and not self.values:
             return self
         if self._record and self._record["generic"]:
-            return Hamiltonian.recorded(self._record["generic"])
+            return Hamiltonian.from_record(self._record["generic"])
         zeros = {symbol(n): sympy.S.Zero for n, v in self.values if v == 0}
         return Hamiltonian(self.expression.subs(zeros))
 

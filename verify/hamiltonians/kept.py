@@ -49,7 +49,7 @@ def kept_or_read(
     key = code_cache.key_of(_FORMAT, _readers(), source, given)
     known = code_cache.load(key)
     if known is not None:
-        return Hamiltonian.recorded(json.loads(known))
+        return Hamiltonian.from_record(json.loads(known))
     found = read(values)
     record = _record_of(found)
     if record is not None:

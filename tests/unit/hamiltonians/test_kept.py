@@ -159,7 +159,7 @@ def test_with_parameters_of_value_0_the_generic_h_is_the_same_expression(
     one = Hamiltonian.parse(formula, {"a": 0, "b": b, "c": 0})
     record = kept._record_of(one)
     assert record is not None
-    generic = Hamiltonian.recorded(record).with_symbols()
+    generic = Hamiltonian.from_record(record).with_symbols()
     assert generic.expression == one.with_symbols().expression
     assert of_field(canonical_field(generic)[0]) == of_field(anew(one.with_symbols()))
 

@@ -24,7 +24,6 @@ from verify.structures import AREA, SYMPLECTIC
 USUAL, WORST = 8, 16  # times what the copies show, since operations differ
 _NOT_AT_ALL = Spread(0, 0)
 _FEW = {AREA: 4, SYMPLECTIC: 8}  # roundings of the state in a step
-_CARRIED = {AREA: False, SYMPLECTIC: True}  # what products of a Jacobian's entries are rounded by
 _PRODUCTS = 8  # roundings of a determinant
 _BITS = 200
 _UNDERFLOWS = (  # units of roundoff, and what all numbers of that format are lost below
@@ -38,8 +37,8 @@ class Allowance:
 
     def __init__(self, orbit: Start, unit: Fraction, scatters: Scatters) -> None:
         self.orbit, self.unit, self._scatters = orbit, unit, scatters
-        kept = orbit.hamiltonian.structure
-        self._few, self._carried = _FEW[kept], _CARRIED[kept]
+        self._few = _FEW[orbit.hamiltonian.structure]
+        self._of_matrices = not orbit.hamiltonian.planar  # S and W, entries that are carried
         self._entries: dict[int, Fraction] = {}
         self._smallest = next((x for of, x in _UNDERFLOWS if unit >= of), Fraction(0))
 
@@ -52,7 +51,7 @@ class Allowance:
             size = max(abs(known[n][0]) for n in exact.coordinates)
             return (self._few * self.unit * size + self._smallest) * many
         size = abs(known[name][0])
-        if self._carried:
+        if self._of_matrices:
             return self._few * self.unit * size * many
         one = self._one(step, known)
         if name == "lambda":
@@ -68,7 +67,7 @@ class Allowance:
         if spreads is None:
             return None
         moved = spreads.get(name, _NOT_AT_ALL)
-        adds_up = name == "lambda" or self._carried
+        adds_up = name == "lambda" or self._of_matrices
         long = least * (1 + math.isqrt(step)) if adds_up else least
         return Spread(
             least + USUAL * Fraction(moved.usual) * self.unit,
@@ -86,7 +85,7 @@ class Allowance:
 def products(orbit: Start, done: int, known: dict[str, Bounded]) -> Fraction:
     """A bound of |a d| + |b c| over the substeps of the step after so many, at least 1: what det J
     is the rest of. 1 where that is not looked at, as in n degrees of freedom."""
-    if _CARRIED[orbit.hamiltonian.structure]:
+    if not orbit.hamiltonian.planar:
         return Fraction(1)
     step_map = step_map_of(orbit.hamiltonian, orbit.scheme)
     parts = parts_of(step_map) or (step_map.closed,)

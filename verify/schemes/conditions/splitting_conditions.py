@@ -31,17 +31,16 @@ combinations of coefficients in the generator of the step
 (`verify.schemes.conditions.words.quadratic`): 2, 2, 4, 6, 12, 20, 39, 67 for p²/(2m), and 2, 3, 6,
 11, 23, 45, 93, 182 for p²/(2m(t)).
 
-The time at which each part of a splitting reads its force or its velocity.
-
-The right clock of a kick is advanced by the drifts, that of a drift by the kicks: a kick reads the
-force at t + h·(drifts before it), a drift the velocity at t + h·(kicks before it). For then the
-step is that of a splitting without time. With times x and y as further coordinates and X, Y their
-momenta, H = T(p, y) + X + V(q, x) + Y is a sum of A = V(q, x) + Y, whose flow is the kick and
-advances y, and of B = T(p, y) + X, whose flow is the drift and advances x. After the canonical
-change (y, Y) → (Y, −y) A is a function of coordinates and B one of momenta. The conditions for
-T(p) + V(q) hold in any number of degrees of freedom; so with right clocks every splitting keeps
-its order for every H = T(p, t) + V(q, t). Nyström methods, which have theirs for quadratic T alone,
-do not where T depends on t: that B is not quadratic in the momenta.
+Each part reads its force, or its velocity, at a time. The right clock of a kick is advanced by the
+drifts, that of a drift by the kicks: a kick reads the force at t + h·(drifts before it), a drift
+the velocity at t + h·(kicks before it). For then the step is that of a splitting without time. With
+times x and y as further coordinates and X, Y their momenta, H = T(p, y) + X + V(q, x) + Y is a sum
+of A = V(q, x) + Y, whose flow is the kick and advances y, and of B = T(p, y) + X, whose flow is the
+drift and advances x. After the canonical change (y, Y) → (Y, −y) A is a function of coordinates and
+B one of momenta. The conditions for T(p) + V(q) hold in any number of degrees of freedom; so with
+right clocks every splitting keeps its order for every H = T(p, t) + V(q, t). Nyström methods, which
+have theirs for quadratic T alone, do not where T depends on t: that B is not quadratic in the
+momenta.
 
 Where the drifts do not add up to 1, the kicks' clock does not reach the step's end. That is no
 fault of the clock: the condition Σ drifts = 1 fails, of order 1.

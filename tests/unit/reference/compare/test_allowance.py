@@ -22,7 +22,7 @@ KNOWN = {"p": (Fraction(1, 3), Fraction(0)), "q": (Fraction(-7, 2), Fraction(0))
 def allowance(spreads: dict[str, Spread] | None, *, planar: bool, unit: Fraction = DOUBLE) -> Any:
     coordinates = ("p", "q") if planar else ("p1", "q1")
     structure = AREA if planar else SYMPLECTIC
-    hamiltonian = SimpleNamespace(structure=structure, coordinates=coordinates)
+    hamiltonian = SimpleNamespace(structure=structure, planar=planar, coordinates=coordinates)
     scatters: Any = SimpleNamespace(at=lambda *_: spreads)
     return Allowance(SimpleNamespace(hamiltonian=hamiltonian), unit, scatters)  # type: ignore[arg-type]
 

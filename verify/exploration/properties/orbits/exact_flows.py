@@ -7,6 +7,7 @@ extrapolation, to 40 digits over a short time. Where H depends on time it moves 
 from collections.abc import Mapping
 from contextlib import suppress
 from fractions import Fraction
+from operator import attrgetter
 
 from verify.algebra.enclosure import enclose
 from verify.algebra.ring import Poly, Ring
@@ -17,6 +18,8 @@ from verify.exploration.sample import Sample
 from verify.flows.extrapolation import Flow, NoFlowError
 from verify.structures import AREA, SYMPLECTIC
 
+# Only what is asked of the one is made: of a long map the other takes long.
+_LOOKED_AT = {AREA: attrgetter("ordinary"), SYMPLECTIC: attrgetter("short")}
 _DIGITS, _BITS = 40, 220
 _TIME, _INSTANT = Fraction(1, 1000), Fraction(1, 2**60)
 _MOST_STEPS = 100  # of the flow, in so short a time: a field that wants more is left out
@@ -29,7 +32,7 @@ Element = tuple[Ring, Poly]
 def holds(sample: Sample) -> None:
     """The potential is one of the plane."""
     only_if(sample.is_turn(one_in=3))
-    only_if({AREA: sample.ordinary, SYMPLECTIC: sample.short}[sample.hamiltonian.structure])
+    only_if(_LOOKED_AT[sample.hamiltonian.structure](sample))
     flow = sample.flow(_DIGITS)
     start = sample.start
     after = _flow_to(flow, start, _TIME)

@@ -7,6 +7,7 @@ not held against the scheme.
 """
 
 from fractions import Fraction
+from operator import attrgetter
 
 from verify.arithmetic.exact import decimal
 from verify.arithmetic.flint_precision import working_precision
@@ -17,13 +18,14 @@ from verify.exploration.sample import Sample
 from verify.scenes.observables import carries
 from verify.structures import AREA, SYMPLECTIC
 
+_LOOKED_AT = {AREA: attrgetter("ordinary"), SYMPLECTIC: attrgetter("brief")}
 _BITS_OF_DIFFERENCES = 700
 _SMALL = Fraction(1, 10**30)  # where H is steep, the entries lose twenty digits in a step
 
 
 def holds(sample: Sample) -> None:
     only_if(sample.scheme.area_preserving)
-    only_if({AREA: sample.ordinary, SYMPLECTIC: sample.brief}[sample.hamiltonian.structure])
+    only_if(_LOOKED_AT[sample.hamiltonian.structure](sample))
     if sample.ordinary and sample.proof.symplectic is False:
         raise Violation(f"the proof says that S has order {sample.proof.order}")
     if sample.step_map.implicit:
