@@ -112,6 +112,7 @@ def test_every_command_is_tried_so() -> None:
 
 
 @pytest.mark.left_to_ci
+@pytest.mark.sample(8)
 @pytest.mark.parametrize("command", sorted({*COMMANDS} - {*FIRST}))
 def test_a_command_answers_with_standard_input_and_error_closed(command: str, folder: Path) -> None:
     status, said = closed(command, folder)

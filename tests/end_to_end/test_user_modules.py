@@ -71,7 +71,7 @@ def test_no_library_is_taken_from_the_folder_of_the_user(
 
 
 @pytest.mark.left_to_ci
-@pytest.mark.sample(6)
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("name", ["queue", "statistics", "test", "click", "tests", "difflib"])
 @pytest.mark.parametrize("suffix", ["", ".py"])
 def test_a_module_that_is_called_as_a_library_is_still_the_users_own(

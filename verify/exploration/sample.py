@@ -29,17 +29,26 @@ from verify.structures import AREA, SYMPLECTIC
 
 
 class Most(NamedTuple):
-    """The terms up to which a proof is made, a kernel written, a point looked at in a moment, and
-    whether kernels are written also of what is not proved."""
+    """The terms up to which a proof is made, a kernel written, points looked at in a moment,
+    and a single step.
+
+    `unproved`: whether kernels are written also of what is not proved; `runs`: whether what claims
+    say of runs is looked at.
+    """
 
     proof: int
     kernels: int
     points: int
+    step: float
     unproved: bool
+    runs: bool
 
 
 # The plane counts a whole map, n degrees of freedom what a step is made of: see `Sample.terms`.
-_MOST = {AREA: Most(40, 20, 150, False), SYMPLECTIC: Most(30, 60, 250, True)}
+_MOST = {
+    AREA: Most(40, 20, 150, inf, unproved=False, runs=True),
+    SYMPLECTIC: Most(30, 60, 250, 250, unproved=True, runs=False),
+}
 _MOST_ORDER = 4  # of a scheme whose series is made in n degrees of freedom
 _OF_SHORT_SERIES = {"variable", CIRCLE.odd, CIRCLE.even}  # as other functions' are not
 
@@ -162,7 +171,7 @@ class Sample:
     @property
     def light(self) -> bool:
         """Whether one step of it is looked at: in the plane of every one, however long its map."""
-        return self.hamiltonian.planar or self.brief
+        return self.most.step == inf or self.terms <= self.most.step
 
     @property
     def field(self) -> CanonicalField:

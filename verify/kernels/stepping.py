@@ -9,7 +9,7 @@ or a function's value its limit. So an overflow is not looked for at every opera
 happen.
 """
 
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -89,14 +89,20 @@ def _largest(
     as far as can be."""
 
     def grown(p: Fraction, q: Fraction, value: Fraction, matrix: Fraction) -> Limits:
-        """First to all sides."""
-        safe = partial(_room, kernel, inputs, times, matrix)
-        wider = ((max(p, r), max(q, r)) for r in _SIDES)
-        p, q = next((p, q) for p, q in wider if safe(p, q, value) is not None)
+        """A box that is safe, grown: first to all sides."""
+        room = partial(_room, kernel, inputs, times, matrix)
+
+        def widest(box: Callable[[Fraction], tuple[Fraction, Fraction]]) -> Fraction:
+            """The greatest side whose box is safe, by bisection, as what holds an unsafe box is
+            unsafe. With the least side it is the box that was safe before."""
+            return _SIDES[bisect_left(_SIDES, True, key=lambda r: room(*box(r), value) is not None)]
+
+        side = widest(lambda r: (max(p, r), max(q, r)))
+        p, q = max(p, side), max(q, side)
         # q first: it is an angle more often than p, and grows where that turns.
-        q = next(r for r in _SIDES if r == q or safe(p, r, value) is not None)
-        p = next(r for r in _SIDES if r == p or safe(r, q, value) is not None)
-        part = safe(p, q, value)
+        q = max(q, widest(lambda r: (p, max(q, r))))
+        p = max(p, widest(lambda r: (max(p, r), q)))
+        part = room(p, q, value)
         assert part is not None  # noqa: S101 - as was just seen
         return Limits(p, q, part, value, matrix)
 

@@ -56,7 +56,7 @@ def systems(draw: random.Random) -> list[Arithmetic]:
 
 
 @pytest.mark.left_to_ci
-@pytest.mark.sample(8)
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("name", SHAPES)
 def test_what_is_certified_or_estimated_holds_the_true_value(name: str, seed: int) -> None:
@@ -87,7 +87,7 @@ def test_what_is_certified_or_estimated_holds_the_true_value(name: str, seed: in
 
 
 @pytest.mark.left_to_ci
-@pytest.mark.sample(8)
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("name", SHAPES)
 def test_what_a_run_tells_holds_the_true_value(name: str, seed: int) -> None:

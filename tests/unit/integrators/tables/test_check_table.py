@@ -1,7 +1,6 @@
 """Files of tables: every kind is read and judged, and what is none is told with its line."""
 
 import random
-import time
 import tomllib
 from fractions import Fraction
 from typing import Any
@@ -14,6 +13,9 @@ from tests.paths import ROOT
 from verify.errors import InputError
 from verify.integrators.tables import kinds
 from verify.integrators.tables.told import TableClaim
+from verify.schemes.printed.asked import Asked
+from verify.schemes.printed.judged import Judged, judge
+from verify.schemes.printed.printed_numbers import PrintedNumbers
 from verify.verdict import Verdict
 
 RIGHT = {table["name"]: table for table in right_tables()}
@@ -362,9 +364,7 @@ def test_a_wrong_digit_of_order_2_says_how_far_off_it_is_and_below_which_h_it_is
 @pytest.mark.left_to_ci
 def test_an_order_8_tableau_of_doubles_is_judged_and_its_wrong_digit_named() -> None:
     table = dict(ORDER_8)
-    begun = time.process_time()
     found = claims(table)
-    assert time.process_time() - begun < 10
     assert found["order"].verdict is Verdict.MEASURED
     assert "200 conditions" in found["order"].evidence
     wrong = claims({**table, "b": [x.replace("5.8012039600", "5.8012039800") for x in table["b"]]})
@@ -579,13 +579,21 @@ def test_digits_of_numbers_that_the_order_leaves_free_are_not_judged() -> None:
 
 
 @pytest.mark.left_to_ci
-def test_a_table_of_order_8_with_a_wrong_digit_takes_seconds() -> None:
+def test_a_table_of_order_8_with_a_wrong_digit_takes_seconds(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """The row sums fail by 1e-9, so that 1,540 conditions with times would be looked at."""
     a = [list(row) for row in ORDER_8["a"]]
     assert a[2][1] == "0.0591751709536137"
     a[2][1] = "0.0591751719536137"
-    begun = time.process_time()
+    counts: list[int] = []
+
+    def counted(numbers: PrintedNumbers, asked: Asked, order: int) -> Judged:
+        counts.append(len(asked.equations))
+        return judge(numbers, asked, order)
+
+    monkeypatch.setattr("verify.integrators.tables.tableaux.order.judge", counted)
     found = claims({**ORDER_8, "a": a})
-    assert time.process_time() - begun < 12
+    assert 100 < max(counts) < 300
     assert found["row sums"].verdict is Verdict.REFUTED
     assert found["order in time"].verdict is Verdict.UNDECIDED
