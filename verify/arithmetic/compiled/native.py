@@ -72,8 +72,8 @@ def _target() -> llvm.TargetMachine:
     llvm.initialize_native_asmprinter()
     cpu, features = _processor()
     target = llvm.Target.from_triple(llvm.get_process_triple())
-    # What LLVM does beyond that makes no kernel faster, and takes a quarter longer.
-    return target.create_target_machine(cpu=cpu, features=features, opt=1)
+    # At level 1 code is had in four fifths of the time, and lanes take up to an eighth longer.
+    return target.create_target_machine(cpu=cpu, features=features, opt=2)
 
 
 def _optimise(module: llvm.ModuleRef, target: llvm.TargetMachine) -> None:
